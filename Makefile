@@ -1,0 +1,60 @@
+# Risorius: two commands on a fresh Debian or Ubuntu.
+#
+#   make demo     set up everything and render the built-in head to out/demo.mp4 and out/demo.png
+#   make test     set up everything, check the code and pass the tests
+#   make setup    only make .venv with everything in it
+#   make check    ruff, mypy and the import rules alone
+#   make clean    remove .venv and what was rendered
+
+PYTHON ?= python3
+BIN := .venv/bin
+READY := .venv/.ready
+SUDO := $(shell [ "$$(id -u)" = 0 ] || { command -v sudo >/dev/null && sudo -n true 2>/dev/null && echo "sudo -n"; })
+OPENGL_PACKAGES := libegl1 libgl1 libgl1-mesa-dri
+SCREEN_PACKAGES := xvfb xauth xdotool
+
+# $(call debian_packages,what needs them,packages): install where we may, else name the one command.
+define debian_packages
+	if command -v apt-get >/dev/null && { [ "$$(id -u)" = 0 ] || [ -n "$(SUDO)" ]; }; then \
+		echo "$(1): installing $(2)"; \
+		$(SUDO) apt-get -qq update && DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get -qq install -y $(2) >/dev/null; \
+	else \
+		echo "$(1) is missing; run: sudo apt install $(2)"; exit 2; \
+	fi
+endef
+
+.PHONY: demo test setup check opengl screen clean
+
+demo: setup opengl
+	@$(BIN)/risorius demo
+
+test: setup opengl screen check
+	@xvfb-run -a -s "-screen 0 1600x1000x24" $(BIN)/python -m pytest
+
+check: setup
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+	@$(BIN)/mypy
+	@PATH="$(CURDIR)/$(BIN):$$PATH" lint-imports
+
+setup: $(READY)
+
+$(READY): pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "Risorius needs Python 3.11 or newer; name one: make PYTHON=python3.12 $(MAKECMDGOALS)"; exit 2; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { $(call debian_packages,Python's venv,python3-venv); }
+	@[ -x $(BIN)/python ] || $(PYTHON) -m venv .venv
+	@echo "Installing Risorius and what it needs into .venv"
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable ".[dev]"
+	@touch $(READY)
+
+opengl: setup
+	@$(BIN)/risorius doctor --offscreen --quiet || { $(call debian_packages,OpenGL without a screen (EGL),$(OPENGL_PACKAGES)); }
+	@$(BIN)/risorius doctor --offscreen --quiet || { $(BIN)/risorius doctor; exit 2; }
+
+screen:
+	@command -v xvfb-run >/dev/null && command -v xauth >/dev/null && command -v xdotool >/dev/null || \
+		{ $(call debian_packages,A virtual screen for the window tests,$(SCREEN_PACKAGES)); }
+
+clean:
+	rm -rf .venv out

@@ -1,0 +1,37 @@
+"""Where the camera stands, from what a user or a script writes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import render
+
+from .errors import UserError
+from .scenes import Scene
+
+DEFAULT_VIEW = "three-quarter"
+
+
+def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
+    """The camera of a named view, or of "yaw,pitch[,zoom]" (degrees; zoom 1 frames the scene).
+
+    Raises UserError with the views that there are.
+    """
+    view = view or DEFAULT_VIEW
+    vertices = scene.rest_positions
+    if view in render.VIEWS:
+        return render.OrbitCamera.framing(vertices, view=view)
+    try:
+        numbers = [float(part) for part in view.split(",")]
+        if len(numbers) not in (2, 3) or not np.isfinite(numbers).all():
+            raise ValueError
+    except ValueError:
+        raise UserError(
+            f"camera '{view}': allowed are {', '.join(render.VIEWS)}, "
+            "or yaw,pitch[,zoom] in degrees"
+        ) from None
+    camera = render.OrbitCamera.framing(vertices, view="front")
+    camera.orbit(numbers[0], numbers[1])
+    if len(numbers) == 3:
+        camera.zoom(numbers[2])
+    return camera

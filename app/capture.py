@@ -1,0 +1,157 @@
+"""Offscreen capture: a script becomes a film, a folder of frames, a picture or a contact sheet."""
+
+from __future__ import annotations
+
+import collections
+import contextlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from tqdm import tqdm
+
+import render
+
+from . import outputs
+from .cameras import DEFAULT_VIEW, camera_for
+from .errors import UserError
+from .labels import caption, contact_sheet
+from .outputs import Frame
+from .pipeline import Pipeline, side_by_side
+from .scenes import SCENES, Scene
+from .script import Script
+
+
+@dataclass(frozen=True)
+class CaptureOptions:
+    """How a script is filmed."""
+
+    size: tuple[int, int] = (1280, 720)  # of the whole picture [pixels]
+    frames_per_second: float = 30.0
+    refiner: str = "kahler"
+    compare: bool = False  # the mesh as it is on the left, refined on the right
+    captions: bool = True  # names and triangle counts under a comparison
+    camera: str = DEFAULT_VIEW  # a named view, or yaw,pitch[,zoom] in degrees
+    style: render.Style = render.Style()  # noqa: RUF009 - frozen
+    samples: int = 4
+
+
+class Capture:
+    """An offscreen surface with the whole pipeline behind it; a context manager."""
+
+    def __init__(self, scene: Scene, options: CaptureOptions) -> None:
+        self.scene = scene
+        self.options = options
+        self.surface = render.open_offscreen(options.size, samples=options.samples)
+        refiners = ("none", options.refiner) if options.compare else (options.refiner,)
+        self.pipeline = Pipeline(scene, render.Renderer(self.surface), refiners)
+        self.viewports = side_by_side(self.surface.size, len(refiners))
+        self.camera = camera_for(scene, options.camera)
+        self.most_triangles = 0
+
+    def __enter__(self) -> Capture:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.surface.close()
+
+    def frame(self, channels: Mapping[str, float], seconds: float) -> Frame:
+        """Pose the scene, let `seconds` pass, and return the picture (H, W, 3)."""
+        self.scene.pose(channels)
+        return self.picture(seconds)
+
+    def picture(self, seconds: float = 0.0) -> Frame:
+        """Let `seconds` pass, draw, and read the picture back."""
+        count = len(self.viewports)
+        self.surface.begin()
+        self.pipeline.draw_frame(
+            seconds, [self.camera] * count, [self.options.style] * count, self.viewports
+        )
+        self.surface.end()
+        pictures = self.pipeline.pictures
+        self.most_triangles = max(
+            [self.most_triangles, *(drawn.counts.triangles_out for drawn in pictures)]
+        )
+        frame = self.surface.read()
+        if self.options.compare and self.options.captions:
+            texts = [
+                f"{'static' if drawn.refiner_name == 'none' else drawn.refiner_name} "
+                f"· {drawn.counts.triangles_out} triangles"
+                for drawn in pictures
+            ]
+            frame = caption(frame, texts, self.viewports)
+        return frame
+
+    def play(
+        self, script: Script, *, until: float | None = None, progress: bool = True
+    ) -> Iterator[tuple[float, Frame]]:
+        """Play a script from rest and yield (time [s], picture) at each frame."""
+        self.scene.reset()
+        rate = self.options.frames_per_second
+        last = round((script.duration if until is None else until) * rate)
+        bar = tqdm(range(last + 1), unit="frame", disable=not progress or None, leave=False)
+        for index in bar:
+            time = index / rate
+            yield time, self.frame(script.at(time), 1.0 / rate if index else 0.0)
+
+
+def capture(
+    script: Script,
+    options: CaptureOptions,
+    *,
+    output: Path | None = None,
+    sheet: Path | None = None,
+    still_time: float | None = None,
+    overwrite: bool = False,
+    progress: bool = True,
+) -> int:
+    """Film `script` into `output` (by its suffix) and its key poses into the picture `sheet`.
+
+    Returns the largest number of triangles of a frame. Raises UserError on what cannot be.
+    """
+    if output is None and sheet is None:
+        raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")
+    scene = SCENES[script.scene]()
+    script.check_names({*scene.expressions, *scene.limits}, source=script.title)
+    with contextlib.ExitStack() as stack:
+        recording = stack.enter_context(Capture(scene, options))
+        if output is not None and output.suffix.lower() == ".png":
+            _still(recording, script, output, still_time or 0.0, progress)
+            output = None
+        sink = None
+        if output is not None:
+            sink = stack.enter_context(_sink_for(output, options, overwrite))
+        wanted = [(pose.time, pose.name) for pose in script.key_poses] if sheet else []
+        poses: list[tuple[str, Frame]] = []
+        if sink is not None or sheet is not None:
+            for time, frame in recording.play(script, progress=progress):
+                if sink is not None:
+                    sink(frame)
+                while wanted and wanted[0][0] <= time + 0.5 / options.frames_per_second:
+                    poses.append((wanted.pop(0)[1], frame))
+        if sheet is not None:
+            if not poses:
+                raise UserError("a contact sheet shows poses that have a name; the script has none")
+            outputs.save_png(sheet, contact_sheet(poses, columns=2 if options.compare else 3))
+        return recording.most_triangles
+
+
+def _still(recording: Capture, script: Script, output: Path, time: float, progress: bool) -> None:
+    frames = recording.play(script, until=time, progress=progress)
+    _, frame = collections.deque(frames, maxlen=1).pop()
+    outputs.save_png(output, frame)
+
+
+def _sink_for(
+    output: Path, options: CaptureOptions, overwrite: bool
+) -> contextlib.AbstractContextManager[outputs.FrameSink]:
+    """A film or a folder of frames, by what the output is called."""
+    suffix = output.suffix.lower()
+    if suffix in outputs.FILM_SUFFIXES:
+        return outputs.film(output, options.size, options.frames_per_second)
+    if suffix == "" or output.is_dir():
+        return outputs.folder(output, overwrite=overwrite)
+    raise UserError(
+        f"{output}: what is '{suffix}'? Allowed are {', '.join(outputs.FILM_SUFFIXES)} (a film), "
+        ".png (one picture) and a name without suffix (a folder of frames)"
+    )

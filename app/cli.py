@@ -1,0 +1,289 @@
+"""The `risorius` command: one short function for each sub-command."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import click
+
+from . import __version__
+from .errors import UserError
+
+Command = Callable[..., Any]
+
+
+class Size(click.ParamType[tuple[int, int]]):
+    """Width x height in pixels, written 1280x720."""
+
+    name = "WxH"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, int]:
+        if isinstance(value, tuple):
+            return value
+        width, separator, height = str(value).lower().partition("x")
+        if separator and width.isdigit() and height.isdigit():
+            size = (int(width), int(height))
+            if all(16 <= side <= 8192 for side in size):
+                return size
+        self.fail(f"'{value}' is no size; write width x height, each 16 to 8192, as in 1280x720")
+
+
+@contextlib.contextmanager
+def told_in_one_line() -> Iterator[None]:
+    """Turn what the user can mend into one line on the error stream and exit code 2."""
+    import render
+
+    try:
+        yield
+    except (UserError, render.GLError) as error:
+        click.echo(f"risorius: {error}", err=True)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        click.echo("risorius: stopped; what was not complete has been removed", err=True)
+        sys.exit(130)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="risorius")
+def main() -> None:
+    """Physics-based facial animation with dynamically refined triangle meshes."""
+
+
+def drawing_options(command: Command) -> Command:
+    """The options that view, replay and capture share."""
+    for option in (
+        click.option(
+            "--refiner",
+            default="kahler",
+            show_default=True,
+            help="Refine plug-in; none draws the mesh as it is.",
+        ),
+        click.option(
+            "--shading",
+            type=click.Choice(["flat", "gouraud", "pixel"]),
+            default="pixel",
+            show_default=True,
+        ),
+        click.option("--wireframe", is_flag=True, help="Draw the edges of every triangle."),
+        click.option("--splits", is_flag=True, help="Colour triangles by their number of splits."),
+        click.option("--clay", is_flag=True, help="Plain grey, as in the paper's pictures."),
+    ):
+        command = option(command)
+    return command
+
+
+@main.command()
+@click.argument("script", type=click.Path(path_type=Path), required=False)
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="out.mp4, a folder, or .png")
+@click.option("--sheet", type=click.Path(path_type=Path), help="Contact sheet of the named poses.")
+@click.option("--scene", type=click.Choice(["face", "plane"]), help="What is animated.")
+@click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told.")
+@click.option("--fps", type=click.FloatRange(1, 240), default=30.0, show_default=True)
+@click.option("--compare", is_flag=True, help="The mesh as it is on the left, refined right.")
+@click.option("--captions/--no-captions", default=True, help="Words under a comparison.")
+@click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees.")
+@click.option("--time", "still_time", type=click.FloatRange(0), help="When a .png is taken [s].")
+@click.option("--samples", type=click.IntRange(0, 16), default=4, show_default=True)
+@click.option("--overwrite", is_flag=True, help="Replace a folder that is not empty.")
+@click.option("--quiet", is_flag=True, help="No progress bar.")
+@drawing_options
+def capture(
+    script: Path | None,
+    output: Path | None,
+    sheet: Path | None,
+    scene: str | None,
+    size: tuple[int, int],
+    fps: float,
+    compare: bool,
+    captions: bool,
+    camera: str | None,
+    still_time: float | None,
+    samples: int,
+    overwrite: bool,
+    quiet: bool,
+    refiner: str,
+    **look: Any,
+) -> None:
+    """Render SCRIPT offscreen into a film, frames, a picture or a contact sheet.
+
+    Without SCRIPT the scene's own one is played.
+    """
+    from . import capture as capturing
+    from .cameras import DEFAULT_VIEW
+
+    with told_in_one_line():
+        performance = script_for(script, scene)
+        options = capturing.CaptureOptions(
+            size=size,
+            frames_per_second=fps,
+            refiner=known_refiner(refiner),
+            compare=compare,
+            captions=captions,
+            camera=camera or performance.camera or DEFAULT_VIEW,
+            style=style_of(**look),
+            samples=samples,
+        )
+        most = capturing.capture(
+            performance,
+            options,
+            output=output,
+            sheet=sheet,
+            still_time=still_time,
+            overwrite=overwrite,
+            progress=not quiet,
+        )
+        written = " and ".join(str(path) for path in (output, sheet) if path)
+        click.echo(f"{written}: at most {most} triangles in a frame")
+
+
+@main.command()
+@click.option(
+    "--size", type=Size(), default=(1280, 800), help="Of the window, 1280x800 unless told."
+)
+@click.option("--scene", type=click.Choice(["face", "plane"]), default="face", show_default=True)
+@click.option("--script", type=click.Path(path_type=Path), help="What the space key plays.")
+@drawing_options
+def view(size: tuple[int, int], scene: str, script: Path | None, **options: Any) -> None:
+    """Open the window: a face with a slider for every muscle."""
+    open_viewer(script, scene, size, playing=False, **options)
+
+
+@main.command()
+@click.argument("script", type=click.Path(path_type=Path))
+@click.option(
+    "--size", type=Size(), default=(1280, 800), help="Of the window, 1280x800 unless told."
+)
+@click.option("--once", is_flag=True, help="Close the window at the end of the script.")
+@drawing_options
+def replay(script: Path, size: tuple[int, int], once: bool, **options: Any) -> None:
+    """Play SCRIPT in real time in the window."""
+    open_viewer(script, None, size, playing=True, once=once, **options)
+
+
+@main.command()
+def demo() -> None:
+    """Render the built-in head through its expressions to out/demo.mp4 and out/demo.png."""
+    from . import capture as capturing
+    from .cameras import DEFAULT_VIEW
+
+    with told_in_one_line():
+        script = script_for(None, "face")
+        options = capturing.CaptureOptions(compare=True, camera=script.camera or DEFAULT_VIEW)
+        film, sheet = Path("out/demo.mp4"), Path("out/demo.png")
+        most = capturing.capture(script, options, output=film, sheet=sheet)
+        click.echo(
+            f"{film} ({script.duration:g} s) and {sheet}: at most {most} triangles in a frame"
+        )
+
+
+@main.command()
+@click.option("--scene", type=click.Choice(["face", "plane"]), default="face", show_default=True)
+def controls(scene: str) -> None:
+    """List every expression and control that a script may name."""
+    from .scenes import SCENES
+
+    with told_in_one_line():
+        built = SCENES[scene]()
+        if built.expressions:
+            click.echo("Expressions (0..1)")
+            for name in built.expressions:
+                click.echo(f"  {name}")
+        for title, names in built.groups.items():
+            click.echo(title)
+            for name in names:
+                low, high = built.limits[name]
+                click.echo(f"  {name}  {low:g}..{high:g}")
+
+
+@main.command()
+@click.option("--offscreen", is_flag=True, help="Only ask for offscreen OpenGL.")
+@click.option("--quiet", is_flag=True, help="Say nothing; the exit code tells.")
+def doctor(offscreen: bool, quiet: bool) -> None:
+    """Say what OpenGL there is, and what is missing with the command that cures it."""
+    from .doctor import examine
+
+    healthy, lines = examine(offscreen_only=offscreen)
+    if not quiet:
+        for line in lines:
+            click.echo(line)
+    sys.exit(0 if healthy else 2)
+
+
+@main.group()
+def bench() -> None:
+    """Measure; each command prints its figures and how they were taken."""
+
+
+@bench.command("refine")
+@click.option("--rounds", type=click.IntRange(1, 100_000), default=200, show_default=True)
+def bench_refine(rounds: int) -> None:
+    """Time the refiners on the built-in face in full expression and on the plane."""
+    from .benchmarks import refine_table
+    from .scenes import SCENES
+
+    with told_in_one_line():
+        click.echo(refine_table(rounds, [build() for build in SCENES.values()]))
+
+
+def script_for(path: Path | None, scene: str | None) -> Any:
+    """The script at `path`, or the one that comes with the scene."""
+    from dataclasses import replace
+    from importlib.resources import files
+
+    from .scenes import SCENES
+    from .script import load_script
+
+    if path is None:
+        path = Path(str(files("assets") / "scripts" / f"{scene or 'face'}.toml"))
+    script = load_script(path)
+    if scene is not None:
+        script = replace(script, scene=scene)
+    if script.scene not in SCENES:
+        raise UserError(f"{path}: scene '{script.scene}'; allowed are {', '.join(SCENES)}")
+    return script
+
+
+def known_refiner(name: str) -> str:
+    """The name of a registered refiner, or UserError with those that are."""
+    import refine
+
+    if name not in refine.available():
+        raise UserError(f"refiner '{name}'; available are {', '.join(refine.available())}")
+    return name
+
+
+def style_of(shading: str, wireframe: bool, splits: bool, clay: bool) -> Any:
+    """The style that the drawing options ask for."""
+    import render
+
+    return render.Style(
+        shading=render.Shading[shading.upper()],
+        wireframe=wireframe,
+        colour_by=render.ColourBy.SPLITS if splits else render.ColourBy.NONE,
+        albedo=render.CLAY if clay else render.SKIN,
+    )
+
+
+def open_viewer(
+    script: Path | None,
+    scene: str | None,
+    size: tuple[int, int],
+    *,
+    playing: bool,
+    once: bool = False,
+    refiner: str,
+    **look: Any,
+) -> None:
+    """Open the viewer on a script's scene."""
+    with told_in_one_line():
+        performance = script_for(script, scene)
+        from .viewer import Viewer
+
+        with Viewer(performance, size, known_refiner(refiner), style_of(**look)) as viewer:
+            viewer.run(playing=playing, once=once)

@@ -1,0 +1,54 @@
+"""Words on pictures: the captions of a comparison and contact sheets, through Pillow."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from .outputs import Frame
+from .pipeline import Viewport
+
+INK = (245, 245, 245)
+SHADE = (24, 26, 30)
+
+
+def _font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
+    return ImageFont.load_default(size=size)
+
+
+def caption(frame: Frame, texts: Sequence[str], viewports: Sequence[Viewport]) -> Frame:
+    """Write one line at the lower left of each viewport and draw a line between viewports."""
+    picture = Image.fromarray(frame)
+    draw = ImageDraw.Draw(picture)
+    height = frame.shape[0]
+    size = max(11.0, height / 36.0)
+    for text, (left, bottom, _, _) in zip(texts, viewports, strict=True):
+        place = (left + size, height - bottom - 2.1 * size)
+        draw.text((place[0] + 1, place[1] + 1), text, font=_font(size), fill=SHADE)
+        draw.text(place, text, font=_font(size), fill=INK)
+        if left:
+            draw.line([(left, 0), (left, height)], fill=INK, width=1)
+    return np.asarray(picture)
+
+
+def contact_sheet(
+    poses: Sequence[tuple[str, Frame]], *, columns: int, cell_width: int = 640
+) -> Frame:
+    """Lay named pictures out in a grid, each with its name below it."""
+    rows = math.ceil(len(poses) / columns)
+    first = poses[0][1]
+    cell_height = round(cell_width * first.shape[0] / first.shape[1])
+    strip = cell_width // 16
+    sheet = Image.new("RGB", (columns * cell_width, rows * (cell_height + strip)), SHADE)
+    draw = ImageDraw.Draw(sheet)
+    for index, (name, frame) in enumerate(poses):
+        left = index % columns * cell_width
+        top = index // columns * (cell_height + strip)
+        small = Image.fromarray(frame).resize((cell_width, cell_height), Image.Resampling.LANCZOS)
+        sheet.paste(small, (left, top))
+        middle = (left + cell_width / 2, top + cell_height + strip / 2)
+        draw.text(middle, name, font=_font(strip * 0.55), fill=INK, anchor="mm")
+    return np.asarray(sheet)

@@ -1,0 +1,111 @@
+"""The paper's Figure 1, end to end: simulation, triangle mesh, refinement, rendering.
+
+Four lines of `draw_frame` are the figure. The simulation never learns that refinement exists; the
+refiner reads the mesh and writes only into the buffers that the renderer lent; what it wrote is
+forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import refine
+import render
+
+from .scenes import Scene
+
+Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
+
+
+@dataclass
+class FrameCounts:
+    """What the last frame of one picture was made of."""
+
+    triangles_in: int = 0
+    triangles_out: int = 0
+
+
+@dataclass
+class Picture:
+    """One view of the scene's mesh through one refiner; two of them make a comparison."""
+
+    refiner_name: str
+    refiner: refine.Refiner
+    stream: render.Stream
+    counts: FrameCounts = field(default_factory=FrameCounts)
+
+    @classmethod
+    def of(cls, scene: Scene, renderer: render.Renderer, name: str, **options: Any) -> Picture:
+        """Bind the refiner `name` to the scene's mesh and borrow render buffers for it."""
+        refiner = refine.create(name, scene.faces, scene.rest_positions, **options)
+        stream = renderer.lend_stream(
+            refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
+        )
+        return cls(name, refiner, stream)
+
+
+class Pipeline:
+    """A scene, the pictures that are drawn of it, and the renderer that draws them."""
+
+    def __init__(
+        self, scene: Scene, renderer: render.Renderer, refiners: Sequence[str] = ("kahler",)
+    ) -> None:
+        self.scene = scene
+        self.renderer = renderer
+        self.pictures = [Picture.of(scene, renderer, name) for name in refiners]
+
+    def draw_frame(
+        self,
+        seconds: float,
+        cameras: Sequence[render.OrbitCamera],
+        styles: Sequence[render.Style],
+        viewports: Sequence[Viewport],
+    ) -> None:
+        """Let the scene move by `seconds`, then draw each picture into its viewport."""
+        if seconds > 0.0:
+            self.scene.step(seconds)
+        for picture, camera, style, viewport in zip(
+            self.pictures, cameras, styles, viewports, strict=True
+        ):
+            mesh = picture.refiner.refine(self.scene.positions, out=picture.stream)
+            picture.stream.upload(len(mesh.positions), len(mesh.triangles))
+            picture.counts = FrameCounts(len(self.scene.faces), len(mesh.triangles))
+            self._draw(picture, mesh, camera, style, viewport)
+
+    def _draw(
+        self,
+        picture: Picture,
+        mesh: refine.RefinedMesh,
+        camera: render.OrbitCamera,
+        style: render.Style,
+        viewport: Viewport,
+    ) -> None:
+        values = None
+        if style.colour_by is render.ColourBy.SPLITS:
+            values = splits_of_source(picture.refiner, mesh)
+        self.renderer.draw_background(style, viewport)
+        self.renderer.draw_mesh(picture.stream, camera, style, viewport=viewport, values=values)
+        self.renderer.draw_parts(
+            self.scene.parts, self.scene.bone_transforms(), camera, style, viewport=viewport
+        )
+
+
+def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> npt.NDArray[np.uint8]:
+    """For each drawn triangle, how many splits (0..6) its source triangle's edges have."""
+    splits: npt.NDArray[np.uint8] = refiner.splits[refiner.triangle_edges].sum(
+        axis=1, dtype=np.uint8
+    )
+    return np.take(splits, mesh.source)
+
+
+def side_by_side(size: tuple[int, int], count: int) -> list[Viewport]:
+    """Divide a frame of `size` pixels into `count` viewports from left to right."""
+    width, height = size
+    edges = [round(index * width / count) for index in range(count + 1)]
+    return [(left, 0, right - left, height) for left, right in pairwise(edges)]

@@ -1,0 +1,179 @@
+"""What can be animated: the built-in head with its muscles, and the paper's plane (Fig. 9).
+
+A scene owns a triangle mesh whose topology never changes, moves its vertices as time passes, and
+knows nothing of refinement or drawing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+import assets
+import sim
+
+from .errors import UserError
+
+LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
+
+
+class Scene(Protocol):
+    """Anything that moves the vertices of one triangle mesh."""
+
+    name: str
+    faces: npt.NDArray[np.int32]
+    rest_positions: npt.NDArray[np.float64]
+    parts: tuple[Any, ...]
+    expressions: Mapping[str, Mapping[str, float]]
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        """The vertices now [mm], shape (V, 3); read only for everybody else."""
+
+    @property
+    def groups(self) -> Mapping[str, tuple[str, ...]]:
+        """The controls by the heading under which a panel shows them."""
+
+    @property
+    def limits(self) -> Mapping[str, tuple[float, float]]:
+        """The lowest and highest value of each control."""
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        """What each control is set to."""
+
+    def pose(self, channels: Mapping[str, float]) -> None:
+        """Set all controls from expressions and controls; what is not named becomes 0."""
+
+    def step(self, seconds: float) -> None:
+        """Let time pass."""
+
+    def reset(self) -> None:
+        """Back to rest, at once."""
+
+    def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
+        """Where the rigid parts are now: a (4, 4) matrix for each bone."""
+
+
+class FaceScene:
+    """The built-in head, moved by muscles, jaw and gaze through the spring simulation."""
+
+    name = "face"
+
+    def __init__(self) -> None:
+        head = assets.load("head")
+        self.simulation = sim.create(head)
+        self.faces = self.simulation.faces
+        self.rest_positions = self.simulation.rest_positions
+        self.parts: tuple[Any, ...] = head.parts
+        self.expressions: Mapping[str, Mapping[str, float]] = head.expressions
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        return self.simulation.positions
+
+    @property
+    def groups(self) -> Mapping[str, tuple[str, ...]]:
+        return self.simulation.groups
+
+    @property
+    def limits(self) -> Mapping[str, tuple[float, float]]:
+        return self.simulation.limits
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        return self.simulation.values
+
+    def pose(self, channels: Mapping[str, float]) -> None:
+        self.simulation.set_all(mix(channels, self.expressions, self.limits))
+
+    def step(self, seconds: float) -> None:
+        count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))
+        for _ in range(count):
+            self.simulation.step(seconds / count)
+
+    def reset(self) -> None:
+        self.simulation.reset()
+
+    def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
+        return self.simulation.bone_transforms()
+
+
+class PlaneScene:
+    """The paper's plane: 154 triangles under a strong travelling sine (Fig. 9 and Table 1).
+
+    The wave bends the plane both ways, sin(x - phase) sin(y): a wave along one axis alone leaves
+    the edges across it straight and cannot reach the paper's 1328 triangles. `amplitude` 1 lifts
+    the crests by HEIGHT; `phase` moves the wave along by that many wavelengths.
+    """
+
+    name = "plane"
+    WAVES = 2.25  # wavelengths along the plane (chosen so that as many edges bend as in Table 1)
+    HEIGHT = 0.2  # crest above the middle, in lengths of the plane
+
+    def __init__(self) -> None:
+        plane = assets.load("plane")
+        self.faces = plane.faces
+        self.rest_positions = plane.vertices
+        self.parts: tuple[Any, ...] = ()
+        self.expressions: Mapping[str, Mapping[str, float]] = {}
+        self.groups: Mapping[str, tuple[str, ...]] = {"Wave": ("amplitude", "phase")}
+        self.limits: Mapping[str, tuple[float, float]] = {
+            "amplitude": (0.0, 1.0),
+            "phase": (0.0, 100.0),
+        }
+        self.values = dict.fromkeys(self.limits, 0.0)
+        extent = np.ptp(plane.vertices, axis=0)
+        self._normal = int(np.argmin(extent))
+        along, across = (axis for axis in range(3) if axis != self._normal)
+        self._length = float(extent.max())
+        turns = (plane.vertices - plane.vertices.min(axis=0)) / self._length * self.WAVES
+        self._turns_along = turns[:, along]
+        self._wave_across = np.sin(2.0 * np.pi * turns[:, across])
+        self.positions = plane.vertices.copy()
+
+    def pose(self, channels: Mapping[str, float]) -> None:
+        self.values.update(mix(channels, {}, self.limits))
+
+    def step(self, seconds: float) -> None:
+        turns = self._turns_along - self.values["phase"]
+        wave = np.sin(2.0 * np.pi * turns) * self._wave_across
+        height = self.values["amplitude"] * self.HEIGHT * self._length
+        self.positions[:, self._normal] = self.rest_positions[:, self._normal] + height * wave
+
+    def reset(self) -> None:
+        self.values.update(dict.fromkeys(self.limits, 0.0))
+        self.positions[:] = self.rest_positions
+
+    def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
+        return {}
+
+
+def mix(
+    channels: Mapping[str, float],
+    expressions: Mapping[str, Mapping[str, float]],
+    limits: Mapping[str, tuple[float, float]],
+) -> dict[str, float]:
+    """Add up expressions and single controls into one value for each control, within its limits.
+
+    Raises UserError on a name that is neither an expression nor a control.
+    """
+    values = dict.fromkeys(limits, 0.0)
+    for channel, weight in channels.items():
+        if channel in expressions:
+            for control, share in expressions[channel].items():
+                values[control] += weight * share
+        elif channel in values:
+            values[channel] += weight
+        else:
+            raise UserError(f"unknown expression or control '{channel}'")
+    return {
+        name: min(max(value, limits[name][0]), limits[name][1]) for name, value in values.items()
+    }
+
+
+SCENES: dict[str, Callable[[], Scene]] = {"face": FaceScene, "plane": PlaneScene}

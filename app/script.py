@@ -1,0 +1,247 @@
+"""Animation scripts: keyframes of expressions and controls over time, in a TOML file.
+
+A script is a list of poses and, beside them, tracks::
+
+    title = "Hello"              # optional
+    scene = "face"               # optional: face (default) or plane
+    camera = "three-quarter"     # optional: a named view
+    duration = 4.0               # optional [s]; the default is the time of the last key
+
+    [[pose]]                     # a whole pose: what it does not name is 0
+    time = 0.0                   # [s]
+
+    [[pose]]
+    time = 1.0
+    easing = "smooth"            # how this pose is approached, see app/easing.py
+    name = "joy"                 # optional: the label of this key pose on a contact sheet
+    joy = 1.0                    # an expression, or
+    jaw_open = 0.1               # a control (a muscle, the jaw, the gaze)
+
+    [tracks]                     # single channels, added to the poses (a blink, a glance)
+    blink = [
+        { time = 2.0, value = 0 },
+        { time = 2.1, value = 1, easing = "ease-in" },
+        { time = 2.25, value = 0 },
+    ]
+
+Before its first key a channel keeps that key's value, after its last key the last one's.
+`docs/scripts.md` is the user's page of this format.
+"""
+
+from __future__ import annotations
+
+import bisect
+import difflib
+import tomllib
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from .easing import EASINGS
+from .errors import UserError
+
+TOP_LEVEL_KEYS = ("title", "scene", "camera", "duration", "pose", "tracks")
+POSE_KEYS = ("time", "easing", "name")
+TRACK_KEYS = ("time", "value", "easing")
+
+
+@dataclass(frozen=True)
+class Key:
+    """One keyframe of one channel: at `time` [s] it has `value`, approached by `easing`."""
+
+    time: float
+    value: float
+    easing: str = "smooth"
+
+
+@dataclass(frozen=True)
+class Channel:
+    """The keys of one expression or control, in the order of time."""
+
+    keys: tuple[Key, ...]
+
+    def value(self, time: float) -> float:
+        """The eased value at `time` [s]; constant before the first and after the last key."""
+        after = bisect.bisect_right([key.time for key in self.keys], time)
+        if after == 0:
+            return self.keys[0].value
+        if after == len(self.keys):
+            return self.keys[-1].value
+        previous, following = self.keys[after - 1], self.keys[after]
+        fraction = (time - previous.time) / (following.time - previous.time)
+        eased = EASINGS[following.easing](fraction)
+        return previous.value + (following.value - previous.value) * eased
+
+
+@dataclass(frozen=True)
+class NamedPose:
+    """A pose of the script that is worth a picture on a contact sheet."""
+
+    time: float
+    name: str
+
+
+@dataclass(frozen=True)
+class Script:
+    """A performance: what each expression and control does over `duration` seconds."""
+
+    title: str
+    duration: float
+    scene: str = "face"
+    camera: str | None = None
+    poses: dict[str, Channel] = field(default_factory=dict)
+    tracks: dict[str, Channel] = field(default_factory=dict)
+    key_poses: tuple[NamedPose, ...] = ()
+
+    def at(self, time: float) -> dict[str, float]:
+        """The value of every channel that the script names, at `time` [s]."""
+        values = {name: channel.value(time) for name, channel in self.poses.items()}
+        for name, channel in self.tracks.items():
+            values[name] = values.get(name, 0.0) + channel.value(time)
+        return values
+
+    def check_names(self, allowed: Collection[str], *, source: str) -> None:
+        """Raise UserError if the script names what the scene does not have."""
+        for name in (*self.poses, *self.tracks):
+            if name not in allowed:
+                raise UserError(f"{source}: unknown name '{name}'{suggestion(name, allowed)}")
+
+
+def suggestion(name: str, allowed: Iterable[str]) -> str:
+    """The end of an error text: the names that were probably meant, or where to find all."""
+    near = difflib.get_close_matches(name, list(allowed), n=3)
+    if near:
+        return f"; did you mean {' or '.join(near)}?"
+    return "; `risorius controls` lists every expression and control"
+
+
+def load_script(path: Path) -> Script:
+    """Read a script file. Raises UserError with the file and the line or key that is wrong."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise UserError(f"{path}: no such script") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise UserError(f"{path}: cannot be read as a text file: {error}") from None
+    return parse_script(text, source=str(path))
+
+
+def parse_script(text: str, *, source: str) -> Script:
+    """Turn the TOML text of a script into a Script; `source` names it in error texts."""
+    try:
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise UserError(f"{source}: not valid TOML: {error}") from None
+    reader = _Reader(source)
+    reader.only(document, TOP_LEVEL_KEYS, where="top level")
+    poses, key_poses = reader.poses(document.get("pose", []))
+    tracks = reader.tracks(document.get("tracks", {}))
+    ends = [channel.keys[-1].time for channel in (*poses.values(), *tracks.values())]
+    ends += [pose.time for pose in key_poses]
+    ends += [float(pose["time"]) for pose in document.get("pose", [])]
+    if not ends:
+        raise UserError(f"{source}: no [[pose]] and no [tracks]: a script needs at least one key")
+    duration = reader.number(document, "duration", where="top level", default=max(ends))
+    if duration <= 0.0:
+        raise UserError(f"{source}: duration is {duration:g} s; it must be above 0")
+    return Script(
+        title=reader.text(document, "title", default=Path(source).stem),
+        duration=duration,
+        scene=reader.text(document, "scene", default="face"),
+        camera=reader.text(document, "camera", default=None),
+        poses=poses,
+        tracks=tracks,
+        key_poses=key_poses,
+    )
+
+
+class _Reader:
+    """Takes typed values out of a parsed TOML document, or says which key is wrong."""
+
+    def __init__(self, source: str) -> None:
+        self.source = source
+
+    def fail(self, text: str) -> UserError:
+        return UserError(f"{self.source}: {text}")
+
+    def only(self, table: Mapping[str, Any], allowed: tuple[str, ...], *, where: str) -> None:
+        for key in table:
+            if key not in allowed:
+                raise self.fail(f"{where}: unknown key '{key}'; allowed are {', '.join(allowed)}")
+
+    def number(
+        self, table: Mapping[str, Any], key: str, *, where: str, default: float | None = None
+    ) -> float:
+        value = table.get(key, default)
+        if value is None:
+            raise self.fail(f"{where}: '{key}' is missing; it must be a number")
+        if isinstance(value, bool) or not isinstance(value, int | float) or value != value:
+            raise self.fail(f"{where}: '{key}' is {value!r}; it must be a number")
+        if abs(value) == float("inf"):
+            raise self.fail(f"{where}: '{key}' is {value!r}; it must be finite")
+        return float(value)
+
+    def text(self, table: Mapping[str, Any], key: str, *, default: str | None) -> Any:
+        value = table.get(key, default)
+        if value is not default and not isinstance(value, str):
+            raise self.fail(f"top level: '{key}' is {value!r}; it must be a text in quotes")
+        return value
+
+    def easing(self, table: Mapping[str, Any], *, where: str) -> str:
+        value = table.get("easing", "smooth")
+        if value not in EASINGS:
+            raise self.fail(f"{where}: easing {value!r}; allowed are {', '.join(EASINGS)}")
+        return str(value)
+
+    def time(self, table: Mapping[str, Any], previous: float | None, *, where: str) -> float:
+        time = self.number(table, "time", where=where)
+        if time < 0.0:
+            raise self.fail(f"{where}: time is {time:g} s; it must be 0 or more")
+        if previous is not None and time <= previous:
+            raise self.fail(
+                f"{where}: time {time:g} s does not come after the key before it ({previous:g} s)"
+            )
+        return time
+
+    def poses(self, tables: Any) -> tuple[dict[str, Channel], tuple[NamedPose, ...]]:
+        if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+            raise self.fail("'pose' must be a list of tables, each written [[pose]]")
+        channel_names = {name for table in tables for name in table if name not in POSE_KEYS}
+        keys: dict[str, list[Key]] = {name: [] for name in sorted(channel_names)}
+        key_poses: list[NamedPose] = []
+        previous: float | None = None
+        for number, table in enumerate(tables, start=1):
+            where = f"pose {number}"
+            time = previous = self.time(table, previous, where=where)
+            easing = self.easing(table, where=where)
+            if "name" in table:
+                if not isinstance(table["name"], str):
+                    raise self.fail(f"{where}: 'name' must be a text in quotes")
+                key_poses.append(NamedPose(time, table["name"]))
+            for name, channel_keys in keys.items():
+                value = self.number(table, name, where=where, default=0.0)
+                channel_keys.append(Key(time, value, easing))
+        channels = {name: Channel(tuple(channel_keys)) for name, channel_keys in keys.items()}
+        return channels, tuple(key_poses)
+
+    def tracks(self, tables: Any) -> dict[str, Channel]:
+        if not isinstance(tables, dict):
+            raise self.fail(
+                "'tracks' must be a table: [tracks], then name = [ {time, value}, ... ]"
+            )
+        channels: dict[str, Channel] = {}
+        for name, entries in tables.items():
+            if not isinstance(entries, list) or not entries:
+                raise self.fail(f"track '{name}' must be a list of {{ time = .., value = .. }}")
+            keys: list[Key] = []
+            for number, entry in enumerate(entries, start=1):
+                where = f"track '{name}', key {number}"
+                if not isinstance(entry, dict):
+                    raise self.fail(f"{where} must be written {{ time = .., value = .. }}")
+                self.only(entry, TRACK_KEYS, where=where)
+                time = self.time(entry, keys[-1].time if keys else None, where=where)
+                value = self.number(entry, "value", where=where)
+                keys.append(Key(time, value, self.easing(entry, where=where)))
+            channels[name] = Channel(tuple(keys))
+        return channels

@@ -1,0 +1,213 @@
+"""The window: a face that answers to sliders, keys, the mouse and a script.
+
+The simulation runs at the pace of the clock but never by more than a few steps at a time, so that
+a window that was stalled (dragged, covered, stopped in a debugger) goes on calmly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from imgui_bundle import imgui
+
+from .cameras import camera_for
+from .gui import Gui, poll_events, time_now  # before anything opens a window, see there
+from .panels import WIDTH, Panel
+from .pipeline import Picture, Pipeline
+from .scenes import SCENES, mix
+from .script import Script
+
+import render  # isort: skip - after imgui_bundle
+
+LONGEST_FRAME = 0.1  # [s] what a stalled window catches up at most
+DEGREES_PER_PIXEL = 0.35
+SMOOTHING = 0.9  # of the shown frame rate, from frame to frame
+EXPRESSION_KEYS = tuple(getattr(imgui.Key, f"_{digit}") for digit in range(1, 10))
+
+
+class Viewer:
+    """The window with everything in it; a context manager."""
+
+    def __init__(
+        self, script: Script, size: tuple[int, int], refiner: str, style: render.Style
+    ) -> None:
+        self.script = script
+        self.scene = SCENES[script.scene]()
+        script.check_names({*self.scene.expressions, *self.scene.limits}, source=script.title)
+        self.surface = render.open_window(size, f"Risorius: {script.title}")
+        self.renderer = render.Renderer(self.surface)
+        self.gui = Gui(self.surface.handle)
+        self.panel = Panel(self)
+        shown = refiner if refiner != "none" else "kahler"
+        self.pipelines = {
+            name: Pipeline(self.scene, self.renderer, (name,)) for name in ("none", shown)
+        }
+        self.refiner = shown
+        self.is_refined = refiner != "none"
+        self.style = style
+        self.is_wireframe = style.wireframe
+        self.shows_splits = style.colour_by is render.ColourBy.SPLITS
+        self.shading = style.shading
+        self.camera = self._framed()
+        self.controls = dict.fromkeys(self.scene.limits, 0.0)
+        self.expression: str | None = None
+        self.is_playing = False
+        self.script_time = 0.0
+        self.frames_per_second = 0.0
+        self._last = time_now()
+
+    def __enter__(self) -> Viewer:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.gui.close()
+        self.surface.close()
+
+    @property
+    def pipeline(self) -> Pipeline:
+        """Figure 1 with the refiner that is switched on."""
+        return self.pipelines[self.refiner if self.is_refined else "none"]
+
+    @property
+    def picture(self) -> Picture:
+        """What was drawn last."""
+        return self.pipeline.pictures[0]
+
+    def run(self, *, playing: bool = False, once: bool = False) -> None:
+        """Show the window until it is closed (with `once`: until the script has ended)."""
+        self.is_playing = playing
+        self._last = time_now()
+        while not self.surface.should_close:
+            self.frame()
+            if once and playing and not self.is_playing:
+                break
+
+    def frame(self) -> None:
+        """One turn of the loop: input, time, picture, panel."""
+        poll_events()
+        now = time_now()
+        elapsed, self._last = now - self._last, now
+        if elapsed > 0.0:
+            rate = SMOOTHING * self.frames_per_second + (1.0 - SMOOTHING) / elapsed
+            self.frames_per_second = rate
+        seconds = min(elapsed, LONGEST_FRAME)
+        self._play(seconds)
+        self.scene.pose(self.controls)
+        self.surface.begin()
+        self.pipeline.draw_frame(seconds, [self.camera], [self._style()], [self._viewport()])
+        self.surface.resolve()  # the panel lies on top of the finished picture
+        with self.gui.frame():
+            self.panel.draw(imgui.get_io().display_size.y)
+            self._keys()
+            self._mouse()
+        self.surface.end()
+
+    # What the panel and the keys do
+
+    def set_control(self, name: str, value: float) -> None:
+        """Take one control by hand; a script that plays is paused."""
+        self.is_playing = False
+        self.controls[name] = value
+
+    def toggle_expression(self, name: str) -> None:
+        """Show an expression, or go back to neutral if it is shown already."""
+        self.is_playing = False
+        self.expression = None if self.expression == name else name
+        weights = {} if self.expression is None else {self.expression: 1.0}
+        self.controls = mix(weights, self.scene.expressions, self.scene.limits)
+
+    def neutral(self) -> None:
+        """All controls to zero; the skin swings back by itself."""
+        self.is_playing = False
+        self.expression = None
+        self.controls = dict.fromkeys(self.scene.limits, 0.0)
+
+    def toggle_playing(self) -> None:
+        """Play or pause; at the end of the script, play it again."""
+        self.is_playing = not self.is_playing
+        self.expression = None
+        if self.is_playing and self.script_time >= self.script.duration:
+            self.script_time = 0.0
+
+    def seek(self, time: float) -> None:
+        """Go to a time of the script and take its pose."""
+        self.script_time = time
+        self._take_script_pose()
+
+    def next_shading(self) -> None:
+        """Per pixel, flat, Gouraud, and round again."""
+        order = list(render.Shading)
+        self.shading = order[(order.index(self.shading) + 1) % len(order)]
+
+    # One frame's parts
+
+    def _play(self, seconds: float) -> None:
+        if not self.is_playing:
+            return
+        self.script_time += seconds
+        if self.script_time >= self.script.duration:
+            self.script_time = self.script.duration
+            self.is_playing = False
+        self._take_script_pose()
+
+    def _take_script_pose(self) -> None:
+        channels = self.script.at(self.script_time)
+        self.controls = mix(channels, self.scene.expressions, self.scene.limits)
+
+    def _keys(self) -> None:
+        if imgui.get_io().want_text_input:
+            return
+        actions: dict[Any, Any] = {
+            imgui.Key.space: self.toggle_playing,
+            imgui.Key.s: self.next_shading,
+            imgui.Key.n: self.neutral,
+        }
+        for key, action in actions.items():
+            if imgui.is_key_pressed(key, False):
+                action()
+        for key, name in (
+            (imgui.Key.r, "is_refined"),
+            (imgui.Key.w, "is_wireframe"),
+            (imgui.Key.c, "shows_splits"),
+        ):
+            if imgui.is_key_pressed(key, False):
+                setattr(self, name, not getattr(self, name))
+        if imgui.is_key_pressed(imgui.Key.f, False):
+            self.camera = self._framed()
+        for key, expression in zip(EXPRESSION_KEYS, self.scene.expressions, strict=False):
+            if imgui.is_key_pressed(key, False):
+                self.toggle_expression(expression)
+
+    def _mouse(self) -> None:
+        io = imgui.get_io()
+        if io.want_capture_mouse:
+            return
+        if imgui.is_mouse_dragging(0, 0.0):
+            self.camera.orbit(
+                -io.mouse_delta.x * DEGREES_PER_PIXEL, io.mouse_delta.y * DEGREES_PER_PIXEL
+            )
+        if imgui.is_mouse_dragging(1, 0.0) or imgui.is_mouse_dragging(2, 0.0):
+            height = max(io.display_size.y, 1.0)
+            self.camera.pan(-io.mouse_delta.x / height, io.mouse_delta.y / height)
+        if io.mouse_wheel:
+            self.camera.zoom(1.1**io.mouse_wheel)
+
+    def _framed(self) -> render.OrbitCamera:
+        return camera_for(self.scene, self.script.camera)
+
+    def _style(self) -> render.Style:
+        colour_by = render.ColourBy.SPLITS if self.shows_splits else render.ColourBy.NONE
+        return replace(
+            self.style,
+            shading=self.shading,
+            wireframe=self.is_wireframe,
+            colour_by=colour_by,
+        )
+
+    def _viewport(self) -> tuple[int, int, int, int]:
+        """The part of the framebuffer to the right of the panel."""
+        width, height = self.surface.size
+        window_width = max(imgui.get_io().display_size.x, 1.0)
+        left = min(round(WIDTH * width / window_width), width - 1)
+        return (left, 0, width - left, height)

@@ -1,0 +1,100 @@
+"""Rebuild the head's data file: `python -m assets.build [FILE]`.
+
+Deterministic: seeds are fixed. Other versions of scipy may order a triangulation differently; the
+shipped file is therefore part of the package, and a test compares it with a fresh build.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from .generator.bones import bone_depth, jaw_axis, mandible_weight
+from .generator.dentition import LOWER_ARCH, UPPER_ARCH, gums, teeth
+from .generator.eyeballs import IRIS_RADIUS, corner_flesh, eyeball
+from .generator.form import EYE_CENTRE, EYE_RADIUS
+from .generator.landmarks import anatomy, landmark_vertices
+from .generator.oral import lower_cavity, tongue, upper_cavity
+from .generator.skin import Skin, build_half, mirrored
+from .generator.solids import Solid
+from .loading import HEAD_FILE
+
+MIRROR = np.array([-1.0, 1.0, 1.0])
+
+
+def build_parts() -> list[tuple[str, str, float, Solid]]:
+    """Return name, bone, shine and surface of every rigid part."""
+    left = eyeball()
+    right = Solid(left.vertices * MIRROR, left.faces[:, ::-1], left.colours)
+    left.vertices = left.vertices + EYE_CENTRE
+    right.vertices = right.vertices + EYE_CENTRE * MIRROR
+    return [
+        ("eyeball_right", "eye_right", 1.0, right),
+        ("eyeball_left", "eye_left", 1.0, left),
+        ("eye_corners", "cranium", 0.3, corner_flesh()),
+        ("oral_cavity_upper", "cranium", 0.05, upper_cavity()),
+        ("gums_upper", "cranium", 0.35, gums(UPPER_ARCH)),
+        ("teeth_upper", "cranium", 0.55, teeth(UPPER_ARCH)),
+        ("oral_cavity_lower", "mandible", 0.05, lower_cavity()),
+        ("gums_lower", "mandible", 0.35, gums(LOWER_ARCH)),
+        ("teeth_lower", "mandible", 0.55, teeth(LOWER_ARCH)),
+        ("tongue", "mandible", 0.3, tongue()),
+    ]
+
+
+def part_arrays() -> dict[str, npt.NDArray[np.generic]]:
+    """Return all parts as shared arrays, one after the other."""
+    parts = build_parts()
+    solids = [solid for *_, solid in parts]
+    return {
+        "part_names": np.array([name for name, *_ in parts]),
+        "part_bones": np.array([bone for _, bone, *_ in parts]),
+        "part_shine": np.array([shine for *_, shine, _ in parts]),
+        "part_vertex_counts": np.array([len(solid.vertices) for solid in solids]),
+        "part_face_counts": np.array([len(solid.faces) for solid in solids]),
+        "part_vertices": np.vstack([solid.vertices for solid in solids]).astype(np.float32),
+        "part_normals": np.vstack([solid.normals() for solid in solids]).astype(np.float32),
+        "part_faces": np.vstack([solid.faces for solid in solids]).astype(np.int32),
+        "part_colours": np.vstack([solid.colours for solid in solids]).astype(np.float32),
+    }
+
+
+def skin_arrays(skin: Skin) -> dict[str, npt.NDArray[np.generic]]:
+    """Return the skin, its names and its bone data as arrays."""
+    named = anatomy(skin)
+    arrays: dict[str, npt.NDArray[np.generic]] = {
+        "vertices": skin.vertices,
+        "faces": skin.faces,
+        "landmarks": landmark_vertices(skin),
+        "bone_depth": bone_depth(skin),
+        "mandible_weight": mandible_weight(skin),
+        "jaw_axis": jaw_axis(),
+        "mirror": skin.mirror,
+        "anatomy_names": np.array(list(named)),
+        "anatomy_vertices": np.array(list(named.values()), dtype=np.int32),
+        "eye_centres": np.array([EYE_CENTRE * MIRROR, EYE_CENTRE]),
+        "eye_radii": np.array([[EYE_RADIUS, IRIS_RADIUS]] * 2),
+    }
+    for name, row in skin.rings.items():
+        left = np.array(row, dtype=np.int32)
+        arrays[f"ring_{name}_left"] = left
+        arrays[f"ring_{name}_right"] = skin.mirror[left]
+    return arrays
+
+
+def build_head() -> dict[str, npt.NDArray[np.generic]]:
+    """Build everything that `data/head.npz` holds, array name -> array."""
+    skin = mirrored(build_half())
+    return skin_arrays(skin) | part_arrays()
+
+
+def main(arguments: list[str]) -> None:
+    """Write the data file, to the place where `load` looks or to the one given."""
+    path = Path(arguments[0]) if arguments else HEAD_FILE
+    path.parent.mkdir(parents=True, exist_ok=True)
+    np.savez_compressed(path, allow_pickle=False, **build_head())
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,100 @@
+"""Points that must be vertices: anatomical landmarks and the crease around the wing of the nose.
+
+Every point is given for the left half and put onto the surface. Names are anatomical; numbers such
+as `jaw_12` are those of the iBug landmark at the point.
+"""
+
+import numpy as np
+
+from . import nose
+from .fields import Points, gradient, project
+from .form import distance, from_axis, from_front, head_distance
+
+# Height [mm] of points in the mid-plane, from the top down.
+MIDLINE_ABOVE_MOUTH = {
+    "vertex": 148.0,  # capsule height: the crown
+    "trichion": 74.0,
+    "metopion": 48.0,
+    "glabella": 21.0,
+    "nasion": 7.2,
+    "rhinion": -9.0,
+    "supratip": -23.0,
+    "pronasale": -35.2,
+    "subnasale": -45.8,
+}
+MIDLINE_BELOW_MOUTH = {
+    "sublabiale": -85.5,
+    "pogonion": -101.2,
+    "gnathion": -110.5,
+    "menton": -115.5,
+    "cervicale": -129.0,
+}
+# x, y [mm] in front view
+FROM_FRONT = {
+    "brow_22": (10.5, 18.5),
+    "brow_23": (20.5, 21.6),
+    "brow_24": (30.5, 23.2),
+    "brow_25": (40.0, 22.0),
+    "brow_26": (48.6, 17.0),
+    "orbitale": (32.0, -17.5),
+    "cheek": (44.0, -26.0),
+    "nostril_sill": (7.6, -47.0),
+    "frontotemporale": (52.0, 34.0),
+}
+# angle about the axis [deg], height [mm]
+FROM_AXIS = {
+    "jaw_9": (22.0, -112.5),
+    "jaw_10": (43.0, -108.5),
+    "jaw_11": (61.0, -101.0),
+    "jaw_12": (75.0, -90.0),
+    "jaw_13": (84.0, -75.0),
+    "jaw_14": (89.0, -57.0),
+    "jaw_15": (91.0, -37.0),
+    "tragion": (98.0, -13.0),
+    "zygion": (78.0, -17.0),
+    "gonion": (88.0, -84.0),
+    "temple": (72.0, 22.0),
+}
+# Angles around the wing of the nose [deg], from above it to below, at which its crease is sought.
+CREASE_ANGLES = (62.0, 30.0, -2.0, -36.0, -72.0)
+WING_CENTRE, WING_RADIUS, WING_DEPTH = (11.5, -39.0), 7.0, 97.0  # [mm] x, y; radius; z
+
+
+def lateral_anchors() -> dict[str, Points]:
+    """Named points of the left half beside the mid-plane, name -> (3,)."""
+    from_front_xy = np.array(list(FROM_FRONT.values()), dtype=np.float64)
+    front = from_front(from_front_xy[:, 0], from_front_xy[:, 1])
+    polar = np.array(list(FROM_AXIS.values()), dtype=np.float64)
+    side = from_axis(np.radians(polar[:, 0]), polar[:, 1])
+    names = (*FROM_FRONT, *FROM_AXIS)
+    return dict(zip(names, np.vstack([front, side]), strict=True))
+
+
+def midline_anchors(heights: dict[str, float]) -> dict[str, Points]:
+    """Named points in the mid-plane, name -> (3,)."""
+    values = np.array(list(heights.values()))
+    points = from_axis(np.zeros(len(values)), values)
+    points[:, 0] = 0.0
+    return dict(zip(heights, points, strict=True))
+
+
+def alar_crease() -> Points:
+    """The line where wing and cheek meet, from above the wing to the alar base, shape (n, 3)."""
+    angle = np.radians(CREASE_ANGLES)
+    points = np.column_stack(
+        [
+            WING_CENTRE[0] + WING_RADIUS * np.cos(angle),
+            WING_CENTRE[1] + WING_RADIUS * np.sin(angle),
+            np.full(len(angle), WING_DEPTH),
+        ]
+    )
+    # Least-norm Newton steps onto the line where both surfaces pass, then out through the fillet.
+    for _ in range(25):
+        values = np.stack([nose.distance(points), head_distance(points)], axis=1)
+        slopes = np.stack(
+            [gradient(nose.distance, points), gradient(head_distance, points)], axis=1
+        )
+        for i in range(len(points)):
+            step = np.linalg.lstsq(slopes[i], values[i], rcond=None)[0]
+            points[i] -= 0.7 * step * min(1.0, 1.5 / max(float(np.linalg.norm(step)), 1e-9))
+    return project(distance, points)

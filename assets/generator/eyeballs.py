@@ -1,0 +1,115 @@
+"""An eyeball: sclera, limbus, iris, pupil and the bulge of the cornea, as one surface.
+
+The pole lies at the pupil, so that pupil and iris are round at any resolution. The iris is painted
+on the cornea: one opaque surface that glints is enough at the size of a face on a screen.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from .fields import Points, Values, smooth_step
+from .form import EYE_RADIUS
+from .solids import Solid, grid_faces, joined, mix, welded
+
+IRIS_RADIUS = 5.9  # [mm]
+PUPIL_RADIUS = 2.1
+CORNEA_RADIUS, CORNEA_RISE = 6.4, 1.1  # [mm]; less than in anatomy: the lids are thin
+SEGMENTS = 64
+RING_DISTANCES = (
+    0.0, 1.2, 1.95, 2.2, 2.7, 3.3, 3.9, 4.5, 5.0, 5.35, 5.65, 5.9, 6.2, 6.6, 7.2,
+)  # fmt: skip  # [mm] from the axis
+LAST_ANGLE_DEG = 125.0  # the rest is never seen
+
+SCLERA = (0.925, 0.905, 0.885)
+CANTHUS = (0.80, 0.55, 0.51)
+LIMBUS = (0.13, 0.16, 0.18)
+IRIS_OUTER = (0.33, 0.43, 0.46)
+IRIS_INNER = (0.52, 0.46, 0.33)
+PUPIL = (0.015, 0.013, 0.013)
+CONJUNCTIVA = (0.79, 0.56, 0.51)
+
+# The pink flesh in the corners of the left eye: centre and radii [mm]. It closes the gap that the
+# ball leaves there, the inner one being the caruncle.
+CORNERS = (
+    ((19.4, -1.0, 74.9), (4.3, 2.8, 2.9)),
+    ((43.6, 1.2, 69.6), (3.2, 2.8, 2.6)),
+)
+
+
+def _rings() -> Values:
+    """Angles from the optical axis [rad], dense where the colour changes."""
+    front = np.arcsin(np.array(RING_DISTANCES) / EYE_RADIUS)
+    back = np.linspace(front[-1], np.radians(LAST_ANGLE_DEG), 14)[1:]
+    return np.concatenate([front, back])
+
+
+def _radii(angles: Values) -> Values:
+    """Distance of the surface from the eye's centre: a ball with a bulge in front [mm]."""
+    beside = np.minimum(EYE_RADIUS * np.sin(np.minimum(angles, np.pi / 2)), CORNEA_RADIUS)
+    bulge = CORNEA_RISE * (1.0 - (beside / CORNEA_RADIUS) ** 2) ** 1.5
+    radii: Values = EYE_RADIUS + np.where(angles < np.pi / 2, bulge, 0.0)
+    return radii
+
+
+def _iris(beside: Values, around: Values) -> npt.NDArray[np.float64]:
+    """Fibres run outward; a warmer, ragged ring surrounds the pupil."""
+    fibres = (
+        0.50 * np.sin(13 * around + 0.6)
+        + 0.30 * np.sin(21 * around + 2.1)
+        + 0.25 * np.sin(29 * around + 4.0)
+    )
+    collar = 1.0 - smooth_step(3.0, 4.4, beside + 0.35 * fibres)
+    colour = mix(IRIS_OUTER, IRIS_INNER, 0.75 * collar)
+    middle = smooth_step(2.2, 3.0, beside) * (1.0 - smooth_step(4.8, 5.8, beside))
+    return colour * (1.0 + 0.22 * fibres * middle)[:, None]
+
+
+def _colours(beside: Values, around: Values, ahead: Points) -> npt.NDArray[np.float64]:
+    toward_corners = smooth_step(0.60, 0.93, np.abs(ahead[:, 0]))
+    colour = mix(SCLERA, CANTHUS, 0.75 * toward_corners)
+    in_iris = 1.0 - smooth_step(5.75, 6.35, beside)
+    colour = colour * (1.0 - in_iris[:, None]) + _iris(beside, around) * in_iris[:, None]
+    ring = smooth_step(4.9, 5.7, beside) * (1.0 - smooth_step(5.9, 6.5, beside))
+    colour = mix(colour, LIMBUS, 0.85 * ring)
+    return mix(colour, PUPIL, 1.0 - smooth_step(1.9, 2.3, beside))
+
+
+def eyeball() -> Solid:
+    """Return the left eyeball around the origin, looking along +z."""
+    angles = _rings()
+    around = 2.0 * np.pi * np.arange(SEGMENTS) / SEGMENTS
+    grid_angle, grid_around = (grid.ravel() for grid in np.meshgrid(angles, around, indexing="ij"))
+    ahead = np.column_stack(
+        [
+            np.sin(grid_angle) * np.cos(grid_around),
+            np.sin(grid_angle) * np.sin(grid_around),
+            np.cos(grid_angle),
+        ]
+    )
+    beside = np.where(
+        grid_angle < np.pi / 2, EYE_RADIUS * np.sin(np.minimum(grid_angle, np.pi / 2)), EYE_RADIUS
+    )
+    vertices = ahead * _radii(grid_angle)[:, None]
+    faces = grid_faces(len(angles), SEGMENTS, wrapped=True)[:, ::-1]
+    return welded(Solid(vertices, faces, _colours(beside, grid_around, ahead)))
+
+
+def corner_flesh() -> Solid:
+    """Return the flesh in the corners of both eyes."""
+    polar, around = np.linspace(0.0, np.pi, 9), 2.0 * np.pi * np.arange(14) / 14
+    grid_polar, grid_around = (grid.ravel() for grid in np.meshgrid(polar, around, indexing="ij"))
+    ball = np.column_stack(
+        [
+            np.sin(grid_polar) * np.cos(grid_around),
+            np.sin(grid_polar) * np.sin(grid_around),
+            np.cos(grid_polar),
+        ]
+    )
+    faces = grid_faces(len(polar), 14, wrapped=True)[:, ::-1]
+    colours = np.tile(np.array(CONJUNCTIVA), (len(ball), 1))
+    solids = []
+    for centre, radii in CORNERS:
+        left = np.array(centre) + ball * radii
+        solids.append(Solid(left, faces, colours))
+        solids.append(Solid(left * [-1.0, 1.0, 1.0], faces[:, ::-1], colours))
+    return welded(joined(solids))

@@ -1,0 +1,86 @@
+"""The whole face as one implicit surface: plain head, relief, lips, nose and lids."""
+
+import numpy as np
+
+from . import lips, nose
+from .fields import (
+    Points,
+    Values,
+    bump,
+    cast,
+    ellipsoid,
+    smooth_maximum,
+    smooth_minimum,
+)
+from .sections import base_radius, direction_coordinates, rays
+
+EYE_CENTRE = np.array([32.0, 0.2, 70.8])  # [mm] the left eye
+EYE_RADIUS = 13.0  # [mm] 1 mm above anatomy: fills the fissure between the lids
+LID_RADII = (14.6, 14.0, 14.4)  # [mm] the lids are an ellipsoid around the eyeball
+LID_FILLET = 3.8  # [mm]
+RADIAL_SLOPE = 0.8  # radii are measured along slanted rays; this makes them about distances
+
+# (y, x) of the fold from the wing of the nose past the corner of the mouth
+FOLD_HEIGHTS = np.array([-78.0, -69.0, -60.0, -51.0, -43.0, -36.0])
+FOLD_SIDES = np.array([32.5, 31.5, 28.5, 24.0, 19.5, 15.0])
+
+
+def relief(x: Values, y: Values) -> Values:
+    """Small forms of 0.5 to 1.3 mm on the plain head; x is the distance from the mid-plane."""
+    philtrum_part = np.exp(-(((y + 52.0) / 5.5) ** 4))
+    philtrum = philtrum_part * (-0.9 * bump(x, 0.0, 2.2) + 0.6 * bump(x, 4.2, 1.7))
+
+    beside = x - np.interp(y, FOLD_HEIGHTS, FOLD_SIDES)
+    fold_part = np.exp(-(((y + 54.0) / 17.0) ** 4))
+    fold = fold_part * (-0.6 * bump(beside, 0.0, 3.4) + 1.2 * bump(beside, 9.0, 7.5))
+
+    brow = 0.6 * bump(x, 38.0, 12.0) * bump(y, 21.0, 5.5)
+    cheek = 1.5 * bump(x, 40.0, 13.0) * bump(y, -25.0, 11.0)
+    chin = 0.6 * bump(x, 7.0, 7.0) * bump(y, -100.0, 8.0)
+    corner_dimple = -0.5 * bump(x, 30.5, 3.5) * bump(y, -66.0, 5.0)
+    return philtrum + fold + brow + cheek + chin + corner_dimple
+
+
+def head_distance(points: Points) -> Values:
+    """Plain head with relief and lips, without nose and lids [mm], shape (n,)."""
+    angle, height, radius = direction_coordinates(points)
+    x, y = np.abs(points[:, 0]), points[:, 1]
+    surface = base_radius(angle, height)
+    in_front = points[:, 2] > 50.0
+    surface = surface + np.where(in_front, relief(x, y), 0.0)
+    at_lips = in_front & (x < lips.HALF_WIDTH)
+    surface = surface + np.where(at_lips, lips.displacement(x, y), 0.0)
+    return (radius - surface) * RADIAL_SLOPE
+
+
+def lid_distance(points: Points) -> Values:
+    """The skin over the eyeball, as if closed [mm], shape (n,)."""
+    half = np.abs(points * [1.0, 0.0, 0.0]) + points * [0.0, 1.0, 1.0]
+    centre = (float(EYE_CENTRE[0]), float(EYE_CENTRE[1]), float(EYE_CENTRE[2]))
+    return ellipsoid(half, centre, LID_RADII)
+
+
+def distance(points: Points) -> Values:
+    """The whole face [mm], negative inside, shape (n,)."""
+    result = smooth_minimum(head_distance(points), nose.distance(points), nose.fillet(points))
+    result = smooth_minimum(result, lid_distance(points), LID_FILLET)
+    return smooth_maximum(result, -nose.nostril_dish(points), 2.5)
+
+
+def from_axis(angle: Values, height: Values) -> Points:
+    """Where rays from outside toward the head's axis meet the face, shape (n, 3)."""
+    origins, directions = rays(angle, height)
+    outside = base_radius(angle, height) + 36.0
+    return cast(distance, origins + outside[:, None] * directions, -directions, reach=50.0)
+
+
+def from_front(x: Values, y: Values) -> Points:
+    """Where rays along -z meet the face, shape (n, 3)."""
+    origins = np.stack([x, y, np.full_like(x, 130.0)], axis=1)
+    return cast(distance, origins, np.tile([0.0, 0.0, -1.0], (len(x), 1)), reach=100.0)
+
+
+def from_below(x: Values, z: Values) -> Points:
+    """Where rays along +y meet the underside of the nose, shape (n, 3)."""
+    origins = np.stack([x, np.full_like(x, -54.0), z], axis=1)
+    return cast(distance, origins, np.tile([0.0, 1.0, 0.0], (len(x), 1)), reach=26.0, step=0.5)

@@ -1,0 +1,248 @@
+"""Improve the sheet in space: flip edges, move vertices over the surface, split and collapse.
+
+The layout that the sheet came from squeezes steep places; a few rounds of these four well-known
+steps (Botsch and Kobbelt 2004, "A remeshing approach to multiresolution modeling") forget it.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+import numpy.typing as npt
+
+from .fields import Points, normals, project
+from .form import distance
+from .sheet import wanted_length
+from .topology import Edge, Faces, cross_products, edge_faces, edge_key
+
+LONGEST, SHORTEST = 1.42, 0.66  # of the wanted length: split above, collapse below
+FLIP_NORMAL_COSINE = 0.3  # both new faces must roughly agree
+COLLAPSE_NORMAL_COSINE = 0.5  # no face may turn more than 60 degrees
+
+
+class Freedom(IntEnum):
+    """How a vertex may move."""
+
+    FIXED = 0
+    MIDLINE = 1  # within x = 0
+    FREE = 2
+
+
+@dataclass
+class Sheet:
+    """The sheet under work; `locked` edges are neither flipped nor split nor collapsed."""
+
+    vertices: Points
+    faces: Faces
+    freedom: npt.NDArray[np.int8]
+    locked: set[Edge]
+
+    def relative_lengths(self, scale: float) -> dict[Edge, float]:
+        """Length of each edge over its wanted length."""
+        wanted = wanted_length(self.vertices) * scale
+        edges = np.array(list(edge_faces(self.faces)))
+        length = np.linalg.norm(self.vertices[edges[:, 0]] - self.vertices[edges[:, 1]], axis=1)
+        relative = length / (0.5 * (wanted[edges[:, 0]] + wanted[edges[:, 1]]))
+        return dict(zip(map(tuple, edges.tolist()), relative.tolist(), strict=True))
+
+
+def _opposite(face: list[int], edge: Edge) -> int:
+    return next(vertex for vertex in face if vertex not in edge)
+
+
+def _angle(apex: Points, first: Points, second: Points) -> float:
+    u, v = first - apex, second - apex
+    return float(np.arctan2(np.linalg.norm(np.cross(u, v)), u @ v))
+
+
+def flip_edges(sheet: Sheet, *, rounds: int = 6) -> None:
+    """Flip every edge whose opposite angles add up to more than 180 degrees."""
+    triangles = sheet.faces.tolist()
+    for _ in range(rounds):
+        beside = edge_faces(np.array(triangles, dtype=np.int32))
+        existing, flips = set(beside), 0
+        touched: set[int] = set()
+        for edge, pair in beside.items():
+            if len(pair) != 2 or edge in sheet.locked or touched & set(pair):
+                continue
+            new = _flipped(sheet.vertices, triangles[pair[0]], triangles[pair[1]], edge, existing)
+            if new is not None:
+                triangles[pair[0]], triangles[pair[1]] = new
+                touched |= set(pair)
+                existing.discard(edge)
+                existing.add(edge_key(new[0][0], new[0][1]))
+                flips += 1
+        if flips == 0:
+            break
+    sheet.faces = np.array(triangles, dtype=np.int32)
+
+
+def _flipped(
+    vertices: Points, left: list[int], right: list[int], edge: Edge, existing: set[Edge]
+) -> tuple[list[int], list[int]] | None:
+    """The two faces after a flip, or None if it would not help or would fold the surface."""
+    a, b = edge
+    c, d = _opposite(left, edge), _opposite(right, edge)
+    if edge_key(c, d) in existing:
+        return None
+    points = vertices
+    if _angle(points[c], points[a], points[b]) + _angle(points[d], points[a], points[b]) <= (
+        np.pi + 1e-3
+    ):
+        return None
+    if left[(left.index(a) + 1) % 3] == b:
+        new = ([d, c, a], [c, d, b])
+    else:
+        new = ([c, d, a], [d, c, b])
+    old_normal = cross_products(vertices, np.array([left, right])).sum(axis=0)
+    first, second = cross_products(vertices, np.array(new))
+    if first @ old_normal <= 0 or second @ old_normal <= 0:
+        return None
+    if first @ second <= FLIP_NORMAL_COSINE * np.linalg.norm(first) * np.linalg.norm(second):
+        return None
+    return new
+
+
+def move_vertices(sheet: Sheet, *, rounds: int = 2, rate: float = 0.5) -> None:
+    """Pull vertices toward the weighted centre of their faces, along the surface."""
+    for _ in range(rounds):
+        faces, vertices = sheet.faces, sheet.vertices
+        wanted = wanted_length(vertices)
+        weight = np.linalg.norm(cross_products(vertices, faces), axis=1)
+        weight = weight / wanted[faces].mean(axis=1) ** 2
+        centre = vertices[faces].mean(axis=1)
+        total, target = np.zeros(len(vertices)), np.zeros_like(vertices)
+        for corner in range(3):
+            np.add.at(total, faces[:, corner], weight)
+            np.add.at(target, faces[:, corner], centre * weight[:, None])
+        step = (target / np.maximum(total, 1e-12)[:, None] - vertices) * rate
+        step[sheet.freedom == Freedom.MIDLINE, 0] = 0.0
+        moving = np.flatnonzero((sheet.freedom != Freedom.FIXED) & (total > 0))
+        normal = normals(distance, vertices[moving])
+        tangential = step[moving] - (step[moving] * normal).sum(axis=1, keepdims=True) * normal
+        moved = vertices.copy()
+        moved[moving] = project(distance, vertices[moving] + tangential, rounds=2)
+        moved[sheet.freedom == Freedom.MIDLINE, 0] = 0.0
+        sheet.vertices = moved
+
+
+def split_edges(
+    sheet: Sheet,
+    *,
+    scale: float,
+    longest: float = LONGEST,
+    limit: int = 10**6,
+    face_counts: tuple[int, ...] = (1, 2),
+) -> int:
+    """Split edges longer than `longest` times the wanted length, longest first.
+
+    face_counts: split only edges with so many faces beside them (1: in the mid-plane).
+    """
+    beside = edge_faces(sheet.faces)
+    lengths = sheet.relative_lengths(scale)
+    vertices, freedom = list(sheet.vertices), sheet.freedom.tolist()
+    used: set[int] = set()
+    new_faces: list[list[int]] = []
+    new_vertices: list[int] = []
+    for edge in sorted(lengths, key=lambda key: (-lengths[key], key)):
+        if lengths[edge] < longest or len(new_vertices) >= limit:
+            break
+        pair = beside[edge]
+        on_midline = len(pair) == 1 and not sheet.vertices[list(edge), 0].any()
+        is_fixed = all(freedom[vertex] == Freedom.FIXED for vertex in edge)
+        is_border = len(pair) == 1 and not on_midline
+        is_excluded = edge in sheet.locked or len(pair) not in face_counts
+        if is_excluded or is_border or used & set(pair) or (is_fixed and on_midline):
+            continue
+        middle = len(vertices)
+        vertices.append(0.5 * (sheet.vertices[edge[0]] + sheet.vertices[edge[1]]))
+        freedom.append(int(Freedom.MIDLINE if on_midline else Freedom.FREE))
+        new_vertices.append(middle)
+        used |= set(pair)
+        for index in pair:
+            new_faces += _halves(sheet.faces[index].tolist(), edge, middle)
+    kept = [face for i, face in enumerate(sheet.faces.tolist()) if i not in used]
+    sheet.vertices = np.array(vertices)
+    sheet.freedom = np.array(freedom, dtype=np.int8)
+    if new_vertices:
+        sheet.vertices[new_vertices] = project(distance, sheet.vertices[new_vertices])
+        sheet.vertices[sheet.freedom == Freedom.MIDLINE, 0] = 0.0
+    sheet.faces = np.array(kept + new_faces, dtype=np.int32)
+    return len(new_vertices)
+
+
+def _halves(face: list[int], edge: Edge, middle: int) -> list[list[int]]:
+    start = next(k for k in range(3) if {face[k], face[(k + 1) % 3]} == set(edge))
+    a, b, c = face[start], face[(start + 1) % 3], face[(start + 2) % 3]
+    return [[a, middle, c], [middle, b, c]]
+
+
+def collapse_edges(
+    sheet: Sheet, *, scale: float, shortest: float = SHORTEST, limit: int = 10**6
+) -> int:
+    """Collapse edges shorter than `shortest` times the wanted length, shortest first."""
+    lengths = sheet.relative_lengths(scale)
+    neighbours: dict[int, set[int]] = {}
+    for a, b in lengths:
+        neighbours.setdefault(a, set()).add(b)
+        neighbours.setdefault(b, set()).add(a)
+    chained = {vertex for edge in sheet.locked for vertex in edge}
+    blocked: set[int] = set()
+    replaced: dict[int, int] = {}
+    for edge in sorted(lengths, key=lambda key: (lengths[key], key)):
+        if lengths[edge] > shortest or len(replaced) >= limit:
+            break
+        gone, kept = sorted(edge, key=lambda vertex: sheet.freedom[vertex], reverse=True)
+        if sheet.freedom[gone] != Freedom.FREE or gone in chained or blocked & {gone, kept}:
+            continue
+        if len(neighbours[gone] & neighbours[kept]) != 2 or not _may_merge(sheet, gone, kept):
+            continue
+        replaced[gone] = kept
+        blocked |= neighbours[gone] | neighbours[kept] | {gone, kept}
+    merged = [[replaced.get(v, v) for v in face] for face in sheet.faces.tolist()]
+    sheet.faces = np.array([face for face in merged if len(set(face)) == 3], dtype=np.int32)
+    return len(replaced)
+
+
+def _may_merge(sheet: Sheet, gone: int, kept: int) -> bool:
+    """Whether no face around `gone` turns over when it moves onto `kept`."""
+    around = sheet.faces[(sheet.faces == gone).any(axis=1)]
+    around = around[~(around == kept).any(axis=1)]
+    before = cross_products(sheet.vertices, around)
+    after = cross_products(sheet.vertices, np.where(around == gone, kept, around))
+    lengths = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
+    return bool(((before * after).sum(axis=1) > COLLAPSE_NORMAL_COSINE * lengths).all())
+
+
+def remesh(sheet: Sheet, *, scale: float, target_faces: int) -> None:
+    """Run the rounds and end with exactly `target_faces` faces."""
+    for turn in range(10):
+        flip_edges(sheet)
+        move_vertices(sheet)
+        if turn < 7:
+            split_edges(sheet, scale=scale)
+            collapse_edges(sheet, scale=scale)
+    _reach_count(sheet, scale=scale, target=target_faces)
+    for _ in range(5):
+        flip_edges(sheet)
+        move_vertices(sheet)
+    flip_edges(sheet)
+
+
+def _reach_count(sheet: Sheet, *, scale: float, target: int) -> None:
+    """An inner split adds two faces, a split in the mid-plane one, a collapse takes two."""
+    for _ in range(80):
+        missing = target - len(sheet.faces)
+        if missing == 0:
+            return
+        if missing % 2:
+            split_edges(sheet, scale=scale, longest=0.0, limit=1, face_counts=(1,))
+        elif missing > 0:
+            amount = max(1, min(6, missing // 4))
+            split_edges(sheet, scale=scale, longest=0.0, limit=amount, face_counts=(2,))
+        else:
+            amount = max(1, min(6, -missing // 4))
+            collapse_edges(sheet, scale=scale, shortest=9.0, limit=amount)
+        flip_edges(sheet)
+        move_vertices(sheet)
+    raise RuntimeError(f"the sheet has {len(sheet.faces)} faces, {target} cannot be reached")

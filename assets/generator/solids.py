@@ -1,0 +1,77 @@
+"""Coloured surfaces for the rigid parts: grids of points that become triangles with normals."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .fields import Points, Values, smooth_step, unit
+from .topology import Faces, cross_products
+
+Colour = tuple[float, float, float]
+
+
+@dataclass
+class Solid:
+    """A surface with a colour per vertex.
+
+    vertices: [mm], shape (n, 3).
+    faces: counter-clockwise from the visible side, shape (m, 3).
+    colours: sRGB 0..1, shape (n, 3).
+    """
+
+    vertices: Points
+    faces: Faces
+    colours: npt.NDArray[np.float64]
+
+    def normals(self) -> Points:
+        """Area-weighted unit normals, shape (n, 3)."""
+        cross = cross_products(self.vertices, self.faces)
+        total = np.zeros_like(self.vertices)
+        for corner in range(3):
+            np.add.at(total, self.faces[:, corner], cross)
+        return unit(total)
+
+
+def grid_faces(rows: int, columns: int, *, wrapped: bool = False) -> Faces:
+    """Triangles of a grid of vertices in row-major order; `wrapped` joins last and first column."""
+    row, column = np.meshgrid(
+        np.arange(rows - 1), np.arange(columns if wrapped else columns - 1), indexing="ij"
+    )
+    following = (column + 1) % columns
+    a, b = row * columns + column, row * columns + following
+    c, d = (row + 1) * columns + following, (row + 1) * columns + column
+    pairs = np.stack([np.stack([a, b, c], -1), np.stack([a, c, d], -1)], axis=2)
+    return pairs.reshape(-1, 3).astype(np.int32)
+
+
+def joined(solids: list[Solid]) -> Solid:
+    """One solid from several."""
+    starts = np.cumsum([0] + [len(solid.vertices) for solid in solids[:-1]])
+    return Solid(
+        np.vstack([solid.vertices for solid in solids]),
+        np.vstack([solid.faces + start for solid, start in zip(solids, starts, strict=True)]),
+        np.vstack([solid.colours for solid in solids]),
+    )
+
+
+def welded(solid: Solid) -> Solid:
+    """Join vertices that coincide and drop the faces that vanish, as at the poles of a grid."""
+    rounded = np.round(solid.vertices, 6)
+    _, kept, number = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(kept)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    faces = rank[number.ravel()][solid.faces]
+    is_face = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+    first = kept[order]
+    return Solid(solid.vertices[first], faces[is_face].astype(np.int32), solid.colours[first])
+
+
+def mix(first: Colour | npt.NDArray[np.float64], second: Colour, share: Values) -> Points:
+    """Blend colours: `share` 0 gives the first, 1 the second; shape (n, 3)."""
+    share = np.clip(share, 0.0, 1.0)[:, None]
+    return np.asarray(first) * (1.0 - share) + np.asarray(second) * share
+
+
+__all__ = ["Colour", "Solid", "grid_faces", "joined", "mix", "smooth_step", "welded"]

@@ -1,0 +1,152 @@
+"""Load an asset by name: the built-in head or the paper's plane.
+
+The head's numbers lie in `data/head.npz`, written by `python -m assets.build`; its rig and its
+expressions are text files, written by hand (`rigs/face.toml`, `expressions.toml`).
+"""
+
+import tomllib
+import zipfile
+from pathlib import Path
+from typing import Any, Literal, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from .model import Eye, Head, Part, Plane
+from .plane import make_plane
+
+FOLDER = Path(__file__).parent
+HEAD_FILE = FOLDER / "data" / "head.npz"
+RIG_FILE = FOLDER / "rigs" / "face.toml"
+EXPRESSIONS_FILE = FOLDER / "expressions.toml"
+
+
+class AssetError(Exception):
+    """An asset does not exist, or one of its files is missing or broken."""
+
+
+def available() -> tuple[str, ...]:
+    """Return the names that `load` knows."""
+    return ("head", "plane")
+
+
+@overload
+def load(name: Literal["head"]) -> Head: ...
+@overload
+def load(name: Literal["plane"]) -> Plane: ...
+@overload
+def load(name: str) -> Head | Plane: ...
+def load(name: str) -> Head | Plane:
+    """Load the asset called `name` ("head" or "plane"); its arrays are read-only.
+
+    Raises AssetError for an unknown name and for a missing or broken file.
+    """
+    if name == "head":
+        return load_head()
+    if name == "plane":
+        return make_plane()
+    raise AssetError(f"no asset is called {name!r}; available: {', '.join(available())}")
+
+
+def load_head(
+    head_file: Path = HEAD_FILE,
+    *,
+    rig_file: Path = RIG_FILE,
+    expressions_file: Path = EXPRESSIONS_FILE,
+) -> Head:
+    """Read a head from its data file, its rig file and its expression file.
+
+    Raises AssetError when the data file is missing or incomplete, or a text file is not TOML.
+    """
+    arrays = _read_arrays(head_file)
+    try:
+        return _assemble(arrays, _read_toml(rig_file), _read_toml(expressions_file))
+    except KeyError as error:
+        raise AssetError(
+            f"{head_file} has no array {error}; rebuild it with 'python -m assets.build'"
+        ) from error
+
+
+def _assemble(
+    arrays: dict[str, npt.NDArray[Any]], rig: dict[str, Any], expressions: dict[str, Any]
+) -> Head:
+    rings = {
+        name.removeprefix("ring_"): array
+        for name, array in arrays.items()
+        if name.startswith("ring_")
+    }
+    names = arrays["anatomy_names"].tolist()
+    return Head(
+        vertices=arrays["vertices"],
+        faces=arrays["faces"],
+        landmarks=arrays["landmarks"],
+        bone_depth=arrays["bone_depth"],
+        mandible_weight=arrays["mandible_weight"],
+        jaw_axis=arrays["jaw_axis"],
+        mirror=arrays["mirror"],
+        anatomy=dict(zip(names, arrays["anatomy_vertices"].tolist(), strict=True)),
+        rings=rings,
+        eyes=_eyes(arrays),
+        parts=_parts(arrays),
+        rig=rig,
+        expressions=expressions,
+    )
+
+
+def _eyes(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Eye, ...]:
+    centres, radii = arrays["eye_centres"], arrays["eye_radii"]
+    return tuple(
+        Eye(name, centres[i], float(radii[i, 0]), float(radii[i, 1]))
+        for i, name in enumerate(("right", "left"))
+    )
+
+
+def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
+    """Parts lie one after the other in shared arrays: an npz entry costs more than its numbers."""
+    vertex_ends = np.cumsum(arrays["part_vertex_counts"])
+    face_ends = np.cumsum(arrays["part_face_counts"])
+    parts = []
+    for i, name in enumerate(arrays["part_names"].tolist()):
+        vertices = slice(vertex_ends[i] - arrays["part_vertex_counts"][i], vertex_ends[i])
+        faces = slice(face_ends[i] - arrays["part_face_counts"][i], face_ends[i])
+        parts.append(
+            Part(
+                name=name,
+                vertices=arrays["part_vertices"][vertices],
+                normals=arrays["part_normals"][vertices],
+                faces=arrays["part_faces"][faces],
+                colours=arrays["part_colours"][vertices],
+                bone=str(arrays["part_bones"][i]),
+                shine=float(arrays["part_shine"][i]),
+            )
+        )
+    return tuple(parts)
+
+
+def _read_arrays(path: Path) -> dict[str, npt.NDArray[Any]]:
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+    except FileNotFoundError as error:
+        raise AssetError(
+            f"the data file {path} is missing; build it with 'python -m assets.build'"
+        ) from error
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        raise AssetError(
+            f"the data file {path} is not a readable npz file ({error}); "
+            "rebuild it with 'python -m assets.build'"
+        ) from error
+    for array in arrays.values():
+        array.flags.writeable = False
+    return arrays
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    """A head without a rig or without expressions is still a head: no file means {}."""
+    try:
+        with path.open("rb") as file:
+            return tomllib.load(file)
+    except FileNotFoundError:
+        return {}
+    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise AssetError(f"{path} is not readable as TOML: {error}") from error

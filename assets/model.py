@@ -1,0 +1,109 @@
+"""The arrays that an asset consists of.
+
+Plain frozen dataclasses of plain numpy arrays: every other package takes arrays, so none of them
+has to import this one. All arrays are read-only.
+
+Frame of the head: millimetres, x toward the subject's left, y up, z toward the viewer, x = 0 is
+the mirror plane. Faces are counter-clockwise seen from outside.
+Source: Kähler et al. 2003, section 5 (the face mesh with 2030 triangles, the plane with 154);
+landmark numbering after Sagonas et al. 2013, "300 Faces in-the-Wild Challenge" (iBug 68 points).
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+SingleArray = npt.NDArray[np.float32]
+IndexArray = npt.NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Eye:
+    """One eyeball: a sphere that looks along +z at rest.
+
+    name: "right" or "left" (the subject's).
+    centre: centre of rotation [mm], shape (3,), float64.
+    radius: of the sclera [mm].
+    iris_radius: of the coloured disc [mm].
+    """
+
+    name: str
+    centre: FloatArray
+    radius: float
+    iris_radius: float
+
+
+@dataclass(frozen=True)
+class Part:
+    """A rigid thing that is drawn but not simulated: an eyeball, a row of teeth, the tongue.
+
+    name: unique within the head.
+    vertices: rest positions [mm], shape (n, 3), float32.
+    normals: unit normals, shape (n, 3), float32.
+    faces: vertex numbers, counter-clockwise from the visible side, shape (m, 3), int32.
+    colours: sRGB 0..1, shape (n, 3), float32.
+    bone: "cranium", "mandible", "eye_left" or "eye_right"; the part moves with it.
+    shine: strength of the highlight, 0 (dull) to 1 (wet).
+    """
+
+    name: str
+    vertices: SingleArray
+    normals: SingleArray
+    faces: IndexArray
+    colours: SingleArray
+    bone: str
+    shine: float
+
+
+@dataclass(frozen=True)
+class Head:
+    """A head to simulate and draw.
+
+    vertices: rest positions of the skin [mm], shape (V, 3), float64.
+    faces: vertex numbers, shape (F, 3), int32.
+    landmarks: vertex numbers of the 68 iBug points, shape (68,), int32.
+    bone_depth: distance from the skin to the bone beneath [mm], shape (V,), float64.
+    mandible_weight: 0 = moves with the cranium, 1 = with the mandible, shape (V,), float64.
+    jaw_axis: centres of the right and the left condyle [mm], shape (2, 3), float64.
+    mirror: number of the mirror image of each vertex, shape (V,), int32.
+    anatomy: named anatomical points, name -> vertex number.
+    rings: named vertex rows of the left side, name -> vertex numbers, shape (n,), int32; the same
+        rows with _right for the right side. `eye_0_left` to `eye_4_left` run outward around the
+        eye; `mouth_0_left` to `mouth_7_left` around half of the mouth, from the middle of the
+        upper lip over the corner to the middle of the lower lip (2: where the lips meet, 6: border
+        of the red); also `nostril_left`, `alar_crease_left`, `rim_left`.
+    eyes: the right and the left eye.
+    parts: rigid things that are drawn with the head.
+    rig: the parsed rig file, {} where there is none.
+    expressions: expression name -> {control name: value}, {} where there is no such file.
+    """
+
+    vertices: FloatArray
+    faces: IndexArray
+    landmarks: IndexArray
+    bone_depth: FloatArray
+    mandible_weight: FloatArray
+    jaw_axis: FloatArray
+    mirror: IndexArray
+    anatomy: Mapping[str, int]
+    rings: Mapping[str, IndexArray]
+    eyes: tuple[Eye, ...]
+    parts: tuple[Part, ...]
+    rig: dict[str, Any]
+    expressions: dict[str, dict[str, float]]
+
+
+@dataclass(frozen=True)
+class Plane:
+    """The triangulated plane of the paper's Figure 9.
+
+    vertices: rest positions [mm], shape (96, 3), float64, in the plane z = 0.
+    faces: vertex numbers, counter-clockwise seen from +z, shape (154, 3), int32.
+    """
+
+    vertices: FloatArray
+    faces: IndexArray

@@ -1,0 +1,34 @@
+"""The paper's second test case: a flat rectangle of 7 x 11 cells.
+
+Source: Kähler et al. 2003, Figure 9 and Table 1 ("plane", 154 triangles). 154 = 2 * 7 * 11 is the
+only way to write the count as a grid of halved cells that is about as wide as the figure shows.
+"""
+
+import numpy as np
+
+from .model import Plane
+
+COLUMNS = 11  # cells along x; chosen: 2 * 7 * 11 = 154
+ROWS = 7  # cells along y
+CELL = 10.0  # [mm]; chosen, so that the plane is as large as a hand
+
+
+def make_plane() -> Plane:
+    """Build the rectangle in the plane z = 0, centred on the origin, facing +z."""
+    x = CELL * (np.arange(COLUMNS + 1) - COLUMNS / 2)
+    y = CELL * (np.arange(ROWS + 1) - ROWS / 2)
+    grid_x, grid_y = np.meshgrid(x, y)
+    vertices = np.stack([grid_x, grid_y, np.zeros_like(grid_x)], axis=-1).reshape(-1, 3)
+
+    # Every cell is halved along the same diagonal, lower left to upper right.
+    row, column = np.meshgrid(np.arange(ROWS), np.arange(COLUMNS), indexing="ij")
+    lower_left = (row * (COLUMNS + 1) + column).ravel()
+    lower_right, upper_left = lower_left + 1, lower_left + COLUMNS + 1
+    upper_right = upper_left + 1
+    lower = np.stack([lower_left, lower_right, upper_right], axis=-1)
+    upper = np.stack([lower_left, upper_right, upper_left], axis=-1)
+    faces = np.stack([lower, upper], axis=1).reshape(-1, 3).astype(np.int32)
+
+    vertices.flags.writeable = False
+    faces.flags.writeable = False
+    return Plane(vertices=vertices, faces=faces)

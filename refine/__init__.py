@@ -1,0 +1,49 @@
+"""Dynamic refinement of animated triangle meshes: arrays in, crack-free triangles out, each frame.
+
+After Kähler, Haber and Seidel, "Dynamically refining animated triangle meshes for rendering", The
+Visual Computer 2003. The package stands alone: it needs numpy and numba and nothing else.
+
+    refiner = refine.create("kahler", faces, rest_positions)   # once per mesh
+    mesh = refiner.refine(positions)                           # every frame
+    draw(mesh.positions, mesh.normals, mesh.triangles)
+
+Refiners by name: `none` hands the mesh through, `kahler` is the paper's, `loop` subdivides the
+whole mesh once or twice for comparison. `refine(positions, out=stream)` writes straight into lent
+arrays. `check` is for tests: it names the relation that a refined mesh breaks.
+
+Read in this order: plugin.py (the border), adaptive.py (a frame), criterion.py (which edges),
+masks.py and placement.py (where points go), patterns.py (the 27 triangulations).
+"""
+
+from .adaptive import Kahler
+from .checker import BrokenMeshError, check
+from .connectivity import Connectivity, connect, weld
+from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion
+from .passthrough import PassThrough
+from .plugin import Origins, RefinedMesh, Refiner, Stream, available, create, register
+from .uniform import Loop
+
+__all__ = [
+    "THRESHOLD_ONCE",
+    "THRESHOLD_TWICE",
+    "BrokenMeshError",
+    "Connectivity",
+    "Criterion",
+    "Kahler",
+    "Loop",
+    "Origins",
+    "PassThrough",
+    "RefinedMesh",
+    "Refiner",
+    "Stream",
+    "available",
+    "check",
+    "connect",
+    "create",
+    "register",
+    "weld",
+]
+
+register("none", PassThrough)
+register("kahler", Kahler)
+register("loop", Loop)

@@ -1,0 +1,72 @@
+"""The refiner that does nothing: the mesh itself, in the form in which refined meshes come.
+
+Kähler, Haber, Seidel 2003, compare with the static mesh in every figure and in Table 1. Positions,
+normals and texture coordinates are those that `kahler` hands out where no edge is split, to the
+last bit, so that switching between the two shows nothing but refinement.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from .binding import BoundRefiner
+from .criterion import vertex_normals
+from .output import GEOMETRY_COLUMNS, copy_wedges, place_unmoved
+from .plugin import Origins
+
+
+class PassThrough(BoundRefiner):
+    """Hands the mesh through with normals; the refiner named `none`."""
+
+    def __init__(
+        self,
+        faces: npt.ArrayLike,
+        rest_positions: npt.ArrayLike,
+        *,
+        uv: npt.ArrayLike | None = None,
+        face_uv: npt.ArrayLike | None = None,
+    ) -> None:
+        """Bind to a mesh (see `plugin.create`); there are no options."""
+        super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv)
+        self._splits = np.zeros(len(self.connectivity.edges), dtype=np.uint8)
+        self._splits.flags.writeable = False
+        self._source = np.arange(len(self.connectivity.faces), dtype=np.int32)
+        self._wedge_uv = self._texture_of(self.connectivity.wedge_uv)
+
+    @property
+    def splits(self) -> npt.NDArray[np.uint8]:
+        """All zero, shape (E,)."""
+        return self._splits
+
+    @property
+    def vertex_capacity(self) -> int:
+        """One output vertex per wedge."""
+        return len(self.connectivity.wedge_vertices)
+
+    @property
+    def triangle_capacity(self) -> int:
+        """The triangles of the input."""
+        return len(self.connectivity.faces)
+
+    def _fill(
+        self,
+        vertices: npt.NDArray[np.float32],
+        triangles: npt.NDArray[np.uint32],
+        source: npt.NDArray[np.int32],
+    ) -> tuple[int, int]:
+        connectivity = self.connectivity
+        vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
+        vertex_normals(self._positions, connectivity.faces, self._normals)
+        place_unmoved(self._positions, self._normals, vertices)
+        if self._uv is not None:
+            copy_wedges(connectivity.vertex_count, connectivity.wedge_vertices, vertices)
+            vertices[:vertex_count, GEOMETRY_COLUMNS:] = self._wedge_uv
+        triangles[:triangle_count] = connectivity.corners
+        source[:triangle_count] = self._source
+        return vertex_count, triangle_count
+
+    def origins(self) -> Origins:
+        """Say for every output vertex which input vertex it is."""
+        wedges = self.connectivity.wedge_vertices.astype(np.int32)
+        weights = np.zeros((len(wedges), 3), dtype=np.float32)
+        weights[:, 0] = 1.0
+        return Origins(np.stack([wedges] * 3, axis=1), weights)

@@ -1,0 +1,173 @@
+"""The border of the plug-in: what a refiner is, what it hands out, and where refiners are found.
+
+Kähler, Haber, Seidel 2003, Fig. 1 and section 3: refinement sits between the deformed mesh and the
+rendering engine, reads the one and feeds the other, and keeps nothing of its own between frames.
+So a refiner is bound once to the connectivity and the undeformed positions of a mesh, and then
+turns positions into triangles, frame by frame:
+
+    refiner = refine.create("kahler", faces, rest_positions)
+    mesh = refiner.refine(positions)          # draw mesh.positions, mesh.normals, mesh.triangles
+
+New refiners join by name, with `register` or with an entry point in group `risorius.refiners`.
+"""
+
+import inspect
+from collections.abc import Callable
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+import numpy.typing as npt
+
+ENTRY_POINT_GROUP = "risorius.refiners"
+
+
+class RefinedMesh(NamedTuple):
+    """Triangles of one frame: views of buffers that the next frame overwrites."""
+
+    positions: npt.NDArray[np.float32]
+    """Vertex positions [unit of the input], shape (N, 3)."""
+    normals: npt.NDArray[np.float32]
+    """Unit vertex normals, zero where the surface has none, shape (N, 3)."""
+    triangles: npt.NDArray[np.uint32]
+    """Vertices of each triangle, counter-clockwise as in the input, shape (M, 3)."""
+    source: npt.NDArray[np.int32]
+    """Input triangle that each triangle is part of, shape (M,)."""
+    uv: npt.NDArray[np.float32] | None
+    """Texture coordinates, shape (N, 2); None if the mesh was bound without."""
+
+
+class Origins(NamedTuple):
+    """Where every output vertex lies in the undeformed parameter domain of the input mesh.
+
+    Output vertex n is the mix of input vertices `vertices[n]` with `weights[n]`; smoothing aside.
+    It carries any other attribute over: `(colours[o.vertices] * o.weights[..., None]).sum(1)`.
+    """
+
+    vertices: npt.NDArray[np.int32]
+    """Input vertices, shape (N, 3)."""
+    weights: npt.NDArray[np.float32]
+    """Their barycentric weights, multiples of 1/4, shape (N, 3)."""
+
+
+class Stream(Protocol):
+    """Arrays lent by the caller, which the refiner fills from the top: often mapped GPU memory."""
+
+    @property
+    def vertices(self) -> npt.NDArray[np.float32]:
+        """Rows x y z, nx ny nz[, u v]; C-contiguous, shape (>= vertex_capacity, vertex_columns)."""
+
+    @property
+    def triangles(self) -> npt.NDArray[np.uint32]:
+        """C-contiguous, shape (>= triangle_capacity, 3)."""
+
+    @property
+    def source(self) -> npt.NDArray[np.int32]:
+        """C-contiguous, shape (>= triangle_capacity,)."""
+
+
+@runtime_checkable
+class Refiner(Protocol):
+    """A refinement method bound to one mesh with V vertices, F triangles and E edges."""
+
+    @property
+    def edges(self) -> npt.NDArray[np.int32]:
+        """End points of each edge of the input mesh, shape (E, 2)."""
+
+    @property
+    def triangle_edges(self) -> npt.NDArray[np.int32]:
+        """Edges of each input triangle, corner i to i + 1, shape (F, 3); -1 if it has no edges."""
+
+    @property
+    def splits(self) -> npt.NDArray[np.uint8]:
+        """How often each edge was split in the last frame, 0, 1 or 2, shape (E,)."""
+
+    @property
+    def vertex_capacity(self) -> int:
+        """Most output vertices a frame can have."""
+
+    @property
+    def triangle_capacity(self) -> int:
+        """Most output triangles a frame can have."""
+
+    @property
+    def vertex_columns(self) -> int:
+        """Columns of a stream's vertices: 6, or 8 with texture coordinates."""
+
+    def refine(self, positions: npt.NDArray[np.floating], out: Stream | None = None) -> RefinedMesh:
+        """Turn deformed `positions`, shape (V, 3), any float type, into triangles; never writes it.
+
+        The result views the arrays of `out`, or of the refiner's own stream without it.
+        """
+
+    def origins(self) -> Origins:
+        """Say for every vertex of the last frame where it lies on the input mesh (allocates)."""
+
+
+Factory = Callable[..., Refiner]
+"""Called as factory(faces, rest_positions, uv=..., face_uv=..., **options)."""
+
+_factories: dict[str, Factory] = {}
+
+
+def register(name: str, factory: Factory) -> None:
+    """Make `factory` known as `name`; raises ValueError if the name is empty or taken."""
+    if not name:
+        raise ValueError("the name of a refiner must not be empty")
+    if name in _factories:
+        raise ValueError(f"a refiner named {name!r} exists already; taken are {available()}")
+    if not callable(factory):
+        raise ValueError(f"factory of refiner {name!r} must be callable, got {factory!r}")
+    _factories[name] = factory
+
+
+def available() -> tuple[str, ...]:
+    """Names that `create` understands: built in, registered, and from entry points."""
+    return tuple(sorted({*_factories, *_entry_points()}))
+
+
+def create(
+    name: str,
+    faces: npt.ArrayLike,
+    rest_positions: npt.ArrayLike,
+    uv: npt.ArrayLike | None = None,
+    face_uv: npt.ArrayLike | None = None,
+    **options: Any,
+) -> Refiner:
+    """Bind the refiner `name` to a mesh; nothing that is passed is kept or changed.
+
+    `faces`: vertices of each triangle, shape (F, 3), any integer type.
+    `rest_positions`: undeformed vertex positions [any unit], shape (V, 3), any float type.
+    `uv`: texture coordinates, shape (U, 2); `face_uv`: the one of each corner, shape (F, 3), or
+    None if vertex v has coordinate v (then U = V).
+    `options`: what the method takes; see `refine.Kahler` and `refine.Loop`.
+    Raises ValueError for an unknown name or option and for arrays that do not fit together.
+    """
+    factory = _find(name)
+    _check_options(name, factory, options)
+    return factory(faces, rest_positions, uv=uv, face_uv=face_uv, **options)
+
+
+def _find(name: str) -> Factory:
+    if name in _factories:
+        return _factories[name]
+    points = _entry_points()
+    if name not in points:
+        raise ValueError(f"unknown refiner {name!r}; available are {available()}")
+    factory: Factory = points[name].load()
+    return factory
+
+
+def _entry_points() -> dict[str, EntryPoint]:
+    return {point.name: point for point in entry_points(group=ENTRY_POINT_GROUP)}
+
+
+def _check_options(name: str, factory: Factory, options: dict[str, Any]) -> None:
+    parameters = inspect.signature(factory).parameters.values()
+    if any(p.kind is p.VAR_KEYWORD for p in parameters):
+        return
+    allowed = {p.name for p in parameters if p.kind is p.KEYWORD_ONLY} - {"uv", "face_uv"}
+    unknown = sorted(set(options) - allowed)
+    if unknown:
+        takes = f"it takes {sorted(allowed)}" if allowed else "it takes none"
+        raise ValueError(f"unknown option {unknown[0]!r} for refiner {name!r}; {takes}")

@@ -1,0 +1,106 @@
+r"""The rule for the vertices of the input: who surrounds them and how far they move.
+
+Kähler, Haber, Seidel 2003, Fig. 3 right, with Warren's weights (Warren 2001) in place of Loop's:
+
+      ring   ring         interior, valence n     ring = 3/16 for n = 3, otherwise 3/(8 n)
+         \   /                                    own  = 1 - n ring
+    ring--own--ring       on a border curve       ring = 1/8 for the two neighbours on the curve
+         /   \                                    own  = 3/4
+      ring   ring         anywhere else           own  = 1
+
+The paper leaves open, and we decide: a vertex moves when any of its edges is split. A vertex with
+one border edge or with more than two (a corner where surfaces meet) stays in place.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .connectivity import Connectivity
+from .kernels import kernel
+
+BORDER_OWN = 3 / 4
+"""Vertex on a border curve (Fig. 3, bottom right)."""
+BORDER_RING = 1 / 8
+"""Its two neighbours on the curve (Fig. 3, bottom right)."""
+
+
+@dataclass(frozen=True)
+class Rings:
+    """Rings and weights of the vertex rule: own x itself + ring x (sum over its ring)."""
+
+    own: npt.NDArray[np.float32]
+    """Weight of the vertex itself, shape (V,); 1 where it never moves."""
+    ring: npt.NDArray[np.float32]
+    """Weight of every vertex in the ring, shape (V,)."""
+    starts: npt.NDArray[np.uint32]
+    """Ring of vertex v: `vertices[starts[v]:starts[v + 1]]`, shape (V + 1,)."""
+    vertices: npt.NDArray[np.uint32]
+    """Neighbours along all edges, or along the border only for a vertex on a border curve."""
+
+
+def vertex_rings(connectivity: Connectivity) -> Rings:
+    """Work out Warren's weights for every vertex of a mesh (Fig. 3, right)."""
+    vertex_count = connectivity.vertex_count
+    ends = connectivity.edges.astype(np.int64)
+    is_border = ~connectivity.is_interior
+    valence = np.bincount(ends.ravel(), minlength=vertex_count)
+    border_valence = np.bincount(ends[is_border].ravel(), minlength=vertex_count)
+    is_inside = (border_valence == 0) & (valence > 0)
+    is_on_curve = border_valence == 2
+
+    own = np.ones(vertex_count)
+    ring = np.zeros(vertex_count)
+    inside_valence = valence[is_inside]
+    ring[is_inside] = warren_weight(inside_valence)
+    own[is_inside] = 1.0 - inside_valence * ring[is_inside]
+    ring[is_on_curve] = BORDER_RING
+    own[is_on_curve] = BORDER_OWN
+
+    centres, neighbours = ends.ravel(), ends[:, ::-1].ravel()
+    is_in_ring = is_inside[centres] | (is_on_curve[centres] & np.repeat(is_border, 2))
+    centres, neighbours = centres[is_in_ring], neighbours[is_in_ring]
+    order = np.argsort(centres, kind="stable")
+    ring_sizes = np.bincount(centres, minlength=vertex_count)
+    return Rings(
+        own=own.astype(np.float32),
+        ring=ring.astype(np.float32),
+        starts=np.concatenate([[0], np.cumsum(ring_sizes)]).astype(np.uint32),
+        vertices=neighbours[order].astype(np.uint32),
+    )
+
+
+def warren_weight(valence: npt.NDArray[np.integer]) -> npt.NDArray[np.float64]:
+    """Weight of one neighbour of an interior vertex: 3/16 for valence 3, else 3/(8 valence)."""
+    return np.where(valence == 3, 3.0 / 16.0, 3.0 / (8.0 * np.maximum(valence, 1)))
+
+
+@kernel
+def place_vertices(
+    positions: npt.NDArray[np.float64],
+    normals: npt.NDArray[np.float32],
+    moved: npt.NDArray[np.uint8],
+    own: npt.NDArray[np.float32],
+    ring: npt.NDArray[np.float32],
+    ring_starts: npt.NDArray[np.uint32],
+    ring_vertices: npt.NDArray[np.uint32],
+    vertices: npt.NDArray[np.float32],
+) -> None:
+    """Write the original vertices, those at split edges moved by the vertex rule (Fig. 3)."""
+    for v in range(positions.shape[0]):
+        x = np.float32(positions[v, 0])
+        y = np.float32(positions[v, 1])
+        z = np.float32(positions[v, 2])
+        if moved[v]:
+            sum_x = sum_y = sum_z = np.float32(0.0)
+            for k in range(ring_starts[v], ring_starts[v + 1]):
+                neighbour = ring_vertices[k]
+                sum_x += np.float32(positions[neighbour, 0])
+                sum_y += np.float32(positions[neighbour, 1])
+                sum_z += np.float32(positions[neighbour, 2])
+            x = own[v] * x + ring[v] * sum_x
+            y = own[v] * y + ring[v] * sum_y
+            z = own[v] * z + ring[v] * sum_z
+        vertices[v, 0], vertices[v, 1], vertices[v, 2] = x, y, z
+        vertices[v, 3], vertices[v, 4], vertices[v, 5] = normals[v, 0], normals[v, 1], normals[v, 2]

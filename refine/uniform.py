@@ -1,0 +1,225 @@
+"""Loop subdivision of the whole mesh, once or twice: what the adaptive refiner is compared with.
+
+Loop 1987 with Warren's vertex weights (Warren 2001), the scheme that Kähler, Haber, Seidel 2003,
+section 4.2, borrow their rules from. Every edge is split, every vertex is smoothed, borders follow
+their own curve. The connectivity of each level is built at binding; a frame only moves points, with
+the very passes of `kahler`.
+
+Normals and texture coordinates of new points are interpolated along the edge and not recomputed
+from the subdivided surface, as in `kahler`, so that the two can be compared in shading and in time.
+
+Differs from `kahler` where that splits all edges twice: a triangle becomes sixteen, not ten, with
+three points in its interior, and the second level smooths all vertices of the first.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from .binding import BoundRefiner
+from .connectivity import Connectivity, connect
+from .criterion import vertex_normals
+from .masks import place_middles
+from .output import GEOMETRY_COLUMNS, copy_wedges
+from .plugin import Origins
+from .rings import Rings, place_vertices, vertex_rings
+
+Floats = npt.NDArray[np.float32]
+Wide = npt.NDArray[np.int64]
+
+
+class Level:
+    """One step of subdivision of a mesh with V vertices and E edges: every edge split once."""
+
+    def __init__(
+        self, connectivity: Connectivity, positions: npt.NDArray[np.float64], normals: Floats
+    ) -> None:
+        """Take `positions` and `normals`, shape (V, 3), as buffers that a frame fills."""
+        vertex_count, edge_count = connectivity.vertex_count, len(connectivity.edges)
+        self.positions = positions
+        self.normals = normals
+        self._connectivity = connectivity
+        self._rings: Rings = vertex_rings(connectivity)
+        self._all_move = np.ones(vertex_count, dtype=np.uint8)
+        self._all_edges = np.arange(edge_count, dtype=np.uint32)
+        self._first_points = self._all_edges + np.uint32(vertex_count)
+        self._middles = np.zeros((edge_count, 3), dtype=np.float32)
+
+    def subdivide(self, rows: Floats) -> None:
+        """Write the moved vertices, then one point per edge, into the first V + E `rows`."""
+        rings = self._rings
+        place_vertices(
+            self.positions,
+            self.normals,
+            self._all_move,
+            rings.own,
+            rings.ring,
+            rings.starts,
+            rings.vertices,
+            rows,
+        )
+        place_middles(
+            self.positions,
+            self.normals,
+            self._connectivity.edge_points,
+            self._connectivity.is_interior,
+            self._first_points,
+            self._all_edges,
+            len(self._all_edges),
+            self._middles,
+            rows,
+        )
+
+
+class Loop(BoundRefiner):
+    """Uniform Loop subdivision; the refiner named `loop`."""
+
+    def __init__(
+        self,
+        faces: npt.ArrayLike,
+        rest_positions: npt.ArrayLike,
+        *,
+        uv: npt.ArrayLike | None = None,
+        face_uv: npt.ArrayLike | None = None,
+        levels: int = 1,
+    ) -> None:
+        """Bind to a mesh (see `plugin.create`). `levels`: 1 or 2, how often all edges are split."""
+        super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv)
+        if levels not in (1, 2):
+            raise ValueError(f"levels must be 1 or 2, got {levels!r}")
+        self._splits = np.full(len(self.connectivity.edges), levels, dtype=np.uint8)
+        self._splits.flags.writeable = False
+
+        finest = _Refined.of(self.connectivity, self._uv)
+        self._levels = [Level(finest.connectivity, self._positions, self._normals)]
+        for _ in range(levels - 1):
+            finest = finest.subdivided()
+            buffer = np.zeros((finest.connectivity.vertex_count, 3))
+            self._levels.append(Level(finest.connectivity, buffer, buffer.astype(np.float32)))
+        self._rows = np.zeros((len(self._levels[-1].positions), GEOMETRY_COLUMNS), np.float32)
+        self._finest = finest.subdivided()
+        self._triangles = self._finest.connectivity.corners
+        self._wedge_uv = self._finest.wedge_uv()
+
+    @property
+    def splits(self) -> npt.NDArray[np.uint8]:
+        """The number of levels for every edge, shape (E,), read only."""
+        return self._splits
+
+    @property
+    def vertex_capacity(self) -> int:
+        """Vertices of the finest level, one per wedge."""
+        return len(self._finest.connectivity.wedge_vertices)
+
+    @property
+    def triangle_capacity(self) -> int:
+        """Triangles of the finest level: 4 or 16 for each."""
+        return len(self._triangles)
+
+    def _fill(
+        self, vertices: Floats, triangles: npt.NDArray[np.uint32], source: npt.NDArray[np.int32]
+    ) -> tuple[int, int]:
+        vertex_normals(self._positions, self.connectivity.faces, self._normals)
+        for level, finer in pairwise(self._levels):
+            level.subdivide(self._rows)
+            np.copyto(finer.positions, self._rows[:, :3])
+            np.copyto(finer.normals, self._rows[:, 3:])
+        self._levels[-1].subdivide(vertices)
+
+        finest = self._finest.connectivity
+        vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
+        if self._uv is not None:
+            copy_wedges(finest.vertex_count, finest.wedge_vertices, vertices)
+            vertices[:vertex_count, GEOMETRY_COLUMNS:] = self._wedge_uv
+        triangles[:triangle_count] = self._triangles
+        source[:triangle_count] = self._finest.source
+        return vertex_count, triangle_count
+
+    def origins(self) -> Origins:
+        """Say for every output vertex where it lies on the input mesh."""
+        finest = self._finest
+        wedges = finest.connectivity.wedge_vertices.astype(np.int32)
+        vertices = np.stack([wedges] * 3, axis=1)
+        weights = np.zeros(vertices.shape, dtype=np.float32)
+        weights[:, 0] = 1.0
+        vertices[self._triangles] = self.connectivity.faces[finest.source][:, None, :]
+        weights[self._triangles] = finest.barycentric
+        return Origins(vertices, weights)
+
+
+@dataclass(frozen=True)
+class _Refined:
+    """A subdivided mesh in terms of the mesh it came from."""
+
+    connectivity: Connectivity
+    uv: Floats | None
+    """Texture coordinates, shape (U, 2)."""
+    source: npt.NDArray[np.int32]
+    """Triangle of the input that each triangle is part of, shape (M,)."""
+    barycentric: Floats
+    """Corners of each triangle in coordinates of its source, shape (M, 3, 3)."""
+
+    @classmethod
+    def of(cls, connectivity: Connectivity, uv: Floats | None) -> "_Refined":
+        """Take a mesh as it is."""
+        face_count = len(connectivity.faces)
+        return cls(
+            connectivity,
+            uv,
+            np.arange(face_count, dtype=np.int32),
+            np.tile(np.eye(3, dtype=np.float32), (face_count, 1, 1)),
+        )
+
+    def subdivided(self) -> "_Refined":
+        """Split every edge: each triangle becomes four, one that names a vertex twice stays."""
+        mesh = self.connectivity
+        whole = np.flatnonzero(mesh.is_degenerate)
+        split = np.flatnonzero(~mesh.is_degenerate)
+        parents = np.concatenate([np.repeat(split, 4), whole])
+        order = np.argsort(parents, kind="stable")
+
+        vertex_middles = mesh.vertex_count + mesh.triangle_edges[split].astype(np.int64)
+        children = _children(mesh.faces[split].astype(np.int64), vertex_middles)
+        faces = np.concatenate([children, mesh.faces[whole]])[order]
+
+        face_uv, uv = None, self.uv
+        if uv is not None:
+            corner_uv = mesh.wedge_uv[mesh.corners].astype(np.int64)
+            uv_middles = len(uv) + (mesh.triangle_rims[split] >> 1).astype(np.int64)
+            children_uv = _children(corner_uv[split], uv_middles)
+            face_uv = np.concatenate([children_uv, corner_uv[whole]])[order]
+            uv = np.concatenate([uv, uv[mesh.rim_uv].mean(axis=1, dtype=np.float32)])
+
+        barycentric = np.concatenate(
+            [_children_coordinates(self.barycentric[split]), self.barycentric[whole]]
+        )[order]
+        return _Refined(
+            connect(faces, mesh.vertex_count + len(mesh.edges), face_uv),
+            uv,
+            self.source[parents[order]],
+            barycentric,
+        )
+
+    def wedge_uv(self) -> Floats:
+        """Texture coordinates of the output vertices, shape (W, 2)."""
+        indices = self.connectivity.wedge_uv
+        if self.uv is None:
+            return np.zeros((0, 2), dtype=np.float32)
+        return np.where(indices[:, None] < 0, np.float32(0.0), self.uv[indices])
+
+
+def _children(corners: Wide, middles: Wide) -> Wide:
+    """Four triangles for each, three at its corners and one of its middle points, (4 F, 3)."""
+    (a, b, c), (ab, bc, ca) = corners.T, middles.T
+    four = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    return np.array(four, dtype=np.int64).transpose(2, 0, 1).reshape(-1, 3)
+
+
+def _children_coordinates(corners: Floats) -> Floats:
+    """Corners of the four children from those of their parents, shape (4 F, 3, 3)."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+    four = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    return np.array(four, dtype=np.float32).transpose(2, 0, 1, 3).reshape(-1, 3, 3)

@@ -1,0 +1,73 @@
+"""Drawing: surfaces (offscreen frame or window), camera, dynamic buffers, shading.
+
+Takes arrays and knows nothing of where they come from. OpenGL 3.3 core and GLSL 330 suffice.
+
+    with render.open_offscreen((1280, 720)) as surface:
+        renderer = render.Renderer(surface)
+        stream = renderer.lend_stream(vertex_capacity, triangle_capacity, 6)
+        ...write stream.vertices and stream.triangles...
+        stream.upload(vertex_count, triangle_count)
+        camera = render.OrbitCamera.framing(vertices, view="three-quarter")
+        surface.begin()
+        renderer.draw_background(render.Style())
+        renderer.draw_mesh(stream, camera, render.Style())
+        surface.end()
+        frame = surface.read()
+
+Source: Kähler et al. 2003, Fig. 1, the rendering stage.
+"""
+
+from .camera import VIEWS, OrbitCamera
+from .errors import GLError
+from .geometry import Part
+from .probe import Finding, probe
+from .renderer import Renderer, Viewport
+from .stream import Stream
+from .style import (
+    CLAY,
+    DARK,
+    LIGHT,
+    SKIN,
+    SKIN_DARK,
+    SKIN_LIGHT,
+    SPLIT_PALETTE,
+    WHITE,
+    Background,
+    Colour,
+    ColourBy,
+    Shading,
+    Style,
+)
+from .surface import Frame, OffscreenSurface, Surface, open_offscreen
+from .window import WindowSurface, open_window
+
+__all__ = [
+    "CLAY",
+    "DARK",
+    "LIGHT",
+    "SKIN",
+    "SKIN_DARK",
+    "SKIN_LIGHT",
+    "SPLIT_PALETTE",
+    "VIEWS",
+    "WHITE",
+    "Background",
+    "Colour",
+    "ColourBy",
+    "Finding",
+    "Frame",
+    "GLError",
+    "OffscreenSurface",
+    "OrbitCamera",
+    "Part",
+    "Renderer",
+    "Shading",
+    "Stream",
+    "Style",
+    "Surface",
+    "Viewport",
+    "WindowSurface",
+    "open_offscreen",
+    "open_window",
+    "probe",
+]

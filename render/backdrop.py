@@ -1,0 +1,67 @@
+"""The background of each viewport, painted once and copied into every frame.
+
+On software OpenGL a copy of the whole frame costs a fiftieth of painting it (measured: 0.16 ms
+against 8 ms at 1280 x 720).
+"""
+
+import moderngl
+
+from .layers import Layers, Rectangle
+from .programs import compile_program
+from .style import Background
+
+
+class Backdrop:
+    """Paints backgrounds into the frame of a surface's layers."""
+
+    def __init__(self, gl: moderngl.Context) -> None:
+        self._gl = gl
+        self._program = compile_program(gl, "background.glsl")
+        self._triangle = gl.vertex_array(self._program, [])
+        self._store: moderngl.Framebuffer | None = None
+        self._stored: dict[Rectangle, Background] = {}
+
+    def paint(self, layers: Layers, viewport: Rectangle, background: Background) -> None:
+        """Paint the background over the viewport; what was drawn there is gone."""
+        if not layers.samples:  # then the frame has depth, which has to be emptied too
+            layers.use_frame(viewport)
+            self._paint(viewport, background)
+            return
+        if self._store is None or self._store.size != layers.size:
+            self._forget()
+            self._store = self._gl.framebuffer([self._gl.renderbuffer(layers.size, 4)])
+        if self._stored.get(viewport) != background:
+            self._stored = {
+                other: kept for other, kept in self._stored.items() if not _overlap(other, viewport)
+            }
+            self._stored[viewport] = background
+            self._store.use()
+            self._paint(viewport, background)
+        layers.use_frame(viewport)  # its scissor restricts the copy to the viewport
+        self._gl.copy_framebuffer(layers.frame, self._store)
+
+    def _paint(self, viewport: Rectangle, background: Background) -> None:
+        gl = self._gl
+        gl.viewport = gl.scissor = viewport
+        self._program["centre"] = background.centre
+        self._program["edge"] = background.edge
+        gl.depth_func = "1"  # always: the far end of depth wins over what was there
+        self._triangle.render(moderngl.TRIANGLES, vertices=3)
+        gl.depth_func = "<="
+
+    def _forget(self) -> None:
+        if self._store is not None:
+            for attachment in self._store.color_attachments:
+                attachment.release()
+            self._store.release()
+        self._stored.clear()
+
+
+def _overlap(first: Rectangle, second: Rectangle) -> bool:
+    """Whether two rectangles share a pixel."""
+    return (
+        first[0] < second[0] + second[2]
+        and second[0] < first[0] + first[2]
+        and first[1] < second[1] + second[3]
+        and second[1] < first[1] + first[3]
+    )

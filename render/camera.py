@@ -1,0 +1,161 @@
+"""The camera: turns about a point of the scene, like a portrait photographer walking round.
+
+World: x to the subject's left (the viewer's right), y up, z toward the viewer of the front view.
+Matrices are pyrr's: float64, shape (4, 4), row vectors times matrix, so their bytes are what OpenGL
+wants, and `projection * view * Vector4` reads as in a book.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from pyrr import Matrix44
+
+FloatArray = npt.NDArray[np.float64]
+
+FIELD_OF_VIEW = 25.0  # [degrees] a portrait lens: about 80 mm on 35 mm film, so noses stay small
+MARGIN = 0.06  # of the frame, left free on each side when framing; mouths open and brows rise
+_STEEPEST = 89.0  # [degrees] beyond it "up" would tip over
+
+# Name -> yaw and pitch [degrees]: yaw walks toward the subject's left, pitch rises above.
+VIEWS: dict[str, tuple[float, float]] = {
+    "front": (0.0, 0.0),
+    "three-quarter": (35.0, 4.0),
+    "three-quarter-right": (-35.0, 4.0),
+    "profile": (90.0, 0.0),
+    "below": (0.0, -38.0),
+}
+
+
+@dataclass
+class OrbitCamera:
+    """A camera on a sphere about `target`; all fields may be set.
+
+    target: the point that it looks at and turns about, shape (3,), float64.
+    distance: from the target to the eye.
+    yaw, pitch: where on the sphere the eye is [degrees]; 0, 0 = in front.
+    field_of_view: top to bottom [degrees].
+    narrowest_aspect: a frame narrower than this (width / height) shows no less of the scene's
+        width, but more of its height; framing sets it.
+    scene_centre, scene_radius: a sphere that holds everything drawn; sets the clipping planes.
+    """
+
+    target: FloatArray
+    distance: float
+    yaw: float
+    pitch: float
+    scene_centre: FloatArray
+    scene_radius: float
+    field_of_view: float = FIELD_OF_VIEW
+    narrowest_aspect: float = 0.0
+
+    @classmethod
+    def framing(
+        cls,
+        vertices: npt.NDArray[Any],
+        *,
+        view: str = "front",
+        field_of_view: float = FIELD_OF_VIEW,
+        margin: float = MARGIN,
+    ) -> "OrbitCamera":
+        """Return a camera that sees all of `vertices`, shape (n, 3), from a named view.
+
+        Raises ValueError for an unknown view, and for vertices that are none or not finite.
+        """
+        if view not in VIEWS:
+            raise ValueError(f"view is '{view}'; it must be one of {', '.join(VIEWS)}")
+        points = np.asarray(vertices, np.float64)
+        if points.ndim != 2 or points.shape[1] != 3 or not len(points):
+            raise ValueError(f"vertices has shape {points.shape}; it must be (n, 3) with n >= 1")
+        if not np.isfinite(points).all():
+            raise ValueError("vertices holds numbers that are not finite; cannot frame them")
+        centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        radius = max(float(np.linalg.norm(points - centre, axis=1).max()), 1e-6)
+        yaw, pitch = VIEWS[view]
+        camera = cls(
+            target=centre,
+            distance=radius / math.sin(math.radians(0.5 * field_of_view)),
+            yaw=yaw,
+            pitch=pitch,
+            scene_centre=centre.copy(),
+            scene_radius=radius,
+            field_of_view=field_of_view,
+        )
+        camera._fit(points, margin)
+        return camera
+
+    def copy(self) -> "OrbitCamera":
+        """Return an independent camera that sees the same."""
+        return replace(self, target=self.target.copy(), scene_centre=self.scene_centre.copy())
+
+    def orbit(self, yaw: float, pitch: float = 0.0) -> None:
+        """Walk round the target by `yaw`, rise by `pitch` [degrees]; stops short of the poles."""
+        self.yaw = math.remainder(self.yaw + yaw, 360.0)
+        self.pitch = min(max(self.pitch + pitch, -_STEEPEST), _STEEPEST)
+
+    def pan(self, right: float, up: float) -> None:
+        """Move the camera sideways by fractions of the frame's height, at the target's distance."""
+        height = 2.0 * self.distance * math.tan(math.radians(0.5 * self.field_of_view))
+        right_axis, up_axis, _ = self.axes()
+        self.target = self.target + height * (right * right_axis + up * up_axis)
+
+    def zoom(self, factor: float) -> None:
+        """Make the target `factor` times as large in the frame by stepping closer or back."""
+        if not factor > 0.0:
+            raise ValueError(f"zoom factor is {factor}; it must be positive (2 = twice as large)")
+        closest, farthest = 0.02 * self.scene_radius, 100.0 * self.scene_radius
+        self.distance = min(max(self.distance / factor, closest), farthest)
+
+    def axes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Unit vectors of the frame in the world: right, up, and from the target to the eye."""
+        yaw, pitch = math.radians(self.yaw), math.radians(self.pitch)
+        sine, cosine = math.sin(yaw), math.cos(yaw)
+        rise, level = math.sin(pitch), math.cos(pitch)
+        right = np.array([cosine, 0.0, -sine])
+        up = np.array([-sine * rise, level, -cosine * rise])
+        return right, up, np.array([sine * level, rise, cosine * level])
+
+    @property
+    def eye(self) -> FloatArray:
+        """Where the camera stands, shape (3,), float64."""
+        return self.target + self.distance * self.axes()[2]
+
+    def view_matrix(self) -> Matrix44:
+        """World -> camera (x right, y up, looking along -z)."""
+        return Matrix44.look_at(self.eye, self.target, (0.0, 1.0, 0.0), dtype=np.float64)
+
+    def projection_matrix(self, aspect: float) -> Matrix44:
+        """Camera -> clip space, for a frame of that width / height."""
+        if not aspect > 0.0:
+            raise ValueError(f"aspect is {aspect}; it must be positive (width / height)")
+        half_height = math.tan(math.radians(0.5 * self.field_of_view))
+        half_height *= max(1.0, self.narrowest_aspect / aspect)
+        near, far = self._depth_range()
+        degrees = 2.0 * math.degrees(math.atan(half_height))
+        return Matrix44.perspective_projection(degrees, aspect, near, far, dtype=np.float64)
+
+    def _depth_range(self) -> tuple[float, float]:
+        """Clipping planes just around the scene, for the best use of the depth buffer."""
+        depth = float(np.dot(self.eye - self.scene_centre, self.axes()[2]))
+        reach = 1.3 * self.scene_radius  # the scene moves: an open jaw, a stuck-out lip
+        near = max(depth - reach, 0.01 * self.scene_radius)
+        return near, max(depth + reach, 2.0 * near)
+
+    def _fit(self, points: FloatArray, margin: float) -> None:
+        """Centre the points in the frame and step as close as the margin allows."""
+        usable = (1.0 - 2.0 * margin) * math.tan(math.radians(0.5 * self.field_of_view))
+        axes = np.stack(self.axes())
+        for _ in range(8):  # each round centres better; perspective makes one round inexact
+            x, y, z = axes @ (points - self.target).T
+            self.distance = float((z + np.abs(y) / usable).max()) or self.scene_radius
+            depth = self.distance - z
+            across, along = x / depth, y / depth
+            middle = 0.5 * np.array([across.min() + across.max(), along.min() + along.max()])
+            self.target = self.target + self.distance * (middle @ axes[:2])
+        x, y, z = axes @ (points - self.target).T
+        self.distance = float((z + np.abs(y) / usable).max()) or self.scene_radius
+        self.distance = max(self.distance, float(z.max()) + 0.05 * self.scene_radius)
+        widest = float((np.abs(x) / (self.distance - z)).max())
+        self.narrowest_aspect = widest / usable

@@ -1,0 +1,115 @@
+"""The pixels of a surface: a plain frame, and a multisampled layer that is averaged onto it.
+
+Backgrounds and panels go straight to the plain frame, geometry goes to the layer. Only the
+rectangle that geometry touched is averaged and wiped: on software OpenGL, where a head fills a
+third of a frame, that halves the cost of multisampling (measured: 16 -> 7.5 ms at 1280 x 720).
+
+Invariant: outside `_touched` the layer is transparent and its depth is 1.
+"""
+
+import moderngl
+
+from .errors import GLError
+from .programs import compile_program
+
+Rectangle = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
+
+_UNIT = 1  # texture unit of the layer; 0 belongs to the meshes
+
+
+class Layers:
+    """Frame and layer of `size` pixels; with samples 0 the frame is the layer."""
+
+    def __init__(self, gl: moderngl.Context, size: tuple[int, int], samples: int) -> None:
+        limit = min(int(gl.info[f"GL_MAX_{kind}_SIZE"]) for kind in ("RENDERBUFFER", "TEXTURE"))
+        if max(size) > limit:
+            raise GLError(
+                f"a frame of {size[0]} x {size[1]} pixels: this driver draws at most {limit} "
+                "each way. Cure: ask for a smaller frame"
+            )
+        self.size = size
+        self.samples = samples
+        self._gl = gl
+        self.frame_number = 0  # counts the frames since the layers were made
+        self._touched: Rectangle | None = None
+        self._frame_colour = gl.renderbuffer(size, 4)
+        self._depth = gl.depth_renderbuffer(size, samples=samples)
+        if not samples:
+            self.frame = gl.framebuffer([self._frame_colour], self._depth)
+            self._layer = self.frame
+            return
+        self.frame = gl.framebuffer([self._frame_colour])
+        self._layer_colour = gl.texture(size, 4, samples=samples)
+        self._layer = gl.framebuffer([self._layer_colour], self._depth)
+        self._layer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+        self._average_program = compile_program(gl, "average.glsl", f"SAMPLES {samples}")
+        self._average_program["layer"] = _UNIT
+        self._average = gl.vertex_array(self._average_program, [])
+
+    def start(self) -> None:
+        """Empty both; the frame is bound."""
+        self.frame_number += 1
+        self.use_frame((0, 0, *self.size))
+        self._gl.scissor = None
+        self.frame.clear(0.0, 0.0, 0.0, 1.0, depth=1.0)
+
+    def use_frame(self, viewport: Rectangle) -> None:
+        """Direct drawing to the frame, over all that was drawn so far."""
+        self.flush()
+        self.frame.use()
+        self._gl.viewport = self._gl.scissor = viewport
+
+    def use_layer(self, viewport: Rectangle, touched: Rectangle) -> None:
+        """Direct drawing to the layer, within the part `touched` of the viewport."""
+        self._layer.use()
+        self._gl.viewport, self._gl.scissor = viewport, touched
+        self._touched = touched if self._touched is None else _hull(self._touched, touched)
+
+    def flush(self) -> None:
+        """Average the layer onto the frame where it was touched, and wipe it."""
+        touched, self._touched = self._touched, None
+        if not self.samples or touched is None or touched[2] < 1 or touched[3] < 1:
+            return
+        gl = self._gl
+        self.frame.use()
+        gl.viewport, gl.scissor = (0, 0, *self.size), touched
+        gl.enable_only(moderngl.BLEND)
+        gl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA  # the layer is premultiplied
+        self._layer_colour.use(_UNIT)
+        self._average.render(moderngl.TRIANGLES, vertices=3)
+        gl.enable_only(moderngl.DEPTH_TEST)
+        gl.scissor = None
+        self._layer.depth_mask = True
+        self._layer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0, viewport=touched)
+
+    def read(self) -> bytes:
+        """The frame, bottom row first, three bytes per pixel."""
+        self.flush()
+        return bytes(self.frame.read(components=3, alignment=1))
+
+    def copy_to(self, target: moderngl.Framebuffer) -> None:
+        """Copy the frame to a framebuffer of the same size."""
+        self.use_frame((0, 0, *self.size))
+        self._gl.scissor = None  # it would cut the copy
+        self._gl.copy_framebuffer(target, self.frame)
+
+    def release(self) -> None:
+        """Give everything back to OpenGL."""
+        if self.samples:
+            for resource in (
+                self._average,
+                self._average_program,
+                self._layer,
+                self._layer_colour,
+            ):
+                resource.release()
+        for buffer in (self.frame, self._frame_colour, self._depth):
+            buffer.release()
+
+
+def _hull(first: Rectangle, second: Rectangle) -> Rectangle:
+    """The smallest rectangle that holds both."""
+    left, bottom = min(first[0], second[0]), min(first[1], second[1])
+    right = max(first[0] + first[2], second[0] + second[2])
+    top = max(first[1] + first[3], second[1] + second[3])
+    return left, bottom, right - left, top - bottom

@@ -1,0 +1,116 @@
+"""What OpenGL this machine offers, found out without risk to the caller.
+
+A broken driver may crash the process that loads it, so each try runs in a Python of its own:
+`python -m render.probe offscreen` prints one JSON object.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from .errors import GLError
+
+_PATIENCE = 60.0  # [s] software drivers need a few seconds on a loaded machine
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One way to draw, and whether it works here.
+
+    name: "offscreen" or "window". is_needed: whether Risorius is of no use without it.
+    message: the GLError's text where it failed, "" where it works.
+    """
+
+    name: str
+    is_ok: bool
+    is_needed: bool
+    message: str = ""
+    vendor: str = ""
+    renderer: str = ""
+    version: str = ""
+    is_software: bool = False
+    samples: int = 0
+
+    def __str__(self) -> str:
+        if not self.is_ok:
+            return f"{self.name}: no. {self.message}"
+        speed = "software, drawn by the CPU" if self.is_software else "hardware"
+        return (
+            f"{self.name}: yes. {self.renderer} ({speed}), {self.vendor}, OpenGL {self.version}, "
+            f"up to {self.samples} samples per pixel"
+        )
+
+
+def probe(*, offscreen_only: bool = False) -> list[Finding]:
+    """Return what was found for offscreen frames and for windows; never raises."""
+    findings = [_probe_in_process("offscreen", is_needed=True)]
+    if not offscreen_only:
+        findings.append(_probe_in_process("window", is_needed=False))
+    return findings
+
+
+def _probe_in_process(name: str, *, is_needed: bool) -> Finding:
+    def failed(message: str) -> Finding:
+        return Finding(name, is_ok=False, is_needed=is_needed, message=message)
+
+    package = __package__ or "render"
+    root = str(Path(__file__).resolve().parents[1])
+    search_path = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
+    try:
+        process = subprocess.run(
+            [sys.executable, "-m", f"{package}.probe", name],
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=_PATIENCE,
+            env={**os.environ, "PYTHONPATH": search_path},
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return failed(f"the driver did not answer within {_PATIENCE:.0f} s. Cure: update it")
+    except OSError as error:
+        return failed(f"cannot start {sys.executable} to try it ({error})")
+    if process.returncode != 0 or not process.stdout.strip():
+        lines = process.stderr.strip().splitlines()
+        return failed(
+            f"the driver crashed the process that tried it (exit code {process.returncode}; "
+            f"{lines[-1] if lines else 'no message'}). Cure: set LIBGL_ALWAYS_SOFTWARE=1"
+        )
+    found = json.loads(process.stdout.strip().splitlines()[-1])
+    return Finding(name, is_needed=is_needed, **found)
+
+
+def _examine(name: str) -> dict[str, object]:
+    """Open a small surface here and describe its OpenGL; the fields of a Finding."""
+    from .surface import Surface, open_offscreen
+    from .window import open_window
+
+    try:
+        surface: Surface
+        if name == "window":
+            surface = open_window((16, 16), "probe", visible=False)
+        else:
+            surface = open_offscreen((16, 16))
+        with surface:
+            surface.begin()
+            surface.end()
+            surface.read()
+            return {
+                "is_ok": True,
+                "vendor": surface.gl.info["GL_VENDOR"],
+                "renderer": surface.gl.info["GL_RENDERER"],
+                "version": surface.gl.info["GL_VERSION"],
+                "is_software": surface.is_software,
+                "samples": surface.gl.max_samples,
+            }
+    except GLError as error:
+        return {"is_ok": False, "message": str(error)}
+    except Exception as error:
+        return {"is_ok": False, "message": f"{type(error).__name__}: {error}"}
+
+
+if __name__ == "__main__":
+    sys.stdout.write(json.dumps(_examine(sys.argv[1])) + "\n")

@@ -1,0 +1,79 @@
+"""GLSL files -> compiled programs: one file per program, its stages told apart by a define.
+
+`#include "name.glsl"` is replaced by that file. Compile errors come out as GLError with file, stage
+and defines. Everything is GLSL 330, so that OpenGL 3.3 core (and macOS's 4.1) can run it.
+"""
+
+import re
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from .errors import GLError
+
+SHADER_FOLDER = Path(__file__).parent / "shaders"
+_INCLUDE = re.compile(r'^#include "([\w.]+)"$', re.MULTILINE)
+
+
+@cache
+def shader_text(name: str) -> str:
+    """The text of a GLSL file of this package, its includes filled in."""
+    path = SHADER_FOLDER / name
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise GLError(f"shader {name} cannot be read ({error}). Cure: reinstall risorius") from None
+
+    # Line numbers in the driver's messages are those of the file: an include counts as no line.
+    def fill(match: re.Match[str]) -> str:
+        line = text.count("\n", 0, match.start()) + 2
+        return f"{shader_text(match.group(1))}\n#line {line}"
+
+    return _INCLUDE.sub(fill, text)
+
+
+def compile_program(
+    gl: moderngl.Context, name: str, *defines: str, has_geometry_stage: bool = False
+) -> moderngl.Program:
+    """Compile the GLSL file `name` with the given defines; GLError says file and stage."""
+    body = shader_text(name)
+    switches = "".join(f"#define {define}\n" for define in defines)
+
+    def stage(stage_name: str) -> str:
+        return f"#version 330 core\n#define {stage_name}_STAGE\n{switches}#line 1\n{body}"
+
+    try:
+        return gl.program(
+            vertex_shader=stage("VERTEX"),
+            geometry_shader=stage("GEOMETRY") if has_geometry_stage else None,
+            fragment_shader=stage("FRAGMENT"),
+        )
+    except Exception as error:
+        raise _compile_error(name, defines, str(error)) from None
+
+
+def write_uniform(program: moderngl.Program, name: str, values: npt.NDArray[Any]) -> None:
+    """Set a matrix, or an array, of floats; matrices are for row vectors, as pyrr makes them."""
+    uniform = program[name]
+    assert isinstance(uniform, moderngl.Uniform)
+    uniform.write(np.ascontiguousarray(values, np.float32).tobytes())
+
+
+def _compile_error(name: str, defines: tuple[str, ...], raw: str) -> GLError:
+    """One line from moderngl's page of text: file, stage, defines, the driver's first complaint."""
+    lines = [line.strip() for line in raw.splitlines() if line.strip(" =\n")]
+    stage = next(
+        (word for word in ("vertex", "geometry", "fragment") if f"{word}_shader" in raw), "link"
+    )
+    complaint = next(
+        (line for line in lines if "error" in line.lower()), lines[-1] if lines else "?"
+    )
+    variant = f" ({' '.join(defines)})" if defines else ""
+    return GLError(
+        f"shader {name}{variant}, {stage} stage: {complaint}. "
+        "Cure: update the OpenGL driver, or set LIBGL_ALWAYS_SOFTWARE=1"
+    )

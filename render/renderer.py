@@ -1,0 +1,263 @@
+"""Draws meshes, rigid parts, lines and backgrounds on a surface.
+
+Every call takes a viewport, (x, y, width, height) in pixels from the lower left corner, and leaves
+all other pixels alone; None is the whole surface. The camera's aspect is that of the viewport.
+Programs are compiled on first use, one per combination of shading and options.
+Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the figures are shaded).
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from .backdrop import Backdrop
+from .camera import OrbitCamera
+from .geometry import LineBuffer, Part, PartBuffers, SplitTexture
+from .programs import compile_program, write_uniform
+from .shadow import ShadowMap
+from .sight import Sight
+from .stream import Stream
+from .style import SPLIT_PALETTE, Colour, ColourBy, Style, linear
+from .surface import Surface
+
+Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
+
+SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
+SHADOW_OFFSET = 0.006  # of the scene's radius, above the surface: 0.9 mm on a head
+TO_KEY = (-0.5300, 0.6300, 0.5677)  # unit vector in view space: over the viewer's left shoulder
+
+_SPLIT_UNIT, _SHADOW_UNIT = 0, 2  # texture units; the layers use 1
+_PALETTE = np.array([linear(colour) for colour in SPLIT_PALETTE], np.float32)
+# Colour as usual; the layer starts out transparent and collects premultiplied colour.
+_PREMULTIPLYING_BLEND: Any = (
+    moderngl.SRC_ALPHA,
+    moderngl.ONE_MINUS_SRC_ALPHA,
+    moderngl.ONE,
+    moderngl.ONE_MINUS_SRC_ALPHA,
+)
+
+
+class Renderer:
+    """The drawing calls of one surface, and the programs and buffers behind them."""
+
+    def __init__(self, surface: Surface) -> None:
+        surface.make_current()
+        self.surface = surface
+        self._gl = surface.gl
+        self._programs: dict[tuple[str, ...], moderngl.Program] = {}
+        self._parts: dict[int, PartBuffers] = {}
+        self._splits = SplitTexture(self._gl)
+        self._lines = LineBuffer(self._gl)
+        self._backdrop = Backdrop(self._gl)
+        self._shadow: ShadowMap | None = None
+        self._shadow_key: tuple[int, bytes] = (0, b"")
+
+    def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
+        """Lend arrays for a mesh of at most so many vertices and triangles (see Stream)."""
+        self.surface.make_current()
+        return Stream(self._gl, vertex_capacity, triangle_capacity, columns)
+
+    def draw_background(self, style: Style, viewport: Viewport | None = None) -> None:
+        """Paint the style's background over the viewport, and over what was drawn there."""
+        self._backdrop.paint(self.surface.layers, self._viewport(viewport), style.background)
+
+    def draw_mesh(
+        self,
+        stream: Stream,
+        camera: OrbitCamera,
+        style: Style,
+        *,
+        viewport: Viewport | None = None,
+        values: npt.NDArray[np.uint8] | None = None,
+    ) -> None:
+        """Draw what `stream` last uploaded.
+
+        values: how many splits (0..6) the edges of each triangle's source have, shape (M,), uint8;
+            needed where the style colours by splits. Raises ValueError where it does not fit.
+        """
+        sight = self._sight(camera, viewport)
+        colours_splits = style.colour_by is ColourBy.SPLITS
+        if colours_splits:
+            self._splits.upload(_checked_values(values, stream.triangle_count))
+        if style.shadows:
+            self._draw_shadow(stream, sight)
+        program = self._program(
+            "surface.glsl",
+            style.shading.name,
+            *(["WIREFRAME"] if style.wireframe else []),
+            *(["SPLITS"] if colours_splits else []),
+            *(["SHADOWS"] if style.shadows else []),
+        )
+        if not self._aim(program, sight, stream.corners, np.eye(4)):
+            return
+        _set_skin(program, style)
+        if style.shadows:
+            self._set_shadow(program, sight)
+        if style.wireframe:
+            program["viewport_size"] = sight.viewport[2:]
+            program["wire_half_width"] = 0.5 * style.wire_width * self.surface.pixel_scale
+            program["wire_colour"] = *style.wire_colour, style.wire_opacity
+        if colours_splits:
+            program["split_counts"] = self._splits.bind(_SPLIT_UNIT)
+            write_uniform(program, "split_palette", _PALETTE)
+        stream.draw(program)
+
+    def draw_parts(
+        self,
+        parts: Iterable[Part],
+        transforms: Mapping[str, npt.NDArray[np.float64]],
+        camera: OrbitCamera,
+        style: Style,
+        *,
+        viewport: Viewport | None = None,
+    ) -> None:
+        """Draw rigid coloured parts, each moved by the matrix of its bone (column vectors).
+
+        Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
+        is first seen and must not change after. Raises ValueError for a bone without transform.
+        """
+        sight = self._sight(camera, viewport)
+        is_shadowed = style.shadows and self._shadow_key == self._key_of_shadow(sight)
+        program = self._program(
+            "surface.glsl", "PIXEL", "COLOURED", *(["SHADOWS"] if is_shadowed else [])
+        )
+        if is_shadowed:
+            self._set_shadow(program, sight)
+        for part in parts:
+            if part.bone not in transforms:
+                raise ValueError(
+                    f"part '{part.name}' moves with bone '{part.bone}'; transforms has only "
+                    f"{', '.join(sorted(transforms)) or 'none'}"
+                )
+            buffers = self._parts.get(id(part))
+            if buffers is None:
+                buffers = self._parts[id(part)] = PartBuffers(self._gl, part)
+            if self._aim(program, sight, buffers.corners, transforms[part.bone]):
+                _set_part(program, part.shine)
+                buffers.draw(program)
+
+    def draw_lines(
+        self,
+        polylines: Sequence[npt.NDArray[Any]],
+        colour: Colour | npt.NDArray[Any],
+        camera: OrbitCamera,
+        *,
+        viewport: Viewport | None = None,
+        width: float = 1.6,
+        hidden_opacity: float = 0.45,
+    ) -> None:
+        """Draw polylines over the scene; where something hides them they shine through.
+
+        polylines: points of each line, shape (n, 3).
+        colour: sRGB of all lines, or one row per line, shape (len(polylines), 3).
+        width: [pixels at scale 1]; hidden_opacity: 0 (hidden) to 1 (as if nothing were in front).
+        """
+        sight = self._sight(camera, viewport)
+        program = self._program("lines.glsl")
+        if not self._lines.upload(program, polylines, colour):
+            return
+        width *= self.surface.pixel_scale
+        touched = sight.touched_pixels(self._lines.corners, padding=2.0 + width)
+        write_uniform(program, "world_to_clip", sight.world_to_clip)
+        program["viewport_size"] = sight.viewport[2:]
+        program["half_width"] = 0.5 * width
+        gl, layers = self._gl, self.surface.layers
+        layers.use_layer(sight.viewport, touched)
+        gl.enable(moderngl.BLEND)
+        gl.blend_func = _PREMULTIPLYING_BLEND
+        gl.fbo.depth_mask = False
+        for depth_func, opacity in ((">", hidden_opacity), ("<=", 1.0)):
+            if opacity > 0.0:
+                gl.depth_func = depth_func
+                program["opacity"] = opacity
+                self._lines.draw()
+        gl.fbo.depth_mask = True
+        gl.depth_func = "<="
+        gl.disable(moderngl.BLEND)
+
+    def _sight(self, camera: OrbitCamera, viewport: Viewport | None) -> Sight:
+        return Sight(camera, self._viewport(viewport))
+
+    def _viewport(self, viewport: Viewport | None) -> Viewport:
+        self.surface.make_current()
+        if viewport is None:
+            return (0, 0, *self.surface.size)
+        if viewport[2] < 1 or viewport[3] < 1:
+            raise ValueError(
+                f"viewport is {viewport}; it must be (x, y, width, height) of 1 pixel or more"
+            )
+        return viewport
+
+    def _program(self, name: str, *defines: str) -> moderngl.Program:
+        key = (name, *defines)
+        if key not in self._programs:
+            has_geometry_stage = name == "lines.glsl" or "WIREFRAME" in defines
+            self._programs[key] = compile_program(
+                self._gl, name, *defines, has_geometry_stage=has_geometry_stage
+            )
+        return self._programs[key]
+
+    def _aim(
+        self,
+        program: moderngl.Program,
+        sight: Sight,
+        corners: npt.NDArray[np.float64],
+        transform: npt.NDArray[np.float64],
+    ) -> bool:
+        """Set matrices and drawing area for geometry in a box; False where it is out of sight."""
+        model = np.asarray(transform, np.float64).T
+        touched = sight.touched_pixels(corners, model=model)
+        if touched[2] < 1 or touched[3] < 1:
+            return False
+        self.surface.layers.use_layer(sight.viewport, touched)
+        write_uniform(program, "model_view", model @ sight.view)
+        write_uniform(program, "projection", sight.projection)
+        return True
+
+    def _key_of_shadow(self, sight: Sight) -> tuple[int, bytes]:
+        return self.surface.layers.frame_number, sight.fingerprint
+
+    def _draw_shadow(self, stream: Stream, sight: Sight) -> None:
+        if self._shadow is None:
+            self._shadow = ShadowMap(self._gl, TO_KEY)
+        self._shadow.draw(stream, sight)
+        self._shadow_key = self._key_of_shadow(sight)
+
+    def _set_shadow(self, program: moderngl.Program, sight: Sight) -> None:
+        assert self._shadow is not None
+        write_uniform(program, "shadow_matrix", self._shadow.lookup_matrix(sight))
+        program["shadow_offset"] = SHADOW_OFFSET * sight.camera.scene_radius
+        program["shadow_map"] = self._shadow.bind(_SHADOW_UNIT)
+
+
+def _set_skin(program: moderngl.Program, style: Style) -> None:
+    program["to_key"] = TO_KEY
+    program["albedo"] = linear(style.albedo)
+    program["inner_albedo"] = linear(style.inner_albedo)
+    program["subsurface"] = style.scattering
+    program["gloss"] = 0.26 * style.gloss
+    program["sharpness"] = SKIN_SHARPNESS
+
+
+def _set_part(program: moderngl.Program, shine: float) -> None:
+    """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights."""
+    program["to_key"] = TO_KEY
+    program["subsurface"] = 0.3
+    program["gloss"] = 0.04 + 0.9 * shine * shine
+    program["sharpness"] = 20.0 * 40.0**shine
+
+
+def _checked_values(
+    values: npt.NDArray[np.uint8] | None, triangle_count: int
+) -> npt.NDArray[np.uint8]:
+    if values is None:
+        raise ValueError("the style colours by splits, so draw_mesh needs values, one per triangle")
+    if values.shape != (triangle_count,) or values.dtype != np.uint8:
+        raise ValueError(
+            f"values has shape {values.shape} and dtype {values.dtype}; it must be "
+            f"({triangle_count},) uint8, one per uploaded triangle"
+        )
+    return values

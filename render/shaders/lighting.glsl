@@ -1,0 +1,65 @@
+// Studio light for a portrait, fixed to the camera: key from the viewer's upper left, a weak cool
+// fill from the right, a rim from behind the right shoulder, and a hemisphere of ambient light.
+// Everything is in view space (x right, y up, z to the viewer) and in linear light.
+
+uniform vec3 to_key;  // unit vector toward the key light; shadow.py looks from there
+const vec3 TO_FILL = vec3(0.7770, 0.0600, 0.6266);
+const vec3 TO_RIM = vec3(0.6200, 0.3600, -0.6972);
+const vec3 KEY_LIGHT = vec3(1.16, 1.11, 1.05);
+const vec3 FILL_LIGHT = vec3(0.165, 0.16, 0.165);
+const vec3 RIM_LIGHT = vec3(0.62, 0.65, 0.70);
+const vec3 SKY = vec3(0.215, 0.215, 0.225);
+const vec3 GROUND = vec3(0.125, 0.095, 0.083);
+// How far each colour of light travels in skin: red past the terminator, blue hardly.
+const vec3 SCATTER = vec3(0.25, 0.155, 0.115);
+
+struct Lit {
+    vec3 key;       // of the key light, straight: times albedo and lightness
+    vec3 rest;      // all other light, and what of the key gets around edges: times albedo
+    vec3 specular;  // added, times lightness
+};
+
+vec3 hemisphere(vec3 normal) {
+    return mix(GROUND, SKY, 0.5 * normal.y + 0.5);
+}
+
+Lit studio(vec3 normal, vec3 to_eye, float subsurface, float gloss, float sharpness) {
+    vec3 scatter = SCATTER * subsurface;
+    float rim = max(dot(normal, TO_RIM), 0.0);
+    float grazing = 1.0 - clamp(dot(normal, to_eye), 0.0, 1.0);
+    float fresnel = grazing * grazing * grazing;
+    vec3 ambient = hemisphere(normal);
+    // exp2(-sharpness (1 - cosine)) stands for a power of the cosine: one exp2 and no log2.
+    float highlight = exp2(sharpness * (dot(normal, normalize(to_key + to_eye)) - 1.0));
+    Lit lit;
+    // What the key scatters past the terminator has no shadow, and what it shines straight fades
+    // out toward the terminator: so the errors of a shadow map, largest there, are never seen.
+    float facing = dot(normal, to_key);
+    lit.key = KEY_LIGHT / (1.0 + scatter) * max(facing, 0.0);
+    lit.rest = KEY_LIGHT * max((min(facing, 0.0) + scatter) / (1.0 + scatter), 0.0)
+        + FILL_LIGHT * max(0.8 * dot(normal, TO_FILL) + 0.2, 0.0)
+        + RIM_LIGHT * rim * rim + ambient;
+    lit.specular = gloss * (KEY_LIGHT * highlight + (0.9 * ambient + RIM_LIGHT * rim) * fresnel);
+    return lit;
+}
+
+// `lightness` is 1 in the key's light and 0 in its full shadow.
+vec3 lit_colour(Lit lit, vec3 albedo, float lightness) {
+    return albedo * (lit.key * lightness + lit.rest) + lit.specular * (0.25 + 0.75 * lightness);
+}
+
+// The inner side of the skin: only what the hemisphere and a bounce of the key bring in.
+vec3 inside(vec3 normal) {
+    return 0.8 * hemisphere(normal) + 0.22 * max(dot(normal, to_key), 0.0);
+}
+
+// Soft shoulder above 0.8, then linear light -> sRGB by square roots (max error 0.004, after
+// I. Chilliant's fit): on software OpenGL half the cost of pow.
+vec3 display(vec3 light) {
+    vec3 over = max(light - 0.8, 0.0);
+    light = min(light, 0.8) + over / (1.0 + 5.0 * over);
+    vec3 root2 = sqrt(light);
+    vec3 root4 = sqrt(root2);
+    vec3 root8 = sqrt(root4);
+    return 0.662002687 * root2 + 0.684122060 * root4 - 0.323583601 * root8 - 0.0225411470 * light;
+}

@@ -1,0 +1,224 @@
+// Skin and rigid parts.
+// One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
+// stage), SPLITS (colour by number of splits), COLOURED (vertex colours), SHADOWS (of the key).
+
+#include "lighting.glsl"
+
+uniform float subsurface;
+uniform float gloss;
+uniform float sharpness;
+
+#if defined(PIXEL)
+#define NORMAL_VARYING vec3 normal;
+#elif defined(FLAT)
+#define NORMAL_VARYING flat vec3 to_eye;
+#else
+#define NORMAL_VARYING
+#endif
+#if defined(GOURAUD)
+#define LIT_VARYING vec3 key; vec3 rest; vec3 specular; vec3 inner; float facing;
+#else
+#define LIT_VARYING
+#endif
+#if defined(COLOURED)
+#define COLOUR_VARYING vec3 colour;
+#else
+#define COLOUR_VARYING
+#endif
+#if defined(SHADOWS)
+#define SHADOW_VARYING vec3 light_place;
+#else
+#define SHADOW_VARYING
+#endif
+#define VARYINGS vec3 position; NORMAL_VARYING LIT_VARYING COLOUR_VARYING SHADOW_VARYING
+
+#if defined(VERTEX_STAGE)
+
+in vec3 in_position;
+in vec3 in_normal;
+#if defined(COLOURED)
+in vec3 in_colour;
+#endif
+uniform mat4 model_view;
+uniform mat4 projection;
+#if defined(SHADOWS)
+uniform mat4 shadow_matrix;   // view space -> place in the shadow map
+uniform float shadow_offset;  // a receiver stands so far above itself, against self-shadowing
+#endif
+out Surface { VARYINGS } surface;
+
+void main() {
+    vec4 position = model_view * vec4(in_position, 1.0);
+    vec3 normal = normalize(mat3(model_view) * in_normal);
+    surface.position = position.xyz;
+#if defined(PIXEL)
+    surface.normal = normal;
+#elif defined(FLAT)
+    surface.to_eye = normalize(-position.xyz);
+#elif defined(GOURAUD)
+    Lit lit = studio(normal, normalize(-position.xyz), subsurface, gloss, sharpness);
+    surface.key = lit.key;
+    surface.rest = lit.rest;
+    surface.specular = lit.specular;
+    surface.inner = inside(-normal);
+    surface.facing = dot(normal, normalize(-position.xyz));
+#endif
+#if defined(COLOURED)
+    surface.colour = in_colour;
+#endif
+#if defined(SHADOWS)
+    surface.light_place = (shadow_matrix * vec4(position.xyz + shadow_offset * normal, 1.0)).xyz;
+#endif
+    gl_Position = projection * position;
+}
+
+#elif defined(GEOMETRY_STAGE)
+
+// Bærentzen et al. 2006, "Single-pass wireframe rendering": each corner carries its distance in
+// pixels to the opposite edge; interpolated without perspective it is exact on the screen.
+layout(triangles) in;
+layout(triangle_strip, max_vertices = 3) out;
+in Surface { VARYINGS } corner[];
+out Drawn { VARYINGS noperspective vec3 edge_distance; float wire_strength; } drawn;
+uniform vec2 viewport_size;
+const float FADING_HEIGHT = 7.0;  // [pixels]
+
+void main() {
+    vec2 pixel[3];
+    bool is_in_front = true;
+    for (int i = 0; i < 3; i++) {
+        vec4 clip = gl_in[i].gl_Position;
+        is_in_front = is_in_front && clip.w > 0.0;
+        pixel[i] = 0.5 * viewport_size * clip.xy / clip.w;
+    }
+    vec2 a = pixel[2] - pixel[1], b = pixel[0] - pixel[2], c = pixel[1] - pixel[0];
+    float area = abs(a.x * b.y - a.y * b.x);
+    vec3 height = is_in_front
+        ? area / max(vec3(length(a), length(b), length(c)), 1e-6)
+        : vec3(1e6);
+    // Lines fade where triangles are so small that they would be nothing but lines.
+    float strength = clamp(min(min(height.x, height.y), height.z) / FADING_HEIGHT, 0.4, 1.0);
+    for (int i = 0; i < 3; i++) {
+        drawn.position = corner[i].position;
+#if defined(PIXEL)
+        drawn.normal = corner[i].normal;
+#elif defined(FLAT)
+        drawn.to_eye = corner[2].to_eye;
+#elif defined(GOURAUD)
+        drawn.key = corner[i].key;
+        drawn.rest = corner[i].rest;
+        drawn.specular = corner[i].specular;
+        drawn.inner = corner[i].inner;
+        drawn.facing = corner[i].facing;
+#endif
+#if defined(SHADOWS)
+        drawn.light_place = corner[i].light_place;
+#endif
+        drawn.edge_distance = vec3(0.0);
+        drawn.edge_distance[i] = height[i];
+        drawn.wire_strength = strength;
+        gl_Position = gl_in[i].gl_Position;
+        gl_PrimitiveID = gl_PrimitiveIDIn;
+        EmitVertex();
+    }
+    EndPrimitive();
+}
+
+#elif defined(FRAGMENT_STAGE)
+
+#if defined(WIREFRAME)
+in Drawn { VARYINGS noperspective vec3 edge_distance; float wire_strength; } surface;
+uniform float wire_half_width;
+uniform vec4 wire_colour;
+#else
+in Surface { VARYINGS } surface;
+#endif
+#if !defined(COLOURED)
+uniform vec3 albedo;
+uniform vec3 inner_albedo;
+#endif
+#if defined(SPLITS)
+uniform usampler2D split_counts;
+uniform vec3 split_palette[6];
+#endif
+#if defined(SHADOWS)
+uniform sampler2DShadow shadow_map;
+#endif
+out vec4 pixel_colour;
+
+vec3 front_albedo() {
+#if defined(COLOURED)
+    return surface.colour;
+#elif defined(SPLITS)
+    ivec2 texel = ivec2(gl_PrimitiveID & 1023, gl_PrimitiveID >> 10);
+    int splits = int(texelFetch(split_counts, texel, 0).r);
+    return splits == 0 ? albedo : split_palette[min(splits, 6) - 1];
+#else
+    return albedo;
+#endif
+}
+
+// 1 where the key light reaches, 0 in its shadow.
+float key_lightness() {
+#if defined(SHADOWS)
+    vec3 place = surface.light_place;
+    // Four bilinear tests on a turned square: an even ramp about five texels wide.
+    vec2 reach = vec2(1.6, 0.64) / float(textureSize(shadow_map, 0).x);
+    return 0.25 * (texture(shadow_map, place + vec3(reach.x, reach.y, 0.0))
+        + texture(shadow_map, place + vec3(-reach.y, reach.x, 0.0))
+        + texture(shadow_map, place + vec3(-reach.x, -reach.y, 0.0))
+        + texture(shadow_map, place + vec3(reach.y, -reach.x, 0.0)));
+#else
+    return 1.0;
+#endif
+}
+
+#if !defined(GOURAUD)
+// Toward the viewer, on either side of the surface.
+vec3 shading_normal() {
+#if defined(FLAT)
+    return normalize(cross(dFdx(surface.position), dFdy(surface.position)));
+#elif defined(COLOURED)
+    return normalize(surface.normal);
+#else
+    return normalize(gl_FrontFacing ? surface.normal : -surface.normal);
+#endif
+}
+#endif
+
+void main() {
+#if defined(GOURAUD)
+    Lit lit = Lit(surface.key, surface.rest, surface.specular);
+    vec3 inner = surface.inner;
+    float facing = abs(surface.facing);
+#else
+#if defined(FLAT)
+    vec3 to_eye = surface.to_eye;  // one for the whole triangle
+#else
+    vec3 to_eye = normalize(-surface.position);
+#endif
+    vec3 normal = shading_normal();
+    Lit lit = studio(normal, to_eye, subsurface, gloss, sharpness);
+    vec3 inner = inside(normal);
+    float facing = dot(normal, to_eye);
+#endif
+    vec3 light = lit_colour(lit, front_albedo(), key_lightness());
+#if defined(COLOURED)
+    light *= 0.82;  // parts sit in sockets and mouths, where less light gets in
+#else
+    // Skin that only just turns away is the outline, where front and back have the same depth: it
+    // keeps its colour, or dark specks of the inner side would come through there.
+    float inwardness = gl_FrontFacing ? 0.0 : clamp(5.0 * facing - 0.75, 0.0, 1.0);
+    light = mix(light, inner_albedo * inner, inwardness);
+#endif
+    vec3 shown = display(light);
+#if defined(WIREFRAME)
+    vec3 edge = surface.edge_distance;
+    float nearest = min(min(edge.x, edge.y), edge.z);
+    float coverage = clamp(wire_half_width + 0.5 - nearest, 0.0, 1.0);
+    shown = mix(shown, wire_colour.rgb, wire_colour.a * surface.wire_strength * coverage);
+#endif
+    pixel_colour = vec4(shown, 1.0);
+}
+
+#endif

@@ -1,0 +1,84 @@
+"""The shadow that the skin throws in the key light: on itself, on eyes, on teeth.
+
+A depth picture of the back faces of the skin, taken from the key light, which hangs on the camera.
+Back faces, because a lit facet can then never shadow itself, however coarse the mesh. The map spans
+what the camera can see, and depends on nothing that moves, so shadows do not crawl with the face.
+Source: Williams 1978, "Casting curved shadows on curved surfaces"; filtering of depth tests as in
+Reeves et al. 1987.
+"""
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from .programs import compile_program, write_uniform
+from .sight import Sight
+from .stream import Stream
+
+RESOLUTION = 768  # texels each way: 0.4 mm on a head
+_DEPTH_OFFSET = 3.0, 4.0
+_REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
+_SEEN = 1.15  # of the seen circle at the target: nearer things show more of the world around them
+
+FloatArray = npt.NDArray[np.float64]
+
+# -1..1 -> 0..1 in x, y and z, for row vectors.
+_TO_TEXTURE = np.array([[0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 0.5, 0], [0.5, 0.5, 0.5, 1.0]])
+
+
+class ShadowMap:
+    """One depth texture, redrawn for every mesh; parts drawn after it use it too."""
+
+    def __init__(self, gl: moderngl.Context, to_key_light: tuple[float, float, float]) -> None:
+        self._gl = gl
+        self._basis = _basis(np.array(to_key_light))
+        self._program = compile_program(gl, "shadow.glsl")
+        self._depth = gl.depth_texture((RESOLUTION, RESOLUTION))
+        self._depth.compare_func = "<="
+        self._depth.repeat_x = self._depth.repeat_y = False
+        self._depth.filter = moderngl.LINEAR, moderngl.LINEAR
+        self._target = gl.framebuffer(depth_attachment=self._depth)
+
+    def draw(self, stream: Stream, sight: Sight) -> None:
+        """Take the depth picture of what `stream` uploaded."""
+        gl = self._gl
+        write_uniform(self._program, "light_matrix", sight.view @ self._view_to_light(sight))
+        self._target.use()
+        gl.viewport, gl.scissor = (0, 0, RESOLUTION, RESOLUTION), None
+        self._target.clear(depth=1.0)
+        gl.polygon_offset = _DEPTH_OFFSET
+        stream.draw(self._program)
+        gl.polygon_offset = 0.0, 0.0
+
+    def bind(self, unit: int) -> int:
+        """Bind the depth texture to a texture unit, and return that unit."""
+        self._depth.use(unit)
+        return unit
+
+    def lookup_matrix(self, sight: Sight) -> FloatArray:
+        """View space -> texture coordinates and depth, 0..1, for row vectors, shape (4, 4)."""
+        lookup: FloatArray = self._view_to_light(sight) @ _TO_TEXTURE
+        return lookup
+
+    def _view_to_light(self, sight: Sight) -> FloatArray:
+        """View space -> the light's clip space: what is seen fills it, all that throws is in it."""
+        camera, projection = sight.camera, sight.projection
+        centre = (np.append(camera.scene_centre, 1.0) @ sight.view)[:3]
+        depth = _REACH * camera.scene_radius
+        seen = _SEEN * camera.distance * np.hypot(1.0 / projection[0, 0], 1.0 / projection[1, 1])
+        middle, across = centre, depth
+        if seen < depth:
+            middle, across = np.array([0.0, 0.0, -camera.distance]), seen
+        matrix = np.eye(4)
+        matrix[:3, :3] = self._basis.T / (across, across, depth)
+        matrix[3, :2] = -middle @ matrix[:3, :2]
+        matrix[3, 2] = -centre @ matrix[:3, 2]
+        return matrix
+
+
+def _basis(toward: FloatArray) -> FloatArray:
+    """Rows: right, up, and away from the light, for a camera in the light."""
+    toward = toward / np.linalg.norm(toward)
+    right = np.cross((0.0, 1.0, 0.0), toward)
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(toward, right), -toward])

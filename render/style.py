@@ -1,0 +1,97 @@
+"""How a frame is drawn: shading, colours, wireframe, background.
+
+Source: Kähler et al. 2003, section 5: flat and Gouraud shaded pictures, and triangles coloured by
+how far they were split. Per-pixel lighting, skin and backgrounds are additions.
+All colours are sRGB, 0..1; the shaders turn them into linear light.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Colour = tuple[float, float, float]
+
+
+class Shading(Enum):
+    """Where the lighting is computed."""
+
+    FLAT = "flat"  # once per triangle: the geometric normal, every facet shows
+    GOURAUD = "gouraud"  # once per vertex, interpolated: the paper's pictures
+    PIXEL = "pixel"  # once per pixel, with interpolated normals
+
+
+class ColourBy(Enum):
+    """What decides the colour of a triangle."""
+
+    NONE = "none"  # the albedo of the style
+    SPLITS = "splits"  # how many splits the edges of its source triangle have
+
+
+# Albedos, chosen by eye under this package's light.
+SKIN: Colour = (0.79, 0.625, 0.545)
+SKIN_LIGHT: Colour = (0.88, 0.75, 0.685)
+SKIN_DARK: Colour = (0.47, 0.325, 0.255)
+CLAY: Colour = (0.74, 0.74, 0.73)  # like the plain grey of the paper's pictures
+
+# Colour of a triangle whose edges have 1..6 splits in all; 0 keeps the albedo. Green to indigo,
+# ever darker: hues that skin does not have, in an order that survives greyscale and colour
+# blindness.
+SPLIT_PALETTE: tuple[Colour, ...] = (
+    (0.76, 0.89, 0.62),
+    (0.46, 0.79, 0.66),
+    (0.21, 0.65, 0.71),
+    (0.14, 0.48, 0.70),
+    (0.19, 0.31, 0.62),
+    (0.25, 0.14, 0.46),
+)
+
+
+@dataclass(frozen=True)
+class Background:
+    """A soft gradient behind the scene: `centre` behind the head, `edge` in the corners, sRGB."""
+
+    centre: Colour
+    edge: Colour
+
+
+LIGHT = Background(centre=(0.885, 0.89, 0.90), edge=(0.665, 0.68, 0.705))
+DARK = Background(centre=(0.27, 0.285, 0.305), edge=(0.085, 0.09, 0.10))
+WHITE = Background(centre=(1.0, 1.0, 1.0), edge=(1.0, 1.0, 1.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Style:
+    """How a mesh, its parts and the background behind them are drawn."""
+
+    shading: Shading = Shading.PIXEL
+    wireframe: bool = False
+    colour_by: ColourBy = ColourBy.NONE
+    albedo: Colour = SKIN  # of the front side
+    inner_albedo: Colour = (0.45, 0.19, 0.17)  # of the back side: inside of lids and mouth
+    subsurface: float | None = (
+        None  # 0 = hard terminator, 1 = skin; None: by how warm the albedo is
+    )
+    gloss: float = 0.5  # strength of the skin's highlight, 0..1
+    shadows: bool = True  # of the key light
+    background: Background = LIGHT
+    wire_colour: Colour = (0.07, 0.08, 0.12)
+    wire_width: float = 1.0  # [pixels at scale 1]; a window on a dense screen draws it wider
+    wire_opacity: float = 0.5
+
+    @property
+    def scattering(self) -> float:
+        """How far light bleeds past the terminator: `subsurface`, or from the albedo's warmth."""
+        if self.subsurface is not None:
+            return self.subsurface
+        red, _, blue = self.albedo
+        return min(max((red - blue) / 0.25, 0.25), 1.0)
+
+
+def linear(srgb: Colour | npt.NDArray[Any]) -> Any:
+    """sRGB 0..1 -> linear light 0..1: a tuple for a colour, an array (n, 3) for an array."""
+    values = np.asarray(srgb, np.float64)
+    light = np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+    return tuple(light.tolist()) if isinstance(srgb, tuple) else light

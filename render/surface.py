@@ -1,0 +1,199 @@
+"""What is drawn on: an offscreen frame or a window, behind one interface.
+
+Both kinds draw into a frame of their own (`layers.py`), which a window then shows. So `read` gives
+what is seen for both, even while a window is hidden or covered, and a panel that is drawn after
+`resolve` is part of it.
+    surface.begin();  ...draw...;  [surface.resolve(); ...draw a panel on top...;]  surface.end()
+"""
+
+import os
+import sys
+from types import TracebackType
+from typing import Any, ClassVar, Self
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from .errors import GLError, diagnose
+from .layers import Layers
+
+Frame = npt.NDArray[np.uint8]
+
+
+class Surface:
+    """The interface of both kinds; made by `open_offscreen` and `open_window`.
+
+    gl: the OpenGL context. samples: per pixel, 0 = none. layers: where the Renderer draws.
+    pixel_scale: pixels per unit of line width: 1, or 2 on a dense screen.
+    """
+
+    _current: ClassVar["Surface | None"] = None
+
+    def __init__(self, gl: moderngl.Context, size: tuple[int, int], samples: int) -> None:
+        self.gl = gl
+        self.pixel_scale = 1.0
+        self.samples = clamp_samples(samples, _most_samples(gl))
+        self.layers = Layers(gl, size, self.samples)
+        self._is_open = True
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the frame [pixels]."""
+        return self.layers.size
+
+    @property
+    def is_software(self) -> bool:
+        """Whether the CPU does the drawing."""
+        return is_software(self.gl.info["GL_RENDERER"])
+
+    def begin(self) -> None:
+        """Start a frame: empty it, and undo what a GUI may have done to the OpenGL state."""
+        self.make_current()
+        gl = self.gl
+        gl.enable_only(moderngl.DEPTH_TEST)
+        gl.depth_func = "<="
+        gl.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
+        gl.wireframe = False
+        self.layers.start()
+
+    def resolve(self) -> None:
+        """End the scene: what is drawn from here on (a panel) lies on top, not multisampled."""
+        self.make_current()
+        self.layers.use_frame((0, 0, *self.size))
+        self.gl.scissor = None
+
+    def end(self) -> None:
+        """Finish the frame; a window shows it."""
+        self.resolve()
+
+    def read(self) -> Frame:
+        """Return the frame as it is seen, top row first, shape (H, W, 3), uint8, a new array."""
+        self.make_current()
+        width, height = self.size
+        return np.frombuffer(self.layers.read(), np.uint8).reshape(height, width, 3)[::-1].copy()
+
+    def make_current(self) -> None:
+        """Direct this thread's OpenGL calls here; needed only where several surfaces are open."""
+        if not self._is_open:
+            raise GLError("this surface is closed. Cure: open a new one")
+        if Surface._current is self:
+            return
+        if Surface._current is not None:
+            Surface._current._unbind()
+        Surface._current = self
+        self._bind()
+
+    def close(self) -> None:
+        """Give everything back; calling it again does nothing."""
+        if not self._is_open:
+            return
+        self.make_current()
+        self.layers.release()
+        self._close_context()
+        self._is_open = False
+        Surface._current = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _bind(self) -> None:
+        raise NotImplementedError
+
+    def _unbind(self) -> None:
+        raise NotImplementedError
+
+    def _close_context(self) -> None:
+        raise NotImplementedError
+
+
+class OffscreenSurface(Surface):
+    """A frame without a window; needs no screen."""
+
+    def _bind(self) -> None:
+        self.gl.__enter__()  # type: ignore[no-untyped-call]
+
+    def _unbind(self) -> None:
+        self.gl.__exit__(None, None, None)  # type: ignore[no-untyped-call]
+
+    def _close_context(self) -> None:
+        self._unbind()  # a released context would stay current, and keep a window from its own
+        self.gl.release()
+
+
+def open_offscreen(
+    size: tuple[int, int], *, samples: int = 4, pixel_scale: float = 1.0
+) -> OffscreenSurface:
+    """Open a frame of `size` pixels that needs no screen, with up to `samples` samples per pixel.
+
+    pixel_scale: how many pixels wide a line of width 1 is; more than 1 for pictures to be printed.
+    Raises ValueError for a size that no picture has, GLError where OpenGL 3.3 cannot be had.
+    The environment variables of glcontext choose device and libraries: GLCONTEXT_DEVICE_INDEX,
+    GLCONTEXT_GLVERSION, GLCONTEXT_LINUX_LIBEGL, GLCONTEXT_LINUX_LIBGL.
+    """
+    check_size(size)
+    if Surface._current is not None:
+        Surface._current._unbind()
+        Surface._current = None
+    gl = _offscreen_context()
+    try:
+        surface = OffscreenSurface(gl, size, samples)
+    except Exception:
+        gl.__exit__(None, None, None)  # type: ignore[no-untyped-call]
+        gl.release()
+        raise
+    surface.pixel_scale = pixel_scale
+    Surface._current = surface
+    return surface
+
+
+def _offscreen_context() -> moderngl.Context:
+    """EGL on Linux, then a hidden X11 context where there is a screen; elsewhere the native way."""
+    if not sys.platform.startswith("linux"):
+        try:
+            return moderngl.create_context(require=330, standalone=True)
+        except Exception as error:
+            raise diagnose("offscreen OpenGL", error) from None
+    try:
+        egl: dict[str, Any] = {"backend": "egl"}
+        return moderngl.create_context(require=330, standalone=True, **egl)
+    except Exception as error:
+        egl_error = error
+    if os.environ.get("DISPLAY"):
+        try:
+            return moderngl.create_context(require=330, standalone=True)
+        except Exception as error:
+            raise diagnose("offscreen OpenGL (EGL)", f"{egl_error}; then X11: {error}") from None
+    raise diagnose("offscreen OpenGL (EGL)", egl_error) from None
+
+
+def check_size(size: tuple[int, int]) -> None:
+    """Raise ValueError unless `size` is a width and a height of at least one pixel."""
+    if len(size) != 2 or min(size) < 1:
+        raise ValueError(f"size is {size}; it must be (width, height), each 1 pixel or more")
+
+
+def clamp_samples(samples: int, most: int) -> int:
+    """The largest power of two up to `samples` that the driver has; 0 = no multisampling."""
+    if samples < 0:
+        raise ValueError(f"samples is {samples}; it must be 0 (none) or a number such as 4")
+    allowed = min(samples, most)
+    return 0 if allowed < 2 else 1 << (allowed.bit_length() - 1)
+
+
+def _most_samples(gl: moderngl.Context) -> int:
+    """What the driver can do for both attachments of the layer."""
+    return min(gl.max_samples, int(gl.info["GL_MAX_COLOR_TEXTURE_SAMPLES"]))
+
+
+def is_software(renderer: str) -> bool:
+    """Whether the name of an OpenGL renderer is one that draws on the CPU."""
+    return any(name in renderer.lower() for name in ("llvmpipe", "softpipe", "swrast", "swr"))

@@ -1,0 +1,170 @@
+"""The window: a GLFW window whose frame is drawn like an offscreen one and then shown.
+
+glfw is imported only when a window is opened: a GUI library that brings its own GLFW must be
+imported before, and a server without a screen never needs it.
+"""
+
+import contextlib
+from collections.abc import Iterator
+from types import ModuleType, TracebackType
+from typing import Any
+
+import moderngl
+
+from .errors import GLError, diagnose
+from .layers import Layers
+from .surface import Surface, check_size
+
+
+class WindowSurface(Surface):
+    """A surface that people see; `handle` is the GLFW window for input and GUI libraries."""
+
+    def __init__(self, glfw: ModuleType, handle: Any, gl: moderngl.Context, samples: int) -> None:
+        self._glfw = glfw
+        self.handle = handle
+        super().__init__(gl, _framebuffer_size(glfw, handle), samples)
+        self.pixel_scale = max(glfw.get_window_content_scale(handle))
+
+    @property
+    def should_close(self) -> bool:
+        """Whether the user asked to close the window; settable."""
+        return bool(self._glfw.window_should_close(self.handle))
+
+    @should_close.setter
+    def should_close(self, value: bool) -> None:
+        self._glfw.set_window_should_close(self.handle, value)
+
+    def begin(self) -> None:
+        """Start a frame in the size that the window has now."""
+        self.make_current()
+        size = _framebuffer_size(self._glfw, self.handle)
+        if size != self.size:
+            old_layers = self.layers
+            self.layers = Layers(self.gl, size, self.samples)
+            old_layers.release()
+            self.pixel_scale = max(self._glfw.get_window_content_scale(self.handle))
+        super().begin()
+
+    def end(self) -> None:
+        """Finish the frame and show it."""
+        self.make_current()
+        self.layers.copy_to(self.gl.screen)
+        self._glfw.swap_buffers(self.handle)
+
+    def _bind(self) -> None:
+        self._glfw.make_context_current(self.handle)
+
+    def _unbind(self) -> None:
+        self._glfw.make_context_current(None)
+
+    def _close_context(self) -> None:
+        self.gl.release()
+        self._glfw.destroy_window(self.handle)
+
+
+class _Loader:
+    """Gives moderngl the OpenGL functions of the context that GLFW made, on any platform."""
+
+    def __init__(self, glfw: ModuleType) -> None:
+        self._glfw = glfw
+
+    def load_opengl_function(self, name: str) -> int:
+        return self._glfw.get_proc_address(name) or 0
+
+    load = load_opengl_function
+
+    def release(self) -> None:
+        """The window owns the context, not moderngl."""
+
+    def __enter__(self) -> "_Loader":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        return None
+
+
+def open_window(
+    size: tuple[int, int],
+    title: str,
+    *,
+    samples: int = 4,
+    visible: bool = True,
+    vertical_sync: bool = True,
+) -> WindowSurface:
+    """Open a window of `size` screen units; its frame may have more pixels than that.
+
+    Raises ValueError for a size that no window has, GLError where there is no screen or no OpenGL
+    3.3 core. Wants glfw from the GUI library: import imgui_bundle first where it is used.
+    """
+    check_size(size)
+    glfw = _import_glfw()
+    if Surface._current is not None:
+        Surface._current._unbind()
+        Surface._current = None
+    with _complaints(glfw) as complaints:
+        if not glfw.init():
+            raise diagnose("opening a window", "; ".join(complaints))
+        _hint(glfw, visible)
+        handle = glfw.create_window(*size, title, None, None)
+        if not handle:
+            raise diagnose("opening a window", "; ".join(complaints))
+    glfw.make_context_current(handle)
+    glfw.swap_interval(1 if visible and vertical_sync else 0)
+    try:
+        loader: dict[str, Any] = {"context": _Loader(glfw)}
+        gl = moderngl.create_context(require=330, **loader)
+        surface = WindowSurface(glfw, handle, gl, samples)
+    except Exception as error:
+        glfw.destroy_window(handle)
+        if isinstance(error, (GLError, ValueError)):
+            raise
+        raise diagnose("OpenGL in the window", error) from None
+    Surface._current = surface
+    return surface
+
+
+def _hint(glfw: ModuleType, visible: bool) -> None:
+    glfw.default_window_hints()
+    glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, 3)
+    glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, 3)
+    glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
+    glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)  # macOS refuses 3.3 core without it
+    glfw.window_hint(glfw.VISIBLE, visible)
+    # What is shown is multisampled already; the window needs neither samples nor depth.
+    glfw.window_hint(glfw.SAMPLES, 0)
+    glfw.window_hint(glfw.DEPTH_BITS, 0)
+    glfw.window_hint(glfw.STENCIL_BITS, 0)
+
+
+def _import_glfw() -> ModuleType:
+    try:
+        import glfw
+    except Exception as error:
+        raise diagnose("loading GLFW", error) from None
+    return glfw
+
+
+@contextlib.contextmanager
+def _complaints(glfw: ModuleType) -> Iterator[list[str]]:
+    """Collect what GLFW reports, instead of its Python warnings."""
+    texts: list[str] = []
+
+    def note(code: int, text: bytes | str) -> None:
+        texts.append(text.decode(errors="replace") if isinstance(text, bytes) else text)
+
+    previous = glfw.set_error_callback(note)
+    try:
+        yield texts
+    finally:
+        glfw.set_error_callback(previous)
+
+
+def _framebuffer_size(glfw: ModuleType, handle: Any) -> tuple[int, int]:
+    """The frame of a window [pixels]; a minimised window counts as one pixel."""
+    width, height = glfw.get_framebuffer_size(handle)
+    return max(int(width), 1), max(int(height), 1)

@@ -1,0 +1,26 @@
+"""Risorius' simulation: a mass-spring face driven by muscle contraction.
+
+    simulation = sim.create(assets.load("head"))
+    simulation.set("zygomaticus_major_left", 0.8)
+    simulation.step(1 / 60)
+    simulation.positions        # (V, 3)
+
+Knows nothing of rendering or refinement. Start reading at face.py; rig.py defines the rig file.
+"""
+
+from typing import Any
+
+from .anatomy import build_anatomy
+from .face import Simulation, SimulationUnstable
+from .rig import Rig, read_rig
+
+__all__ = ["Rig", "Simulation", "SimulationUnstable", "create", "read_rig"]
+
+
+def create(head: Any) -> Simulation:
+    """Build the simulation of a head: any object with `vertices` (V, 3) and `faces` (F, 3).
+
+    Optional attributes (landmarks, rig, mandible_weight, jaw_axis, eyes) add muscles, jaw and gaze,
+    see anatomy.py. Raises ValueError naming what is wrong with the head or its rig.
+    """
+    return Simulation(build_anatomy(head))

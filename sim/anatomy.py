@@ -1,0 +1,228 @@
+"""From a mesh to everything a simulation needs: checks the head, places bones, lids, muscles and
+springs.
+
+A head may be any object with `vertices` and `faces`. What else it brings makes it more of a face:
+
+    landmarks                   frame, lips, lids; without them a plain spring mesh, still stable
+    landmarks + rig             muscles
+    jaw_axis, mandible_weight   a jaw; guessed from landmarks where one is missing
+    eyes                        gaze and contact; guessed from landmarks
+
+Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landmarks alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .contact import EyeContact, LipPairs, pair_lips, watch_eyeballs
+from .controls import GAZE_RATE, Control
+from .integrator import LONGEST_SUBSTEP, ROUNDING
+from .landmarks import LANDMARK_COUNT, Array, FaceFrame, Side
+from .lids import Lids, place_lids
+from .muscles import place_muscles, sides_of
+from .openings import lip_side
+from .pull import MusclePull, prepare_pull
+from .rig import Rig, read_rig
+from .skull import (
+    Eyeball,
+    Skull,
+    condyles_from_landmarks,
+    eyeballs_from_landmarks,
+    mandible_weight_from_landmarks,
+)
+from .springs import EdgeSprings
+from .surface import Surface, build_surface
+from .tissue import TissueSprings, masses_for_step
+
+SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
+LEAST_MANDIBLE = 1e-4  # share of the jaw's motion that is none
+STEP_MARGIN = 1.0 + ROUNDING  # a tick may be this much longer than LONGEST_TICK
+
+
+@dataclass(frozen=True)
+class Anatomy:
+    """A face at rest: nothing here changes while it is simulated."""
+
+    vertices: Array  # (V, 3) as given [head units]
+    frame: FaceFrame
+    rig: Rig
+    surface: Surface
+    skull: Skull
+    muscles: MusclePull
+    lids: Lids | None
+    springs: TissueSprings
+    edges: EdgeSprings
+    lips: LipPairs
+    eye_contact: EyeContact
+    passive_hold: Array  # (V,)
+    mass: Array  # (V,)
+    controls: tuple[Control, ...]
+
+    def seal_strength(self, activation: Array, opening: float) -> float:
+        """1 while the lips stick together .. 0 when jaw or muscles open them."""
+        if not len(self.lips.lower):
+            return 0.0
+        closed = 1.0 - np.minimum(activation * self.muscles.opens_lips, 1.0)
+        return float(closed.prod() * max(0.0, 1.0 - opening / SEAL_BROKEN_BY_JAW))
+
+
+def build_anatomy(head: Any) -> Anatomy:
+    """Build a face from a mesh; ValueError names the attribute of the head that is wrong."""
+    vertices, faces = _mesh(head)
+    numbers = _landmark_numbers(head, len(vertices))
+    rig = read_rig(getattr(head, "rig", None) or {})
+    if numbers is None:
+        rig = Rig(rig.tissue, rig.jaw, rig.eyes)
+    points = None if numbers is None else vertices[numbers]
+    frame = FaceFrame.from_bounds(vertices) if points is None else FaceFrame.from_landmarks(points)
+    surface = build_surface(frame.to_standard(vertices), faces)
+    landmarks = None if points is None else frame.to_standard(points)
+    side = np.zeros(len(vertices)) if landmarks is None else lip_side(surface, landmarks)
+    skull = _skull(head, rig, frame, surface, landmarks, side)
+    known = np.zeros((LANDMARK_COUNT, 3)) if landmarks is None else landmarks
+    placed = place_muscles(rig, surface, known, side)
+    muscles = prepare_pull(placed, rig, surface, skull.mandible_weight)
+    controls = _controls(rig, skull)
+    lids = None
+    if landmarks is not None and skull.eyeballs:
+        names = [control.name for control in controls]
+        lids = place_lids(rig, surface, landmarks, skull.eyeballs, names)
+    seal = rig.tissue.lip_seal * rig.tissue.stiffness_scale
+    lips = pair_lips(surface, known, side, seal)
+    springs = TissueSprings.under(surface, rig.tissue)
+    edges = EdgeSprings.along(surface, rig.tissue)
+    passive, greatest = _holds(muscles, lids, surface.vertex_count)
+    bound = edges.row_bound(surface.vertex_count) + _seal_bound(lips, surface.vertex_count)
+    bound += np.maximum(springs.tangential, springs.normal) + greatest
+    return Anatomy(
+        vertices=vertices, frame=frame, rig=rig, surface=surface, skull=skull, muscles=muscles,
+        lids=lids, springs=springs, edges=edges, lips=lips,
+        eye_contact=watch_eyeballs(surface, skull.eyeballs), passive_hold=passive,
+        mass=masses_for_step(surface.areas, bound, LONGEST_SUBSTEP * STEP_MARGIN),
+        controls=controls,
+    )  # fmt: skip
+
+
+def _mesh(head: Any) -> tuple[Array, npt.NDArray[np.int32]]:
+    """Checked copies of the head's vertices and faces."""
+    for name in ("vertices", "faces"):
+        if not hasattr(head, name):
+            raise ValueError(
+                f"head: {type(head).__name__} has no attribute '{name}'; give any object with "
+                "vertices (V, 3) and faces (F, 3), such as assets.load('head') or a trimesh.Trimesh"
+            )
+    vertices = np.array(head.vertices, dtype=np.float64)
+    faces = np.array(head.faces)
+    if vertices.ndim != 2 or vertices.shape[1] != 3 or len(vertices) == 0:
+        raise ValueError(f"head.vertices: shape was {vertices.shape}, must be (V, 3) with V > 0")
+    if not np.isfinite(vertices).all():
+        raise ValueError("head.vertices: must all be finite numbers, but some are NaN or infinite")
+    if faces.ndim != 2 or faces.shape[1] != 3 or not np.issubdtype(faces.dtype, np.integer):
+        raise ValueError(
+            f"head.faces: was {faces.dtype} of shape {faces.shape}, must be integers (F, 3)"
+        )
+    if len(faces) and (faces.min() < 0 or faces.max() >= len(vertices)):
+        raise ValueError(
+            f"head.faces: vertex numbers run from {faces.min()} to {faces.max()}, "
+            f"allowed are 0 to {len(vertices) - 1}"
+        )
+    return vertices, faces.astype(np.int32)
+
+
+def _landmark_numbers(head: Any, vertex_count: int) -> npt.NDArray[np.int64] | None:
+    """Checked vertex numbers of the 68 landmarks, None if the head has none."""
+    given = getattr(head, "landmarks", None)
+    if given is None:
+        return None
+    numbers = np.asarray(given)
+    if numbers.shape != (LANDMARK_COUNT,) or not np.issubdtype(numbers.dtype, np.integer):
+        raise ValueError(
+            f"head.landmarks: was {numbers.dtype} of shape {numbers.shape}, "
+            f"must be {LANDMARK_COUNT} vertex numbers"
+        )
+    if numbers.min() < 0 or numbers.max() >= vertex_count:
+        raise ValueError(
+            f"head.landmarks: vertex numbers run from {numbers.min()} to {numbers.max()}, "
+            f"allowed are 0 to {vertex_count - 1}"
+        )
+    return numbers.astype(np.int64)
+
+
+def _optional(head: Any, name: str, shape: tuple[int, ...]) -> Array | None:
+    """A checked optional array of the head."""
+    given = getattr(head, name, None)
+    if given is None:
+        return None
+    array = np.array(given, dtype=np.float64)
+    if array.shape != shape or not np.isfinite(array).all():
+        raise ValueError(f"head.{name}: shape was {array.shape}, must be {shape} and finite")
+    return array
+
+
+def _skull(
+    head: Any, rig: Rig, frame: FaceFrame, surface: Surface, landmarks: Array | None, side: Array
+) -> Skull:
+    """Bones from what the head brings, the rest guessed from landmarks; without either no jaw."""
+    axis = _optional(head, "jaw_axis", (2, 3))
+    weight = _optional(head, "mandible_weight", (surface.vertex_count,))
+    condyles = None if axis is None else frame.to_standard(axis)
+    if landmarks is not None:
+        if condyles is None:
+            condyles = condyles_from_landmarks(landmarks, rig.jaw)
+        if weight is None and rig.jaw.seeds:
+            weight = mandible_weight_from_landmarks(surface, landmarks, rig.jaw, side)
+    if condyles is None or weight is None:
+        weight, condyles = np.zeros(surface.vertex_count), np.array([[-1.0, 0, 0], [1.0, 0, 0]])
+    # Lips clamped to one bone open like a letter box; skin between the bones rounds the mouth.
+    weight = np.clip(surface.smoothed(weight, rig.jaw.softness), 0.0, 1.0)
+    weight[weight < LEAST_MANDIBLE] = 0.0
+    return Skull(condyles, weight, _eyeballs(head, frame, landmarks), rig.jaw, rig.eyes)
+
+
+def _eyeballs(head: Any, frame: FaceFrame, landmarks: Array | None) -> tuple[Eyeball, ...]:
+    """The head's eyes, or guessed ones where it has landmarks; none otherwise."""
+    given = getattr(head, "eyes", None)
+    if given is None:
+        return () if landmarks is None else eyeballs_from_landmarks(landmarks)
+    balls = []
+    for eye in given:
+        if eye.name not in ("right", "left"):
+            raise ValueError(f"head.eyes: name was {eye.name!r}, allowed are 'right' and 'left'")
+        centre = frame.to_standard(eye.centre)
+        balls.append(Eyeball(Side(eye.name), centre, float(eye.radius) / frame.scale))
+    return tuple(balls)
+
+
+def _holds(muscles: MusclePull, lids: Lids | None, count: int) -> tuple[Array, Array]:
+    """Stiffness of relaxed and of fully active muscles, lids included, per vertex."""
+    greatest = muscles.greatest_hold(count)
+    passive = muscles.passive * greatest
+    if lids is not None:
+        for hold in (passive, greatest):
+            np.add.at(hold, lids.vertex, lids.hold)
+    return passive, greatest
+
+
+def _seal_bound(lips: LipPairs, count: int) -> Array:
+    """Gershgorin bound of the lip seal per vertex."""
+    bound = np.zeros(count)
+    for ends in (lips.lower, lips.upper[:, 0], lips.upper[:, 1]):
+        np.add.at(bound, ends, 2.0 * lips.seal)
+    return bound
+
+
+def _controls(rig: Rig, skull: Skull) -> tuple[Control, ...]:
+    """All controls of a face: its muscles in rig order, the jaw, the gaze."""
+    controls = [Control(name, m.group) for m in rig.muscles for name, _ in sides_of(m)]
+    if skull.mandible_weight.any():
+        controls.append(Control("jaw_open", "Jaw"))
+        controls += [Control(name, "Jaw", -1.0) for name in ("jaw_forward", "jaw_sideways")]
+    if skull.eyeballs:
+        for name in ("gaze_horizontal", "gaze_vertical"):
+            controls.append(Control(name, "Gaze", -1.0, 1.0, GAZE_RATE))
+    return tuple(controls)

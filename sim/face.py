@@ -1,0 +1,238 @@
+"""The face as a mass-spring system: one `Simulation`, stepped by contraction values.
+
+    controls  ->  activations                                            controls.py
+                      |
+    jaw, gaze  ->  bones and lids carry the tissue springs' far ends     skull.py, lids.py
+    muscles    ->  one anchor per skin vertex                            muscles.py, fibres.py
+                      |
+    tissue + edges + lip seal  ->  velocity  ->  position                tissue.py, springs.py
+                      |
+    lips and eyeballs keep skin out                                      contact.py, integrator.py
+
+Built once from a mesh (anatomy.py), then `step` moves it. Everything inside runs in the standard
+face frame; only displacements are turned back into the head's own coordinates, so a face at rest
+has exactly the positions it came with.
+
+Source: Kähler, Haber, Seidel 2001, "Geometry-based muscle modeling for facial animation"; Kähler
+et al. 2003, Figure 1 (left half).
+Differs from it: see the modules named above.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from . import integrator
+from .anatomy import Anatomy
+from .controls import Controls
+from .lids import turn_lids
+from .skull import REST, Pose
+from .tissue import carry, tissue_energy
+
+
+class SimulationUnstable(RuntimeError):  # noqa: N818, the name the whole project uses
+    """A position is no longer a finite number: the input was broken, or the model has an error."""
+
+
+class Simulation:
+    """A face that follows its controls; made by `sim.create`."""
+
+    def __init__(self, anatomy: Anatomy) -> None:
+        self._anatomy = anatomy
+        self._controls = Controls(anatomy.controls)
+        surface = anatomy.surface
+        count = surface.vertex_count
+        self._x = surface.positions.copy()
+        self._v = np.zeros((count, 3))
+        self._carried = surface.positions.copy()
+        self._normals = surface.normals.copy()
+        self._hold = anatomy.passive_hold.copy()
+        self._gain = np.zeros(count)
+        self._kept = np.zeros(count)
+        self._pull = np.zeros((count, 3))
+        self._offset = np.zeros((count, 3))
+        self._force = np.zeros((count, 3))
+        self._move = np.zeros((count, 2))
+        self._seal = 1.0
+        self._jaw = (0.0, 0.0, 0.0)
+        self._mandible: Pose = REST
+        self._muscle_index = np.array(
+            [self._controls.index(name) for name in anatomy.muscles.names], dtype=np.int64
+        )
+        self._rest = anatomy.vertices.copy()
+        self._positions = anatomy.vertices.copy()
+        self._rest.flags.writeable = False
+        self._view = self._positions.view()
+        self._view.flags.writeable = False
+        self._place_targets()
+
+    # What a caller may set and read.
+
+    @property
+    def controls(self) -> tuple[str, ...]:
+        """Names of all controls."""
+        return self._controls.names
+
+    @property
+    def limits(self) -> Mapping[str, tuple[float, float]]:
+        """Least and greatest value of each control."""
+        return self._controls.limits
+
+    @property
+    def groups(self) -> Mapping[str, tuple[str, ...]]:
+        """Control names by the title under which a panel may list them."""
+        return self._controls.groups
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The value last set of each control (the face follows within some 0.1 s)."""
+        return {name: self._controls.value(name) for name in self.controls}
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        """Vertex positions now [head units], shape (V, 3); a read-only view, `step` rewrites it."""
+        return self._view
+
+    @property
+    def rest_positions(self) -> npt.NDArray[np.float64]:
+        """Vertex positions at rest [head units], shape (V, 3); read-only."""
+        return self._rest
+
+    @property
+    def faces(self) -> npt.NDArray[np.int32]:
+        """Triangles, shape (F, 3); they never change."""
+        return self._anatomy.surface.faces
+
+    def set(self, name: str, value: float) -> None:
+        """Set one control; ValueError for an unknown name, a value not finite or out of limits."""
+        self._controls.set_all({name: value})
+
+    def set_all(self, values: Mapping[str, float]) -> None:
+        """Set several controls; if one is refused (see `set`), none is set."""
+        self._controls.set_all(values)
+
+    def reset(self) -> None:
+        """Relax everything and put the face back to rest at once."""
+        self._controls.reset()
+        self._x[:] = self._anatomy.surface.positions
+        self._v[:] = 0.0
+        self._positions[:] = self._rest
+        self._place_targets()
+
+    def kick(self, velocities: npt.ArrayLike) -> None:
+        """Add velocities [head units / s], shape (V, 3): a blow, or a mouse pulling at the skin."""
+        added = np.asarray(velocities, dtype=np.float64)
+        if added.shape != self._v.shape or not np.isfinite(added).all():
+            raise ValueError(
+                f"velocities: shape was {added.shape}, must be {self._v.shape} and finite"
+            )
+        self._v += self._anatomy.frame.vectors_to_standard(added)
+
+    # The simulation.
+
+    def step(self, dt: float) -> None:
+        """Advance by `dt` [s], 0 < dt <= 1/20; ValueError otherwise.
+
+        Raises SimulationUnstable if a position is no longer finite.
+        """
+        if not 0.0 < dt <= integrator.LONGEST_FRAME + 1e-9:
+            raise ValueError(
+                f"dt: was {dt!r} s, must be above 0 and at most {integrator.LONGEST_FRAME:g} s; "
+                "take several steps for a longer time"
+            )
+        ticks = integrator.ticks_in(dt)
+        for _ in range(ticks):
+            self._controls.advance(dt / ticks)
+            self._place_targets()
+            self._advance(dt / ticks / integrator.SUBSTEPS)
+        moved = self._x - self._anatomy.surface.positions
+        if not np.isfinite(moved).all():
+            raise SimulationUnstable(
+                f"{int((~np.isfinite(moved)).any(axis=1).sum())} of {len(moved)} vertices are not "
+                "finite; call reset(), and report the mesh if it was built from a sound one"
+            )
+        np.add(self._rest, self._anatomy.frame.vectors_to_head(moved), out=self._positions)
+
+    def _place_targets(self) -> None:
+        """Bones, lids and muscles for the activations reached: where each spring pulls to."""
+        anatomy, now = self._anatomy, self._controls.now
+        surface, muscles = anatomy.surface, anatomy.muscles
+        jaw = now("jaw_open"), now("jaw_forward"), now("jaw_sideways")
+        if jaw != self._jaw:
+            self._jaw = jaw
+            self._mandible = anatomy.skull.mandible_pose(*jaw)
+        carry(
+            surface.positions, surface.normals, anatomy.skull.mandible_weight,
+            self._mandible.rotation, self._mandible.shift, self._carried, self._normals,
+        )  # fmt: skip
+        if anatomy.lids is not None:
+            lids, eyes = anatomy.lids, anatomy.skull.eyes
+            turn_lids(
+                lids.vertex, lids.eye, lids.upper, lids.weight, lids.opening, lids.centres,
+                lids.up, lids.forward, lids.drive(self._controls.activation), self._gaze_angle(),
+                eyes.upper_lid_follows, eyes.lower_lid_follows, eyes.blink_meeting,
+                surface.positions, self._carried, self._normals,
+            )  # fmt: skip
+        activation = np.maximum(self._controls.activation[self._muscle_index], 0.0)
+        self._hold[:] = anatomy.passive_hold
+        self._pull[:] = 0.0
+        weight = anatomy.skull.mandible_weight
+        muscles.add(activation, self._mandible, weight, self._hold, self._pull)
+        self._seal = anatomy.seal_strength(activation, jaw[0])
+
+    def _advance(self, h: float) -> None:
+        """One tick of substeps of `h` [s]: all forces on the skin (integrator.advance)."""
+        anatomy = self._anatomy
+        edges, lips, eyes = anatomy.edges, anatomy.lips, anatomy.eye_contact
+        integrator.advance(
+            integrator.SUBSTEPS, h, self._x, self._v, anatomy.surface.positions, self._carried,
+            self._normals, anatomy.mass, anatomy.rig.tissue.damping,
+            anatomy.rig.tissue.damping_ratio,
+            anatomy.springs.tangential, anatomy.springs.normal, self._hold, self._pull,
+            edges.edges, edges.rest_length, edges.stiffness, edges.shear, edges.stiffening,
+            edges.strain_limit,
+            lips.lower, lips.upper, lips.share, lips.least_gap, lips.seal, lips.averaging,
+            self._seal, eyes.vertex, eyes.centre, eyes.least_distance,
+            self._offset, self._force, self._gain, self._kept, self._move,
+        )  # fmt: skip
+
+    def _gaze_angle(self) -> float:
+        """Vertical angle of the eyes [rad]."""
+        most = float(np.radians(self._anatomy.skull.eyes.gaze_deg))
+        return most * self._controls.now("gaze_vertical")
+
+    # What others draw or check.
+
+    def bone_transforms(self) -> dict[str, npt.NDArray[np.float64]]:
+        """Motion of each bone from rest to now, name -> (4, 4) for column vectors [head units]."""
+        anatomy = self._anatomy
+        transforms = {"cranium": np.eye(4), "mandible": self._mandible.matrix(anatomy.frame)}
+        gaze = self._controls.now("gaze_horizontal"), self._controls.now("gaze_vertical")
+        for ball in anatomy.skull.eyeballs:
+            pose = anatomy.skull.eye_pose(ball, *gaze)
+            transforms[f"eye_{ball.side.value}"] = pose.matrix(anatomy.frame)
+        return transforms
+
+    def fibres(self) -> dict[str, list[npt.NDArray[np.float64]]]:
+        """Contracted muscle fibres now, control name -> polylines (n, 3) [head units], to draw."""
+        activation = np.maximum(self._controls.activation[self._muscle_index], 0.0)
+        lines = self._anatomy.muscles.lines(activation, self._mandible, self._x)
+        to_head = self._anatomy.frame.to_head
+        return {name: [to_head(line) for line in found] for name, found in lines.items()}
+
+    def energy(self) -> float:
+        """Kinetic energy plus what the springs hold, in skin mass units times (mm/s)^2.
+
+        Relaxed muscles count as springs to the bone. While a muscle is active its pull is outside
+        work and is not counted, so the value is a measure of rest, not a conserved quantity.
+        """
+        anatomy = self._anatomy
+        kinetic = float((anatomy.mass[:, None] * self._v**2).sum() / 2.0)
+        held = tissue_energy(self._x, self._carried, self._normals, anatomy.springs, self._hold)
+        moved = self._x - anatomy.surface.positions
+        edges = anatomy.edges.energy(self._x, self._x - self._carried)
+        seal = anatomy.lips.energy(moved, self._seal)
+        return kinetic + held + edges + seal

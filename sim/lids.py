@@ -1,0 +1,215 @@
+"""Eyelids: they turn over the eyeball like a visor, meet when closed, and ride with the gaze.
+
+Each lid vertex keeps its distance to the centre of the eyeball and turns about the axis through
+it that runs from corner to corner of the eye. Angles are measured per column of the eye opening
+(between its corners): with the opening's height alpha at a column, the upper lid turns by
+
+    (1 - close) (raise + gaze) + close (lower lid's angle - alpha)
+
+so that at close = 1 the margins meet on every eye, however wide, and wherever the lower lid is.
+The turn fades from the margin to the edge of the lid. It moves the tissue springs' far ends, not
+the skin: skin still slides and is still kept off the eyeball.
+
+Source: own; the papers close the eye by a sphincter, which does not follow the eyeball. Angles
+from the visible lid margins.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from .landmarks import EYE_LANDMARKS, Array, polyline_distance, select, smoothstep
+from .openings import lid_side
+from .rig import LIDS, Eyes, LidMuscle, Rig
+from .skull import Eyeball
+from .surface import Surface
+
+COLUMNS = 41  # places along the opening where its height is known
+SMOOTH_COLUMNS = 13  # a third of the opening's width
+COLUMN_REACH = 0.045  # of the opening's width: a column of lid vertices
+MARGIN_REACH = 3.5  # mm around the lid landmarks in which the lid's edge is looked for
+OVERLAP = 0.04  # rad (0.25 mm): the upper margin comes to lie in front of the lower one
+LEAST_OPENING = 0.05  # rad: at the corners lids do not overlap
+LEAST_TURN = 1e-3  # lid vertices that move less are not lid
+
+
+@dataclass(frozen=True)
+class Lids:
+    """All lid vertices of a face; `upper` tells the lid, `eye` the eyeball (rows of `centres`)."""
+
+    vertex: npt.NDArray[np.int32]  # (L,)
+    eye: npt.NDArray[np.int32]  # (L,)
+    upper: npt.NDArray[np.bool_]  # (L,)
+    weight: Array  # (L,) share of the margin's turn
+    opening: Array  # (L,) rad, height of the opening at the vertex's column
+    hold: Array  # (L,) extra stiffness of the tarsal plate
+    centres: Array  # (eyes, 3)
+    up: Array  # (eyes, 3) unit, across the lid axis
+    forward: Array  # (eyes, 3) unit
+    muscles: tuple[tuple[int, int, int, float], ...]  # control, eye, action (LIDS), travel
+
+    def drive(self, activation: Array) -> Array:
+        """How far each eye's upper lid is closed, lower raised, upper raised, shape (eyes, 3)."""
+        drive = np.zeros((len(self.centres), 3))
+        for control, eye, action, travel in self.muscles:
+            drive[eye, action] += travel * max(activation[control], 0.0)
+        return drive
+
+
+def place_lids(
+    rig: Rig, surface: Surface, landmarks: Array, eyeballs: tuple[Eyeball, ...], names: list[str]
+) -> Lids:
+    """Find the lids of each eye and how far each of their vertices takes part.
+
+    names: of all controls in their order, to find the lid muscles' activations.
+    """
+    axes = [_lid_axes(landmarks, ball) for ball in eyeballs]
+    parts = [
+        _one_eye(rig.eyes, surface, landmarks, ball, *axis)
+        for ball, axis in zip(eyeballs, axes, strict=True)
+    ]
+    vertex = np.concatenate([p[0] for p in parts])
+    return Lids(
+        vertex=vertex.astype(np.int32),
+        eye=np.concatenate([np.full(len(p[0]), n) for n, p in enumerate(parts)]).astype(np.int32),
+        upper=np.concatenate([p[1] for p in parts]),
+        weight=np.concatenate([p[2] for p in parts]),
+        opening=np.concatenate([p[3] for p in parts]),
+        hold=rig.eyes.lid_stiffness * rig.tissue.stiffness_scale * surface.areas[vertex]
+        * np.concatenate([p[2] for p in parts]),
+        centres=np.array([ball.centre for ball in eyeballs]),
+        up=np.array([up for up, _ in axes]),
+        forward=np.array([forward for _, forward in axes]),
+        muscles=_lid_muscles(rig, eyeballs, names),
+    )  # fmt: skip
+
+
+def _lid_axes(landmarks: Array, ball: Eyeball) -> tuple[Array, Array]:
+    """Directions up and forward, both across the line from one eye corner to the other."""
+    outer, _, _, inner, _, _ = EYE_LANDMARKS[ball.side]
+    along = (landmarks[outer] - landmarks[inner]) * ball.side.sign
+    along = along / np.linalg.norm(along)
+    forward = np.cross(along, [0.0, 1.0, 0.0])
+    forward /= np.linalg.norm(forward)
+    up: Array = np.cross(forward, along)
+    return up, forward
+
+
+def _one_eye(
+    eyes: Eyes, surface: Surface, landmarks: Array, ball: Eyeball, up: Array, forward: Array
+) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_], Array, Array]:
+    """Vertices, upper/lower, weight and opening angle of one eye's lids."""
+    outer, upper_outer, upper_inner, inner, lower_outer, lower_inner = EYE_LANDMARKS[ball.side]
+    side = lid_side(surface, landmarks, ball.side)
+    x = surface.positions
+    corner, axis = landmarks[outer], landmarks[inner] - landmarks[outer]
+
+    def angle_of(points: Array) -> Array:
+        angle: Array = np.arctan2((points - ball.centre) @ up, (points - ball.centre) @ forward)
+        return angle
+
+    def column_of(points: Array) -> Array:
+        column: Array = ((points - corner) @ axis) / (axis @ axis)
+        return column
+
+    column, angle = column_of(x), angle_of(x)
+    rows = {
+        True: select(landmarks, (outer, upper_outer, upper_inner, inner)),
+        False: select(landmarks, (outer, lower_outer, lower_inner, inner)),
+    }
+    edges, weight = {}, np.zeros(surface.vertex_count)
+    for upper, line in rows.items():
+        on_lid = side > 0.0 if upper else side < 0.0
+        distance = polyline_distance(x, _margin(column_of(line), line))
+        reach = 1.0 - (distance - eyes.lid_plateau) / max(eyes.lid_reach - eyes.lid_plateau, 0.1)
+        weight = np.where(on_lid, smoothstep(reach), weight)
+        near = on_lid & (distance < MARGIN_REACH) & (column > -0.02) & (column < 1.02)
+        arch = np.polynomial.Polynomial.fit(column_of(line), angle_of(line), 3)
+        edges[upper] = _edge(arch, column[near], angle[near], lowest=upper)
+    height = np.maximum(edges[True] - edges[False], 0.0)
+    height = np.convolve(np.pad(height, 1, mode="edge"), np.ones(3) / 3.0, "valid")
+    height[[0, -1]] = 0.0  # lids are joined at the corners
+    # At the corners the opening ends abruptly; skin away from the margin must not crease there.
+    wide = np.convolve(np.pad(height, SMOOTH_COLUMNS), np.ones(SMOOTH_COLUMNS) / SMOOTH_COLUMNS)
+    start = SMOOTH_COLUMNS + SMOOTH_COLUMNS // 2
+    where = np.linspace(0.0, 1.0, COLUMNS)
+    exact = np.interp(column, where, height)
+    broad = np.interp(column, where, wide[start : start + COLUMNS])
+    opening = weight * exact + (1.0 - weight) * np.minimum(broad, height.max())
+    weight *= x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is no lid
+    vertices = np.flatnonzero(weight > LEAST_TURN)
+    return vertices, side[vertices] > 0.0, weight[vertices], opening[vertices]
+
+
+def _margin(column: Array, line: Array) -> Array:
+    """The lid's margin as a smooth curve through its four landmarks, shape (COLUMNS, 3) [mm]."""
+    where = np.linspace(0.0, 1.0, COLUMNS)
+    curves = [np.polynomial.Polynomial.fit(column, line[:, k], 3)(where) for k in range(3)]
+    return np.stack(curves, axis=1)
+
+
+def _edge(arch: np.polynomial.Polynomial, column: Array, angle: Array, *, lowest: bool) -> Array:
+    """Angle [rad] of a lid's free edge at COLUMNS places between the corners, shape (COLUMNS,).
+
+    The cubic `arch` through its four landmarks gives the shape; how far the lid's outermost
+    vertices lie off that arch, place by place, corrects it.
+    """
+    where = np.linspace(0.0, 1.0, COLUMNS)
+    off = angle - arch(column)
+    edge: Array = arch(where)
+    for n, c in enumerate(where):
+        beside = np.abs(column - c) < COLUMN_REACH
+        if beside.any():
+            edge[n] += off[beside].min() if lowest else off[beside].max()
+    return edge
+
+
+def _lid_muscles(
+    rig: Rig, eyeballs: tuple[Eyeball, ...], names: list[str]
+) -> tuple[tuple[int, int, int, float], ...]:
+    """Control, eye, action and travel of each lid muscle; an unpaired one moves both eyes."""
+    found = []
+    for muscle in rig.muscles:
+        if isinstance(muscle, LidMuscle):
+            for eye, ball in enumerate(eyeballs):
+                name = f"{muscle.name}_{ball.side.value}" if muscle.pair else muscle.name
+                found.append((names.index(name), eye, LIDS.index(muscle.lid), muscle.travel))
+    return tuple(found)
+
+
+@numba.njit(cache=True)
+def turn_lids(  # type: ignore[no-untyped-def]
+    vertex, eye, is_upper, weight, opening, centres, up, forward, drive, gaze,
+    upper_follows, lower_follows, meeting, rest, carried, normals,
+):  # fmt: skip
+    """Turn the tissue springs' far ends `carried` (V, 3) and their `normals` of all lid vertices.
+
+    drive: of each eye, shape (eyes, 3), see Lids.drive; gaze: vertical angle of the eyes [rad].
+    """
+    for row in range(len(vertex)):
+        i, e, alpha = vertex[row], eye[row], opening[row]
+        close = min(drive[e, 0], 1.0)
+        lower = (1.0 - close) * (alpha * drive[e, 1] + lower_follows * gaze)
+        lower = min(lower + close * meeting * alpha, alpha)
+        angle = lower
+        if is_upper[row]:
+            raised = max(alpha * drive[e, 2] + upper_follows * gaze, lower - alpha)
+            overlap = OVERLAP if alpha > LEAST_OPENING else 0.0
+            angle = (1.0 - close) * raised + close * (lower - alpha - overlap)
+        angle *= weight[row]
+        c, s = np.cos(angle) - 1.0, np.sin(angle)
+        high, far, normal_high, normal_far = 0.0, 0.0, 0.0, 0.0
+        for k in range(3):
+            high += (rest[i, k] - centres[e, k]) * up[e, k]
+            far += (rest[i, k] - centres[e, k]) * forward[e, k]
+            normal_high += normals[i, k] * up[e, k]
+            normal_far += normals[i, k] * forward[e, k]
+        for k in range(3):
+            u, f = up[e, k], forward[e, k]
+            carried[i, k] += (high * c + far * s) * u + (far * c - high * s) * f
+            normals[i, k] += (normal_high * c + normal_far * s) * u
+            normals[i, k] += (normal_far * c - normal_high * s) * f

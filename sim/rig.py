@@ -1,0 +1,337 @@
+"""The muscle rig: what a rig file may say, read into frozen dataclasses and checked key by key.
+
+A rig names tissue, jaw, eyes and muscles in terms of the 68 landmarks (see landmarks.py), in
+millimetres of a head whose outer eye corners are 89.2 mm apart; `sim.create` scales it to the
+head at hand. Muscles are written for the subject's left side and mirrored.
+
+    format = 1
+    [tissue]                 membrane, tissue springs, damping: class Tissue
+    [jaw]                    hinge, glide, seeds of the mandible weight: class Jaw
+    [eyes]                   gaze, lids resting on the eyeballs: class Eyes
+    [muscle.<name>]          kind = "linear" | "ring" | "lid", then the keys of class LinearMuscle,
+                             RingMuscle or LidMuscle; <name> in full anatomical words, without side
+    [[muscle.<name>.fibre]]  one table per fibre of a linear muscle: class Fibre
+
+A point is a table {landmarks = {45 = 0.6, 14 = 0.4}, offset = [-4.5, -17.6, -5.6]}: a mix of
+landmarks (or `landmark = 54`) and an offset lateral, up, forward. Every key has a range; what is
+outside is refused with the muscle, the key and the allowed range.
+
+Source: Kähler et al. 2001 (fibres, linear muscles and sphincters), 2002 (landmarks carry the
+muscles to another head).
+Differs from it: lids are a kind of their own, turning over the eyeball, where the papers use a
+sphincter.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Mapping
+from dataclasses import MISSING, Field, dataclass, field, fields
+from typing import Any, TypeVar, cast
+
+from .landmarks import LANDMARK_COUNT, LandmarkPoint
+
+FORMAT = 1
+BONES = ("cranium", "mandible")
+GATES = ("none", "upper_lip", "lower_lip")
+LIDS = ("upper_close", "lower_raise", "upper_raise")  # what a lid muscle does
+
+MOUTH = LandmarkPoint(((62, 0.5), (66, 0.5)))  # where the lips meet
+
+Record = TypeVar("Record")
+
+
+def _number(low: float, high: float, *, default: float | None = None) -> Any:
+    """A number between `low` and `high`; required when it has no default."""
+    rule = {"rule": "number", "low": low, "high": high}
+    return field(metadata=rule) if default is None else field(default=default, metadata=rule)
+
+
+def _vector(size: int, low: float, high: float, *, default: tuple[float, ...] | None = None) -> Any:
+    """A list of `size` numbers between `low` and `high`."""
+    rule = {"rule": "vector", "size": size, "low": low, "high": high}
+    return field(metadata=rule) if default is None else field(default=default, metadata=rule)
+
+
+def _choice(allowed: tuple[str, ...], *, default: str | None = None) -> Any:
+    """One of the words in `allowed`."""
+    rule = {"rule": "choice", "allowed": allowed}
+    return field(metadata=rule) if default is None else field(default=default, metadata=rule)
+
+
+TEXT, BOOLEAN, POINT = {"rule": "text"}, {"rule": "boolean"}, {"rule": "point"}
+SEEDS, FIBRES = {"rule": "seeds"}, {"rule": "fibres"}
+
+
+@dataclass(frozen=True)
+class Tissue:
+    """Uniform skin and soft tissue; stiffness is per skin area and relative to the scale."""
+
+    tangential: float = _number(0.0, 100.0, default=0.19)  # resistance to sliding over the bone
+    normal: float = _number(0.0, 1000.0, default=7.6)  # resistance to sinking in or lifting off
+    membrane: float = _number(0.0, 1e4, default=100.0)  # mm2, edge springs (Van Gelder)
+    shear: float = _number(0.0, 100.0, default=4.0)  # x membrane: neighbours move alike
+    stiffening: float = _number(1.0, 20.0, default=4.0)  # slope of an edge spring beyond the limit
+    stiffening_strain: float = _number(0.0, 2.0, default=0.25)  # strain where it starts (biphasic)
+    passive: float = _number(0.0, 1.0, default=0.2)  # share of a muscle's stiffness when relaxed
+    lip_seal: float = _number(0.0, 1000.0, default=40.0)  # springs that hold closed lips together
+    stiffness_scale: float = _number(1.0, 1e5, default=600.0)  # 1/s2
+    damping: float = _number(0.0, 1000.0, default=8.0)  # 1/s, everywhere
+    damping_ratio: float = _number(
+        0.0, 3.0, default=0.9
+    )  # of critical, for tissue and muscle springs
+
+
+@dataclass(frozen=True)
+class Jaw:
+    """The mandible: it turns about the condyles and glides with them."""
+
+    opening_deg: float = _number(0.0, 45.0, default=22.0)  # hinge angle at jaw_open = 1
+    opening_glide: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, -4.0, 0.0))
+    forward_glide: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, -2.0, 8.0))
+    sideways_glide: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(8.0, 0.0, 0.0))
+    sideways_deg: float = _number(0.0, 20.0, default=3.0)  # yaw at jaw_sideways = 1
+    condyle: tuple[float, float, float] = _vector(3, -100.0, 100.0, default=(0.0, -20.0, -20.0))
+    softness: float = _number(0.0, 1000.0, default=60.0)  # mm2, smooths the mandible weight
+    seeds: tuple[tuple[int, float], ...] = field(default=(), metadata=SEEDS)
+
+
+@dataclass(frozen=True)
+class Eyes:
+    """Eyeballs, and how the lids ride on them."""
+
+    gaze_deg: float = _number(0.0, 60.0, default=30.0)  # eye rotation at gaze = 1
+    upper_lid_follows: float = _number(0.0, 1.0, default=0.55)  # share of the vertical gaze angle
+    lower_lid_follows: float = _number(0.0, 1.0, default=0.3)
+    lid_reach: float = _number(2.0, 30.0, default=8.0)  # mm from the margin to where the lid ends
+    lid_plateau: float = _number(0.0, 20.0, default=2.0)  # mm from the margin that move as one
+    lid_stiffness: float = _number(0.0, 1000.0, default=120.0)  # of the tarsal plate on the eyeball
+    blink_meeting: float = _number(
+        0.0, 0.5, default=0.12
+    )  # share of the way the lower lid comes up
+
+
+@dataclass(frozen=True)
+class Fibre:
+    """One fibre from its origin (on bone, fixed) to its insertion (in the skin, moving)."""
+
+    origin: LandmarkPoint = field(metadata=POINT)
+    insertion: LandmarkPoint = field(metadata=POINT)
+    weight: float = _number(0.0, 3.0, default=1.0)  # how firmly skin around it is attached
+    gain: float = _number(0.0, 3.0, default=1.0)  # of its pull against the other fibres
+    width_factor: float = _number(0.1, 4.0, default=1.0)  # x the muscle's width
+    convergence: float = _number(-2.0, 2.0, default=0.0)  # skin drawn towards the fibre line
+
+
+@dataclass(frozen=True)
+class Muscle:
+    """What all kinds of muscle share."""
+
+    name: str
+    action: str = field(metadata=TEXT)  # what it does to the face, with the action units
+    group: str = field(metadata=TEXT)  # title under which a panel lists it
+    stiffness: float = _number(0.0, 500.0, default=30.0)  # of its hold on the skin, per area
+    pair: bool = field(default=True, metadata=BOOLEAN)  # one on each side, or one in the middle
+    bone: str = _choice(BONES, default="cranium")  # where the origin is fixed
+    gate: str = _choice(GATES, default="none")  # which lip it may move
+    opens_lips: float = _number(0.0, 1.0, default=0.0)  # how far it breaks the lip seal
+
+
+@dataclass(frozen=True)
+class LinearMuscle(Muscle):
+    """Fibres that contract along their own arc and drag the skin around them."""
+
+    width: float = _number(1.0, 60.0, default=10.0)  # mm across the fibre
+    beyond: float = _number(1.0, 60.0, default=10.0)  # mm past the insertion
+    contraction: float = _number(
+        0.0, 0.95, default=0.3
+    )  # share of its length lost at full activation
+    wrap: float = _number(0.0, 1.5, default=0.7)  # 0 straight .. 1 bent to follow the skin
+    bulge: float = _number(0.0, 20.0, default=0.0)  # mm of thickening at full activation
+    bulge_at: float = _number(0.0, 1.0, default=0.5)  # where along the fibre
+    fibres: tuple[Fibre, ...] = field(default=(), metadata=FIBRES)
+
+
+@dataclass(frozen=True)
+class RingMuscle(Muscle):
+    """A sphincter or a part of one: skin on an elliptic ring is drawn to a centre and flared."""
+
+    centre: LandmarkPoint = field(default=MOUTH, metadata=POINT)
+    shape: LandmarkPoint | None = field(default=None, metadata=POINT)  # middle of the ring
+    radii: tuple[float, float, float] = _vector(3, 1.0, 100.0, default=(20.0, 10.0, 10.0))
+    edge: tuple[float, float] = _vector(
+        2, 0.05, 10.0, default=(0.7, 1.0)
+    )  # falloff outside, inside
+    contraction: tuple[float, float, float] = _vector(3, -2.0, 2.0, default=(0.2, 0.2, 0.2))
+    push: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, 0.0, 0.0))
+    flare: float = _number(-30.0, 30.0, default=0.0)  # mm up for the upper, down for the lower lip
+    arc_deg: tuple[float, float, float] = _vector(3, -360.0, 360.0, default=(0.0, 180.0, 1.0))
+
+
+@dataclass(frozen=True)
+class LidMuscle(Muscle):
+    """A muscle that turns an eyelid over the eyeball."""
+
+    lid: str = _choice(LIDS, default="upper_close")
+    travel: float = _number(0.0, 2.0, default=1.0)  # x the lid aperture at full activation
+
+
+KINDS: dict[str, type[Muscle]] = {
+    "linear": LinearMuscle,
+    "ring": RingMuscle,
+    "lid": LidMuscle,
+}
+
+
+@dataclass(frozen=True)
+class Rig:
+    """A whole rig; `Rig()` is plain tissue with a jaw and no muscles."""
+
+    tissue: Tissue = Tissue()
+    jaw: Jaw = Jaw()
+    eyes: Eyes = Eyes()
+    muscles: tuple[Muscle, ...] = ()
+
+
+def read_rig(document: Mapping[str, Any]) -> Rig:
+    """Read a rig from the parsed rig file; ValueError names the muscle and key that is wrong."""
+    _known_keys(document, ("format", "tissue", "jaw", "eyes", "muscle"), "rig")
+    version = document.get("format", FORMAT)
+    if version != FORMAT:
+        raise ValueError(f"rig, key 'format': was {version!r}, this version reads {FORMAT}")
+    muscles = []
+    for name, table in _table(document, "muscle", "rig").items():
+        where = f"rig, muscle '{name}'"
+        if not name.isidentifier() or name != name.lower():
+            raise ValueError(
+                f"{where}: a muscle name is lower case letters, digits and underscores"
+            )
+        if name.endswith(("_left", "_right")):
+            raise ValueError(f"{where}: the side is added by itself, leave '_left'/'_right' away")
+        muscles.append(_read_muscle(name, table, where))
+    return Rig(
+        tissue=_read(Tissue, _table(document, "tissue", "rig"), "rig, tissue"),
+        jaw=_read(Jaw, _table(document, "jaw", "rig"), "rig, jaw"),
+        eyes=_read(Eyes, _table(document, "eyes", "rig"), "rig, eyes"),
+        muscles=tuple(muscles),
+    )
+
+
+def _read_muscle(name: str, table: Any, where: str) -> Muscle:
+    """Read one muscle table by its kind."""
+    if not isinstance(table, Mapping):
+        raise ValueError(f"{where}: was {table!r}, must be a table [muscle.{name}]")
+    kind = table.get("kind")
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise ValueError(f"{where}, key 'kind': was {kind!r}, allowed are {', '.join(KINDS)}")
+    rest = {("fibres" if key == "fibre" else key): v for key, v in table.items() if key != "kind"}
+    muscle = _read(KINDS[kind], rest, where, name=name)
+    if isinstance(muscle, LinearMuscle) and not muscle.fibres:
+        raise ValueError(f"{where}: a linear muscle needs at least one [[muscle.{name}.fibre]]")
+    return muscle
+
+
+def _read(record: type[Record], table: Mapping[str, Any], where: str, **given: Any) -> Record:
+    """Build a dataclass from a table: unknown and missing keys are refused, values checked."""
+    known = {f.name: f for f in fields(cast(Any, record)) if f.name not in given}
+    _known_keys(table, tuple(known), where)
+    values = dict(given)
+    for key, rule in known.items():
+        if key in table:
+            values[key] = _value(table[key], rule, f"{where}, key '{key}'")
+        elif rule.default is MISSING:
+            raise ValueError(f"{where}, key '{key}': is missing")
+    return record(**values)
+
+
+def _value(value: Any, rule: Field[Any], where: str) -> Any:
+    """Check one value against the rule of its field."""
+    meta = rule.metadata
+    match meta["rule"]:
+        case "number":
+            return _check_number(value, meta["low"], meta["high"], where)
+        case "vector":
+            return _check_vector(value, meta["size"], meta["low"], meta["high"], where)
+        case "choice":
+            if value not in meta["allowed"]:
+                allowed = ", ".join(meta["allowed"])
+                raise ValueError(f"{where}: was {value!r}, allowed are {allowed}")
+            return value
+        case "text" | "boolean":
+            wanted = str if meta["rule"] == "text" else bool
+            if not isinstance(value, wanted):
+                raise ValueError(f"{where}: was {value!r}, must be a {meta['rule']}")
+            return value
+        case "seeds":
+            return _read_mix(value, where, low=-2.0, high=2.0)
+        case "fibres":
+            if not isinstance(value, list):
+                raise ValueError(f"{where}: was {value!r}, must be a list of fibre tables")
+            read = (_read(Fibre, f, f"{where} {i + 1}") for i, f in enumerate(value))
+            return tuple(read)
+        case _:
+            return _read_point(value, where)
+
+
+def _read_point(value: Any, where: str) -> LandmarkPoint:
+    """Read {landmark = 54} or {landmarks = {45 = 0.6, 14 = 0.4}}, with an optional offset."""
+    if not isinstance(value, Mapping):
+        raise ValueError(
+            f"{where}: was {value!r}, must be a table such as {{landmark = 54, offset = [0, 0, 0]}}"
+        )
+    _known_keys(value, ("landmark", "landmarks", "offset"), where)
+    if ("landmark" in value) == ("landmarks" in value):
+        raise ValueError(f"{where}: give exactly one of 'landmark' and 'landmarks'")
+    single = {str(value["landmark"]): 1.0} if "landmark" in value else None
+    mix = _read_mix(single or value["landmarks"], where, low=-5.0, high=5.0)
+    total = sum(weight for _, weight in mix)
+    if abs(total - 1.0) > 1e-6:
+        raise ValueError(f"{where}: the landmark weights add up to {total:g}, must be 1")
+    offset = _check_vector(value.get("offset", [0.0] * 3), 3, -200.0, 200.0, f"{where}, 'offset'")
+    return LandmarkPoint(mix, (offset[0], offset[1], offset[2]))
+
+
+def _read_mix(value: Any, where: str, *, low: float, high: float) -> tuple[tuple[int, float], ...]:
+    """Read a table landmark number -> weight."""
+    if not isinstance(value, Mapping) or not value:
+        raise ValueError(f"{where}: was {value!r}, must be a table landmark number = weight")
+    mix = []
+    for key, weight in value.items():
+        text = str(key)
+        if not text.isdigit() or int(text) >= LANDMARK_COUNT:
+            raise ValueError(f"{where}: landmark {text!r}, allowed are 0 to {LANDMARK_COUNT - 1}")
+        mix.append((int(text), _check_number(weight, low, high, f"{where}, landmark {text}")))
+    return tuple(mix)
+
+
+def _check_number(value: Any, low: float, high: float, where: str) -> float:
+    """A finite number inside [low, high]."""
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not number or not math.isfinite(value) or not low <= value <= high:
+        raise ValueError(f"{where}: was {value!r}, must be a number from {low:g} to {high:g}")
+    return float(value)
+
+
+def _check_vector(value: Any, size: int, low: float, high: float, where: str) -> tuple[float, ...]:
+    """A list of `size` finite numbers inside [low, high]."""
+    if not isinstance(value, list | tuple) or len(value) != size:
+        raise ValueError(f"{where}: was {value!r}, must be a list of {size} numbers")
+    return tuple(_check_number(v, low, high, f"{where}[{i}]") for i, v in enumerate(value))
+
+
+def _table(document: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:
+    """The sub-table `key`, empty if it is not there."""
+    table = document.get(key, {})
+    if not isinstance(table, Mapping):
+        raise ValueError(f"{where}, key '{key}': was {table!r}, must be a table [{key}]")
+    return table
+
+
+def _known_keys(table: Mapping[str, Any], known: tuple[str, ...], where: str) -> None:
+    """Refuse a key nobody reads, and offer the nearest one that is."""
+    for key in table:
+        if key not in known:
+            near = difflib.get_close_matches(key, known, n=1)
+            hint = f"; did you mean '{near[0]}'?" if near else ""
+            raise ValueError(f"{where}: unknown key '{key}'{hint} Allowed: {', '.join(known)}")

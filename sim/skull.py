@@ -1,0 +1,147 @@
+"""Bones and eyeballs: where they are at rest, and how jaw and gaze values move them.
+
+The cranium is fixed. The mandible turns about the axis through both condyles and glides with
+them; skin hangs on both by a weight. Eyeballs turn in place. These are rigid degrees of freedom
+beside the muscles: no spring moves a bone.
+
+Source: Kähler et al. 2001, section 3 (skull and rotating jaw under the skin).
+Differs from it: the condyles also glide (a real jaw opens by turning and sliding), and the jaw
+moves forward and sideways.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Array, FaceFrame, Side, select
+from .rig import Eyes, Jaw
+from .surface import Surface
+
+EYE_RADIUS = 12.5  # mm in the standard frame, where a head brings no eyes (adult eyeball: 12)
+EYE_SETBACK = 5.5  # mm from the line of the eye corners back to the centre (fitted on scans)
+NECK_BELOW_CHIN = 30.0  # mm below the chin landmark the skin no longer belongs to the mandible
+BEHIND_EARS = 20.0  # mm behind the ear landmarks likewise
+SEED_HOLD = 3.0  # seeds are advice, not nails: a soft hold gives a smooth border
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A rigid motion x -> rotation x + shift in the standard frame [mm]."""
+
+    rotation: Array  # (3, 3)
+    shift: Array  # (3,)
+
+    @classmethod
+    def about(cls, pivot: Array, rotation: Array, glide: Array) -> Pose:
+        """Turn about `pivot`, then move by `glide`."""
+        return cls(rotation, pivot + glide - rotation @ pivot)
+
+    def displacements(self, points: Array) -> Array:
+        """How far points (..., 3) move."""
+        moved: Array = points @ self.rotation.T + self.shift - points
+        return moved
+
+    def matrix(self, frame: FaceFrame) -> Array:
+        """The motion in head coordinates as a (4, 4) matrix for column vectors."""
+        turn = frame.axes.T @ self.rotation @ frame.axes
+        result = np.eye(4)
+        result[:3, :3] = turn
+        result[:3, 3] = frame.to_head(self.shift) - turn @ frame.origin
+        return result
+
+
+REST = Pose(np.eye(3), np.zeros(3))
+
+
+@dataclass(frozen=True)
+class Eyeball:
+    """One eyeball in the standard frame [mm]."""
+
+    side: Side
+    centre: Array  # (3,)
+    radius: float
+
+
+@dataclass(frozen=True)
+class Skull:
+    """Everything rigid under one face."""
+
+    condyles: Array  # (2, 3) mm: right, left
+    mandible_weight: Array  # (V,) 0 = cranium .. 1 = mandible
+    eyeballs: tuple[Eyeball, ...]
+    jaw: Jaw
+    eyes: Eyes
+
+    def mandible_pose(self, opening: float, forward: float, sideways: float) -> Pose:
+        """The mandible for jaw_open (0..1), jaw_forward and jaw_sideways (-1..1)."""
+        right, left = self.condyles
+        hinge = left - right
+        turn = rotation(hinge, np.radians(self.jaw.opening_deg) * opening)
+        yaw = rotation(np.array([0.0, 1.0, 0.0]), np.radians(self.jaw.sideways_deg) * sideways)
+        glide = (
+            opening * np.array(self.jaw.opening_glide)
+            + forward * np.array(self.jaw.forward_glide)
+            + sideways * np.array(self.jaw.sideways_glide)
+        )
+        return Pose.about((right + left) / 2.0, yaw @ turn, glide)
+
+    def eye_pose(self, eyeball: Eyeball, horizontal: float, vertical: float) -> Pose:
+        """An eyeball looking to the subject's left (+1) and up (+1)."""
+        most = np.radians(self.eyes.gaze_deg)
+        yaw = rotation(np.array([0.0, 1.0, 0.0]), most * horizontal)
+        pitch = rotation(np.array([1.0, 0.0, 0.0]), -most * vertical)
+        return Pose.about(eyeball.centre, yaw @ pitch, np.zeros(3))
+
+
+def rotation(axis: Array, angle: float) -> Array:
+    """Rotation matrix by `angle` [rad] about `axis` (Rodrigues)."""
+    x, y, z = axis / np.linalg.norm(axis)
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    result: Array = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
+    return result
+
+
+def eyeballs_from_landmarks(landmarks: Array) -> tuple[Eyeball, ...]:
+    """Eyeballs guessed from the eye corners of a head that brings none, landmarks (68, 3) [mm]."""
+    eyeballs = []
+    for side in (Side.RIGHT, Side.LEFT):
+        outer, _, _, inner, _, _ = EYE_LANDMARKS[side]
+        middle = (landmarks[outer] + landmarks[inner]) / 2.0
+        centre = middle - np.array([0.0, 0.0, EYE_SETBACK])
+        eyeballs.append(Eyeball(side, centre, EYE_RADIUS))
+    return tuple(eyeballs)
+
+
+def condyles_from_landmarks(landmarks: Array, jaw: Jaw) -> Array:
+    """Condyles guessed from the ear landmarks, offset by the rig's `condyle`, shape (2, 3) [mm]."""
+    lateral, up, forward = jaw.condyle
+    right = landmarks[0] + (-lateral, up, forward)
+    left = landmarks[16] + (lateral, up, forward)
+    return np.array([right, left])
+
+
+def mandible_weight_from_landmarks(
+    surface: Surface, landmarks: Array, jaw: Jaw, lip_side: Array
+) -> Array:
+    """Mandible weight of each vertex, shape (V,): the smoothest field through the rig's seeds."""
+    vertices: list[int] = []
+    values: list[float] = []
+    nearest = surface.nearest(landmarks)
+    for number, seed in jaw.seeds:
+        for landmark in {number, int(MIRRORED[number])}:
+            vertices.append(int(nearest[landmark]))
+            values.append(seed)
+    x, y, z = surface.positions.T
+    fixed = (y < landmarks[8, 1] - NECK_BELOW_CHIN) | (y > landmarks[29, 1])
+    fixed |= z < min(landmarks[0, 2], landmarks[16, 2]) - BEHIND_EARS
+    half_mouth = 0.9 * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
+    middle = select(landmarks, UPPER_LIP).mean(axis=0)
+    lips = (np.abs(lip_side) > 0.9) & (np.abs(x - middle[0]) < half_mouth)
+    lips &= np.linalg.norm(surface.positions - middle, axis=1) < half_mouth
+    seeds = np.concatenate([vertices, np.flatnonzero(fixed), np.flatnonzero(lips)])
+    wanted = np.concatenate([values, np.zeros(fixed.sum()), (lip_side[lips] < 0.0) * 1.0])
+    weight = np.clip(surface.harmonic(seeds.astype(np.int64), wanted, hold=SEED_HOLD), 0.0, 1.0)
+    result: Array = weight
+    return result

@@ -1,0 +1,118 @@
+"""The skin as a triangle mesh: edges, areas, smoothed normals, distances along it and smooth fields
+on it.
+
+Everything here is computed once when a simulation is built; nothing runs per frame. Coordinates
+are the standard frame of landmarks.py in millimetres.
+
+Source: Van Gelder 1998 for edge stiffness from triangle areas; Kähler et al. 2001 for one mass
+per vertex and one spring per edge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+from scipy.sparse import csgraph
+from scipy.sparse import linalg as sparse_linalg
+
+Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int32]
+
+LEAST_AREA = 0.01  # mm2 per vertex: keeps isolated vertices and slivers from having no mass
+LEAST_LENGTH = 0.05  # mm per edge: bounds the stiffness of collapsed edges (Van Gelder's is 1/l2)
+NORMAL_SMOOTHING = 25.0  # mm2: tissue direction is the normal of the surface at some 5 mm scale
+SEED_WEIGHT = 1e4  # how firmly a harmonic field is held at its seeds
+SEED_FLOOR = 1e-6  # pulls components without a seed to zero instead of leaving them undefined
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A triangle mesh at rest, and what the springs need of it."""
+
+    positions: Array  # (V, 3) mm
+    faces: Indices  # (F, 3)
+    edges: Indices  # (E, 2)
+    lengths: Array  # (E,) mm
+    edge_stiffness: Array  # (E,) sum of adjacent triangle areas / length2, dimensionless
+    areas: Array  # (V,) mm2
+    normals: Array  # (V, 3) unit, smoothed
+    laplacian: sparse.csc_array  # (V, V) of edge_stiffness
+
+    @property
+    def vertex_count(self) -> int:
+        """Number of vertices."""
+        return len(self.positions)
+
+    def nearest(self, points: Array) -> Indices:
+        """Number of the vertex nearest to each point (n, 3)."""
+        squared = ((self.positions[None] - points[:, None]) ** 2).sum(axis=2)
+        nearest: Indices = squared.argmin(axis=1).astype(np.int32)
+        return nearest
+
+    def distances_from(self, vertices: npt.NDArray[np.int64]) -> Array:
+        """Shortest way along edges [mm] from some vertices, shape (V,); inf on other components."""
+        i, j = self.edges.T
+        graph = sparse.csr_array((self.lengths, (i, j)), shape=(self.vertex_count,) * 2)
+        distance = csgraph.dijkstra(graph, directed=False, indices=vertices, min_only=True)
+        result: Array = np.asarray(distance, dtype=np.float64)
+        return result
+
+    def smoothed(self, field: Array, extent: float) -> Array:
+        """A field (V,) without details smaller than about sqrt(`extent`) [mm2]."""
+        return _smooth(field, extent, self.areas, self.laplacian)
+
+    def harmonic(
+        self, vertices: npt.ArrayLike, values: npt.ArrayLike, *, hold: float = SEED_WEIGHT
+    ) -> Array:
+        """Smoothest field, shape (V,), that takes `values` at the seed `vertices`."""
+        weight, right = np.zeros(self.vertex_count), np.zeros(self.vertex_count)
+        seeds = np.asarray(vertices, dtype=np.int64)
+        np.add.at(weight, seeds, hold)
+        np.add.at(right, seeds, hold * np.asarray(values, dtype=np.float64))
+        system = (self.laplacian + sparse.diags_array(weight + SEED_FLOOR * self.areas)).tocsc()
+        field: Array = sparse_linalg.spsolve(system, right)
+        return field
+
+
+def build_surface(positions: Array, faces: Indices) -> Surface:
+    """Edges, areas, stiffness and smoothed normals of a triangle mesh [mm]."""
+    count = len(positions)
+    corners = positions[faces]
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    face_areas = np.linalg.norm(cross, axis=1) / 2.0
+    areas, normals = np.zeros(count), np.zeros((count, 3))
+    for corner in range(3):
+        np.add.at(areas, faces[:, corner], face_areas / 3.0)
+        np.add.at(normals, faces[:, corner], cross)
+    areas = np.maximum(areas, LEAST_AREA)
+
+    half_edges = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    unique, inverse = np.unique(half_edges, axis=0, return_inverse=True)
+    edges = unique.astype(np.int32).reshape(-1, 2)
+    lengths = np.linalg.norm(positions[edges[:, 1]] - positions[edges[:, 0]], axis=1)
+    lengths = np.maximum(lengths, LEAST_LENGTH)
+    stiffness = (
+        np.bincount(inverse.ravel(), np.tile(face_areas, 3), minlength=len(edges)) / lengths**2
+    )
+
+    i, j = edges.T
+    both = (np.concatenate([i, j]), np.concatenate([j, i]))
+    weights = sparse.coo_array((np.tile(stiffness, 2), both), shape=(count, count)).tocsr()
+    degree = np.asarray(weights.sum(axis=1)).ravel()
+    laplacian = (sparse.diags_array(degree) - weights).tocsc()
+    unit = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    smooth = _smooth(unit, NORMAL_SMOOTHING, areas, laplacian)
+    length = np.linalg.norm(smooth, axis=1, keepdims=True)
+    directions = np.where(length > 1e-9, smooth / np.maximum(length, 1e-9), [0.0, 0.0, 1.0])
+    return Surface(positions, faces, edges, lengths, stiffness, areas, directions, laplacian)
+
+
+def _smooth(field: Array, extent: float, areas: Array, laplacian: sparse.csc_array) -> Array:
+    """One implicit diffusion step: details much smaller than sqrt(`extent`) [mm2] vanish."""
+    system = (sparse.diags_array(areas) + extent * laplacian).tocsc()
+    right = areas.reshape(-1, *[1] * (field.ndim - 1)) * field
+    result: Array = sparse_linalg.splu(system).solve(right)
+    return result

@@ -1,0 +1,113 @@
+"""Skin tissue: what holds each vertex to the bone under it, and how heavy it is.
+
+Kähler ties each skin vertex to a bone or muscle point by a spring and adds its mirror image
+outside the skin, so that skin slides sideways but neither sinks in nor lifts off. With anchor
+depth d, stiffness k and pre-tension share p each, the pair pulls like
+
+    force = -A [ kt (I - n n^T) + kn n n^T ] (x - r),      kn = 2 k,  kt = 2 k p
+
+to first order. We use this linearised pair, not the two springs: it has no rest-length
+singularity when skin slides far (a smile moves it by more than the tissue is thick) and costs no
+square root. n turns with the bone.
+
+Source: Kähler et al. 2001, section 3.2 (counter springs); Lee, Terzopoulos, Waters 1995 for
+layered tissue.
+Differs from it: linearised; the far end r is the bone-carried rest position, muscles act as
+springs of their own (muscles.py).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from .landmarks import Array
+from .rig import Tissue
+from .surface import Surface
+
+AREAL_MASS = 1.0  # g/cm2: skin and fat about 1 cm thick; only ratios to stiffness matter
+STABLE_STEP_SHARE = 0.5  # of the square of the largest stable step; the rest is margin for geometry
+
+
+@dataclass(frozen=True)
+class TissueSprings:
+    """The anchors of all vertices."""
+
+    tangential: Array  # (V,) stiffness along the skin
+    normal: Array  # (V,) stiffness across it
+
+    @classmethod
+    def under(cls, surface: Surface, tissue: Tissue) -> TissueSprings:
+        """Uniform tissue under a whole surface."""
+        scale = tissue.stiffness_scale * surface.areas
+        return cls(tissue.tangential * scale, tissue.normal * scale)
+
+
+def masses_for_step(areas: Array, stiffness: Array, step: float) -> Array:
+    """Mass of each vertex, shape (V,): its skin's, raised where the fixed step would be unstable.
+
+    stiffness: bound on each row of the stiffness matrix (Gershgorin), shape (V,). An explicit step
+    h is stable for h^2 K < 4 m; small triangles would force a tiny step on all, so they get
+    heavier.
+    """
+    needed = stiffness * step**2 / (4.0 * STABLE_STEP_SHARE)
+    result: Array = np.maximum(areas * AREAL_MASS, needed)
+    return result
+
+
+@numba.njit(cache=True)
+def carry(rest, normals, weight, turn, shift, carried, carried_normals):  # type: ignore[no-untyped-def]
+    """Move the far ends of the tissue springs with the mandible, each vertex by its share."""
+    for i in range(len(rest)):
+        w = weight[i]
+        x, y, z = rest[i, 0], rest[i, 1], rest[i, 2]
+        nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
+        if w == 0.0:
+            for k in range(3):
+                carried[i, k] = rest[i, k]
+                carried_normals[i, k] = normals[i, k]
+            continue
+        length = 0.0
+        for k in range(3):
+            to = turn[k, 0] * x + turn[k, 1] * y + turn[k, 2] * z + shift[k]
+            carried[i, k] = rest[i, k] + w * (to - rest[i, k])
+            n = turn[k, 0] * nx + turn[k, 1] * ny + turn[k, 2] * nz
+            carried_normals[i, k] = normals[i, k] + w * (n - normals[i, k])
+            length += carried_normals[i, k] ** 2
+        for k in range(3):
+            carried_normals[i, k] /= np.sqrt(length)
+
+
+@numba.njit(cache=True)
+def tissue_forces(  # type: ignore[no-untyped-def]
+    x, carried, normals, tangential, normal, hold, pull, offset, force
+):
+    """Set `force` (V, 3) to the pull of bone (anchors) and of muscles (`hold`, `pull`).
+
+    `offset` (V, 3) becomes x minus the bone-carried rest position, which edge springs need too.
+    """
+    for i in range(len(x)):
+        dx = x[i, 0] - carried[i, 0]
+        dy = x[i, 1] - carried[i, 1]
+        dz = x[i, 2] - carried[i, 2]
+        offset[i, 0], offset[i, 1], offset[i, 2] = dx, dy, dz
+        nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
+        across = (normal[i] - tangential[i]) * (dx * nx + dy * ny + dz * nz)
+        along = tangential[i] + hold[i]
+        force[i, 0] = pull[i, 0] - along * dx - across * nx
+        force[i, 1] = pull[i, 1] - along * dy - across * ny
+        force[i, 2] = pull[i, 2] - along * dz - across * nz
+
+
+def tissue_energy(
+    x: Array, carried: Array, normals: Array, springs: TissueSprings, hold: Array
+) -> float:
+    """Energy stored in anchors and muscle attachments, measured from their far ends."""
+    offset = x - carried
+    across = (offset * normals).sum(axis=1)
+    squared = (offset**2).sum(axis=1)
+    stored = (springs.tangential + hold) * squared
+    stored += (springs.normal - springs.tangential) * across**2
+    return float(stored.sum() / 2.0)

@@ -1,0 +1,165 @@
+"""The command line: what it writes, and that mistakes are one line and exit code 2."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import imageio_ffmpeg
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+from PIL import Image
+
+from app.cli import main
+
+SMILE = """
+title = "Smile"
+[[pose]]
+time = 0.0
+[[pose]]
+time = 0.4
+name = "joy"
+joy = 1.0
+"""
+
+
+def risorius(*arguments: object) -> Result:
+    """Run the command in this process."""
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+@pytest.fixture
+def smile(tmp_path: Path) -> Path:
+    """A short script."""
+    path = tmp_path / "smile.toml"
+    path.write_text(SMILE)
+    return path
+
+
+def test_a_script_becomes_a_film_and_a_sheet(smile: Path, tmp_path: Path) -> None:
+    """`capture --compare` writes a film of the script's length and a sheet of its named poses."""
+    film, sheet = tmp_path / "out.mp4", tmp_path / "out.png"
+    result = risorius(
+        "capture", smile, "-o", film, "--sheet", sheet, "--compare", "--size", "256x144"
+    )
+    assert result.exit_code == 0, result.output
+    assert "triangles in a frame" in result.output
+    count, _ = imageio_ffmpeg.count_frames_and_secs(str(film))
+    assert count == 13
+    assert Image.open(sheet).size == (1280, 400)
+
+
+def test_frames_and_one_picture(smile: Path, tmp_path: Path) -> None:
+    """A folder gets one file a frame; a .png is the moment that was asked for."""
+    frames, still = tmp_path / "frames", tmp_path / "still.png"
+    size = ("--size", "160x120", "--samples", "0", "--quiet")
+    assert risorius("capture", smile, "-o", frames, "--fps", "20", *size).exit_code == 0
+    assert len(list(frames.iterdir())) == 9
+    result = risorius("capture", smile, "-o", still, "--time", "0.4", "--fps", "20", *size)
+    assert result.exit_code == 0, result.output
+    last = np.asarray(Image.open(frames / "frame_00008.png")).astype(int)
+    picture = np.asarray(Image.open(still)).astype(int)
+    assert picture.shape == (120, 160, 3)
+    assert np.abs(last - picture).max() == 0
+
+
+def test_the_same_script_gives_the_same_pictures(smile: Path, tmp_path: Path) -> None:
+    """Two captures are the same bytes."""
+    for name in ("a.png", "b.png"):
+        arguments = ("-o", tmp_path / name, "--time", "0.3", "--size", "160x120", "--quiet")
+        assert risorius("capture", smile, *arguments).exit_code == 0
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
+    """`capture --scene plane` refines the waving plane to the paper's many triangles."""
+    sheet = tmp_path / "plane.png"
+    result = risorius(
+        "capture",
+        "--scene",
+        "plane",
+        "--sheet",
+        sheet,
+        "--fps",
+        "4",
+        "--size",
+        "320x240",
+        "--quiet",
+    )
+    assert result.exit_code == 0, result.output
+    most = int(result.output.split("at most ")[1].split()[0])
+    assert 1328 <= most <= 1540
+    assert sheet.exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["capture", "no.toml", "-o", "x.mp4"], "no.toml: no such script"),
+        (["capture", "SMILE"], "nothing to write: give -o OUTPUT"),
+        (["capture", "SMILE", "-o", "x.avi"], "what is '.avi'? Allowed are .mp4"),
+        (["capture", "SMILE", "-o", "x.mp4", "--size", "321x200"], "take 322x200"),
+        (["capture", "SMILE", "-o", "x.mp4", "--refiner", "magic"], "'magic'; available are"),
+        (["capture", "SMILE", "-o", "x.mp4", "--camera", "behind"], "camera 'behind'; allowed"),
+        (["capture", "SMILE", "-o", "x.mp4", "--camera", "1,2,x"], "camera '1,2,x': allowed"),
+        (["capture", "SMILE", "-o", "x.mp4", "--size", "big"], "'big' is no size"),
+        (["capture", "SMILE", "-o", "x.mp4", "--scene", "plane"], "unknown name 'joy'"),
+        (["capture", "SMILE", "-o", "x.mp4", "--shading", "toon"], "'toon' is not one of"),
+        (["replay", "no.toml"], "no.toml: no such script"),
+    ],
+)
+def test_mistakes_are_one_line(
+    arguments: list[str], message: str, smile: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Bad input ends with exit code 2 and a text that says what is allowed; nothing is written."""
+    monkeypatch.chdir(smile.parent)
+    result = risorius(*[str(smile) if word == "SMILE" else word for word in arguments])
+    assert result.exit_code == 2
+    assert message.replace("'behind'; ", "'behind': ") in result.output
+    assert "Traceback" not in result.output
+    assert list(smile.parent.iterdir()) == [smile]
+
+
+def test_no_opengl_is_one_line(smile: Path) -> None:
+    """Without libEGL, capture says what is missing and the command that cures it."""
+    environment = {**os.environ, "GLCONTEXT_LINUX_LIBEGL": "libEGL-not-there.so"}
+    environment.pop("DISPLAY", None)
+    result = subprocess.run(
+        [sys.executable, "-m", "app", "capture", str(smile), "-o", str(smile.parent / "x.mp4")],
+        capture_output=True,
+        text=True,
+        env=environment,
+        check=False,
+    )
+    assert result.returncode == 2
+    assert result.stderr.strip().startswith("risorius: ")
+    assert "Cure: unset GLCONTEXT_LINUX_LIBEGL" in result.stderr
+    assert len(result.stderr.strip().splitlines()) == 1
+    assert list(smile.parent.iterdir()) == [smile]
+
+
+def test_controls_lists_what_scripts_may_name() -> None:
+    """Every expression and every muscle appears, with its limits."""
+    result = risorius("controls")
+    assert result.exit_code == 0
+    for name in ("joy", "zygomaticus_major_left", "jaw_open"):
+        assert name in result.output
+
+
+def test_doctor_reports_offscreen_opengl() -> None:
+    """Where the tests run, offscreen OpenGL works, and the doctor says with what."""
+    result = risorius("doctor", "--offscreen")
+    assert result.exit_code == 0, result.output
+    assert "OpenGL" in result.output
+    assert risorius("doctor", "--offscreen", "--quiet").output == ""
+
+
+def test_bench_refine_prints_a_table() -> None:
+    """`bench refine` names the face, the refiners and the milliseconds."""
+    result = risorius("bench", "refine", "--rounds", "3")
+    assert result.exit_code == 0, result.output
+    for word in ("face", "kahler", "ms"):
+        assert word in result.output

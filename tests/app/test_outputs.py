@@ -1,0 +1,77 @@
+"""Outputs are whole or not there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app import outputs
+from app.errors import UserError
+
+GREY = np.full((64, 96, 3), 128, np.uint8)
+
+
+def test_a_film_has_its_frames_and_size(tmp_path: Path) -> None:
+    """What is written can be read back: size, rate and number of frames."""
+    import imageio_ffmpeg
+
+    path = tmp_path / "deep" / "film.mp4"
+    with outputs.film(path, (96, 64), 25.0) as add:
+        for _ in range(10):
+            add(GREY)
+    count, seconds = imageio_ffmpeg.count_frames_and_secs(str(path))
+    assert count == 10
+    assert seconds == pytest.approx(0.4, abs=0.02)
+    assert [item.name for item in path.parent.iterdir()] == ["film.mp4"]
+
+
+def test_an_odd_size_is_told(tmp_path: Path) -> None:
+    """4:2:0 films have even sides; the text says which size to take."""
+    with (
+        pytest.raises(UserError, match=r"97x63; take 98x64"),
+        outputs.film(tmp_path / "film.mp4", (97, 63), 25.0),
+    ):
+        pass
+
+
+def test_a_broken_film_leaves_the_old_one(tmp_path: Path) -> None:
+    """If the program fails in the middle, the user's earlier file is untouched."""
+    path = tmp_path / "film.mp4"
+    path.write_bytes(b"mine")
+    with (
+        pytest.raises(RuntimeError, match="in the middle"),
+        outputs.film(path, (96, 64), 25) as add,
+    ):
+        add(GREY)
+        raise RuntimeError("in the middle")
+    assert path.read_bytes() == b"mine"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_frames_in_a_folder(tmp_path: Path) -> None:
+    """Numbered pictures; a folder that is not empty is only replaced when asked."""
+    target = tmp_path / "frames"
+    with outputs.folder(target, overwrite=False) as add:
+        add(GREY)
+        add(GREY)
+    assert sorted(item.name for item in target.iterdir()) == ["frame_00000.png", "frame_00001.png"]
+    (target / "notes.txt").write_text("mine")
+    with (
+        pytest.raises(UserError, match="not empty; name another folder, or add --overwrite"),
+        outputs.folder(target, overwrite=False),
+    ):
+        pass
+    assert (target / "notes.txt").exists()
+    with outputs.folder(target, overwrite=True) as add:
+        add(GREY)
+    assert [item.name for item in target.iterdir()] == ["frame_00000.png"]
+    assert list(tmp_path.iterdir()) == [target]
+
+
+def test_a_place_that_cannot_be_written(tmp_path: Path) -> None:
+    """A parent that is a file is one clear line."""
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(UserError, match="cannot be written"):
+        outputs.save_png(tmp_path / "file" / "picture.png", GREY)

@@ -1,0 +1,119 @@
+"""Figure 1 as a whole: a stranger's refiner fits in, and the mesh stays as it is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+import refine
+import render
+from app.pipeline import Pipeline, side_by_side, splits_of_source
+from app.scenes import FaceScene, PlaneScene
+
+SIZE = (320, 240)
+
+
+@pytest.fixture
+def surface() -> Iterator[Any]:
+    """A small offscreen surface."""
+    with render.open_offscreen(SIZE, samples=0) as opened:
+        yield opened
+
+
+class DoubleRefiner:
+    """Emits every triangle twice: useless, but a refiner."""
+
+    def __init__(self, faces: Any, rest_positions: Any, **_: Any) -> None:
+        self._plain = refine.create("none", faces, rest_positions)
+        self.vertex_capacity = self._plain.vertex_capacity
+        self.triangle_capacity = 2 * len(faces)
+        self.vertex_columns = self._plain.vertex_columns
+        self.edges = self._plain.edges
+        self.triangle_edges = self._plain.triangle_edges
+        self.splits = self._plain.splits
+
+    def refine(self, positions: Any, out: Any = None) -> Any:
+        mesh = self._plain.refine(positions, out=out)
+        count = len(mesh.triangles)
+        out.triangles[count : 2 * count] = mesh.triangles
+        out.source[count : 2 * count] = mesh.source
+        return refine.RefinedMesh(
+            positions=mesh.positions,
+            normals=mesh.normals,
+            triangles=out.triangles[: 2 * count],
+            source=out.source[: 2 * count],
+            uv=None,
+        )
+
+
+def test_a_registered_refiner_is_drawn(surface: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A refiner from outside goes through the real pipeline to a picture."""
+    refine.register("double", DoubleRefiner)
+    scene = PlaneScene()
+    pipeline = Pipeline(scene, render.Renderer(surface), ["double"])
+    surface.begin()
+    camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
+    pipeline.draw_frame(0.1, [camera], [render.Style()], [(0, 0, *SIZE)])
+    surface.end()
+    assert pipeline.pictures[0].counts.triangles_out == 308
+    assert np.ptp(surface.read()) > 30
+
+
+def test_the_mesh_and_the_simulation_never_notice(surface: Any) -> None:
+    """With and without refinement the simulation runs through the same bytes."""
+    scenes = [FaceScene(), FaceScene()]
+    renderer = render.Renderer(surface)
+    camera = render.OrbitCamera.framing(scenes[0].rest_positions, view="front")
+    for scene, name in zip(scenes, ("none", "kahler"), strict=True):
+        pipeline = Pipeline(scene, renderer, [name])
+        faces = scene.faces.copy()
+        scene.pose({"surprise": 1.0})
+        for _ in range(15):
+            surface.begin()
+            pipeline.draw_frame(1 / 30, [camera], [render.Style()], [(0, 0, *SIZE)])
+            surface.end()
+        assert np.array_equal(faces, scene.faces)
+    assert scenes[0].positions.tobytes() == scenes[1].positions.tobytes()
+    assert pipeline.pictures[0].counts.triangles_out > 1.1 * len(scenes[0].faces)
+
+
+def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:
+    """At rest the refined picture is the static one, pixel for pixel."""
+    scene = FaceScene()
+    renderer = render.Renderer(surface)
+    camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
+    pictures = []
+    for name in ("none", "kahler"):
+        pipeline = Pipeline(scene, renderer, [name])
+        surface.begin()
+        pipeline.draw_frame(0.0, [camera], [render.Style()], [(0, 0, *SIZE)])
+        surface.end()
+        pictures.append(surface.read())
+    assert np.array_equal(*pictures)
+
+
+def test_splits_of_source() -> None:
+    """A triangle's colour value is the sum of its edges' splits."""
+    scene = PlaneScene()
+    refiner = refine.create("kahler", scene.faces, scene.rest_positions)
+    scene.pose({"amplitude": 1.0})
+    scene.step(0.1)
+    mesh = refiner.refine(scene.positions)
+    values = splits_of_source(refiner, mesh)
+    triangle = int(mesh.source[len(values) // 2])
+    expected = sum(int(refiner.splits[edge]) for edge in refiner.triangle_edges[triangle])
+    assert values[len(values) // 2] == expected
+    assert len(values) == len(mesh.triangles)
+    assert values.max() == 6
+
+
+def test_side_by_side_covers_the_frame() -> None:
+    """Viewports share no column and leave none out, also for odd widths."""
+    first, second, third = side_by_side((101, 10), 3)
+    assert first[0] == 0
+    assert first[0] + first[2] == second[0]
+    assert second[0] + second[2] == third[0]
+    assert third[0] + third[2] == 101

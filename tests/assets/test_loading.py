@@ -1,0 +1,119 @@
+"""Loading: what `assets.load` promises, and what it says when it cannot keep it."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import assets
+from assets.loading import HEAD_FILE, load_head
+
+MOST_DATA = 2_000_000  # bytes of all data files together
+
+
+def test_available_names_can_be_loaded() -> None:
+    """Every name that is offered works."""
+    assert assets.available() == ("head", "plane")
+    for name in assets.available():
+        assert len(assets.load(name).faces) > 0
+
+
+def test_unknown_name_is_refused_with_the_known_ones() -> None:
+    """A typing error is answered with what there is."""
+    with pytest.raises(assets.AssetError, match=r"'haed'; available: head, plane"):
+        assets.load("haed")
+
+
+def test_plane_is_that_of_the_paper() -> None:
+    """Figure 9: 7 x 11 cells, 154 triangles, flat, all facing the viewer."""
+    plane = assets.load("plane")
+    corner = plane.vertices[plane.faces]
+    cross = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    assert plane.vertices.shape == (96, 3)
+    assert plane.faces.shape == (154, 3)
+    assert np.allclose(plane.vertices.mean(axis=0), 0.0)
+    assert np.allclose(cross, [0.0, 0.0, 100.0])
+
+
+def test_types_and_shapes_are_those_of_the_docstrings() -> None:
+    """Other packages rely on dtypes without looking."""
+    head = assets.load("head")
+    count = len(head.vertices)
+    assert head.vertices.dtype == np.float64 and head.vertices.shape == (count, 3)
+    assert head.faces.dtype == np.int32 and head.faces.shape == (2030, 3)
+    assert head.landmarks.dtype == np.int32 and head.landmarks.shape == (68,)
+    assert head.bone_depth.dtype == np.float64 and head.bone_depth.shape == (count,)
+    assert head.mandible_weight.dtype == np.float64 and head.mandible_weight.shape == (count,)
+    assert head.jaw_axis.shape == (2, 3)
+    assert [eye.name for eye in head.eyes] == ["right", "left"]
+    assert isinstance(head.rig, dict) and isinstance(head.expressions, dict)
+
+
+def test_arrays_cannot_be_written() -> None:
+    """Two users of the head must not disturb each other."""
+    head = assets.load("head")
+    with pytest.raises(ValueError, match="read-only"):
+        head.vertices[0] = 0.0
+    with pytest.raises(ValueError, match="read-only"):
+        head.parts[0].vertices[0] = 0.0
+
+
+def test_missing_data_file_says_how_to_build_it(tmp_path: Path) -> None:
+    """The cure is in the message."""
+    with pytest.raises(assets.AssetError, match=r"missing; build it with 'python -m assets.build'"):
+        load_head(tmp_path / "head.npz")
+
+
+def test_broken_data_file_says_how_to_rebuild_it(tmp_path: Path) -> None:
+    """Neither garbage nor a half-written file ends in a traceback of numpy."""
+    broken = tmp_path / "head.npz"
+    broken.write_bytes(b"not an archive")
+    with pytest.raises(assets.AssetError, match="not a readable npz file"):
+        load_head(broken)
+    broken.write_bytes(HEAD_FILE.read_bytes()[:5000])
+    with pytest.raises(assets.AssetError, match="not a readable npz file"):
+        load_head(broken)
+
+
+def test_incomplete_data_file_names_what_is_missing(tmp_path: Path) -> None:
+    """A file of an older version is told from a broken one."""
+    with np.load(HEAD_FILE) as file:
+        kept = {name: file[name] for name in file.files if name != "jaw_axis"}
+    np.savez(tmp_path / "old.npz", allow_pickle=False, **kept)
+    with pytest.raises(assets.AssetError, match=r"no array 'jaw_axis'; rebuild it"):
+        load_head(tmp_path / "old.npz")
+
+
+def test_text_files_are_optional_but_must_be_toml(tmp_path: Path) -> None:
+    """No rig is an empty rig; a broken rig is an error that names the file."""
+    nowhere = tmp_path / "none.toml"
+    head = load_head(rig_file=nowhere, expressions_file=nowhere)
+    assert head.rig == {} and head.expressions == {}
+    broken = tmp_path / "rig.toml"
+    broken.write_text("[muscle\n", encoding="utf-8")
+    with pytest.raises(assets.AssetError, match=r"rig\.toml is not readable as TOML"):
+        load_head(rig_file=broken, expressions_file=nowhere)
+
+
+def test_expressions_are_numbers_by_control(tmp_path: Path) -> None:
+    """The expression file arrives as written."""
+    file = tmp_path / "expressions.toml"
+    file.write_text("[smile]\nzygomaticus_major_left = 0.8\n", encoding="utf-8")
+    head = load_head(rig_file=tmp_path / "none.toml", expressions_file=file)
+    assert head.expressions == {"smile": {"zygomaticus_major_left": 0.8}}
+
+
+def test_data_stay_small() -> None:
+    """The package must stay light."""
+    assert sum(file.stat().st_size for file in HEAD_FILE.parent.iterdir()) < MOST_DATA
+
+
+def test_loading_needs_no_generator() -> None:
+    """Only a build imports scipy: `load` must stay fast."""
+    code = (
+        "import sys, assets; assets.load('head');"
+        "assert not any(n.startswith(('scipy', 'assets.generator')) for n in sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)

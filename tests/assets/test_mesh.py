@@ -1,0 +1,139 @@
+"""The skin as a surface: one clean, symmetric piece with the holes it should have."""
+
+import numpy as np
+import pytest
+
+import assets
+from assets import checks
+from assets.generator import form
+from assets.generator.fields import gradient
+from assets.generator.topology import boundary_loops, cross_products, smallest_angles
+from assets.model import Head
+from assets.report import report
+
+TUCKED_ROWS = ("eye_0", "eye_1", "mouth_0", "mouth_1", "mouth_2", "nostril")
+
+
+@pytest.fixture(scope="module")
+def head() -> Head:
+    """The built-in head."""
+    return assets.load("head")
+
+
+def test_triangle_count_is_that_of_the_paper(head: Head) -> None:
+    """Table 1: 2030 triangles; every vertex is used."""
+    assert len(head.faces) == 2030
+    assert np.array_equal(np.unique(head.faces), np.arange(len(head.vertices)))
+
+
+def test_skin_is_one_manifold_piece(head: Head) -> None:
+    """One piece, consistently oriented, Euler characteristic of a sphere with four holes."""
+    assert checks.is_manifold(head.faces)
+    assert checks.component_count(head.faces) == 1
+    assert checks.euler_characteristic(head.vertices, head.faces) == 2 - 4
+
+
+def test_boundary_loops_are_rim_mouth_and_eyes(head: Head) -> None:
+    """Four loops, and they are the rows that carry these names."""
+    loops = [set(loop) for loop in boundary_loops(head.faces)]
+    assert len(loops) == 4
+    for name in ("rim", "mouth_0"):
+        row = {*head.rings[f"{name}_left"].tolist(), *head.rings[f"{name}_right"].tolist()}
+        assert row in loops
+    for side in ("left", "right"):
+        assert set(head.rings[f"eye_0_{side}"].tolist()) in loops
+
+
+def test_mesh_is_its_own_mirror_image(head: Head) -> None:
+    """To the last bit, vertices and faces; the mirror map is its own inverse."""
+    assert checks.mirror_error(head.vertices, head.mirror) == 0.0
+    assert checks.is_mirrored(head.faces, head.mirror)
+    assert np.array_equal(head.mirror[head.mirror], np.arange(len(head.vertices)))
+
+
+def test_mesh_does_not_cut_itself(head: Head) -> None:
+    """Lips are closed and lids are folded, yet no two faces intersect."""
+    assert len(checks.self_intersections(head.vertices, head.faces)) == 0
+
+
+def test_triangles_are_well_shaped(head: Head) -> None:
+    """No slivers: the simulation's step length and the shading depend on it."""
+    angle = smallest_angles(head.vertices, head.faces)
+    assert angle.min() > 8.0
+    assert np.percentile(angle, 5) > 18.0
+    assert angle.mean() > 40.0
+
+
+def test_lips_are_closed_but_not_welded(head: Head) -> None:
+    """Upper and lower lip nearly touch, and remain different vertices at least 0.3 mm apart."""
+    row = head.rings["mouth_2_left"]
+    columns = len(row) // 2
+    upper, lower = head.vertices[row[:columns]], head.vertices[row[: -columns - 1 : -1]]
+    gap = np.linalg.norm(upper - lower, axis=1)
+    assert gap.max() < 0.6
+    assert gap.min() > 0.3
+    assert np.array_equal(upper[:, 0], lower[:, 0])
+
+
+def test_no_face_is_inside_out(head: Head) -> None:
+    """Outside of the tucked-in rows every face looks the way the form does."""
+    tucked = {
+        vertex
+        for name in TUCKED_ROWS
+        for side in ("left", "right")
+        for vertex in head.rings[f"{name}_{side}"].tolist()
+    }
+    outside = ~np.isin(head.faces, sorted(tucked)).any(axis=1)
+    roof = [head.anatomy["nostril_roof_left"], head.anatomy["nostril_roof_right"]]
+    outside &= head.vertices[head.faces].mean(axis=1)[:, 2] < head.vertices[roof, 2].max() + 99.0
+    cross = cross_products(head.vertices, head.faces)
+    slope = gradient(form.distance, head.vertices[head.faces].mean(axis=1))
+    cosine = (cross * slope).sum(axis=1)
+    cosine /= np.linalg.norm(cross, axis=1) * np.linalg.norm(slope, axis=1)
+    inner = _nostril_faces(head)
+    assert cosine[outside & ~inner].min() > 0.15
+
+
+def _nostril_faces(head: Head) -> np.ndarray:
+    """Faces of the caps: all whose corners lie within 6 mm of a nostril's roof."""
+    near = np.zeros(len(head.vertices), dtype=bool)
+    for side in ("left", "right"):
+        roof = head.vertices[head.anatomy[f"nostril_roof_{side}"]]
+        near |= np.linalg.norm(head.vertices - roof, axis=1) < 6.0
+    return np.asarray(near[head.faces].all(axis=1))
+
+
+def test_report_measures_a_plausible_face(head: Head) -> None:
+    """Wide limits of adult faces; the point is that no row is nonsense."""
+    rows = {row.title: row.value for row in report(head)}
+    limits = {
+        "face height, n-gn": (105, 130),
+        "nose height, n-sn": (46, 60),
+        "nose protrusion, sn-prn": (16, 24),
+        "between inner eye corners, en-en": (28, 37),
+        "between outer eye corners, ex-ex": (82, 98),
+        "eye fissure height, ps-pi": (9, 12),
+        "nose width, al-al": (29, 39),
+        "mouth width, ch-ch": (45, 59),
+        "face width, zy-zy": (120, 145),
+    }
+    for title, (low, high) in limits.items():
+        assert low < rows[title] < high, title
+    assert rows["self-intersecting pairs"] == 0
+    assert rows["pieces"] == 1
+
+
+def test_checks_find_faults() -> None:
+    """A check that cannot fail protects nobody."""
+    points = np.array(
+        [[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1.5, (0.5).real]]
+    )
+    crossing = np.array([[0, 1, 2], [3, 4, 5]], dtype=np.int32)
+    assert checks.self_intersections(points, crossing).tolist() == [[0, 1]]
+    assert checks.component_count(crossing) == 2
+    repeated = np.array([[0, 1, 2], [0, 1, 3]], dtype=np.int32)
+    assert not checks.is_manifold(repeated)
+    branching = np.array([[0, 1, 2], [0, 3, 4]], dtype=np.int32)
+    with pytest.raises(ValueError, match="branches at vertex 0"):
+        boundary_loops(branching)
+    assert not checks.is_mirrored(crossing, np.array([1, 0, 2, 3, 4, 5], dtype=np.int32))

@@ -1,0 +1,134 @@
+"""The rigid parts: well-formed, inside the head, hidden while mouth and eyes are at rest."""
+
+import numpy as np
+import pytest
+
+import assets
+from assets.generator import form
+from assets.generator.topology import cross_products
+from assets.model import Head, Part
+
+BONES = {"cranium", "mandible", "eye_left", "eye_right"}
+IN_MOUTH = ("teeth", "gums", "tongue", "oral_cavity")
+
+
+@pytest.fixture(scope="module")
+def head() -> Head:
+    """The built-in head."""
+    return assets.load("head")
+
+
+def part(head: Head, name: str) -> Part:
+    """The part of that name."""
+    return next(found for found in head.parts if found.name == name)
+
+
+def test_parts_are_well_formed(head: Head) -> None:
+    """Indices, normals, colours, bones and shine are within their ranges; names are unique."""
+    assert len({found.name for found in head.parts}) == len(head.parts)
+    for found in head.parts:
+        assert found.bone in BONES
+        assert 0.0 <= found.shine <= 1.0
+        assert found.vertices.dtype == found.normals.dtype == found.colours.dtype == np.float32
+        assert found.faces.dtype == np.int32
+        assert found.faces.min() >= 0 and found.faces.max() < len(found.vertices)
+        assert np.allclose(np.linalg.norm(found.normals, axis=1), 1.0, atol=1e-4)
+        assert found.colours.min() >= 0.0 and found.colours.max() <= 1.0
+
+
+def test_part_normals_agree_with_their_faces(head: Head) -> None:
+    """Lighting and culling must tell the same story."""
+    for found in head.parts:
+        cross = cross_products(found.vertices.astype(np.float64), found.faces)
+        normal = found.normals[found.faces].sum(axis=1)
+        assert ((cross * normal).sum(axis=1) > 0).mean() > 0.98, found.name
+
+
+def test_what_belongs_to_the_jaw_moves_with_it(head: Head) -> None:
+    """Lower teeth, lower gums, tongue and the floor of the mouth are the mandible's."""
+    on_mandible = {found.name for found in head.parts if found.bone == "mandible"}
+    assert on_mandible == {"teeth_lower", "gums_lower", "tongue", "oral_cavity_lower"}
+
+
+def test_parts_look_outward_or_into_the_mouth(head: Head) -> None:
+    """Teeth and eyes face away from their middle; the cavity is seen from inside."""
+    for name in ("eyeball_left", "tongue"):
+        found = part(head, name)
+        away = found.vertices - found.vertices.mean(axis=0)
+        assert (found.normals * away).sum(axis=1).mean() > 0.0
+    flesh = part(head, "eye_corners")
+    assert flesh.normals[flesh.vertices[:, 2] > 77.0, 2].min() > 0.5
+    cavity = part(head, "oral_cavity_upper")
+    inward = np.array([0.0, -75.0, 56.0]) - cavity.vertices
+    assert ((cavity.normals * inward).sum(axis=1) > 0.0).mean() > 0.95
+    assert part(head, "oral_cavity_lower").normals[:, 1].mean() > 0.5
+
+
+def test_everything_in_the_mouth_is_inside_the_head(head: Head) -> None:
+    """Nothing pokes through lips or cheeks at rest: at least 1 mm of flesh everywhere."""
+    for found in head.parts:
+        if found.name.startswith(IN_MOUTH):
+            assert form.distance(found.vertices.astype(np.float64)).max() < -1.0, found.name
+
+
+def test_teeth_stand_behind_the_lips(head: Head) -> None:
+    """The vestibule ends in front of the teeth."""
+    vestibule = head.vertices[head.rings["mouth_0_left"]]
+    for name in ("teeth_upper", "teeth_lower"):
+        teeth = part(head, name).vertices
+        for x, _, z in vestibule[[0, 3, 7, 11, 14]]:
+            beside = np.abs(teeth[:, 0] - x) < 3.0
+            assert teeth[beside, 2].max() < z, name
+
+
+def test_teeth_are_pairs_of_fourteen_and_ivory(head: Head) -> None:
+    """Two mirrored quarters; warm, not white."""
+    for name in ("teeth_upper", "teeth_lower"):
+        teeth = part(head, name)
+        assert len(teeth.vertices) % 14 == 0
+        assert teeth.vertices[:, 0].min() == pytest.approx(-teeth.vertices[:, 0].max())
+        red, _, blue = teeth.colours.max(axis=0)
+        assert red < 0.96 and blue < red - 0.05
+
+
+def test_upper_incisors_overlap_the_lower(head: Head) -> None:
+    """Overbite and overjet of one to four millimetres."""
+    upper, lower = part(head, "teeth_upper").vertices, part(head, "teeth_lower").vertices
+    front = [teeth[np.abs(teeth[:, 0]) < 4.0] for teeth in (upper, lower)]
+    assert 1.0 < front[1][:, 1].max() - front[0][:, 1].min() < 4.0
+    assert 1.0 < front[0][:, 2].max() - front[1][:, 2].max() < 4.0
+
+
+def test_eyeballs_fit_their_lids(head: Head) -> None:
+    """The lid margin keeps clear of the ball, and the ball fills the fissure."""
+    for eye, side in zip(head.eyes, ("right", "left"), strict=True):
+        ball = part(head, f"eyeball_{side}").vertices - eye.centre
+        radius = np.linalg.norm(ball, axis=1)
+        assert radius.min() == pytest.approx(eye.radius, abs=0.01)
+        assert eye.radius + 0.8 < radius.max() < eye.radius + 2.0  # the cornea
+        margin = head.vertices[head.rings[f"eye_1_{side}"]] - eye.centre
+        assert np.linalg.norm(margin, axis=1).min() > eye.radius + 0.1
+        assert radius[np.hypot(ball[:, 0], ball[:, 1]) > 5.2].max() < eye.radius + 0.25
+
+
+def test_pupil_is_at_the_pole_and_the_iris_has_its_radius(head: Head) -> None:
+    """Dark in the middle, coloured ring, light beyond."""
+    eye = head.eyes[1]
+    ball = part(head, "eyeball_left")
+    local = ball.vertices - eye.centre
+    beside = np.hypot(local[:, 0], local[:, 1])
+    ahead = local[:, 2] > 0
+    brightness = ball.colours.mean(axis=1)
+    assert brightness[ahead & (beside < 1.5)].max() < 0.1
+    iris = brightness[ahead & (beside > 2.6) & (beside < eye.iris_radius - 0.8)]
+    assert 0.2 < iris.mean() < 0.6 and iris.std() > 0.02
+    assert brightness[ahead & (beside > 6.8) & (np.abs(local[:, 0]) < 6.0)].min() > 0.8
+
+
+def test_eye_corners_are_filled(head: Head) -> None:
+    """Flesh reaches from the ball to both corners, behind the lid margin."""
+    flesh = part(head, "eye_corners").vertices
+    for name in ("endocanthion_left", "exocanthion_left"):
+        corner = head.vertices[head.anatomy[name]]
+        assert np.linalg.norm(flesh - corner, axis=1).min() < 4.0
+    assert form.distance(flesh.astype(np.float64)).max() < -1.0

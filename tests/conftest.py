@@ -1,0 +1,28 @@
+"""What every test starts from: numpy's floating-point errors raise, random numbers have a seed."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture(autouse=True)
+def floating_point_errors_raise() -> Iterator[None]:
+    """Overflow, division by zero and invalid operations in numpy are test failures."""
+    with np.errstate(over="raise", divide="raise", invalid="raise"):
+        yield
+
+
+@pytest.fixture(autouse=True)
+def fixed_seed() -> None:
+    """The standard generator starts each test in the same state."""
+    random.seed(20030214)
+
+
+@pytest.fixture
+def generator() -> np.random.Generator:
+    """A seeded numpy generator."""
+    return np.random.default_rng(20030214)

@@ -1,0 +1,204 @@
+"""Meshes for tests: small ones to hold in the head, each with one property, and random ones.
+
+All triangles are counter-clockwise seen from +z (or from outside) unless the name says otherwise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Vertex positions, shape (V, 3), and triangles, shape (F, 3)."""
+
+    vertices: npt.NDArray[np.float64]
+    faces: npt.NDArray[np.int32]
+    uv: npt.NDArray[np.float64] | None = None
+    face_uv: npt.NDArray[np.int32] | None = None
+
+
+def _mesh(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> Mesh:
+    return Mesh(np.array(vertices, dtype=np.float64), np.array(faces, dtype=np.int32))
+
+
+def triangle() -> Mesh:
+    """One triangle: three border edges."""
+    return _mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+
+
+def two_triangles() -> Mesh:
+    r"""Two triangles with one inner edge 1-2.
+
+    2---3
+    | \ |
+    0---1
+    """
+    return _mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 1, 2), (3, 2, 1)])
+
+
+def fan(valence: int = 6) -> Mesh:
+    """A flat disk: vertex 0 in the middle, `valence` vertices around it."""
+    angles = 2.0 * np.pi * np.arange(valence) / valence
+    ring = np.stack([np.cos(angles), np.sin(angles), np.zeros(valence)], axis=1)
+    faces = [(0, 1 + k, 1 + (k + 1) % valence) for k in range(valence)]
+    return _mesh(np.concatenate([np.zeros((1, 3)), ring]), faces)
+
+
+def tetrahedron() -> Mesh:
+    """The smallest closed surface: every vertex has valence three."""
+    vertices = [(1, 1, 1), (-1, -1, 1), (-1, 1, -1), (1, -1, -1)]
+    return _mesh(vertices, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+
+
+def octahedron() -> Mesh:
+    """A closed surface whose vertices have valence four."""
+    vertices = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+    faces = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
+    return _mesh(vertices, faces)
+
+
+def open_grid(columns: int = 4, rows: int = 3) -> Mesh:
+    """A flat rectangle of unit cells, each cut in two, with an open border."""
+    x, y = np.meshgrid(np.arange(columns + 1.0), np.arange(rows + 1.0))
+    vertices = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    corners = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).ravel()
+    lower = np.stack([corners, corners + 1, corners + columns + 2], axis=1)
+    upper = np.stack([corners, corners + columns + 2, corners + columns + 1], axis=1)
+    return _mesh(vertices, np.stack([lower, upper], axis=1).reshape(-1, 3))
+
+
+def folded_strip() -> Mesh:
+    """Two triangles folded towards each other like a book that is half shut."""
+    return _mesh([(0, 0, 0), (0, 1, 0), (1, 0.5, 0.3), (1, 0.5, -0.3)], [(0, 2, 1), (0, 1, 3)])
+
+
+def pillow() -> Mesh:
+    """Two triangles with the same three vertices, back to back: closed, valence two."""
+    return _mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2), (0, 2, 1)])
+
+
+def bow_tie() -> Mesh:
+    """Two triangles that meet in vertex 0 only: a vertex that is no manifold."""
+    vertices = [(0, 0, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (-1, -1, 0)]
+    return _mesh(vertices, [(0, 1, 2), (0, 3, 4)])
+
+
+def three_sheets() -> Mesh:
+    """Three triangles on the edge 0-1: an edge that is no manifold."""
+    vertices = [(0, 0, 0), (0, 0, 1), (1, 0, 0), (-1, 1, 0), (-1, -1, 0)]
+    return _mesh(vertices, [(0, 1, 2), (0, 1, 3), (1, 0, 4)])
+
+
+def inconsistent_pair() -> Mesh:
+    """Two triangles that run through their common edge in the same direction."""
+    return _mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, -1, 0)], [(0, 1, 2), (0, 1, 3)])
+
+
+def with_debris() -> Mesh:
+    """A grid, a second component, vertices nobody uses, a sliver, and triangles without area."""
+    grid = open_grid(3, 2)
+    count = len(grid.vertices)
+    extra = [(9, 0, 0), (10, 0, 0), (9, 1, 0), (50, 50, 50), (11, 0, 0)]
+    faces = [
+        (count, count + 1, count + 2),  # a component of its own
+        (count, count + 1, count + 4),  # collinear corners
+        (0, 1, 1),  # names a vertex twice
+        (2, 2, 2),  # names one vertex three times
+        (0, 1, 5),  # again, the second time
+    ]
+    return _mesh(np.concatenate([grid.vertices, extra]), [*grid.faces.tolist(), *faces])
+
+
+NAMED = {
+    function.__name__: function
+    for function in (
+        triangle,
+        two_triangles,
+        fan,
+        tetrahedron,
+        octahedron,
+        open_grid,
+        folded_strip,
+        pillow,
+        bow_tie,
+        three_sheets,
+        inconsistent_pair,
+        with_debris,
+    )
+}
+"""All named meshes; call the value to get the mesh."""
+
+
+def irregular(seed: int, columns: int = 12, rows: int = 10, holes: int = 3) -> Mesh:
+    """A bumpy sheet with uneven valences and holes; vertices, triangles and corners shuffled."""
+    generator = np.random.default_rng(seed)
+    grid = open_grid(columns, rows)
+    x, y = grid.vertices[:, 0], grid.vertices[:, 1]
+    jitter = generator.uniform(-0.3, 0.3, (len(x), 2))
+    height = 0.8 * np.sin(0.5 * x) * np.cos(0.4 * y) + 0.1 * generator.standard_normal(len(x))
+    vertices = np.stack([x + jitter[:, 0], y + jitter[:, 1], height], axis=1)
+
+    pairs = grid.faces.reshape(-1, 2, 3)
+    a, b, c, d = pairs[:, 0, 0], pairs[:, 0, 1], pairs[:, 0, 2], pairs[:, 1, 2]
+    other = np.stack([np.stack([a, b, d], axis=1), np.stack([b, c, d], axis=1)], axis=1)
+    is_flipped = generator.random(len(pairs)) < 0.5
+    faces = np.where(is_flipped[:, None, None], other, pairs).reshape(-1, 3)
+
+    centres = vertices[faces].mean(axis=1)
+    for centre in centres[generator.integers(len(faces), size=holes)]:
+        is_far = np.linalg.norm(centres - centre, axis=1) > generator.uniform(0.8, 1.8)
+        faces, centres = faces[is_far], centres[is_far]
+
+    new_number = generator.permutation(len(vertices))
+    shuffled = np.empty_like(vertices)
+    shuffled[new_number] = vertices
+    faces = new_number[faces][generator.permutation(len(faces))]
+    turns = generator.integers(3, size=len(faces))
+    faces = np.take_along_axis(faces, (np.arange(3) + turns[:, None]) % 3, axis=1)
+    return _mesh(shuffled, faces)
+
+
+def wrinkled(mesh: Mesh, seed: int, amplitude: float = 0.25) -> npt.NDArray[np.float64]:
+    """Deform a mesh with a few random plane waves, shape (V, 3): some places bend, some do not."""
+    generator = np.random.default_rng(seed)
+    deformed = mesh.vertices.copy()
+    for _ in range(3):
+        wave = generator.uniform(-2.5, 2.5, 3)
+        phase, direction = generator.uniform(0.0, 2.0 * np.pi), generator.standard_normal(3)
+        deformed += amplitude * direction * np.sin(mesh.vertices @ wave + phase)[:, None]
+    return deformed
+
+
+def tube(segments: int = 8, rings: int = 4) -> Mesh:
+    """A tube, closed in geometry, whose texture is cut open along a straight seam.
+
+    The seam is where the texture coordinate u jumps from 1 to 0: `segments + 1` columns of texture
+    coordinates for `segments` columns of vertices.
+    """
+    angles = 2.0 * np.pi * np.arange(segments) / segments
+    circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    vertices = [(x, y, 0.7 * z) for z in range(rings + 1) for x, y in circle]
+    uv = [(u / segments, v / rings) for v in range(rings + 1) for u in range(segments + 1)]
+    faces, face_uv = [], []
+    for ring in range(rings):
+        for k in range(segments):
+            a, b = ring * segments + k, ring * segments + (k + 1) % segments
+            faces += [(a, b, b + segments), (a, b + segments, a + segments)]
+            s = ring * (segments + 1) + k
+            face_uv += [(s, s + 1, s + segments + 2), (s, s + segments + 2, s + segments + 1)]
+    return Mesh(
+        np.array(vertices),
+        np.array(faces, dtype=np.int32),
+        np.array(uv),
+        np.array(face_uv, dtype=np.int32),
+    )
+
+
+def rotation(seed: int) -> npt.NDArray[np.float64]:
+    """A random rotation matrix, shape (3, 3)."""
+    matrix, _ = np.linalg.qr(np.random.default_rng(seed).standard_normal((3, 3)))
+    return np.asarray(matrix * np.linalg.det(matrix))

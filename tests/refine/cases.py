@@ -1,0 +1,83 @@
+"""What the tests of refine/ share: forced splits, names of output points, generated meshes."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from hypothesis import strategies as st
+
+import refine
+from tests.refine import plain_twin
+
+
+class Forced:
+    """A criterion that splits as it is told, whatever the mesh does."""
+
+    def __init__(self, splits: npt.ArrayLike) -> None:
+        self.wanted = np.asarray(splits, dtype=np.uint8)
+
+    def bind(self, connectivity: object, rest_positions: object, rest_normals: object) -> None:
+        """Need nothing of the undeformed mesh."""
+
+    def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
+        """Write the wanted splits."""
+        splits[:] = self.wanted
+
+
+def point_names(origins: refine.Origins) -> list[plain_twin.Name]:
+    """Names, as the plain twin uses them, of the vertices of the last frame."""
+    names: list[plain_twin.Name] = []
+    for vertices, weights in zip(origins.vertices, origins.weights, strict=True):
+        parts = sorted((int(v), 4 * float(w)) for v, w in zip(vertices, weights, strict=True) if w)
+        if len(parts) == 1:
+            names.append(("vertex", parts[0][0]))
+        else:
+            (low, _), (high, from_low) = parts
+            names.append(("edge", low, high, int(from_low)))
+    return names
+
+
+def assert_equals_twin(
+    refiner: refine.Refiner,
+    mesh: refine.RefinedMesh,
+    twin: plain_twin.Twin,
+    *,
+    normals_cancel: bool = False,
+) -> None:
+    """Every point, normal and triangle of the mesh is that of the plain twin, to float32.
+
+    `normals_cancel`: leave out the normals, because opposite triangles may meet at a vertex and
+    nothing but rounding remains of its normal.
+    """
+    names = point_names(refiner.origins())
+    assert set(names) == set(twin.positions)
+    expected = np.array([twin.positions[name] for name in names])
+    scale = max(1.0, float(abs(expected).max(initial=0.0)))
+    np.testing.assert_allclose(mesh.positions, expected, rtol=0, atol=5e-7 * scale)
+    if not normals_cancel:
+        normals = np.array([twin.normals[name] for name in names])
+        np.testing.assert_allclose(mesh.normals, normals, rtol=0, atol=4e-6)
+    triangles = [
+        (int(source), plain_twin.starting_at_least([names[v] for v in corners]))
+        for source, corners in zip(mesh.source, mesh.triangles, strict=True)
+    ]
+    assert sorted(map(str, triangles)) == sorted(map(str, twin.triangles))
+
+
+def as_lists(
+    positions: npt.NDArray[np.float64], faces: npt.NDArray[np.integer]
+) -> tuple[list[plain_twin.Vector], list[tuple[int, int, int]]]:
+    """Arrays in the form the plain twin takes."""
+    points = [(float(x), float(y), float(z)) for x, y, z in positions]
+    return points, [(int(a), int(b), int(c)) for a, b, c in faces]
+
+
+@st.composite
+def soups(draw: st.DrawFn) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
+    """Any triangles over a few vertices: borders, fins, flips, doubles and debris all occur."""
+    vertex_count = draw(st.integers(3, 8))
+    index = st.integers(0, vertex_count - 1)
+    faces = draw(st.lists(st.tuples(index, index, index), min_size=1, max_size=12))
+    seed = draw(st.integers(0, 2**16))
+    positions = np.random.default_rng(seed).uniform(-1.0, 1.0, (vertex_count, 3))
+    return positions, np.array(faces, dtype=np.int32)

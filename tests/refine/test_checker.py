@@ -1,0 +1,253 @@
+"""The checker must notice what it promises to notice: each test breaks one relation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import refine
+from tests import meshes
+
+Mutation = Callable[[refine.RefinedMesh], refine.RefinedMesh]
+
+
+class Wrapped:
+    """A refiner whose account of its last frame can be falsified."""
+
+    def __init__(self, refiner: refine.Refiner) -> None:
+        self._refiner = refiner
+        self.splits = refiner.splits.copy()
+        self.false_origins: refine.Origins | None = None
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(self._refiner, name)
+
+    def origins(self) -> refine.Origins:
+        """The false origins, if there are any."""
+        return self.false_origins or self._refiner.origins()
+
+
+@pytest.fixture
+def frame() -> tuple[Wrapped, refine.RefinedMesh, np.ndarray]:
+    """A refined frame in arrays of its own, its refiner, and the deformed positions."""
+    mesh = meshes.irregular(11)
+    deformed = meshes.wrinkled(mesh, 12, amplitude=0.3)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    refined = refiner.refine(deformed)
+    assert set(refiner.splits.tolist()) == {0, 1, 2}
+    copied = refined._replace(
+        positions=refined.positions.copy(),
+        normals=refined.normals.copy(),
+        triangles=refined.triangles.copy(),
+        source=refined.source.copy(),
+    )
+    return Wrapped(refiner), copied, deformed
+
+
+def test_proper_mesh_passes(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
+    """What every other test here starts from is in order."""
+    refine.check(*frame)
+
+
+def drop_triangle(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
+    """Lose one subtriangle of a split triangle."""
+    k = np.flatnonzero(np.bincount(mesh.source)[mesh.source] > 1)[0]
+    return mesh._replace(
+        triangles=np.delete(mesh.triangles, k, axis=0), source=np.delete(mesh.source, k)
+    )
+
+
+def drop_source(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
+    """Lose all of one input triangle."""
+    keep = mesh.source != mesh.source[5]
+    return mesh._replace(triangles=mesh.triangles[keep], source=mesh.source[keep])
+
+
+def double_triangle(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
+    """Draw one triangle twice."""
+    return mesh._replace(
+        triangles=np.concatenate([mesh.triangles, mesh.triangles[:1]]),
+        source=np.concatenate([mesh.source, mesh.source[:1]]),
+    )
+
+
+def flip_triangle(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
+    """Turn one triangle over."""
+    mesh.triangles[3] = mesh.triangles[3, ::-1]
+    return mesh
+
+
+def degenerate_triangle(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
+    """Let two corners of a triangle be the same."""
+    mesh.triangles[3, 1] = mesh.triangles[3, 0]
+    return mesh
+
+
+def wrong_source(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
+    """Claim that a triangle is part of another input triangle."""
+    k = np.flatnonzero(np.bincount(mesh.source)[mesh.source] > 1)[0]
+    mesh.source[k] = (mesh.source[k] + 1) % (mesh.source.max() + 1)
+    return mesh
+
+
+def index_out_of_range(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
+    """Point behind the last vertex."""
+    mesh.triangles[2, 2] = len(mesh.positions)
+    return mesh
+
+
+def source_out_of_range(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
+    """Name an input triangle that does not exist."""
+    mesh.source[2] = 10**6
+    return mesh
+
+
+def not_finite(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
+    """Put NaN into a position."""
+    mesh.positions[7, 1] = np.nan
+    return mesh
+
+
+def long_normal(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
+    """Double a normal."""
+    mesh.normals[7] *= 2.0
+    return mesh
+
+
+def wrong_type(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
+    """Hand out double precision."""
+    return mesh._replace(positions=mesh.positions.astype(np.float64))
+
+
+def lost_normals(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
+    """Hand out fewer normals than positions."""
+    return mesh._replace(normals=mesh.normals[:-1])
+
+
+@pytest.mark.parametrize(
+    ("mutation", "relation"),
+    [
+        (drop_triangle, "areas of its subtriangles add up"),
+        (drop_source, "every input triangle is part of the output"),
+        (double_triangle, "areas of its subtriangles add up"),
+        (flip_triangle, "orientation of its input triangle"),
+        (degenerate_triangle, "orientation of its input triangle"),
+        (wrong_source, "lie in the input triangle it is part of"),
+        (index_out_of_range, "triangles name vertices of the mesh"),
+        (source_out_of_range, "sources name triangles of the input"),
+        (not_finite, "positions are finite"),
+        (long_normal, "normals have length one"),
+        (wrong_type, "positions and normals are float32"),
+        (lost_normals, "one row of normals"),
+    ],
+)
+def test_broken_output(
+    frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray], mutation: Mutation, relation: str
+) -> None:
+    """Each mutation of the output is reported with the relation that it breaks."""
+    refiner, refined, deformed = frame
+    with pytest.raises(refine.BrokenMeshError, match=relation):
+        refine.check(refiner, mutation(refined), deformed)
+
+
+def test_t_junction(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
+    """A triangle left whole beside a split edge covers its area, and is still found."""
+    refiner, refined, deformed = frame
+    counts = np.bincount(refined.source)
+    source = int(np.flatnonzero(counts > 1)[0])
+    edges = refiner.edges[refiner.triangle_edges[source]]  # type: ignore[attr-defined]
+    corners = [int((set(edges[k - 1]) & set(edges[k])).pop()) for k in range(3)]
+    keep = refined.source != source
+    whole = refined._replace(
+        triangles=np.concatenate([refined.triangles[keep], np.array([corners], dtype=np.uint32)]),
+        source=np.append(refined.source[keep], np.int32(source)),
+    )
+    with pytest.raises(refine.BrokenMeshError, match="no crack, no T-junction"):
+        refine.check(refiner, whole, deformed)
+
+
+def test_crack_inside(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
+    """Two subtriangles cut along the other diagonal of only one of them do not fit."""
+    refiner, refined, deformed = frame
+    origins = refiner.origins()
+    doubled = refine.Origins(
+        np.concatenate([origins.vertices, origins.vertices[:1]]),
+        np.concatenate([origins.weights, origins.weights[:1]]),
+    )
+    refiner.false_origins = doubled
+    # A copy of vertex 0 in another place of space, used by one of the triangles around it.
+    moved = refined._replace(
+        positions=np.concatenate([refined.positions, refined.positions[:1] + np.float32(0.01)]),
+        normals=np.concatenate([refined.normals, refined.normals[:1]]),
+    )
+    k, corner = np.argwhere(moved.triangles == 0)[0]
+    moved.triangles[k, corner] = len(refined.positions)
+    with pytest.raises(refine.BrokenMeshError, match="no crack along a seam"):
+        refine.check(refiner, moved, deformed)
+
+
+def test_edge_flip_inside(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
+    """Subtriangles that overlap and miss the same area are told by their inner sub-edges."""
+    mesh = meshes.triangle()
+    refiner = Wrapped(refine.create("kahler", mesh.faces, mesh.vertices))
+    refined = refine.create("none", mesh.faces, mesh.vertices).refine(mesh.vertices)
+    # Halves of the triangle on one side of its median, both times the same half.
+    origins = refine.Origins(
+        np.array([[0, 0, 0], [1, 1, 1], [2, 2, 2], [0, 1, 0]], dtype=np.int32),
+        np.array([[1, 0, 0], [1, 0, 0], [1, 0, 0], [0.5, 0.5, 0]], dtype=np.float32),
+    )
+    refiner.false_origins = origins
+    refiner.splits[:] = [1, 0, 0]
+    halves = refined._replace(
+        positions=np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.5, 0, 0]], dtype=np.float32),
+        normals=np.tile(np.array([[0, 0, 1]], dtype=np.float32), (4, 1)),
+        triangles=np.array([[0, 3, 2], [0, 3, 2]], dtype=np.uint32),
+        source=np.zeros(2, dtype=np.int32),
+    )
+    with pytest.raises(refine.BrokenMeshError, match="two subtriangles in opposite directions"):
+        refine.check(refiner, halves, mesh.vertices)
+
+
+def test_wrong_split_count(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
+    """Splits that do not fit the sub-edges are noticed."""
+    refiner, refined, deformed = frame
+    e = int(np.flatnonzero(refiner.splits == 2)[0])
+    refiner.splits[e] = 1
+    with pytest.raises(refine.BrokenMeshError, match="2 to the power of s sub-edges"):
+        refine.check(refiner, refined, deformed)
+
+
+def test_moved_vertex(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
+    """The smallest change of a vertex away from splits is noticed."""
+    refiner, refined, deformed = frame
+    touched = np.unique(refiner.edges[refiner.splits > 0])  # type: ignore[attr-defined]
+    v = int(np.setdiff1d(np.arange(len(deformed)), touched)[0])
+    refined.positions[v, 0] = np.nextafter(refined.positions[v, 0], np.float32(np.inf))
+    with pytest.raises(refine.BrokenMeshError, match="to the last bit"):
+        refine.check(refiner, refined, deformed)
+
+
+def test_false_weights(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
+    """Origins that are no mix of input vertices are refused."""
+    refiner, refined, deformed = frame
+    origins = refiner.origins()
+    refiner.false_origins = origins._replace(weights=origins.weights * np.float32(0.9))
+    with pytest.raises(refine.BrokenMeshError, match="weights in quarters that add up to one"):
+        refine.check(refiner, refined, deformed)
+
+
+def test_lost_degenerate_triangle() -> None:
+    """A triangle that names a vertex twice may not come out twice."""
+    mesh = meshes.with_debris()
+    refiner = refine.create("none", mesh.faces, mesh.vertices)
+    with pytest.raises(refine.BrokenMeshError, match="names a vertex twice is handed through"):
+        refine.check(refiner, double_degenerate(refiner.refine(mesh.vertices)), mesh.vertices)
+
+
+def double_degenerate(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
+    """Draw the first triangle that names a vertex twice once more."""
+    has_two = (mesh.triangles == np.roll(mesh.triangles, 1, axis=1)).any(axis=1)
+    rows = np.append(np.arange(len(mesh.source)), np.flatnonzero(has_two)[:1])
+    return mesh._replace(triangles=mesh.triangles[rows], source=mesh.source[rows])

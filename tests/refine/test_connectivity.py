@@ -1,0 +1,111 @@
+"""Edges, neighbourhoods, wedges and rims."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+import refine
+from tests import meshes
+from tests.refine.cases import soups
+from tests.refine.plain_twin import Surroundings, edge_name
+
+
+@pytest.mark.parametrize(
+    ("name", "edge_count", "interior_count"),
+    [
+        ("triangle", 3, 0),
+        ("two_triangles", 5, 1),
+        ("fan", 12, 6),
+        ("tetrahedron", 6, 6),
+        ("octahedron", 12, 12),
+        ("folded_strip", 5, 1),
+        ("pillow", 3, 3),
+        ("bow_tie", 6, 0),
+        ("three_sheets", 7, 0),
+        ("inconsistent_pair", 5, 0),
+    ],
+)
+def test_edge_counts(name: str, edge_count: int, interior_count: int) -> None:
+    """Named meshes have the edges one counts by hand."""
+    mesh = meshes.NAMED[name]()
+    connectivity = refine.connect(mesh.faces, len(mesh.vertices))
+    assert len(connectivity.edges) == edge_count
+    assert connectivity.is_interior.sum() == interior_count
+
+
+def test_neighbourhood_of_inner_edge() -> None:
+    """The inner edge of two triangles knows both opposite corners and its four wings."""
+    mesh = meshes.two_triangles()
+    connectivity = refine.connect(mesh.faces, 4)
+    (inner,) = np.flatnonzero(connectivity.is_interior)
+    a, b, c, d = connectivity.edge_points[inner].tolist()
+    assert (a, b, c, d) == (1, 2, 0, 3)
+    wings = [sorted(connectivity.edges[w].tolist()) for w in connectivity.edge_wings[inner]]
+    assert wings == [[0, 1], [0, 2], [1, 3], [2, 3]]
+
+
+@settings(max_examples=150, deadline=None)
+@given(soups())
+def test_soups(soup: tuple[np.ndarray, np.ndarray]) -> None:
+    """For any triangles, edges and neighbourhoods are those found with plain dictionaries."""
+    positions, faces = soup
+    connectivity = refine.connect(faces, len(positions))
+    around = Surroundings([tuple(int(v) for v in face) for face in faces])
+    names = [edge_name(int(a), int(b)) for a, b in connectivity.edges]
+    assert len(set(names)) == len(names)
+    assert set(names) == set(around.opposite)
+    inner = {name for name, is_in in zip(names, connectivity.is_interior, strict=True) if is_in}
+    assert inner == around.inner
+    for e in np.flatnonzero(connectivity.is_interior):
+        a, b, c, d = (int(v) for v in connectivity.edge_points[e])
+        assert sorted((c, d)) == sorted(around.opposite[names[e]])
+        wings = [names[w] for w in connectivity.edge_wings[e]]
+        assert wings == [edge_name(*ends) for ends in ((a, c), (b, c), (a, d), (b, d))]
+    for face, edges in zip(faces, connectivity.triangle_edges, strict=True):
+        if len(set(face.tolist())) < 3:
+            assert (edges == -1).all()
+            continue
+        expected = [edge_name(int(face[i]), int(face[(i + 1) % 3])) for i in range(3)]
+        assert [names[e] for e in edges] == expected
+
+
+def test_wedges_of_tube() -> None:
+    """A seam of five vertices and four edges has a copy of each, and no other has."""
+    tube = meshes.tube(segments=8, rings=4)
+    connectivity = refine.connect(tube.faces, len(tube.vertices), tube.face_uv)
+    assert len(connectivity.wedge_vertices) == len(tube.vertices) + 5
+    assert len(connectivity.rim_edges) == len(connectivity.edges) + 4
+    assert connectivity.wedge_vertices[: len(tube.vertices)].tolist() == list(range(40))
+    assert (connectivity.wedge_vertices[connectivity.corners] == tube.faces).all()
+    assert (connectivity.wedge_uv[connectivity.corners] == tube.face_uv).all()
+
+
+def test_edges_on_seam_are_interior() -> None:
+    """A texture seam is no border: geometry does not see it."""
+    tube = meshes.tube(segments=8, rings=4)
+    connectivity = refine.connect(tube.faces, len(tube.vertices), tube.face_uv)
+    assert (~connectivity.is_interior).sum() == 2 * 8
+
+
+def test_weld() -> None:
+    """A mesh doubled along its seam becomes closed, and its texture coordinates stay apart."""
+    tube = meshes.tube(segments=6, rings=2)
+    assert tube.uv is not None and tube.face_uv is not None
+    vertex_of_uv = np.zeros(len(tube.uv), dtype=int)
+    vertex_of_uv[tube.face_uv] = tube.faces
+    doubled = tube.vertices[vertex_of_uv]
+    doubled[doubled == 0.0] = -0.0
+    kept, faces = refine.weld(doubled, tube.face_uv)
+    assert len(kept) == len(tube.vertices)
+    assert (doubled[kept][faces] == tube.vertices[tube.faces]).all()
+    connectivity = refine.connect(faces, len(kept), tube.face_uv)
+    assert (~connectivity.is_interior).sum() == 2 * 6
+
+
+def test_empty_mesh() -> None:
+    """Vertices without any triangle give no edges and no error."""
+    connectivity = refine.connect(np.zeros((0, 3), dtype=np.int32), 2)
+    assert len(connectivity.edges) == 0
+    assert connectivity.wedge_vertices.tolist() == [0, 1]

@@ -1,0 +1,220 @@
+"""The registry, binding errors, and a refiner of somebody else."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import refine
+from refine import plugin
+from tests import meshes
+
+FINE = meshes.octahedron()
+
+
+class Outside:
+    """The smallest refiner of somebody else: written from the protocol, not from our base class."""
+
+    vertex_columns = 6
+
+    def __init__(
+        self,
+        faces: np.ndarray,
+        rest_positions: np.ndarray,
+        *,
+        uv: object = None,
+        face_uv: object = None,
+        offset: float = 0.0,
+    ) -> None:
+        self._faces = np.asarray(faces, dtype=np.uint32)
+        connectivity = refine.connect(faces, len(rest_positions))
+        self.edges, self.triangle_edges = connectivity.edges, connectivity.triangle_edges
+        self.splits = np.zeros(len(self.edges), dtype=np.uint8)
+        self.vertex_capacity, self.triangle_capacity = len(rest_positions), len(faces)
+        self.offset = offset
+
+    def refine(self, positions: np.ndarray, out: refine.Stream | None = None) -> refine.RefinedMesh:
+        """Hand the mesh through without normals."""
+        points = (positions + self.offset).astype(np.float32)
+        source = np.arange(len(self._faces), dtype=np.int32)
+        return refine.RefinedMesh(points, np.zeros_like(points), self._faces, source, None)
+
+    def origins(self) -> refine.Origins:
+        """Every output vertex is the input vertex of the same number."""
+        numbers = np.arange(self.vertex_capacity, dtype=np.int32)
+        weights = np.tile(np.array([[1, 0, 0]], dtype=np.float32), (len(numbers), 1))
+        return refine.Origins(np.stack([numbers] * 3, axis=1), weights)
+
+
+@pytest.fixture
+def clean_registry(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Forget afterwards what a test registers."""
+    monkeypatch.setattr(plugin, "_factories", dict(plugin._factories))
+
+
+def test_built_in_names() -> None:
+    """The three built-in refiners are there."""
+    assert {"none", "kahler", "loop"} <= set(refine.available())
+
+
+@pytest.mark.usefixtures("clean_registry")
+def test_registered_refiner() -> None:
+    """A registered refiner is created by name with its options, and passes the checker."""
+    refine.register("outside", Outside)
+    assert "outside" in refine.available()
+    refiner = refine.create("outside", FINE.faces, FINE.vertices, offset=0.0)
+    assert isinstance(refiner, refine.Refiner)
+    refine.check(refiner, refiner.refine(FINE.vertices), FINE.vertices)
+    moved = refine.create("outside", FINE.faces, FINE.vertices, offset=0.5)
+    with pytest.raises(refine.BrokenMeshError, match="to the last bit"):
+        refine.check(moved, moved.refine(FINE.vertices), FINE.vertices)
+
+
+@pytest.mark.usefixtures("clean_registry")
+def test_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An installed package brings a refiner by entry point, loaded when it is first asked for."""
+    loaded = []
+    point = SimpleNamespace(name="installed", load=lambda: loaded.append(1) or Outside)
+
+    def entry_points(*, group: str) -> list[SimpleNamespace]:
+        return [point] if group == "risorius.refiners" else []
+
+    monkeypatch.setattr(plugin, "entry_points", entry_points)
+    assert "installed" in refine.available()
+    assert not loaded
+    assert isinstance(refine.create("installed", FINE.faces, FINE.vertices), Outside)
+    assert importlib.metadata.entry_points is not entry_points
+
+
+@pytest.mark.usefixtures("clean_registry")
+@pytest.mark.parametrize(
+    ("name", "factory", "text"),
+    [
+        ("kahler", Outside, "named 'kahler' exists already; taken are"),
+        ("", Outside, "must not be empty"),
+        ("broken", 7, "must be callable, got 7"),
+    ],
+)
+def test_bad_registration(name: str, factory: object, text: str) -> None:
+    """Names cannot be taken twice, and factories have to be callable."""
+    with pytest.raises(ValueError, match=text):
+        refine.register(name, factory)  # type: ignore[arg-type]
+
+
+def test_unknown_name() -> None:
+    """The error lists the names there are."""
+    with pytest.raises(ValueError, match=r"unknown refiner 'khaler'; available are .*'kahler'"):
+        refine.create("khaler", FINE.faces, FINE.vertices)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("kahler", r"it takes \['criterion', 'threshold_once', 'threshold_twice'\]"),
+        ("loop", r"it takes \['levels'\]"),
+        ("none", "it takes none"),
+    ],
+)
+def test_unknown_option(name: str, text: str) -> None:
+    """The error lists the options there are."""
+    with pytest.raises(ValueError, match=f"unknown option 'treshold' for refiner '{name}'; {text}"):
+        refine.create(name, FINE.faces, FINE.vertices, treshold=0.1)
+
+
+NAN = FINE.vertices.copy()
+NAN[4, 1] = np.nan
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        ({"faces": FINE.faces[:, :2]}, r"faces must be integers of shape \(F, 3\), got int32"),
+        ({"faces": FINE.faces.astype(float)}, "faces must be integers .* got float64"),
+        ({"faces": FINE.faces + 1}, r"indices from 0 to 5 into rest_positions, but triangle 4 is"),
+        ({"faces": FINE.faces - 1}, r"but triangle 0 is \[-1, 1, 3\]"),
+        ({"faces": [[0, 1, 2, 3]]}, "cut polygons into triangles"),
+        ({"rest_positions": FINE.vertices[:, :2]}, r"numbers of shape \(V, 3\), got float64"),
+        ({"rest_positions": NAN}, "must be finite, but vertex 4 is"),
+        ({"rest_positions": FINE.vertices.astype(str)}, "rest_positions must be numbers"),
+        ({"face_uv": FINE.faces}, "face_uv points into uv, but uv is None"),
+        ({"uv": np.zeros((6, 3))}, r"uv must be numbers of shape \(U, 2\)"),
+        ({"uv": np.zeros((5, 2))}, "needs one row per vertex"),
+        ({"uv": np.full((6, 2), np.inf)}, "uv must be finite"),
+        ({"uv": np.zeros((3, 2)), "face_uv": FINE.faces}, "face_uv must hold indices from 0 to 2"),
+        ({"uv": np.zeros((6, 2)), "face_uv": FINE.faces[:3]}, "one row per triangle .8., got 3"),
+    ],
+)
+@pytest.mark.parametrize("name", ["none", "kahler", "loop"])
+def test_bad_binding(name: str, changes: dict[str, object], text: str) -> None:
+    """Arrays that do not fit together are refused with what, where, and what is allowed."""
+    arguments: dict[str, object] = {"faces": FINE.faces, "rest_positions": FINE.vertices}
+    arguments |= changes
+    with pytest.raises(ValueError, match=text):
+        refine.create(name, **arguments)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["none", "kahler", "loop"])
+def test_binding_copies(name: str) -> None:
+    """Changing the bound arrays afterwards changes nothing, and they are not changed."""
+    faces, rest = FINE.faces.copy(), FINE.vertices.copy()
+    refiner = refine.create(name, faces, rest)
+    deformed = FINE.vertices * 1.5
+    expected = refiner.refine(deformed).positions.copy()
+    faces[:] = 0
+    rest[:] = 7.0
+    assert (refiner.refine(deformed).positions == expected).all()
+    assert (deformed == FINE.vertices * 1.5).all()
+
+
+@pytest.mark.parametrize("name", ["none", "kahler", "loop"])
+def test_splits_cannot_be_written(name: str) -> None:
+    """The splits of the last frame are for reading."""
+    refiner = refine.create(name, FINE.faces, FINE.vertices)
+    assert refiner.splits.dtype == np.uint8
+    assert refiner.splits.shape == (12,)
+    with pytest.raises(ValueError, match="read-only"):
+        refiner.splits[0] = 1
+
+
+@pytest.mark.parametrize("name", ["none", "kahler", "loop"])
+def test_mesh_without_triangles(name: str) -> None:
+    """No triangles in, no triangles out."""
+    refiner = refine.create(name, np.zeros((0, 3), dtype=int), FINE.vertices)
+    refined = refiner.refine(FINE.vertices)
+    assert len(refined.triangles) == 0
+    refine.check(refiner, refined, FINE.vertices)
+
+
+@pytest.mark.parametrize("name", ["none", "kahler", "loop"])
+def test_lists_are_welcome(name: str) -> None:
+    """Faces and positions may be nested lists."""
+    refiner = refine.create(name, FINE.faces.tolist(), FINE.vertices.tolist())
+    assert len(refiner.refine(FINE.vertices).triangles) >= 8
+
+
+def test_folder_can_be_lifted_out(tmp_path: Path) -> None:
+    """Copied alone to another place under another name, the package imports and works."""
+    source = Path(refine.__file__).parent
+    target = tmp_path / "lifted"
+    target.mkdir()
+    for path in source.glob("*.py"):
+        (target / path.name).write_bytes(path.read_bytes())
+    code = (
+        "import numpy as np, lifted;"
+        "r = lifted.create('none', [[0, 1, 2]], np.eye(3));"
+        "print(len(r.refine(np.eye(3)).triangles))"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.stdout.split() == ["1"], result.stderr

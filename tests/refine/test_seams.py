@@ -1,0 +1,132 @@
+"""Texture seams: attributes part, geometry does not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import refine
+from tests import meshes
+from tests.refine.cases import Forced
+
+REFINERS = [("none", {}), ("kahler", {}), ("loop", {"levels": 1}), ("loop", {"levels": 2})]
+
+
+def bent_tube() -> tuple[meshes.Mesh, np.ndarray]:
+    """A tube and a deformation that creases it across the seam."""
+    tube = meshes.tube(10, 6)
+    deformed = tube.vertices.copy()
+    deformed[:, 0] *= 1.0 + 0.4 * np.sin(4.0 * deformed[:, 2])
+    deformed[:, 1] *= 1.0 + 0.5 * np.cos(3.0 * deformed[:, 2])
+    return tube, deformed
+
+
+@pytest.mark.parametrize(("name", "options"), REFINERS)
+def test_no_crack(name: str, options: dict[str, int]) -> None:
+    """Each refiner passes the checker on a mesh with a seam, and the seam is split at all."""
+    tube, deformed = bent_tube()
+    refiner = refine.create(
+        name, tube.faces, tube.vertices, uv=tube.uv, face_uv=tube.face_uv, **options
+    )
+    refined = refiner.refine(deformed)
+    refine.check(refiner, refined, deformed)
+    assert refined.uv is not None
+    assert refiner.vertex_columns == 8
+    if name == "kahler":
+        connectivity = refine.connect(tube.faces, len(tube.vertices), tube.face_uv)
+        on_seam = connectivity.rim_edges[len(connectivity.edges) :]
+        assert refiner.splits[on_seam].max() == 2
+
+
+@pytest.mark.parametrize(("name", "options"), REFINERS)
+def test_same_geometry_as_without(name: str, options: dict[str, int]) -> None:
+    """Texture coordinates change no position: the same soup of triangles comes out."""
+    tube, deformed = bent_tube()
+    with_uv = refine.create(
+        name, tube.faces, tube.vertices, uv=tube.uv, face_uv=tube.face_uv, **options
+    ).refine(deformed)
+    without = refine.create(name, tube.faces, tube.vertices, **options).refine(deformed)
+    assert without.uv is None
+    for a, b in ((with_uv.positions, without.positions), (with_uv.normals, without.normals)):
+        assert (a[with_uv.triangles] == b[without.triangles]).all()
+    assert (with_uv.source == without.source).all()
+    assert len(with_uv.positions) > len(without.positions)
+
+
+@pytest.mark.parametrize(("name", "options"), REFINERS)
+def test_texture_is_linear(name: str, options: dict[str, int]) -> None:
+    """Every corner has the coordinate of its place in its own triangle, also on the seam."""
+    tube, deformed = bent_tube()
+    assert tube.uv is not None and tube.face_uv is not None
+    refiner = refine.create(
+        name, tube.faces, tube.vertices, uv=tube.uv, face_uv=tube.face_uv, **options
+    )
+    refined = refiner.refine(deformed)
+    assert refined.uv is not None
+    origins = refiner.origins()
+    faces = tube.faces[refined.source]
+    vertices, weights = origins.vertices[refined.triangles], origins.weights[refined.triangles]
+    at_corner = vertices[..., None] == faces[:, None, None, :]
+    places = (weights[..., None] * at_corner).sum(axis=2)
+    expected = np.einsum("tci,tiu->tcu", places, tube.uv[tube.face_uv[refined.source]])
+    np.testing.assert_allclose(refined.uv[refined.triangles], expected, rtol=0, atol=1e-6)
+
+
+def test_uv_per_vertex() -> None:
+    """Without face_uv each vertex has one coordinate, and nothing is doubled."""
+    mesh = meshes.open_grid(3, 3)
+    uv = mesh.vertices[:, :2] / 3.0
+    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    refiner = refine.create(
+        "kahler", mesh.faces, mesh.vertices, uv=uv, criterion=Forced(np.full(edge_count, 2))
+    )
+    refined = refiner.refine(mesh.vertices)
+    assert refined.uv is not None
+    origins = refiner.origins()
+    expected = (uv[origins.vertices] * origins.weights[..., None]).sum(axis=1)
+    np.testing.assert_allclose(refined.uv, expected, rtol=0, atol=1e-6)
+    assert len(refined.positions) == len(mesh.vertices) + 3 * edge_count
+
+
+def test_every_corner_its_own_coordinate() -> None:
+    """The extreme case: all edges are seams, all vertices are doubled, nothing cracks."""
+    mesh = meshes.irregular(13)
+    deformed = meshes.wrinkled(mesh, 14)
+    face_uv = np.arange(mesh.faces.size).reshape(-1, 3)
+    uv = np.random.default_rng(15).random((mesh.faces.size, 2))
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, uv=uv, face_uv=face_uv)
+    refined = refiner.refine(deformed)
+    refine.check(refiner, refined, deformed)
+    assert (np.bincount(refined.triangles[refined.source == 0].ravel()) > 0).sum() >= 3
+    owners = np.full(len(refined.positions), -1)
+    owners[refined.triangles] = refined.source[:, None]
+    assert (owners[refined.triangles] == refined.source[:, None]).all()
+
+
+def test_seam_through_debris() -> None:
+    """Degenerate triangles, borders and non-manifold edges may carry coordinates too."""
+    for make in meshes.NAMED.values():
+        mesh = make()
+        generator = np.random.default_rng(16)
+        uv = generator.random((4, 2))
+        face_uv = generator.integers(4, size=mesh.faces.shape)
+        deformed = meshes.wrinkled(mesh, 17, 0.5)
+        for name, options in REFINERS:
+            refiner = refine.create(
+                name, mesh.faces, mesh.vertices, uv=uv, face_uv=face_uv, **options
+            )
+            refined = refiner.refine(deformed)
+            refine.check(refiner, refined, deformed)
+
+
+def test_unused_vertices_have_zero_coordinates() -> None:
+    """Vertices without triangles come out with defined, zero coordinates."""
+    mesh = meshes.with_debris()
+    uv = np.ones((1, 2))
+    for name, options in REFINERS:
+        refined = refine.create(
+            name, mesh.faces, mesh.vertices, uv=uv, face_uv=np.zeros_like(mesh.faces), **options
+        ).refine(mesh.vertices)
+        assert refined.uv is not None
+        assert refined.uv[15].tolist() == [0, 0]
+        assert refined.uv[0].tolist() == [1, 1]

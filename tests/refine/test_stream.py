@@ -1,0 +1,171 @@
+"""The stream contract: lent arrays are filled in place, checked, and nothing is allocated."""
+
+from __future__ import annotations
+
+import gc
+import tracemalloc
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import refine
+from tests import meshes
+
+REFINERS = [("none", {}), ("kahler", {}), ("loop", {"levels": 1}), ("loop", {"levels": 2})]
+
+
+def stream_for(refiner: refine.Refiner, spare: int = 0) -> SimpleNamespace:
+    """A lent stream of exactly the capacity, or some rows more."""
+    rows = refiner.triangle_capacity + spare
+    shape = (refiner.vertex_capacity + spare, refiner.vertex_columns)
+    return SimpleNamespace(
+        vertices=np.full(shape, np.nan, dtype=np.float32),
+        triangles=np.full((rows, 3), 2**32 - 1, dtype=np.uint32),
+        source=np.full(rows, -1, dtype=np.int32),
+    )
+
+
+@pytest.mark.parametrize("spare", [0, 10])
+@pytest.mark.parametrize(("name", "options"), REFINERS)
+@pytest.mark.parametrize("textured", [False, True])
+def test_lent_stream(name: str, options: dict[str, int], textured: bool, spare: int) -> None:
+    """A lent stream gets what the own stream would get, and the mesh views it."""
+    tube = meshes.tube(10, 6)
+    texture = {"uv": tube.uv, "face_uv": tube.face_uv} if textured else {}
+    deformed = meshes.wrinkled(tube, 3)
+    refiner = refine.create(name, tube.faces, tube.vertices, **texture, **options)
+    own = [None if array is None else array.copy() for array in refiner.refine(deformed)]
+    stream = stream_for(refiner, spare)
+    lent = refiner.refine(deformed, out=stream)
+    for ours, theirs in zip(lent, own, strict=True):
+        assert (ours is None) == (theirs is None)
+        assert ours is None or theirs is None or ours.tobytes() == theirs.tobytes()
+    assert np.shares_memory(lent.positions, stream.vertices)
+    assert np.shares_memory(lent.normals, stream.vertices)
+    assert np.shares_memory(lent.triangles, stream.triangles)
+    assert np.shares_memory(lent.source, stream.source)
+    assert (stream.triangles[len(lent.triangles) :] == 2**32 - 1).all()
+    assert (stream.source[len(lent.source) :] == -1).all()
+    assert np.isnan(stream.vertices[len(lent.positions) :]).all()
+
+
+def test_streams_can_alternate() -> None:
+    """Two streams in turn (double buffering) each keep their own frame."""
+    mesh = meshes.irregular(1)
+    frames = [meshes.wrinkled(mesh, seed) for seed in (2, 3)]
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    streams = [stream_for(refiner), stream_for(refiner)]
+    first = refiner.refine(frames[0], out=streams[0])
+    kept = first.positions.copy()
+    second = refiner.refine(frames[1], out=streams[1])
+    assert (first.positions == kept).all()
+    assert not np.shares_memory(first.positions, second.positions)
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (
+            {"vertices": np.zeros((5, 6), np.float32)},
+            r"stream.vertices .* \(>= 665, 6\), got float",
+        ),
+        ({"vertices": np.zeros((999, 8), np.float32)}, r"got float32 of shape \(999, 8\)"),
+        ({"vertices": np.zeros((999, 6))}, "got float64"),
+        ({"vertices": np.zeros((999, 12), np.float32)[:, ::2]}, "not contiguous"),
+        ({"vertices": [0.0]}, "got list"),
+        ({"triangles": np.zeros((9999, 3), np.int32)}, "stream.triangles must be .* uint32"),
+        ({"triangles": np.zeros((3, 3), np.uint32)}, r"shape \(>= 1200, 3\)"),
+        ({"source": np.zeros(3, np.int32)}, r"stream.source .* shape \(>= 1200\)"),
+        ({"source": np.zeros((9999, 1), np.int32)}, "stream.source"),
+    ],
+)
+def test_bad_stream(change: dict[str, object], text: str) -> None:
+    """A stream that cannot take the worst case is refused before anything is written."""
+    grid = meshes.open_grid(10, 6)
+    refiner = refine.create("kahler", grid.faces, grid.vertices)
+    assert refiner.triangle_capacity == 1200
+    stream = stream_for(refiner)
+    for name, array in change.items():
+        setattr(stream, name, array)
+    with pytest.raises(ValueError, match=text):
+        refiner.refine(grid.vertices, out=stream)
+
+
+def test_read_only_stream() -> None:
+    """A stream that may not be written is refused."""
+    mesh = meshes.octahedron()
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    stream = stream_for(refiner)
+    stream.source.flags.writeable = False
+    with pytest.raises(ValueError, match=r"stream.source .* read-only"):
+        refiner.refine(mesh.vertices, out=stream)
+
+
+def test_stream_may_be_the_input() -> None:
+    """Positions that live in the lent stream are read before they are overwritten."""
+    mesh = meshes.irregular(2)
+    deformed = meshes.wrinkled(mesh, 3).astype(np.float32)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    expected = refiner.refine(deformed).positions.copy()
+    stream = stream_for(refiner)
+    stream.vertices[: len(deformed), 0:3] = deformed
+    mesh_in_place = refiner.refine(stream.vertices[: len(deformed), 0:3], out=stream)
+    assert (mesh_in_place.positions == expected).all()
+
+
+@pytest.mark.parametrize(("name", "options"), REFINERS)
+@pytest.mark.parametrize("textured", [False, True])
+def test_nothing_is_allocated(name: str, options: dict[str, int], textured: bool) -> None:
+    """After the first frame, frames take no memory but the few bytes of the views."""
+    tube = meshes.tube(40, 30)
+    texture = {"uv": tube.uv, "face_uv": tube.face_uv} if textured else {}
+    refiner = refine.create(name, tube.faces, tube.vertices, **texture, **options)
+    frames = [meshes.wrinkled(tube, seed) for seed in range(4)]
+    stream = stream_for(refiner)
+    for deformed in frames:
+        refiner.refine(deformed, out=stream)
+        refiner.refine(deformed)
+    gc.collect()
+    tracemalloc.start()
+    for deformed in frames:
+        refiner.refine(deformed, out=stream)
+        refiner.refine(deformed)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 8192  # positions alone are 30 kB
+
+
+@pytest.mark.parametrize("dtype", [np.float16, np.float32, np.float64, np.longdouble, ">f8", ">f4"])
+def test_any_float_type(dtype: str) -> None:
+    """Positions of any float type are taken, and come out as their float32."""
+    mesh = meshes.irregular(4)
+    deformed = meshes.wrinkled(mesh, 5).astype(dtype)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    refined = refiner.refine(deformed)
+    refine.check(refiner, refined, deformed)
+
+
+def test_any_strides() -> None:
+    """Transposed, sliced, reversed and read-only positions give the same frame."""
+    mesh = meshes.irregular(4)
+    deformed = meshes.wrinkled(mesh, 5)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    expected = refiner.refine(deformed).positions.copy()
+    wide = np.zeros((len(deformed), 7))
+    wide[:, 5:2:-1] = deformed
+    read_only = deformed.copy()
+    read_only.flags.writeable = False
+    for other in (np.asfortranarray(deformed), wide[:, 5:2:-1], read_only):
+        assert (refiner.refine(other).positions == expected).all()
+
+
+@pytest.mark.parametrize(
+    "positions", [np.zeros((5, 3)), np.zeros((6, 2)), np.zeros(18), np.zeros((6, 3), dtype=int)]
+)
+def test_bad_positions(positions: np.ndarray) -> None:
+    """Positions of another mesh, or integers, are refused with what was expected."""
+    mesh = meshes.octahedron()
+    refiner = refine.create("none", mesh.faces, mesh.vertices)
+    with pytest.raises(ValueError, match=r"positions must be floats of shape \(6, 3\) .*, got"):
+        refiner.refine(positions)

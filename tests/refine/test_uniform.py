@@ -1,0 +1,156 @@
+"""Uniform Loop subdivision against a plain implementation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import refine
+from tests import meshes
+from tests.refine.cases import Forced, as_lists, soups
+from tests.refine.plain_twin import (
+    Surroundings,
+    Vector,
+    edge_name,
+    first_level_point,
+    is_proper,
+    mix,
+    moved_vertex,
+    unit,
+    vertex_normals,
+)
+
+Triangles = list[tuple[int, int, int]]
+
+
+def loop_plainly(
+    points: list[Vector], faces: Triangles, normals: list[Vector]
+) -> tuple[list[Vector], Triangles, list[Vector]]:
+    """One step of Loop subdivision over dictionaries; numbers are given in order of first use."""
+    around = Surroundings(faces)
+    fine_points = [moved_vertex(v, points, around) for v in range(len(points))]
+    fine_normals = list(normals)
+    number: dict[tuple[int, int], int] = {}
+    for face in filter(is_proper, faces):
+        for i in range(3):
+            edge = edge_name(face[i], face[(i + 1) % 3])
+            if edge not in number:
+                number[edge] = len(fine_points)
+                fine_points.append(first_level_point(edge, points, around))
+                fine_normals.append(unit(mix((0.5, normals[edge[0]]), (0.5, normals[edge[1]]))))
+    fine_faces: Triangles = []
+    for face in faces:
+        if not is_proper(face):
+            fine_faces.append(face)
+            continue
+        a, b, c = face
+        ab, bc, ca = (number[edge_name(*ends)] for ends in ((a, b), (b, c), (c, a)))
+        fine_faces += [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    return fine_points, fine_faces, fine_normals
+
+
+def assert_is_plain(mesh: meshes.Mesh, deformed: np.ndarray, levels: int) -> None:
+    """Compare `loop` with the plain implementation, number by number."""
+    refiner = refine.create("loop", mesh.faces, mesh.vertices, levels=levels)
+    refined = refiner.refine(deformed)
+    refine.check(refiner, refined, deformed)
+    points, faces = as_lists(deformed, mesh.faces)
+    normals = vertex_normals(points, faces)
+    for _ in range(levels):
+        points, faces, normals = loop_plainly(points, faces, normals)
+    assert refined.triangles.tolist() == [list(face) for face in faces]
+    np.testing.assert_allclose(refined.positions, np.array(points), rtol=0, atol=3e-6)
+
+
+@pytest.mark.parametrize("levels", [1, 2])
+@pytest.mark.parametrize("name", meshes.NAMED)
+def test_named_meshes(name: str, levels: int) -> None:
+    """Every named mesh, deformed."""
+    mesh = meshes.NAMED[name]()
+    assert_is_plain(mesh, meshes.wrinkled(mesh, 3), levels)
+
+
+@pytest.mark.parametrize("levels", [1, 2])
+@pytest.mark.parametrize("seed", range(4))
+def test_irregular_meshes(seed: int, levels: int) -> None:
+    """Irregular meshes with holes."""
+    mesh = meshes.irregular(seed)
+    assert_is_plain(mesh, meshes.wrinkled(mesh, seed), levels)
+
+
+@settings(max_examples=60, deadline=None)
+@given(soup=soups(), levels=st.integers(1, 2))
+def test_soups(soup: tuple[np.ndarray, np.ndarray], levels: int) -> None:
+    """Any triangles at all."""
+    positions, faces = soup
+    assert_is_plain(meshes.Mesh(positions, faces), positions, levels)
+
+
+def test_interpolated_normals() -> None:
+    """Normals are interpolated along the edges of each level, as in the plain implementation."""
+    mesh = meshes.irregular(7)
+    deformed = meshes.wrinkled(mesh, 8)
+    refined = refine.create("loop", mesh.faces, mesh.vertices, levels=2).refine(deformed)
+    points, faces = as_lists(deformed, mesh.faces)
+    normals = vertex_normals(points, faces)
+    for _ in range(2):
+        points, faces, normals = loop_plainly(points, faces, normals)
+    np.testing.assert_allclose(refined.normals, np.array(normals), rtol=0, atol=4e-6)
+
+
+def test_tetrahedron_by_hand() -> None:
+    """Warren's weights on the smallest closed mesh: 7/16 and 3/16, midpoints 3/8 and 1/8."""
+    mesh = meshes.tetrahedron()
+    refiner = refine.create("loop", mesh.faces, mesh.vertices)
+    refined = refiner.refine(mesh.vertices)
+    # The corners sum to zero, so 7/16 p + 3/16 (-p) = p / 4, and 3/8 s - 1/8 s = s / 4.
+    np.testing.assert_array_equal(refined.positions[:4], mesh.vertices / 4)
+    ends = mesh.vertices[refiner.edges]
+    np.testing.assert_array_equal(refined.positions[4:], ends.sum(axis=1) / 4)
+    assert len(refined.triangles) == 16
+
+
+def test_equals_kahler_at_one_level() -> None:
+    """With every edge split once the adaptive refiner is one step of Loop subdivision."""
+    mesh = meshes.irregular(9)
+    deformed = meshes.wrinkled(mesh, 10)
+    loop = refine.create("loop", mesh.faces, mesh.vertices).refine(deformed)
+    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    kahler = refine.create(
+        "kahler", mesh.faces, mesh.vertices, criterion=Forced(np.ones(edge_count))
+    ).refine(deformed)
+    np.testing.assert_allclose(loop.positions, kahler.positions, rtol=0, atol=1e-6)
+    assert {tuple(sorted(t)) for t in loop.triangles.tolist()} == {
+        tuple(sorted(t)) for t in kahler.triangles.tolist()
+    }
+
+
+def test_each_level_is_smoother() -> None:
+    """The sharpest fold between neighbouring triangles gets flatter with every level."""
+    mesh = meshes.octahedron()
+    sharpest = [_sharpest_fold(mesh.vertices, mesh.faces)]
+    for levels in (1, 2):
+        refiner = refine.create("loop", mesh.faces, mesh.vertices, levels=levels)
+        refined = refiner.refine(mesh.vertices)
+        sharpest.append(_sharpest_fold(refined.positions, refined.triangles))
+    assert sharpest[0] > 1.2 * sharpest[1] > 1.2 * 1.2 * sharpest[2]
+
+
+def _sharpest_fold(positions: np.ndarray, triangles: np.ndarray) -> float:
+    """Largest angle [rad] between triangles that share an edge of a closed mesh."""
+    a, b, c = (positions[triangles[:, k]].astype(np.float64) for k in range(3))
+    normals = np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    edges = refine.connect(triangles, len(positions)).triangle_edges
+    pairs = normals[np.argsort(edges.ravel(), kind="stable").reshape(-1, 2) // 3]
+    return float(np.arccos((pairs[:, 0] * pairs[:, 1]).sum(axis=1).min()))
+
+
+@pytest.mark.parametrize("levels", [0, 3, 1.5])
+def test_bad_levels(levels: float) -> None:
+    """Only one or two levels are allowed."""
+    mesh = meshes.triangle()
+    with pytest.raises(ValueError, match="levels must be 1 or 2, got"):
+        refine.create("loop", mesh.faces, mesh.vertices, levels=levels)

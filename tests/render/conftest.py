@@ -1,0 +1,27 @@
+"""Surfaces to draw on."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+
+import pytest
+
+import render
+
+
+@pytest.fixture
+def surface() -> Iterator[render.Surface]:
+    """A small square frame, four samples per pixel."""
+    with render.open_offscreen((96, 96)) as opened:
+        yield opened
+
+
+@pytest.fixture
+def window() -> Iterator[render.WindowSurface]:
+    """A small window, where there is a screen."""
+    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
+        pytest.skip("DISPLAY is not set: run the tests under `xvfb-run -a` to test windows, too")
+    with render.open_window((96, 96), "test", vertical_sync=False) as opened:
+        yield opened

@@ -1,0 +1,135 @@
+"""Small things to draw, and how the tests here look at pictures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+import render
+
+Floats = npt.NDArray[np.float32]
+
+PLAIN = render.Style(background=render.WHITE, shadows=False)
+"""Skin before pure white, so that what is not white is drawn."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """Positions (V, 3), normals (V, 3), triangles (M, 3)."""
+
+    positions: Floats
+    normals: Floats
+    triangles: npt.NDArray[np.uint32]
+
+
+def sphere(levels: int = 2, radius: float = 50.0) -> Shape:
+    """An octahedron, split `levels` times and blown up to a sphere; smooth normals."""
+    points = [(1.0, 0, 0), (-1.0, 0, 0), (0, 1.0, 0), (0, -1.0, 0), (0, 0, 1.0), (0, 0, -1.0)]
+    faces = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
+    unit = [np.array(point) for point in points]
+    for _ in range(levels):
+        middles: dict[tuple[int, int], int] = {}
+
+        def middle(a: int, b: int, known: dict[tuple[int, int], int] = middles) -> int:
+            key = (min(a, b), max(a, b))
+            if key not in known:
+                total = unit[a] + unit[b]
+                unit.append(total / np.linalg.norm(total))
+                known[key] = len(unit) - 1
+            return known[key]
+
+        split = []
+        for a, b, c in faces:
+            ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
+            split += [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+        faces = split
+    normals = np.array(unit, np.float32)
+    return Shape(normals * np.float32(radius), normals, np.array(faces, np.uint32))
+
+
+def square(half: float = 50.0, *, z: float = 0.0, bulge: float = 0.0) -> Shape:
+    """Two triangles that face the viewer; `bulge` tilts the corner normals outward."""
+    corners = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], np.float32)
+    normals = corners * np.float32(bulge) + np.array((0, 0, 1), np.float32)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    positions = corners * np.float32(half) + np.array((0, 0, z), np.float32)
+    return Shape(positions, normals, np.array([(0, 1, 2), (0, 2, 3)], np.uint32))
+
+
+def joined(first: Shape, second: Shape) -> Shape:
+    """Both shapes in one mesh."""
+    return Shape(
+        np.concatenate([first.positions, second.positions]),
+        np.concatenate([first.normals, second.normals]),
+        np.concatenate([first.triangles, second.triangles + np.uint32(len(first.positions))]),
+    )
+
+
+def lent(renderer: render.Renderer, shape: Shape, *, columns: int = 6) -> render.Stream:
+    """A stream that just holds the shape, uploaded."""
+    stream = renderer.lend_stream(len(shape.positions), len(shape.triangles), columns)
+    stream.vertices[:, :3], stream.vertices[:, 3:6] = shape.positions, shape.normals
+    stream.triangles[:] = shape.triangles
+    stream.upload(len(shape.positions), len(shape.triangles))
+    return stream
+
+
+def facing(half: float = 50.0) -> render.OrbitCamera:
+    """A camera in front of the origin that sees about 1.14 times `half` up and down."""
+    corners = [(x, y, z) for x in (-half, half) for y in (-half, half) for z in (-half, half)]
+    camera = render.OrbitCamera.framing(np.array(corners))
+    camera.narrowest_aspect = 0.0
+    camera.distance = half * 5.0
+    return camera
+
+
+def picture(
+    surface: render.Surface,
+    shape: Shape,
+    style: render.Style = PLAIN,
+    *,
+    camera: render.OrbitCamera | None = None,
+    values: npt.NDArray[np.uint8] | None = None,
+) -> npt.NDArray[np.int32]:
+    """Draw the shape over the style's background on a fresh frame, shape (H, W, 3), int32."""
+    renderer = render.Renderer(surface)
+    stream = lent(renderer, shape)
+    surface.begin()
+    renderer.draw_background(style)
+    renderer.draw_mesh(stream, camera or facing(), style, values=values)
+    surface.end()
+    return surface.read().astype(np.int32)
+
+
+def drawn(frame: npt.NDArray[np.int32]) -> npt.NDArray[np.bool_]:
+    """Which pixels are not the white background, shape (H, W)."""
+    return np.asarray((frame < 250).any(axis=2))
+
+
+@dataclass(frozen=True, eq=False)
+class Ball:
+    """A rigid part: a coloured sphere."""
+
+    colour: tuple[float, float, float] = (0.2, 0.4, 0.9)
+    bone: str = "cranium"
+    shine: float = 0.0
+    name: str = "ball"
+    shape: Shape = field(default_factory=lambda: sphere(3, 20.0))
+
+    @property
+    def vertices(self) -> Floats:
+        return self.shape.positions
+
+    @property
+    def normals(self) -> Floats:
+        return self.shape.normals
+
+    @property
+    def faces(self) -> npt.NDArray[np.int32]:
+        return self.shape.triangles.astype(np.int32)
+
+    @property
+    def colours(self) -> Floats:
+        return np.tile(np.array(self.colour, np.float32), (len(self.shape.positions), 1))

@@ -1,0 +1,150 @@
+"""Camera maths: what is framed is seen, and moving the camera does what it says."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from pyrr import Vector4
+
+import render
+
+HEAD = np.random.default_rng(7).normal(size=(400, 3)) * (60.0, 90.0, 50.0) + (3.0, -20.0, 60.0)
+
+
+def seen(
+    camera: render.OrbitCamera, points: npt.ArrayLike, aspect: float = 1.5
+) -> npt.NDArray[np.float64]:
+    """Where points are in the frame: -1..1 from left to right, bottom to top, near to far."""
+    rows = np.column_stack([np.atleast_2d(points), np.ones(len(np.atleast_2d(points)))])
+    clip = rows @ np.asarray(camera.view_matrix()) @ np.asarray(camera.projection_matrix(aspect))
+    return np.asarray(clip[:, :3] / clip[:, 3:])
+
+
+@pytest.mark.parametrize("view", render.VIEWS)
+def test_target_is_in_the_middle(view: str) -> None:
+    """A point at the target projects to the centre of the frame."""
+    camera = render.OrbitCamera.framing(HEAD, view=view)
+    assert seen(camera, camera.target)[0, :2] == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("view", render.VIEWS)
+@pytest.mark.parametrize("aspect", [0.4, 1.0, 16 / 9, 3.0])
+def test_framing_fits_everything(view: str, aspect: float) -> None:
+    """All vertices are in the frame, between the clipping planes, and touch the margin."""
+    camera = render.OrbitCamera.framing(HEAD, view=view)
+    places = seen(camera, HEAD, aspect)
+    assert np.abs(places).max() <= 1.0
+    assert np.abs(places[:, :2]).max() == pytest.approx(0.88, abs=0.03)
+
+
+def test_framing_a_single_point() -> None:
+    """A mesh without extent can be framed too."""
+    camera = render.OrbitCamera.framing(np.array([[1.0, 2.0, 3.0]]))
+    assert np.isfinite(seen(camera, (1.0, 2.0, 3.0))).all()
+
+
+def test_pyrr_matrices_multiply_as_in_books() -> None:
+    """projection * view * point is what the renderer computes with rows."""
+    camera = render.OrbitCamera.framing(HEAD, view="three-quarter")
+    point = HEAD[5]
+    clip = camera.projection_matrix(1.5) * camera.view_matrix() * Vector4([*point, 1.0])
+    assert np.asarray(clip)[:3] / clip[3] == pytest.approx(seen(camera, point)[0])
+
+
+def test_views_look_from_where_they_say() -> None:
+    """Front is +z, the profile is from the subject's left (+x), below is from below."""
+    eyes = {view: render.OrbitCamera.framing(HEAD, view=view).axes()[2] for view in render.VIEWS}
+    assert eyes["front"] == pytest.approx((0, 0, 1))
+    assert eyes["profile"] == pytest.approx((1, 0, 0))
+    assert eyes["three-quarter"][0] > 0.4 and eyes["three-quarter-right"][0] < -0.4
+    assert eyes["below"][1] < -0.4
+
+
+def test_axes_are_the_frame() -> None:
+    """Right, up and back are orthonormal, and are what the view matrix turns to x, y and z."""
+    camera = render.OrbitCamera.framing(HEAD)
+    camera.orbit(33.0, -21.0)
+    axes = np.stack(camera.axes())
+    assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-12)
+    assert np.asarray(camera.view_matrix())[:3, :3].T == pytest.approx(axes, abs=1e-12)
+
+
+def test_orbit_full_circle_returns() -> None:
+    """Walking once round in 72 steps ends where it began."""
+    camera = render.OrbitCamera.framing(HEAD, view="three-quarter")
+    before = seen(camera, HEAD)
+    for _ in range(72):
+        camera.orbit(5.0)
+    assert seen(camera, HEAD) == pytest.approx(before, abs=1e-9)
+
+
+def test_orbit_stops_at_the_poles() -> None:
+    """However far one rises, up stays up."""
+    camera = render.OrbitCamera.framing(HEAD)
+    camera.orbit(0.0, 500.0)
+    assert camera.pitch < 90.0 and camera.axes()[1][1] > 0.0
+    assert np.isfinite(np.asarray(camera.view_matrix())).all()
+
+
+def test_zoom_scales_what_is_seen() -> None:
+    """Zooming by 2 makes the target's surroundings twice as large."""
+    camera = render.OrbitCamera.framing(HEAD)
+    beside = camera.target + 10.0 * camera.axes()[0]
+    before = seen(camera, beside)[0, 0]
+    camera.zoom(2.0)
+    assert seen(camera, beside)[0, 0] == pytest.approx(2.0 * before)
+
+
+def test_pan_moves_by_the_height_of_the_frame() -> None:
+    """Panning half a frame up puts the old target on the lower border."""
+    camera = render.OrbitCamera.framing(HEAD, view="profile")
+    old = camera.target
+    camera.pan(0.0, 0.5)
+    assert seen(camera, old)[0, :2] == pytest.approx((0.0, -1.0))
+
+
+def test_copy_is_independent() -> None:
+    """Moving a copy leaves the original alone."""
+    camera = render.OrbitCamera.framing(HEAD)
+    before = seen(camera, HEAD)
+    other = camera.copy()
+    other.orbit(20.0, 10.0)
+    other.pan(0.3, 0.1)
+    other.target[:] = 0.0
+    other.scene_centre[:] = 0.0
+    assert (seen(camera, HEAD) == before).all()
+
+
+def test_clipping_planes_hold_the_scene_from_anywhere() -> None:
+    """From every side and distance the visible half of the scene lies between near and far."""
+    camera = render.OrbitCamera.framing(HEAD)
+    for zoom in (0.2, 1.0, 1.0, 1.5):
+        camera.zoom(zoom)
+        camera.orbit(47.0, 19.0)
+        depth = seen(camera, HEAD)[:, 2]
+        assert -1.0 <= depth.min() and depth.max() <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("vertices", "view", "message"),
+    [
+        (HEAD, "behind", "view is 'behind'; it must be one of front, three-quarter"),
+        (np.zeros((0, 3)), "front", r"vertices has shape \(0, 3\); it must be \(n, 3\)"),
+        (np.zeros((4, 2)), "front", r"vertices has shape \(4, 2\)"),
+        (np.full((4, 3), np.nan), "front", "vertices holds numbers that are not finite"),
+    ],
+)
+def test_framing_errors(vertices: npt.NDArray[np.float64], view: str, message: str) -> None:
+    """What cannot be framed is refused with a reason."""
+    with pytest.raises(ValueError, match=message):
+        render.OrbitCamera.framing(vertices, view=view)
+
+
+def test_bad_zoom_and_aspect() -> None:
+    """Factors and aspects must be positive."""
+    camera = render.OrbitCamera.framing(HEAD)
+    with pytest.raises(ValueError, match=r"zoom factor is 0\.0; it must be positive"):
+        camera.zoom(0.0)
+    with pytest.raises(ValueError, match=r"aspect is -1\.0; it must be positive"):
+        camera.projection_matrix(-1.0)

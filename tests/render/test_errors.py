@@ -1,0 +1,147 @@
+"""OpenGL that fails to start: one line with the cure, and findings instead of crashes."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import render
+from render import programs
+from render.errors import diagnose
+
+ROOT = Path(__file__).parents[2]
+on_linux = pytest.mark.skipif(
+    not sys.platform.startswith("linux"), reason="EGL and its variables exist on Linux only"
+)
+
+
+def run_python(code: str, **environment: str) -> str:
+    """Run code in a Python of its own without a screen; what it printed."""
+    clean = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
+    clean.pop("WAYLAND_DISPLAY", None)
+    result = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        env={**clean, **environment},
+        check=False,
+    )
+    assert result.returncode == 0, result.stderr
+    return result.stdout
+
+
+@on_linux
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        (
+            "GLCONTEXT_LINUX_LIBEGL",
+            "nonexistent",
+            r'EGL library is missing \("nonexistent not loaded"\). '
+            r"Cure: unset GLCONTEXT_LINUX_LIBEGL \(it is 'nonexistent'\)",
+        ),
+        ("GLCONTEXT_LINUX_LIBEGL", "libc.so.6", "not OpenGL.*Cure: unset GLCONTEXT_LINUX_LIBEGL"),
+        ("GLCONTEXT_DEVICE_INDEX", "77", "no EGL device of that number.*found 1 dev.*Cure: unset"),
+        ("GLCONTEXT_DEVICE_INDEX", "first", "not a whole number.*'first'.*Cure: unset it"),
+        ("GLCONTEXT_GLVERSION", "990", "no OpenGL of that version.*0x3009.*unset GLCONTEXT_GLVER"),
+    ],
+)
+def test_broken_egl_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, name: str, value: str, message: str
+) -> None:
+    """Each way to break EGL by the environment names itself and its cure."""
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setenv(name, value)
+    with pytest.raises(render.GLError, match=message) as caught:
+        render.open_offscreen((8, 8))
+    assert "\n" not in str(caught.value)
+
+
+@on_linux
+def test_no_screen_is_one_line_without_warnings() -> None:
+    """Without a screen a window fails with a GLError; GLFW's Python warnings stay away."""
+    output = run_python(
+        "import render\n"
+        "try: render.open_window((8, 8), 'test')\n"
+        "except render.GLError as error: print(error)"
+    )
+    assert "no screen to open a window on" in output and "DISPLAY" in output
+    assert "Cure: run it under `xvfb-run -a`, or render offscreen" in output
+    assert output.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("raw", "cure"),
+    [
+        ("libEGL.so not loaded", "Cure: apt install libegl1 libgl1-mesa-dri"),
+        ("libGL.so not loaded", "Cure: apt install libgl1 libgl1-mesa-dri"),
+        ("requested device index 0, but found 0 devices", "Cure: apt install libgl1-mesa-dri"),
+        ("eglInitialize failed (0x3001)", "Cure: apt install libgl1-mesa-dri"),
+        ("Requested OpenGL version 330, got version 210", "Cure: set LIBGL_ALWAYS_SOFTWARE=1"),
+        ("X11: Failed to open display :99", "Cure: run it under `xvfb-run -a`"),
+        ("GLX: GLX extension not found", "Cure: apt install libgl1 libgl1-mesa-dri"),
+        ("GLX: Failed to create context: GLXBadFBConfig", "Cure: set LIBGL_ALWAYS_SOFTWARE=1"),
+        ("Failed to load GLFW3 shared library.", "Cure: pip install --force-reinstall glfw"),
+        ("", 'failed ("no reason given"). Cure: `risorius doctor`'),
+        ("something\nnew", 'failed ("something new"). Cure: `risorius doctor`'),
+    ],
+)
+def test_known_texts_have_a_cure(monkeypatch: pytest.MonkeyPatch, raw: str, cure: str) -> None:
+    """What the libraries say is kept, and followed by the one thing to do."""
+    for name in [name for name in os.environ if name.startswith("GLCONTEXT_")]:
+        monkeypatch.delenv(name)
+    text = str(diagnose("opening", raw))
+    assert text.startswith("opening failed") and cure in text
+
+
+def test_shader_error_names_file_and_stage(
+    surface: render.Surface, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A program that does not compile says where."""
+    (tmp_path / "broken.glsl").write_text(
+        "#if defined(VERTEX_STAGE)\n"
+        "void main() { gl_Position = vec4(0.0); }\n"
+        "#elif defined(FRAGMENT_STAGE)\n"
+        "out vec4 colour;\n"
+        "void main() { colour = missing; }\n"
+        "#endif\n"
+    )
+    monkeypatch.setattr(programs, "SHADER_FOLDER", tmp_path)
+    with pytest.raises(render.GLError, match=r"broken\.glsl \(WIDE 3\), fragment stage: .*missing"):
+        programs.compile_program(surface.gl, "broken.glsl", "WIDE 3")
+    with pytest.raises(render.GLError, match=r"shader absent\.glsl cannot be read"):
+        programs.compile_program(surface.gl, "absent.glsl")
+
+
+def test_probe_finds_what_is_there() -> None:
+    """The machine that runs these tests can draw offscreen, and the finding says with what."""
+    (finding,) = render.probe(offscreen_only=True)
+    assert finding.is_ok and finding.is_needed and finding.message == ""
+    assert finding.renderer in str(finding) and finding.version[0].isdigit()
+    assert finding.samples >= 1
+
+
+@on_linux
+def test_probe_reports_failures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Broken EGL and a missing screen are findings, not exceptions."""
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.setenv("GLCONTEXT_LINUX_LIBEGL", "nonexistent")
+    offscreen, window = render.probe()
+    assert not offscreen.is_ok and "nonexistent not loaded" in str(offscreen)
+    assert not window.is_ok and not window.is_needed and "xvfb-run" in window.message
+
+
+def test_probe_survives_a_crash(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A driver that kills its process is a finding with the exit code."""
+    killer = tmp_path / "python"
+    killer.write_text("#!/bin/sh\nkill -SEGV $$\n")
+    killer.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(killer))
+    (finding,) = render.probe(offscreen_only=True)
+    assert not finding.is_ok and "crashed the process that tried it" in finding.message

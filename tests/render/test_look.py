@@ -1,0 +1,76 @@
+"""Stored pictures: the look does not change unnoticed. Software drivers only: they agree closely.
+
+`RISORIUS_STORE_PICTURES=1 python -m pytest tests/render/test_look.py` stores them anew; look at
+them before you keep them.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import render
+
+from .scenes import Ball, joined, lent, sphere, square
+
+STORED = Path(__file__).parent / "pictures"
+SIZE = (160, 120)
+
+STYLES = {
+    "pixel": render.Style(),
+    "gouraud": render.Style(shading=render.Shading.GOURAUD, albedo=render.CLAY),
+    "flat": render.Style(shading=render.Shading.FLAT, background=render.DARK),
+    "splits": render.Style(wireframe=True, colour_by=render.ColourBy.SPLITS),
+}
+
+
+def scene(surface: render.Surface, style: render.Style) -> render.Frame:
+    """A sphere before a wall, a wet ball beside it, and a line through both."""
+    renderer = render.Renderer(surface)
+    shape = joined(square(70.0, z=-45.0), sphere(2, 40.0))
+    stream = lent(renderer, shape)
+    camera = render.OrbitCamera.framing(shape.positions, view="three-quarter-right")
+    ball = np.eye(4)
+    ball[:3, 3] = (55.0, -30.0, 10.0)
+    values = (np.arange(len(shape.triangles)) % 7).astype(np.uint8)
+    surface.begin()
+    renderer.draw_background(style)
+    renderer.draw_mesh(stream, camera, style, values=values)
+    renderer.draw_parts([Ball(shine=0.9)], {"cranium": ball}, camera, style)
+    renderer.draw_lines([np.array([(-60.0, 40, 20), (60, -40, -20)])], (0.75, 0.1, 0.1), camera)
+    surface.end()
+    return surface.read()
+
+
+@pytest.mark.parametrize("name", STYLES)
+def test_picture_is_as_stored(name: str, tmp_path: Path) -> None:
+    """The scene looks as it did when its picture was approved."""
+    with render.open_offscreen(SIZE) as surface:
+        if not surface.is_software:
+            pytest.skip(f"stored pictures are for software drivers, not {surface.gl.info}")
+        frame = scene(surface, STYLES[name])
+    path = STORED / f"{name}.png"
+    if os.environ.get("RISORIUS_STORE_PICTURES"):
+        STORED.mkdir(exist_ok=True)
+        Image.fromarray(frame).save(path)
+    expected = np.asarray(Image.open(path).convert("RGB"))
+    difference = np.abs(frame.astype(int) - expected.astype(int)).max(axis=2)
+    if difference.mean() > 1.0 or np.percentile(difference, 99.0) > 24:
+        Image.fromarray(np.hstack([expected, frame])).save(tmp_path / f"{name}.png")
+        pytest.fail(
+            f"{name}: mean difference {difference.mean():.2f} of 255; stored and new picture are "
+            f"side by side in {tmp_path / f'{name}.png'}"
+        )
+
+
+def test_stored_pictures_would_notice() -> None:
+    """The tolerance is tight: a slightly different skin is a failure."""
+    with render.open_offscreen(SIZE) as surface:
+        frame = scene(surface, STYLES["pixel"]).astype(int)
+        paler = scene(surface, replace(STYLES["pixel"], albedo=render.SKIN_LIGHT)).astype(int)
+    assert np.abs(frame - paler).max(axis=2).mean() > 3.0

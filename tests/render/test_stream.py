@@ -1,0 +1,138 @@
+"""The buffer contract: capacities, columns, reuse."""
+
+from __future__ import annotations
+
+import resource
+import sys
+
+import numpy as np
+import pytest
+
+import render
+
+from .scenes import PLAIN, facing, lent, picture, sphere, square
+
+
+def test_lent_arrays_fit_the_contract(surface: render.Surface) -> None:
+    """A borrower gets C-contiguous float32, uint32 and int32 arrays of the asked size."""
+    stream = render.Renderer(surface).lend_stream(100, 50, 8)
+    assert stream.vertices.shape == (100, 8) and stream.vertices.dtype == np.float32
+    assert stream.triangles.shape == (50, 3) and stream.triangles.dtype == np.uint32
+    assert stream.source.shape == (50,) and stream.source.dtype == np.int32
+    assert stream.vertices.flags.c_contiguous and stream.vertices.flags.writeable
+
+
+def test_eight_columns_draw_the_same(surface: render.Surface) -> None:
+    """Texture coordinates are skipped, not taken for positions."""
+    expected = picture(surface, sphere())
+    renderer = render.Renderer(surface)
+    stream = lent(renderer, sphere(), columns=8)
+    stream.vertices[:, 6:] = 1e6
+    stream.upload(len(stream.vertices), len(stream.triangles))
+    surface.begin()
+    renderer.draw_background(PLAIN)
+    renderer.draw_mesh(stream, facing(), PLAIN)
+    surface.end()
+    assert (surface.read() == expected).all()
+
+
+def test_only_the_used_part_is_drawn(surface: render.Surface) -> None:
+    """Rows beyond the counts are rubbish, and do not show."""
+    expected = picture(surface, square())
+    renderer = render.Renderer(surface)
+    stream = renderer.lend_stream(1000, 1000, 6)
+    stream.vertices[:] = np.nan
+    stream.triangles[:] = 999
+    shape = square()
+    stream.vertices[:4, :3], stream.vertices[:4, 3:] = shape.positions, shape.normals
+    stream.triangles[:2] = shape.triangles
+    stream.upload(4, 2)
+    surface.begin()
+    renderer.draw_background(PLAIN)
+    renderer.draw_mesh(stream, facing(), PLAIN)
+    surface.end()
+    assert (surface.read() == expected).all()
+
+
+def test_hundred_frames_use_the_same_buffers(surface: render.Surface) -> None:
+    """Neither the arrays, nor OpenGL's buffers, nor the process grow while a mesh changes."""
+    renderer = render.Renderer(surface)
+    shape = sphere(4)
+    stream = lent(renderer, shape)
+    style = render.Style(wireframe=True, colour_by=render.ColourBy.SPLITS)
+    lines = [shape.positions[:50]]
+    buffers = stream._vertex_buffer, stream._index_buffer
+    sizes = [buffer.size for buffer in buffers]
+    peaks = []
+    for frame in range(120):
+        count = len(shape.triangles) - 5 * frame
+        stream.vertices[:, :3] = shape.positions * np.float32(1.0 + 0.001 * frame)
+        stream.upload(len(shape.positions), count)
+        surface.begin()
+        renderer.draw_background(style)
+        renderer.draw_mesh(stream, facing(), style, values=np.zeros(count, np.uint8))
+        renderer.draw_lines(lines, (1.0, 0.0, 0.0), facing())
+        surface.end()
+        surface.read()
+        peaks.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+    assert (stream._vertex_buffer, stream._index_buffer) == buffers
+    assert [buffer.size for buffer in buffers] == sizes
+    if sys.platform.startswith("linux"):  # there ru_maxrss counts kilobytes
+        assert peaks[-1] - peaks[20] < 4096
+
+
+def test_mesh_without_triangles_draws_nothing(surface: render.Surface) -> None:
+    """An empty frame of a stream is no error."""
+    renderer = render.Renderer(surface)
+    stream = lent(renderer, square())
+    stream.upload(0, 0)
+    surface.begin()
+    renderer.draw_background(PLAIN)
+    renderer.draw_mesh(stream, facing(), render.Style(background=render.WHITE))
+    surface.end()
+    assert (surface.read() >= 254).all()
+
+
+def test_positions_that_are_not_finite_are_survived(surface: render.Surface) -> None:
+    """A simulation that blew up still gives a frame."""
+    renderer = render.Renderer(surface)
+    stream = lent(renderer, sphere())
+    stream.vertices[3, 0], stream.vertices[4, 1] = np.inf, np.nan
+    stream.upload(len(stream.vertices), len(stream.triangles))
+    surface.begin()
+    renderer.draw_mesh(stream, facing(), render.Style(wireframe=True))
+    surface.end()
+    assert surface.read().shape == (96, 96, 3)
+
+
+def test_released_stream_keeps_its_arrays(surface: render.Surface) -> None:
+    """After release the arrays can still be read, and nothing is drawn."""
+    stream = lent(render.Renderer(surface), square())
+    stream.release()
+    assert stream.vertices[2, 0] == 50.0 and stream.triangle_count == 0
+
+
+@pytest.mark.parametrize(
+    ("counts", "message"),
+    [
+        ((5, 2), "vertex_count is 5; this stream holds 0 to 4"),
+        ((4, 3), "triangle_count is 3; this stream holds 0 to 2"),
+        ((-1, 2), "vertex_count is -1"),
+    ],
+)
+def test_upload_beyond_capacity(
+    surface: render.Surface, counts: tuple[int, int], message: str
+) -> None:
+    """More than was lent cannot be handed over."""
+    stream = lent(render.Renderer(surface), square())
+    with pytest.raises(ValueError, match=message):
+        stream.upload(*counts)
+
+
+def test_bad_stream_sizes(surface: render.Surface) -> None:
+    """Streams without room, or with an unknown layout, are refused."""
+    renderer = render.Renderer(surface)
+    with pytest.raises(ValueError, match=r"columns is 7; it must be 6 \(position, normal\) or 8"):
+        renderer.lend_stream(3, 1, 7)
+    with pytest.raises(ValueError, match="a stream of 0 vertices and 1 triangles"):
+        renderer.lend_stream(0, 1, 6)

@@ -1,0 +1,126 @@
+"""Offscreen frames: size, orientation, samples, life and death."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import render
+from render.surface import clamp_samples
+
+from .scenes import PLAIN, Shape, drawn, picture, sphere, square
+
+
+def upper_square() -> Shape:
+    """A square in the upper half of the view."""
+    shape = square(20.0)
+    return Shape(shape.positions + np.array((0, 30, 0), np.float32), shape.normals, shape.triangles)
+
+
+@pytest.mark.parametrize("samples", [0, 4])
+def test_read_gives_the_top_row_first(samples: int) -> None:
+    """What is up in the world is in the first rows of the array."""
+    with render.open_offscreen((64, 48), samples=samples) as surface:
+        frame = picture(surface, upper_square())
+    assert frame.shape == (48, 64, 3)
+    assert drawn(frame)[:24].any() and not drawn(frame)[24:].any()
+
+
+def test_read_is_a_new_array_each_time(surface: render.Surface) -> None:
+    """A frame that was read does not change with the next one."""
+    picture(surface, sphere())
+    first = surface.read()
+    kept = first.copy()
+    surface.begin()
+    surface.end()
+    assert first.dtype == np.uint8 and (first == kept).all()
+    assert (surface.read() == 0).all()
+
+
+def test_samples_smooth_edges() -> None:
+    """With samples, border pixels are between skin and background; without, none is."""
+    shape = sphere(3)
+    levels = {}
+    for samples in (0, 4):
+        with render.open_offscreen((96, 96), samples=samples) as surface:
+            frame = picture(surface, shape)
+        red = frame[:, :, 0]
+        levels[samples] = int(((red > 235) & (red < 254)).sum())
+    assert levels[4] > levels[0] + 20
+
+
+@pytest.mark.parametrize(
+    ("asked", "most", "given"), [(4, 8, 4), (4, 2, 2), (16, 4, 4), (3, 8, 2), (1, 8, 0), (0, 8, 0)]
+)
+def test_samples_are_clamped(asked: int, most: int, given: int) -> None:
+    """The driver's powers of two up to what was asked for."""
+    assert clamp_samples(asked, most) == given
+
+
+def test_more_samples_than_the_driver_has() -> None:
+    """Asking for too many gives as many as there are."""
+    with render.open_offscreen((8, 8), samples=1024) as surface:
+        assert 0 <= surface.samples <= surface.gl.max_samples
+
+
+def test_bad_arguments() -> None:
+    """Sizes and samples that cannot be are refused."""
+    with pytest.raises(ValueError, match=r"size is \(0, 10\); it must be \(width, height\)"):
+        render.open_offscreen((0, 10))
+    with pytest.raises(ValueError, match=r"samples is -1; it must be 0 \(none\)"):
+        render.open_offscreen((10, 10), samples=-1)
+    with pytest.raises(render.GLError, match=r"100000 x 10 pixels: .* Cure: ask for a smaller"):
+        render.open_offscreen((100_000, 10))
+
+
+def test_closed_surface_says_so() -> None:
+    """Drawing after close is an error; closing twice is not."""
+    surface = render.open_offscreen((8, 8))
+    surface.close()
+    surface.close()
+    with pytest.raises(render.GLError, match=r"this surface is closed\. Cure: open a new one"):
+        surface.begin()
+
+
+def test_two_surfaces_do_not_mix(surface: render.Surface) -> None:
+    """Frames that are drawn in turns on two surfaces stay apart."""
+    with render.open_offscreen((40, 30)) as other:
+        for _ in range(2):
+            large = picture(surface, sphere())
+            small = picture(other, square())
+        assert large.shape == (96, 96, 3) and small.shape == (30, 40, 3)
+        assert (surface.read() == large).all() and (other.read() == small).all()
+
+
+def test_begin_repairs_what_a_panel_changed(surface: render.Surface) -> None:
+    """Depth test, culling, blending, scissor and masks are as they should be in every frame."""
+    expected = picture(surface, sphere())
+    gl = surface.gl
+    gl.disable(gl.DEPTH_TEST)
+    gl.enable(gl.BLEND | gl.CULL_FACE)
+    gl.blend_func = gl.ZERO, gl.ONE
+    gl.depth_func = ">"
+    gl.scissor = (3, 3, 5, 5)
+    gl.fbo.depth_mask = False
+    assert (picture(surface, sphere()) == expected).all()
+
+
+def test_panel_lies_on_top(surface: render.Surface) -> None:
+    """What is drawn between resolve and end is in the frame, over the scene."""
+    scene = picture(surface, sphere())
+    renderer = render.Renderer(surface)
+    surface.begin()
+    renderer.draw_background(PLAIN)
+    surface.resolve()
+    surface.gl.fbo.clear(1.0, 0.0, 0.0, 1.0, viewport=(0, 0, 10, 10))
+    surface.end()
+    frame = surface.read()
+    assert (frame[-10:, :10] == (255, 0, 0)).all()
+    assert (frame[:80] >= 254).all() and drawn(scene)[:80].any()
+
+
+def test_size_is_that_of_the_frame(surface: render.Surface) -> None:
+    """Offscreen, the size is what was asked for, and lines are one pixel wide by default."""
+    assert surface.size == (96, 96) and surface.pixel_scale == 1.0
+    with render.open_offscreen((30, 20), pixel_scale=2.0) as printed:
+        assert printed.pixel_scale == 2.0

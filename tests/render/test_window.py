@@ -1,0 +1,90 @@
+"""The window: the same interface and the same pictures as offscreen. Needs a screen, or Xvfb."""
+
+from __future__ import annotations
+
+import inspect
+
+import numpy as np
+import pytest
+
+import render
+
+from .scenes import picture, sphere
+
+pytestmark = pytest.mark.window
+
+
+def test_same_interface(window: render.WindowSurface) -> None:
+    """Whatever an offscreen frame can do, a window can."""
+    with render.open_offscreen((8, 8)) as offscreen:
+        for name, value in inspect.getmembers(offscreen):
+            if name.startswith("_"):
+                continue
+            counterpart = getattr(window, name)
+            assert callable(value) == callable(counterpart)
+            if callable(value):
+                assert inspect.signature(value) == inspect.signature(counterpart)
+
+
+def test_same_picture(window: render.WindowSurface) -> None:
+    """A window shows what an offscreen frame holds, and reads it back after it was shown."""
+    style = render.Style(wireframe=True)
+    shown = picture(window, sphere(), style)
+    with render.open_offscreen(window.size) as offscreen:
+        expected = picture(offscreen, sphere(), style)
+    assert np.abs(shown - expected).mean() < 0.5
+
+
+def test_window_that_is_resized(window: render.WindowSurface) -> None:
+    """The frame follows the window; nothing of the old size is left behind."""
+    import glfw
+
+    picture(window, sphere())
+    glfw.set_window_size(window.handle, 130, 70)
+    for _ in range(50):
+        glfw.poll_events()
+        glfw.wait_events_timeout(0.01)
+    frame = picture(window, sphere())
+    assert window.size == tuple(glfw.get_framebuffer_size(window.handle)) == (130, 70)
+    assert frame.shape == (70, 130, 3) and (frame[:, :3] >= 254).all()
+    assert window.gl.error == "GL_NO_ERROR"
+
+
+def test_closing(window: render.WindowSurface) -> None:
+    """The wish to close can be read and set; a closed window says so."""
+    assert not window.should_close
+    window.should_close = True
+    assert window.should_close
+    window.close()
+    with pytest.raises(render.GLError, match="this surface is closed"):
+        window.begin()
+
+
+def test_hidden_window_can_be_read(window: render.WindowSurface) -> None:
+    """A window that nobody sees gives the same frame as one that is shown."""
+    expected = picture(window, sphere())
+    with render.open_window((96, 96), "hidden", visible=False) as hidden:
+        assert (picture(hidden, sphere()) == expected).all()
+
+
+def test_window_and_offscreen_take_turns(window: render.WindowSurface) -> None:
+    """A picture can be filmed offscreen while a window is open."""
+    first = picture(window, sphere())
+    with render.open_offscreen((40, 40)) as offscreen:
+        for _ in range(2):
+            picture(offscreen, sphere())
+            assert (picture(window, sphere()) == first).all()
+    assert (picture(window, sphere()) == first).all()
+    assert window.gl.error == "GL_NO_ERROR"
+
+
+def test_probe_finds_the_window(window: render.WindowSurface) -> None:
+    """Where a window opens, the probe says so."""
+    finding = render.probe()[1]
+    assert finding.name == "window" and finding.is_ok and finding.renderer
+
+
+def test_bad_size() -> None:
+    """A window without extent is refused before GLFW is asked."""
+    with pytest.raises(ValueError, match=r"size is \(10, 0\)"):
+        render.open_window((10, 0), "flat")

@@ -1,0 +1,28 @@
+"""The built-in head and one simulation of it, shared: building takes longer than most tests."""
+
+from __future__ import annotations
+
+import pytest
+
+import assets
+import sim
+from assets.model import Head
+
+
+@pytest.fixture(scope="session")
+def head() -> Head:
+    """The built-in head."""
+    return assets.load("head")
+
+
+@pytest.fixture(scope="session")
+def shared_simulation(head: Head) -> sim.Simulation:
+    """One simulation for the session; use the `simulation` fixture, which puts it back to rest."""
+    return sim.create(head)
+
+
+@pytest.fixture
+def simulation(shared_simulation: sim.Simulation) -> sim.Simulation:
+    """The simulation of the built-in head, at rest."""
+    shared_simulation.reset()
+    return shared_simulation

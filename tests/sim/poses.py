@@ -1,0 +1,58 @@
+"""Posing and measuring a face in tests."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import sim
+
+FRAME = 1.0 / 60.0
+Array = npt.NDArray[np.float64]
+
+
+def both_sides(simulation: sim.Simulation, values: Mapping[str, float]) -> dict[str, float]:
+    """Values for muscle names without a side, applied to both sides where there are two."""
+    known = set(simulation.controls)
+    return {
+        control: value
+        for name, value in values.items()
+        for control in (name, f"{name}_left", f"{name}_right")
+        if control in known
+    }
+
+
+def settle(simulation: sim.Simulation, values: Mapping[str, float], *, frames: int = 60) -> Array:
+    """Pose the face from rest and return how far it moved [mm], shape (V, 3)."""
+    simulation.reset()
+    simulation.set_all(values)
+    for _ in range(frames):
+        simulation.step(FRAME)
+    moved: Array = simulation.positions - simulation.rest_positions
+    return moved
+
+
+def moved_landmarks(head: Any, moved: Array, *numbers: int) -> Array:
+    """Mean displacement [mm] of some landmarks, shape (3,)."""
+    mean: Array = moved[head.landmarks[list(numbers)]].mean(axis=0)
+    return mean
+
+
+def inverted_triangles(faces: npt.NDArray[np.int32], rest: Array, now: Array) -> int:
+    """How many triangles turned their normal by more than a right angle."""
+
+    def normals(x: Array) -> Array:
+        return np.cross(x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]])
+
+    return int(((normals(rest) * normals(now)).sum(axis=1) < 0.0).sum())
+
+
+def without(head: Any, *names: str) -> SimpleNamespace:
+    """A copy of a head that lacks some attributes."""
+    every = ("vertices", "faces", "landmarks", "mandible_weight", "jaw_axis", "eyes", "rig")
+    kept = {name: getattr(head, name) for name in every if name not in names}
+    return SimpleNamespace(**kept)

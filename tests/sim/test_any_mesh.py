@@ -1,0 +1,133 @@
+"""A simulation can be built from any triangle mesh, with whatever it knows about itself."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+
+import sim
+from assets.model import Head
+from tests.sim.poses import FRAME, both_sides, moved_landmarks, settle, without
+
+
+def _grid(columns: int = 8, rows: int = 6) -> SimpleNamespace:
+    """A flat open grid."""
+    x, y = np.meshgrid(np.arange(columns, dtype=float), np.arange(rows, dtype=float))
+    vertices = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    lower = np.stack([corner, corner + 1, corner + columns], axis=1)
+    upper = np.stack([corner + 1, corner + columns + 1, corner + columns], axis=1)
+    return SimpleNamespace(vertices=vertices, faces=np.vstack([lower, upper]))
+
+
+def _with_flaws() -> SimpleNamespace:
+    """A degenerate triangle, a vertex in no triangle, a second component, vertices on one spot."""
+    vertices = [
+        [0, 0, 0],
+        [1, 0, 0],
+        [0, 1, 0],
+        [9, 9, 9],
+        [5, 5, 0],
+        [6, 5, 0],
+        [5, 6, 0],
+        [5, 6, 0],
+    ]
+    faces = [[0, 1, 2], [0, 1, 1], [4, 5, 6], [4, 5, 7]]
+    return SimpleNamespace(vertices=np.array(vertices, dtype=float), faces=np.array(faces))
+
+
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        _grid(),
+        _with_flaws(),
+        trimesh.creation.icosphere(subdivisions=2, radius=0.03),
+        trimesh.creation.icosphere(subdivisions=2, radius=4000.0),
+        SimpleNamespace(vertices=np.eye(3), faces=np.array([[0, 1, 2]])),
+    ],
+    ids=["grid", "flaws", "small trimesh", "big trimesh", "one triangle"],
+)
+def test_any_mesh_is_stable_and_comes_back(mesh: Any, generator: np.random.Generator) -> None:
+    """Kicked hard, a mesh of any size swings and returns to rest; it has no controls."""
+    simulation = sim.create(mesh)
+    assert simulation.controls == ()
+    size = float(np.ptp(simulation.rest_positions, axis=0).max())
+    simulation.kick(generator.normal(scale=2.0 * size, size=simulation.positions.shape))
+    simulation.step(1 / 20)
+    assert 1e-4 * size < np.abs(simulation.positions - simulation.rest_positions).max() < 2.0 * size
+    for _ in range(120):
+        simulation.step(FRAME)
+    assert np.abs(simulation.positions - simulation.rest_positions).max() < 1e-4 * size
+
+
+def test_input_arrays_are_copied(head: Head) -> None:
+    """The simulation neither writes into the caller's arrays nor follows changes of them."""
+    mesh = _grid()
+    before = mesh.vertices.copy()
+    simulation = sim.create(mesh)
+    simulation.kick(np.ones_like(before))
+    simulation.step(FRAME)
+    assert np.array_equal(mesh.vertices, before)
+    mesh.vertices[:] = 7.0
+    assert np.array_equal(simulation.rest_positions, before)
+
+
+def test_mesh_with_landmarks_but_no_rig_has_no_muscles(head: Head) -> None:
+    """Landmarks alone give a gaze and, with the head's own weights, a jaw; a rig gives muscles."""
+    simulation = sim.create(without(head, "rig"))
+    assert set(simulation.groups) == {"Jaw", "Gaze"}
+    assert moved_landmarks(head, settle(simulation, {"jaw_open": 1.0}), 8)[1] < -15.0
+
+
+def test_mesh_with_rig_but_no_landmarks_has_no_muscles(head: Head) -> None:
+    """Without landmarks a rig cannot be placed, but its tissue still holds the skin."""
+    simulation = sim.create(without(head, "landmarks", "eyes", "jaw_axis"))
+    assert simulation.controls == ()
+    simulation.step(FRAME)
+
+
+def test_everything_can_be_guessed_from_landmarks(head: Head) -> None:
+    """Without eyes, jaw axis and mandible weight of its own a head still smiles and blinks."""
+    simulation = sim.create(without(head, "eyes", "jaw_axis", "mandible_weight"))
+    moved = settle(simulation, {"jaw_open": 1.0})
+    assert moved_landmarks(head, moved, 66)[1] - moved_landmarks(head, moved, 62)[1] < -20.0
+    blink = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
+    assert moved_landmarks(head, settle(simulation, blink), 37, 38, 43, 44)[1] < -5.0
+    smile = settle(simulation, both_sides(simulation, {"zygomaticus_major": 1.0}))
+    assert moved_landmarks(head, smile, 54)[1] > 4.0
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"vertices": np.zeros((4, 2))}, r"head.vertices: shape was \(4, 2\)"),
+        ({"vertices": np.full((48, 3), np.nan)}, r"head.vertices: must all be finite"),
+        ({"faces": np.zeros((2, 4), dtype=int)}, r"head.faces: was int64 of shape \(2, 4\)"),
+        ({"faces": np.zeros((2, 3))}, r"head.faces: was float64"),
+        ({"faces": np.array([[0, 1, 99]])}, r"run from 0 to 99, allowed are 0 to 47"),
+        ({"landmarks": np.arange(5)}, r"head.landmarks: .* must be 68 vertex numbers"),
+        ({"landmarks": np.arange(68)}, r"head.landmarks: .* run from 0 to 67, allowed are 0 to 47"),
+        ({"landmarks": np.zeros(68, dtype=int)}, r"must be different points"),
+        ({"jaw_axis": np.zeros(3)}, r"head.jaw_axis: shape was \(3,\), must be \(2, 3\)"),
+        ({"mandible_weight": np.zeros(5)}, r"head.mandible_weight: shape was \(5,\)"),
+        (
+            {"eyes": (SimpleNamespace(name="middle", centre=np.zeros(3), radius=1.0),)},
+            r"head.eyes: name was 'middle'",
+        ),
+    ],
+)
+def test_broken_heads_are_refused(change: dict[str, Any], message: str) -> None:
+    """Each attribute is checked, and the error says what it should have been."""
+    head = SimpleNamespace(**{**vars(_grid()), **change})
+    with pytest.raises(ValueError, match=message):
+        sim.create(head)
+
+
+def test_missing_mesh_is_refused() -> None:
+    """An object without faces is no mesh."""
+    with pytest.raises(ValueError, match="has no attribute 'faces'"):
+        sim.create(SimpleNamespace(vertices=np.zeros((3, 3))))

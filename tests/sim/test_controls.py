@@ -1,0 +1,99 @@
+"""Names, limits and groups of the controls, and how activations follow them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import sim
+from sim.controls import Control, Controls
+
+
+def test_every_control_has_limits_a_value_and_one_group(simulation: sim.Simulation) -> None:
+    """Names, limits, values and groups speak of the same controls."""
+    names = simulation.controls
+    assert len(set(names)) == len(names) > 40
+    assert set(simulation.limits) == set(simulation.values) == set(names)
+    assert sorted(n for group in simulation.groups.values() for n in group) == sorted(names)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "zygomaticus_major_left", "frontalis_medial_right", "procerus", "jaw_open",
+        "orbicularis_oculi_palpebral_upper_left", "gaze_vertical", "mentalis_right",
+    ],
+)  # fmt: skip
+def test_expected_controls_exist(simulation: sim.Simulation, name: str) -> None:
+    """Muscles are there under their anatomical names, paired ones by side."""
+    assert name in simulation.controls
+
+
+def test_unknown_control_suggests_near_names(simulation: sim.Simulation) -> None:
+    """A typing error is answered with the names that were meant."""
+    with pytest.raises(ValueError, match=r"'zygomaticus_mayor_left'.*zygomaticus_major_left"):
+        simulation.set("zygomaticus_mayor_left", 0.5)
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_value_must_be_finite(simulation: sim.Simulation, value: float) -> None:
+    """NaN and infinity are refused at the door."""
+    with pytest.raises(ValueError, match=r"'jaw_open'.*must be a finite number"):
+        simulation.set("jaw_open", value)
+
+
+def test_value_must_be_within_limits(simulation: sim.Simulation) -> None:
+    """Values out of limits are refused, and the limits named."""
+    with pytest.raises(ValueError, match=r"'jaw_open': was -0.5, allowed is 0 to 1"):
+        simulation.set("jaw_open", -0.5)
+
+
+def test_set_all_is_all_or_nothing(simulation: sim.Simulation) -> None:
+    """One bad value leaves all others as they were."""
+    with pytest.raises(ValueError, match="no control called 'nonsense'"):
+        simulation.set_all({"jaw_open": 1.0, "nonsense": 1.0})
+    assert simulation.values["jaw_open"] == 0.0
+
+
+@pytest.mark.parametrize("dt", [0.0, -0.01, 0.06, float("nan"), float("inf")])
+def test_step_length_is_checked(simulation: sim.Simulation, dt: float) -> None:
+    """A step must be longer than nothing and at most a twentieth of a second."""
+    with pytest.raises(ValueError, match=r"dt: was .* at most 0.05 s"):
+        simulation.step(dt)
+
+
+def test_kick_is_checked(simulation: sim.Simulation) -> None:
+    """Velocities must fit the mesh."""
+    with pytest.raises(ValueError, match=r"velocities: shape was \(3,\)"):
+        simulation.kick(np.zeros(3))
+
+
+def test_activation_follows_without_overshoot() -> None:
+    """A step input is followed within 0.1 s, monotonously, the same for any step length."""
+    coarse, fine = (Controls((Control("one", "Group"),)) for _ in range(2))
+    coarse.set_all({"one": 1.0})
+    fine.set_all({"one": 1.0})
+    path = []
+    for _ in range(12):
+        coarse.advance(1 / 120)
+        fine.advance(1 / 240)
+        fine.advance(1 / 240)
+        path.append(coarse.now("one"))
+        assert coarse.now("one") == pytest.approx(fine.now("one"), abs=1e-12)
+    assert np.all(np.diff([0.0, *path]) > 0.0)
+    assert 0.9 < path[-1] <= 1.0
+
+
+def test_activation_reaches_its_value_exactly() -> None:
+    """After a second the activation is the value, not something near it."""
+    controls = Controls((Control("one", "Group"),))
+    controls.set_all({"one": 0.3})
+    controls.advance(1.0)
+    assert controls.now("one") == 0.3
+
+
+def test_positions_are_read_only(simulation: sim.Simulation) -> None:
+    """A caller cannot move the face by writing into what it reads."""
+    for array in (simulation.positions, simulation.rest_positions):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0.0

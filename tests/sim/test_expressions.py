@@ -1,0 +1,304 @@
+"""Muscles and expressions move the face where they should: landmarks, lids, lips, jaw."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import sim
+from assets.model import Head
+from tests.sim.poses import (
+    FRAME,
+    both_sides,
+    inverted_triangles,
+    moved_landmarks,
+    settle,
+)
+
+SIX = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
+OTHERS = ("contempt", "wink", "kiss", "yawn", "mouth_open", "blink")
+MIRRORED_NAME = {"left": "right", "right": "left"}
+
+
+@pytest.mark.parametrize(
+    ("muscle", "landmark", "direction", "least"),
+    [
+        ("frontalis_medial", 22, (0.0, 1.0, 0.0), 3.0),
+        ("frontalis_lateral", 25, (0.0, 1.0, 0.0), 4.0),
+        ("corrugator_supercilii", 23, (-0.7, -0.7, 0.0), 2.0),
+        ("levator_labii_superioris_alaeque_nasi", 35, (0.0, 1.0, 0.0), 3.0),
+        ("levator_labii_superioris", 52, (0.0, 1.0, 0.0), 3.0),
+        ("zygomaticus_major", 54, (0.6, 0.6, -0.5), 8.0),
+        ("levator_anguli_oris", 54, (0.0, 1.0, 0.0), 1.0),
+        ("risorius", 54, (0.9, 0.0, -0.4), 5.0),
+        ("buccinator", 54, (0.4, 0.0, -0.9), 2.0),
+        ("depressor_anguli_oris", 54, (0.0, -1.0, 0.0), 3.0),
+        ("depressor_labii_inferioris", 56, (0.0, -1.0, 0.0), 3.0),
+        ("mentalis", 57, (0.0, 1.0, 0.0), 3.0),
+        ("incisivus_labii_superioris", 54, (-1.0, 0.0, 0.2), 2.0),
+        ("orbicularis_oris_peripheral_lower", 57, (0.0, -0.5, 0.8), 2.0),
+    ],
+)
+def test_muscle_pulls_its_landmark(
+    simulation: sim.Simulation,
+    head: Head,
+    muscle: str,
+    landmark: int,
+    direction: tuple[float, float, float],
+    least: float,
+) -> None:
+    """Each muscle at full strength moves its insertion by so many millimetres its own way."""
+    moved = settle(simulation, both_sides(simulation, {muscle: 1.0}))
+    way = np.array(direction) / np.linalg.norm(direction)
+    assert moved_landmarks(head, moved, landmark) @ way > least
+
+
+def test_joy(simulation: sim.Simulation, head: Head) -> None:
+    """Mouth corners up and out, cheeks up."""
+    moved = settle(simulation, head.expressions["joy"])
+    right, left = moved_landmarks(head, moved, 48), moved_landmarks(head, moved, 54)
+    assert left[1] > 5.0
+    assert right[1] > 5.0
+    assert left[0] > 3.0 > -3.0 > right[0]
+
+
+def test_sadness(simulation: sim.Simulation, head: Head) -> None:
+    """Inner brows above outer brows' rise, mouth corners down."""
+    moved = settle(simulation, head.expressions["sadness"])
+    assert moved_landmarks(head, moved, 21, 22)[1] > 2.0 + moved_landmarks(head, moved, 17, 26)[1]
+    assert moved_landmarks(head, moved, 48, 54)[1] < -2.0
+
+
+def test_surprise(simulation: sim.Simulation, head: Head) -> None:
+    """Whole brows up, upper lids up, jaw down."""
+    moved = settle(simulation, head.expressions["surprise"])
+    assert moved_landmarks(head, moved, 18, 19, 20, 23, 24, 25)[1] > 4.0
+    assert moved_landmarks(head, moved, 37, 38, 43, 44)[1] > 1.0
+    assert moved_landmarks(head, moved, 8)[1] < -12.0
+
+
+def test_anger(simulation: sim.Simulation, head: Head) -> None:
+    """Brows down and together, lips not open."""
+    moved = settle(simulation, head.expressions["anger"])
+    assert moved_landmarks(head, moved, 21, 22)[1] < -3.0
+    assert moved_landmarks(head, moved, 22)[0] < -0.5
+    assert _lip_gap(simulation, head) < 0.5
+
+
+def test_disgust(simulation: sim.Simulation, head: Head) -> None:
+    """Nose wings and upper lip up."""
+    moved = settle(simulation, head.expressions["disgust"])
+    assert moved_landmarks(head, moved, 31, 35)[1] > 3.0
+    assert moved_landmarks(head, moved, 50, 52)[1] > 3.0
+
+
+def test_fear(simulation: sim.Simulation, head: Head) -> None:
+    """Brows up, lids wide, mouth corners out."""
+    moved = settle(simulation, head.expressions["fear"])
+    assert moved_landmarks(head, moved, 21, 22)[1] > 2.0
+    assert moved_landmarks(head, moved, 43, 44)[1] > 1.0
+    assert moved_landmarks(head, moved, 54)[0] > 2.0
+
+
+@pytest.mark.parametrize("name", SIX + OTHERS)
+def test_expression_keeps_the_mesh_sound(simulation: sim.Simulation, head: Head, name: str) -> None:
+    """In each expression hardly a triangle is turned over, and none of the skin flies away."""
+    moved = settle(simulation, head.expressions[name])
+    turned = inverted_triangles(head.faces, head.vertices, simulation.positions)
+    assert turned <= 12
+    assert np.abs(moved).max() < 60.0
+
+
+def test_symmetric_input_gives_mirrored_motion(simulation: sim.Simulation, head: Head) -> None:
+    """The same values on both sides move both sides alike to a thousandth of a millimetre."""
+    values = both_sides(
+        simulation,
+        {"zygomaticus_major": 0.8, "frontalis_medial": 0.5, "jaw_open": 0.3, "mentalis": 0.4,
+         "orbicularis_oculi_palpebral_upper": 0.6, "incisivus_labii_inferioris": 0.5},
+    )  # fmt: skip
+    moved = settle(simulation, values)
+    assert np.abs(moved[head.mirror] * (-1.0, 1.0, 1.0) - moved).max() < 1e-3
+
+
+def test_mirrored_input_gives_mirrored_motion(simulation: sim.Simulation, head: Head) -> None:
+    """A left smile and a right smile are mirror images."""
+    left = settle(simulation, {"zygomaticus_major_left": 1.0, "gaze_horizontal": 0.5})
+    right = settle(simulation, {"zygomaticus_major_right": 1.0, "gaze_horizontal": -0.5})
+    assert np.abs(left[head.mirror] * (-1.0, 1.0, 1.0) - right).max() < 1e-3
+
+
+def test_left_smile_moves_the_left(simulation: sim.Simulation, head: Head) -> None:
+    """Left is the subject's left (+x); the other corner is hardly dragged along."""
+    moved = settle(simulation, {"zygomaticus_major_left": 1.0})
+    left = np.linalg.norm(moved_landmarks(head, moved, 54))
+    right = np.linalg.norm(moved_landmarks(head, moved, 48))
+    assert left > 8.0
+    assert right < 0.25 * left
+
+
+def test_closed_lips_stay_closed_in_a_smile(simulation: sim.Simulation, head: Head) -> None:
+    """A smile with the jaw shut does not part the lips, nor does it push one through the other."""
+    settle(simulation, both_sides(simulation, {"zygomaticus_major": 1.0}))
+    assert _lip_gap(simulation, head) < 0.5
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"orbicularis_oris_marginal_upper": 1.0, "orbicularis_oris_marginal_lower": 1.0},
+        {"depressor_anguli_oris": 1.0},
+        {"incisivus_labii_superioris": 1.0, "incisivus_labii_inferioris": 1.0},
+        {"zygomaticus_major": 1.0, "depressor_anguli_oris": 1.0},
+    ],
+    ids=["press", "frown", "kiss", "smile against frown"],
+)
+def test_lips_do_not_cross(
+    simulation: sim.Simulation, head: Head, values: dict[str, float]
+) -> None:
+    """Lips pressed by their own muscles touch; the lower one does not rise into the upper."""
+    settle(simulation, both_sides(simulation, values))
+    lips = simulation._anatomy.lips
+    y = simulation._x[:, 1]
+    above = lips.share * y[lips.upper[:, 0]] + (1.0 - lips.share) * y[lips.upper[:, 1]]
+    assert (above - y[lips.lower] - lips.least_gap).min() > -0.3
+
+
+@pytest.mark.parametrize("other", [0.0, 1.0])
+def test_blink_closes_the_eyes(simulation: sim.Simulation, head: Head, other: float) -> None:
+    """At full closure no straight look reaches the eyeball, with tight or relaxed lower lids."""
+    values = {
+        "orbicularis_oculi_palpebral_upper": 1.0,
+        "orbicularis_oculi_palpebral_lower": other,
+    }
+    settle(simulation, both_sides(simulation, values))
+    for gap in _lid_gaps(simulation, head):
+        assert gap < 0.5
+
+
+def test_eyes_are_open_at_rest(simulation: sim.Simulation, head: Head) -> None:
+    """The measure used for a blink sees an open eye."""
+    assert min(_lid_gaps(simulation, head)) > 7.0
+
+
+@pytest.mark.parametrize("gaze", [-1.0, 0.0, 1.0])
+def test_skin_never_enters_the_eyeball(simulation: sim.Simulation, head: Head, gaze: float) -> None:
+    """Through a blink with everything around the eye active, no vertex sinks into the eyeball."""
+    around = [n for n in simulation.controls if "oculi" in n or "frontalis" in n or "super" in n]
+    for level in (1.0, 0.0):
+        simulation.set_all({**dict.fromkeys(around, level), "gaze_vertical": gaze})
+        for _ in range(20):
+            simulation.step(FRAME)
+            for eye in head.eyes:
+                distance = np.linalg.norm(simulation.positions - eye.centre, axis=1)
+                before = np.linalg.norm(simulation.rest_positions - eye.centre, axis=1)
+                assert (distance - np.minimum(before, eye.radius)).min() > -1e-6
+
+
+def test_jaw_opens_the_mouth(simulation: sim.Simulation, head: Head) -> None:
+    """An open jaw parts the lips by at least 25 mm and carries the chin down and back."""
+    moved = settle(simulation, {"jaw_open": 1.0})
+    assert _lip_gap(simulation, head) > 25.0
+    chin = moved_landmarks(head, moved, 8)
+    assert chin[1] < -20.0
+    assert chin[2] < -10.0
+
+
+def test_jaw_slides(simulation: sim.Simulation, head: Head) -> None:
+    """The chin follows the jaw forward and to the subject's left."""
+    assert moved_landmarks(head, settle(simulation, {"jaw_forward": 1.0}), 8)[2] > 4.0
+    assert moved_landmarks(head, settle(simulation, {"jaw_sideways": 1.0}), 8)[0] > 4.0
+
+
+def test_bones_carry_the_skin(simulation: sim.Simulation, head: Head) -> None:
+    """Where skin belongs to the mandible it moves like the mandible's transform."""
+    settle(simulation, {"jaw_open": 0.6})
+    matrix = simulation.bone_transforms()["mandible"]
+    chin = head.landmarks[8]
+    carried = matrix[:3, :3] @ head.vertices[chin] + matrix[:3, 3]
+    assert np.linalg.norm(carried - simulation.positions[chin]) < 4.0
+    assert np.allclose(matrix[:3, :3] @ matrix[:3, :3].T, np.eye(3))
+
+
+def test_gaze_turns_the_eyes(simulation: sim.Simulation, head: Head) -> None:
+    """+1 looks to the subject's left and up, about the centre; the upper lid follows."""
+    moved = settle(simulation, {"gaze_horizontal": 1.0, "gaze_vertical": 1.0})
+    for eye in head.eyes:
+        matrix = simulation.bone_transforms()[f"eye_{eye.name}"]
+        pupil = (
+            matrix[:3, :3] @ (eye.centre + np.array([0.0, 0.0, eye.radius]))
+            + matrix[:3, 3]
+            - eye.centre
+        )
+        assert pupil[0] > 4.0
+        assert pupil[1] > 4.0
+        assert np.linalg.norm(pupil) == pytest.approx(eye.radius)
+    assert moved_landmarks(head, moved, 37, 38, 43, 44)[1] > 1.0
+
+
+def test_fibres_shorten(simulation: sim.Simulation) -> None:
+    """The drawn fibres of a contracting muscle get shorter; there are some for every muscle."""
+    relaxed = simulation.fibres()
+    assert all(relaxed[name] for name in relaxed)
+    settle(simulation, {"zygomaticus_major_left": 1.0})
+    tight = simulation.fibres()["zygomaticus_major_left"]
+    for before, after in zip(relaxed["zygomaticus_major_left"], tight, strict=True):
+        assert _length(after) < 0.8 * _length(before)
+
+
+def test_every_expression_is_playable(simulation: sim.Simulation, head: Head) -> None:
+    """All expressions name controls of this head with allowed values, and none is empty."""
+    assert set(SIX) | set(OTHERS) <= set(head.expressions)
+    for values in head.expressions.values():
+        simulation.set_all(values)
+        assert max(values.values()) > 0.0
+
+
+def _length(line: np.ndarray) -> float:
+    return float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+
+
+def _lip_gap(simulation: sim.Simulation, head: Head) -> float:
+    """Greatest vertical distance [mm] between the inner lip landmarks."""
+    y = simulation.positions[head.landmarks, 1]
+    return float(max(y[u] - y[low] for u, low in ((61, 67), (62, 66), (63, 65))))
+
+
+def _lid_gaps(simulation: sim.Simulation, head: Head) -> list[float]:
+    """Greatest vertical opening [mm] through which each eyeball is seen from the front.
+
+    Rays along -z start in front of the eye on a grid; an opening is a run of rays in one column
+    that meet no skin.
+    """
+    corners = simulation.positions[head.faces]
+    gaps = []
+    for numbers in ((36, 39), (42, 45)):
+        ends = np.sort(simulation.positions[head.landmarks[list(numbers)], 0])
+        middle = simulation.positions[head.landmarks[list(numbers)], 1].mean()
+        columns = np.linspace(ends[0] + 3.0, ends[1] - 3.0, 23)
+        heights = middle + np.arange(-9.0, 9.0, 0.1)
+        near = corners[np.abs(corners[:, :, 0].mean(axis=1) - ends.mean()) < 25.0]
+        near = near[(np.abs(near[:, :, 1].mean(axis=1) - middle) < 25.0)]
+        near = near[near[:, :, 2].max(axis=1) > 60.0]
+        widest = 0.0
+        for x in columns:
+            covered = _covered(near, x, heights)
+            run = 0
+            for hit in covered:
+                run = 0 if hit else run + 1
+                widest = max(widest, 0.1 * run)
+        gaps.append(widest)
+    return gaps
+
+
+def _covered(triangles: np.ndarray, x: float, heights: np.ndarray) -> np.ndarray:
+    """Which rays along z at (x, height) meet a triangle."""
+    a, b, c = (triangles[:, k, :2] for k in range(3))
+    points = np.stack([np.full_like(heights, x), heights], axis=1)[:, None]
+
+    def side(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+        along, to = q - p, points - p
+        return along[:, 0] * to[:, :, 1] - along[:, 1] * to[:, :, 0]
+
+    sides = np.stack([side(a, b), side(b, c), side(c, a)])
+    inside = (sides >= 0.0).all(axis=0) | (sides <= 0.0).all(axis=0)
+    return inside.any(axis=1)

@@ -1,0 +1,177 @@
+"""The rig file: what it may say, and that each mistake is answered with muscle, key and cure."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import sim
+from assets.model import Head
+from sim.landmarks import MIRRORED, LandmarkPoint, Side
+from sim.rig import LinearMuscle, RingMuscle, Tissue, read_rig
+from tests.sim.poses import both_sides, moved_landmarks, settle, without
+
+
+def _fibre() -> dict[str, Any]:
+    return {
+        "origin": {"landmarks": {"45": 0.6, "14": 0.4}, "offset": [-4.5, -17.6, -5.6]},
+        "insertion": {"landmark": 54},
+    }
+
+
+def _document() -> dict[str, Any]:
+    """A small rig of every kind of muscle."""
+    text = {"action": "moves", "group": "Group"}
+    return {
+        "format": 1,
+        "tissue": {"tangential": 0.5},
+        "jaw": {"seeds": {"8": 1.0, "30": 0.0}},
+        "muscle": {
+            "puller": {"kind": "linear", **text, "width": 12.0, "fibre": [_fibre()]},
+            "closer": {"kind": "ring", **text, "pair": False, "radii": [20, 10, 12]},
+            "lifter": {"kind": "lid", **text, "lid": "upper_raise", "travel": 0.3},
+        },
+    }
+
+
+def test_small_rig_is_read() -> None:
+    """Values arrive where they belong, the rest takes its documented default."""
+    rig = read_rig(_document())
+    assert rig.tissue == Tissue(tangential=0.5)
+    puller, closer, lifter = rig.muscles
+    assert isinstance(puller, LinearMuscle)
+    assert puller.fibres[0].origin == LandmarkPoint(((45, 0.6), (14, 0.4)), (-4.5, -17.6, -5.6))
+    assert isinstance(closer, RingMuscle)
+    assert (closer.radii, closer.pair) == ((20.0, 10.0, 12.0), False)
+    assert lifter.name == "lifter"
+
+
+def test_empty_rig_is_plain_tissue() -> None:
+    """No rig file means no muscles, not an error."""
+    assert read_rig({}).muscles == ()
+
+
+def _set(*path: Any, value: Any) -> Callable[[dict[str, Any]], None]:
+    def change(document: dict[str, Any]) -> None:
+        place: Any = document
+        for key in path[:-1]:
+            place = place[key]
+        place[path[-1]] = value
+
+    return change
+
+
+def _delete(*path: Any) -> Callable[[dict[str, Any]], None]:
+    def change(document: dict[str, Any]) -> None:
+        place: Any = document
+        for key in path[:-1]:
+            place = place[key]
+        del place[path[-1]]
+
+    return change
+
+
+PULLER = ("muscle", "puller")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (_set("format", value=2), r"key 'format': was 2, this version reads 1"),
+        (_set("muscles", value={}), r"unknown key 'muscles'; did you mean 'muscle'\?"),
+        (_set("muscle", value=[]), r"key 'muscle': was \[\], must be a table"),
+        (_set("tissue", "shear", value="soft"), r"key 'shear': was 'soft', must be a number"),
+        (_set("tissue", "sheer", value=1.0), r"unknown key 'sheer'; did you mean 'shear'\?"),
+        (_set("tissue", "damping", value=-1), r"'damping': was -1, must be .* from 0 to 1000"),
+        (_set("jaw", "opening_deg", value=True), r"'opening_deg': was True, must be a number"),
+        (_set("jaw", "opening_glide", value=[1, 2]), r"'opening_glide'.* a list of 3 numbers"),
+        (_set("jaw", "seeds", value={"99": 1.0}), r"landmark '99', allowed are 0 to 67"),
+        (_set("eyes", value={"gaze_deg": float("nan")}), r"eyes, key 'gaze_deg': was nan"),
+        (_set(*PULLER, value=3), r"muscle 'puller': was 3, must be a table \[muscle.puller\]"),
+        (_set(*PULLER, "kind", value="sheet"), r"'kind': was 'sheet', allowed are linear, ring"),
+        (_delete(*PULLER, "kind"), r"muscle 'puller', key 'kind': was None"),
+        (_delete(*PULLER, "action"), r"muscle 'puller', key 'action': is missing"),
+        (_set(*PULLER, "group", value=7), r"key 'group': was 7, must be a text"),
+        (_set(*PULLER, "pair", value="no"), r"key 'pair': was 'no', must be a boolean"),
+        (_set(*PULLER, "with", value=12), r"unknown key 'with'; did you mean 'width'\?"),
+        (_set(*PULLER, "width", value=0.0), r"'puller', key 'width': was 0.0, must be .* 1 to 60"),
+        (_set(*PULLER, "bone", value="maxilla"), r"'bone': was 'maxilla', allowed are cranium"),
+        (_set(*PULLER, "gate", value="upper"), r"'gate': was 'upper', allowed are none, upper_lip"),
+        (_set(*PULLER, "radii", value=[1, 1, 1]), r"'puller': unknown key 'radii'"),
+        (_delete(*PULLER, "fibre"), r"'puller': a linear muscle needs at least one"),
+        (_set(*PULLER, "fibre", value={}), r"must be a list of fibre tables"),
+        (_delete(*PULLER, "fibre", 0, "origin"), r"'fibres' 1, key 'origin': is missing"),
+        (_set(*PULLER, "fibre", 0, "origin", value=54), r"'origin': was 54, must be a table"),
+        (
+            _set(*PULLER, "fibre", 0, "insertion", "landmarks", value={"54": 1.0}),
+            r"'insertion': give exactly one of 'landmark' and 'landmarks'",
+        ),
+        (
+            _set(*PULLER, "fibre", 0, "origin", "landmarks", value={"45": 0.5}),
+            r"'origin': the landmark weights add up to 0.5, must be 1",
+        ),
+        (
+            _set(*PULLER, "fibre", 0, "origin", "landmarks", value={}),
+            r"'origin': was \{\}, must be a table landmark number = weight",
+        ),
+        (
+            _set(*PULLER, "fibre", 0, "insertion", value={"landmark": "lip"}),
+            r"landmark 'lip', allowed are 0 to 67",
+        ),
+        (_set("muscle", "closer", "radii", value=[0, 1, 1]), r"'closer', key 'radii'\[0\]: was 0"),
+        (_set("muscle", "lifter", "lid", value="up"), r"'lid': was 'up', allowed are upper_close"),
+        (_set("muscle", "Big Muscle", value={}), r"'Big Muscle': a muscle name is lower case"),
+        (_set("muscle", "puller_left", value={}), r"'puller_left': the side is added by itself"),
+    ],
+)  # fmt: skip
+def test_each_mistake_is_named(change: Callable[[dict[str, Any]], None], message: str) -> None:
+    """Errors say where, what it was and what is allowed."""
+    document = copy.deepcopy(_document())
+    change(document)
+    with pytest.raises(ValueError, match=message):
+        read_rig(document)
+
+
+def test_built_in_rig_is_complete(head: Head) -> None:
+    """The face has the muscles of the textbooks; every one says what it does and by which unit."""
+    rig = read_rig(head.rig)
+    assert len(rig.muscles) >= 24
+    for muscle in rig.muscles:
+        assert "AU" in muscle.action, muscle.name
+
+
+def test_mirror_table_is_its_own_inverse() -> None:
+    """Mirroring a landmark twice gives the landmark; points of the midline stay."""
+    assert np.array_equal(MIRRORED[MIRRORED], np.arange(68))
+    assert all(MIRRORED[n] == n for n in (8, 27, 28, 29, 30, 33, 51, 57, 62, 66))
+
+
+def test_points_are_mirrored() -> None:
+    """On the right a point uses the mirrored landmark and the mirrored offset."""
+    landmarks = np.zeros((68, 3))
+    landmarks[54], landmarks[48] = (30.0, -60.0, 5.0), (-30.0, -60.0, 5.0)
+    point = LandmarkPoint(((54, 1.0),), (2.0, 3.0, 4.0))
+    assert np.array_equal(point.on(landmarks, Side.LEFT), [32.0, -57.0, 9.0])
+    assert np.array_equal(point.on(landmarks, Side.RIGHT), [-32.0, -57.0, 9.0])
+
+
+def test_rig_moves_with_the_head(head: Head) -> None:
+    """Turned, moved and ten times smaller (with a guessed jaw), a smile is the same smile."""
+    angle = np.radians(30.0)
+    turn = np.array(
+        [[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]]
+    )
+    plain = without(head, "eyes", "jaw_axis", "mandible_weight")
+    other = copy.copy(plain)
+    other.vertices = 0.1 * plain.vertices @ turn.T + (5.0, -3.0, 2.0)
+    smiles = []
+    for face in (plain, other):
+        simulation = sim.create(face)
+        values = both_sides(simulation, {"zygomaticus_major": 1.0, "jaw_open": 0.3})
+        smiles.append(settle(simulation, values, frames=40))
+    assert np.abs(10.0 * smiles[1] @ turn - smiles[0]).max() < 1e-6
+    assert moved_landmarks(head, smiles[0], 54)[0] > 3.0

@@ -1,0 +1,108 @@
+"""Rest stays at rest, energy dies away, and no input breaks the face."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import sim
+from assets.model import Head
+from tests.sim.poses import FRAME, both_sides, settle
+
+
+def test_rest_stays_at_rest(simulation: sim.Simulation) -> None:
+    """Two seconds without input move nothing by a millionth of a millimetre."""
+    for _ in range(120):
+        simulation.step(FRAME)
+    assert np.abs(simulation.positions - simulation.rest_positions).max() < 1e-6
+    assert simulation.energy() < 1e-9
+
+
+@pytest.mark.parametrize("speed", [50.0, 500.0])
+def test_energy_only_falls_without_input(
+    simulation: sim.Simulation, generator: np.random.Generator, speed: float
+) -> None:
+    """After a blow the energy falls in every frame and is gone after a second and a half."""
+    simulation.kick(generator.normal(scale=speed, size=simulation.positions.shape))
+    energies = [simulation.energy()]
+    for _ in range(90):
+        simulation.step(FRAME)
+        energies.append(simulation.energy())
+    assert np.all(np.diff(energies) <= 1e-9 * energies[0])
+    assert energies[-1] < 1e-6 * energies[0]
+
+
+@pytest.mark.parametrize("frames_per_second", [240.0, 60.0, 47.3, 20.0])
+def test_random_jumps_stay_bounded_and_come_back(
+    simulation: sim.Simulation, generator: np.random.Generator, frames_per_second: float
+) -> None:
+    """Every control jumps in every frame; the face stays in bounds and is at rest after 2 s."""
+    limits = [simulation.limits[name] for name in simulation.controls]
+    furthest = 0.0
+    for _ in range(int(2.0 * frames_per_second)):
+        for name, (low, high) in zip(simulation.controls, limits, strict=True):
+            simulation.set(name, generator.choice([low, high, generator.uniform(low, high)]))
+        simulation.step(1.0 / frames_per_second)
+        furthest = max(furthest, float(np.abs(_moved(simulation)).max()))
+    assert 5.0 < furthest < 90.0
+    simulation.set_all(dict.fromkeys(simulation.controls, 0.0))
+    for _ in range(int(2.0 * frames_per_second)):
+        simulation.step(1.0 / frames_per_second)
+    assert np.abs(_moved(simulation)).max() < 0.01
+
+
+def test_everything_at_once_on_and_off(simulation: sim.Simulation) -> None:
+    """All muscles at full strength, switched on and off every tenth of a second."""
+    for beat in range(20):
+        level = float(beat % 2)
+        simulation.set_all({name: level for name in simulation.controls})
+        for _ in range(6):
+            simulation.step(FRAME)
+        assert np.abs(_moved(simulation)).max() < 90.0
+
+
+def test_two_runs_are_bit_identical(simulation: sim.Simulation, head: Head) -> None:
+    """The same inputs give the same bits, also in a simulation built anew."""
+    other = sim.create(head)
+    values = {name: high / 2.0 for name, (_, high) in simulation.limits.items()}
+    for run in (simulation, other):
+        run.set_all(values)
+        for dt in (1 / 60, 1 / 24, 1 / 240, 1 / 47.3, 1 / 20):
+            run.step(dt)
+    assert simulation.positions.tobytes() == other.positions.tobytes()
+
+
+def test_reset_forgets_everything(simulation: sim.Simulation) -> None:
+    """After a reset a run repeats itself bit by bit."""
+    values = both_sides(simulation, {"zygomaticus_major": 0.7, "jaw_open": 0.5})
+    first = settle(simulation, values, frames=7)
+    second = settle(simulation, values, frames=7)
+    assert first.tobytes() == second.tobytes()
+
+
+def test_frame_length_hardly_matters(simulation: sim.Simulation) -> None:
+    """A smile after a quarter of a second is the same at 20, 60 and 240 frames per second."""
+    values = both_sides(simulation, {"zygomaticus_major": 1.0})
+    poses = []
+    for rate in (20, 60, 240):
+        simulation.reset()
+        simulation.set_all(values)
+        for _ in range(rate // 4):
+            simulation.step(1.0 / rate)
+        poses.append(simulation.positions.copy())
+    assert np.abs(poses[0] - poses[2]).max() < 0.2
+    assert np.abs(poses[1] - poses[2]).max() < 0.2
+
+
+def test_broken_state_is_reported(simulation: sim.Simulation) -> None:
+    """A state that is not finite raises, and a reset repairs it."""
+    simulation._x[10] = np.nan
+    with pytest.raises(sim.SimulationUnstable, match=r"vertices are not finite.*reset"):
+        simulation.step(FRAME)
+    simulation.reset()
+    simulation.step(FRAME)
+    assert np.isfinite(simulation.positions).all()
+
+
+def _moved(simulation: sim.Simulation) -> np.ndarray:
+    return simulation.positions - simulation.rest_positions
