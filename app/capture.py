@@ -62,21 +62,18 @@ class Capture:
 
     def picture(self, seconds: float = 0.0) -> Frame:
         """Let `seconds` pass, draw, and read the picture back."""
-        count = len(self.viewports)
         self.surface.begin()
-        self.pipeline.draw_frame(
-            seconds, [self.camera] * count, [self.options.style] * count, self.viewports
-        )
+        self.pipeline.draw_frame(seconds, self.camera, self.options.style, self.viewports)
         self.surface.end()
         pictures = self.pipeline.pictures
         self.most_triangles = max(
-            [self.most_triangles, *(drawn.counts.triangles_out for drawn in pictures)]
+            [self.most_triangles, *(drawn.triangle_count for drawn in pictures)]
         )
         frame = self.surface.read()
         if self.options.compare and self.options.captions:
             texts = [
                 f"{'static' if drawn.refiner_name == 'none' else drawn.refiner_name} "
-                f"· {drawn.counts.triangles_out} triangles"
+                f"· {drawn.triangle_count} triangles"
                 for drawn in pictures
             ]
             frame = caption(frame, texts, self.viewports)

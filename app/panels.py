@@ -55,10 +55,10 @@ class Panel:
 
     def _counts(self) -> None:
         viewer = self.viewer
-        counts = viewer.picture.counts
         imgui.text(f"{viewer.frames_per_second:.0f} fps")
         imgui.same_line()
-        imgui.text_colored(MUTED, f"{counts.triangles_in} triangles, {counts.triangles_out} drawn")
+        drawn = viewer.picture.triangle_count
+        imgui.text_colored(MUTED, f"{len(viewer.scene.faces)} triangles, {drawn} drawn")
 
     def _display(self) -> None:
         viewer = self.viewer

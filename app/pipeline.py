@@ -1,6 +1,6 @@
 """The paper's Figure 1, end to end: simulation, triangle mesh, refinement, rendering.
 
-Four lines of `draw_frame` are the figure. The simulation never learns that refinement exists; the
+`draw_frame` is the figure. The simulation never learns that refinement exists; the
 refiner reads the mesh and writes only into the buffers that the renderer lent; what it wrote is
 forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
 """
@@ -8,7 +8,7 @@ forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -24,21 +24,12 @@ Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the l
 
 
 @dataclass
-class FrameCounts:
-    """What the last frame of one picture was made of."""
-
-    triangles_in: int = 0
-    triangles_out: int = 0
-
-
-@dataclass
 class Picture:
     """One view of the scene's mesh through one refiner; two of them make a comparison."""
 
     refiner_name: str
     refiner: refine.Refiner
     stream: render.Stream
-    counts: FrameCounts = field(default_factory=FrameCounts)
 
     @classmethod
     def of(cls, scene: Scene, renderer: render.Renderer, name: str, **options: Any) -> Picture:
@@ -48,6 +39,11 @@ class Picture:
             refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
         )
         return cls(name, refiner, stream)
+
+    @property
+    def triangle_count(self) -> int:
+        """How many triangles the last frame drew."""
+        return self.stream.triangle_count
 
 
 class Pipeline:
@@ -63,19 +59,16 @@ class Pipeline:
     def draw_frame(
         self,
         seconds: float,
-        cameras: Sequence[render.OrbitCamera],
-        styles: Sequence[render.Style],
+        camera: render.OrbitCamera,
+        style: render.Style,
         viewports: Sequence[Viewport],
     ) -> None:
         """Let the scene move by `seconds`, then draw each picture into its viewport."""
         if seconds > 0.0:
             self.scene.step(seconds)
-        for picture, camera, style, viewport in zip(
-            self.pictures, cameras, styles, viewports, strict=True
-        ):
+        for picture, viewport in zip(self.pictures, viewports, strict=True):
             mesh = picture.refiner.refine(self.scene.positions, out=picture.stream)
             picture.stream.upload(len(mesh.positions), len(mesh.triangles))
-            picture.counts = FrameCounts(len(self.scene.faces), len(mesh.triangles))
             self._draw(picture, mesh, camera, style, viewport)
 
     def _draw(
@@ -91,6 +84,7 @@ class Pipeline:
             values = splits_of_source(picture.refiner, mesh)
         self.renderer.draw_background(style, viewport)
         self.renderer.draw_mesh(picture.stream, camera, style, viewport=viewport, values=values)
+        # After the mesh: the skin throws its shadow on eyes and teeth.
         self.renderer.draw_parts(
             self.scene.parts, self.scene.bone_transforms(), camera, style, viewport=viewport
         )

@@ -95,7 +95,7 @@ class Viewer:
         self._play(seconds)
         self.scene.pose(self.controls)
         self.surface.begin()
-        self.pipeline.draw_frame(seconds, [self.camera], [self._style()], [self._viewport()])
+        self.pipeline.draw_frame(seconds, self.camera, self._style(), [self._viewport()])
         self.surface.resolve()  # the panel lies on top of the finished picture
         with self.gui.frame():
             self.panel.draw(imgui.get_io().display_size.y)

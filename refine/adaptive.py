@@ -101,26 +101,41 @@ class Kahler(BoundRefiner):
     def _fill(
         self, vertices: Floats, triangles: Unsigned, source: npt.NDArray[np.int32]
     ) -> tuple[int, int]:
-        connectivity, rings = self.connectivity, self._rings
-        positions, normals, splits = self._positions, self._normals, self._rim_splits
-        edge_points, is_interior = connectivity.edge_points, connectivity.is_interior
-        first_points, middles = self._first_points, self._middles
-
-        vertex_normals(positions, connectivity.faces, normals)
-        self._criterion.mark(positions, normals, self._edge_splits)
+        connectivity, splits = self.connectivity, self._rim_splits
+        vertex_normals(self._positions, connectivity.faces, self._normals)
+        self._criterion.mark(self._positions, self._normals, self._edge_splits)
         if not self._has_own_criterion:
             self._check_splits()
-
         vertex_count, once_count, twice_count = number_points(
             splits,
-            edge_points,
+            connectivity.edge_points,
             connectivity.rim_edges,
             len(connectivity.wedge_vertices),
-            first_points,
+            self._first_points,
             self._split_once,
             self._split_twice,
             self._moved,
         )
+        self._place_points(vertices, once_count, twice_count)
+        if self._uv is not None:
+            self._place_seams(vertices)
+        triangle_count = look_up_triangles(
+            connectivity.corners,
+            connectivity.triangle_rims,
+            splits,
+            self._first_points,
+            SUBTRIANGLE_COUNTS,
+            SUBTRIANGLES,
+            triangles,
+            source,
+        )
+        return vertex_count, triangle_count
+
+    def _place_points(self, vertices: Floats, once_count: int, twice_count: int) -> None:
+        """Write positions and normals: moved vertices, first level, second level."""
+        rings, positions, normals = self._rings, self._positions, self._normals
+        edge_points, is_interior = self.connectivity.edge_points, self.connectivity.is_interior
+        first_points, middles = self._first_points, self._middles
         place_vertices(
             positions,
             normals,
@@ -146,31 +161,22 @@ class Kahler(BoundRefiner):
             positions,
             normals,
             edge_points,
-            connectivity.edge_wings,
+            self.connectivity.edge_wings,
             is_interior,
-            splits,
+            self._rim_splits,
             first_points,
             self._split_twice,
             twice_count,
             middles,
             vertices,
         )
-        if self._uv is not None:
-            rim_edges = connectivity.rim_edges
-            copy_wedges(len(positions), connectivity.wedge_vertices, vertices)
-            copy_rims(len(edge_points), rim_edges, splits, first_points, vertices)
-            place_texture(self._wedge_uv, self._rim_uv, splits, first_points, vertices)
-        triangle_count = look_up_triangles(
-            connectivity.corners,
-            connectivity.triangle_rims,
-            splits,
-            first_points,
-            SUBTRIANGLE_COUNTS,
-            SUBTRIANGLES,
-            triangles,
-            source,
-        )
-        return vertex_count, triangle_count
+
+    def _place_seams(self, vertices: Floats) -> None:
+        """Copy geometry to the other sides of texture seams, and write texture coordinates."""
+        mesh, splits, first_points = self.connectivity, self._rim_splits, self._first_points
+        copy_wedges(mesh.vertex_count, mesh.wedge_vertices, vertices)
+        copy_rims(len(mesh.edges), mesh.rim_edges, splits, first_points, vertices)
+        place_texture(self._wedge_uv, self._rim_uv, splits, first_points, vertices)
 
     def _check_splits(self) -> None:
         """Raise ValueError if a criterion from outside asks for more than the table has."""

@@ -1,7 +1,7 @@
 """What OpenGL this machine offers, found out without risk to the caller.
 
-A broken driver may crash the process that loads it, so each try runs in a Python of its own:
-`python -m render.probe offscreen` prints one JSON object.
+A broken driver may crash the process that loads it, so each try runs in a Python of its own, which
+writes one JSON object.
 """
 
 import json
@@ -56,12 +56,12 @@ def _probe_in_process(name: str, *, is_needed: bool) -> Finding:
     def failed(message: str) -> Finding:
         return Finding(name, is_ok=False, is_needed=is_needed, message=message)
 
-    package = __package__ or "render"
+    code = f"from {__package__}.probe import write_finding; write_finding({name!r})"
     root = str(Path(__file__).resolve().parents[1])
     search_path = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
     try:
         process = subprocess.run(
-            [sys.executable, "-m", f"{package}.probe", name],
+            [sys.executable, "-c", code],
             capture_output=True,
             text=True,
             errors="replace",
@@ -81,6 +81,11 @@ def _probe_in_process(name: str, *, is_needed: bool) -> Finding:
         )
     found = json.loads(process.stdout.strip().splitlines()[-1])
     return Finding(name, is_needed=is_needed, **found)
+
+
+def write_finding(name: str) -> None:
+    """Try one way to draw in this very process, and write what was found to standard output."""
+    sys.stdout.write(json.dumps(_examine(name)) + "\n")
 
 
 def _examine(name: str) -> dict[str, object]:
@@ -110,7 +115,3 @@ def _examine(name: str) -> dict[str, object]:
         return {"is_ok": False, "message": str(error)}
     except Exception as error:
         return {"is_ok": False, "message": f"{type(error).__name__}: {error}"}
-
-
-if __name__ == "__main__":
-    sys.stdout.write(json.dumps(_examine(sys.argv[1])) + "\n")

@@ -1,8 +1,8 @@
 """The shadow that the skin throws in the key light: on itself, on eyes, on teeth.
 
-A depth picture of the back faces of the skin, taken from the key light, which hangs on the camera.
-Back faces, because a lit facet can then never shadow itself, however coarse the mesh. The map spans
-what the camera can see, and depends on nothing that moves, so shadows do not crawl with the face.
+A depth picture of the skin, taken from the key light, which hangs on the camera. Of both sides:
+skin is a sheet, and what lies behind its lit side, in the mouth, has to be dark. The map spans what
+the camera can see, and depends on nothing that moves, so shadows do not crawl with the face.
 Source: Williams 1978, "Casting curved shadows on curved surfaces"; filtering of depth tests as in
 Reeves et al. 1987.
 """
@@ -16,7 +16,8 @@ from .sight import Sight
 from .stream import Stream
 
 RESOLUTION = 768  # texels each way: 0.4 mm on a head
-_DEPTH_OFFSET = 3.0, 4.0
+# Slope and steps by which the picture lies deeper than the skin: a facet must not shadow itself.
+_DEPTH_OFFSET = 2.0, 4.0
 _REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
 _SEEN = 1.15  # of the seen circle at the target: nearer things show more of the world around them
 

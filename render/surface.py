@@ -118,11 +118,17 @@ class Surface:
 class OffscreenSurface(Surface):
     """A frame without a window; needs no screen."""
 
+    def __init__(
+        self, gl: moderngl.Context, size: tuple[int, int], samples: int, *, can_leave: bool
+    ) -> None:
+        self._can_leave = can_leave
+        super().__init__(gl, size, samples)
+
     def _bind(self) -> None:
         self.gl.__enter__()  # type: ignore[no-untyped-call]
 
     def _unbind(self) -> None:
-        self.gl.__exit__(None, None, None)  # type: ignore[no-untyped-call]
+        _leave(self.gl, can_leave=self._can_leave)
 
     def _close_context(self) -> None:
         self._unbind()  # a released context would stay current, and keep a window from its own
@@ -143,11 +149,11 @@ def open_offscreen(
     if Surface._current is not None:
         Surface._current._unbind()
         Surface._current = None
-    gl = _offscreen_context()
+    gl, can_leave = _offscreen_context()
     try:
-        surface = OffscreenSurface(gl, size, samples)
+        surface = OffscreenSurface(gl, size, samples, can_leave=can_leave)
     except Exception:
-        gl.__exit__(None, None, None)  # type: ignore[no-untyped-call]
+        _leave(gl, can_leave=can_leave)
         gl.release()
         raise
     surface.pixel_scale = pixel_scale
@@ -155,21 +161,34 @@ def open_offscreen(
     return surface
 
 
-def _offscreen_context() -> moderngl.Context:
-    """EGL on Linux, then a hidden X11 context where there is a screen; elsewhere the native way."""
+def _leave(gl: moderngl.Context, *, can_leave: bool) -> None:
+    """Make no context current, where that is safe.
+
+    glcontext leaves a context for the one that was current before it; its X11 backend crashes when
+    there was none. Whoever binds a context next replaces this one anyway.
+    """
+    if can_leave:
+        gl.__exit__(None, None, None)  # type: ignore[no-untyped-call]
+
+
+def _offscreen_context() -> tuple[moderngl.Context, bool]:
+    """EGL on Linux, then a hidden X11 context where there is a screen; elsewhere the native way.
+
+    The second value tells whether the context can be left (see `_leave`).
+    """
     if not sys.platform.startswith("linux"):
         try:
-            return moderngl.create_context(require=330, standalone=True)
+            return moderngl.create_context(require=330, standalone=True), True
         except Exception as error:
             raise diagnose("offscreen OpenGL", error) from None
     try:
         egl: dict[str, Any] = {"backend": "egl"}
-        return moderngl.create_context(require=330, standalone=True, **egl)
+        return moderngl.create_context(require=330, standalone=True, **egl), True
     except Exception as error:
         egl_error = error
     if os.environ.get("DISPLAY"):
         try:
-            return moderngl.create_context(require=330, standalone=True)
+            return moderngl.create_context(require=330, standalone=True), False
         except Exception as error:
             raise diagnose("offscreen OpenGL (EGL)", f"{egl_error}; then X11: {error}") from None
     raise diagnose("offscreen OpenGL (EGL)", egl_error) from None

@@ -108,11 +108,11 @@ def test_keys_show_expressions(viewer: Viewer) -> None:
     first = next(iter(viewer.scene.expressions))
     assert viewer.expression == first
     assert until(viewer, lambda: moved(viewer) > 3.0)
-    assert until(viewer, lambda: viewer.picture.counts.triangles_out > 2100)
+    assert until(viewer, lambda: viewer.picture.triangle_count > 2100)
     xdotool(viewer, "key", "r")
-    assert viewer.picture.counts.triangles_out == len(viewer.scene.faces)
+    assert viewer.picture.triangle_count == len(viewer.scene.faces)
     xdotool(viewer, "key", "r")
-    assert viewer.picture.counts.triangles_out > 2100
+    assert viewer.picture.triangle_count > 2100
     xdotool(viewer, "key", "1")
     assert until(viewer, lambda: moved(viewer) < 0.5)
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import refine
+from refine import criterion, masks, output, rings
 
 FOLDER = Path(refine.__file__).parent
 MODULES = sorted(path.stem for path in FOLDER.glob("*.py") if path.stem != "__init__")
@@ -34,8 +35,6 @@ def test_kernels_stand_alone(name: str) -> None:
 
 def test_there_are_kernels() -> None:
     """The rule above is not kept by there being nothing it applies to."""
-    from refine import criterion, masks, output, rings
-
     for kernel in (criterion.vertex_normals, masks.place_quarters, output.number_points):
         assert hasattr(kernel, "py_func")
     assert "ONE" in masks.unit.py_func.__code__.co_names  # type: ignore[attr-defined]

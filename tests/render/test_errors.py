@@ -137,6 +137,7 @@ def test_probe_reports_failures(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not window.is_ok and not window.is_needed and "xvfb-run" in window.message
 
 
+@on_linux
 def test_probe_survives_a_crash(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A driver that kills its process is a finding with the exit code."""
     killer = tmp_path / "python"

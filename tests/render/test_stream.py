@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import resource
-import sys
-
 import numpy as np
 import pytest
 
@@ -56,6 +53,7 @@ def test_only_the_used_part_is_drawn(surface: render.Surface) -> None:
 
 def test_hundred_frames_use_the_same_buffers(surface: render.Surface) -> None:
     """Neither the arrays, nor OpenGL's buffers, nor the process grow while a mesh changes."""
+    resource = pytest.importorskip("resource", reason="this system does not tell memory in use")
     renderer = render.Renderer(surface)
     shape = sphere(4)
     stream = lent(renderer, shape)
@@ -77,8 +75,7 @@ def test_hundred_frames_use_the_same_buffers(surface: render.Surface) -> None:
         peaks.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
     assert (stream._vertex_buffer, stream._index_buffer) == buffers
     assert [buffer.size for buffer in buffers] == sizes
-    if sys.platform.startswith("linux"):  # there ru_maxrss counts kilobytes
-        assert peaks[-1] - peaks[20] < 4096
+    assert peaks[-1] < 1.03 * peaks[20]
 
 
 def test_mesh_without_triangles_draws_nothing(surface: render.Surface) -> None:

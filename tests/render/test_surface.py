@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -124,3 +128,21 @@ def test_size_is_that_of_the_frame(surface: render.Surface) -> None:
     assert surface.size == (96, 96) and surface.pixel_scale == 1.0
     with render.open_offscreen((30, 20), pixel_scale=2.0) as printed:
         assert printed.pixel_scale == 2.0
+
+
+@pytest.mark.window
+@pytest.mark.skipif(not os.environ.get("DISPLAY"), reason="needs a display: DISPLAY is not set")
+def test_without_egl_a_screen_will_do() -> None:
+    """Where EGL is missing but a screen is there, frames come from X11 and closing is safe."""
+    code = (
+        "import render\n"
+        "for _ in range(2):\n"
+        "    with render.open_offscreen((32, 32)) as surface:\n"
+        "        surface.begin(); surface.end(); print(surface.read().shape)\n"
+    )
+    environment = {**os.environ, "GLCONTEXT_LINUX_LIBEGL": "libEGL-not-there.so"}
+    result = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.split("\n")[:2] == ["(32, 32, 3)"] * 2
