@@ -13,7 +13,9 @@ DEFAULT_VIEW = "three-quarter"
 
 
 def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
-    """The camera of a named view, or of "yaw,pitch[,zoom]" (degrees; zoom 1 frames the scene).
+    """The camera of a named view of the whole scene, or of "yaw,pitch[,zoom]" around its focus.
+
+    Degrees; at zoom 1 the whole scene fits, at 2 all is twice as large.
 
     Raises UserError with the views that there are.
     """
@@ -32,6 +34,7 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
         ) from None
     camera = render.OrbitCamera.framing(vertices, view="front")
     camera.orbit(numbers[0], numbers[1])
+    camera.target = scene.focus.copy()
     if len(numbers) == 3:
         camera.zoom(numbers[2])
     return camera

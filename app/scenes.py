@@ -29,6 +29,7 @@ class Scene(Protocol):
     rest_positions: npt.NDArray[np.float64]
     parts: tuple[Any, ...]
     expressions: Mapping[str, Mapping[str, float]]
+    focus: npt.NDArray[np.float64]  # where a camera close by looks [mm], shape (3,)
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
@@ -71,6 +72,8 @@ class FaceScene:
         self.rest_positions = self.simulation.rest_positions
         self.parts: tuple[Any, ...] = head.parts
         self.expressions: Mapping[str, Mapping[str, float]] = head.expressions
+        landmarks = head.vertices[head.landmarks]
+        self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
@@ -121,6 +124,7 @@ class PlaneScene:
         self.rest_positions = plane.vertices
         self.parts: tuple[Any, ...] = ()
         self.expressions: Mapping[str, Mapping[str, float]] = {}
+        self.focus = plane.vertices.mean(axis=0)
         self.groups: Mapping[str, tuple[str, ...]] = {"Wave": ("amplitude", "phase")}
         self.limits: Mapping[str, tuple[float, float]] = {
             "amplitude": (0.0, 1.0),
