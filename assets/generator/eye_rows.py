@@ -21,7 +21,7 @@ MARGIN_CLEARANCE = 0.25  # [mm] between eyeball and inner edge: touching would f
 MARGIN_THICKNESS = 1.2  # [mm] inner to outer edge
 # Rows on the lid: distance from the margin in its middle, at its inner and its outer corner [mm],
 # and rounds of smoothing, which draw in the corners: hence the large distances there.
-LID_ROWS = ((2.5, 3.0, 4.6, 1), (6.0, 6.4, 8.8, 2))
+LID_ROWS = ((2.5, 3.0, 4.4, 1), (6.0, 6.4, 11.5, 2))
 CREASE_DEPTH = 0.9  # [mm] chosen: a line that shading shows, and skin to unroll in a blink
 
 

@@ -22,10 +22,10 @@ SEAM_ROW, CREST_ROW, BORDER_ROW, OUTER_ROW = 2, 3, 6, 7
 
 # Rows on the lips: position across the lip, x of the corner [mm], least opening [mm]. Every row
 # has a corner of its own, or the rows would fold over each other there.
-RED_ROWS = ((0.17, 25.1, 0.9), (0.46, 26.2, 1.9), (0.76, 27.3, 2.7), (1.0, 28.5, 3.4))
+RED_ROWS = ((0.17, 25.2, 1.2), (0.46, 26.5, 2.7), (0.76, 27.9, 4.0), (1.0, 29.3, 5.3))
 SEAM_CORNER = 24.1
 VESTIBULE = ((6.8, 3.2, 21.0), (3.0, 1.0, 22.8))  # depth, opening, x of the corner [mm]
-OUTER_CORNER = 32.4
+OUTER_CORNER = 33.2
 OUTER_DISTANCE = 4.2  # [mm]
 
 

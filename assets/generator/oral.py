@@ -14,7 +14,7 @@ from .solids import Solid, grid_faces, joined, mix, welded
 PALATE_FRONT, PALATE_BACK = (0.36, 0.15, 0.145), (0.06, 0.018, 0.018)
 TONGUE, TONGUE_ROOT = (0.70, 0.37, 0.36), (0.25, 0.09, 0.09)
 CENTRE = np.array([0.0, -66.0, 56.0])  # [mm]
-HALF_WIDTH, ROOF, FRONT, BACK = 32.0, 17.0, 26.0, 38.0  # [mm]
+HALF_WIDTH, ROOF, FRONT, BACK = 32.0, 17.0, 29.0, 38.0  # [mm]; FRONT ends inside the gums
 FRONT_END_DEG, SIDE_END_DEG = 180.0, 118.0  # from straight back
 THROAT_DEPTH, FRONT_DEPTH = 40.0, 8.0  # [mm] how far the sides hang below the roof's edge
 

@@ -15,7 +15,7 @@ from .form import distance
 from .sheet import wanted_length
 from .topology import Edge, Faces, cross_products, edge_faces, edge_key
 
-LONGEST, SHORTEST = 1.42, 0.66  # of the wanted length: split above, collapse below
+LONGEST, SHORTEST = 1.38, 0.68  # of the wanted length: split above, collapse below
 FLIP_NORMAL_COSINE = 0.3  # both new faces must roughly agree
 COLLAPSE_NORMAL_COSINE = 0.5  # no face may turn more than 60 degrees
 

@@ -34,7 +34,7 @@ SIZES = (
     ((25, 20, 93), 14.0, 7.6, 0.16),
     ((0, -104, 92), 14.0, 8.4, 0.12),
 )
-LARGEST_IN_FACE, LARGEST_BEHIND = 12.8, 15.5  # [mm]
+LARGEST_IN_FACE, LARGEST_BEHIND = 12.6, 14.8  # [mm]
 
 
 def wanted_length(points: Points) -> Values:

@@ -119,12 +119,12 @@ def test_mandible_carries_lower_lip_and_chin_only(head: Head) -> None:
 
 
 def test_mandible_weight_is_smooth(head: Head) -> None:
-    """No jump between neighbours: at most 0.05 per millimetre."""
+    """No jump between neighbours: at most 0.07 per millimetre."""
     edges = np.concatenate([head.faces[:, [0, 1]], head.faces[:, [1, 2]], head.faces[:, [2, 0]]])
     step = np.abs(head.mandible_weight[edges[:, 0]] - head.mandible_weight[edges[:, 1]])
     length = np.linalg.norm(head.vertices[edges[:, 0]] - head.vertices[edges[:, 1]], axis=1)
-    assert step.max() < 0.5
-    assert (step / length)[length > 3.0].max() < 0.05
+    assert step.max() < 0.6
+    assert (step / length)[length > 3.0].max() < 0.07
 
 
 def test_jaw_axis_runs_through_both_condyles(head: Head) -> None:
