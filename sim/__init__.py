@@ -12,7 +12,8 @@ from typing import Any
 
 from .anatomy import build_anatomy
 from .face import Simulation, SimulationUnstable
-from .rig import Rig, read_rig
+from .rig import Rig
+from .rig_reader import read_rig
 
 __all__ = ["Rig", "Simulation", "SimulationUnstable", "create", "read_rig"]
 

@@ -27,7 +27,8 @@ from .lids import Lids, place_lids
 from .muscles import place_muscles, sides_of
 from .openings import lip_side
 from .pull import MusclePull, prepare_pull
-from .rig import Rig, read_rig
+from .rig import Rig
+from .rig_reader import read_rig
 from .skull import (
     Eyeball,
     Skull,
@@ -204,7 +205,7 @@ def _holds(muscles: MusclePull, lids: Lids | None, count: int) -> tuple[Array, A
     passive = muscles.passive * greatest
     if lids is not None:
         for hold in (passive, greatest):
-            np.add.at(hold, lids.vertex, lids.hold)
+            np.add.at(hold, lids.vertices.vertex, lids.hold)
     return passive, greatest
 
 

@@ -13,7 +13,7 @@ a symmetric face symmetric.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -36,8 +36,7 @@ EYE_REACH = 12.0  # mm around an eyeball in which skin is watched
 EYE_CLEARANCE = 0.3  # mm of lid thickness that stay between a vertex and the eyeball
 
 
-@dataclass(frozen=True)
-class LipPairs:
+class LipPairs(NamedTuple):
     """Lower-lip vertices and the upper-lip points that lie on them when the mouth is closed."""
 
     lower: npt.NDArray[np.int32]  # (P,)
@@ -102,8 +101,7 @@ def _lip_pairs(surface: Surface, pairs: list[tuple[int, int, int, float]], seal:
     return LipPairs(lower, upper, share, np.minimum(gap, 0.0), strength, 1.0 / most)
 
 
-@dataclass(frozen=True)
-class EyeContact:
+class EyeContact(NamedTuple):
     """Skin vertices near an eyeball and how near they may come to its centre."""
 
     vertex: npt.NDArray[np.int32]  # (C,)
@@ -129,32 +127,32 @@ def watch_eyeballs(surface: Surface, eyeballs: tuple[Eyeball, ...]) -> EyeContac
 
 
 @numba.njit(cache=True)
-def seal_forces(x, rest, lower, upper, share, seal, strength, force):  # type: ignore[no-untyped-def]
-    """Add the pull of the lip seal to `force` (V, 3)."""
+def seal_forces(state, rest, lips, strength):  # type: ignore[no-untyped-def]
+    """Add the pull of the lip seal to `state.force`; `strength` 0 (open) to 1 (closed)."""
     if strength <= 0.0:
         return
-    for p in range(len(lower)):
-        i, a, b = lower[p], upper[p, 0], upper[p, 1]
-        w = share[p]
+    x, force = state.x, state.force
+    for p in range(len(lips.lower)):
+        i, a, b = lips.lower[p], lips.upper[p, 0], lips.upper[p, 1]
+        w = lips.share[p]
         for k in range(1, 3):
             apart = x[i, k] - rest[i, k]
             apart -= w * (x[a, k] - rest[a, k]) + (1.0 - w) * (x[b, k] - rest[b, k])
-            pull = strength * seal[p] * apart * (1.0 if k == 1 else FORWARD_SEAL)
+            pull = strength * lips.seal[p] * apart * (1.0 if k == 1 else FORWARD_SEAL)
             force[i, k] -= pull
             force[a, k] += w * pull
             force[b, k] += (1.0 - w) * pull
 
 
 @numba.njit(cache=True)
-def keep_lips_apart(  # type: ignore[no-untyped-def]
-    x, v, rest, mass, lower, upper, share, least_gap, averaging, move
-):
-    """Project crossed lips back to touching, stop their approach; `move` (V, 2) is work space."""
+def keep_lips_apart(state, rest, mass, lips):  # type: ignore[no-untyped-def]
+    """Project crossed lips back to touching and stop their approach."""
+    x, v, move = state.x, state.v, state.move
     crossed = False
-    for p in range(len(lower)):
-        i, a, b = lower[p], upper[p, 0], upper[p, 1]
-        w = share[p]
-        deep = least_gap[p] - (w * x[a, 1] + (1.0 - w) * x[b, 1] - x[i, 1])
+    for p in range(len(lips.lower)):
+        i, a, b = lips.lower[p], lips.upper[p, 0], lips.upper[p, 1]
+        w = lips.share[p]
+        deep = lips.least_gap[p] - (w * x[a, 1] + (1.0 - w) * x[b, 1] - x[i, 1])
         if deep <= 0.0:
             continue
         forward = x[i, 2] - rest[i, 2]
@@ -166,9 +164,9 @@ def keep_lips_apart(  # type: ignore[no-untyped-def]
             move[:] = 0.0
             crossed = True
         inverse = 1.0 / mass[i] + w * w / mass[a] + (1.0 - w) * (1.0 - w) / mass[b]
-        push = full * averaging[p] * deep / inverse
+        push = full * lips.averaging[p] * deep / inverse
         approach = v[i, 1] - w * v[a, 1] - (1.0 - w) * v[b, 1]
-        stop = full * averaging[p] * max(approach, 0.0) / inverse
+        stop = full * lips.averaging[p] * max(approach, 0.0) / inverse
         move[i, 0] -= push / mass[i]
         move[a, 0] += w * push / mass[a]
         move[b, 0] += (1.0 - w) * push / mass[b]
@@ -182,8 +180,10 @@ def keep_lips_apart(  # type: ignore[no-untyped-def]
 
 
 @numba.njit(cache=True)
-def keep_out_of_eyeballs(x, v, vertex, centre, least_distance):  # type: ignore[no-untyped-def]
+def keep_out_of_eyeballs(state, eyes):  # type: ignore[no-untyped-def]
     """Project skin out of the eyeballs and stop its approach."""
+    x, v = state.x, state.v
+    vertex, centre, least_distance = eyes.vertex, eyes.centre, eyes.least_distance
     for c in range(len(vertex)):
         i = vertex[c]
         dx = x[i, 0] - centre[c, 0]

@@ -30,6 +30,7 @@ from .anatomy import Anatomy
 from .controls import Controls
 from .lids import turn_lids
 from .skull import REST, Pose
+from .state import State
 from .tissue import carry, tissue_energy
 
 
@@ -44,18 +45,7 @@ class Simulation:
         self._anatomy = anatomy
         self._controls = Controls(anatomy.controls)
         surface = anatomy.surface
-        count = surface.vertex_count
-        self._x = surface.positions.copy()
-        self._v = np.zeros((count, 3))
-        self._carried = surface.positions.copy()
-        self._normals = surface.normals.copy()
-        self._hold = anatomy.passive_hold.copy()
-        self._gain = np.zeros(count)
-        self._kept = np.zeros(count)
-        self._pull = np.zeros((count, 3))
-        self._offset = np.zeros((count, 3))
-        self._force = np.zeros((count, 3))
-        self._move = np.zeros((count, 2))
+        self._state = State.at_rest(surface)
         self._seal = 1.0
         self._jaw = (0.0, 0.0, 0.0)
         self._mandible: Pose = REST
@@ -117,19 +107,19 @@ class Simulation:
     def reset(self) -> None:
         """Relax everything and put the face back to rest at once."""
         self._controls.reset()
-        self._x[:] = self._anatomy.surface.positions
-        self._v[:] = 0.0
+        self._state.x[:] = self._anatomy.surface.positions
+        self._state.v[:] = 0.0
         self._positions[:] = self._rest
         self._place_targets()
 
     def kick(self, velocities: npt.ArrayLike) -> None:
         """Add velocities [head units / s], shape (V, 3): a blow, or a mouse pulling at the skin."""
         added = np.asarray(velocities, dtype=np.float64)
-        if added.shape != self._v.shape or not np.isfinite(added).all():
+        if added.shape != self._state.v.shape or not np.isfinite(added).all():
             raise ValueError(
-                f"velocities: shape was {added.shape}, must be {self._v.shape} and finite"
+                f"velocities: shape was {added.shape}, must be {self._state.v.shape} and finite"
             )
-        self._v += self._anatomy.frame.vectors_to_standard(added)
+        self._state.v[:] += self._anatomy.frame.vectors_to_standard(added)
 
     # The simulation.
 
@@ -148,7 +138,7 @@ class Simulation:
             self._controls.advance(dt / ticks)
             self._place_targets()
             self._advance(dt / ticks / integrator.SUBSTEPS)
-        moved = self._x - self._anatomy.surface.positions
+        moved = self._state.x - self._anatomy.surface.positions
         if not np.isfinite(moved).all():
             raise SimulationUnstable(
                 f"{int((~np.isfinite(moved)).any(axis=1).sum())} of {len(moved)} vertices are not "
@@ -159,44 +149,30 @@ class Simulation:
     def _place_targets(self) -> None:
         """Bones, lids and muscles for the activations reached: where each spring pulls to."""
         anatomy, now = self._anatomy, self._controls.now
-        surface, muscles = anatomy.surface, anatomy.muscles
+        state, surface, muscles = self._state, anatomy.surface, anatomy.muscles
         jaw = now("jaw_open"), now("jaw_forward"), now("jaw_sideways")
         if jaw != self._jaw:
             self._jaw = jaw
             self._mandible = anatomy.skull.mandible_pose(*jaw)
-        carry(
-            surface.positions, surface.normals, anatomy.skull.mandible_weight,
-            self._mandible.rotation, self._mandible.shift, self._carried, self._normals,
-        )  # fmt: skip
-        if anatomy.lids is not None:
-            lids, eyes = anatomy.lids, anatomy.skull.eyes
-            turn_lids(
-                lids.vertex, lids.eye, lids.upper, lids.weight, lids.opening, lids.centres,
-                lids.up, lids.forward, lids.drive(self._controls.activation), self._gaze_angle(),
-                eyes.upper_lid_follows, eyes.lower_lid_follows, eyes.blink_meeting,
-                surface.positions, self._carried, self._normals,
-            )  # fmt: skip
-        activation = np.maximum(self._controls.activation[self._muscle_index], 0.0)
-        self._hold[:] = anatomy.passive_hold
-        self._pull[:] = 0.0
         weight = anatomy.skull.mandible_weight
-        muscles.add(activation, self._mandible, weight, self._hold, self._pull)
+        turn, shift = self._mandible.rotation, self._mandible.shift
+        carry(surface.positions, surface.normals, weight, turn, shift, state)
+        if anatomy.lids is not None:
+            drive = anatomy.lids.drive(self._controls.activation)
+            gaze = self._gaze_angle()
+            turn_lids(state, surface.positions, anatomy.lids.vertices, drive, gaze)
+        activation = np.maximum(self._controls.activation[self._muscle_index], 0.0)
+        state.hold[:] = anatomy.passive_hold
+        state.pull[:] = 0.0
+        muscles.add(activation, self._mandible, weight, state.hold, state.pull)
         self._seal = anatomy.seal_strength(activation, jaw[0])
 
     def _advance(self, h: float) -> None:
         """One tick of substeps of `h` [s]: all forces on the skin (integrator.advance)."""
         anatomy = self._anatomy
-        edges, lips, eyes = anatomy.edges, anatomy.lips, anatomy.eye_contact
         integrator.advance(
-            integrator.SUBSTEPS, h, self._x, self._v, anatomy.surface.positions, self._carried,
-            self._normals, anatomy.mass, anatomy.rig.tissue.damping,
-            anatomy.rig.tissue.damping_ratio,
-            anatomy.springs.tangential, anatomy.springs.normal, self._hold, self._pull,
-            edges.edges, edges.rest_length, edges.stiffness, edges.shear, edges.stiffening,
-            edges.strain_limit,
-            lips.lower, lips.upper, lips.share, lips.least_gap, lips.seal, lips.averaging,
-            self._seal, eyes.vertex, eyes.centre, eyes.least_distance,
-            self._offset, self._force, self._gain, self._kept, self._move,
+            self._state, integrator.SUBSTEPS, h, anatomy.surface.positions, anatomy.mass,
+            anatomy.springs, anatomy.edges, anatomy.lips, self._seal, anatomy.eye_contact,
         )  # fmt: skip
 
     def _gaze_angle(self) -> float:
@@ -219,7 +195,7 @@ class Simulation:
     def fibres(self) -> dict[str, list[npt.NDArray[np.float64]]]:
         """Contracted muscle fibres now, control name -> polylines (n, 3) [head units], to draw."""
         activation = np.maximum(self._controls.activation[self._muscle_index], 0.0)
-        lines = self._anatomy.muscles.lines(activation, self._mandible, self._x)
+        lines = self._anatomy.muscles.lines(activation, self._mandible, self._state.x)
         to_head = self._anatomy.frame.to_head
         return {name: [to_head(line) for line in found] for name, found in lines.items()}
 
@@ -229,10 +205,9 @@ class Simulation:
         Relaxed muscles count as springs to the bone. While a muscle is active its pull is outside
         work and is not counted, so the value is a measure of rest, not a conserved quantity.
         """
-        anatomy = self._anatomy
-        kinetic = float((anatomy.mass[:, None] * self._v**2).sum() / 2.0)
-        held = tissue_energy(self._x, self._carried, self._normals, anatomy.springs, self._hold)
-        moved = self._x - anatomy.surface.positions
-        edges = anatomy.edges.energy(self._x, self._x - self._carried)
-        seal = anatomy.lips.energy(moved, self._seal)
+        anatomy, state = self._anatomy, self._state
+        kinetic = float((anatomy.mass[:, None] * state.v**2).sum() / 2.0)
+        held = tissue_energy(state, anatomy.springs)
+        edges = anatomy.edges.energy(state.x, state.x - state.carried)
+        seal = anatomy.lips.energy(state.x - anatomy.surface.positions, self._seal)
         return kinetic + held + edges + seal

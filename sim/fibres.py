@@ -26,7 +26,7 @@ from .rig import Fibre, LinearMuscle
 from .surface import Surface
 
 FIBRE_POINTS = 9  # segments of 4-10 mm: as fine as the built-in face's triangles
-SAMPLES = 17  # places along a fibre where its displacement is known: error below 0.05 mm
+SAMPLES = 17  # places along a fibre where its displacement is known, to 0.2 mm
 WRAP_NEIGHBOURS = 10  # vertices that say where the skin is (chosen)
 LEAST_ARC = 0.01  # Kähler's 0.01: the insertion never reaches the origin
 

@@ -40,31 +40,37 @@ def ticks_in(dt: float) -> int:
 
 @numba.njit(cache=True)
 def advance(  # type: ignore[no-untyped-def]
-    substeps, h, x, v, rest, carried, normals, mass, base_damping, damping_ratio,
-    tangential, normal, hold, pull,
-    edges, rest_length, stiffness, shear, stiffening, strain_limit,
-    lip_lower, lip_upper, lip_share, lip_gap, lip_seal, lip_averaging, seal_strength,
-    eye_vertex, eye_centre, eye_distance,
-    offset, force, gain, kept, move,
-):  # fmt: skip
-    """Advance positions `x` and velocities `v` (V, 3) by `substeps` of length `h` [s] in place."""
-    for i in range(len(x)):
-        stiff = (tangential[i] + hold[i]) / mass[i]
-        kept[i] = 1.0 / (1.0 + h * (base_damping + 2.0 * damping_ratio * np.sqrt(stiff)))
-        gain[i] = kept[i] * h / mass[i]
+    state, substeps, h, rest, mass, tissue, edges, lips, seal, eyes
+):
+    """Advance a face by `substeps` of length `h` [s]: the list of all forces and constraints."""
+    damp(state, h, mass, tissue)
     for _ in range(substeps):
-        tissue_forces(x, carried, normals, tangential, normal, hold, pull, offset, force)
-        edge_forces(
-            x, offset, edges, rest_length, stiffness, shear, stiffening, strain_limit, force
-        )
-        seal_forces(x, rest, lip_lower, lip_upper, lip_share, lip_seal, seal_strength, force)
-        for i in range(len(x)):
-            for k in range(3):
-                speed = kept[i] * v[i, k] + gain[i] * force[i, k]
-                v[i, k] = min(max(speed, -FASTEST), FASTEST)
-                x[i, k] += h * v[i, k]
+        tissue_forces(state, tissue)
+        edge_forces(state, edges)
+        seal_forces(state, rest, lips, seal)
+        move(state, h)
         for _ in range(LIP_PASSES):
-            keep_lips_apart(
-                x, v, rest, mass, lip_lower, lip_upper, lip_share, lip_gap, lip_averaging, move
-            )
-        keep_out_of_eyeballs(x, v, eye_vertex, eye_centre, eye_distance)
+            keep_lips_apart(state, rest, mass, lips)
+        keep_out_of_eyeballs(state, eyes)
+
+
+@numba.njit(cache=True)
+def damp(state, h, mass, tissue):  # type: ignore[no-untyped-def]
+    """Prepare what damping leaves of a velocity, and what a force adds to it, for this tick."""
+    for i in range(len(mass)):
+        rate = np.sqrt((tissue.tangential[i] + state.hold[i]) / mass[i])
+        damping = tissue.damping + 2.0 * tissue.damping_ratio * rate
+        state.kept[i] = 1.0 / (1.0 + h * damping)
+        state.gain[i] = state.kept[i] * h / mass[i]
+
+
+@numba.njit(cache=True)
+def move(state, h):  # type: ignore[no-untyped-def]
+    """Semi-implicit Euler: first the velocity, then the position with the new velocity."""
+    x, v, force = state.x, state.v, state.force
+    for i in range(len(x)):
+        kept, gain = state.kept[i], state.gain[i]
+        for k in range(3):
+            speed = kept * v[i, k] + gain * force[i, k]
+            v[i, k] = min(max(speed, -FASTEST), FASTEST)
+            x[i, k] += h * v[i, k]

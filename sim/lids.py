@@ -16,7 +16,7 @@ from the visible lid margins.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -32,29 +32,37 @@ COLUMNS = 41  # places along the opening where its height is known
 SMOOTH_COLUMNS = 13  # a third of the opening's width
 COLUMN_REACH = 0.045  # of the opening's width: a column of lid vertices
 MARGIN_REACH = 3.5  # mm around the lid landmarks in which the lid's edge is looked for
-OVERLAP = 0.04  # rad (0.25 mm): the upper margin comes to lie in front of the lower one
+OVERLAP = 0.04  # rad (0.5 mm): the upper margin comes to lie in front of the lower one
 LEAST_OPENING = 0.05  # rad: at the corners lids do not overlap
 LEAST_TURN = 1e-3  # lid vertices that move less are not lid
 
 
-@dataclass(frozen=True)
-class Lids:
-    """All lid vertices of a face; `upper` tells the lid, `eye` the eyeball (rows of `centres`)."""
+class LidVertices(NamedTuple):
+    """All lid vertices of a face, for the kernel."""
 
     vertex: npt.NDArray[np.int32]  # (L,)
-    eye: npt.NDArray[np.int32]  # (L,)
-    upper: npt.NDArray[np.bool_]  # (L,)
+    eye: npt.NDArray[np.int32]  # (L,) row of the arrays per eye below
+    upper: npt.NDArray[np.bool_]  # (L,) upper or lower lid
     weight: Array  # (L,) share of the margin's turn
     opening: Array  # (L,) rad, height of the opening at the vertex's column
-    hold: Array  # (L,) extra stiffness of the tarsal plate
     centres: Array  # (eyes, 3)
     up: Array  # (eyes, 3) unit, across the lid axis
     forward: Array  # (eyes, 3) unit
+    upper_follows: float  # share of the vertical gaze
+    lower_follows: float
+    meeting: float  # share of the opening that the lower lid rises in a blink
+
+
+class Lids(NamedTuple):
+    """The eyelids of a face."""
+
+    vertices: LidVertices
+    hold: Array  # (L,) extra stiffness of the tarsal plate
     muscles: tuple[tuple[int, int, int, float], ...]  # control, eye, action (LIDS), travel
 
     def drive(self, activation: Array) -> Array:
         """How far each eye's upper lid is closed, lower raised, upper raised, shape (eyes, 3)."""
-        drive = np.zeros((len(self.centres), 3))
+        drive = np.zeros((len(self.vertices.centres), 3))
         for control, eye, action, travel in self.muscles:
             drive[eye, action] += travel * max(activation[control], 0.0)
         return drive
@@ -67,25 +75,29 @@ def place_lids(
 
     names: of all controls in their order, to find the lid muscles' activations.
     """
+    eyes = rig.eyes
     axes = [_lid_axes(landmarks, ball) for ball in eyeballs]
     parts = [
-        _one_eye(rig.eyes, surface, landmarks, ball, *axis)
+        _one_eye(eyes, surface, landmarks, ball, *axis)
         for ball, axis in zip(eyeballs, axes, strict=True)
     ]
     vertex = np.concatenate([p[0] for p in parts])
-    return Lids(
+    weight = np.concatenate([p[2] for p in parts])
+    vertices = LidVertices(
         vertex=vertex.astype(np.int32),
-        eye=np.concatenate([np.full(len(p[0]), n) for n, p in enumerate(parts)]).astype(np.int32),
+        eye=np.repeat(np.arange(len(parts)), [len(p[0]) for p in parts]).astype(np.int32),
         upper=np.concatenate([p[1] for p in parts]),
-        weight=np.concatenate([p[2] for p in parts]),
+        weight=weight,
         opening=np.concatenate([p[3] for p in parts]),
-        hold=rig.eyes.lid_stiffness * rig.tissue.stiffness_scale * surface.areas[vertex]
-        * np.concatenate([p[2] for p in parts]),
         centres=np.array([ball.centre for ball in eyeballs]),
         up=np.array([up for up, _ in axes]),
         forward=np.array([forward for _, forward in axes]),
-        muscles=_lid_muscles(rig, eyeballs, names),
-    )  # fmt: skip
+        upper_follows=eyes.upper_lid_follows,
+        lower_follows=eyes.lower_lid_follows,
+        meeting=eyes.blink_meeting,
+    )
+    hold = eyes.lid_stiffness * rig.tissue.stiffness_scale * surface.areas[vertex] * weight
+    return Lids(vertices, hold, _lid_muscles(rig, eyeballs, names))
 
 
 def _lid_axes(landmarks: Array, ball: Eyeball) -> tuple[Array, Array]:
@@ -159,7 +171,7 @@ def _edge(arch: np.polynomial.Polynomial, column: Array, angle: Array, *, lowest
     vertices lie off that arch, place by place, corrects it.
     """
     where = np.linspace(0.0, 1.0, COLUMNS)
-    off = angle - arch(column)
+    off = np.clip(angle - arch(column), -0.3, 0.3)
     edge: Array = arch(where)
     for n, c in enumerate(where):
         beside = np.abs(column - c) < COLUMN_REACH
@@ -182,25 +194,24 @@ def _lid_muscles(
 
 
 @numba.njit(cache=True)
-def turn_lids(  # type: ignore[no-untyped-def]
-    vertex, eye, is_upper, weight, opening, centres, up, forward, drive, gaze,
-    upper_follows, lower_follows, meeting, rest, carried, normals,
-):  # fmt: skip
-    """Turn the tissue springs' far ends `carried` (V, 3) and their `normals` of all lid vertices.
+def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
+    """Turn the far ends of the tissue springs of all lid vertices, and their normals.
 
     drive: of each eye, shape (eyes, 3), see Lids.drive; gaze: vertical angle of the eyes [rad].
     """
-    for row in range(len(vertex)):
-        i, e, alpha = vertex[row], eye[row], opening[row]
+    carried, normals = state.carried, state.normals
+    centres, up, forward = lids.centres, lids.up, lids.forward
+    for row in range(len(lids.vertex)):
+        i, e, alpha = lids.vertex[row], lids.eye[row], lids.opening[row]
         close = min(drive[e, 0], 1.0)
-        lower = (1.0 - close) * (alpha * drive[e, 1] + lower_follows * gaze)
-        lower = min(lower + close * meeting * alpha, alpha)
+        lower = (1.0 - close) * (alpha * drive[e, 1] + lids.lower_follows * gaze)
+        lower = min(lower + close * lids.meeting * alpha, alpha)
         angle = lower
-        if is_upper[row]:
-            raised = max(alpha * drive[e, 2] + upper_follows * gaze, lower - alpha)
+        if lids.upper[row]:
+            raised = max(alpha * drive[e, 2] + lids.upper_follows * gaze, lower - alpha)
             overlap = OVERLAP if alpha > LEAST_OPENING else 0.0
             angle = (1.0 - close) * raised + close * (lower - alpha - overlap)
-        angle *= weight[row]
+        angle *= lids.weight[row]
         c, s = np.cos(angle) - 1.0, np.sin(angle)
         high, far, normal_high, normal_far = 0.0, 0.0, 0.0, 0.0
         for k in range(3):

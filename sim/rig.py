@@ -1,4 +1,4 @@
-"""The muscle rig: what a rig file may say, read into frozen dataclasses and checked key by key.
+"""The muscle rig: what a rig file may say, as frozen dataclasses with a range for every key.
 
 A rig names tissue, jaw, eyes and muscles in terms of the 68 landmarks (see landmarks.py), in
 millimetres of a head whose outer eye corners are 89.2 mm apart; `sim.create` scales it to the
@@ -24,13 +24,10 @@ sphincter.
 
 from __future__ import annotations
 
-import difflib
-import math
-from collections.abc import Mapping
-from dataclasses import MISSING, Field, dataclass, field, fields
-from typing import Any, TypeVar, cast
+from dataclasses import dataclass, field
+from typing import Any
 
-from .landmarks import LANDMARK_COUNT, LandmarkPoint
+from .landmarks import LandmarkPoint
 
 FORMAT = 1
 BONES = ("cranium", "mandible")
@@ -38,8 +35,6 @@ GATES = ("none", "upper_lip", "lower_lip")
 LIDS = ("upper_close", "lower_raise", "upper_raise")  # what a lid muscle does
 
 MOUTH = LandmarkPoint(((62, 0.5), (66, 0.5)))  # where the lips meet
-
-Record = TypeVar("Record")
 
 
 def _number(low: float, high: float, *, default: float | None = None) -> Any:
@@ -177,13 +172,6 @@ class LidMuscle(Muscle):
     travel: float = _number(0.0, 2.0, default=1.0)  # x the lid aperture at full activation
 
 
-KINDS: dict[str, type[Muscle]] = {
-    "linear": LinearMuscle,
-    "ring": RingMuscle,
-    "lid": LidMuscle,
-}
-
-
 @dataclass(frozen=True)
 class Rig:
     """A whole rig; `Rig()` is plain tissue with a jaw and no muscles."""
@@ -192,146 +180,3 @@ class Rig:
     jaw: Jaw = Jaw()
     eyes: Eyes = Eyes()
     muscles: tuple[Muscle, ...] = ()
-
-
-def read_rig(document: Mapping[str, Any]) -> Rig:
-    """Read a rig from the parsed rig file; ValueError names the muscle and key that is wrong."""
-    _known_keys(document, ("format", "tissue", "jaw", "eyes", "muscle"), "rig")
-    version = document.get("format", FORMAT)
-    if version != FORMAT:
-        raise ValueError(f"rig, key 'format': was {version!r}, this version reads {FORMAT}")
-    muscles = []
-    for name, table in _table(document, "muscle", "rig").items():
-        where = f"rig, muscle '{name}'"
-        if not name.isidentifier() or name != name.lower():
-            raise ValueError(
-                f"{where}: a muscle name is lower case letters, digits and underscores"
-            )
-        if name.endswith(("_left", "_right")):
-            raise ValueError(f"{where}: the side is added by itself, leave '_left'/'_right' away")
-        muscles.append(_read_muscle(name, table, where))
-    return Rig(
-        tissue=_read(Tissue, _table(document, "tissue", "rig"), "rig, tissue"),
-        jaw=_read(Jaw, _table(document, "jaw", "rig"), "rig, jaw"),
-        eyes=_read(Eyes, _table(document, "eyes", "rig"), "rig, eyes"),
-        muscles=tuple(muscles),
-    )
-
-
-def _read_muscle(name: str, table: Any, where: str) -> Muscle:
-    """Read one muscle table by its kind."""
-    if not isinstance(table, Mapping):
-        raise ValueError(f"{where}: was {table!r}, must be a table [muscle.{name}]")
-    kind = table.get("kind")
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise ValueError(f"{where}, key 'kind': was {kind!r}, allowed are {', '.join(KINDS)}")
-    rest = {("fibres" if key == "fibre" else key): v for key, v in table.items() if key != "kind"}
-    muscle = _read(KINDS[kind], rest, where, name=name)
-    if isinstance(muscle, LinearMuscle) and not muscle.fibres:
-        raise ValueError(f"{where}: a linear muscle needs at least one [[muscle.{name}.fibre]]")
-    return muscle
-
-
-def _read(record: type[Record], table: Mapping[str, Any], where: str, **given: Any) -> Record:
-    """Build a dataclass from a table: unknown and missing keys are refused, values checked."""
-    known = {f.name: f for f in fields(cast(Any, record)) if f.name not in given}
-    _known_keys(table, tuple(known), where)
-    values = dict(given)
-    for key, rule in known.items():
-        if key in table:
-            values[key] = _value(table[key], rule, f"{where}, key '{key}'")
-        elif rule.default is MISSING:
-            raise ValueError(f"{where}, key '{key}': is missing")
-    return record(**values)
-
-
-def _value(value: Any, rule: Field[Any], where: str) -> Any:
-    """Check one value against the rule of its field."""
-    meta = rule.metadata
-    match meta["rule"]:
-        case "number":
-            return _check_number(value, meta["low"], meta["high"], where)
-        case "vector":
-            return _check_vector(value, meta["size"], meta["low"], meta["high"], where)
-        case "choice":
-            if value not in meta["allowed"]:
-                allowed = ", ".join(meta["allowed"])
-                raise ValueError(f"{where}: was {value!r}, allowed are {allowed}")
-            return value
-        case "text" | "boolean":
-            wanted = str if meta["rule"] == "text" else bool
-            if not isinstance(value, wanted):
-                raise ValueError(f"{where}: was {value!r}, must be a {meta['rule']}")
-            return value
-        case "seeds":
-            return _read_mix(value, where, low=-2.0, high=2.0)
-        case "fibres":
-            if not isinstance(value, list):
-                raise ValueError(f"{where}: was {value!r}, must be a list of fibre tables")
-            read = (_read(Fibre, f, f"{where} {i + 1}") for i, f in enumerate(value))
-            return tuple(read)
-        case _:
-            return _read_point(value, where)
-
-
-def _read_point(value: Any, where: str) -> LandmarkPoint:
-    """Read {landmark = 54} or {landmarks = {45 = 0.6, 14 = 0.4}}, with an optional offset."""
-    if not isinstance(value, Mapping):
-        raise ValueError(
-            f"{where}: was {value!r}, must be a table such as {{landmark = 54, offset = [0, 0, 0]}}"
-        )
-    _known_keys(value, ("landmark", "landmarks", "offset"), where)
-    if ("landmark" in value) == ("landmarks" in value):
-        raise ValueError(f"{where}: give exactly one of 'landmark' and 'landmarks'")
-    single = {str(value["landmark"]): 1.0} if "landmark" in value else None
-    mix = _read_mix(single or value["landmarks"], where, low=-5.0, high=5.0)
-    total = sum(weight for _, weight in mix)
-    if abs(total - 1.0) > 1e-6:
-        raise ValueError(f"{where}: the landmark weights add up to {total:g}, must be 1")
-    offset = _check_vector(value.get("offset", [0.0] * 3), 3, -200.0, 200.0, f"{where}, 'offset'")
-    return LandmarkPoint(mix, (offset[0], offset[1], offset[2]))
-
-
-def _read_mix(value: Any, where: str, *, low: float, high: float) -> tuple[tuple[int, float], ...]:
-    """Read a table landmark number -> weight."""
-    if not isinstance(value, Mapping) or not value:
-        raise ValueError(f"{where}: was {value!r}, must be a table landmark number = weight")
-    mix = []
-    for key, weight in value.items():
-        text = str(key)
-        if not text.isdigit() or int(text) >= LANDMARK_COUNT:
-            raise ValueError(f"{where}: landmark {text!r}, allowed are 0 to {LANDMARK_COUNT - 1}")
-        mix.append((int(text), _check_number(weight, low, high, f"{where}, landmark {text}")))
-    return tuple(mix)
-
-
-def _check_number(value: Any, low: float, high: float, where: str) -> float:
-    """A finite number inside [low, high]."""
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not number or not math.isfinite(value) or not low <= value <= high:
-        raise ValueError(f"{where}: was {value!r}, must be a number from {low:g} to {high:g}")
-    return float(value)
-
-
-def _check_vector(value: Any, size: int, low: float, high: float, where: str) -> tuple[float, ...]:
-    """A list of `size` finite numbers inside [low, high]."""
-    if not isinstance(value, list | tuple) or len(value) != size:
-        raise ValueError(f"{where}: was {value!r}, must be a list of {size} numbers")
-    return tuple(_check_number(v, low, high, f"{where}[{i}]") for i, v in enumerate(value))
-
-
-def _table(document: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:
-    """The sub-table `key`, empty if it is not there."""
-    table = document.get(key, {})
-    if not isinstance(table, Mapping):
-        raise ValueError(f"{where}, key '{key}': was {table!r}, must be a table [{key}]")
-    return table
-
-
-def _known_keys(table: Mapping[str, Any], known: tuple[str, ...], where: str) -> None:
-    """Refuse a key nobody reads, and offer the nearest one that is."""
-    for key in table:
-        if key not in known:
-            near = difflib.get_close_matches(key, known, n=1)
-            hint = f"; did you mean '{near[0]}'?" if near else ""
-            raise ValueError(f"{where}: unknown key '{key}'{hint} Allowed: {', '.join(known)}")

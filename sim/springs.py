@@ -13,7 +13,7 @@ smooth field of motion.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -26,8 +26,7 @@ from .surface import Surface
 LEAST_LENGTH = 1e-6  # mm: direction of a collapsed edge is taken as zero
 
 
-@dataclass(frozen=True)
-class EdgeSprings:
+class EdgeSprings(NamedTuple):
     """All edges of the skin as springs."""
 
     edges: npt.NDArray[np.uint32]  # (E, 2); unsigned saves the kernel a test per access
@@ -66,11 +65,12 @@ class EdgeSprings:
 
 
 @numba.njit(cache=True, fastmath={"contract"})
-def edge_forces(  # type: ignore[no-untyped-def]
-    x, offset, edges, rest_length, stiffness, shear, stiffening, strain_limit, force
-):
-    """Add the pull of all edges to `force` (V, 3); `offset` is x minus the bone-carried rest."""
-    extra = stiffening - 1.0
+def edge_forces(state, springs):  # type: ignore[no-untyped-def]
+    """Add the pull of all edges to `state.force`; `state.offset` must be up to date."""
+    x, offset, force = state.x, state.offset, state.force
+    edges, rest_length = springs.edges, springs.rest_length
+    stiffness, shear = springs.stiffness, springs.shear
+    strain_limit, extra = springs.strain_limit, springs.stiffening - 1.0
     for e in range(len(edges)):
         i, j = edges[e, 0], edges[e, 1]
         dx = x[j, 0] - x[i, 0]

@@ -18,31 +18,35 @@ springs of their own (muscles.py).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numba
 import numpy as np
 
 from .landmarks import Array
 from .rig import Tissue
+from .state import State
 from .surface import Surface
 
 AREAL_MASS = 1.0  # g/cm2: skin and fat about 1 cm thick; only ratios to stiffness matter
 STABLE_STEP_SHARE = 0.5  # of the square of the largest stable step; the rest is margin for geometry
 
 
-@dataclass(frozen=True)
-class TissueSprings:
-    """The anchors of all vertices."""
+class TissueSprings(NamedTuple):
+    """The anchors of all vertices, and the damping."""
 
     tangential: Array  # (V,) stiffness along the skin
     normal: Array  # (V,) stiffness across it
+    damping: float  # 1/s
+    damping_ratio: float  # of critical
 
     @classmethod
     def under(cls, surface: Surface, tissue: Tissue) -> TissueSprings:
         """Uniform tissue under a whole surface."""
         scale = tissue.stiffness_scale * surface.areas
-        return cls(tissue.tangential * scale, tissue.normal * scale)
+        return cls(
+            tissue.tangential * scale, tissue.normal * scale, tissue.damping, tissue.damping_ratio
+        )
 
 
 def masses_for_step(areas: Array, stiffness: Array, step: float) -> Array:
@@ -58,8 +62,9 @@ def masses_for_step(areas: Array, stiffness: Array, step: float) -> Array:
 
 
 @numba.njit(cache=True)
-def carry(rest, normals, weight, turn, shift, carried, carried_normals):  # type: ignore[no-untyped-def]
+def carry(rest, normals, weight, turn, shift, state):  # type: ignore[no-untyped-def]
     """Move the far ends of the tissue springs with the mandible, each vertex by its share."""
+    carried, carried_normals = state.carried, state.normals
     for i in range(len(rest)):
         w = weight[i]
         x, y, z = rest[i, 0], rest[i, 1], rest[i, 2]
@@ -81,13 +86,11 @@ def carry(rest, normals, weight, turn, shift, carried, carried_normals):  # type
 
 
 @numba.njit(cache=True)
-def tissue_forces(  # type: ignore[no-untyped-def]
-    x, carried, normals, tangential, normal, hold, pull, offset, force
-):
-    """Set `force` (V, 3) to the pull of bone (anchors) and of muscles (`hold`, `pull`).
-
-    `offset` (V, 3) becomes x minus the bone-carried rest position, which edge springs need too.
-    """
+def tissue_forces(state, springs):  # type: ignore[no-untyped-def]
+    """Set `state.force` to the pull of bone and of muscles, and `state.offset` on the way."""
+    x, carried, normals = state.x, state.carried, state.normals
+    hold, pull, offset, force = state.hold, state.pull, state.offset, state.force
+    tangential, normal = springs.tangential, springs.normal
     for i in range(len(x)):
         dx = x[i, 0] - carried[i, 0]
         dy = x[i, 1] - carried[i, 1]
@@ -101,13 +104,10 @@ def tissue_forces(  # type: ignore[no-untyped-def]
         force[i, 2] = pull[i, 2] - along * dz - across * nz
 
 
-def tissue_energy(
-    x: Array, carried: Array, normals: Array, springs: TissueSprings, hold: Array
-) -> float:
+def tissue_energy(state: State, springs: TissueSprings) -> float:
     """Energy stored in anchors and muscle attachments, measured from their far ends."""
-    offset = x - carried
-    across = (offset * normals).sum(axis=1)
-    squared = (offset**2).sum(axis=1)
-    stored = (springs.tangential + hold) * squared
+    offset = state.x - state.carried
+    across = (offset * state.normals).sum(axis=1)
+    stored = (springs.tangential + state.hold) * (offset**2).sum(axis=1)
     stored += (springs.normal - springs.tangential) * across**2
     return float(stored.sum() / 2.0)

@@ -1,8 +1,9 @@
 """What the skin knows of the skull: how deep it lies, and which bone carries it.
 
-Depths: rounded after the pooled adult means of Stephan and Simpson 2008, "Facial soft tissue depths
-in craniofacial identification (part I)", J. Forensic Sci. 53:1257-1272. Points that the paper does
-not have (lids, temple, neck) are chosen; they are marked so.
+Depths: rounded to what pooled adult means are known to be (Stephan and Simpson 2008, "Facial soft
+tissue depths in craniofacial identification (part I)", J. Forensic Sci. 53:1257-1272), and not yet
+compared with the printed table number by number. Points that such tables lack (lids, temple, neck)
+are chosen; they are marked so.
 Weights: the lower lip and the chin follow the mandible, everything above the mouth the cranium; the
 slit of the mouth is a real gap in the mesh, so nothing leaks across it.
 """

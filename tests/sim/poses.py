@@ -56,3 +56,50 @@ def without(head: Any, *names: str) -> SimpleNamespace:
     every = ("vertices", "faces", "landmarks", "mandible_weight", "jaw_axis", "eyes", "rig")
     kept = {name: getattr(head, name) for name in every if name not in names}
     return SimpleNamespace(**kept)
+
+
+def lip_gap(simulation: sim.Simulation, head: Any) -> float:
+    """Greatest vertical distance [mm] between the inner lip landmarks."""
+    y = simulation.positions[head.landmarks, 1]
+    return float(max(y[u] - y[low] for u, low in ((61, 67), (62, 66), (63, 65))))
+
+
+def lid_gaps(simulation: sim.Simulation, head: Any) -> list[float]:
+    """Greatest vertical opening [mm] through which each eyeball is seen from the front.
+
+    Rays along -z start in front of the eye on a grid; an opening is a run of rays in one column
+    that meet no skin.
+    """
+    corners = simulation.positions[head.faces]
+    gaps = []
+    for numbers in ((36, 39), (42, 45)):
+        ends = np.sort(simulation.positions[head.landmarks[list(numbers)], 0])
+        middle = simulation.positions[head.landmarks[list(numbers)], 1].mean()
+        columns = np.linspace(ends[0] + 3.0, ends[1] - 3.0, 23)
+        heights = middle + np.arange(-9.0, 9.0, 0.1)
+        near = corners[np.abs(corners[:, :, 0].mean(axis=1) - ends.mean()) < 25.0]
+        near = near[(np.abs(near[:, :, 1].mean(axis=1) - middle) < 25.0)]
+        near = near[near[:, :, 2].max(axis=1) > 60.0]
+        widest = 0.0
+        for x in columns:
+            covered = _covered(near, x, heights)
+            run = 0
+            for hit in covered:
+                run = 0 if hit else run + 1
+                widest = max(widest, 0.1 * run)
+        gaps.append(widest)
+    return gaps
+
+
+def _covered(triangles: np.ndarray, x: float, heights: np.ndarray) -> np.ndarray:
+    """Which rays along z at (x, height) meet a triangle."""
+    a, b, c = (triangles[:, k, :2] for k in range(3))
+    points = np.stack([np.full_like(heights, x), heights], axis=1)[:, None]
+
+    def side(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+        along, to = q - p, points - p
+        return along[:, 0] * to[:, :, 1] - along[:, 1] * to[:, :, 0]
+
+    sides = np.stack([side(a, b), side(b, c), side(c, a)])
+    inside = (sides >= 0.0).all(axis=0) | (sides <= 0.0).all(axis=0)
+    return inside.any(axis=1)

@@ -11,6 +11,8 @@ from tests.sim.poses import (
     FRAME,
     both_sides,
     inverted_triangles,
+    lid_gaps,
+    lip_gap,
     moved_landmarks,
     settle,
 )
@@ -35,7 +37,7 @@ MIRRORED_NAME = {"left": "right", "right": "left"}
         ("depressor_anguli_oris", 54, (0.0, -1.0, 0.0), 3.0),
         ("depressor_labii_inferioris", 56, (0.0, -1.0, 0.0), 3.0),
         ("mentalis", 57, (0.0, 1.0, 0.0), 3.0),
-        ("incisivus_labii_superioris", 54, (-1.0, 0.0, 0.2), 2.0),
+        ("incisivus_labii_superioris", 54, (-1.0, 0.0, 0.2), 1.0),
         ("orbicularis_oris_peripheral_lower", 57, (0.0, -0.5, 0.8), 2.0),
     ],
 )
@@ -82,7 +84,7 @@ def test_anger(simulation: sim.Simulation, head: Head) -> None:
     moved = settle(simulation, head.expressions["anger"])
     assert moved_landmarks(head, moved, 21, 22)[1] < -3.0
     assert moved_landmarks(head, moved, 22)[0] < -0.5
-    assert _lip_gap(simulation, head) < 0.5
+    assert lip_gap(simulation, head) < 0.5
 
 
 def test_disgust(simulation: sim.Simulation, head: Head) -> None:
@@ -105,7 +107,7 @@ def test_expression_keeps_the_mesh_sound(simulation: sim.Simulation, head: Head,
     """In each expression hardly a triangle is turned over, and none of the skin flies away."""
     moved = settle(simulation, head.expressions[name])
     turned = inverted_triangles(head.faces, head.vertices, simulation.positions)
-    assert turned <= 12
+    assert turned <= 6
     assert np.abs(moved).max() < 60.0
 
 
@@ -139,7 +141,7 @@ def test_left_smile_moves_the_left(simulation: sim.Simulation, head: Head) -> No
 def test_closed_lips_stay_closed_in_a_smile(simulation: sim.Simulation, head: Head) -> None:
     """A smile with the jaw shut does not part the lips, nor does it push one through the other."""
     settle(simulation, both_sides(simulation, {"zygomaticus_major": 1.0}))
-    assert _lip_gap(simulation, head) < 0.5
+    assert lip_gap(simulation, head) < 0.5
 
 
 @pytest.mark.parametrize(
@@ -158,7 +160,7 @@ def test_lips_do_not_cross(
     """Lips pressed by their own muscles touch; the lower one does not rise into the upper."""
     settle(simulation, both_sides(simulation, values))
     lips = simulation._anatomy.lips
-    y = simulation._x[:, 1]
+    y = simulation._state.x[:, 1]
     above = lips.share * y[lips.upper[:, 0]] + (1.0 - lips.share) * y[lips.upper[:, 1]]
     assert (above - y[lips.lower] - lips.least_gap).min() > -0.3
 
@@ -171,13 +173,13 @@ def test_blink_closes_the_eyes(simulation: sim.Simulation, head: Head, other: fl
         "orbicularis_oculi_palpebral_lower": other,
     }
     settle(simulation, both_sides(simulation, values))
-    for gap in _lid_gaps(simulation, head):
+    for gap in lid_gaps(simulation, head):
         assert gap < 0.5
 
 
 def test_eyes_are_open_at_rest(simulation: sim.Simulation, head: Head) -> None:
     """The measure used for a blink sees an open eye."""
-    assert min(_lid_gaps(simulation, head)) > 7.0
+    assert min(lid_gaps(simulation, head)) > 7.0
 
 
 @pytest.mark.parametrize("gaze", [-1.0, 0.0, 1.0])
@@ -197,7 +199,7 @@ def test_skin_never_enters_the_eyeball(simulation: sim.Simulation, head: Head, g
 def test_jaw_opens_the_mouth(simulation: sim.Simulation, head: Head) -> None:
     """An open jaw parts the lips by at least 25 mm and carries the chin down and back."""
     moved = settle(simulation, {"jaw_open": 1.0})
-    assert _lip_gap(simulation, head) > 25.0
+    assert lip_gap(simulation, head) > 25.0
     chin = moved_landmarks(head, moved, 8)
     assert chin[1] < -20.0
     assert chin[2] < -10.0
@@ -255,50 +257,3 @@ def test_every_expression_is_playable(simulation: sim.Simulation, head: Head) ->
 
 def _length(line: np.ndarray) -> float:
     return float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
-
-
-def _lip_gap(simulation: sim.Simulation, head: Head) -> float:
-    """Greatest vertical distance [mm] between the inner lip landmarks."""
-    y = simulation.positions[head.landmarks, 1]
-    return float(max(y[u] - y[low] for u, low in ((61, 67), (62, 66), (63, 65))))
-
-
-def _lid_gaps(simulation: sim.Simulation, head: Head) -> list[float]:
-    """Greatest vertical opening [mm] through which each eyeball is seen from the front.
-
-    Rays along -z start in front of the eye on a grid; an opening is a run of rays in one column
-    that meet no skin.
-    """
-    corners = simulation.positions[head.faces]
-    gaps = []
-    for numbers in ((36, 39), (42, 45)):
-        ends = np.sort(simulation.positions[head.landmarks[list(numbers)], 0])
-        middle = simulation.positions[head.landmarks[list(numbers)], 1].mean()
-        columns = np.linspace(ends[0] + 3.0, ends[1] - 3.0, 23)
-        heights = middle + np.arange(-9.0, 9.0, 0.1)
-        near = corners[np.abs(corners[:, :, 0].mean(axis=1) - ends.mean()) < 25.0]
-        near = near[(np.abs(near[:, :, 1].mean(axis=1) - middle) < 25.0)]
-        near = near[near[:, :, 2].max(axis=1) > 60.0]
-        widest = 0.0
-        for x in columns:
-            covered = _covered(near, x, heights)
-            run = 0
-            for hit in covered:
-                run = 0 if hit else run + 1
-                widest = max(widest, 0.1 * run)
-        gaps.append(widest)
-    return gaps
-
-
-def _covered(triangles: np.ndarray, x: float, heights: np.ndarray) -> np.ndarray:
-    """Which rays along z at (x, height) meet a triangle."""
-    a, b, c = (triangles[:, k, :2] for k in range(3))
-    points = np.stack([np.full_like(heights, x), heights], axis=1)[:, None]
-
-    def side(p: np.ndarray, q: np.ndarray) -> np.ndarray:
-        along, to = q - p, points - p
-        return along[:, 0] * to[:, :, 1] - along[:, 1] * to[:, :, 0]
-
-    sides = np.stack([side(a, b), side(b, c), side(c, a)])
-    inside = (sides >= 0.0).all(axis=0) | (sides <= 0.0).all(axis=0)
-    return inside.any(axis=1)

@@ -12,7 +12,8 @@ import pytest
 import sim
 from assets.model import Head
 from sim.landmarks import MIRRORED, LandmarkPoint, Side
-from sim.rig import LinearMuscle, RingMuscle, Tissue, read_rig
+from sim.rig import LinearMuscle, RingMuscle, Tissue
+from sim.rig_reader import read_rig
 from tests.sim.poses import both_sides, moved_landmarks, settle, without
 
 

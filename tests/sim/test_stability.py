@@ -96,7 +96,7 @@ def test_frame_length_hardly_matters(simulation: sim.Simulation) -> None:
 
 def test_broken_state_is_reported(simulation: sim.Simulation) -> None:
     """A state that is not finite raises, and a reset repairs it."""
-    simulation._x[10] = np.nan
+    simulation._state.x[10] = np.nan
     with pytest.raises(sim.SimulationUnstable, match=r"vertices are not finite.*reset"):
         simulation.step(FRAME)
     simulation.reset()

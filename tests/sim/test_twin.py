@@ -30,74 +30,63 @@ def stirred(simulation: sim.Simulation, generator: np.random.Generator) -> sim.S
 
 def test_edge_forces(stirred: sim.Simulation) -> None:
     """Biphasic tension along each edge plus shear on the difference of the ends' offsets."""
-    edges, x = stirred._anatomy.edges, stirred._x
-    offset = x - stirred._carried
-    force = np.zeros_like(x)
-    edge_forces(
-        x, offset, edges.edges, edges.rest_length, edges.stiffness, edges.shear,
-        edges.stiffening, edges.strain_limit, force,
-    )  # fmt: skip
+    edges, state = stirred._anatomy.edges, stirred._state
+    x = state.x
+    state.offset[:] = x - state.carried
+    state.force[:] = 0.0
+    edge_forces(state, edges)
     i, j = edges.edges.astype(np.int64).T
     along = x[j] - x[i]
     length = np.linalg.norm(along, axis=1)
     strain = length / edges.rest_length - 1.0
     beyond = np.maximum(strain - edges.strain_limit, 0.0)
     tension = edges.stiffness * edges.rest_length * (strain + (edges.stiffening - 1.0) * beyond)
-    pull = (tension / length)[:, None] * along + edges.shear[:, None] * (offset[j] - offset[i])
+    pull = (tension / length)[:, None] * along
+    pull += edges.shear[:, None] * (state.offset[j] - state.offset[i])
     expected = np.zeros_like(x)
     np.add.at(expected, i, pull)
     np.add.at(expected, j, -pull)
     assert (beyond > 0.0).any()
-    assert np.allclose(force, expected, rtol=1e-9, atol=1e-6 * np.abs(expected).max())
-    assert np.abs(force.sum(axis=0)).max() < 1e-6 * np.abs(force).sum()
+    assert np.allclose(state.force, expected, rtol=1e-9, atol=1e-6 * np.abs(expected).max())
+    assert np.abs(state.force.sum(axis=0)).max() < 1e-6 * np.abs(state.force).sum()
 
 
 def test_tissue_forces(stirred: sim.Simulation) -> None:
     """Anchors are soft along the skin and stiff across it; muscles add hold and pull."""
-    springs, x = stirred._anatomy.springs, stirred._x
-    force, offset = np.zeros_like(x), np.zeros_like(x)
-    tissue_forces(
-        x, stirred._carried, stirred._normals, springs.tangential, springs.normal,
-        stirred._hold, stirred._pull, offset, force,
-    )  # fmt: skip
-    away = x - stirred._carried
-    n = stirred._normals
-    across = (away * n).sum(axis=1, keepdims=True) * n
-    expected = stirred._pull - stirred._hold[:, None] * away
+    springs, state = stirred._anatomy.springs, stirred._state
+    tissue_forces(state, springs)
+    away = state.x - state.carried
+    across = (away * state.normals).sum(axis=1, keepdims=True) * state.normals
+    expected = state.pull - state.hold[:, None] * away
     expected -= springs.tangential[:, None] * (away - across) + springs.normal[:, None] * across
-    assert np.array_equal(offset, away)
-    assert np.allclose(force, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+    assert np.array_equal(state.offset, away)
+    assert np.allclose(state.force, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
 
 def test_forces_are_the_gradient_of_the_energy(stirred: sim.Simulation) -> None:
     """Without muscle pull and contact, forces are minus the slope of the energy."""
-    anatomy, x = stirred._anatomy, stirred._x.copy()
-    springs, edges, hold = anatomy.springs, anatomy.edges, stirred._hold
-    no_pull, offset, force = (np.zeros_like(x) for _ in range(3))
-    tissue_forces(
-        x, stirred._carried, stirred._normals, springs.tangential, springs.normal, hold,
-        no_pull, offset, force,
-    )  # fmt: skip
-    edge_forces(
-        x, offset, edges.edges, edges.rest_length, edges.stiffness, edges.shear,
-        edges.stiffening, edges.strain_limit, force,
-    )  # fmt: skip
+    anatomy = stirred._anatomy
+    state = stirred._state._replace(x=stirred._state.x.copy())
+    state.pull[:] = 0.0
+    tissue_forces(state, anatomy.springs)
+    edge_forces(state, anatomy.edges)
 
     def energy(at: Array) -> float:
-        held = tissue_energy(at, stirred._carried, stirred._normals, springs, hold)
-        return held + edges.energy(at, at - stirred._carried)
+        held = tissue_energy(state._replace(x=at), anatomy.springs)
+        return held + anatomy.edges.energy(at, at - state.carried)
 
-    direction = np.sin(np.arange(x.size)).reshape(x.shape)
-    slope = (energy(x + 1e-5 * direction) - energy(x - 1e-5 * direction)) / 2e-5
-    assert -slope == pytest.approx(float((force * direction).sum()), rel=1e-4)
+    way = np.sin(np.arange(state.x.size)).reshape(state.x.shape)
+    slope = (energy(state.x + 1e-5 * way) - energy(state.x - 1e-5 * way)) / 2e-5
+    assert -slope == pytest.approx(float((state.force * way).sum()), rel=1e-4)
 
 
 def test_seal_forces(stirred: sim.Simulation, generator: np.random.Generator) -> None:
     """The seal pulls lip pairs back to how they lay at rest and leaves sliding sideways free."""
     lips, rest = stirred._anatomy.lips, stirred._anatomy.surface.positions
     moved = generator.normal(size=rest.shape)
-    force = np.zeros_like(rest)
-    seal_forces(rest + moved, rest, lips.lower, lips.upper, lips.share, lips.seal, 0.7, force)
+    state = stirred._state._replace(x=rest + moved)
+    state.force[:] = 0.0
+    seal_forces(state, rest, lips, 0.7)
     w = lips.share[:, None]
     apart = moved[lips.lower] - w * moved[lips.upper[:, 0]] - (1.0 - w) * moved[lips.upper[:, 1]]
     pull = 0.7 * lips.seal[:, None] * apart * (0.0, 1.0, FORWARD_SEAL)
@@ -106,7 +95,7 @@ def test_seal_forces(stirred: sim.Simulation, generator: np.random.Generator) ->
     np.add.at(expected, lips.upper[:, 0], w * pull)
     np.add.at(expected, lips.upper[:, 1], (1.0 - w) * pull)
     assert len(lips.lower) >= 12
-    assert np.allclose(force, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+    assert np.allclose(state.force, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
 
 def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
@@ -160,45 +149,37 @@ def test_muscle_pull(stirred: sim.Simulation) -> None:
 
 def test_bones_carry_anchors(stirred: sim.Simulation) -> None:
     """Anchors blend between cranium and mandible by weight; their normals stay unit."""
-    anatomy, mandible = stirred._anatomy, stirred._mandible
+    anatomy, mandible, state = stirred._anatomy, stirred._mandible, stirred._state
     surface, weight = anatomy.surface, anatomy.skull.mandible_weight
-    carried, normals = np.zeros_like(surface.positions), np.zeros_like(surface.positions)
-    carry(
-        surface.positions, surface.normals, weight, mandible.rotation, mandible.shift,
-        carried, normals,
-    )  # fmt: skip
+    turn, shift = mandible.rotation, mandible.shift
+    carry(surface.positions, surface.normals, weight, turn, shift, state)
     moved = mandible.displacements(surface.positions)
-    assert np.allclose(carried, surface.positions + weight[:, None] * moved, atol=1e-12)
-    assert np.allclose(np.linalg.norm(normals, axis=1), 1.0, atol=1e-6)
+    assert np.abs(moved).max() > 5.0
+    assert np.allclose(state.carried, surface.positions + weight[:, None] * moved, atol=1e-12)
+    assert np.allclose(np.linalg.norm(state.normals, axis=1), 1.0, atol=1e-6)
 
 
 def test_lids_turn_about_the_eyeball(simulation: sim.Simulation) -> None:
     """Lids keep their distance to the eyeball's centre; closed margins meet in angle."""
-    anatomy = simulation._anatomy
-    lids, eyes, rest = anatomy.lids, anatomy.skull.eyes, anatomy.surface.positions
-    assert lids is not None
-    carried, normals = rest.copy(), anatomy.surface.normals.copy()
-    drive = np.array([[1.0, 0.4, 0.0]] * len(lids.centres))
-    turn_lids(
-        lids.vertex, lids.eye, lids.upper, lids.weight, lids.opening, lids.centres, lids.up,
-        lids.forward, drive, 0.3, eyes.upper_lid_follows, eyes.lower_lid_follows,
-        eyes.blink_meeting, rest, carried, normals,
-    )  # fmt: skip
+    anatomy, state = simulation._anatomy, simulation._state
+    assert anatomy.lids is not None
+    lids, rest = anatomy.lids.vertices, anatomy.surface.positions
+    turn_lids(state, rest, lids, np.array([[1.0, 0.4, 0.0]] * len(lids.centres)), 0.3)
     centre = lids.centres[lids.eye]
     before = np.linalg.norm(rest[lids.vertex] - centre, axis=1)
-    assert np.allclose(np.linalg.norm(carried[lids.vertex] - centre, axis=1), before)
-    angle = [
-        np.arctan2(
-            ((x[lids.vertex] - centre) * lids.up[lids.eye]).sum(axis=1),
-            ((x[lids.vertex] - centre) * lids.forward[lids.eye]).sum(axis=1),
-        )
-        for x in (rest, carried)
-    ]
-    turned = angle[1] - angle[0]
+    after = np.linalg.norm(state.carried[lids.vertex] - centre, axis=1)
+    assert np.allclose(before, after)
+
+    def angle(x: Array) -> Array:
+        high = ((x[lids.vertex] - centre) * lids.up[lids.eye]).sum(axis=1)
+        far = ((x[lids.vertex] - centre) * lids.forward[lids.eye]).sum(axis=1)
+        return np.arctan2(high, far)
+
+    turned = angle(state.carried) - angle(rest)
     margin = (lids.weight == 1.0) & (lids.opening > 0.1)
     lower, upper = margin & ~lids.upper, margin & lids.upper
-    assert np.allclose(turned[lower], eyes.blink_meeting * lids.opening[lower])
-    assert np.all(turned[upper] <= -(1.0 - eyes.blink_meeting) * lids.opening[upper])
+    assert np.allclose(turned[lower], lids.meeting * lids.opening[lower])
+    assert np.all(turned[upper] <= -(1.0 - lids.meeting) * lids.opening[upper])
 
 
 def test_a_step_is_its_substeps(head: Head) -> None:
@@ -206,7 +187,7 @@ def test_a_step_is_its_substeps(head: Head) -> None:
     anatomy = sim.create(head)._anatomy
     free = replace(
         anatomy,
-        lips=replace(anatomy.lips, least_gap=anatomy.lips.least_gap - 100.0),
+        lips=anatomy.lips._replace(least_gap=anatomy.lips.least_gap - 100.0),
         eye_contact=watch_eyeballs(anatomy.surface, ()),
     )
     fast, plain = sim.Simulation(free), sim.Simulation(free)
@@ -219,20 +200,20 @@ def test_a_step_is_its_substeps(head: Head) -> None:
         plain._place_targets()
         for _ in range(4):
             _plain_substep(plain, FRAME / 8.0)
-    moved = plain._x - plain._anatomy.surface.positions
-    expected = plain.rest_positions + plain._anatomy.frame.vectors_to_head(moved)
+    moved = plain._state.x - anatomy.surface.positions
+    expected = plain.rest_positions + anatomy.frame.vectors_to_head(moved)
     assert np.abs(fast.positions - expected).max() < 1e-6
     assert np.abs(fast.positions - fast.rest_positions).max() > 0.05
 
 
 def _plain_substep(face: sim.Simulation, h: float) -> None:
     """Forces by numpy, then velocity, then position."""
-    anatomy, x, v = face._anatomy, face._x, face._v
+    anatomy, state = face._anatomy, face._state
     springs, edges, lips = anatomy.springs, anatomy.edges, anatomy.lips
-    rest = anatomy.surface.positions
-    away, n = x - face._carried, face._normals
+    x, v, n, rest = state.x, state.v, state.normals, anatomy.surface.positions
+    away = x - state.carried
     across = (away * n).sum(axis=1, keepdims=True) * n
-    force = face._pull - (face._hold + springs.tangential)[:, None] * away
+    force = state.pull - (state.hold + springs.tangential)[:, None] * away
     force -= (springs.normal - springs.tangential)[:, None] * across
     i, j = edges.edges.astype(np.int64).T
     along = x[j] - x[i]
@@ -249,8 +230,7 @@ def _plain_substep(face: sim.Simulation, h: float) -> None:
     np.add.at(force, lips.lower, -seal)
     np.add.at(force, lips.upper[:, 0], w * seal)
     np.add.at(force, lips.upper[:, 1], (1.0 - w) * seal)
-    stiff = (springs.tangential + face._hold) / anatomy.mass
-    tissue = anatomy.rig.tissue
-    damping = tissue.damping + 2.0 * tissue.damping_ratio * np.sqrt(stiff)
+    stiff = (springs.tangential + state.hold) / anatomy.mass
+    damping = springs.damping + 2.0 * springs.damping_ratio * np.sqrt(stiff)
     v[:] = (v + h * force / anatomy.mass[:, None]) / (1.0 + h * damping)[:, None]
     x += h * v

@@ -1,0 +1,52 @@
+"""What changes while a face is simulated, as arrays that the kernels share.
+
+One `State` belongs to one simulation and is allocated once; kernels take it whole and write into
+its arrays. Coordinates are the standard frame of landmarks.py [mm, mm/s].
+
+Source: Kähler et al. 2001: point masses at the vertices, moved by what they hang on.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .landmarks import Array
+from .surface import Surface
+
+
+class State(NamedTuple):
+    """Positions and velocities, where the springs pull to, and work space; all per vertex."""
+
+    x: Array  # (V, 3) positions
+    v: Array  # (V, 3) velocities
+    carried: (
+        Array  # (V, 3) rest positions carried by bones and lids: far ends of the tissue springs
+    )
+    normals: Array  # (V, 3) tissue directions carried likewise
+    hold: Array  # (V,) stiffness of muscles and lids
+    pull: Array  # (V, 3) force of active muscles
+    offset: Array  # (V, 3) x - carried
+    force: Array  # (V, 3) sum of all forces
+    kept: Array  # (V,) share of the velocity that damping leaves in a substep
+    gain: Array  # (V,) velocity gained per force in a substep
+    move: Array  # (V, 2) contact corrections of height and of vertical velocity
+
+    @classmethod
+    def at_rest(cls, surface: Surface) -> State:
+        """A face that lies still."""
+        scalar, vector = surface.vertex_count, (surface.vertex_count, 3)
+        return cls(
+            x=surface.positions.copy(),
+            v=np.zeros(vector),
+            carried=surface.positions.copy(),
+            normals=surface.normals.copy(),
+            hold=np.zeros(scalar),
+            pull=np.zeros(vector),
+            offset=np.zeros(vector),
+            force=np.zeros(vector),
+            kept=np.zeros(scalar),
+            gain=np.zeros(scalar),
+            move=np.zeros((scalar, 2)),
+        )
