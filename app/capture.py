@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import collections
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -55,15 +54,10 @@ class Capture:
     def __exit__(self, *_: object) -> None:
         self.surface.close()
 
-    def frame(self, channels: Mapping[str, float], seconds: float) -> Frame:
-        """Pose the scene, let `seconds` pass, and return the picture (H, W, 3)."""
-        self.scene.pose(channels)
-        return self.picture(seconds)
-
-    def picture(self, seconds: float = 0.0) -> Frame:
-        """Let `seconds` pass, draw, and read the picture back."""
+    def picture(self) -> Frame:
+        """Draw the scene as it is now, and read the picture back."""
         self.surface.begin()
-        self.pipeline.draw_frame(seconds, self.camera, self.options.style, self.viewports)
+        self.pipeline.draw_frame(0.0, self.camera, self.options.style, self.viewports)
         self.surface.end()
         pictures = self.pipeline.pictures
         self.most_triangles = max(
@@ -81,15 +75,17 @@ class Capture:
 
     def play(
         self, script: Script, *, until: float | None = None, progress: bool = True
-    ) -> Iterator[tuple[float, Frame]]:
-        """Play a script from rest and yield (time [s], picture) at each frame."""
+    ) -> Iterator[float]:
+        """Play a script from rest and yield the time [s] of each frame, the scene moved to it."""
         self.scene.reset()
         rate = self.options.frames_per_second
         last = round((script.duration if until is None else until) * rate)
         bar = tqdm(range(last + 1), unit="frame", disable=not progress or None, leave=False)
         for index in bar:
-            time = index / rate
-            yield time, self.frame(script.at(time), 1.0 / rate if index else 0.0)
+            self.scene.pose(script.at(index / rate))
+            if index:
+                self.scene.step(1.0 / rate)
+            yield index / rate
 
 
 def capture(
@@ -98,45 +94,52 @@ def capture(
     *,
     output: Path | None = None,
     sheet: Path | None = None,
-    still_time: float | None = None,
     overwrite: bool = False,
     progress: bool = True,
 ) -> int:
-    """Film `script` into `output` (by its suffix) and its key poses into the picture `sheet`.
+    """Film `script` into `output` (by its suffix) and its named poses into the picture `sheet`.
 
     Returns the largest number of triangles of a frame. Raises UserError on what cannot be.
     """
     if output is None and sheet is None:
         raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")
-    scene = SCENES[script.scene]()
-    script.check_names({*scene.expressions, *scene.limits}, source=script.title)
+    wanted = list(script.key_poses) if sheet else []
+    if sheet and not wanted:
+        raise UserError(f"{script.source}: no pose has a name, so there is nothing for a sheet")
+    poses: list[tuple[str, Frame]] = []
     with contextlib.ExitStack() as stack:
-        recording = stack.enter_context(Capture(scene, options))
-        if output is not None and output.suffix.lower() == ".png":
-            _still(recording, script, output, still_time or 0.0, progress)
-            output = None
-        sink = None
-        if output is not None:
-            sink = stack.enter_context(_sink_for(output, options, overwrite))
-        wanted = [(pose.time, pose.name) for pose in script.key_poses] if sheet else []
-        poses: list[tuple[str, Frame]] = []
-        if sink is not None or sheet is not None:
-            for time, frame in recording.play(script, progress=progress):
-                if sink is not None:
-                    sink(frame)
-                while wanted and wanted[0][0] <= time + 0.5 / options.frames_per_second:
-                    poses.append((wanted.pop(0)[1], frame))
+        recording = stack.enter_context(Capture(scene_of(script), options))
+        film = stack.enter_context(_sink_for(output, options, overwrite)) if output else None
+        for time in recording.play(script, progress=progress):
+            is_wanted = bool(wanted) and wanted[0].time <= time + 0.5 / options.frames_per_second
+            if film is None and not is_wanted:
+                continue
+            frame = recording.picture()
+            if film is not None:
+                film(frame)
+            if is_wanted:
+                poses.append((wanted.pop(0).name, frame))
         if sheet is not None:
-            if not poses:
-                raise UserError("a contact sheet shows poses that have a name; the script has none")
             outputs.save_png(sheet, contact_sheet(poses, columns=2 if options.compare else 3))
         return recording.most_triangles
 
 
-def _still(recording: Capture, script: Script, output: Path, time: float, progress: bool) -> None:
-    frames = recording.play(script, until=time, progress=progress)
-    _, frame = collections.deque(frames, maxlen=1).pop()
-    outputs.save_png(output, frame)
+def take_picture(
+    script: Script, options: CaptureOptions, output: Path, *, time: float, progress: bool = True
+) -> int:
+    """Play `script` up to `time` [s] and write that moment; returns its number of triangles."""
+    with Capture(scene_of(script), options) as recording:
+        for _ in recording.play(script, until=time, progress=progress):
+            pass
+        outputs.save_png(output, recording.picture())
+        return recording.most_triangles
+
+
+def scene_of(script: Script) -> Scene:
+    """The scene that a script is written for; UserError if it names what the scene has not."""
+    scene = SCENES[script.scene]()
+    script.check_names({*scene.expressions, *scene.limits})
+    return scene
 
 
 def _sink_for(

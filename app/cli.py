@@ -37,11 +37,12 @@ class Size(click.ParamType[tuple[int, int]]):
 @contextlib.contextmanager
 def told_in_one_line() -> Iterator[None]:
     """Turn what the user can mend into one line on the error stream and exit code 2."""
+    import assets
     import render
 
     try:
         yield
-    except (UserError, render.GLError) as error:
+    except (UserError, render.GLError, assets.AssetError, OSError) as error:
         click.echo(f"risorius: {error}", err=True)
         sys.exit(2)
     except KeyboardInterrupt:
@@ -129,15 +130,24 @@ def capture(
             style=style_of(**look),
             samples=samples,
         )
-        most = capturing.capture(
-            performance,
-            options,
-            output=output,
-            sheet=sheet,
-            still_time=still_time,
-            overwrite=overwrite,
-            progress=not quiet,
-        )
+        if output is not None and output.suffix.lower() == ".png":
+            most = capturing.take_picture(
+                performance, options, output, time=still_time or 0.0, progress=not quiet
+            )
+            output, written = None, [output]
+        elif still_time is not None:
+            raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
+        else:
+            written = []
+        if output is not None or sheet is not None or not written:
+            most = capturing.capture(
+                performance,
+                options,
+                output=output,
+                sheet=sheet,
+                overwrite=overwrite,
+                progress=not quiet,
+            )
         written = " and ".join(str(path) for path in (output, sheet) if path)
         click.echo(f"{written}: at most {most} triangles in a frame")
 

@@ -88,6 +88,7 @@ class Script:
 
     title: str
     duration: float
+    source: str  # the file it came from, for error texts
     scene: str = "face"
     camera: str | None = None
     poses: dict[str, Channel] = field(default_factory=dict)
@@ -101,11 +102,11 @@ class Script:
             values[name] = values.get(name, 0.0) + channel.value(time)
         return values
 
-    def check_names(self, allowed: Collection[str], *, source: str) -> None:
+    def check_names(self, allowed: Collection[str]) -> None:
         """Raise UserError if the script names what the scene does not have."""
         for name in (*self.poses, *self.tracks):
             if name not in allowed:
-                raise UserError(f"{source}: unknown name '{name}'{suggestion(name, allowed)}")
+                raise UserError(f"{self.source}: unknown name '{name}'{suggestion(name, allowed)}")
 
 
 def suggestion(name: str, allowed: Iterable[str]) -> str:
@@ -148,6 +149,7 @@ def parse_script(text: str, *, source: str) -> Script:
     return Script(
         title=reader.text(document, "title", default=Path(source).stem),
         duration=duration,
+        source=source,
         scene=reader.text(document, "scene", default="face"),
         camera=reader.text(document, "camera", default=None),
         poses=poses,

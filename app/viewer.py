@@ -34,7 +34,7 @@ class Viewer:
     ) -> None:
         self.script = script
         self.scene = SCENES[script.scene]()
-        script.check_names({*self.scene.expressions, *self.scene.limits}, source=script.title)
+        script.check_names({*self.scene.expressions, *self.scene.limits})
         self.surface = render.open_window(size, f"Risorius: {script.title}")
         self.renderer = render.Renderer(self.surface)
         self.gui = Gui(self.surface.handle)

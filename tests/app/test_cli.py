@@ -108,6 +108,7 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["capture", "SMILE", "-o", "x.mp4", "--size", "big"], "'big' is no size"),
         (["capture", "SMILE", "-o", "x.mp4", "--scene", "plane"], "unknown name 'joy'"),
         (["capture", "SMILE", "-o", "x.mp4", "--shading", "toon"], "'toon' is not one of"),
+        (["capture", "SMILE", "-o", "x.mp4", "--time", "1"], "it goes with -o PICTURE.png"),
         (["replay", "no.toml"], "no.toml: no such script"),
     ],
 )

@@ -90,7 +90,7 @@ def test_unknown_names_get_a_suggestion() -> None:
     """A name that the scene does not have is told with the nearest ones."""
     script = parse_script(HELLO, source="hello.toml")
     with pytest.raises(UserError, match=r"hello.toml: unknown name 'joy'; did you mean joyful"):
-        script.check_names({"joyful", "jaw_open", "blink"}, source="hello.toml")
+        script.check_names({"joyful", "jaw_open", "blink"})
 
 
 def test_missing_and_unreadable_files(tmp_path: Path) -> None:
