@@ -130,24 +130,24 @@ def capture(
             style=style_of(**look),
             samples=samples,
         )
-        if output is not None and output.suffix.lower() == ".png":
-            most = capturing.take_picture(
-                performance, options, output, time=still_time or 0.0, progress=not quiet
-            )
-            output, written = None, [output]
-        elif still_time is not None:
+        picture = output if output is not None and output.suffix.lower() == ".png" else None
+        if picture is None and still_time is not None:
             raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
-        else:
-            written = []
-        if output is not None or sheet is not None or not written:
-            most = capturing.capture(
+        most = 0
+        if picture is not None:
+            most = capturing.take_picture(
+                performance, options, picture, time=still_time or 0.0, progress=not quiet
+            )
+        if picture is None or sheet is not None:
+            film_most = capturing.capture(
                 performance,
                 options,
-                output=output,
+                output=output if picture is None else None,
                 sheet=sheet,
                 overwrite=overwrite,
                 progress=not quiet,
             )
+            most = max(most, film_most)
         written = " and ".join(str(path) for path in (output, sheet) if path)
         click.echo(f"{written}: at most {most} triangles in a frame")
 
