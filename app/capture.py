@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -28,6 +28,7 @@ class CaptureOptions:
     size: tuple[int, int] = (1280, 720)  # of the whole picture [pixels]
     frames_per_second: float = 30.0
     refiner: str = "kahler"
+    refiner_options: Mapping[str, float] | None = None  # None: what suits the scene
     compare: bool = False  # the mesh as it is on the left, refined on the right
     captions: bool = True  # names and triangle counts under a comparison
     camera: str = DEFAULT_VIEW  # a named view, or yaw,pitch[,zoom] in degrees
@@ -42,7 +43,10 @@ class Capture:
         self.scene = scene
         self.options = options
         self.surface = render.open_offscreen(options.size, samples=options.samples)
-        refiners = ("none", options.refiner) if options.compare else (options.refiner,)
+        refiners: dict[str, Mapping[str, float] | None] = {}
+        if options.compare:
+            refiners["none"] = None
+        refiners[options.refiner] = options.refiner_options
         self.pipeline = Pipeline(scene, render.Renderer(self.surface), refiners)
         self.viewports = side_by_side(self.surface.size, len(refiners))
         self.camera = camera_for(scene, options.camera)

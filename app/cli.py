@@ -66,6 +66,13 @@ def drawing_options(command: Command) -> Command:
             help="Refine plug-in; none draws the mesh as it is.",
         ),
         click.option(
+            "--thresholds",
+            type=click.FloatRange(0.0, 2.0),
+            nargs=2,
+            metavar="ONCE TWICE",
+            help="Drops of the normals' dot product that split an edge once and twice.",
+        ),
+        click.option(
             "--shading",
             type=click.Choice(["flat", "gouraud", "pixel"]),
             default="pixel",
@@ -109,6 +116,7 @@ def capture(
     overwrite: bool,
     quiet: bool,
     refiner: str,
+    thresholds: tuple[float, float] | None,
     **look: Any,
 ) -> None:
     """Render SCRIPT offscreen into a film, frames, a picture or a contact sheet.
@@ -124,6 +132,7 @@ def capture(
             size=size,
             frames_per_second=fps,
             refiner=known_refiner(refiner),
+            refiner_options=threshold_options(refiner, thresholds),
             compare=compare,
             captions=captions,
             camera=camera or performance.camera or DEFAULT_VIEW,
@@ -268,6 +277,20 @@ def known_refiner(name: str) -> str:
     return name
 
 
+def threshold_options(
+    refiner: str, thresholds: tuple[float, float] | None
+) -> dict[str, float] | None:
+    """The refiner's options that --thresholds stands for; None where it was not given."""
+    if not thresholds:
+        return None
+    if refiner != "kahler":
+        raise UserError(f"--thresholds goes with --refiner kahler, not with '{refiner}'")
+    once, twice = thresholds
+    if once > twice:
+        raise UserError(f"--thresholds {once:g} {twice:g}: the first must not be above the second")
+    return {"threshold_once": once, "threshold_twice": twice}
+
+
 def style_of(shading: str, wireframe: bool, splits: bool, clay: bool) -> Any:
     """The style that the drawing options ask for."""
     import render
@@ -288,6 +311,7 @@ def open_viewer(
     playing: bool,
     once: bool = False,
     refiner: str,
+    thresholds: tuple[float, float] | None,
     **look: Any,
 ) -> None:
     """Open the viewer on a script's scene."""
@@ -295,5 +319,7 @@ def open_viewer(
         performance = script_for(script, scene)
         from .viewer import Viewer
 
-        with Viewer(performance, size, known_refiner(refiner), style_of(**look)) as viewer:
+        style = style_of(**look)
+        options = threshold_options(refiner, thresholds)
+        with Viewer(performance, size, known_refiner(refiner), style, options) as viewer:
             viewer.run(playing=playing, once=once)

@@ -7,7 +7,7 @@ forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -32,8 +32,12 @@ class Picture:
     stream: render.Stream
 
     @classmethod
-    def of(cls, scene: Scene, renderer: render.Renderer, name: str, **options: Any) -> Picture:
+    def of(
+        cls, scene: Scene, renderer: render.Renderer, name: str, options: Mapping[str, Any] | None
+    ) -> Picture:
         """Bind the refiner `name` to the scene's mesh and borrow render buffers for it."""
+        if options is None:
+            options = scene.refiner_options.get(name, {})
         refiner = refine.create(name, scene.faces, scene.rest_positions, **options)
         stream = renderer.lend_stream(
             refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
@@ -50,11 +54,17 @@ class Pipeline:
     """A scene, the pictures that are drawn of it, and the renderer that draws them."""
 
     def __init__(
-        self, scene: Scene, renderer: render.Renderer, refiners: Sequence[str] = ("kahler",)
+        self,
+        scene: Scene,
+        renderer: render.Renderer,
+        refiners: Mapping[str, Mapping[str, Any] | None],
     ) -> None:
+        """Bind `refiners` (name -> options, None: the scene's) to the scene, left to right."""
         self.scene = scene
         self.renderer = renderer
-        self.pictures = [Picture.of(scene, renderer, name) for name in refiners]
+        self.pictures = [
+            Picture.of(scene, renderer, name, options) for name, options in refiners.items()
+        ]
 
     def draw_frame(
         self,

@@ -6,6 +6,7 @@ a window that was stalled (dragged, covered, stopped in a debugger) goes on calm
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -30,7 +31,12 @@ class Viewer:
     """The window with everything in it; a context manager."""
 
     def __init__(
-        self, script: Script, size: tuple[int, int], refiner: str, style: render.Style
+        self,
+        script: Script,
+        size: tuple[int, int],
+        refiner: str,
+        style: render.Style,
+        refiner_options: Mapping[str, float] | None = None,
     ) -> None:
         self.script = script
         self.scene = SCENES[script.scene]()
@@ -41,7 +47,8 @@ class Viewer:
         self.panel = Panel(self)
         shown = refiner if refiner != "none" else "kahler"
         self.pipelines = {
-            name: Pipeline(self.scene, self.renderer, (name,)) for name in ("none", shown)
+            "none": Pipeline(self.scene, self.renderer, {"none": None}),
+            shown: Pipeline(self.scene, self.renderer, {shown: refiner_options}),
         }
         self.refiner = shown
         self.is_refined = refiner != "none"

@@ -109,6 +109,11 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["capture", "SMILE", "-o", "x.mp4", "--scene", "plane"], "unknown name 'joy'"),
         (["capture", "SMILE", "-o", "x.mp4", "--shading", "toon"], "'toon' is not one of"),
         (["capture", "SMILE", "-o", "x.mp4", "--time", "1"], "it goes with -o PICTURE.png"),
+        (["capture", "SMILE", "-o", "x.mp4", "--thresholds", "0.2", "0.1"], "must not be above"),
+        (
+            ["capture", "SMILE", "-o", "x.mp4", "--refiner", "loop", "--thresholds", "0", "1"],
+            "--thresholds goes with --refiner kahler",
+        ),
         (["replay", "no.toml"], "no.toml: no such script"),
     ],
 )

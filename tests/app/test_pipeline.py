@@ -53,7 +53,7 @@ def test_a_registered_refiner_is_drawn(surface: Any, monkeypatch: pytest.MonkeyP
     """A refiner from outside goes through the real pipeline to a picture."""
     refine.register("double", DoubleRefiner)
     scene = PlaneScene()
-    pipeline = Pipeline(scene, render.Renderer(surface), ["double"])
+    pipeline = Pipeline(scene, render.Renderer(surface), {"double": None})
     surface.begin()
     camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
     pipeline.draw_frame(0.1, camera, render.Style(), [(0, 0, *SIZE)])
@@ -68,7 +68,7 @@ def test_the_mesh_and_the_simulation_never_notice(surface: Any) -> None:
     renderer = render.Renderer(surface)
     camera = render.OrbitCamera.framing(scenes[0].rest_positions, view="front")
     for scene, name in zip(scenes, ("none", "kahler"), strict=True):
-        pipeline = Pipeline(scene, renderer, [name])
+        pipeline = Pipeline(scene, renderer, {name: None})
         faces = scene.faces.copy()
         scene.pose({"surprise": 1.0})
         for _ in range(15):
@@ -87,7 +87,7 @@ def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:
     camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
     pictures = []
     for name in ("none", "kahler"):
-        pipeline = Pipeline(scene, renderer, [name])
+        pipeline = Pipeline(scene, renderer, {name: None})
         surface.begin()
         pipeline.draw_frame(0.0, camera, render.Style(), [(0, 0, *SIZE)])
         surface.end()
@@ -98,7 +98,9 @@ def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:
 def test_splits_of_source() -> None:
     """A triangle's colour value is the sum of its edges' splits."""
     scene = PlaneScene()
-    refiner = refine.create("kahler", scene.faces, scene.rest_positions)
+    refiner = refine.create(
+        "kahler", scene.faces, scene.rest_positions, **scene.refiner_options["kahler"]
+    )
     scene.pose({"amplitude": 1.0})
     scene.step(0.1)
     mesh = refiner.refine(scene.positions)
