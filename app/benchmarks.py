@@ -29,10 +29,16 @@ def refine_table(rounds: int, scenes: Sequence[Scene]) -> str:
     ]
     for scene in scenes:
         frames = face_frames(scene) if scene.expressions else plane_frames(scene)
-        for row in bench.refine.run(scene.faces, scene.rest_positions, frames, rounds=rounds):
-            options = ",".join(f"{value}x" for value in row.options.values())
+        methods = [
+            (name, {**options, **scene.refiner_options.get(name, {})})
+            for name, options in bench.refine.METHODS
+        ]
+        for row in bench.refine.run(
+            scene.faces, scene.rest_positions, frames, methods=methods, rounds=rounds
+        ):
+            levels = f" {row.options['levels']}x" if "levels" in row.options else ""
             lines.append(
-                f"{scene.name:6} {row.refiner + ' ' + options:14} {row.triangles_in:6d} "
+                f"{scene.name:6} {row.refiner + levels:14} {row.triangles_in:6d} "
                 f"{row.triangles_out:7.0f} {row.triangles_most:6d} {row.milliseconds:8.4f} "
                 f"{row.best_milliseconds:8.4f} {row.nanoseconds_per_triangle:7.1f}"
             )

@@ -84,7 +84,7 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         "--sheet",
         sheet,
         "--fps",
-        "4",
+        "10",
         "--size",
         "320x240",
         "--quiet",
