@@ -2,11 +2,13 @@
 
     head = assets.load("head")
     plane = assets.load("plane")
+    picture = assets.paint(tone="dark")  # another skin for the head than `head.albedo`
 
 The programs that generate them are in this package too; `python -m assets.build` runs them.
 """
 
-from .loading import AssetError, available, load
-from .model import Eye, Head, Part, Plane
+from .loading import available, load
+from .model import AssetError, Eye, Head, Part, Plane, Tone
+from .painting import paint
 
-__all__ = ["AssetError", "Eye", "Head", "Part", "Plane", "available", "load"]
+__all__ = ["AssetError", "Eye", "Head", "Part", "Plane", "Tone", "available", "load", "paint"]

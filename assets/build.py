@@ -1,9 +1,10 @@
-"""Rebuild the head's data file: `python -m assets.build [FILE]`.
+"""Rebuild the head's data file and picture: `python -m assets.build [FILE] [--tone TONE]`.
 
 Deterministic: seeds are fixed. Other versions of scipy may order a triangulation differently; the
 shipped file is therefore part of the package, and a test compares it with a fresh build.
 """
 
+import argparse
 import sys
 from pathlib import Path
 
@@ -16,9 +17,13 @@ from .generator.eyeballs import IRIS_RADIUS, corner_flesh, eyeball
 from .generator.form import EYE_CENTRE, EYE_RADIUS
 from .generator.landmarks import anatomy, landmark_vertices
 from .generator.oral import lower_cavity, tongue, upper_cavity
+from .generator.painting import SIZE, paint_skin
 from .generator.skin import Skin, build_half, mirrored
 from .generator.solids import Solid
-from .loading import HEAD_FILE
+from .generator.unwrap import unwrap
+from .loading import HEAD_FILE, load_head
+from .model import Tone
+from .pictures import write_picture
 
 MIRROR = np.array([-1.0, 1.0, 1.0])
 
@@ -76,11 +81,12 @@ def skin_arrays(skin: Skin) -> dict[str, npt.NDArray[np.generic]]:
         "eye_centres": np.array([EYE_CENTRE * MIRROR, EYE_CENTRE]),
         "eye_radii": np.array([[EYE_RADIUS, IRIS_RADIUS]] * 2),
     }
+    rings: dict[str, npt.NDArray[np.int32]] = {}
     for name, row in skin.rings.items():
         left = np.array(row, dtype=np.int32)
-        arrays[f"ring_{name}_left"] = left
-        arrays[f"ring_{name}_right"] = skin.mirror[left]
-    return arrays
+        rings[f"{name}_left"], rings[f"{name}_right"] = left, skin.mirror[left]
+    arrays["uv"] = unwrap(skin.vertices, skin.faces, skin.mirror, rings)
+    return arrays | {f"ring_{name}": ring for name, ring in rings.items()}
 
 
 def build_head() -> dict[str, npt.NDArray[np.generic]]:
@@ -90,10 +96,20 @@ def build_head() -> dict[str, npt.NDArray[np.generic]]:
 
 
 def main(arguments: list[str]) -> None:
-    """Write the data file, to the place where `load` looks or to the one given."""
-    path = Path(arguments[0]) if arguments else HEAD_FILE
-    path.parent.mkdir(parents=True, exist_ok=True)
-    np.savez_compressed(path, allow_pickle=False, **build_head())
+    """Write data file and picture, to the place where `load` looks or to the one given."""
+    parser = argparse.ArgumentParser(
+        prog="python -m assets.build", description=(__doc__ or "").splitlines()[0]
+    )
+    parser.add_argument("file", nargs="?", type=Path, default=HEAD_FILE, help="the data file")
+    tones = [tone.value for tone in Tone]
+    parser.add_argument("--tone", choices=tones, default=Tone.MEDIUM_LIGHT.value)
+    parser.add_argument("--size", type=int, default=SIZE, help="of the picture [texels]")
+    given = parser.parse_args(arguments)
+    given.file.parent.mkdir(parents=True, exist_ok=True)
+    np.savez_compressed(given.file, allow_pickle=False, **build_head())
+    head = load_head(given.file)
+    picture = paint_skin(head, tone=Tone(given.tone), size=given.size)
+    write_picture(head.albedo_file, picture)
 
 
 if __name__ == "__main__":

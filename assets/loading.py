@@ -12,17 +12,13 @@ from typing import Any, Literal, overload
 import numpy as np
 import numpy.typing as npt
 
-from .model import Eye, Head, Part, Plane
+from .model import AssetError, Eye, Head, Part, Plane
 from .plane import make_plane
 
 FOLDER = Path(__file__).parent
 HEAD_FILE = FOLDER / "data" / "head.npz"
 RIG_FILE = FOLDER / "rigs" / "face.toml"
 EXPRESSIONS_FILE = FOLDER / "expressions.toml"
-
-
-class AssetError(Exception):
-    """An asset does not exist, or one of its files is missing or broken."""
 
 
 def available() -> tuple[str, ...]:
@@ -56,11 +52,14 @@ def load_head(
 ) -> Head:
     """Read a head from its data file, its rig file and its expression file.
 
+    The picture of the skin lies beside the data file, as a PNG file of the same name.
+
     Raises AssetError when the data file is missing or incomplete, or a text file is not TOML.
     """
     arrays = _read_arrays(head_file)
     try:
-        return _assemble(arrays, _read_toml(rig_file), _read_toml(expressions_file))
+        texts = _read_toml(rig_file), _read_toml(expressions_file)
+        return _assemble(arrays, head_file.with_suffix(".png"), *texts)
     except KeyError as error:
         raise AssetError(
             f"{head_file} has no array {error}; rebuild it with 'python -m assets.build'"
@@ -68,7 +67,10 @@ def load_head(
 
 
 def _assemble(
-    arrays: dict[str, npt.NDArray[Any]], rig: dict[str, Any], expressions: dict[str, Any]
+    arrays: dict[str, npt.NDArray[Any]],
+    albedo_file: Path,
+    rig: dict[str, Any],
+    expressions: dict[str, Any],
 ) -> Head:
     rings = {
         name.removeprefix("ring_"): array
@@ -88,6 +90,9 @@ def _assemble(
         rings=rings,
         eyes=_eyes(arrays),
         parts=_parts(arrays),
+        uv=arrays["uv"],
+        face_uv=arrays["faces"],  # one piece without seams: a corner is a vertex
+        albedo_file=albedo_file,
         rig=rig,
         expressions=expressions,
     )

@@ -11,6 +11,9 @@ landmark numbering after Sagonas et al. 2013, "300 Faces in-the-Wild Challenge" 
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,6 +22,20 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 SingleArray = npt.NDArray[np.float32]
 IndexArray = npt.NDArray[np.int32]
+Picture = npt.NDArray[np.uint8]
+
+
+class AssetError(Exception):
+    """An asset does not exist, or one of its files is missing or broken."""
+
+
+class Tone(Enum):
+    """Complexions that the skin can be painted in."""
+
+    LIGHT = "light"
+    MEDIUM_LIGHT = "medium-light"  # the picture that is shipped
+    MEDIUM = "medium"
+    DARK = "dark"
 
 
 @dataclass(frozen=True)
@@ -78,6 +95,11 @@ class Head:
         of the red); also `nostril_left`, `alar_crease_left`, `rim_left`.
     eyes: the right and the left eye.
     parts: rigid things that are drawn with the head.
+    uv: texture coordinates, 0..1, u to the subject's left and v up, shape (U, 2), float32; one
+        piece without seams, so that U = V.
+    face_uv: numbers of the texture coordinates of each face's corners, shape (F, 3), int32; the
+        same numbers as `faces`.
+    albedo_file: the picture of the skin.
     rig: the parsed rig file, {} where there is none.
     expressions: expression name -> {control name: value}, {} where there is no such file.
     """
@@ -93,8 +115,22 @@ class Head:
     rings: Mapping[str, IndexArray]
     eyes: tuple[Eye, ...]
     parts: tuple[Part, ...]
+    uv: SingleArray
+    face_uv: IndexArray
+    albedo_file: Path
     rig: dict[str, Any]
     expressions: dict[str, dict[str, float]]
+
+    @cached_property
+    def albedo(self) -> Picture:
+        """The colour of the skin, sRGB, shape (H, W, 3), uint8; row 0 is v = 1.
+
+        Read from `albedo_file` when it is first asked for: to simulate needs no picture. Raises
+        AssetError when the file is missing or no picture.
+        """
+        from .pictures import read_picture  # Pillow, which to load a head takes no time for
+
+        return read_picture(self.albedo_file)
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,7 @@ from .style import (
     Style,
 )
 from .surface import Frame, OffscreenSurface, Surface, open_offscreen
+from .texture import Texture
 from .window import WindowSurface, open_window
 
 __all__ = [
@@ -65,6 +66,7 @@ __all__ = [
     "Stream",
     "Style",
     "Surface",
+    "Texture",
     "Viewport",
     "WindowSurface",
     "open_offscreen",

@@ -22,6 +22,7 @@ from .sight import Sight
 from .stream import Stream
 from .style import SPLIT_PALETTE, Colour, ColourBy, Style, linear
 from .surface import Surface
+from .texture import Texture
 
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 
@@ -29,7 +30,7 @@ SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, n
 SHADOW_OFFSET = 0.006  # of the scene's radius, above the surface: 0.9 mm on a head
 TO_KEY = (-0.5300, 0.6300, 0.5677)  # unit vector in view space: over the viewer's left shoulder
 
-_SPLIT_UNIT, _SHADOW_UNIT = 0, 2  # texture units; the layers use 1
+_SPLIT_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the layers use 1
 _PALETTE = np.array([linear(colour) for colour in SPLIT_PALETTE], np.float32)
 # Colour as usual; the layer starts out transparent and collects premultiplied colour.
 _PREMULTIPLYING_BLEND: Any = (
@@ -60,6 +61,15 @@ class Renderer:
         self.surface.make_current()
         return Stream(self._gl, vertex_capacity, triangle_capacity, columns)
 
+    def load_texture(self, image: npt.NDArray[np.uint8]) -> Texture:
+        """Hand a picture of the skin to OpenGL; draw_mesh takes the albedo from it.
+
+        image: sRGB, top row first, shape (H, W, 3), uint8; texture coordinate v is 1 at the top.
+        Raises ValueError for an image of another shape or type, or beyond the driver's limit.
+        """
+        self.surface.make_current()
+        return Texture(self._gl, image)
+
     def draw_background(self, style: Style, viewport: Viewport | None = None) -> None:
         """Paint the style's background over the viewport, and over what was drawn there."""
         self._backdrop.paint(self.surface.layers, self._viewport(viewport), style.background)
@@ -72,12 +82,17 @@ class Renderer:
         *,
         viewport: Viewport | None = None,
         values: npt.NDArray[np.uint8] | None = None,
+        texture: Texture | None = None,
     ) -> None:
         """Draw what `stream` last uploaded.
 
         values: how many splits (0..6) the edges of each triangle's source have, shape (M,), uint8;
             needed where the style colours by splits. Raises ValueError where it does not fit.
+        texture: the albedo of the front side, unless the style is not textured; needs a stream of
+            8 columns, ValueError else.
         """
+        _check_texture(texture, stream)
+        is_textured = texture is not None and style.textured
         sight = self._sight(camera, viewport)
         colours_splits = style.colour_by is ColourBy.SPLITS
         if colours_splits:
@@ -89,6 +104,7 @@ class Renderer:
             style.shading.name,
             *(["WIREFRAME"] if style.wireframe else []),
             *(["SPLITS"] if colours_splits else []),
+            *(["TEXTURED"] if is_textured else []),
             *(["SHADOWS"] if style.shadows else []),
         )
         if not self._aim(program, sight, stream.corners, np.eye(4)):
@@ -100,6 +116,8 @@ class Renderer:
             program["viewport_size"] = sight.viewport[2:]
             program["wire_half_width"] = 0.5 * style.wire_width * self.surface.pixel_scale
             program["wire_colour"] = *style.wire_colour, style.wire_opacity
+        if is_textured and texture is not None:
+            program["albedo_texture"] = texture.bind(_ALBEDO_UNIT)
         if colours_splits:
             program["split_counts"] = self._splits.bind(_SPLIT_UNIT)
             write_uniform(program, "split_palette", _PALETTE)
@@ -235,7 +253,8 @@ class Renderer:
 
 def _set_skin(program: moderngl.Program, style: Style) -> None:
     program["to_key"] = TO_KEY
-    program["albedo"] = linear(style.albedo)
+    if "albedo" in program:  # not where a texture takes its place
+        program["albedo"] = linear(style.albedo)
     program["inner_albedo"] = linear(style.inner_albedo)
     program["subsurface"] = style.scattering
     program["gloss"] = 0.26 * style.gloss
@@ -248,6 +267,15 @@ def _set_part(program: moderngl.Program, shine: float) -> None:
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine
     program["sharpness"] = 20.0 * 40.0**shine
+
+
+def _check_texture(texture: Texture | None, stream: Stream) -> None:
+    columns = stream.vertices.shape[1]
+    if texture is not None and columns != 8:
+        raise ValueError(
+            f"a texture meets a stream of {columns} columns; it needs texture coordinates: lend a "
+            "stream of 8 columns (position, normal, u v), or draw without texture"
+        )
 
 
 def _checked_values(

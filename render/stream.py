@@ -67,18 +67,22 @@ class Stream:
         self._index_buffer.write(self.triangles[:triangle_count])
 
     def draw(self, program: moderngl.Program) -> None:
-        """Draw the uploaded triangles with `program` (attributes in_position, in_normal)."""
+        """Draw the uploaded triangles (attributes in_position, in_normal and in_uv, as needed)."""
         if self.vertex_count == 0 or self.triangle_count == 0:
             return
         array = self._vertex_arrays.get(program)
         if array is None:
-            layout = "3f 3f" if self.vertices.shape[1] == 6 else "3f 3f 8x"
+            names = ["in_position", "in_normal", "in_uv"]
+            layout = "3f 3f 2f"
+            if self.vertices.shape[1] == 6:
+                names.pop()
+                layout = "3f 3f"
             array = self._gl.vertex_array(
                 program,
-                [(self._vertex_buffer, layout, "in_position", "in_normal")],
+                [(self._vertex_buffer, layout, *names)],
                 index_buffer=self._index_buffer,
                 index_element_size=4,
-                skip_errors=True,  # flat shading has no use for normals
+                skip_errors=True,  # flat shading has no use for normals, plain skin none for uv
             )
             self._vertex_arrays[program] = array
         array.render(moderngl.TRIANGLES, vertices=3 * self.triangle_count)

@@ -26,7 +26,7 @@ class Shading(Enum):
 class ColourBy(Enum):
     """What decides the colour of a triangle."""
 
-    NONE = "none"  # the albedo of the style
+    NONE = "none"  # the texture, or the albedo of the style
     SPLITS = "splits"  # how many splits the edges of its source triangle have
 
 
@@ -70,6 +70,7 @@ class Style:
     wireframe: bool = False
     colour_by: ColourBy = ColourBy.NONE
     albedo: Colour = SKIN  # of the front side
+    textured: bool = True  # a texture, where there is one, takes the place of the albedo
     inner_albedo: Colour = (0.45, 0.19, 0.17)  # of the back side: inside of lids and mouth
     subsurface: float | None = (
         None  # 0 = hard terminator, 1 = skin; None: by how warm the albedo is

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .contact import EyeContact, LipPairs, pair_lips, watch_eyeballs
+from .contact import EyeContact, Grip, LipPairs, pair_lips, watch_eyeballs
 from .controls import GAZE_RATE, Control
 from .integrator import LONGEST_SUBSTEP, ROUNDING
 from .landmarks import LANDMARK_COUNT, Array, FaceFrame, Side
@@ -64,12 +64,17 @@ class Anatomy:
     mass: Array  # (V,)
     controls: tuple[Control, ...]
 
-    def seal_strength(self, activation: Array, opening: float) -> float:
-        """1 while the lips stick together .. 0 when jaw or muscles open them."""
+    def grip(self, activation: Array, opening: float) -> Grip:
+        """How firmly the lips stick together; jaw and some muscles open them."""
         if not len(self.lips.lower):
-            return 0.0
-        closed = 1.0 - np.minimum(activation * self.muscles.opens_lips, 1.0)
-        return float(closed.prod() * max(0.0, 1.0 - opening / SEAL_BROKEN_BY_JAW))
+            return Grip(0.0, 0.0)
+        muscles = self.muscles
+        strength = max(0.0, 1.0 - opening / SEAL_BROKEN_BY_JAW)
+        if strength == 0.0:
+            return Grip(0.0, 0.0)
+        strength *= float((1.0 - activation * muscles.opens_lips).prod())
+        activity = float((activation * muscles.reaches_lips).max(initial=0.0))
+        return Grip.of(strength, activity)
 
 
 def build_anatomy(head: Any) -> Anatomy:
@@ -87,18 +92,18 @@ def build_anatomy(head: Any) -> Anatomy:
     skull = _skull(head, rig, frame, surface, landmarks, side)
     known = np.zeros((LANDMARK_COUNT, 3)) if landmarks is None else landmarks
     placed = place_muscles(rig, surface, known, side)
-    muscles = prepare_pull(placed, rig, surface, skull.mandible_weight)
+    seal = rig.tissue.lip_seal * rig.tissue.stiffness_scale
+    lips = pair_lips(surface, known, side, seal)
+    muscles = prepare_pull(placed, rig, surface, skull.mandible_weight, lips.members)
     controls = _controls(rig, skull)
     lids = None
     if landmarks is not None and skull.eyeballs:
         names = [control.name for control in controls]
         lids = place_lids(rig, surface, landmarks, skull.eyeballs, names)
-    seal = rig.tissue.lip_seal * rig.tissue.stiffness_scale
-    lips = pair_lips(surface, known, side, seal)
     springs = TissueSprings.under(surface, rig.tissue)
     edges = EdgeSprings.along(surface, rig.tissue)
     passive, greatest = _holds(muscles, lids, surface.vertex_count)
-    bound = edges.row_bound(surface.vertex_count) + _seal_bound(lips, surface.vertex_count)
+    bound = edges.row_bound(surface.vertex_count)
     bound += np.maximum(springs.tangential, springs.normal) + greatest
     return Anatomy(
         vertices=vertices, frame=frame, rig=rig, surface=surface, skull=skull, muscles=muscles,
@@ -207,14 +212,6 @@ def _holds(muscles: MusclePull, lids: Lids | None, count: int) -> tuple[Array, A
         for hold in (passive, greatest):
             np.add.at(hold, lids.vertices.vertex, lids.hold)
     return passive, greatest
-
-
-def _seal_bound(lips: LipPairs, count: int) -> Array:
-    """Gershgorin bound of the lip seal per vertex."""
-    bound = np.zeros(count)
-    for ends in (lips.lower, lips.upper[:, 0], lips.upper[:, 1]):
-        np.add.at(bound, ends, 2.0 * lips.seal)
-    return bound
 
 
 def _controls(rig: Rig, skull: Skull) -> tuple[Control, ...]:

@@ -16,12 +16,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+import numba
 import numpy as np
 
 from .landmarks import Array
 
 MUSCLE_RATE = 45.0  # rad/s
 GAZE_RATE = 120.0  # rad/s: a saccade takes some 35 ms
+SETTLED, SETTLED_SPEED = 1e-6, 1e-4  # away from the value and per second: as good as there
 SLACK = 1e-6  # beyond a limit by rounding is not an error
 
 
@@ -89,18 +91,24 @@ class Controls:
 
     def advance(self, dt: float) -> None:
         """Let activations follow their values for `dt` [s]: exact critically damped motion."""
-        w = self._rate
-        away = self.activation - self.wanted
-        slope = self._speed + w * away
-        decay = np.exp(-w * dt)
-        self.activation[:] = self.wanted + (away + slope * dt) * decay
-        self._speed[:] = (self._speed - w * slope * dt) * decay
-        # Below a millionth a muscle is relaxed: rest must be reached, not only approached.
-        settled = (np.abs(self.activation - self.wanted) < 1e-6) & (np.abs(self._speed) < 1e-4)
-        self.activation[settled] = self.wanted[settled]
-        self._speed[settled] = 0.0
+        follow(self.wanted, self.activation, self._speed, self._rate, dt)
 
     def reset(self) -> None:
         """All values and activations to zero at once."""
         for array in (self.wanted, self.activation, self._speed):
             array[:] = 0.0
+
+
+@numba.njit(cache=True)
+def follow(wanted, activation, speed, rate, dt):  # type: ignore[no-untyped-def]
+    """Advance critically damped oscillators of angular frequency `rate` [rad/s] by `dt` [s]."""
+    for n in range(len(wanted)):
+        away = activation[n] - wanted[n]
+        slope = speed[n] + rate[n] * away
+        decay = np.exp(-rate[n] * dt)
+        away = (away + slope * dt) * decay
+        speed[n] = (speed[n] - rate[n] * slope * dt) * decay
+        # Below a millionth a muscle is relaxed: rest must be reached, not only approached.
+        if abs(away) < SETTLED and abs(speed[n]) < SETTLED_SPEED:
+            away = speed[n] = 0.0
+        activation[n] = wanted[n] + away

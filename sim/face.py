@@ -27,6 +27,7 @@ import numpy.typing as npt
 
 from . import integrator
 from .anatomy import Anatomy
+from .contact import SEALED
 from .controls import Controls
 from .lids import turn_lids
 from .skull import REST, Pose
@@ -46,7 +47,7 @@ class Simulation:
         self._controls = Controls(anatomy.controls)
         surface = anatomy.surface
         self._state = State.at_rest(surface)
-        self._seal = 1.0
+        self._grip = SEALED
         self._jaw = (0.0, 0.0, 0.0)
         self._mandible: Pose = REST
         self._muscle_index = np.array(
@@ -165,14 +166,14 @@ class Simulation:
         state.hold[:] = anatomy.passive_hold
         state.pull[:] = 0.0
         muscles.add(activation, self._mandible, weight, state.hold, state.pull)
-        self._seal = anatomy.seal_strength(activation, jaw[0])
+        self._grip = anatomy.grip(activation, jaw[0])
 
     def _advance(self, h: float) -> None:
         """One tick of substeps of `h` [s]: all forces on the skin (integrator.advance)."""
         anatomy = self._anatomy
         integrator.advance(
             self._state, integrator.SUBSTEPS, h, anatomy.surface.positions, anatomy.mass,
-            anatomy.springs, anatomy.edges, anatomy.lips, self._seal, anatomy.eye_contact,
+            anatomy.springs, anatomy.edges, anatomy.lips, self._grip, anatomy.eye_contact,
         )  # fmt: skip
 
     def _gaze_angle(self) -> float:
@@ -209,5 +210,5 @@ class Simulation:
         kinetic = float((anatomy.mass[:, None] * state.v**2).sum() / 2.0)
         held = tissue_energy(state, anatomy.springs)
         edges = anatomy.edges.energy(state.x, state.x - state.carried)
-        seal = anatomy.lips.energy(state.x - anatomy.surface.positions, self._seal)
+        seal = anatomy.lips.energy(state.x - anatomy.surface.positions, self._grip)
         return kinetic + held + edges + seal

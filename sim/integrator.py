@@ -20,7 +20,7 @@ import math
 import numba
 import numpy as np
 
-from .contact import keep_lips_apart, keep_out_of_eyeballs, seal_forces
+from .contact import hold_lips, keep_lips_apart, keep_out_of_eyeballs
 from .springs import edge_forces
 from .tissue import tissue_forces
 
@@ -40,17 +40,18 @@ def ticks_in(dt: float) -> int:
 
 @numba.njit(cache=True)
 def advance(  # type: ignore[no-untyped-def]
-    state, substeps, h, rest, mass, tissue, edges, lips, seal, eyes
+    state, substeps, h, rest, mass, tissue, edges, lips, grip, eyes
 ):
     """Advance a face by `substeps` of length `h` [s]: the list of all forces and constraints."""
     damp(state, h, mass, tissue)
     for _ in range(substeps):
         tissue_forces(state, tissue)
         edge_forces(state, edges)
-        seal_forces(state, rest, lips, seal)
+        accelerate(state)
+        hold_lips(state, rest, mass, lips, grip, h)
         move(state, h)
         for _ in range(LIP_PASSES):
-            keep_lips_apart(state, rest, mass, lips)
+            keep_lips_apart(state, rest, mass, lips, grip.overlap)
         keep_out_of_eyeballs(state, eyes)
 
 
@@ -65,12 +66,20 @@ def damp(state, h, mass, tissue):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(cache=True)
-def move(state, h):  # type: ignore[no-untyped-def]
-    """Semi-implicit Euler: first the velocity, then the position with the new velocity."""
-    x, v, force = state.x, state.v, state.force
-    for i in range(len(x)):
+def accelerate(state):  # type: ignore[no-untyped-def]
+    """First half of semi-implicit Euler: velocities from forces and damping."""
+    v, force = state.v, state.force
+    for i in range(len(v)):
         kept, gain = state.kept[i], state.gain[i]
         for k in range(3):
-            speed = kept * v[i, k] + gain * force[i, k]
-            v[i, k] = min(max(speed, -FASTEST), FASTEST)
+            v[i, k] = kept * v[i, k] + gain * force[i, k]
+
+
+@numba.njit(cache=True)
+def move(state, h):  # type: ignore[no-untyped-def]
+    """Second half: positions from the new velocities."""
+    x, v = state.x, state.v
+    for i in range(len(x)):
+        for k in range(3):
+            v[i, k] = min(max(v[i, k], -FASTEST), FASTEST)
             x[i, k] += h * v[i, k]

@@ -23,7 +23,8 @@ from .surface import Surface
 
 RING_POINTS = 25  # corners of the line drawn for a sphincter
 BULGE_SPREAD = 0.3  # of the fibre's length (fitted)
-GATE_WIDTH = 0.6  # of the lip side field: where a gated muscle fades to the other lip
+GATE_ENDS = -0.6  # of the lip side field: beyond it a gated muscle leaves the other lip alone
+GATE_FULL = 1.0  # where it has its full hold; in between it fades, or corners get square
 FLARE_HEIGHT = 5.0  # mm from the mouth line where the flare is three quarters of its full size
 FACE_DEPTH = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
 
@@ -77,7 +78,7 @@ def _gate(muscle: Muscle, lip_side: Array) -> Array:
     if muscle.gate == "none":
         return np.ones_like(lip_side)
     towards = lip_side if muscle.gate == "upper_lip" else -lip_side
-    return smoothstep((towards + GATE_WIDTH) / (2.0 * GATE_WIDTH))
+    return smoothstep((towards - GATE_ENDS) / (GATE_FULL - GATE_ENDS))
 
 
 def _place_linear(

@@ -15,6 +15,7 @@ from .landmarks import EYE_LANDMARKS, LOWER_LIP, UPPER_LIP, Array, Side, select,
 from .surface import Surface
 
 LIP_REACH = 20.0  # mm from the middle of a lip within which skin belongs to it
+INNER_CORNERS = (60, 64)
 CORNER_FADE = 10.0  # mm from the mouth corner where a lip moves fully on its own
 LID_REACH = 14.0  # mm from the lid landmarks
 CERTAIN = 3.0  # mm by which one lid must be nearer; less only happens at the corners
@@ -25,8 +26,11 @@ def lip_side(surface: Surface, landmarks: Array) -> Array:
     upper = _distance(surface, landmarks, UPPER_LIP)
     lower = _distance(surface, landmarks, LOWER_LIP)
     inside = np.flatnonzero(np.minimum(upper, lower) < LIP_REACH)
-    # On a lip the two ways differ by twice the distance to the mouth corner.
-    ramp = np.clip((lower - upper)[inside] / (2.0 * CORNER_FADE), -1.0, 1.0)
+    # On a lip the two ways differ by twice the distance to the mouth corner, where they are alike
+    # but for the lips' shape.
+    longer = lower - upper
+    longer = longer - longer[surface.nearest(select(landmarks, INNER_CORNERS))].mean()
+    ramp = np.clip(longer[inside] / (2.0 * CORNER_FADE), -1.0, 1.0)
     ends = surface.nearest(select(landmarks, (33, 30, 8)))
     vertices = np.concatenate([inside, ends])
     values = np.concatenate([ramp, [1.0, 1.0, -1.0]])

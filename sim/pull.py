@@ -30,6 +30,7 @@ from .skull import Pose
 from .surface import Surface
 
 Indices = npt.NDArray[np.int32]
+Unsigned = npt.NDArray[np.uint32]  # saves the kernels a test per access
 
 LEAST_WEIGHT = 2e-3  # attachments below it are dropped
 
@@ -38,8 +39,8 @@ LEAST_WEIGHT = 2e-3  # attachments below it are dropped
 class Attachments:
     """Vertices attached to muscles or fibres; owner m has rows[m] up to rows[m + 1]."""
 
-    rows: Indices  # (owners + 1,)
-    vertex: Indices  # (n,)
+    rows: Unsigned  # (owners + 1,)
+    vertex: Unsigned  # (n,)
     weight: Array  # (n,) k w A
     value: Array  # (n, 3) steady displacement x k A, or (n,) place along the fibre in samples
 
@@ -51,10 +52,12 @@ class MusclePull:
     names: tuple[str, ...]  # M control names
     passive: float
     opens_lips: Array  # (M,)
+    reaches_lips: Array  # (M,) greatest attachment to the edge of a lip, 0..1
     holds: Attachments  # by muscle
     bundle: FibreBundle
     pulls: Attachments  # by fibre
     table: Array  # (B, SAMPLES, 3) displacement along each fibre, rewritten each tick
+    steady: Array  # (V, 3) work space
     rings: tuple[tuple[int, Indices], ...]  # muscle, skin vertices along its ring
 
     def greatest_hold(self, vertex_count: int) -> Array:
@@ -78,7 +81,7 @@ class MusclePull:
         gather(
             activation, self.passive, holds.rows, holds.vertex, holds.weight, holds.value,
             bundle.muscle, pulls.rows, pulls.vertex, pulls.weight, pulls.value, self.table,
-            mandible.rotation, weight, hold, force,
+            mandible.rotation, weight, self.steady, hold, force,
         )  # fmt: skip
 
     def lines(self, activation: Array, mandible: Pose, x: Array) -> dict[str, list[Array]]:
@@ -97,9 +100,13 @@ class MusclePull:
 
 
 def prepare_pull(
-    placed: Sequence[Placed], rig: Rig, surface: Surface, mandible_weight: Array
+    placed: Sequence[Placed],
+    rig: Rig,
+    surface: Surface,
+    mandible_weight: Array,
+    lips: Indices,
 ) -> MusclePull:
-    """Turn placed muscles into the flat arrays of the kernels."""
+    """Turn placed muscles into the flat arrays of the kernels; `lips`: vertices that can touch."""
     strength = rig.tissue.stiffness_scale * surface.areas
     bundle = _bundle(placed, surface, mandible_weight)
     holds, pulls = [], []
@@ -112,10 +119,14 @@ def prepare_pull(
         names=tuple(at.name for at in placed),
         passive=rig.tissue.passive,
         opens_lips=np.array([at.muscle.opens_lips for at in placed], dtype=np.float64),
+        reaches_lips=np.array(
+            [min(float(at.weight[lips].max(initial=0.0)), 1.0) for at in placed], dtype=np.float64
+        ),
         holds=_attachments(holds, unit, np.zeros((0, 3))),
         bundle=bundle,
         pulls=_attachments(pulls, unit, np.zeros(0)),
         table=np.zeros((len(bundle.muscle), SAMPLES, 3)),
+        steady=np.zeros((surface.vertex_count, 3)),
         rings=tuple((n, at.ring) for n, at in enumerate(placed) if at.ring is not None),
     )
 
@@ -143,8 +154,8 @@ def _attachments(parts: list[tuple[Array, Array]], unit: Array, empty: Array) ->
     on = [np.flatnonzero(weight > LEAST_WEIGHT * unit) for weight, _ in parts]
     nothing = np.zeros(0, dtype=np.int64)
     return Attachments(
-        rows=np.cumsum([0, *(len(rows) for rows in on)]).astype(np.int32),
-        vertex=np.concatenate([*on, nothing]).astype(np.int32),
+        rows=np.cumsum([0, *(len(rows) for rows in on)]).astype(np.uint32),
+        vertex=np.concatenate([*on, nothing]).astype(np.uint32),
         weight=np.concatenate(
             [*(p[0][rows] for p, rows in zip(parts, on, strict=True)), np.zeros(0)]
         ),
@@ -152,27 +163,32 @@ def _attachments(parts: list[tuple[Array, Array]], unit: Array, empty: Array) ->
     )
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, fastmath={"contract"})
 def gather(  # type: ignore[no-untyped-def]
     activation, passive, hold_rows, hold_vertex, hold_weight, hold_steady,
     fibre_muscle, pull_rows, pull_vertex, pull_weight, pull_sample, table, turn, mandible,
-    hold, force,
+    steady, hold, force,
 ):  # fmt: skip
-    """Sum the active muscles into one stiffness and one force per vertex."""
+    """Sum the active muscles into one stiffness and one force per vertex; `steady`: work space."""
+    steady[:] = 0.0
     for m in range(len(activation)):
         a = activation[m]
         if a <= 0.0:
             continue
-        scale = (passive + (1.0 - passive) * a) * a
+        grip = (1.0 - passive) * a
+        scale = (passive + grip) * a
         for row in range(hold_rows[m], hold_rows[m + 1]):
             i = hold_vertex[row]
-            hold[i] += (1.0 - passive) * a * hold_weight[row]
-            w = mandible[i]
-            sx, sy, sz = hold_steady[row, 0], hold_steady[row, 1], hold_steady[row, 2]
+            hold[i] += grip * hold_weight[row]
             for k in range(3):
-                turned = turn[k, 0] * sx + turn[k, 1] * sy + turn[k, 2] * sz
-                steady = hold_steady[row, k]
-                force[i, k] += scale * (steady + w * (turned - steady))
+                steady[i, k] += scale * hold_steady[row, k]
+    # Displacements that belong to the mandible turn with it: once per vertex, not per attachment.
+    for i in range(len(steady)):
+        sx, sy, sz = steady[i, 0], steady[i, 1], steady[i, 2]
+        for k in range(3):
+            turned = turn[k, 0] * sx + turn[k, 1] * sy + turn[k, 2] * sz
+            force[i, k] += steady[i, k] + mandible[i] * (turned - steady[i, k])
+    last = table.shape[1] - 2
     for b in range(len(fibre_muscle)):
         a = activation[fibre_muscle[b]]
         if a <= 0.0:
@@ -180,8 +196,9 @@ def gather(  # type: ignore[no-untyped-def]
         scale = passive + (1.0 - passive) * a
         for row in range(pull_rows[b], pull_rows[b + 1]):
             i = pull_vertex[row]
-            s = min(int(pull_sample[row]), table.shape[1] - 2)
-            t = pull_sample[row] - s
+            s = min(np.uint32(pull_sample[row]), last)
             strength = scale * pull_weight[row]
+            far = strength * (pull_sample[row] - s)
+            near = strength - far
             for k in range(3):
-                force[i, k] += strength * ((1.0 - t) * table[b, s, k] + t * table[b, s + 1, k])
+                force[i, k] += near * table[b, s, k] + far * table[b, s + 1, k]

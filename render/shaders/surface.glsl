@@ -1,6 +1,7 @@
 // Skin and rigid parts.
 // One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
-// stage), SPLITS (colour by number of splits), COLOURED (vertex colours), SHADOWS (of the key).
+// stage), SPLITS (colour by number of splits), COLOURED (vertex colours), TEXTURED (skin's albedo from
+// a picture), SHADOWS (of the key).
 
 #include "lighting.glsl"
 
@@ -25,12 +26,18 @@ uniform float sharpness;
 #else
 #define COLOUR_VARYING
 #endif
+#if defined(TEXTURED)
+#define TEXTURE_VARYING vec2 uv;
+#else
+#define TEXTURE_VARYING
+#endif
 #if defined(SHADOWS)
 #define SHADOW_VARYING vec3 light_place;
 #else
 #define SHADOW_VARYING
 #endif
-#define VARYINGS vec3 position; NORMAL_VARYING LIT_VARYING COLOUR_VARYING SHADOW_VARYING
+#define VARYINGS vec3 position; NORMAL_VARYING LIT_VARYING COLOUR_VARYING TEXTURE_VARYING \
+    SHADOW_VARYING
 
 #if defined(VERTEX_STAGE)
 
@@ -38,6 +45,9 @@ in vec3 in_position;
 in vec3 in_normal;
 #if defined(COLOURED)
 in vec3 in_colour;
+#endif
+#if defined(TEXTURED)
+in vec2 in_uv;
 #endif
 uniform mat4 model_view;
 uniform mat4 projection;
@@ -65,6 +75,9 @@ void main() {
 #endif
 #if defined(COLOURED)
     surface.colour = in_colour;
+#endif
+#if defined(TEXTURED)
+    surface.uv = in_uv;
 #endif
 #if defined(SHADOWS)
     surface.light_place = (shadow_matrix * vec4(position.xyz + shadow_offset * normal, 1.0)).xyz;
@@ -111,6 +124,9 @@ void main() {
         drawn.inner = corner[i].inner;
         drawn.facing = corner[i].facing;
 #endif
+#if defined(TEXTURED)
+        drawn.uv = corner[i].uv;
+#endif
 #if defined(SHADOWS)
         drawn.light_place = corner[i].light_place;
 #endif
@@ -134,8 +150,12 @@ uniform vec4 wire_colour;
 in Surface { VARYINGS } surface;
 #endif
 #if !defined(COLOURED)
-uniform vec3 albedo;
 uniform vec3 inner_albedo;
+#endif
+#if defined(TEXTURED)
+uniform sampler2D albedo_texture;
+#elif !defined(COLOURED)
+uniform vec3 albedo;
 #endif
 #if defined(SPLITS)
 uniform usampler2D split_counts;
@@ -148,14 +168,23 @@ out vec4 pixel_colour;
 
 vec3 front_albedo() {
 #if defined(COLOURED)
-    return surface.colour;
-#elif defined(SPLITS)
+    vec3 front = surface.colour;
+#elif defined(TEXTURED)
+    vec3 front = texture(albedo_texture, surface.uv).rgb;
+#else
+    vec3 front = albedo;
+#endif
+#if defined(SPLITS)
     ivec2 texel = ivec2(gl_PrimitiveID & 1023, gl_PrimitiveID >> 10);
     int splits = int(texelFetch(split_counts, texel, 0).r);
-    return splits == 0 ? albedo : split_palette[min(splits, 6) - 1];
+#if defined(TEXTURED)
+    const float STRENGTH = 0.8;  // brows and lips still show through the tint
 #else
-    return albedo;
+    const float STRENGTH = 1.0;
 #endif
+    if (splits > 0) front = mix(front, split_palette[min(splits, 6) - 1], STRENGTH);
+#endif
+    return front;
 }
 
 // 1 where the key light reaches, 0 in its shadow.
