@@ -1,4 +1,7 @@
-"""The `risorius` command: one short function for each sub-command."""
+"""The `risorius` command: one short function for each sub-command.
+
+What needs OpenGL or compiled code is imported inside the commands, so that --help comes at once.
+"""
 
 from __future__ import annotations
 
@@ -12,26 +15,9 @@ import click
 
 from . import __version__
 from .errors import UserError
+from .size import Size
 
 Command = Callable[..., Any]
-
-
-class Size(click.ParamType[tuple[int, int]]):
-    """Width x height in pixels, written 1280x720."""
-
-    name = "WxH"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[int, int]:
-        if isinstance(value, tuple):
-            return value
-        width, separator, height = str(value).lower().partition("x")
-        if separator and width.isdigit() and height.isdigit():
-            size = (int(width), int(height))
-            if all(16 <= side <= 8192 for side in size):
-                return size
-        self.fail(f"'{value}' is no size; write width x height, each 16 to 8192, as in 1280x720")
 
 
 @contextlib.contextmanager
@@ -125,6 +111,7 @@ def capture(
     """
     from . import capture as capturing
     from .cameras import DEFAULT_VIEW
+    from .choices import known_refiner, script_for, style_of, threshold_options
 
     with told_in_one_line():
         performance = script_for(script, scene)
@@ -190,6 +177,7 @@ def demo() -> None:
     """Render the built-in head through its expressions to out/demo.mp4 and out/demo.png."""
     from . import capture as capturing
     from .cameras import DEFAULT_VIEW
+    from .choices import script_for
 
     with told_in_one_line():
         script = script_for(None, "face")
@@ -250,59 +238,6 @@ def bench_refine(rounds: int) -> None:
         click.echo(refine_table(rounds, [build() for build in SCENES.values()]))
 
 
-def script_for(path: Path | None, scene: str | None) -> Any:
-    """The script at `path`, or the one that comes with the scene."""
-    from dataclasses import replace
-    from importlib.resources import files
-
-    from .scenes import SCENES
-    from .script import load_script
-
-    if path is None:
-        path = Path(str(files("assets") / "scripts" / f"{scene or 'face'}.toml"))
-    script = load_script(path)
-    if scene is not None:
-        script = replace(script, scene=scene)
-    if script.scene not in SCENES:
-        raise UserError(f"{path}: scene '{script.scene}'; allowed are {', '.join(SCENES)}")
-    return script
-
-
-def known_refiner(name: str) -> str:
-    """The name of a registered refiner, or UserError with those that are."""
-    import refine
-
-    if name not in refine.available():
-        raise UserError(f"refiner '{name}'; available are {', '.join(refine.available())}")
-    return name
-
-
-def threshold_options(
-    refiner: str, thresholds: tuple[float, float] | None
-) -> dict[str, float] | None:
-    """The refiner's options that --thresholds stands for; None where it was not given."""
-    if not thresholds:
-        return None
-    if refiner != "kahler":
-        raise UserError(f"--thresholds goes with --refiner kahler, not with '{refiner}'")
-    once, twice = thresholds
-    if once > twice:
-        raise UserError(f"--thresholds {once:g} {twice:g}: the first must not be above the second")
-    return {"threshold_once": once, "threshold_twice": twice}
-
-
-def style_of(shading: str, wireframe: bool, splits: bool, clay: bool) -> Any:
-    """The style that the drawing options ask for."""
-    import render
-
-    return render.Style(
-        shading=render.Shading[shading.upper()],
-        wireframe=wireframe,
-        colour_by=render.ColourBy.SPLITS if splits else render.ColourBy.NONE,
-        albedo=render.CLAY if clay else render.SKIN,
-    )
-
-
 def open_viewer(
     script: Path | None,
     scene: str | None,
@@ -316,6 +251,8 @@ def open_viewer(
 ) -> None:
     """Open the viewer on a script's scene."""
     with told_in_one_line():
+        from .choices import known_refiner, script_for, style_of, threshold_options
+
         performance = script_for(script, scene)
         from .viewer import Viewer
 

@@ -83,6 +83,8 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         "plane",
         "--sheet",
         sheet,
+        "-o",
+        tmp_path / "frames",
         "--fps",
         "10",
         "--size",

@@ -5,8 +5,11 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import sys
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +17,7 @@ import pytest
 from app.viewer import Viewer  # before render: see app/gui.py
 
 import render  # isort: skip
-from app.cli import script_for  # isort: skip
+from app.choices import script_for  # isort: skip
 
 pytestmark = [
     pytest.mark.window,
@@ -188,3 +191,15 @@ def test_buttons_of_the_panel(viewer: Viewer) -> None:
     click(viewer, "Neutral (N)")
     assert viewer.expression is None
     assert not any(viewer.controls.values())
+
+
+def test_replay_plays_a_script_and_ends(tmp_path: Path) -> None:
+    """`risorius replay --once` shows a script in real time in a window of its own."""
+    path = tmp_path / "short.toml"
+    path.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.6\njoy = 1.0\n")
+    command = [sys.executable, "-m", "app", "replay", str(path), "--once", "--size", "500x400"]
+    start = time.monotonic()
+    result = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert result.returncode == 0, result.stderr
+    assert result.stderr == ""
+    assert time.monotonic() - start > 0.6
