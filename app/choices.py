@@ -47,11 +47,12 @@ def threshold_options(
     return {"threshold_once": once, "threshold_twice": twice}
 
 
-def style_of(shading: str, wireframe: bool, splits: bool, clay: bool) -> render.Style:
+def style_of(shading: str, wireframe: bool, splits: bool, skin: str) -> render.Style:
     """The style that the drawing options ask for."""
     return render.Style(
         shading=render.Shading[shading.upper()],
         wireframe=wireframe,
         colour_by=render.ColourBy.SPLITS if splits else render.ColourBy.NONE,
-        albedo=render.CLAY if clay else render.SKIN,
+        textured=skin == "textured",
+        albedo=render.CLAY if skin == "clay" else render.SKIN,
     )

@@ -66,7 +66,13 @@ def drawing_options(command: Command) -> Command:
         ),
         click.option("--wireframe", is_flag=True, help="Draw the edges of every triangle."),
         click.option("--splits", is_flag=True, help="Colour triangles by their number of splits."),
-        click.option("--clay", is_flag=True, help="Plain grey, as in the paper's pictures."),
+        click.option(
+            "--skin",
+            type=click.Choice(["textured", "plain", "clay"]),
+            default="textured",
+            show_default=True,
+            help="clay is plain grey, as in the paper's pictures.",
+        ),
     ):
         command = option(command)
     return command

@@ -19,6 +19,7 @@ SHORTCUTS = (
     ("W", "wireframe"),
     ("C", "colour by number of splits"),
     ("S", "shading: pixel, flat, Gouraud"),
+    ("T", "texture on / off"),
     ("N", "everything back to neutral"),
     ("F", "frame the face again"),
     ("drag", "orbit; right drag: pan"),
@@ -72,6 +73,9 @@ class Panel:
             self._remember(label)
             if label != "Splits (C)":
                 imgui.same_line()
+        _, viewer.is_textured = imgui.checkbox("Texture (T)", viewer.is_textured)
+        self._remember("Texture (T)")
+        imgui.same_line()
         if imgui.button(f"Shading (S): {viewer.shading.name.lower()}"):
             viewer.next_shading()
 

@@ -38,7 +38,9 @@ class Picture:
         """Bind the refiner `name` to the scene's mesh and borrow render buffers for it."""
         if options is None:
             options = scene.refiner_options.get(name, {})
-        refiner = refine.create(name, scene.faces, scene.rest_positions, **options)
+        refiner = refine.create(
+            name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **options
+        )
         stream = renderer.lend_stream(
             refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
         )
@@ -62,6 +64,7 @@ class Pipeline:
         """Bind `refiners` (name -> options, None: the scene's) to the scene, left to right."""
         self.scene = scene
         self.renderer = renderer
+        self.texture = None if scene.albedo is None else renderer.load_texture(scene.albedo)
         self.pictures = [
             Picture.of(scene, renderer, name, options) for name, options in refiners.items()
         ]
@@ -93,7 +96,9 @@ class Pipeline:
         if style.colour_by is render.ColourBy.SPLITS:
             values = splits_of_source(picture.refiner, mesh)
         self.renderer.draw_background(style, viewport)
-        self.renderer.draw_mesh(picture.stream, camera, style, viewport=viewport, values=values)
+        self.renderer.draw_mesh(
+            picture.stream, camera, style, viewport=viewport, values=values, texture=self.texture
+        )
         # After the mesh: the skin throws its shadow on eyes and teeth.
         self.renderer.draw_parts(
             self.scene.parts, self.scene.bone_transforms(), camera, style, viewport=viewport

@@ -30,6 +30,9 @@ class Scene(Protocol):
     parts: tuple[Any, ...]
     expressions: Mapping[str, Mapping[str, float]]
     focus: npt.NDArray[np.float64]  # where a camera close by looks [mm], shape (3,)
+    uv: npt.NDArray[np.float32] | None  # texture coordinates (U, 2), None: no texture
+    face_uv: npt.NDArray[np.int32] | None  # which of them each corner has (F, 3)
+    albedo: npt.NDArray[np.uint8] | None  # the texture (H, W, 3), sRGB
     refiner_options: Mapping[str, Mapping[str, float]]  # for a refiner by name, where not default
 
     @property
@@ -73,6 +76,9 @@ class FaceScene:
         self.rest_positions = self.simulation.rest_positions
         self.parts: tuple[Any, ...] = head.parts
         self.expressions: Mapping[str, Mapping[str, float]] = head.expressions
+        self.uv: npt.NDArray[np.float32] | None = head.uv
+        self.face_uv: npt.NDArray[np.int32] | None = head.face_uv
+        self.albedo: npt.NDArray[np.uint8] | None = head.albedo
         self.refiner_options: Mapping[str, Mapping[str, float]] = {}
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
@@ -127,6 +133,9 @@ class PlaneScene:
         self.parts: tuple[Any, ...] = ()
         self.expressions: Mapping[str, Mapping[str, float]] = {}
         self.focus = plane.vertices.mean(axis=0)
+        self.uv: npt.NDArray[np.float32] | None = None
+        self.face_uv: npt.NDArray[np.int32] | None = None
+        self.albedo: npt.NDArray[np.uint8] | None = None
         # A flat mesh needs no slack for bends that it was made with. Found by search, so that the
         # wave makes about as many triangles at most as in Table 1 (1328).
         self.refiner_options: Mapping[str, Mapping[str, float]] = {

@@ -56,6 +56,7 @@ class Viewer:
         self.is_wireframe = style.wireframe
         self.shows_splits = style.colour_by is render.ColourBy.SPLITS
         self.shading = style.shading
+        self.is_textured = style.textured
         self.camera = self._framed()
         self.controls = dict.fromkeys(self.scene.limits, 0.0)
         self.expression: str | None = None
@@ -177,6 +178,7 @@ class Viewer:
             (imgui.Key.r, "is_refined"),
             (imgui.Key.w, "is_wireframe"),
             (imgui.Key.c, "shows_splits"),
+            (imgui.Key.t, "is_textured"),
         ):
             if imgui.is_key_pressed(key, False):
                 setattr(self, name, not getattr(self, name))
@@ -209,6 +211,7 @@ class Viewer:
             self.style,
             shading=self.shading,
             wireframe=self.is_wireframe,
+            textured=self.is_textured,
             colour_by=colour_by,
         )
 

@@ -17,7 +17,7 @@ from .backdrop import Backdrop
 from .camera import OrbitCamera
 from .geometry import LineBuffer, Part, PartBuffers, SplitTexture
 from .programs import compile_program, write_uniform
-from .shadow import ShadowMap
+from .shadow import TEXEL, ShadowMap
 from .sight import Sight
 from .stream import Stream
 from .style import SPLIT_PALETTE, Colour, ColourBy, Style, linear
@@ -27,7 +27,8 @@ from .texture import Texture
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 
 SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
-SHADOW_OFFSET = 0.006  # of the scene's radius, above the surface: 0.9 mm on a head
+SHADOW_OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
+SHADOW_REACH = 2.0 * TEXEL  # how far the shadow's look-up reaches to each side
 TO_KEY = (-0.5300, 0.6300, 0.5677)  # unit vector in view space: over the viewer's left shoulder
 
 _SPLIT_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the layers use 1
@@ -248,6 +249,7 @@ class Renderer:
         assert self._shadow is not None
         write_uniform(program, "shadow_matrix", self._shadow.lookup_matrix(sight))
         program["shadow_offset"] = SHADOW_OFFSET * sight.camera.scene_radius
+        program["shadow_reach"] = SHADOW_REACH * sight.camera.scene_radius
         program["shadow_map"] = self._shadow.bind(_SHADOW_UNIT)
 
 

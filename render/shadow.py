@@ -1,8 +1,9 @@
 """The shadow that the skin throws in the key light: on itself, on eyes, on teeth.
 
 A depth picture of the skin, taken from the key light, which hangs on the camera. Of both sides:
-skin is a sheet, and what lies behind its lit side, in the mouth, has to be dark. The map spans what
-the camera can see, and depends on nothing that moves, so shadows do not crawl with the face.
+skin is a sheet, and what lies behind its lit side, in the mouth, has to be dark. It spans the whole
+scene and depends on nothing that moves, so shadows do not crawl with the face. Its texels are
+coarse on purpose: the look-up blends 4 x 4 of them, and that is how soft the shadow is.
 Source: Williams 1978, "Casting curved shadows on curved surfaces"; filtering of depth tests as in
 Reeves et al. 1987.
 """
@@ -15,11 +16,9 @@ from .programs import compile_program, write_uniform
 from .sight import Sight
 from .stream import Stream
 
-RESOLUTION = 768  # texels each way: 0.4 mm on a head
-# Slope and steps by which the picture lies deeper than the skin: a facet must not shadow itself.
-_DEPTH_OFFSET = 2.0, 4.0
-_REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
-_SEEN = 1.15  # of the seen circle at the target: nearer things show more of the world around them
+RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade within 5 mm
+REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
+TEXEL = 2.0 * REACH / RESOLUTION  # of the scene's radius
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -47,9 +46,7 @@ class ShadowMap:
         self._target.use()
         gl.viewport, gl.scissor = (0, 0, RESOLUTION, RESOLUTION), None
         self._target.clear(depth=1.0)
-        gl.polygon_offset = _DEPTH_OFFSET
         stream.draw(self._program)
-        gl.polygon_offset = 0.0, 0.0
 
     def bind(self, unit: int) -> int:
         """Bind the depth texture to a texture unit, and return that unit."""
@@ -62,18 +59,12 @@ class ShadowMap:
         return lookup
 
     def _view_to_light(self, sight: Sight) -> FloatArray:
-        """View space -> the light's clip space: what is seen fills it, all that throws is in it."""
-        camera, projection = sight.camera, sight.projection
+        """View space -> the light's clip space: all that throws and takes shadows fills it."""
+        camera = sight.camera
         centre = (np.append(camera.scene_centre, 1.0) @ sight.view)[:3]
-        depth = _REACH * camera.scene_radius
-        seen = _SEEN * camera.distance * np.hypot(1.0 / projection[0, 0], 1.0 / projection[1, 1])
-        middle, across = centre, depth
-        if seen < depth:
-            middle, across = np.array([0.0, 0.0, -camera.distance]), seen
         matrix = np.eye(4)
-        matrix[:3, :3] = self._basis.T / (across, across, depth)
-        matrix[3, :2] = -middle @ matrix[:3, :2]
-        matrix[3, 2] = -centre @ matrix[:3, 2]
+        matrix[:3, :3] = self._basis.T / (REACH * camera.scene_radius)
+        matrix[3, :3] = -centre @ matrix[:3, :3]
         return matrix
 
 

@@ -64,16 +64,19 @@ class Anatomy:
     mass: Array  # (V,)
     controls: tuple[Control, ...]
 
-    def grip(self, activation: Array, opening: float) -> Grip:
-        """How firmly the lips stick together; jaw and some muscles open them."""
+    def grip(self, activation: Array, jaw: tuple[float, float, float]) -> Grip:
+        """How firmly the lips stick together; `jaw` (open, forward, sideways) and muscles part them.
+
+        activation: of each muscle, shape (M,).
+        """
         if not len(self.lips.lower):
             return Grip(0.0, 0.0)
         muscles = self.muscles
-        strength = max(0.0, 1.0 - opening / SEAL_BROKEN_BY_JAW)
+        strength = max(0.0, 1.0 - jaw[0] / SEAL_BROKEN_BY_JAW)
         if strength == 0.0:
             return Grip(0.0, 0.0)
         strength *= float((1.0 - activation * muscles.opens_lips).prod())
-        activity = float((activation * muscles.reaches_lips).max(initial=0.0))
+        activity = float((activation * muscles.reaches_lips).max(initial=np.abs(jaw).max()))
         return Grip.of(strength, activity)
 
 

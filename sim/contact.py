@@ -33,8 +33,9 @@ SLIDES_IN_FRONT = (
     3.0  # mm the lower lip may come forward before it passes in front of the upper one
 )
 SLIDE_FADE = 3.0  # mm over which it then does
-FORWARD_SEAL = 0.5  # the seal's stiffness forward, as a share of up and down (fitted)
+SEAL_AXES = (0.5, 1.0, 0.5)  # the seal's stiffness sideways, up and down, forward (last fitted)
 UNBROKEN_SEAL = 100.0  # x stiffness of a whole seal against one half broken: gaps below 0.1 mm
+FULLY_PRESSED = 0.25  # activity from which they overlap in full
 PRESSED_OVERLAP = 0.5  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
 EYE_REACH = 12.0  # mm around an eyeball in which skin is watched
 EYE_CLEARANCE = 0.3  # mm of lid thickness that stay between a vertex and the eyeball
@@ -55,7 +56,8 @@ class LipPairs(NamedTuple):
         """Energy stored in the seal for displacements (V, 3)."""
         apart = moved[self.lower] - self.share[:, None] * moved[self.upper[:, 0]]
         apart -= (1.0 - self.share)[:, None] * moved[self.upper[:, 1]]
-        stored = self.seal * ((apart[:, 1] - grip.overlap) ** 2 + FORWARD_SEAL * apart[:, 2] ** 2)
+        apart[:, 1] -= grip.overlap
+        stored = self.seal * (apart**2 @ np.array(SEAL_AXES))
         return float(grip.stiffness * stored.sum() / 2.0)
 
 
@@ -69,7 +71,7 @@ class Grip(NamedTuple):
     def of(cls, strength: float, activity: float) -> Grip:
         """Grip of a seal of `strength` 0 (broken) .. 1 under muscles of `activity` 0 .. 1."""
         stiffness = strength / (1.0 - strength + 1.0 / UNBROKEN_SEAL)
-        return cls(stiffness, PRESSED_OVERLAP * strength * activity)
+        return cls(stiffness, PRESSED_OVERLAP * strength * min(activity / FULLY_PRESSED, 1.0))
 
 
 SEALED = Grip.of(1.0, 0.0)
@@ -163,22 +165,22 @@ def hold_lips(state, rest, mass, lips, grip, h):  # type: ignore[no-untyped-def]
         i, a, b = lips.lower[p], lips.upper[p, 0], lips.upper[p, 1]
         w = lips.share[p]
         inverse = 1.0 / mass[i] + w * w / mass[a] + (1.0 - w) * (1.0 - w) / mass[b]
-        for k in range(1, 3):
+        for k in range(3):
             apart = x[i, k] - rest[i, k]
             apart -= w * (x[a, k] - rest[a, k]) + (1.0 - w) * (x[b, k] - rest[b, k])
             if k == 1:
                 apart -= grip.overlap
             speed = v[i, k] - w * v[a, k] - (1.0 - w) * v[b, k]
-            give = h * inverse * grip.stiffness * lips.seal[p] * (1.0 if k == 1 else FORWARD_SEAL)
+            give = h * inverse * grip.stiffness * lips.seal[p] * SEAL_AXES[k]
             kept = (speed - give * apart) / (1.0 + h * give)
             impulse = lips.averaging[p] * (kept - speed) / inverse
-            change[i, k - 1] += impulse / mass[i]
-            change[a, k - 1] -= w * impulse / mass[a]
-            change[b, k - 1] -= (1.0 - w) * impulse / mass[b]
+            change[i, k] += impulse / mass[i]
+            change[a, k] -= w * impulse / mass[a]
+            change[b, k] -= (1.0 - w) * impulse / mass[b]
     for row in range(len(lips.members)):
         i = lips.members[row]
-        v[i, 1] += change[i, 0]
-        v[i, 2] += change[i, 1]
+        for k in range(3):
+            v[i, k] += change[i, k]
 
 
 @numba.njit(cache=True)

@@ -166,7 +166,7 @@ class Simulation:
         state.hold[:] = anatomy.passive_hold
         state.pull[:] = 0.0
         muscles.add(activation, self._mandible, weight, state.hold, state.pull)
-        self._grip = anatomy.grip(activation, jaw[0])
+        self._grip = anatomy.grip(activation, jaw)
 
     def _advance(self, h: float) -> None:
         """One tick of substeps of `h` [s]: all forces on the skin (integrator.advance)."""

@@ -31,7 +31,7 @@ class State(NamedTuple):
     force: Array  # (V, 3) sum of all forces
     kept: Array  # (V,) share of the velocity that damping leaves in a substep
     gain: Array  # (V,) velocity gained per force in a substep
-    move: Array  # (V, 2) work space of lip contact and seal
+    move: Array  # (V, 3) work space of lip contact and seal
 
     @classmethod
     def at_rest(cls, surface: Surface) -> State:
@@ -48,5 +48,5 @@ class State(NamedTuple):
             force=np.zeros(vector),
             kept=np.zeros(scalar),
             gain=np.zeros(scalar),
-            move=np.zeros((scalar, 2)),
+            move=np.zeros(vector),
         )

@@ -12,6 +12,10 @@ const vec3 SKY = vec3(0.215, 0.215, 0.225);
 const vec3 GROUND = vec3(0.125, 0.095, 0.083);
 // How far each colour of light travels in skin: red past the terminator, blue hardly.
 const vec3 SCATTER = vec3(0.25, 0.155, 0.115);
+// The same within the edge of a cast shadow, and what comes back from lit skin nearby, of the key.
+const vec3 BLEED = vec3(0.40, 0.10, 0.03);
+const vec3 BOUNCE = vec3(0.20, 0.105, 0.075);
+const vec3 WARMTH = vec3(1.14, 0.97, 0.88);  // of the ambient light, from skin nearby
 
 struct Lit {
     vec3 key;       // of the key light, straight: times albedo and lightness
@@ -38,14 +42,16 @@ Lit studio(vec3 normal, vec3 to_eye, float subsurface, float gloss, float sharpn
     lit.key = KEY_LIGHT / (1.0 + scatter) * max(facing, 0.0);
     lit.rest = KEY_LIGHT * max((min(facing, 0.0) + scatter) / (1.0 + scatter), 0.0)
         + FILL_LIGHT * max(0.8 * dot(normal, TO_FILL) + 0.2, 0.0)
-        + RIM_LIGHT * rim * rim + ambient;
+        + RIM_LIGHT * rim * rim + ambient * mix(vec3(1.0), WARMTH, subsurface);
     lit.specular = gloss * (KEY_LIGHT * highlight + (0.9 * ambient + RIM_LIGHT * rim) * fresnel);
     return lit;
 }
 
 // `lightness` is 1 in the key's light and 0 in its full shadow.
-vec3 lit_colour(Lit lit, vec3 albedo, float lightness) {
-    return albedo * (lit.key * lightness + lit.rest) + lit.specular * (0.25 + 0.75 * lightness);
+vec3 lit_colour(Lit lit, vec3 albedo, float lightness, float subsurface) {
+    vec3 glow = subsurface * (1.0 - lightness) * (lightness * BLEED + BOUNCE);
+    return albedo * (lit.key * (lightness + glow) + lit.rest)
+        + lit.specular * (0.25 + 0.75 * lightness);
 }
 
 // The inner side of the skin: only what the hemisphere and a bounce of the key bring in.

@@ -53,7 +53,10 @@ uniform mat4 model_view;
 uniform mat4 projection;
 #if defined(SHADOWS)
 uniform mat4 shadow_matrix;   // view space -> place in the shadow map
-uniform float shadow_offset;  // a receiver stands so far above itself, against self-shadowing
+// A receiver stands above itself, lest it shadow itself: by a little, and by as much as its slope
+// rises within the reach of the look-up.
+uniform float shadow_offset;
+uniform float shadow_reach;
 #endif
 out Surface { VARYINGS } surface;
 
@@ -80,7 +83,8 @@ void main() {
     surface.uv = in_uv;
 #endif
 #if defined(SHADOWS)
-    surface.light_place = (shadow_matrix * vec4(position.xyz + shadow_offset * normal, 1.0)).xyz;
+    float height = shadow_offset + shadow_reach * length(cross(normal, to_key));
+    surface.light_place = (shadow_matrix * vec4(position.xyz + height * normal, 1.0)).xyz;
 #endif
     gl_Position = projection * position;
 }
@@ -190,13 +194,21 @@ vec3 front_albedo() {
 // 1 where the key light reaches, 0 in its shadow.
 float key_lightness() {
 #if defined(SHADOWS)
+    // The mean of 3 x 3 bilinear tests, by four: each stands between two of them, where the test's
+    // own blend weighs them (after I. Castaño's "Shadow mapping summary", 2013).
     vec3 place = surface.light_place;
-    // Four bilinear tests on a turned square: an even ramp about five texels wide.
-    vec2 reach = vec2(1.6, 0.64) / float(textureSize(shadow_map, 0).x);
-    return 0.25 * (texture(shadow_map, place + vec3(reach.x, reach.y, 0.0))
-        + texture(shadow_map, place + vec3(-reach.y, reach.x, 0.0))
-        + texture(shadow_map, place + vec3(-reach.x, -reach.y, 0.0))
-        + texture(shadow_map, place + vec3(reach.y, -reach.x, 0.0)));
+    float texel = 1.0 / float(textureSize(shadow_map, 0).x);
+    vec2 corner = floor(place.xy / texel + 0.5);
+    vec2 part = place.xy / texel + 0.5 - corner;
+    corner -= 0.5;
+    vec2 low_weight = 3.0 - 2.0 * part, high_weight = 1.0 + 2.0 * part;
+    vec2 low = (corner + (2.0 - part) / low_weight - 1.0) * texel;
+    vec2 high = (corner + part / high_weight + 1.0) * texel;
+    float lower = low_weight.x * texture(shadow_map, vec3(low, place.z))
+        + high_weight.x * texture(shadow_map, vec3(high.x, low.y, place.z));
+    float upper = low_weight.x * texture(shadow_map, vec3(low.x, high.y, place.z))
+        + high_weight.x * texture(shadow_map, vec3(high, place.z));
+    return (low_weight.y * lower + high_weight.y * upper) / 16.0;
 #else
     return 1.0;
 #endif
@@ -231,7 +243,7 @@ void main() {
     vec3 inner = inside(normal);
     float facing = dot(normal, to_eye);
 #endif
-    vec3 light = lit_colour(lit, front_albedo(), key_lightness());
+    vec3 light = lit_colour(lit, front_albedo(), key_lightness(), subsurface);
 #if defined(COLOURED)
     light *= 0.82;  // parts sit in sockets and mouths, where less light gets in
 #else

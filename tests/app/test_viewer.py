@@ -121,13 +121,13 @@ def test_keys_show_expressions(viewer: Viewer) -> None:
 
 
 def test_keys_change_the_picture(viewer: Viewer) -> None:
-    """W, C and S each change what is seen, and back."""
+    """W, C, T and S each change what is seen, and back."""
     viewer.toggle_expression("disgust")
     viewer.scene.pose(viewer.controls)
     viewer.scene.step(3.0)
     settle(viewer)
     before = viewer.surface.read()
-    for key, times in (("w", 2), ("c", 2), ("s", 3)):
+    for key, times in (("w", 2), ("c", 2), ("t", 2), ("s", 3)):
         xdotool(viewer, "key", key)
         changed = viewer.surface.read()[:, 340:].astype(int) - before[:, 340:]
         assert np.abs(changed).max() > 20, key

@@ -12,6 +12,7 @@ import numpy.typing as npt
 import sim
 
 FRAME = 1.0 / 60.0
+SLIT_WINDOW = 12.0  # mm above and below the mouth's middle in which an opening is the mouth
 Array = npt.NDArray[np.float64]
 
 
@@ -62,6 +63,46 @@ def lip_gap(simulation: sim.Simulation, head: Any) -> float:
     """Greatest vertical distance [mm] between the inner lip landmarks."""
     y = simulation.positions[head.landmarks, 1]
     return float(max(y[u] - y[low] for u, low in ((61, 67), (62, 66), (63, 65))))
+
+
+def lip_slit(
+    positions: Array, triangles: npt.NDArray[Any], corners: Array, *, yaw: float, pitch: float
+) -> float:
+    """Greatest height [mm] of the slit between the lips that one looks through.
+
+    `corners`: of the mouth (2, 3); `yaw`, `pitch`: from where one looks [degrees], 0 is the front.
+    Lines of sight lie in 40 vertical planes; what no triangle near the mouth covers is open.
+    """
+    turn = _turned_by(yaw, pitch)
+    x, ends = positions @ turn.T, corners @ turn.T
+    middle = ends.mean(axis=0)
+    near = x[triangles]
+    near = near[np.linalg.norm(near.mean(axis=1) - middle, axis=1) < 45.0]
+    left, right = sorted(ends[:, 0])
+    widest = 0.0
+    for column in np.linspace(left + 1.0, right - 1.0, 40):
+        crossed = near[(near[:, :, 0].min(axis=1) < column) & (near[:, :, 0].max(axis=1) > column)]
+        start, end = crossed, np.roll(crossed, -1, axis=1)
+        run = end[:, :, 0] - start[:, :, 0]
+        share = (column - start[:, :, 0]) / np.where(run == 0.0, np.inf, run)
+        height = start[:, :, 1] + share * (end[:, :, 1] - start[:, :, 1])
+        meets = (share >= 0.0) & (share <= 1.0) & (run != 0.0)
+        low = np.where(meets, height, np.inf).min(axis=1)
+        high = np.where(meets, height, -np.inf).max(axis=1)
+        order = np.argsort(low)
+        reached = np.maximum.accumulate(high[order])[:-1]
+        open_above = low[order][1:] - reached
+        beside_mouth = np.abs(reached - middle[1]) < SLIT_WINDOW
+        widest = max(widest, float(open_above[beside_mouth].max(initial=0.0)))
+    return widest
+
+
+def _turned_by(yaw: float, pitch: float) -> Array:
+    """Rotation that brings the look from `yaw`, `pitch` [degrees] to the front."""
+    a, b = np.radians([yaw, pitch])
+    about_y = [[np.cos(a), 0.0, np.sin(a)], [0.0, 1.0, 0.0], [-np.sin(a), 0.0, np.cos(a)]]
+    about_x = [[1.0, 0.0, 0.0], [0.0, np.cos(b), -np.sin(b)], [0.0, np.sin(b), np.cos(b)]]
+    return np.array(about_x) @ np.array(about_y)
 
 
 def lid_gaps(simulation: sim.Simulation, head: Any) -> list[float]:

@@ -10,8 +10,9 @@ import pytest
 
 import sim
 from assets.model import Head
-from sim.contact import FORWARD_SEAL, seal_forces, watch_eyeballs
+from sim.contact import SEAL_AXES, Grip, hold_lips, watch_eyeballs
 from sim.fibres import LEAST_ARC, SAMPLES, contract_fibres
+from sim.integrator import SUBSTEPS
 from sim.lids import turn_lids
 from sim.springs import edge_forces
 from sim.tissue import carry, tissue_energy, tissue_forces
@@ -80,22 +81,53 @@ def test_forces_are_the_gradient_of_the_energy(stirred: sim.Simulation) -> None:
     assert -slope == pytest.approx(float((state.force * way).sum()), rel=1e-4)
 
 
-def test_seal_forces(stirred: sim.Simulation, generator: np.random.Generator) -> None:
-    """The seal pulls lip pairs back to how they lay at rest and leaves sliding sideways free."""
+def test_seal_is_an_implicit_spring(
+    stirred: sim.Simulation, generator: np.random.Generator
+) -> None:
+    """A pair on its own ends a substep at the speed that the spring's force at its end explains."""
     lips, rest = stirred._anatomy.lips, stirred._anatomy.surface.positions
-    moved = generator.normal(size=rest.shape)
-    state = stirred._state._replace(x=rest + moved)
-    state.force[:] = 0.0
-    seal_forces(state, rest, lips, 0.7)
+    mass, h, grip = stirred._anatomy.mass, 0.002, Grip(3.0, 0.4)
+    for pair in (0, 7, 11):
+        alone = lips._replace(
+            averaging=np.where(np.arange(len(lips.lower)) == pair, 1.0, 0.0),
+        )
+        state = stirred._state._replace(
+            x=rest + generator.normal(size=rest.shape), v=generator.normal(size=rest.shape)
+        )
+        before = state.v.copy()
+        hold_lips(state, rest, mass, alone, grip, h)
+        i, (a, b), w = lips.lower[pair], lips.upper[pair], lips.share[pair]
+        ends = state.x + h * state.v - rest
+        apart = ends[i] - w * ends[a] - (1.0 - w) * ends[b] - (0.0, grip.overlap, 0.0)
+        force = grip.stiffness * lips.seal[pair] * apart * SEAL_AXES
+        expected = np.zeros_like(rest)
+        np.add.at(expected, [i, a, b], [-force, w * force, (1.0 - w) * force])
+        gained = mass[:, None] * (state.v - before) / h
+        assert np.abs(force).max() > 0.0
+        assert np.allclose(gained, expected, rtol=1e-6, atol=1e-9 * np.abs(force).max())
+
+
+def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
+    """Velocities after the seal has acted on all pairs at once, each share averaged."""
+    lips, mass, rest = face._anatomy.lips, face._anatomy.mass, face._anatomy.surface.positions
+    state, grip = face._state, face._grip
     w = lips.share[:, None]
-    apart = moved[lips.lower] - w * moved[lips.upper[:, 0]] - (1.0 - w) * moved[lips.upper[:, 1]]
-    pull = 0.7 * lips.seal[:, None] * apart * (0.0, 1.0, FORWARD_SEAL)
-    expected = np.zeros_like(rest)
-    np.add.at(expected, lips.lower, -pull)
-    np.add.at(expected, lips.upper[:, 0], w * pull)
-    np.add.at(expected, lips.upper[:, 1], (1.0 - w) * pull)
-    assert len(lips.lower) >= 12
-    assert np.allclose(state.force, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+
+    def difference(of: Array) -> Array:
+        return of[lips.lower] - w * of[lips.upper[:, 0]] - (1.0 - w) * of[lips.upper[:, 1]]
+
+    inverse = (1.0 / mass)[:, None]
+    light = inverse[lips.lower] + w**2 * inverse[lips.upper[:, 0]]
+    light = light + (1.0 - w) ** 2 * inverse[lips.upper[:, 1]]
+    give = h * light * grip.stiffness * lips.seal[:, None] * SEAL_AXES
+    apart, speed = difference(state.x - rest) - (0.0, grip.overlap, 0.0), difference(state.v)
+    change = (speed - give * apart) / (1.0 + h * give) - speed
+    impulse = lips.averaging[:, None] * change / light
+    speeds = state.v.copy()
+    np.add.at(speeds, lips.lower, impulse * inverse[lips.lower])
+    np.add.at(speeds, lips.upper[:, 0], -w * impulse * inverse[lips.upper[:, 0]])
+    np.add.at(speeds, lips.upper[:, 1], -(1.0 - w) * impulse * inverse[lips.upper[:, 1]])
+    return speeds
 
 
 def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
@@ -198,8 +230,8 @@ def test_a_step_is_its_substeps(head: Head) -> None:
     for _ in range(2):
         plain._controls.advance(FRAME / 2.0)
         plain._place_targets()
-        for _ in range(4):
-            _plain_substep(plain, FRAME / 8.0)
+        for _ in range(SUBSTEPS):
+            _plain_substep(plain, FRAME / (2.0 * SUBSTEPS))
     moved = plain._state.x - anatomy.surface.positions
     expected = plain.rest_positions + anatomy.frame.vectors_to_head(moved)
     assert np.abs(fast.positions - expected).max() < 1e-6
@@ -209,8 +241,8 @@ def test_a_step_is_its_substeps(head: Head) -> None:
 def _plain_substep(face: sim.Simulation, h: float) -> None:
     """Forces by numpy, then velocity, then position."""
     anatomy, state = face._anatomy, face._state
-    springs, edges, lips = anatomy.springs, anatomy.edges, anatomy.lips
-    x, v, n, rest = state.x, state.v, state.normals, anatomy.surface.positions
+    springs, edges = anatomy.springs, anatomy.edges
+    x, v, n = state.x, state.v, state.normals
     away = x - state.carried
     across = (away * n).sum(axis=1, keepdims=True) * n
     force = state.pull - (state.hold + springs.tangential)[:, None] * away
@@ -224,13 +256,8 @@ def _plain_substep(face: sim.Simulation, h: float) -> None:
     pull = tension[:, None] * along + edges.shear[:, None] * (away[j] - away[i])
     np.add.at(force, i, pull)
     np.add.at(force, j, -pull)
-    w, moved = lips.share[:, None], x - rest
-    apart = moved[lips.lower] - w * moved[lips.upper[:, 0]] - (1.0 - w) * moved[lips.upper[:, 1]]
-    seal = face._seal * lips.seal[:, None] * apart * (0.0, 1.0, FORWARD_SEAL)
-    np.add.at(force, lips.lower, -seal)
-    np.add.at(force, lips.upper[:, 0], w * seal)
-    np.add.at(force, lips.upper[:, 1], (1.0 - w) * seal)
     stiff = (springs.tangential + state.hold) / anatomy.mass
     damping = springs.damping + 2.0 * springs.damping_ratio * np.sqrt(stiff)
     v[:] = (v + h * force / anatomy.mass[:, None]) / (1.0 + h * damping)[:, None]
+    v[:] = _sealed_speeds(face, h)
     x += h * v

@@ -1,0 +1,166 @@
+"""The picture of the skin: pigments by region, lips, lids, brows, stubble, freckles, pores.
+
+The left half is painted and mirrored; only what is as fine as pores and freckles differs.
+"""
+
+import numpy as np
+import numpy.typing as npt
+from scipy.ndimage import distance_transform_edt
+from scipy.spatial import cKDTree
+
+from ..model import Head, Picture, Tone
+from . import lips
+from .brows import brow_cover
+from .fields import Points, Values, bump, smooth_step
+from .noise import noise, speckle
+from .pigments import COMPLEXIONS, MELANIN, Complexion, reflectance, to_linear, to_screen
+from .regions import beard, blood, red, scalp, tan
+from .texels import Texels, left_texels
+
+Cover = tuple[Points, Values]  # a colour in linear light and how much of it lies on each texel
+
+SIZE = 1280  # texels; chosen: more than four lie on a millimetre of the brow, the file < 1 MB
+SCALP_SHADOW, BEARD_SHADOW = 0.98, 0.13  # density of shaved hair
+LIP_BLOOD, LIP_MELANIN = 0.61, 0.22  # beside those of the skin
+PORES = 0.016  # density
+MUCOSA, MUCOSA_DEEP = (0.60, 0.27, 0.25), (0.30, 0.09, 0.09)  # sRGB
+WATERLINE = (0.80, 0.57, 0.52)
+LINE_OF_LIPS = (0.34, 0.125, 0.115)
+NOSTRIL = (0.20, 0.085, 0.075)
+FRECKLES, FRECKLE_SEED = 300, 11
+PADDING = 24.0  # texels
+FRECKLE_RADII = (0.3, 0.8)  # [mm]
+
+
+def paint_skin(head: Head, *, tone: Tone, size: int = SIZE) -> Picture:
+    """Paint the skin of a head, shape (size, size, 3), uint8, sRGB; row 0 is v = 1."""
+    texels = left_texels(head, size)
+    complexion = COMPLEXIONS[tone]
+    melanin, redness, shadow = _pigments(texels, complexion)
+    covers = _covers(texels, complexion, _grain(texels))
+    picture = np.zeros((size, size, 3))
+    is_painted = np.zeros((size, size), dtype=bool)
+    for side in (1, -1):
+        points = texels.points * [side, 1.0, 1.0]
+        fine = _pores(points) + _freckles(texels, points, complexion, FRECKLE_SEED + side)
+        stubble = shadow * (1.0 + 0.22 * speckle(points, 0.6, seed=31))
+        colours = reflectance(melanin + fine, redness, stubble)
+        for colour, cover in covers:
+            colours += cover[:, None] * (colour - colours)
+        columns = texels.columns if side > 0 else size - 1 - texels.columns
+        picture[texels.rows, columns] = to_screen(colours)
+        is_painted[texels.rows, columns] = True
+    return np.asarray(np.rint(255.0 * _padded(picture, is_painted)), dtype=np.uint8)
+
+
+def _padded(picture: Points, is_painted: npt.NDArray[np.bool_]) -> Points:
+    """The edge of the skin goes on outside: filters and small mipmaps must find no border."""
+    away, nearest = distance_transform_edt(~is_painted, return_indices=True)
+    around = picture[is_painted].mean(axis=0)
+    share = smooth_step(PADDING, 0.5 * PADDING, away)[:, :, None]
+    return np.asarray(around + (picture[nearest[0], nearest[1]] - around) * share)
+
+
+def _grain(texels: Texels) -> float:
+    """Size of a texel in the middle of the face [mm]."""
+    is_next = (np.diff(texels.columns) == 1) & (np.diff(texels.rows) == 0)
+    length = np.linalg.norm(np.diff(texels.points, axis=0), axis=1)
+    return float(np.median(length[is_next & (texels.points[1:, 2] > 80.0)]))
+
+
+def _pigments(texels: Texels, complexion: Complexion) -> tuple[Values, Values, Values]:
+    """Melanin, blood and the shadow of shaved hair."""
+    points = texels.points
+    lip = red(texels)
+    melanin = complexion.melanin + tan(texels) * (0.7 + complexion.melanin)
+    redness = complexion.blood * blood(texels)
+
+    # The red: fine folds run across the lips; toward the line between them it is darker.
+    folds = noise(points * [1.0, 0.2, 0.4], 0.75, seed=22)
+    x = np.minimum(np.abs(points[:, 0]), lips.HALF_WIDTH)
+    from_line = np.abs(points[:, 1] - lips.seam_height(x))
+    deep = smooth_step(6.0, 0.5, from_line)
+    lip_blood = LIP_BLOOD + 0.16 * deep + 0.05 * folds - 0.10 * bump(x, 0.0, 9.0)
+    melanin = melanin + lip * (LIP_MELANIN + 0.12 * deep + 0.05 * folds - 0.14 * complexion.melanin)
+    redness = redness + lip * complexion.blood * lip_blood
+    # The skin just outside the red of the upper lip catches the light.
+    roll = smooth_step(0.0, 0.5, lip) * smooth_step(1.0, 0.5, lip)
+    melanin = melanin - 0.05 * roll * texels.is_upper_lip
+
+    fold_of_lid = bump(texels.eye_row, 4.0, 0.35) * texels.is_upper_lid
+    melanin = melanin + 0.10 * fold_of_lid
+    redness = redness * (1.0 - 0.45 * scalp(texels))
+    shadow = SCALP_SHADOW * scalp(texels) + BEARD_SHADOW * beard(texels)
+    return melanin, redness, shadow
+
+
+def _pores(points: Points) -> Values:
+    """Grain as fine as the picture can hold: it lets the eye see skin move."""
+    coarse = noise(points, 1.7, seed=41)
+    return PORES * (0.6 * noise(points, 0.62, seed=42) + 0.7 * coarse)
+
+
+def _freckles(texels: Texels, points: Points, complexion: Complexion, seed: int) -> Values:
+    """Small brown spots on cheeks, nose and forehead, other ones on either side."""
+    random = np.random.default_rng(seed)
+    x, y, z = np.abs(points[:, 0]), points[:, 1], points[:, 2]
+    likely = bump(y, -20.0, 20.0) * bump(x, 26.0, 26.0) + 0.25 * bump(y, 45.0, 25.0)
+    likely = likely * (z > 50.0) * (texels.eye_row > 4.5) * (texels.mouth_row > 7.0)
+    centres = points[random.choice(len(points), FRECKLES, replace=False, p=likely / likely.sum())]
+    radii = random.uniform(*FRECKLE_RADII, FRECKLES)
+    strengths = (0.03 + 0.2 * random.uniform(0.0, 1.0, FRECKLES) ** 2) * complexion.freckles
+    tree = cKDTree(points)
+    total = np.zeros(len(points))
+    for centre, radius, strength in zip(centres, radii, strengths, strict=True):
+        near = np.array(tree.query_ball_point(centre, 2.0 * radius), dtype=np.int64)
+        away = np.linalg.norm(points[near] - centre, axis=1)
+        total[near] += strength * smooth_step(1.5 * radius, 0.3 * radius, away)
+    return total
+
+
+def _covers(texels: Texels, complexion: Complexion, grain: float) -> list[Cover]:
+    """What lies on the skin or is no skin, from below to above."""
+    hair = to_linear(complexion.hair)
+    wet = to_linear(WATERLINE) * np.exp(-0.45 * complexion.melanin * MELANIN)
+    return [
+        *_eye(texels, hair, wet),
+        *_mouth(texels),
+        *_nostril(texels),
+        *_brow(texels, hair, grain),
+    ]
+
+
+def _eye(texels: Texels, hair: Points, waterline: Points) -> list[Cover]:
+    """The wet rim of the lower lid, and where the lashes stand."""
+    row, upper = texels.eye_row, texels.is_upper_lid
+    inner = smooth_step(18.5, 23.0, texels.points[:, 0])  # lashes begin beside the inner corner
+    wet = smooth_step(2.1, 1.7, row) * (1.0 - 0.75 * upper)
+    line = upper * smooth_step(2.5, 2.0, row) * smooth_step(0.6, 1.3, row) * (0.35 + 0.65 * inner)
+    lower_line = (1.0 - upper) * bump(row, 2.12, 0.32) * inner
+    ragged = 1.0 + 0.15 * noise(texels.points, 0.9, seed=23)
+    return [
+        (waterline, 0.75 * wet),
+        (0.6 * hair, 0.86 * line),
+        (hair, np.clip(0.34 * lower_line * ragged, 0.0, 1.0)),
+    ]
+
+
+def _mouth(texels: Texels) -> list[Cover]:
+    """Behind the lips, and the line where they meet."""
+    row = texels.mouth_row
+    line = smooth_step(2.6, 2.0, row)
+    return [
+        (to_linear(LINE_OF_LIPS), 0.42 * line * smooth_step(1.3, 1.9, row)),
+        (to_linear(MUCOSA), smooth_step(2.0, 1.4, row)),
+        (to_linear(MUCOSA_DEEP), smooth_step(1.3, 0.1, row)),
+    ]
+
+
+def _nostril(texels: Texels) -> list[Cover]:
+    return [(to_linear(NOSTRIL), 0.92 * smooth_step(0.02, 0.45, texels.nostril))]
+
+
+def _brow(texels: Texels, hair: Points, grain: float) -> list[Cover]:
+    cover, lightness, tint = brow_cover(texels.points, grain)
+    strands = hair * (0.75 + 0.95 * lightness[:, None])
+    return [(1.25 * hair, 0.34 * tint), (strands, cover)]

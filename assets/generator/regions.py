@@ -1,0 +1,126 @@
+"""Where on the face skin is redder, darker, hairy or wet: maps of amounts, each of shape (n,).
+
+Everything is a function of the place on the left half; the right half is its mirror image.
+"""
+
+import numpy as np
+
+from . import lips
+from .fields import Points, Values, bump, smooth_step
+from .noise import noise
+from .texels import Texels
+
+Triple = tuple[float, float, float]
+Spot = tuple[Triple, Triple, float]
+
+# Lines around the head: angle about its axis [deg], height along the capsule [mm].
+HAIRLINE = (
+    (0, 75), (14, 77), (28, 82), (40, 81), (50, 69), (57, 52), (62, 36), (68, 27), (73, 19),
+    (77, 6), (81, -10), (86, -17), (92, -14), (97, -2), (103, -22), (110, -74), (125, -84),
+)  # fmt: skip
+BEARD_LINE = (
+    (0, -46), (9, -48), (16, -53), (24, -62), (34, -66), (46, -64), (58, -56), (70, -42),
+    (79, -24), (86, -14), (95, -18), (104, -52), (112, -80),
+)  # fmt: skip
+BEARD_END = -133.0  # [mm] height on the throat
+# Flushed places: centre (x, y, z) and radii [mm], amount of blood.
+FLUSHED = (
+    ((44, -24, 80), (19, 14, 28), 0.25),  # cheek
+    ((28, -22, 90), (14, 11, 16), 0.10),
+    ((0, -35, 121), (11, 9, 12), 0.30),  # tip of the nose
+    ((15, -40, 103), (6.5, 8, 9), 0.34),  # its wing
+    ((0, -17, 105), (8, 14, 9), 0.12),  # its ridge
+    ((0, -103, 99), (13, 9, 14), 0.16),  # chin
+    ((70, -14, -8), (14, 30, 20), 0.18),  # where the ear would be
+    ((0, 20, 97), (13, 9, 10), 0.08),  # between the brows
+)
+PALER = (
+    ((0, 52, 96), (48, 24, 40), -0.13),  # forehead
+    ((30, -8.5, 84), (13, 5, 8), -0.06),  # below the eye
+    ((12, -58, 100), (14, 8, 12), -0.07),  # around the mouth
+    ((14, -86, 92), (16, 7, 14), -0.06),
+    ((0, -150, 50), (60, 25, 60), -0.05),  # neck
+)
+# Browner places
+TANNED = (
+    ((31, -9.5, 84), (14, 4.5, 8), 0.11),  # below the eye
+    ((20, -4, 82), (6, 5, 6), 0.10),  # its inner corner
+    ((31, 9.5, 85), (14, 6.5, 10), 0.07),  # upper lid
+    ((50, 0, 70), (7, 5, 8), 0.05),  # outer corner
+    ((0, 60, 92), (50, 26, 60), 0.025),
+    ((0, -150, 50), (60, 25, 60), 0.05),
+    ((25, -76, 92), (7, 6, 8), 0.05),  # below the corner of the mouth
+)
+
+
+def _spots(points: Points, table: tuple[Spot, ...]) -> Values:
+    total = np.zeros(len(points))
+    for centre, radii, amount in table:
+        away = ((points - np.array(centre)) / np.array(radii)) ** 2
+        total += amount * np.exp(-away.sum(axis=1))
+    return total
+
+
+def line_height(line: tuple[tuple[int, int], ...], angle: Values) -> Values:
+    """Height of a line around the head at an angle [mm], its corners rounded."""
+    table = np.array(line, dtype=np.float64)
+    spread = np.linspace(-5.0, 5.0, 7)
+    heights = [np.interp(np.abs(angle + turn), table[:, 0], table[:, 1]) for turn in spread]
+    return np.asarray(np.mean(heights, axis=0), dtype=np.float64)
+
+
+def red(texels: Texels) -> Values:
+    """The red of the lips, 1 inside; its border is soft, on the lower lip more than above."""
+    x, y = np.abs(texels.points[:, 0]), texels.points[:, 1]
+    inside = np.minimum(x, lips.HALF_WIDTH - 0.05)
+    past_corner = np.maximum(x - lips.HALF_WIDTH, 0.0)
+    above = lips.upper_border(inside) - y
+    below = y - lips.lower_border(inside)
+    edge = 0.22 * noise(texels.points, 1.3, seed=21)
+    upper = smooth_step(-0.55, 1.0, above + edge - past_corner)
+    lower = smooth_step(-1.1, 1.8, below + edge - past_corner)
+    toward_corner = smooth_step(lips.HALF_WIDTH + 2.0, lips.HALF_WIDTH - 5.0, x)
+    in_front = np.minimum(upper, lower) * toward_corner * (texels.mouth_row < 7.6)
+    return np.where(texels.mouth_row < 2.0, 1.0, in_front)
+
+
+def blood(texels: Texels) -> Values:
+    """Blood in the skin, 0.3 on average; the lips are added by the painter."""
+    points = texels.points
+    mottling = 0.055 * noise(points, 13.0, seed=1) + 0.045 * noise(points, 4.5, seed=2)
+    lid = smooth_step(4.6, 2.6, texels.eye_row)
+    fold = bump(texels.points[:, 0] - np.interp(points[:, 1], (-46, -35), (17.5, 18.5)), 0.0, 2.2)
+    fold *= bump(points[:, 1], -41.0, 5.5) * (points[:, 2] < 102.0)
+    result: Values = (
+        0.32 + _spots(points, FLUSHED) + _spots(points, PALER) + mottling + 0.16 * lid + 0.15 * fold
+    )
+    return np.maximum(result, 0.02)
+
+
+def tan(texels: Texels) -> Values:
+    """Melanin beside that of the tone."""
+    points = texels.points
+    mottling = 0.018 * noise(points, 21.0, seed=3) + 0.014 * noise(points, 6.0, seed=4)
+    return np.asarray(_spots(points, TANNED) + mottling, dtype=np.float64)
+
+
+def scalp(texels: Texels) -> Values:
+    """How densely the shaved scalp is haired, 0 to 1; the hairline is frayed."""
+    frayed = 2.6 * noise(texels.points, 5.0, seed=5) + 1.6 * noise(texels.points, 1.6, seed=6)
+    beyond = texels.height - line_height(HAIRLINE, texels.angle) + frayed
+    return smooth_step(-8.0, 19.0, beyond)
+
+
+def beard(texels: Texels) -> Values:
+    """How densely the shaved beard stands, 0 to 1: lip, cheek below its line, chin, throat."""
+    x, y = np.abs(texels.points[:, 0]), texels.points[:, 1]
+    frayed = 2.0 * noise(texels.points, 4.0, seed=7)
+    below = line_height(BEARD_LINE, texels.angle) - texels.height + frayed
+    growth = smooth_step(-2.0, 11.0, below) * smooth_step(BEARD_END - 8.0, BEARD_END + 12.0, y)
+    inside = np.minimum(x, lips.HALF_WIDTH)
+    from_lip = np.maximum(y - lips.upper_border(inside), lips.lower_border(inside) - y)
+    from_lip = np.where(x > lips.HALF_WIDTH, np.hypot(x - lips.HALF_WIDTH, from_lip), from_lip)
+    growth *= smooth_step(0.8, 4.5, from_lip)
+    growth *= 1.0 - 0.45 * bump(x, 0.0, 2.5) * bump(y, -53.0, 6.0)  # philtrum
+    growth *= 1.0 - 0.6 * bump(x, 14.0, 7.0) * bump(y, -84.0, 5.0)  # beside the tuft
+    return np.asarray(growth * (texels.mouth_row > 6.0), dtype=np.float64)

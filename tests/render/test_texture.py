@@ -1,0 +1,160 @@
+"""Skin from a picture: where it lies, how bright it is, what goes over it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import render
+
+from .scenes import PLAIN, Shape, facing, lent, picture, sphere, square
+
+Frame = npt.NDArray[np.int32]
+
+
+def textured(
+    surface: render.Surface,
+    image: npt.NDArray[np.uint8],
+    style: render.Style = PLAIN,
+    *,
+    shape: Shape | None = None,
+    camera: render.OrbitCamera | None = None,
+    values: npt.NDArray[np.uint8] | None = None,
+) -> Frame:
+    """A square (or another shape) under the image, which spans x and y from -50 to 50."""
+    shape = shape or square()
+    renderer = render.Renderer(surface)
+    stream = lent(renderer, shape, columns=8)
+    stream.vertices[:, 6:] = shape.positions[:, :2] / 100.0 + 0.5
+    stream.upload(len(shape.positions), len(shape.triangles))
+    texture = renderer.load_texture(image)
+    surface.begin()
+    renderer.draw_background(style)
+    renderer.draw_mesh(stream, camera or facing(), style, values=values, texture=texture)
+    surface.end()
+    frame = surface.read().astype(np.int32)
+    texture.release()
+    return frame
+
+
+def plain_image(colour: tuple[int, int, int], size: tuple[int, int] = (8, 8)) -> render.Frame:
+    """An image of one colour."""
+    return np.full((size[1], size[0], 3), colour, np.uint8)
+
+
+def quarters() -> render.Frame:
+    """Red up left, green up right, blue down left, grey down right."""
+    image = np.zeros((48, 64, 3), np.uint8)
+    image[:24, :32], image[:24, 32:] = (200, 30, 30), (30, 200, 30)
+    image[24:, :32], image[24:, 32:] = (30, 30, 200), (90, 90, 90)
+    return image
+
+
+@pytest.mark.parametrize("shading", render.Shading)
+@pytest.mark.parametrize("wireframe", [False, True])
+def test_top_row_lies_at_v_1(
+    surface: render.Surface, shading: render.Shading, wireframe: bool
+) -> None:
+    """The picture is upright and not mirrored, in every shading."""
+    frame = textured(surface, quarters(), replace(PLAIN, shading=shading, wireframe=wireframe))
+    assert frame[24, 24].argmax() == 0 and frame[24, 24, 0] > 100 > frame[24, 24, 1]
+    assert frame[24, 72].argmax() == 1 and frame[24, 72, 1] > 100 > frame[24, 72, 2]
+    assert frame[72, 24].argmax() == 2 and frame[72, 24, 2] > 100 > frame[72, 24, 0]
+    assert np.ptp(frame[72, 72]) < 30
+
+
+@pytest.mark.parametrize("level", [20, 128, 230])
+def test_grey_texture_is_the_grey_albedo(surface: render.Surface, level: int) -> None:
+    """A texture of one colour gives the picture that the same albedo gives: sRGB is decoded."""
+    albedo = (level / 255.0,) * 3
+    style = replace(PLAIN, subsurface=0.5)
+    expected = picture(surface, sphere(3), replace(style, albedo=albedo))
+    frame = textured(surface, plain_image((level,) * 3), style, shape=sphere(3))
+    assert np.abs(frame - expected).max() <= 2
+    assert np.abs(picture(surface, sphere(3), style) - expected).max() > 20
+
+
+def test_texture_is_filtered_in_linear_light(surface: render.Surface) -> None:
+    """Seen from afar, a fine black and white checker is as bright as its mean light: sRGB 188."""
+    rows, columns = np.indices((512, 512))
+    checker = np.repeat(((rows + columns) % 2 * 255).astype(np.uint8)[:, :, None], 3, axis=2)
+    frame = textured(surface, checker)[30:66, 30:66]
+    expected = textured(surface, plain_image((188, 188, 188)))[30:66, 30:66]
+    assert np.abs(frame - expected).max() <= 4
+
+
+def test_untextured_style_is_the_plain_picture(surface: render.Surface) -> None:
+    """With textured=False a texture changes no pixel; without texture, `textured` does not."""
+    style = replace(PLAIN, textured=False)
+    expected = picture(surface, square(), PLAIN)
+    assert (textured(surface, quarters(), style) == expected).all()
+    assert (picture(surface, square(), style) == expected).all()
+    assert (textured(surface, quarters()) != expected).any()
+
+
+def test_albedo_has_no_say_under_a_texture(surface: render.Surface) -> None:
+    """The texture is taken as it is, and not tinted."""
+    style = replace(PLAIN, subsurface=1.0)
+    frames = [
+        textured(surface, quarters(), replace(style, albedo=albedo))
+        for albedo in (render.SKIN_DARK, render.CLAY)
+    ]
+    assert (frames[0] == frames[1]).all()
+
+
+@pytest.mark.parametrize("shading", render.Shading)
+def test_splits_tint_the_texture(surface: render.Surface, shading: render.Shading) -> None:
+    """Triangles without splits stay textured; the others have the palette's hue over it."""
+    style = replace(PLAIN, shading=shading)
+    counted = replace(style, colour_by=render.ColourBy.SPLITS)
+    image = quarters()
+    frame = textured(surface, image, counted, values=np.array([0, 4], np.uint8))
+    without = textured(surface, image, style)
+    lower, upper = (72, 84), (12, 24)  # rows and columns of points below and above the diagonal
+    assert (frame[lower] == without[lower]).all()
+    assert frame[upper][2] > frame[upper][0] + 40  # red before
+    assert without[upper][0] > without[upper][2] + 100
+    other_side = frame[12, 60]  # green before: the picture still shows through the tint
+    assert np.abs(other_side - frame[upper]).max() > 15
+
+
+def test_back_faces_keep_the_inner_albedo(surface: render.Surface) -> None:
+    """The texture lies on the outside only."""
+    shape = square()
+    turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
+    blue = textured(surface, plain_image((0, 0, 255)), shape=turned)
+    assert (blue == picture(surface, turned))[20:76, 20:76].all()
+
+
+def test_texture_needs_eight_columns(surface: render.Surface) -> None:
+    """Without texture coordinates there is nothing to look up."""
+    renderer = render.Renderer(surface)
+    stream = lent(renderer, square())
+    texture = renderer.load_texture(quarters())
+    with pytest.raises(ValueError, match="a texture meets a stream of 6 columns; it needs texture"):
+        renderer.draw_mesh(stream, facing(), PLAIN, texture=texture)
+
+
+@pytest.mark.parametrize(
+    ("image", "message"),
+    [
+        (np.zeros((4, 4), np.uint8), r"shape \(4, 4\) and dtype uint8; it must be \(height, width"),
+        (np.zeros((4, 4, 4), np.uint8), r"shape \(4, 4, 4\)"),
+        (np.zeros((4, 4, 3), np.float32), "dtype float32"),
+        (np.zeros((0, 4, 3), np.uint8), r"shape \(0, 4, 3\)"),
+        (np.zeros((1, 100_000, 3), np.uint8), "100000 x 1 texels; this driver takes at most"),
+    ],
+)
+def test_bad_images(surface: render.Surface, image: npt.NDArray[np.uint8], message: str) -> None:
+    """Images that are no sRGB pictures, or too large, are refused."""
+    with pytest.raises(ValueError, match=message):
+        render.Renderer(surface).load_texture(image)
+
+
+def test_size_of_a_texture(surface: render.Surface) -> None:
+    """Width before height, as with frames; odd sizes are fine."""
+    texture = render.Renderer(surface).load_texture(plain_image((1, 2, 3), (7, 5)))
+    assert texture.size == (7, 5)

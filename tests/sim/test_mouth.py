@@ -1,0 +1,106 @@
+"""The mouth as one sees it: shut where nothing opens it, with rounded corners where something does.
+
+Looked at from the front, both sides, above and below, on the mesh and on what refinement makes of
+it (smoothing thins a folded lip a little, so closed lips are pressed together).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import refine
+import sim
+from assets.model import Head
+from tests.sim.poses import both_sides, lip_slit, settle
+
+VIEWS = ((0.0, 0.0), (30.0, 0.0), (-30.0, 0.0), (0.0, 8.0), (0.0, -8.0))
+SHUT = 0.3  # mm: less than a pixel of a full-screen close-up
+SHUT_EXPRESSIONS = ("kiss", "sadness", "anger", "contempt", "wink", "blink")
+OPENERS = (
+    "levator_labii_superioris_alaeque_nasi", "levator_labii_superioris",
+    "depressor_labii_inferioris", "orbicularis_oris_peripheral_upper",
+    "orbicularis_oris_peripheral_lower", "jaw_open",
+)  # fmt: skip
+
+Slits = Callable[[], dict[str, float]]
+
+
+@pytest.fixture(scope="module")
+def refiner(head: Head) -> refine.Refiner:
+    """The refinement that people see."""
+    return refine.create("kahler", head.faces, head.vertices)
+
+
+@pytest.fixture
+def slits(simulation: sim.Simulation, head: Head, refiner: refine.Refiner) -> Slits:
+    """Measures the widest slit between the lips from any side: of the mesh, and refined."""
+
+    def measure() -> dict[str, float]:
+        corners = simulation.positions[head.landmarks[[60, 64]]]
+        drawn = refiner.refine(simulation.positions)
+        meshes = {
+            "static": (simulation.positions, head.faces),
+            "refined": (drawn.positions.astype(np.float64), drawn.triangles),
+        }
+        return {
+            name: max(lip_slit(*mesh, corners, yaw=yaw, pitch=pitch) for yaw, pitch in VIEWS)
+            for name, mesh in meshes.items()
+        }
+
+    return measure
+
+
+@pytest.mark.parametrize("name", SHUT_EXPRESSIONS)
+def test_closed_mouth_shows_no_teeth(
+    simulation: sim.Simulation, head: Head, slits: Slits, name: str
+) -> None:
+    """In expressions with a closed mouth the lip line is shut, refined or not."""
+    settle(simulation, head.expressions[name])
+    for mesh, slit in slits().items():
+        assert slit < SHUT, mesh
+
+
+@pytest.mark.parametrize("strength", [0.5, 1.0])
+@pytest.mark.parametrize("sides", ["left", "both"])
+def test_no_other_muscle_opens_the_mouth(
+    simulation: sim.Simulation, head: Head, slits: Slits, sides: str, strength: float
+) -> None:
+    """Every single muscle that is not there to open the mouth leaves it shut."""
+    muscles = {
+        name.removesuffix("_left").removesuffix("_right")
+        for name in simulation.controls
+        if not name.startswith("gaze")
+    } - set(OPENERS)
+    assert len(muscles) > 20
+    for muscle in sorted(muscles):
+        values = both_sides(simulation, {muscle: strength})
+        if sides == "left":
+            values = {name: value for name, value in values.items() if "_right" not in name}
+        settle(simulation, values, frames=40)
+        for mesh, slit in slits().items():
+            assert slit < SHUT, (muscle, mesh)
+
+
+def test_slit_measure_sees_an_open_mouth(
+    simulation: sim.Simulation, head: Head, slits: Slits
+) -> None:
+    """The measure agrees with the lip landmarks where the mouth is open."""
+    settle(simulation, {"jaw_open": 0.5})
+    inner = simulation.positions[head.landmarks[[62, 66]], 1]
+    assert slits()["static"] == pytest.approx(inner[0] - inner[1], abs=2.0)
+
+
+@pytest.mark.parametrize("name", ["disgust", "fear", "surprise", "mouth_open", "yawn"])
+def test_open_mouth_is_widest_in_the_middle(
+    simulation: sim.Simulation, head: Head, name: str
+) -> None:
+    """An open mouth narrows toward its corners like a lens, not like a letter box."""
+    settle(simulation, head.expressions[name])
+    x = simulation.positions[head.landmarks]
+    middle = x[62, 1] - x[66, 1]
+    beside = (x[63, 1] - x[65, 1] + x[61, 1] - x[67, 1]) / 2.0
+    assert middle > 2.0
+    assert beside < 1.05 * middle
