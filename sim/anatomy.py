@@ -42,7 +42,7 @@ from .tissue import TissueSprings, masses_for_step
 
 SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
 LEAST_MANDIBLE = 1e-4  # share of the jaw's motion that is none
-STEP_MARGIN = 1.0 + ROUNDING  # a tick may be this much longer than LONGEST_TICK
+STEP_MARGIN = 1.0 + ROUNDING  # a substep may be this much longer than LONGEST_SUBSTEP
 
 
 @dataclass(frozen=True)
@@ -65,9 +65,9 @@ class Anatomy:
     controls: tuple[Control, ...]
 
     def grip(self, activation: Array, jaw: tuple[float, float, float]) -> Grip:
-        """How firmly the lips stick together; `jaw` (open, forward, sideways) and muscles part them.
+        """How firmly the lips stick together; the jaw and some muscles part them.
 
-        activation: of each muscle, shape (M,).
+        activation: of each muscle, shape (M,); jaw: its values open, forward, sideways.
         """
         if not len(self.lips.lower):
             return Grip(0.0, 0.0)

@@ -17,23 +17,18 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
 from .landmarks import Array, polyline_distance, select
 from .skull import Eyeball
+from .substep import SEAL_AXES
 from .surface import Surface
 
 LIP_EDGE = 5.0  # mm around the mouth line in which lip vertices are looked for
 OWN_SIDE = 0.1  # of the lip side field: nearer to the corner lips are one
 PAIR_GAP = 3.0  # mm: lips further apart at rest are no pair
 LEAST_SEAL_AREA = 4.0  # mm2: tiny vertices of a lip edge still carry their share
-SLIDES_IN_FRONT = (
-    3.0  # mm the lower lip may come forward before it passes in front of the upper one
-)
-SLIDE_FADE = 3.0  # mm over which it then does
-SEAL_AXES = (0.5, 1.0, 0.5)  # the seal's stiffness sideways, up and down, forward (last fitted)
 UNBROKEN_SEAL = 100.0  # x stiffness of a whole seal against one half broken: gaps below 0.1 mm
 FULLY_PRESSED = 0.25  # activity from which they overlap in full
 PRESSED_OVERLAP = 0.5  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
@@ -148,97 +143,3 @@ def watch_eyeballs(surface: Surface, eyeballs: tuple[Eyeball, ...]) -> EyeContac
         np.vstack([*centres, empty]),
         np.concatenate([*least, np.zeros(0)]),
     )
-
-
-@numba.njit(cache=True)
-def hold_lips(state, rest, mass, lips, grip, h):  # type: ignore[no-untyped-def]
-    """Change velocities by the seal's pull over a substep of `h` [s], as if it had already acted.
-
-    An implicit spring on the distance c of a pair, growing at speed s, with inverse mass w:
-    s' = (s - h k w c) / (1 + h^2 k w), stable for any stiffness k.
-    """
-    if grip.stiffness <= 0.0:
-        return
-    x, v, change = state.x, state.v, state.move
-    change[:] = 0.0
-    for p in range(len(lips.lower)):
-        i, a, b = lips.lower[p], lips.upper[p, 0], lips.upper[p, 1]
-        w = lips.share[p]
-        inverse = 1.0 / mass[i] + w * w / mass[a] + (1.0 - w) * (1.0 - w) / mass[b]
-        for k in range(3):
-            apart = x[i, k] - rest[i, k]
-            apart -= w * (x[a, k] - rest[a, k]) + (1.0 - w) * (x[b, k] - rest[b, k])
-            if k == 1:
-                apart -= grip.overlap
-            speed = v[i, k] - w * v[a, k] - (1.0 - w) * v[b, k]
-            give = h * inverse * grip.stiffness * lips.seal[p] * SEAL_AXES[k]
-            kept = (speed - give * apart) / (1.0 + h * give)
-            impulse = lips.averaging[p] * (kept - speed) / inverse
-            change[i, k] += impulse / mass[i]
-            change[a, k] -= w * impulse / mass[a]
-            change[b, k] -= (1.0 - w) * impulse / mass[b]
-    for row in range(len(lips.members)):
-        i = lips.members[row]
-        for k in range(3):
-            v[i, k] += change[i, k]
-
-
-@numba.njit(cache=True)
-def keep_lips_apart(state, rest, mass, lips, overlap):  # type: ignore[no-untyped-def]
-    """Project lips that cross by more than `overlap` [mm] back and stop their approach."""
-    x, v, move = state.x, state.v, state.move
-    crossed = False
-    for p in range(len(lips.lower)):
-        i, a, b = lips.lower[p], lips.upper[p, 0], lips.upper[p, 1]
-        w = lips.share[p]
-        gap = w * x[a, 1] + (1.0 - w) * x[b, 1] - x[i, 1]
-        deep = lips.least_gap[p] - overlap - gap
-        if deep <= 0.0:
-            continue
-        forward = x[i, 2] - rest[i, 2]
-        forward -= w * (x[a, 2] - rest[a, 2]) + (1.0 - w) * (x[b, 2] - rest[b, 2])
-        full = min(max(1.0 - (forward - SLIDES_IN_FRONT) / SLIDE_FADE, 0.0), 1.0)
-        if full == 0.0:
-            continue
-        if not crossed:
-            move[:] = 0.0
-            crossed = True
-        inverse = 1.0 / mass[i] + w * w / mass[a] + (1.0 - w) * (1.0 - w) / mass[b]
-        push = full * lips.averaging[p] * deep / inverse
-        approach = v[i, 1] - w * v[a, 1] - (1.0 - w) * v[b, 1]
-        stop = full * lips.averaging[p] * max(approach, 0.0) / inverse
-        move[i, 0] -= push / mass[i]
-        move[a, 0] += w * push / mass[a]
-        move[b, 0] += (1.0 - w) * push / mass[b]
-        move[i, 1] -= stop / mass[i]
-        move[a, 1] += w * stop / mass[a]
-        move[b, 1] += (1.0 - w) * stop / mass[b]
-    if crossed:
-        for row in range(len(lips.members)):
-            i = lips.members[row]
-            x[i, 1] += move[i, 0]
-            v[i, 1] += move[i, 1]
-
-
-@numba.njit(cache=True)
-def keep_out_of_eyeballs(state, eyes):  # type: ignore[no-untyped-def]
-    """Project skin out of the eyeballs and stop its approach."""
-    x, v = state.x, state.v
-    vertex, centre, least_distance = eyes.vertex, eyes.centre, eyes.least_distance
-    for c in range(len(vertex)):
-        i = vertex[c]
-        dx = x[i, 0] - centre[c, 0]
-        dy = x[i, 1] - centre[c, 1]
-        dz = x[i, 2] - centre[c, 2]
-        squared = dx * dx + dy * dy + dz * dz
-        if squared >= least_distance[c] ** 2 or squared == 0.0:
-            continue
-        out = least_distance[c] / np.sqrt(squared)
-        x[i, 0] = centre[c, 0] + dx * out
-        x[i, 1] = centre[c, 1] + dy * out
-        x[i, 2] = centre[c, 2] + dz * out
-        approach = (v[i, 0] * dx + v[i, 1] * dy + v[i, 2] * dz) / squared
-        if approach < 0.0:
-            v[i, 0] -= approach * dx
-            v[i, 1] -= approach * dy
-            v[i, 2] -= approach * dz

@@ -32,6 +32,7 @@ from .controls import Controls
 from .lids import turn_lids
 from .skull import REST, Pose
 from .state import State
+from .substep import advance
 from .tissue import carry, tissue_energy
 
 
@@ -136,9 +137,10 @@ class Simulation:
             )
         ticks = integrator.ticks_in(dt)
         for _ in range(ticks):
-            self._controls.advance(dt / ticks)
+            self._controls.advance(dt / ticks / 2.0)
             self._place_targets()
-            self._advance(dt / ticks / integrator.SUBSTEPS)
+            self._advance(dt / ticks)
+            self._controls.advance(dt / ticks / 2.0)
         moved = self._state.x - self._anatomy.surface.positions
         if not np.isfinite(moved).all():
             raise SimulationUnstable(
@@ -168,11 +170,11 @@ class Simulation:
         muscles.add(activation, self._mandible, weight, state.hold, state.pull)
         self._grip = anatomy.grip(activation, jaw)
 
-    def _advance(self, h: float) -> None:
-        """One tick of substeps of `h` [s]: all forces on the skin (integrator.advance)."""
-        anatomy = self._anatomy
-        integrator.advance(
-            self._state, integrator.SUBSTEPS, h, anatomy.surface.positions, anatomy.mass,
+    def _advance(self, tick: float) -> None:
+        """One tick [s] in substeps: all forces on the skin (substep.py)."""
+        anatomy, count = self._anatomy, integrator.substeps_in(tick)
+        advance(
+            self._state, count, tick / count, anatomy.surface.positions, anatomy.mass,
             anatomy.springs, anatomy.edges, anatomy.lips, self._grip, anatomy.eye_contact,
         )  # fmt: skip
 

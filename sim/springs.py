@@ -15,15 +15,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
 from .landmarks import Array
 from .rig import Tissue
 from .surface import Surface
-
-LEAST_LENGTH = 1e-6  # mm: direction of a collapsed edge is taken as zero
 
 
 class EdgeSprings(NamedTuple):
@@ -62,31 +59,3 @@ class EdgeSprings(NamedTuple):
         stored = self.stiffness * (extension**2 + (self.stiffening - 1.0) * beyond**2)
         stored += self.shear * ((offset[j] - offset[i]) ** 2).sum(axis=1)
         return float(stored.sum() / 2.0)
-
-
-@numba.njit(cache=True, fastmath={"contract"})
-def edge_forces(state, springs):  # type: ignore[no-untyped-def]
-    """Add the pull of all edges to `state.force`; `state.offset` must be up to date."""
-    x, offset, force = state.x, state.offset, state.force
-    edges, rest_length = springs.edges, springs.rest_length
-    stiffness, shear = springs.stiffness, springs.shear
-    strain_limit, extra = springs.strain_limit, springs.stiffening - 1.0
-    for e in range(len(edges)):
-        i, j = edges[e, 0], edges[e, 1]
-        dx = x[j, 0] - x[i, 0]
-        dy = x[j, 1] - x[i, 1]
-        dz = x[j, 2] - x[i, 2]
-        length = max(np.sqrt(dx * dx + dy * dy + dz * dz), LEAST_LENGTH)
-        extension = length - rest_length[e]
-        beyond = max(extension - strain_limit * rest_length[e], 0.0)
-        tension = stiffness[e] * (extension + extra * beyond) / length
-        s = shear[e]
-        fx = tension * dx + s * (offset[j, 0] - offset[i, 0])
-        fy = tension * dy + s * (offset[j, 1] - offset[i, 1])
-        fz = tension * dz + s * (offset[j, 2] - offset[i, 2])
-        force[i, 0] += fx
-        force[i, 1] += fy
-        force[i, 2] += fz
-        force[j, 0] -= fx
-        force[j, 1] -= fy
-        force[j, 2] -= fz

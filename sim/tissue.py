@@ -85,25 +85,6 @@ def carry(rest, normals, weight, turn, shift, state):  # type: ignore[no-untyped
             carried_normals[i, k] /= np.sqrt(length)
 
 
-@numba.njit(cache=True)
-def tissue_forces(state, springs):  # type: ignore[no-untyped-def]
-    """Set `state.force` to the pull of bone and of muscles, and `state.offset` on the way."""
-    x, carried, normals = state.x, state.carried, state.normals
-    hold, pull, offset, force = state.hold, state.pull, state.offset, state.force
-    tangential, normal = springs.tangential, springs.normal
-    for i in range(len(x)):
-        dx = x[i, 0] - carried[i, 0]
-        dy = x[i, 1] - carried[i, 1]
-        dz = x[i, 2] - carried[i, 2]
-        offset[i, 0], offset[i, 1], offset[i, 2] = dx, dy, dz
-        nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
-        across = (normal[i] - tangential[i]) * (dx * nx + dy * ny + dz * nz)
-        along = tangential[i] + hold[i]
-        force[i, 0] = pull[i, 0] - along * dx - across * nx
-        force[i, 1] = pull[i, 1] - along * dy - across * ny
-        force[i, 2] = pull[i, 2] - along * dz - across * nz
-
-
 def tissue_energy(state: State, springs: TissueSprings) -> float:
     """Energy stored in anchors and muscle attachments, measured from their far ends."""
     offset = state.x - state.carried

@@ -4,8 +4,8 @@ Reading order: `form` says what the head looks like (an implicit surface put tog
 `sections`, `nose`, `lips` and `lids`); `eye_rows`, `mouth_rows`, `nostril_rows` and `outline` say
 where vertices must lie; `sheet` and `remesh` fill the rest with triangles; `skin` puts one half
 together and mirrors it; `landmarks`, `bones`, `eyeballs`, `dentition` and `oral` add what belongs
-to it. `unwrap` lays the skin flat; `painting` paints it there, with `texels`, `regions`, `pigments`,
-`brows` and `noise`. `assets.build` runs all of them.
+to it. `unwrap` lays the skin flat; `painting` paints it there, with `texels`, `regions`,
+`pigments`, `brows` and `noise`. `assets.build` runs all of them.
 
 No mesh, scan or template of anybody is behind it. Frame: millimetres, x toward the subject's
 left, y up, z toward the viewer; the pupils lie near y = 0 and x = 0 is the mirror plane.

@@ -54,7 +54,9 @@ def hairs() -> list[Hair]:
     along = random.beta(1.35, 1.5, HAIRS)  # fewer at both ends: the brow begins and ends softly
     across = np.clip(random.normal(-0.12, 0.55, HAIRS), -1.15, 1.0)  # -1 lower edge, 1 upper
     thickness = np.where(across < 0, np.interp(along, ALONG, BELOW), np.interp(along, ALONG, ABOVE))
-    offset = np.column_stack([random.normal(0.0, 0.6, HAIRS), across * thickness])
+    inner_end = smooth_step(0.22, 0.0, along)
+    aside = random.normal(0.0, 0.5, HAIRS) * (1.0 + 2.4 * inner_end)
+    offset = np.column_stack([aside, across * thickness])
     low, high = np.interp(along, ALONG, LOW_ANGLE), np.interp(along, ALONG, HIGH_ANGLE)
     angle = np.radians(low + (high - low) * 0.5 * (across + 1.0) + random.normal(0.0, 7.0, HAIRS))
     turn = np.radians(random.normal(-32.0, 18.0, HAIRS)) * (1.0 - 0.4 * along)  # bends outward
@@ -62,7 +64,7 @@ def hairs() -> list[Hair]:
     length *= 1.0 - 0.35 * np.clip(across, 0.0, 1.0)
 
     lines = _grown(_spine()(along) + offset, angle, turn, length)
-    widths = random.uniform(*WIDTH, HAIRS) * (1.0 - 0.3 * np.abs(across))
+    widths = random.uniform(*WIDTH, HAIRS) * (1.0 - 0.3 * np.abs(across)) * (1.0 - 0.3 * inner_end)
     lightness = random.uniform(0.0, 1.0, HAIRS)
     return [Hair(*parts) for parts in zip(lines, widths, lightness, strict=True)]
 

@@ -20,7 +20,7 @@ from .texels import Texels, left_texels
 Cover = tuple[Points, Values]  # a colour in linear light and how much of it lies on each texel
 
 SIZE = 1280  # texels; chosen: more than four lie on a millimetre of the brow, the file < 1 MB
-SCALP_SHADOW, BEARD_SHADOW = 0.98, 0.13  # density of shaved hair
+SCALP_SHADOW, BEARD_SHADOW = 0.98, 0.10  # density of shaved hair
 LIP_BLOOD, LIP_MELANIN = 0.61, 0.22  # beside those of the skin
 PORES = 0.016  # density
 MUCOSA, MUCOSA_DEEP = (0.60, 0.27, 0.25), (0.30, 0.09, 0.09)  # sRGB
@@ -83,6 +83,7 @@ def _pigments(texels: Texels, complexion: Complexion) -> tuple[Values, Values, V
     lip_blood = LIP_BLOOD + 0.16 * deep + 0.05 * folds - 0.10 * bump(x, 0.0, 9.0)
     melanin = melanin + lip * (LIP_MELANIN + 0.12 * deep + 0.05 * folds - 0.14 * complexion.melanin)
     redness = redness + lip * complexion.blood * lip_blood
+    melanin = melanin + 0.06 * lip * (1.0 - texels.is_upper_lip)  # it faces the light
     # The skin just outside the red of the upper lip catches the light.
     roll = smooth_step(0.0, 0.5, lip) * smooth_step(1.0, 0.5, lip)
     melanin = melanin - 0.05 * roll * texels.is_upper_lip

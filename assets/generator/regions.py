@@ -116,7 +116,7 @@ def beard(texels: Texels) -> Values:
     x, y = np.abs(texels.points[:, 0]), texels.points[:, 1]
     frayed = 2.0 * noise(texels.points, 4.0, seed=7)
     below = line_height(BEARD_LINE, texels.angle) - texels.height + frayed
-    growth = smooth_step(-2.0, 11.0, below) * smooth_step(BEARD_END - 8.0, BEARD_END + 12.0, y)
+    growth = smooth_step(-2.0, 11.0, below) * smooth_step(BEARD_END - 12.0, BEARD_END + 24.0, y)
     inside = np.minimum(x, lips.HALF_WIDTH)
     from_lip = np.maximum(y - lips.upper_border(inside), lips.lower_border(inside) - y)
     from_lip = np.where(x > lips.HALF_WIDTH, np.hypot(x - lips.HALF_WIDTH, from_lip), from_lip)

@@ -169,7 +169,7 @@ def test_dragging_on_the_panel_does_not_orbit(viewer: Viewer) -> None:
 def test_space_plays_the_script_to_its_end(viewer: Viewer) -> None:
     """Space starts the script; it stops by itself at the end, the face posed by it."""
     xdotool(viewer, "key", "space")
-    assert viewer.is_playing
+    assert until(viewer, lambda: viewer.script_time > 0.0)
     assert until(viewer, lambda: not viewer.is_playing, 600)
     assert viewer.script_time == viewer.script.duration
 

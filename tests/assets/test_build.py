@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from assets import build
-from assets.loading import HEAD_FILE, load_head
+from assets.loading import HEAD_FILE, load, load_head
 
 TOLERANCE = 1e-3  # [mm]; other processors round differently
+LEVELS = 1.5  # of 255, mean over the picture, likewise
 
 
 @pytest.fixture(scope="module")
@@ -33,3 +34,28 @@ def test_rebuilt_head_is_the_shipped_one(rebuilt: Path) -> None:
 def test_rebuilt_head_can_be_loaded(rebuilt: Path) -> None:
     """What build writes, load reads."""
     assert len(load_head(rebuilt).faces) == 2030
+
+
+def test_repainted_skin_is_the_shipped_one(rebuilt: Path) -> None:
+    """The picture beside the data file comes from the same command."""
+    fresh, shipped = load_head(rebuilt).albedo.astype(int), load("head").albedo.astype(int)
+    assert fresh.shape == shipped.shape
+    difference = np.abs(fresh - shipped)
+    assert difference.mean() < LEVELS
+    assert (difference > 24).mean() < 0.01
+
+
+def test_tone_and_size_are_options(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A dark skin of 96 texels on request; an unknown tone is refused with the known ones."""
+    with np.load(HEAD_FILE) as shipped:
+        arrays = {name: shipped[name] for name in shipped.files}
+    monkeypatch.setattr(build, "build_head", lambda: arrays)
+    build.main([str(tmp_path / "dark.npz"), "--tone", "dark", "--size", "96"])
+    picture = load_head(tmp_path / "dark.npz").albedo
+    assert picture.shape == (96, 96, 3)
+    assert picture.mean() < load("head").albedo.mean() - 30
+    with pytest.raises(SystemExit):
+        build.main([str(tmp_path / "pink.npz"), "--tone", "pink"])
+    assert "medium-light" in capsys.readouterr().err

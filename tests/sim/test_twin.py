@@ -10,12 +10,12 @@ import pytest
 
 import sim
 from assets.model import Head
-from sim.contact import SEAL_AXES, Grip, hold_lips, watch_eyeballs
+from sim.contact import Grip, watch_eyeballs
 from sim.fibres import LEAST_ARC, SAMPLES, contract_fibres
-from sim.integrator import SUBSTEPS
+from sim.integrator import substeps_in
 from sim.lids import turn_lids
-from sim.springs import edge_forces
-from sim.tissue import carry, tissue_energy, tissue_forces
+from sim.substep import SEAL_AXES, edge_forces, hold_lips, tissue_forces
+from sim.tissue import carry, tissue_energy
 from tests.sim.poses import FRAME, settle
 
 Array = npt.NDArray[np.float64]
@@ -227,11 +227,10 @@ def test_a_step_is_its_substeps(head: Head) -> None:
     fast.set_all(values)
     plain.set_all(values)
     fast.step(FRAME)
-    for _ in range(2):
-        plain._controls.advance(FRAME / 2.0)
-        plain._place_targets()
-        for _ in range(SUBSTEPS):
-            _plain_substep(plain, FRAME / (2.0 * SUBSTEPS))
+    plain._controls.advance(FRAME / 2.0)
+    plain._place_targets()
+    for _ in range(substeps_in(FRAME)):
+        _plain_substep(plain, FRAME / substeps_in(FRAME))
     moved = plain._state.x - anatomy.surface.positions
     expected = plain.rest_positions + anatomy.frame.vectors_to_head(moved)
     assert np.abs(fast.positions - expected).max() < 1e-6

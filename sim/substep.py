@@ -1,0 +1,209 @@
+"""One substep of the face, compiled: all forces on the skin, Euler's step, all contacts.
+
+The physics is explained where its data is made: tissue.py, springs.py, contact.py. The kernels
+stand together because numba caches compiled code by the file it is written in and freezes what it
+finds outside it: a kernel may use constants and kernels of its own file only, or an update runs
+old code. A test holds this for the whole package.
+
+Source: Kähler et al. 2001, section 3 (mass-spring skin); semi-implicit Euler instead of Verlet.
+"""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+
+LIP_PASSES = 2  # averaged projections need a second pass where lips are pressed hard
+FASTEST = 5000.0  # mm/s per axis; a face never reaches it, a vertex thrown by the caller may
+SHORTEST = 1e-6  # mm: the direction of a shorter edge is noise
+SEAL_AXES = (0.5, 1.0, 0.5)  # the seal's stiffness sideways, up and down, forward (last fitted)
+SLIDES_IN_FRONT = 3.0  # mm the lower lip may come forward before it passes before the upper one
+SLIDE_FADE = 3.0  # mm over which it then does
+
+
+@numba.njit(cache=True)
+def advance(  # type: ignore[no-untyped-def]
+    state, substeps, h, rest, mass, tissue, edges, lips, grip, eyes
+):
+    """Advance a face by `substeps` of length `h` [s]: the list of all forces and constraints."""
+    damp(state, h, mass, tissue)
+    for _ in range(substeps):
+        tissue_forces(state, tissue)
+        edge_forces(state, edges)
+        accelerate(state)
+        hold_lips(state, rest, mass, lips, grip, h)
+        move(state, h)
+        for _ in range(LIP_PASSES):
+            keep_lips_apart(state, rest, mass, lips, grip.overlap)
+        keep_out_of_eyeballs(state, eyes)
+
+
+@numba.njit(cache=True)
+def damp(state, h, mass, tissue):  # type: ignore[no-untyped-def]
+    """Prepare what damping leaves of a velocity, and what a force adds to it, for this tick."""
+    for i in range(len(mass)):
+        rate = np.sqrt((tissue.tangential[i] + state.hold[i]) / mass[i])
+        damping = tissue.damping + 2.0 * tissue.damping_ratio * rate
+        state.kept[i] = 1.0 / (1.0 + h * damping)
+        state.gain[i] = state.kept[i] * h / mass[i]
+
+
+@numba.njit(cache=True)
+def tissue_forces(state, springs):  # type: ignore[no-untyped-def]
+    """Set `state.force` to the pull of bone and of muscles, and `state.offset` on the way."""
+    x, carried, normals = state.x, state.carried, state.normals
+    hold, pull, offset, force = state.hold, state.pull, state.offset, state.force
+    tangential, normal = springs.tangential, springs.normal
+    for i in range(len(x)):
+        dx = x[i, 0] - carried[i, 0]
+        dy = x[i, 1] - carried[i, 1]
+        dz = x[i, 2] - carried[i, 2]
+        offset[i, 0], offset[i, 1], offset[i, 2] = dx, dy, dz
+        nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
+        across = (normal[i] - tangential[i]) * (dx * nx + dy * ny + dz * nz)
+        along = tangential[i] + hold[i]
+        force[i, 0] = pull[i, 0] - along * dx - across * nx
+        force[i, 1] = pull[i, 1] - along * dy - across * ny
+        force[i, 2] = pull[i, 2] - along * dz - across * nz
+
+
+@numba.njit(cache=True, fastmath={"contract"})
+def edge_forces(state, springs):  # type: ignore[no-untyped-def]
+    """Add the pull of all edges to `state.force`; `state.offset` must be up to date."""
+    x, offset, force = state.x, state.offset, state.force
+    edges, rest_length = springs.edges, springs.rest_length
+    stiffness, shear = springs.stiffness, springs.shear
+    strain_limit, extra = springs.strain_limit, springs.stiffening - 1.0
+    for e in range(len(edges)):
+        i, j = edges[e, 0], edges[e, 1]
+        dx = x[j, 0] - x[i, 0]
+        dy = x[j, 1] - x[i, 1]
+        dz = x[j, 2] - x[i, 2]
+        length = max(np.sqrt(dx * dx + dy * dy + dz * dz), SHORTEST)
+        extension = length - rest_length[e]
+        beyond = max(extension - strain_limit * rest_length[e], 0.0)
+        tension = stiffness[e] * (extension + extra * beyond) / length
+        s = shear[e]
+        fx = tension * dx + s * (offset[j, 0] - offset[i, 0])
+        fy = tension * dy + s * (offset[j, 1] - offset[i, 1])
+        fz = tension * dz + s * (offset[j, 2] - offset[i, 2])
+        force[i, 0] += fx
+        force[i, 1] += fy
+        force[i, 2] += fz
+        force[j, 0] -= fx
+        force[j, 1] -= fy
+        force[j, 2] -= fz
+
+
+@numba.njit(cache=True)
+def accelerate(state):  # type: ignore[no-untyped-def]
+    """First half of semi-implicit Euler: velocities from forces and damping."""
+    v, force = state.v, state.force
+    for i in range(len(v)):
+        kept, gain = state.kept[i], state.gain[i]
+        for k in range(3):
+            v[i, k] = kept * v[i, k] + gain * force[i, k]
+
+
+@numba.njit(cache=True)
+def hold_lips(state, rest, mass, lips, grip, h):  # type: ignore[no-untyped-def]
+    """Change velocities by the seal's pull over a substep of `h` [s], as if it had already acted.
+
+    An implicit spring on the distance c of a pair, growing at speed s, with inverse mass w:
+    s' = (s - h k w c) / (1 + h^2 k w), stable for any stiffness k.
+    """
+    if grip.stiffness <= 0.0:
+        return
+    x, v, change = state.x, state.v, state.move
+    change[:] = 0.0
+    for p in range(len(lips.lower)):
+        i, a, b = lips.lower[p], lips.upper[p, 0], lips.upper[p, 1]
+        w = lips.share[p]
+        inverse = 1.0 / mass[i] + w * w / mass[a] + (1.0 - w) * (1.0 - w) / mass[b]
+        for k in range(3):
+            apart = x[i, k] - rest[i, k]
+            apart -= w * (x[a, k] - rest[a, k]) + (1.0 - w) * (x[b, k] - rest[b, k])
+            if k == 1:
+                apart -= grip.overlap
+            speed = v[i, k] - w * v[a, k] - (1.0 - w) * v[b, k]
+            give = h * inverse * grip.stiffness * lips.seal[p] * SEAL_AXES[k]
+            kept = (speed - give * apart) / (1.0 + h * give)
+            impulse = lips.averaging[p] * (kept - speed) / inverse
+            change[i, k] += impulse / mass[i]
+            change[a, k] -= w * impulse / mass[a]
+            change[b, k] -= (1.0 - w) * impulse / mass[b]
+    for row in range(len(lips.members)):
+        i = lips.members[row]
+        for k in range(3):
+            v[i, k] += change[i, k]
+
+
+@numba.njit(cache=True)
+def move(state, h):  # type: ignore[no-untyped-def]
+    """Second half: positions from the new velocities."""
+    x, v = state.x, state.v
+    for i in range(len(x)):
+        for k in range(3):
+            v[i, k] = min(max(v[i, k], -FASTEST), FASTEST)
+            x[i, k] += h * v[i, k]
+
+
+@numba.njit(cache=True)
+def keep_lips_apart(state, rest, mass, lips, overlap):  # type: ignore[no-untyped-def]
+    """Project lips that cross by more than `overlap` [mm] back and stop their approach."""
+    x, v, move = state.x, state.v, state.move
+    crossed = False
+    for p in range(len(lips.lower)):
+        i, a, b = lips.lower[p], lips.upper[p, 0], lips.upper[p, 1]
+        w = lips.share[p]
+        gap = w * x[a, 1] + (1.0 - w) * x[b, 1] - x[i, 1]
+        deep = lips.least_gap[p] - overlap - gap
+        if deep <= 0.0:
+            continue
+        forward = x[i, 2] - rest[i, 2]
+        forward -= w * (x[a, 2] - rest[a, 2]) + (1.0 - w) * (x[b, 2] - rest[b, 2])
+        full = min(max(1.0 - (forward - SLIDES_IN_FRONT) / SLIDE_FADE, 0.0), 1.0)
+        if full == 0.0:
+            continue
+        if not crossed:
+            move[:] = 0.0
+            crossed = True
+        inverse = 1.0 / mass[i] + w * w / mass[a] + (1.0 - w) * (1.0 - w) / mass[b]
+        push = full * lips.averaging[p] * deep / inverse
+        approach = v[i, 1] - w * v[a, 1] - (1.0 - w) * v[b, 1]
+        stop = full * lips.averaging[p] * max(approach, 0.0) / inverse
+        move[i, 0] -= push / mass[i]
+        move[a, 0] += w * push / mass[a]
+        move[b, 0] += (1.0 - w) * push / mass[b]
+        move[i, 1] -= stop / mass[i]
+        move[a, 1] += w * stop / mass[a]
+        move[b, 1] += (1.0 - w) * stop / mass[b]
+    if crossed:
+        for row in range(len(lips.members)):
+            i = lips.members[row]
+            x[i, 1] += move[i, 0]
+            v[i, 1] += move[i, 1]
+
+
+@numba.njit(cache=True)
+def keep_out_of_eyeballs(state, eyes):  # type: ignore[no-untyped-def]
+    """Project skin out of the eyeballs and stop its approach."""
+    x, v = state.x, state.v
+    vertex, centre, least_distance = eyes.vertex, eyes.centre, eyes.least_distance
+    for c in range(len(vertex)):
+        i = vertex[c]
+        dx = x[i, 0] - centre[c, 0]
+        dy = x[i, 1] - centre[c, 1]
+        dz = x[i, 2] - centre[c, 2]
+        squared = dx * dx + dy * dy + dz * dz
+        if squared >= least_distance[c] ** 2 or squared == 0.0:
+            continue
+        out = least_distance[c] / np.sqrt(squared)
+        x[i, 0] = centre[c, 0] + dx * out
+        x[i, 1] = centre[c, 1] + dy * out
+        x[i, 2] = centre[c, 2] + dz * out
+        approach = (v[i, 0] * dx + v[i, 1] * dy + v[i, 2] * dz) / squared
+        if approach < 0.0:
+            v[i, 0] -= approach * dx
+            v[i, 1] -= approach * dy
+            v[i, 2] -= approach * dz

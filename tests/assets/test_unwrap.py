@@ -1,0 +1,143 @@
+"""Texture coordinates: one flat piece, nothing turned over, little stretched, a mirror image."""
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import assets
+from assets.generator import unwrap
+from assets.model import Head
+
+Points = npt.NDArray[np.float64]
+TUCKED_ROWS = ("mouth_0", "mouth_1", "eye_0")  # behind lips and lids: never seen at rest
+
+
+@pytest.fixture(scope="module")
+def head() -> Head:
+    """The built-in head."""
+    return assets.load("head")
+
+
+def signed_areas(flat: Points, faces: npt.NDArray[np.int32]) -> Points:
+    """Twice the area of flat triangles, positive where they are counter-clockwise."""
+    first, second = (flat[faces[:, k]] - flat[faces[:, 0]] for k in (1, 2))
+    return np.asarray(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+
+
+def stretches(head: Head) -> Points:
+    """Largest and smallest scale of each face in the picture [1/m], shape (F, 2)."""
+    corner, flat = head.vertices[head.faces], head.uv.astype(np.float64)[head.face_uv]
+    along = corner[:, 1] - corner[:, 0]
+    length = np.linalg.norm(along, axis=1)
+    second = corner[:, 2] - corner[:, 0]
+    edges = np.zeros((len(corner), 2, 2))
+    edges[:, 0, 0], edges[:, 0, 1] = length, (along * second).sum(axis=1) / length
+    edges[:, 1, 1] = np.linalg.norm(np.cross(along, second), axis=1) / length
+    pictured = np.stack([flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]], axis=2)
+    jacobian = 1000.0 * pictured @ np.linalg.inv(edges)
+    return np.asarray(np.linalg.svd(jacobian, compute_uv=False))
+
+
+def seen_in_front(head: Head) -> npt.NDArray[np.bool_]:
+    """Faces of the face itself, without what is tucked in, shape (F,)."""
+    tucked = [head.rings[f"{row}_{side}"] for row in TUCKED_ROWS for side in ("left", "right")]
+    _, y, z = head.vertices[head.faces].mean(axis=1).T
+    in_front = (z > 62.0) & (y < 62.0) & (y > -112.0)
+    return in_front & ~np.isin(head.faces, np.concatenate(tucked)).any(axis=1)
+
+
+def test_coordinates_are_one_piece_within_the_picture(head: Head) -> None:
+    """Every vertex has one pair of coordinates, and some margin is left for filters."""
+    assert head.uv.dtype == np.float32 and head.uv.shape == (len(head.vertices), 2)
+    assert head.face_uv.dtype == np.int32 and np.array_equal(head.face_uv, head.faces)
+    assert head.uv.min() > 0.005 and head.uv.max() < 0.995
+
+
+def test_no_triangle_is_turned_over(head: Head) -> None:
+    """Not even those behind lips and lids."""
+    assert signed_areas(head.uv.astype(np.float64), head.face_uv).min() > 0.0
+
+
+def test_no_two_triangles_share_a_texel(head: Head) -> None:
+    """Two places of the skin must not get the same colour: samples lie in one face at most."""
+    side = 300
+    covered = np.zeros((side, side), dtype=np.int64)
+    for a, b, c in head.uv.astype(np.float64)[head.face_uv] * side:
+        low, high = np.floor(np.min([a, b, c], axis=0)), np.ceil(np.max([a, b, c], axis=0))
+        x, y = np.meshgrid(*(np.arange(s, e) for s, e in zip(low, high, strict=True)))
+        place = np.stack([x + 0.503, y + 0.507], axis=-1)  # off the lines of symmetry
+        turns = [
+            (q - p)[0] * (place - p)[..., 1] - (q - p)[1] * (place - p)[..., 0]
+            for p, q in ((a, b), (b, c), (c, a))
+        ]
+        covered[y.astype(int), x.astype(int)] += np.min(turns, axis=0) > 0.0
+    assert covered.max() == 1
+    assert covered.mean() > 0.5
+
+
+def test_face_is_hardly_stretched(head: Head) -> None:
+    """A round freckle stays nearly round, and detail is spread evenly over the face."""
+    largest, smallest = stretches(head)[seen_in_front(head)].T
+    ratio = largest / smallest
+    assert np.median(ratio) < 1.35
+    assert np.percentile(ratio, 95) < 2.0
+    assert ratio.max() < 4.0
+    scale = np.sqrt(largest * smallest)
+    assert np.percentile(scale, 95) < 2.0 * np.percentile(scale, 5)
+
+
+def test_face_gets_more_of_the_picture_than_the_rest(head: Head) -> None:
+    """The back of the head must not eat up the brow's hairs."""
+    scale = np.sqrt(stretches(head).prod(axis=1))
+    behind = head.vertices[head.faces].mean(axis=1)[:, 2] < 10.0
+    assert np.median(scale[seen_in_front(head)]) > 1.3 * np.median(scale[behind])
+
+
+def test_coordinates_are_their_own_mirror_image(head: Head) -> None:
+    """u -> 1 - u takes each vertex to its mirror image."""
+    assert np.abs(head.uv[head.mirror] * [-1.0, 1.0] + [1.0, 0.0] - head.uv).max() < 1e-6
+
+
+def test_coordinates_are_upright(head: Head) -> None:
+    """v grows upward, u to the subject's left."""
+    at = {name: head.uv[vertex] for name, vertex in head.anatomy.items()}
+    assert at["glabella"][1] > at["pronasale"][1] > at["pogonion"][1]
+    assert at["cheek_left"][0] > 0.5 > at["cheek_right"][0]
+
+
+def test_start_is_valid_and_relaxing_improves_it(head: Head) -> None:
+    """Tutte's embedding turns nothing over; nor does the descent, which lowers the energy."""
+    patch = unwrap.fill_holes(head.vertices, head.faces, head.rings)
+    start = unwrap.tutte(patch)
+    inverse, weights = unwrap._shapes(patch)
+    relaxed = unwrap.relax(patch, start)
+    before, _ = unwrap._energy(start, patch.faces, inverse, weights)
+    after, _ = unwrap._energy(relaxed, patch.faces, inverse, weights)
+    assert signed_areas(start, patch.faces).min() > 0.0
+    assert signed_areas(relaxed, patch.faces).min() > 0.0
+    assert 4.0 < after / weights.sum() < 5.0 < before / weights.sum()  # 4 would be no stretch
+    assert np.all(relaxed[patch.on_midline, 0] == 0.0)
+
+
+def test_energy_gradient_is_that_of_finite_differences(head: Head) -> None:
+    """On a few triangles that are stretched at random."""
+    random = np.random.default_rng(4)
+    faces = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 4]], dtype=np.int32)
+    turn = np.radians([0.0, 10.0, 75.0, 130.0, 200.0])
+    flat = np.column_stack([np.cos(turn), np.sin(turn)]) * [[0.0], [1.0], [1.3], [0.8], [1.0]]
+    inverse = np.linalg.inv(np.eye(2) + 0.3 * random.normal(size=(3, 2, 2)))
+    weights = np.array([1.0, 2.0, 0.5])
+    _, gradient = unwrap._energy(flat, faces, inverse, weights)
+    for index in np.ndindex(flat.shape):
+        step = np.zeros_like(flat)
+        step[index] = 1e-6
+        above, _ = unwrap._energy(flat + step, faces, inverse, weights)
+        below, _ = unwrap._energy(flat - step, faces, inverse, weights)
+        assert gradient[index] == pytest.approx((above - below) / 2e-6, rel=1e-4, abs=1e-4)
+
+
+def test_turned_triangle_costs_infinitely_much() -> None:
+    """That is what keeps a descent from turning one over."""
+    flat = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]])
+    energy, _ = unwrap._energy(flat, np.array([[0, 1, 2]]), np.eye(2)[None], np.ones(1))
+    assert energy == np.inf
