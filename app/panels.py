@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 if TYPE_CHECKING:
     from .viewer import Viewer
 
-WIDTH = 320.0  # [window units]
+WIDTH = 340.0  # [window units]
 MUTED = imgui.ImVec4(0.62, 0.64, 0.68, 1.0)
 SHORTCUTS = (
     ("1 .. 9", "expressions; again: neutral"),
@@ -81,7 +81,7 @@ class Panel:
 
     def _script(self) -> None:
         viewer = self.viewer
-        imgui.separator_text(viewer.script.title)
+        imgui.separator_text(f"Script: {viewer.script.title}")
         if imgui.button("Pause" if viewer.is_playing else "Play"):
             viewer.toggle_playing()
         self._remember("play")

@@ -2,13 +2,27 @@
 
     head = assets.load("head")
     plane = assets.load("plane")
+    mesh = assets.read_mesh("cloth.ply")  # anything that trimesh reads
     picture = assets.paint(tone="dark")  # another skin for the head than `head.albedo`
 
 The programs that generate them are in this package too; `python -m assets.build` runs them.
 """
 
 from .loading import available, load
+from .meshes import Mesh, read_mesh
 from .model import AssetError, Eye, Head, Part, Plane, Tone
 from .painting import paint
 
-__all__ = ["AssetError", "Eye", "Head", "Part", "Plane", "Tone", "available", "load", "paint"]
+__all__ = [
+    "AssetError",
+    "Eye",
+    "Head",
+    "Mesh",
+    "Part",
+    "Plane",
+    "Tone",
+    "available",
+    "load",
+    "paint",
+    "read_mesh",
+]

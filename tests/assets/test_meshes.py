@@ -1,0 +1,68 @@
+"""Meshes that somebody brings: order kept, mistakes told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+import assets
+
+# Vertices 1 and 3 lie in the same place, vertex 4 is used by nothing: both have to stay.
+OBJ = """v 0 0 0
+v 1 0 0
+v 0 1 0
+v 1 0 0
+v 9 9 9
+v 1 1 0
+f 1 2 3
+f 4 6 3
+"""
+
+
+def test_order_and_doubles_are_kept(tmp_path: Path) -> None:
+    """Vertex numbers mean the same in the file and in the array."""
+    path = tmp_path / "mesh.obj"
+    path.write_text(OBJ)
+    mesh = assets.read_mesh(path)
+    assert mesh.vertices.tolist()[3:] == [[1, 0, 0], [9, 9, 9], [1, 1, 0]]
+    assert mesh.faces.tolist() == [[0, 1, 2], [3, 5, 2]]
+
+
+@pytest.mark.parametrize("suffix", ["ply", "off", "glb"])
+def test_other_formats(tmp_path: Path, suffix: str) -> None:
+    """What trimesh writes comes back with as many vertices and triangles."""
+    path = tmp_path / f"ball.{suffix}"
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    ball.export(path)
+    mesh = assets.read_mesh(path)
+    assert mesh.vertices.shape == ball.vertices.shape
+    assert np.array_equal(mesh.faces, ball.faces)
+
+
+def test_polygons_become_triangles(tmp_path: Path) -> None:
+    """A quadrilateral is two triangles."""
+    path = tmp_path / "quad.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    assert assets.read_mesh(path).faces.shape == (2, 3)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("absent.obj", None, r"absent\.obj: no such mesh file"),
+        ("mesh.doc", "hello", r"cannot read '\.doc' files; among those it can are glb, obj"),
+        ("points.obj", "v 0 0 0\nv 1 1 1\n", "holds no triangles"),
+        ("mesh.ply", "ply\nformat nonsense\n", "broken or not what its name says"),
+        ("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "vertex 1 .* not a finite number"),
+    ],
+)
+def test_mistakes_are_told(tmp_path: Path, name: str, content: str | None, message: str) -> None:
+    """Each bad file is one clear line."""
+    path = tmp_path / name
+    if content is not None:
+        path.write_text(content)
+    with pytest.raises(assets.AssetError, match=message):
+        assets.read_mesh(path)
