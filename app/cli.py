@@ -228,6 +228,9 @@ def doctor(offscreen: bool, quiet: bool) -> None:
     sys.exit(0 if healthy else 2)
 
 
+REFERENCE_FILES = "a folder with face.npz: vertices, triangles, landmarks68, displacement fields"
+
+
 @main.group()
 def bench() -> None:
     """Measure; each command prints its figures and how they were taken."""
@@ -242,6 +245,33 @@ def bench_refine(rounds: int) -> None:
 
     with told_in_one_line():
         click.echo(refine_table(rounds, [build() for build in SCENES.values()]))
+
+
+@bench.command("simulate")
+@click.option("--rounds", type=click.IntRange(1, 100_000), default=100, show_default=True)
+def bench_simulate(rounds: int) -> None:
+    """Time a 60 Hz frame of the simulation: the head, and plain meshes up to 100k vertices."""
+    from .benchmarks import simulate_table
+
+    with told_in_one_line():
+        click.echo(simulate_table(rounds))
+
+
+@bench.command("motion")
+@click.option(
+    "--reference",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    required=True,
+    help=REFERENCE_FILES,
+)
+def bench_motion(reference: Path) -> None:
+    """Compare simulated with scanned skin motion, expression by expression."""
+    from .benchmarks import motion_table
+
+    with told_in_one_line():
+        if not (reference / "face.npz").is_file():
+            raise UserError(f"{reference}: no face.npz in it; it must be {REFERENCE_FILES}")
+        click.echo(motion_table(reference))
 
 
 def open_viewer(

@@ -29,7 +29,7 @@ LIP_EDGE = 5.0  # mm around the mouth line in which lip vertices are looked for
 OWN_SIDE = 0.1  # of the lip side field: nearer to the corner lips are one
 PAIR_GAP = 3.0  # mm: lips further apart at rest are no pair
 LEAST_SEAL_AREA = 4.0  # mm2: tiny vertices of a lip edge still carry their share
-UNBROKEN_SEAL = 100.0  # x stiffness of a whole seal against one half broken: gaps below 0.1 mm
+UNBROKEN_SEAL = 100.0  # x the rig's seal while nothing opens the lips: gaps below 0.1 mm
 FULLY_PRESSED = 0.25  # activity from which they overlap in full
 PRESSED_OVERLAP = 0.5  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
 EYE_REACH = 12.0  # mm around an eyeball in which skin is watched
@@ -64,8 +64,11 @@ class Grip(NamedTuple):
 
     @classmethod
     def of(cls, strength: float, activity: float) -> Grip:
-        """Grip of a seal of `strength` 0 (broken) .. 1 under muscles of `activity` 0 .. 1."""
-        stiffness = strength / (1.0 - strength + 1.0 / UNBROKEN_SEAL)
+        """Grip of a seal of `strength` 0 (broken) .. 1 under muscles of `activity` 0 .. 1.
+
+        Whole, it outdoes every muscle; it must give way early or the mouth would pop open.
+        """
+        stiffness = strength**3 / (1.0 - strength + 1.0 / UNBROKEN_SEAL)
         return cls(stiffness, PRESSED_OVERLAP * strength * min(activity / FULLY_PRESSED, 1.0))
 
 

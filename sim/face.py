@@ -7,7 +7,7 @@
                       |
     tissue + edges + lip seal  ->  velocity  ->  position                tissue.py, springs.py
                       |
-    lips and eyeballs keep skin out                                      contact.py, integrator.py
+    lips and eyeballs keep skin out                                      contact.py, substep.py
 
 Built once from a mesh (anatomy.py), then `step` moves it. Everything inside runs in the standard
 face frame; only displacements are turned back into the head's own coordinates, so a face at rest

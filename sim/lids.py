@@ -32,7 +32,7 @@ COLUMNS = 41  # places along the opening where its height is known
 SMOOTH_COLUMNS = 13  # a third of the opening's width
 COLUMN_REACH = 0.045  # of the opening's width: a column of lid vertices
 MARGIN_REACH = 3.5  # mm around the lid landmarks in which the lid's edge is looked for
-OVERLAP = 0.04  # rad (0.5 mm): the upper margin comes to lie in front of the lower one
+OVERLAP = 0.07  # rad (0.9 mm): the upper margin comes to lie in front of the lower one, refined too
 LEAST_OPENING = 0.05  # rad: at the corners lids do not overlap
 LEAST_TURN = 1e-3  # lid vertices that move less are not lid
 

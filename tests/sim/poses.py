@@ -105,13 +105,16 @@ def _turned_by(yaw: float, pitch: float) -> Array:
     return np.array(about_x) @ np.array(about_y)
 
 
-def lid_gaps(simulation: sim.Simulation, head: Any) -> list[float]:
+def lid_gaps(simulation: sim.Simulation, head: Any, *, corners: Array | None = None) -> list[float]:
     """Greatest vertical opening [mm] through which each eyeball is seen from the front.
+
+    `corners`: of the triangles that are looked at (M, 3, 3); without, those of the simulation.
 
     Rays along -z start in front of the eye on a grid; an opening is a run of rays in one column
     that meet no skin.
     """
-    corners = simulation.positions[head.faces]
+    if corners is None:
+        corners = simulation.positions[head.faces]
     gaps = []
     for numbers in ((36, 39), (42, 45)):
         ends = np.sort(simulation.positions[head.landmarks[list(numbers)], 0])

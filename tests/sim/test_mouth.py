@@ -18,6 +18,7 @@ from tests.sim.poses import both_sides, lip_slit, settle
 
 VIEWS = ((0.0, 0.0), (30.0, 0.0), (-30.0, 0.0), (0.0, 8.0), (0.0, -8.0))
 SHUT = 0.3  # mm: less than a pixel of a full-screen close-up
+UNMOVED = 0.01  # mm: lips that no muscle reaches need no look
 SHUT_EXPRESSIONS = ("kiss", "sadness", "anger", "contempt", "wink", "blink")
 OPENERS = (
     "levator_labii_superioris_alaeque_nasi", "levator_labii_superioris",
@@ -78,7 +79,9 @@ def test_no_other_muscle_opens_the_mouth(
         values = both_sides(simulation, {muscle: strength})
         if sides == "left":
             values = {name: value for name, value in values.items() if "_right" not in name}
-        settle(simulation, values, frames=40)
+        moved = settle(simulation, values, frames=40)
+        if np.abs(moved[simulation._anatomy.lips.members]).max() < UNMOVED:
+            continue
         for mesh, slit in slits().items():
             assert slit < SHUT, (muscle, mesh)
 
