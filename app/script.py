@@ -175,6 +175,7 @@ class _Reader:
     def number(
         self, table: Mapping[str, Any], key: str, *, where: str, default: float | None = None
     ) -> float:
+        """A finite number; with a default it may be missing."""
         value = table.get(key, default)
         if value is None:
             raise self.fail(f"{where}: '{key}' is missing; it must be a number")
@@ -185,18 +186,21 @@ class _Reader:
         return float(value)
 
     def text(self, table: Mapping[str, Any], key: str, *, default: str | None) -> Any:
+        """A text, or the default where there is none."""
         value = table.get(key, default)
         if value is not default and not isinstance(value, str):
             raise self.fail(f"top level: '{key}' is {value!r}; it must be a text in quotes")
         return value
 
     def easing(self, table: Mapping[str, Any], *, where: str) -> str:
+        """The name of an easing that there is."""
         value = table.get("easing", "smooth")
         if value not in EASINGS:
             raise self.fail(f"{where}: easing {value!r}; allowed are {', '.join(EASINGS)}")
         return str(value)
 
     def time(self, table: Mapping[str, Any], previous: float | None, *, where: str) -> float:
+        """The time of a key [s], which has to come after that of the key before it."""
         time = self.number(table, "time", where=where)
         if time < 0.0:
             raise self.fail(f"{where}: time is {time:g} s; it must be 0 or more")
@@ -207,6 +211,7 @@ class _Reader:
         return time
 
     def poses(self, tables: Any) -> tuple[dict[str, Channel], tuple[NamedPose, ...]]:
+        """The channels that all poses make together, and the poses that have a name."""
         if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
             raise self.fail("'pose' must be a list of tables, each written [[pose]]")
         channel_names = {name for table in tables for name in table if name not in POSE_KEYS}
@@ -228,6 +233,7 @@ class _Reader:
         return channels, tuple(key_poses)
 
     def tracks(self, tables: Any) -> dict[str, Channel]:
+        """The single channels of the table [tracks]."""
         if not isinstance(tables, dict):
             raise self.fail(
                 "'tracks' must be a table: [tracks], then name = [ {time, value}, ... ]"

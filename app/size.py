@@ -15,6 +15,7 @@ class Size(click.ParamType[tuple[int, int]]):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[int, int]:
+        """Turn the text into two numbers, or fail with what is allowed."""
         if isinstance(value, tuple):
             return value
         width, separator, height = str(value).lower().partition("x")

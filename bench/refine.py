@@ -9,9 +9,7 @@ medians are reported: on a shared machine times drift by a third within a run, a
 one run can be compared. The best time is reported beside the median for the same reason.
 """
 
-import gc
-import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 import refine
+
+from .timing import interleaved
 
 METHODS: tuple[tuple[str, Mapping[str, Any]], ...] = (
     ("none", {}),
@@ -79,7 +79,8 @@ def run(
     ]
     # The first pass compiles or loads the kernels, and counts.
     counts = [[len(refiner.refine(frame).triangles) for frame in frames] for refiner in refiners]
-    seconds = _interleaved(refiners, frames, rounds)
+    calls = [_all_frames(refiner, frames) for refiner in refiners]
+    seconds = interleaved(calls, rounds) / len(frames)
     return [
         Row(
             refiner=name,
@@ -94,25 +95,13 @@ def run(
     ]
 
 
-def _interleaved(
-    refiners: Sequence[refine.Refiner],
-    frames: Sequence[npt.NDArray[np.floating]],
-    rounds: int,
-) -> npt.NDArray[np.float64]:
-    """Seconds per frame of each refiner in each round, shape (rounds, refiners)."""
-    seconds = np.zeros((rounds, len(refiners)))
-    was_collecting = gc.isenabled()
-    gc.disable()
-    try:
-        for turn in range(rounds):
-            order = range(len(refiners)) if turn % 2 == 0 else reversed(range(len(refiners)))
-            for k in order:
-                refiner = refiners[k]
-                start = time.perf_counter()
-                for frame in frames:
-                    refiner.refine(frame)
-                seconds[turn, k] = (time.perf_counter() - start) / len(frames)
-    finally:
-        if was_collecting:
-            gc.enable()
-    return seconds
+def _all_frames(
+    refiner: refine.Refiner, frames: Sequence[npt.NDArray[np.floating]]
+) -> Callable[[], None]:
+    """A call that refines every frame once."""
+
+    def refine_all() -> None:
+        for frame in frames:
+            refiner.refine(frame)
+
+    return refine_all

@@ -10,16 +10,17 @@ can be compared. The best time is reported beside the median for the same reason
 core does.
 """
 
-import gc
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 
 import assets
 import sim
+
+from .timing import interleaved
 
 FRAME = 1.0 / 60.0
 SIZES = (1_000, 10_000, 100_000)  # vertices of the plain meshes
@@ -74,20 +75,11 @@ def run(*, rounds: int = 200, sizes: Sequence[int] = SIZES) -> list[Row]:
     for subject in subjects:  # compiles or loads the kernels
         subject.prepare()
         subject.simulation.step(FRAME)
-    seconds = np.zeros((rounds, len(subjects)))
-    was_collecting = gc.isenabled()
-    gc.disable()
-    try:
-        for turn in range(rounds):
-            order = range(len(subjects)) if turn % 2 == 0 else reversed(range(len(subjects)))
-            for k in order:
-                subjects[k].prepare()
-                start = time.perf_counter()
-                subjects[k].simulation.step(FRAME)
-                seconds[turn, k] = time.perf_counter() - start
-    finally:
-        if was_collecting:
-            gc.enable()
+    seconds = interleaved(
+        [partial(subject.simulation.step, FRAME) for subject in subjects],
+        rounds,
+        prepare=[subject.prepare for subject in subjects],
+    )
     return [
         Row(
             motion=subject.motion,
