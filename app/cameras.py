@@ -24,17 +24,16 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
     if view in render.VIEWS:
         return render.OrbitCamera.framing(vertices, view=view)
     try:
-        numbers = [float(part) for part in view.split(",")]
-        if len(numbers) not in (2, 3) or not np.isfinite(numbers).all():
+        yaw, pitch, zoom = [*map(float, view.split(",")), 1.0][:3]
+        if view.count(",") > 2 or not np.isfinite([yaw, pitch, zoom]).all() or zoom <= 0.0:
             raise ValueError
     except ValueError:
         raise UserError(
             f"camera '{view}': allowed are {', '.join(render.VIEWS)}, "
-            "or yaw,pitch[,zoom] in degrees"
+            "or yaw,pitch[,zoom] in degrees, zoom above 0"
         ) from None
     camera = render.OrbitCamera.framing(vertices, view="front")
-    camera.orbit(numbers[0], numbers[1])
+    camera.orbit(yaw, pitch)
     camera.target = scene.focus.copy()
-    if len(numbers) == 3:
-        camera.zoom(numbers[2])
+    camera.zoom(zoom)
     return camera

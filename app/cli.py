@@ -132,6 +132,8 @@ def capture(
             style=style_of(**look),
             samples=samples,
         )
+        if compare and refiner == "none":
+            raise UserError("--compare sets the mesh as it is beside a --refiner other than none")
         picture = output if output is not None and output.suffix.lower() == ".png" else None
         if picture is None and still_time is not None:
             raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")

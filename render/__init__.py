@@ -19,7 +19,7 @@ Source: Kähler et al. 2003, Fig. 1, the rendering stage.
 
 from .camera import VIEWS, OrbitCamera
 from .errors import GLError
-from .geometry import Part
+from .parts import Part
 from .probe import Finding, probe
 from .renderer import Renderer, Viewport
 from .stream import Stream

@@ -6,7 +6,7 @@ against 8 ms at 1280 x 720).
 
 import moderngl
 
-from .layers import Layers, Rectangle
+from .layers import Layers, Rectangle, overlap
 from .programs import compile_program
 from .style import Background
 
@@ -32,7 +32,7 @@ class Backdrop:
             self._store = self._gl.framebuffer([self._gl.renderbuffer(layers.size, 4)])
         if self._stored.get(viewport) != background:
             self._stored = {
-                other: kept for other, kept in self._stored.items() if not _overlap(other, viewport)
+                other: kept for other, kept in self._stored.items() if not overlap(other, viewport)
             }
             self._stored[viewport] = background
             self._store.use()
@@ -55,13 +55,3 @@ class Backdrop:
                 attachment.release()
             self._store.release()
         self._stored.clear()
-
-
-def _overlap(first: Rectangle, second: Rectangle) -> bool:
-    """Whether two rectangles share a pixel."""
-    return (
-        first[0] < second[0] + second[2]
-        and second[0] < first[0] + first[2]
-        and first[1] < second[1] + second[3]
-        and second[1] < first[1] + first[3]
-    )

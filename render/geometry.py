@@ -1,73 +1,16 @@
-"""Geometry that is not a lent stream: rigid parts, polylines, and one number per triangle."""
+"""Geometry beside the lent streams: polylines, and one number per triangle."""
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
 from .sight import box_corners
-from .style import Colour, linear
+from .style import Colour
 
 SPLITS_PER_ROW = 1024  # texels per row of the split texture; surface.glsl reads it so
-
-
-class Part(Protocol):
-    """What is read of a rigid part.
-
-    name: for messages. vertices, normals: shape (n, 3), float32.
-    faces: counter-clockwise from the side that is seen, shape (m, 3), int32; the other side is not
-        drawn. colours: sRGB 0..1, shape (n, 3), float32.
-    bone: whose transform moves it. shine: 0 dull, 1 wet.
-    """
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def vertices(self) -> npt.NDArray[np.float32]: ...
-    @property
-    def normals(self) -> npt.NDArray[np.float32]: ...
-    @property
-    def faces(self) -> npt.NDArray[np.int32]: ...
-    @property
-    def colours(self) -> npt.NDArray[np.float32]: ...
-    @property
-    def bone(self) -> str: ...
-    @property
-    def shine(self) -> float: ...
-
-
-class PartBuffers:
-    """A rigid part on the graphics card, uploaded once; keeps the part alive, and so its id."""
-
-    def __init__(self, gl: moderngl.Context, part: Part) -> None:
-        self.part = part
-        shapes = {np.shape(part.vertices), np.shape(part.normals), np.shape(part.colours)}
-        if len(shapes) != 1 or np.shape(part.vertices)[1:] != (3,):
-            raise ValueError(
-                f"part '{part.name}': vertices {np.shape(part.vertices)}, normals "
-                f"{np.shape(part.normals)} and colours {np.shape(part.colours)} must all be (n, 3)"
-            )
-        self.corners = box_corners(part.vertices)
-        rows = np.hstack([part.vertices, part.normals, linear(part.colours)]).astype(np.float32)
-        self._gl = gl
-        self._vertices = gl.buffer(rows.tobytes())
-        self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
-        self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
-
-    def draw(self, program: moderngl.Program) -> None:
-        """Draw it with a program that has in_position, in_normal and in_colour."""
-        if program not in self._arrays:
-            self._arrays[program] = self._gl.vertex_array(
-                program,
-                [(self._vertices, "3f 3f 3f", "in_position", "in_normal", "in_colour")],
-                index_buffer=self._indices,
-                index_element_size=4,
-            )
-        self._gl.enable(moderngl.CULL_FACE)
-        self._arrays[program].render(moderngl.TRIANGLES)
-        self._gl.disable(moderngl.CULL_FACE)
 
 
 class SplitTexture:

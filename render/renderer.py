@@ -15,7 +15,8 @@ import numpy.typing as npt
 
 from .backdrop import Backdrop
 from .camera import OrbitCamera
-from .geometry import LineBuffer, Part, PartBuffers, SplitTexture
+from .geometry import LineBuffer, SplitTexture
+from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
 from .shadow import TEXEL, ShadowMap
 from .sight import Sight
@@ -50,7 +51,7 @@ class Renderer:
         self.surface = surface
         self._gl = surface.gl
         self._programs: dict[tuple[str, ...], moderngl.Program] = {}
-        self._parts: dict[int, PartBuffers] = {}
+        self._parts = PartStore(self._gl)
         self._splits = SplitTexture(self._gl)
         self._lines = LineBuffer(self._gl)
         self._backdrop = Backdrop(self._gl)
@@ -119,6 +120,7 @@ class Renderer:
             program["wire_colour"] = *style.wire_colour, style.wire_opacity
         if is_textured and texture is not None:
             program["albedo_texture"] = texture.bind(_ALBEDO_UNIT)
+            program["redness"] = texture.redness
         if colours_splits:
             program["split_counts"] = self._splits.bind(_SPLIT_UNIT)
             write_uniform(program, "split_palette", _PALETTE)
@@ -145,17 +147,12 @@ class Renderer:
         )
         if is_shadowed:
             self._set_shadow(program, sight)
-        for part in parts:
-            if part.bone not in transforms:
-                raise ValueError(
-                    f"part '{part.name}' moves with bone '{part.bone}'; transforms has only "
-                    f"{', '.join(sorted(transforms)) or 'none'}"
-                )
-            buffers = self._parts.get(id(part))
-            if buffers is None:
-                buffers = self._parts[id(part)] = PartBuffers(self._gl, part)
-            if self._aim(program, sight, buffers.corners, transforms[part.bone]):
-                _set_part(program, part.shine)
+        placed = self._parts.placed(parts, transforms)
+        if self.surface.is_software:
+            placed = self._parts.seen(placed, sight, self.surface.layers)
+        for buffers, transform in placed:
+            if self._aim(program, sight, buffers.corners, transform):
+                _set_part(program, buffers.part.shine)
                 buffers.draw(program)
 
     def draw_lines(

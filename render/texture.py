@@ -8,9 +8,11 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from .style import linear
 from .surface import is_software
 
 _SRGB8_ALPHA8 = 0x8C43  # the constant of OpenGL; moderngl has no name for it
+_LOOKED_AT = 10_000  # about so many texels decide what is red
 ANISOTROPY = 8.0  # most texels that one sample averages along its longest axis
 
 
@@ -18,11 +20,13 @@ class Texture:
     """A picture on the graphics card; `Renderer.load_texture` makes it.
 
     size: width and height [texels].
+    redness: median of red over green light; where the picture is redder, lips are, and they gloss.
     """
 
     def __init__(self, gl: moderngl.Context, image: npt.NDArray[np.uint8]) -> None:
         rows = _checked(image, int(gl.info["GL_MAX_TEXTURE_SIZE"]))
         self.size = rows.shape[1], rows.shape[0]
+        self.redness = _median_redness(rows)
         opaque = np.full((*rows.shape[:2], 4), 255, np.uint8)
         opaque[:, :, :3] = rows[::-1]  # OpenGL counts rows, and v, from below
         self._texture = gl.texture(self.size, 4, opaque.tobytes(), internal_format=_SRGB8_ALPHA8)
@@ -41,6 +45,12 @@ class Texture:
     def release(self) -> None:
         """Give the picture back to OpenGL; it can no longer be drawn."""
         self._texture.release()
+
+
+def _median_redness(image: npt.NDArray[np.uint8]) -> float:
+    every = max(1, image.shape[0] * image.shape[1] // _LOOKED_AT)
+    light = linear(image.reshape(-1, 3)[::every] / 255.0)
+    return float(np.median(light[:, 0] / np.maximum(light[:, 1], 1e-3)))
 
 
 def _checked(image: npt.NDArray[np.uint8], limit: int) -> npt.NDArray[np.uint8]:

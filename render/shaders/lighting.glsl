@@ -1,4 +1,4 @@
-// Studio light for a portrait, fixed to the camera: key from the viewer's upper left, a weak cool
+// Studio light for a portrait, fixed to the camera: key from the viewer's upper left, a weak
 // fill from the right, a rim from behind the right shoulder, and a hemisphere of ambient light.
 // Everything is in view space (x right, y up, z to the viewer) and in linear light.
 
@@ -6,8 +6,8 @@ uniform vec3 to_key;  // unit vector toward the key light; shadow.py looks from 
 const vec3 TO_FILL = vec3(0.7770, 0.0600, 0.6266);
 const vec3 TO_RIM = vec3(0.6200, 0.3600, -0.6972);
 const vec3 KEY_LIGHT = vec3(1.16, 1.11, 1.05);
-const vec3 FILL_LIGHT = vec3(0.165, 0.16, 0.165);
-const vec3 RIM_LIGHT = vec3(0.62, 0.65, 0.70);
+const vec3 FILL_LIGHT = vec3(0.17, 0.158, 0.152);
+const vec3 RIM_LIGHT = vec3(0.66, 0.645, 0.65);
 const vec3 SKY = vec3(0.215, 0.215, 0.225);
 const vec3 GROUND = vec3(0.125, 0.095, 0.083);
 // How far each colour of light travels in skin: red past the terminator, blue hardly.

@@ -158,6 +158,7 @@ uniform vec3 inner_albedo;
 #endif
 #if defined(TEXTURED)
 uniform sampler2D albedo_texture;
+uniform float redness;  // of most of the picture: red over green
 #elif !defined(COLOURED)
 uniform vec3 albedo;
 #endif
@@ -243,7 +244,13 @@ void main() {
     vec3 inner = inside(normal);
     float facing = dot(normal, to_eye);
 #endif
-    vec3 light = lit_colour(lit, front_albedo(), key_lightness(), subsurface);
+    vec3 front = front_albedo();
+#if defined(TEXTURED)
+    // Lips are redder than the skin around, and moist. Chosen by eye: not yet at red cheeks.
+    float excess = front.r / (max(front.g, 1e-3) * redness);
+    lit.specular *= 1.0 + 1.6 * clamp(5.0 * excess - 6.0, 0.0, 1.0);
+#endif
+    vec3 light = lit_colour(lit, front, key_lightness(), subsurface);
 #if defined(COLOURED)
     light *= 0.82;  // parts sit in sockets and mouths, where less light gets in
 #else

@@ -107,6 +107,8 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["capture", "SMILE", "-o", "x.mp4", "--refiner", "magic"], "'magic'; available are"),
         (["capture", "SMILE", "-o", "x.mp4", "--camera", "behind"], "camera 'behind'; allowed"),
         (["capture", "SMILE", "-o", "x.mp4", "--camera", "1,2,x"], "camera '1,2,x': allowed"),
+        (["capture", "SMILE", "-o", "x.mp4", "--camera", "1,2,0"], "zoom above 0"),
+        (["capture", "SMILE", "-o", "x.mp4", "--compare", "--refiner", "none"], "other than none"),
         (["capture", "SMILE", "-o", "x.mp4", "--size", "big"], "'big' is no size"),
         (["capture", "SMILE", "-o", "x.mp4", "--scene", "plane"], "unknown name 'joy'"),
         (["capture", "SMILE", "-o", "x.mp4", "--shading", "toon"], "'toon' is not one of"),

@@ -60,9 +60,9 @@ def test_top_row_lies_at_v_1(
 ) -> None:
     """The picture is upright and not mirrored, in every shading."""
     frame = textured(surface, quarters(), replace(PLAIN, shading=shading, wireframe=wireframe))
-    assert frame[24, 24].argmax() == 0 and frame[24, 24, 0] > 100 > frame[24, 24, 1]
-    assert frame[24, 72].argmax() == 1 and frame[24, 72, 1] > 100 > frame[24, 72, 2]
-    assert frame[72, 24].argmax() == 2 and frame[72, 24, 2] > 100 > frame[72, 24, 0]
+    assert frame[24, 24].argmax() == 0 and frame[24, 24, 0] > 150 > frame[24, 24, 1]
+    assert frame[24, 72].argmax() == 1 and frame[24, 72, 1] > 150 > frame[24, 72, 2]
+    assert frame[72, 24].argmax() == 2 and frame[72, 24, 2] > 150 > frame[72, 24, 0]
     assert np.ptp(frame[72, 72]) < 30
 
 
@@ -119,6 +119,20 @@ def test_splits_tint_the_texture(surface: render.Surface, shading: render.Shadin
     assert without[upper][0] > without[upper][2] + 100
     other_side = frame[12, 60]  # green before: the picture still shows through the tint
     assert np.abs(other_side - frame[upper]).max() > 15
+
+
+def test_lips_gloss(surface: render.Surface) -> None:
+    """What is much redder than most of the picture shines more than the gloss of the skin."""
+    lips = plain_image((212, 176, 160), (64, 64))
+    lips[28:36, 28:36] = (200, 120, 108)
+    shine = {}
+    for name, image in (("lips", lips), ("all lips", plain_image((200, 120, 108), (64, 64)))):
+        frames = [
+            textured(surface, image, replace(PLAIN, gloss=gloss), shape=square(bulge=0.4))
+            for gloss in (0.0, 1.0)
+        ]
+        shine[name] = int((frames[1] - frames[0])[46:50, 46:50].sum())
+    assert shine["lips"] > 1.5 * shine["all lips"] > 0
 
 
 def test_back_faces_keep_the_inner_albedo(surface: render.Surface) -> None:

@@ -1,0 +1,148 @@
+"""Rigid coloured parts: uploaded once, moved by bones, and what of them can be seen."""
+
+import functools
+from collections.abc import Iterable, Mapping
+from typing import Protocol
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from .layers import Layers, hull
+from .occlusion import DepthReader, ProjectedFaces
+from .sight import Sight, box_corners
+from .style import linear
+
+
+class Part(Protocol):
+    """What is read of a rigid part.
+
+    name: for messages. vertices, normals: shape (n, 3), float32.
+    faces: counter-clockwise from the side that is seen, shape (m, 3), int32; the other side is not
+        drawn. colours: sRGB 0..1, shape (n, 3), float32.
+    bone: whose transform moves it. shine: 0 dull, 1 wet.
+    """
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def vertices(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def normals(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def faces(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def colours(self) -> npt.NDArray[np.float32]: ...
+    @property
+    def bone(self) -> str: ...
+    @property
+    def shine(self) -> float: ...
+
+
+class PartBuffers:
+    """A rigid part on the graphics card, uploaded once; keeps the part alive, and so its id."""
+
+    def __init__(self, gl: moderngl.Context, part: Part) -> None:
+        self.part = part
+        shapes = {np.shape(part.vertices), np.shape(part.normals), np.shape(part.colours)}
+        if len(shapes) != 1 or np.shape(part.vertices)[1:] != (3,):
+            raise ValueError(
+                f"part '{part.name}': vertices {np.shape(part.vertices)}, normals "
+                f"{np.shape(part.normals)} and colours {np.shape(part.colours)} must all be (n, 3)"
+            )
+        self.corners = box_corners(part.vertices)
+        rows = np.hstack([part.vertices, part.normals, linear(part.colours)]).astype(np.float32)
+        self._gl = gl
+        self._vertices = gl.buffer(rows.tobytes())
+        self.face_corners = np.ascontiguousarray(part.faces.T, np.intp)
+        self._faces = np.ascontiguousarray(part.faces, np.uint32)
+        self._indices = gl.buffer(self._faces.tobytes(), dynamic=True)
+        self.face_count = len(self._faces)
+        self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
+
+    def choose(self, is_seen: npt.NDArray[np.bool_]) -> int:
+        """Draw only the faces that are seen, shape (m,), from now on; return their number."""
+        seen = self._faces[is_seen]
+        self.face_count = len(seen)
+        self._indices.orphan()
+        self._indices.write(seen)
+        return self.face_count
+
+    def draw(self, program: moderngl.Program) -> None:
+        """Draw it with a program that has in_position, in_normal and in_colour."""
+        if program not in self._arrays:
+            self._arrays[program] = self._gl.vertex_array(
+                program,
+                [(self._vertices, "3f 3f 3f", "in_position", "in_normal", "in_colour")],
+                index_buffer=self._indices,
+                index_element_size=4,
+            )
+        self._gl.enable(moderngl.CULL_FACE)
+        self._arrays[program].render(moderngl.TRIANGLES, vertices=3 * self.face_count)
+        self._gl.disable(moderngl.CULL_FACE)
+
+
+PlacedPart = tuple[PartBuffers, npt.NDArray[np.float64]]  # and the matrix of its bone
+
+
+class PartStore:
+    """The buffers of all parts that were ever drawn."""
+
+    def __init__(self, gl: moderngl.Context) -> None:
+        self._gl = gl
+        self._known: dict[int, PartBuffers] = {}
+        self._depths: DepthReader | None = None
+
+    def buffers(self, part: Part) -> PartBuffers:
+        """The buffers of a part, which is uploaded when it is first seen."""
+        if id(part) not in self._known:
+            self._known[id(part)] = PartBuffers(self._gl, part)
+        return self._known[id(part)]
+
+    def placed(
+        self, parts: Iterable[Part], transforms: Mapping[str, npt.NDArray[np.float64]]
+    ) -> list[PlacedPart]:
+        """Each part with the matrix of its bone; ValueError for a bone without one."""
+        return [(self.buffers(part), _transform(part, transforms)) for part in parts]
+
+    def seen(self, placed: list[PlacedPart], sight: Sight, layers: Layers) -> list[PlacedPart]:
+        """Leave out all triangles of the parts that are hidden by what was drawn so far."""
+        models = [np.asarray(transform, np.float64).T for _, transform in placed]
+        touched = [
+            sight.touched_pixels(buffers.corners, model=model)
+            for (buffers, _), model in zip(placed, models, strict=True)
+        ]
+        touched = [pixels for pixels in touched if pixels[2] and pixels[3]]
+        if not touched:
+            return []
+        if self._depths is None or self._depths.layers is not layers:
+            if self._depths is not None:
+                self._depths.release()
+            self._depths = DepthReader(self._gl, layers)
+        self._depths.look(functools.reduce(hull, touched))
+        projected = [
+            ProjectedFaces(
+                buffers.part.vertices,
+                buffers.face_corners,
+                model @ sight.world_to_clip,
+                sight.viewport,
+            )
+            for (buffers, _), model in zip(placed, models, strict=True)
+        ]
+        depths = self._depths.read()
+        return [
+            placed_part
+            for placed_part, faces in zip(placed, projected, strict=True)
+            if placed_part[0].choose(depths.seen(faces))
+        ]
+
+
+def _transform(
+    part: Part, transforms: Mapping[str, npt.NDArray[np.float64]]
+) -> npt.NDArray[np.float64]:
+    if part.bone not in transforms:
+        raise ValueError(
+            f"part '{part.name}' moves with bone '{part.bone}'; transforms has only "
+            f"{', '.join(sorted(transforms)) or 'none'}"
+        )
+    return transforms[part.bone]
