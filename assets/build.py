@@ -1,4 +1,4 @@
-"""Rebuild the head's data file and picture: `python -m assets.build [FILE] [--tone TONE]`.
+"""Rebuild the head's data files and picture: `python -m assets.build [FILE] [--tone TONE]`.
 
 Deterministic: seeds are fixed. Other versions of scipy may order a triangulation differently; the
 shipped file is therefore part of the package, and a test compares it with a fresh build.
@@ -14,6 +14,7 @@ import numpy.typing as npt
 from .generator.bones import bone_depth, jaw_axis, mandible_weight
 from .generator.dentition import LOWER_ARCH, UPPER_ARCH, gums, teeth
 from .generator.eyeballs import IRIS_RADIUS, corner_flesh, eyeball
+from .generator.finer import refine_skin
 from .generator.form import EYE_CENTRE, EYE_RADIUS
 from .generator.landmarks import anatomy, landmark_vertices
 from .generator.oral import lower_cavity, tongue, upper_cavity
@@ -21,8 +22,8 @@ from .generator.painting import SIZE, paint_skin
 from .generator.skin import Skin, build_half, mirrored
 from .generator.solids import Solid
 from .generator.unwrap import unwrap
-from .loading import HEAD_FILE, load_head
-from .model import Tone
+from .loading import HEAD_FILE, fingerprint, load_head
+from .model import Head, Tone
 from .pictures import write_picture
 
 MIRROR = np.array([-1.0, 1.0, 1.0])
@@ -39,12 +40,12 @@ def build_parts() -> list[tuple[str, str, float, Solid]]:
         ("eyeball_left", "eye_left", 1.0, left),
         ("eye_corners", "cranium", 0.3, corner_flesh()),
         ("oral_cavity_upper", "cranium", 0.05, upper_cavity()),
-        ("gums_upper", "cranium", 0.35, gums(UPPER_ARCH)),
-        ("teeth_upper", "cranium", 0.55, teeth(UPPER_ARCH)),
+        ("gums_upper", "cranium", 0.15, gums(UPPER_ARCH)),
+        ("teeth_upper", "cranium", 0.45, teeth(UPPER_ARCH)),
         ("oral_cavity_lower", "mandible", 0.05, lower_cavity()),
-        ("gums_lower", "mandible", 0.35, gums(LOWER_ARCH)),
-        ("teeth_lower", "mandible", 0.55, teeth(LOWER_ARCH)),
-        ("tongue", "mandible", 0.3, tongue()),
+        ("gums_lower", "mandible", 0.15, gums(LOWER_ARCH)),
+        ("teeth_lower", "mandible", 0.35, teeth(LOWER_ARCH)),
+        ("tongue", "mandible", 0.25, tongue()),
     ]
 
 
@@ -95,8 +96,26 @@ def build_head() -> dict[str, npt.NDArray[np.generic]]:
     return skin_arrays(skin) | part_arrays()
 
 
+def build_finer(head: Head) -> dict[str, npt.NDArray[np.generic]]:
+    """Build everything that the file of the finer meshes holds, array name -> array.
+
+    Places of the new vertices, level by level, and the normals of all; the rest is counting.
+    """
+    rings = {
+        name.removesuffix("_left"): row.tolist()
+        for name, row in head.rings.items()
+        if name.endswith("_left")
+    }
+    added, normals = refine_skin(Skin(head.vertices, head.faces, {}, rings, head.mirror))
+    return {
+        "added_vertices": added.astype(np.float32),
+        "normals": normals.astype(np.float16),  # 0.03 degrees; full precision would double the file
+        "made_from": np.array(fingerprint(head), dtype=np.uint32),
+    }
+
+
 def main(arguments: list[str]) -> None:
-    """Write data file and picture, to the place where `load` looks or to the one given."""
+    """Write data files and picture, to the place where `load` looks or to the one given."""
     parser = argparse.ArgumentParser(
         prog="python -m assets.build", description=(__doc__ or "").splitlines()[0]
     )
@@ -108,6 +127,7 @@ def main(arguments: list[str]) -> None:
     given.file.parent.mkdir(parents=True, exist_ok=True)
     np.savez_compressed(given.file, allow_pickle=False, **build_head())
     head = load_head(given.file)
+    np.savez_compressed(head.finer_file, allow_pickle=False, **build_finer(head))
     picture = paint_skin(head, tone=Tone(given.tone), size=given.size)
     write_picture(head.albedo_file, picture)
 

@@ -67,13 +67,10 @@ def fold_angles(vertices: FloatArray, faces: IndexArray) -> FloatArray:
 def self_intersections(vertices: FloatArray, faces: IndexArray) -> IndexArray:
     """Pairs of faces without a common vertex that cut through each other, shape (k, 2)."""
     corner = vertices[faces]
-    centre = corner.mean(axis=1)
-    radius = np.linalg.norm(corner - centre[:, None], axis=2).max(axis=1)
-    pairs = cKDTree(centre).query_pairs(2.0 * float(radius.max()), output_type="ndarray")
+    pairs = _near_pairs(corner)
     first, second = pairs[:, 0], pairs[:, 1]
-    distance = np.linalg.norm(centre[first] - centre[second], axis=1)
     apart = (faces[first][:, :, None] != faces[second][:, None, :]).all(axis=(1, 2))
-    pairs = pairs[apart & (distance < radius[first] + radius[second])]
+    pairs = pairs[apart]
     hit = np.zeros(len(pairs), dtype=bool)
     for one, other in ((0, 1), (1, 0)):
         for k in range(3):
@@ -82,6 +79,30 @@ def self_intersections(vertices: FloatArray, faces: IndexArray) -> IndexArray:
             hit |= _segment_cuts(start, end, corner[pairs[:, other]])
     cutting: IndexArray = pairs[hit].astype(np.int32)
     return cutting
+
+
+def _near_pairs(corner: FloatArray) -> npt.NDArray[np.int64]:
+    """Pairs of triangles whose surrounding balls meet, each pair once, shape (k, 2).
+
+    By classes of size, so that a few large triangles do not make all small ones look far around.
+    """
+    centre = corner.mean(axis=1)
+    radius = np.linalg.norm(corner - centre[:, None], axis=2).max(axis=1)
+    size = np.floor(np.log2(np.maximum(radius, 1e-6)))
+    classes = [np.flatnonzero(size == value) for value in np.unique(size)]
+    trees = [cKDTree(centre[members]) for members in classes]
+    found = []
+    for i, members in enumerate(classes):
+        for j in range(i + 1):
+            reach = float(radius[members].max() + radius[classes[j]].max())
+            near = trees[i].sparse_distance_matrix(trees[j], reach, output_type="coo_matrix")
+            found.append(np.stack([members[near.row], classes[j][near.col]], axis=1))
+            if i == j:
+                found[-1] = found[-1][found[-1][:, 0] < found[-1][:, 1]]
+    pairs = np.concatenate(found)
+    distance = np.linalg.norm(centre[pairs[:, 0]] - centre[pairs[:, 1]], axis=1)
+    meeting: npt.NDArray[np.int64] = pairs[distance < radius[pairs].sum(axis=1)]
+    return meeting
 
 
 def _segment_cuts(

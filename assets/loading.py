@@ -6,19 +6,22 @@ expressions are text files, written by hand (`rigs/face.toml`, `expressions.toml
 
 import tomllib
 import zipfile
+import zlib
 from pathlib import Path
 from typing import Any, Literal, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from .model import AssetError, Eye, Head, Part, Plane
+from .model import AssetError, Eye, FineMesh, Head, Part, Plane
 from .plane import make_plane
+from .subdivision import coarse_places, quarter
 
 FOLDER = Path(__file__).parent
 HEAD_FILE = FOLDER / "data" / "head.npz"
 RIG_FILE = FOLDER / "rigs" / "face.toml"
 EXPRESSIONS_FILE = FOLDER / "expressions.toml"
+FINER_LEVELS = (1, 2)
 
 
 def available() -> tuple[str, ...]:
@@ -52,23 +55,54 @@ def load_head(
 ) -> Head:
     """Read a head from its data file, its rig file and its expression file.
 
-    The picture of the skin lies beside the data file, as a PNG file of the same name.
+    The picture of the skin lies beside the data file, as a PNG file of the same name; so does the
+    file of the finer meshes (`_finer.npz`), which is read only when one is asked for.
 
     Raises AssetError when the data file is missing or incomplete, or a text file is not TOML.
     """
     arrays = _read_arrays(head_file)
     try:
         texts = _read_toml(rig_file), _read_toml(expressions_file)
-        return _assemble(arrays, head_file.with_suffix(".png"), *texts)
+        return _assemble(arrays, head_file, *texts)
     except KeyError as error:
         raise AssetError(
             f"{head_file} has no array {error}; rebuild it with 'python -m assets.build'"
         ) from error
 
 
+def read_finer(head: Head, level: int) -> FineMesh:
+    """Put a finer mesh of the head together; see `Head.finer`."""
+    if level not in FINER_LEVELS:
+        raise ValueError(
+            f"level was {level!r}; allowed are 1 (4 triangles for each one) and 2 (16)"
+        )
+    arrays = _read_arrays(head.finer_file)
+    if int(arrays.get("made_from", -1)) != fingerprint(head):
+        raise AssetError(
+            f"{head.finer_file} was made for another head; rebuild it with 'python -m assets.build'"
+        )
+    faces, count = head.faces, len(head.vertices)
+    for _ in range(level):
+        cut = quarter(faces, count)
+        faces, count = cut.faces, count + len(cut.edges)
+    added = arrays["added_vertices"][: count - len(head.vertices)]
+    normals = arrays["normals"][:count].astype(np.float64)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    vertices = np.vstack([head.vertices, added])
+    fine = FineMesh(vertices, faces, *coarse_places(head.faces, faces), normals, head.faces)
+    for array in (fine.vertices, fine.faces, fine.coarse_triangle, fine.barycentric, normals):
+        array.flags.writeable = False
+    return fine
+
+
+def fingerprint(head: Head) -> int:
+    """A number that tells this head's mesh from any other: finer meshes fit one mesh only."""
+    return zlib.crc32(head.faces.tobytes(), zlib.crc32(head.vertices.tobytes()))
+
+
 def _assemble(
     arrays: dict[str, npt.NDArray[Any]],
-    albedo_file: Path,
+    head_file: Path,
     rig: dict[str, Any],
     expressions: dict[str, Any],
 ) -> Head:
@@ -92,7 +126,8 @@ def _assemble(
         parts=_parts(arrays),
         uv=arrays["uv"],
         face_uv=arrays["faces"],  # one piece without seams: a corner is a vertex
-        albedo_file=albedo_file,
+        albedo_file=head_file.with_suffix(".png"),
+        finer_file=head_file.with_name(f"{head_file.stem}_finer.npz"),
         rig=rig,
         expressions=expressions,
     )

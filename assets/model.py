@@ -77,6 +77,35 @@ class Part:
 
 
 @dataclass(frozen=True)
+class FineMesh:
+    """The skin of a head with more triangles, at rest, and where it lies on the coarse one.
+
+    vertices: [mm], shape (n, 3), float64; the first V are those of the head, bit for bit.
+    faces: shape (4^level F, 3), int32; the children of face f stand together, in its place.
+    coarse_triangle: number of a face of the head for each vertex, shape (n,), int32.
+    barycentric: coordinates in that face, shape (n, 3), float64; their sum is 1.
+    normals: unit normals of the true form, shape (n, 3), float64.
+    coarse_faces: the faces of the head, shape (F, 3), int32.
+    """
+
+    vertices: FloatArray
+    faces: IndexArray
+    coarse_triangle: IndexArray
+    barycentric: FloatArray
+    normals: FloatArray
+    coarse_faces: IndexArray
+
+    def carried(self, values: FloatArray | SingleArray) -> FloatArray:
+        """Carry values of the head's vertices (depth, weight, motion) over to the fine ones.
+
+        values: shape (V,) or (V, k). Returns shape (n,) or (n, k).
+        """
+        corners = np.asarray(values, dtype=np.float64)[self.coarse_faces[self.coarse_triangle]]
+        carried: FloatArray = np.einsum("nc,nc...->n...", self.barycentric, corners)
+        return carried
+
+
+@dataclass(frozen=True)
 class Head:
     """A head to simulate and draw.
 
@@ -92,7 +121,9 @@ class Head:
         rows with _right for the right side. `eye_0_left` to `eye_4_left` run outward around the
         eye; `mouth_0_left` to `mouth_7_left` around half of the mouth, from the middle of the
         upper lip over the corner to the middle of the lower lip (2: where the lips meet, 6: border
-        of the red); also `nostril_left`, `alar_crease_left`, `rim_left`.
+        of the red); `ear_0_left` to `ear_4_left` from the root of the ear over its free
+        edge (1) to the ridge around the concha, whose floor is `concha_left`; also `nostril_left`,
+        `alar_crease_left`, `rim_left` (from the back of the head along the nape to the throat).
     eyes: the right and the left eye.
     parts: rigid things that are drawn with the head.
     uv: texture coordinates, 0..1, u to the subject's left and v up, shape (U, 2), float32; one
@@ -100,6 +131,7 @@ class Head:
     face_uv: numbers of the texture coordinates of each face's corners, shape (F, 3), int32; the
         same numbers as `faces`.
     albedo_file: the picture of the skin.
+    finer_file: what the finer meshes of the same form need; read by `finer`.
     rig: the parsed rig file, {} where there is none.
     expressions: expression name -> {control name: value}, {} where there is no such file.
     """
@@ -118,6 +150,7 @@ class Head:
     uv: SingleArray
     face_uv: IndexArray
     albedo_file: Path
+    finer_file: Path
     rig: dict[str, Any]
     expressions: dict[str, dict[str, float]]
 
@@ -131,6 +164,16 @@ class Head:
         from .pictures import read_picture  # Pillow, which to load a head takes no time for
 
         return read_picture(self.albedo_file)
+
+    def finer(self, level: int) -> FineMesh:
+        """The same form with 4 (level 1) or 16 (level 2) triangles for each one; arrays read-only.
+
+        Read from `finer_file` at every call. Raises ValueError for another level, AssetError when
+        the file is missing, broken or that of another head.
+        """
+        from .loading import read_finer  # which imports this module
+
+        return read_finer(self, level)
 
 
 @dataclass(frozen=True)

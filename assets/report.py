@@ -1,10 +1,11 @@
 """Mesh report of the built-in head: `python -m assets.report` writes it to standard output.
 
-Distances are measured between vertices, straight, with the names of anthropometry. No published
-norms stand beside them: the head is nobody, and a column of figures that was not checked against
-its source would be worse than none.
+Distances are measured between vertices, straight, with the names of anthropometry. Beside them
+stand the published means of adults, where there are such (`norms`), and how many deviations the
+head lies above or below them. The head is nobody, and of no sex: it is held against both.
 """
 
+import argparse
 import sys
 from dataclasses import dataclass
 
@@ -22,15 +23,19 @@ from .checks import (
 from .generator.topology import boundary_loops, cross_products, smallest_angles
 from .loading import load
 from .model import Head
+from .norms import NORMS, Norm, Sample
 
 DISTANCES = (
     ("face height, n-gn", "nasion", "gnathion"),
     ("nose height, n-sn", "nasion", "subnasale"),
     ("lower face height, sn-gn", "subnasale", "gnathion"),
+    ("nose bridge, n-prn", "nasion", "pronasale"),
     ("nose protrusion, sn-prn", "subnasale", "pronasale"),
     ("upper lip height, sn-sto", "subnasale", "stomion"),
+    ("philtrum length, sn-ls", "subnasale", "labiale_superius"),
     ("upper red, ls-sto", "labiale_superius", "stomion"),
     ("lower red, sto-li", "stomion", "labiale_inferius"),
+    ("skin of the lower lip, li-sl", "labiale_inferius", "sublabiale"),
     ("forehead height, tr-n", "trichion", "nasion"),
     ("between inner eye corners, en-en", "endocanthion_right", "endocanthion_left"),
     ("between outer eye corners, ex-ex", "exocanthion_right", "exocanthion_left"),
@@ -38,6 +43,8 @@ DISTANCES = (
     ("eye fissure height, ps-pi", "palpebrale_superius_left", "palpebrale_inferius_left"),
     ("nose width, al-al", "alare_right", "alare_left"),
     ("mouth width, ch-ch", "cheilion_right", "cheilion_left"),
+    ("philtrum width, cph-cph", "crista_philtri_right", "crista_philtri_left"),
+    ("forehead width, ft-ft", "frontotemporale_right", "frontotemporale_left"),
     ("face width, zy-zy", "zygion_right", "zygion_left"),
     ("jaw width, go-go", "gonion_right", "gonion_left"),
     ("ear to ear, t-t", "tragion_right", "tragion_left"),
@@ -51,6 +58,11 @@ class Row:
     title: str
     value: float
     unit: str = ""
+
+    @property
+    def norm(self) -> Norm | None:
+        """What the value is compared with: that of the code behind the comma, as in "..., n-gn"."""
+        return NORMS.get(self.title.rpartition(", ")[2])
 
 
 def topology_rows(head: Head) -> list[Row]:
@@ -104,11 +116,60 @@ def report(head: Head) -> list[Row]:
     return [*topology_rows(head), *quality_rows(head), *distance_rows(head)]
 
 
-def main() -> None:
-    """Write the report of the built-in head."""
-    for row in report(load("head")):
-        sys.stdout.write(f"{row.title:40s} {row.value:10.2f} {row.unit}\n")
+def line(row: Row) -> str:
+    """One line of text: the value, and means, deviations and scores where there is a norm."""
+    text = f"{row.title:40s} {row.value:10.2f} {row.unit}"
+    if row.norm is None:
+        return text
+
+    def beside(sample: Sample) -> str:
+        mean = f"{sample.mean:6.1f} +- {sample.deviation:.1f}"
+        return f"{mean:>15s} {sample.score(row.value):+5.1f}"
+
+    usual_for = row.norm.usual_for(row.value)
+    return f"{text:54s} {beside(row.norm.women)}   {beside(row.norm.men)}   {usual_for}"
+
+
+def text_lines(rows: list[Row]) -> list[str]:
+    """The whole report as lines of text, sources last."""
+    heading = f"{'':55s} {'women':>13s} {'score':>7s}   {'men':>13s} {'score':>7s}   usual for"
+    first = next((i for i, row in enumerate(rows) if row.norm is not None), len(rows))
+    lines = [line(row) for row in rows]
+    sources = sorted({row.norm.source for row in rows if row.norm is not None})
+    notes = [f"Norms: mean +- deviation [mm] of {source}." for source in sources]
+    return [*lines[:first], heading, *lines[first:], *notes]
+
+
+def table(rows: list[Row]) -> list[str]:
+    """The distances as a table in Markdown."""
+    lines = [
+        "| measure | ours | women | score | men | score | usual for |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for row in rows:
+        cells = [row.title, f"{row.value:.1f}"]
+        if row.norm is None:
+            cells += [""] * 5
+        else:
+            for sample in (row.norm.women, row.norm.men):
+                cells.append(f"{sample.mean:.1f} ± {sample.deviation:.1f}")
+                cells.append(f"{sample.score(row.value):+.1f}")
+            cells.append(row.norm.usual_for(row.value))
+        lines.append(f"| {' | '.join(cells)} |".replace("|  |", "| |").replace("|  |", "| |"))
+    return lines
+
+
+def main(arguments: list[str]) -> None:
+    """Write the report of the built-in head, or only its distances as a table."""
+    parser = argparse.ArgumentParser(
+        prog="python -m assets.report", description=(__doc__ or "").splitlines()[0]
+    )
+    parser.add_argument("--table", action="store_true", help="distances only, in Markdown")
+    head = load("head")
+    is_table = parser.parse_args(arguments).table
+    lines = table(distance_rows(head)) if is_table else text_lines(report(head))
+    sys.stdout.writelines(f"{text}\n" for text in lines)
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

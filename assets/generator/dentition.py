@@ -1,7 +1,8 @@
 """Teeth and gums: two arches of individually readable teeth, on the cranium and on the mandible.
 
 Sizes of the crowns are rounded common textbook means of permanent teeth (Wheeler). Every tooth is
-a stack of rounded rectangles from the gum to the edge.
+a stack of rounded rectangles from the gum to the edge. The gums are a strip along the arch: from
+the pocket between cheek and jaw over the ridge that holds the teeth to the tongue's side.
 """
 
 from dataclasses import dataclass
@@ -9,13 +10,29 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from .ambient import in_mouth_light
 from .fields import Points, Values, smooth_step, unit
 from .solids import Solid, grid_faces, joined, mix
 
-AROUND, LEVELS = 16, 7
+AROUND = 12
+LEVELS = (0.0, 0.4, 0.8, 1.0)  # rings of a crown, from the gum to the edge
+STATIONS = 77  # of the gums along the arch; chosen: five to a tooth
 EDGE_COLOUR, NECK_COLOUR = (0.925, 0.895, 0.825), (0.84, 0.755, 0.62)
-GUM_COLOUR, GUM_DEEP = (0.74, 0.43, 0.41), (0.45, 0.19, 0.18)
-TIP, FLAT = "tip", "flat"
+FISSURE_COLOUR = (0.70, 0.60, 0.46)
+GUM_COLOUR, MUCOSA_COLOUR, POCKET_COLOUR = (0.76, 0.44, 0.42), (0.62, 0.25, 0.24), (0.34, 0.11, 0.1)
+TIP, FLAT, BROAD = "tip", "flat", "broad"
+COVERED, PAPILLA = 0.9, 1.5  # [mm] of the crown that gum hides, and of it more between teeth
+
+# Section of the gums: distance outward from the labial line [mm] (or inward from the lingual one),
+# distance from the margin toward the root [mm], share of mucosa in the colour, share of the pocket.
+OUTER_SECTION = (
+    (5.0, 6.5, 1.0, 0.6), (4.0, 9.6, 1.0, 1.0), (1.9, 8.6, 1.0, 0.5), (1.5, 4.2, 0.3, 0.0),
+    (1.0, 1.0, 0.0, 0.0), (0.1, 0.0, 0.0, 0.0),
+)  # fmt: skip
+INNER_SECTION = (
+    (-0.2, 0.0, 0.0, 0.0), (0.9, 1.2, 0.0, 0.0), (1.8, 5.0, 0.5, 0.2), (2.4, 11.0, 1.0, 0.8),
+)  # fmt: skip
+PAD_LENGTH, PAD_DEPTH = 5.0, 8.0  # [mm] the ridge slopes away behind the last molar
 
 
 @dataclass(frozen=True)
@@ -30,14 +47,14 @@ class Tooth:
 
 
 UPPER = (
-    Tooth(8.5, 10.3, 6.6, 1.5), Tooth(6.6, 9.2, 6.0, 1.4), Tooth(7.6, 10.3, 7.6, 2.0, TIP),
-    Tooth(7.0, 8.6, 8.6, 6.0), Tooth(6.8, 8.2, 8.6, 6.4), Tooth(10.0, 7.4, 10.0, 8.2),
-    Tooth(9.4, 7.0, 10.0, 8.2),
+    Tooth(8.5, 10.6, 6.6, 1.5), Tooth(6.6, 9.3, 6.0, 1.4), Tooth(7.6, 10.4, 7.6, 2.0, TIP),
+    Tooth(7.0, 8.6, 8.6, 6.0, BROAD), Tooth(6.8, 7.9, 8.6, 6.4, BROAD),
+    Tooth(10.0, 6.6, 10.0, 8.2, BROAD), Tooth(9.4, 6.2, 10.0, 8.2, BROAD),
 )  # fmt: skip
 LOWER = (
-    Tooth(5.2, 8.8, 5.6, 1.3), Tooth(5.7, 9.1, 5.8, 1.3), Tooth(6.8, 10.2, 7.2, 1.9, TIP),
-    Tooth(7.0, 8.6, 7.6, 5.4), Tooth(7.1, 8.2, 8.0, 6.2), Tooth(11.0, 7.4, 9.6, 8.0),
-    Tooth(10.4, 7.0, 9.6, 8.0),
+    Tooth(5.2, 9.4, 5.6, 1.3), Tooth(5.7, 9.5, 5.8, 1.3), Tooth(6.8, 10.2, 7.2, 1.9, TIP),
+    Tooth(7.0, 8.4, 7.6, 5.4, BROAD), Tooth(7.1, 7.6, 8.0, 6.2, BROAD),
+    Tooth(11.0, 6.0, 9.6, 8.0, BROAD), Tooth(10.4, 5.4, 9.6, 8.0, BROAD),
 )  # fmt: skip
 
 
@@ -46,7 +63,8 @@ class Arch:
     """Where a row of teeth stands.
 
     front: z of the foremost labial surface [mm]; half_width, length: of the arch [mm].
-    edge: height y of the biting edges [mm]; up: +1 if the roots are above, -1 if below.
+    edge, back_edge: height y of the biting edges in front and at the last molar [mm].
+    up: +1 if the roots are above, -1 if below.
     """
 
     teeth: tuple[Tooth, ...]
@@ -54,17 +72,23 @@ class Arch:
     half_width: float
     length: float
     edge: float
+    back_edge: float
     up: float
 
     def point(self, x: Values) -> Points:
         """The labial line of the arch over x, at the height of the edges, shape (n, 3)."""
         relative = np.minimum(np.abs(x) / self.half_width, 1.0)
-        z = self.front - self.length * (1.0 - np.sqrt(1.0 - 0.985 * relative**2.2))
-        return np.column_stack([x, np.full_like(x, self.edge), z])
+        inward = 1.0 - np.sqrt(1.0 - 0.985 * relative**2.2)
+        height = self.edge + (self.back_edge - self.edge) * inward
+        return np.column_stack([x, height, self.front - self.length * inward])
 
 
-UPPER_ARCH = Arch(UPPER, front=92.6, half_width=28.6, length=46.0, edge=-69.2, up=1.0)
-LOWER_ARCH = Arch(LOWER, front=89.6, half_width=26.8, length=44.0, edge=-67.4, up=-1.0)
+UPPER_ARCH = Arch(
+    UPPER, front=92.6, half_width=28.6, length=46.0, edge=-69.4, back_edge=-69.6, up=1.0
+)
+LOWER_ARCH = Arch(
+    LOWER, front=89.6, half_width=26.8, length=44.0, edge=-68.1, back_edge=-70.6, up=-1.0
+)
 
 
 def _along(arch: Arch) -> tuple[Values, Points]:
@@ -78,30 +102,36 @@ def _along(arch: Arch) -> tuple[Values, Points]:
 def _crown(tooth: Tooth) -> tuple[Points, npt.NDArray[np.float64]]:
     """Vertices of one crown: x along the arch, y from the edge (0) to the gum, z outward."""
     angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    cosine, sine = np.cos(angle), np.sin(angle)
     rows, shades = [], []
-    for level in np.linspace(0.0, 1.0, LEVELS):  # 0 at the gum, 1 at the edge
+    for level in LEVELS:
         width = tooth.width * (0.76 + 0.22 * np.sin(np.pi * (0.12 + 0.62 * level)))
         depth = tooth.neck_depth + (tooth.edge_depth - tooth.neck_depth) * level**0.8
         if tooth.shape == TIP:
             width *= 1.0 - 0.45 * smooth_step(0.6, 1.0, np.array([level]))[0]
-        closing = 0.90 if level == 1.0 else 1.0
-        cosine, sine = np.cos(angle), np.sin(angle)
+        closing = (0.78 if tooth.shape == BROAD else 0.90) if level == 1.0 else 1.0
         x = np.sign(cosine) * np.abs(cosine) ** 0.62 * width * 0.5 * closing
-        z = (np.sign(sine) * np.abs(sine) ** 0.75 - 1.0) * depth * 0.5
+        z = (np.sign(sine) * np.abs(sine) ** 0.75 * closing - 1.0) * depth * 0.5
         z -= 0.5 * level**2  # the labial face curves in toward the edge
         y = np.full(AROUND, (1.0 - level) * tooth.height)
-        y += np.where(np.abs(x) > 0.42 * tooth.width, 0.35 * (level == 1.0), 0.0)
+        if level == 1.0 and tooth.shape == BROAD:
+            y += 0.6 * (1.0 - np.abs(np.sin(2.0 * angle)))  # four cusps
+        elif level == 1.0:
+            y += np.where(np.abs(x) > 0.40 * tooth.width, 0.35, 0.0)
         rows.append(np.column_stack([x, y, z]))
         side = smooth_step(0.70, 1.0, np.abs(cosine))
         tint = mix(NECK_COLOUR, EDGE_COLOUR, np.full(AROUND, level**0.6))
         shades.append(tint * (1.0 - 0.35 * side)[:, None])
     end = rows[-1].mean(axis=0)
-    return np.vstack([*rows, end]), np.vstack([*shades, EDGE_COLOUR])
+    if tooth.shape == BROAD:
+        end[1] += 1.1
+    pit = FISSURE_COLOUR if tooth.shape == BROAD else EDGE_COLOUR
+    return np.vstack([*rows, end]), np.vstack([*shades, pit])
 
 
 def _crown_faces() -> npt.NDArray[np.int32]:
-    faces = grid_faces(LEVELS, AROUND, wrapped=True)
-    last, end = (LEVELS - 1) * AROUND, LEVELS * AROUND
+    faces = grid_faces(len(LEVELS), AROUND, wrapped=True)
+    last, end = (len(LEVELS) - 1) * AROUND, len(LEVELS) * AROUND
     fan = [[last + i, last + (i + 1) % AROUND, end] for i in range(AROUND)]
     return np.vstack([faces, np.array(fan, dtype=np.int32)])
 
@@ -115,7 +145,7 @@ def teeth(arch: Arch) -> Solid:
         start += tooth.width
         centre = np.array([np.interp(middle, length, line[:, k]) for k in range(3)])
         ahead = np.array([np.interp(middle + 0.5, length, line[:, k]) for k in range(3)])
-        tangent = (ahead - centre) / np.linalg.norm(ahead - centre)
+        tangent = unit(((ahead - centre) * [1.0, 0.0, 1.0])[None])[0]
         outward = np.array([-tangent[2], 0.0, tangent[0]])
         local, colours = _crown(tooth)
         vertices = (
@@ -124,37 +154,54 @@ def teeth(arch: Arch) -> Solid:
             + local[:, 1:2] * [0.0, arch.up, 0.0]
             + local[:, 2:] * outward
         )
+        colours = in_mouth_light(vertices, colours)
         for side in (1.0, -1.0):
             faces = _crown_faces() if side * arch.up > 0 else _crown_faces()[:, ::-1]
             solids.append(Solid(vertices * [side, 1.0, 1.0], faces, colours))
     return joined(solids)
 
 
-def gums(arch: Arch) -> Solid:
-    """Return the ridge from which the teeth of an arch grow: a tube along it, scalloped."""
-    length, line = _along(arch)
+def _gum_section(arch: Arch, from_middle: Values) -> tuple[Values, Values, Points]:
+    """Distance outward and rise [mm], shape (stations, k), and the colours of a section."""
     ends = np.r_[0.0, np.cumsum([tooth.width for tooth in arch.teeth])]
-    last = min(float(ends[-1]) + 1.0, float(length[-1]))
-    stations = np.linspace(-last, last, 89)
-    from_middle = np.abs(stations)
     middles = 0.5 * (ends[1:] + ends[:-1])
     heights = np.interp(from_middle, middles, [tooth.height for tooth in arch.teeth])
+    depths = np.interp(from_middle, middles, [tooth.neck_depth for tooth in arch.teeth])
     phase = np.interp(from_middle, ends, np.arange(len(ends)))
-    papilla = 1.3 * (np.cos(2.0 * np.pi * phase) * 0.5 + 0.5)  # gum between teeth reaches further
+    between = np.cos(2.0 * np.pi * phase) * 0.5 + 0.5  # 1 where two teeth meet
+    behind = smooth_step(-1.0, PAD_LENGTH, from_middle - ends[-1])
+    margin = heights - COVERED - PAPILLA * between**1.5 + PAD_DEPTH * behind
+    outer, inner = np.array(OUTER_SECTION), np.array(INNER_SECTION)
+    narrowed = depths * (1.0 - 0.6 * behind)
+    outward = np.hstack(
+        [
+            np.tile(outer[:, 0], (len(margin), 1)) - 0.8 * behind[:, None],
+            -narrowed[:, None] - inner[None, :, 0],
+        ]
+    )
+    both = np.vstack([outer, inner])
+    rise = np.minimum(margin[:, None] + both[None, :, 1], 21.0)
+    colours = mix(mix(GUM_COLOUR, MUCOSA_COLOUR, both[:, 2]), POCKET_COLOUR, both[:, 3])
+    return outward, rise, colours
 
+
+def gums(arch: Arch) -> Solid:
+    """Return the ridge that holds the teeth of an arch, scalloped, with the pocket beside it."""
+    length, line = _along(arch)
+    width = sum(tooth.width for tooth in arch.teeth)
+    last = min(width + PAD_LENGTH, float(length[-1]))
+    stations = np.linspace(-last, last, STATIONS)
+    from_middle = np.abs(stations)
     centre = np.column_stack([np.interp(from_middle, length, line[:, k]) for k in range(3)])
     centre[:, 0] *= np.sign(stations)
-    tangent = unit(np.gradient(centre, axis=0))
-    outward = np.column_stack([-tangent[:, 2], np.zeros(len(centre)), tangent[:, 0]])
-    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
-    across = 0.9 - 4.6 + 5.2 * np.sign(np.sin(angle)) * np.abs(np.sin(angle)) ** 0.8
-    rise = 4.6 * (1.0 + np.sign(np.cos(angle)) * np.abs(np.cos(angle)) ** 0.8)
-    edge = (heights - 0.9 - papilla)[:, None] + rise[None, :]
+    tangent = unit(np.gradient(centre, axis=0) * [1.0, 0.0, 1.0])
+    sideways = np.column_stack([-tangent[:, 2], np.zeros(len(centre)), tangent[:, 0]])
+    outward, rise, section_colours = _gum_section(arch, from_middle)
     vertices = (
         centre[:, None, :]
-        + across[None, :, None] * outward[:, None, :]
-        + edge[:, :, None] * np.array([0.0, arch.up, 0.0])
+        + outward[:, :, None] * sideways[:, None, :]
+        + rise[:, :, None] * np.array([0.0, arch.up, 0.0])
     ).reshape(-1, 3)
-    colours = mix(GUM_COLOUR, GUM_DEEP, np.tile(smooth_step(3.0, 9.0, rise), len(stations)))
-    faces = grid_faces(len(stations), AROUND, wrapped=True)
+    colours = in_mouth_light(vertices, np.tile(section_colours, (len(stations), 1)))
+    faces = grid_faces(len(stations), outward.shape[1])
     return Solid(vertices, faces if arch.up > 0 else faces[:, ::-1], colours)

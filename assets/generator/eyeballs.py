@@ -14,11 +14,9 @@ from .solids import Solid, grid_faces, joined, mix, welded
 IRIS_RADIUS = 5.9  # [mm]
 PUPIL_RADIUS = 2.1
 CORNEA_RADIUS, CORNEA_RISE = 6.4, 1.1  # [mm]; less than in anatomy: the lids are thin
-SEGMENTS = 64
-RING_DISTANCES = (
-    0.0, 1.2, 1.95, 2.2, 2.7, 3.3, 3.9, 4.5, 5.0, 5.35, 5.65, 5.9, 6.2, 6.6, 7.2,
-)  # fmt: skip  # [mm] from the axis
-LAST_ANGLE_DEG = 125.0  # the rest is never seen
+FINE_SEGMENTS, COARSE_SEGMENTS = 60, 30  # as far as the limbus, beyond it
+RING_DISTANCES = (0.0, 1.2, 1.9, 2.25, 2.9, 3.7, 4.5, 5.1, 5.6, 6.0, 6.5)  # [mm] from the axis
+LAST_ANGLE_DEG, COARSE_RINGS = 112.0, 8  # the rest is never seen
 
 SCLERA = (0.925, 0.905, 0.885)
 CANTHUS = (0.80, 0.55, 0.51)
@@ -34,13 +32,6 @@ CORNERS = (
     ((19.4, -1.0, 74.9), (4.3, 2.8, 2.9)),
     ((43.6, 1.2, 69.6), (3.2, 2.8, 2.6)),
 )
-
-
-def _rings() -> Values:
-    """Angles from the optical axis [rad], dense where the colour changes."""
-    front = np.arcsin(np.array(RING_DISTANCES) / EYE_RADIUS)
-    back = np.linspace(front[-1], np.radians(LAST_ANGLE_DEG), 14)[1:]
-    return np.concatenate([front, back])
 
 
 def _radii(angles: Values) -> Values:
@@ -74,10 +65,9 @@ def _colours(beside: Values, around: Values, ahead: Points) -> npt.NDArray[np.fl
     return mix(colour, PUPIL, 1.0 - smooth_step(1.9, 2.3, beside))
 
 
-def eyeball() -> Solid:
-    """Return the left eyeball around the origin, looking along +z."""
-    angles = _rings()
-    around = 2.0 * np.pi * np.arange(SEGMENTS) / SEGMENTS
+def _ball(angles: Values, segments: int) -> Solid:
+    """Rings at angles from the optical axis [rad], around the origin."""
+    around = 2.0 * np.pi * np.arange(segments) / segments
     grid_angle, grid_around = (grid.ravel() for grid in np.meshgrid(angles, around, indexing="ij"))
     ahead = np.column_stack(
         [
@@ -90,13 +80,30 @@ def eyeball() -> Solid:
         grid_angle < np.pi / 2, EYE_RADIUS * np.sin(np.minimum(grid_angle, np.pi / 2)), EYE_RADIUS
     )
     vertices = ahead * _radii(grid_angle)[:, None]
-    faces = grid_faces(len(angles), SEGMENTS, wrapped=True)[:, ::-1]
-    return welded(Solid(vertices, faces, _colours(beside, grid_around, ahead)))
+    faces = grid_faces(len(angles), segments, wrapped=True)[:, ::-1]
+    return Solid(vertices, faces, _colours(beside, grid_around, ahead))
+
+
+def eyeball() -> Solid:
+    """Return the left eyeball around the origin, looking along +z."""
+    front = np.arcsin(np.array(RING_DISTANCES) / EYE_RADIUS)
+    back = np.linspace(front[-1], np.radians(LAST_ANGLE_DEG), COARSE_RINGS + 1)
+    fine, coarse = _ball(front, FINE_SEGMENTS), _ball(back[1:], COARSE_SEGMENTS)
+    start = (len(front) - 1) * FINE_SEGMENTS
+    end = len(fine.vertices)
+    seam = []
+    for k in range(COARSE_SEGMENTS):
+        a, b = start + 2 * k, start + (2 * k + 2) % FINE_SEGMENTS
+        c, d = end + k, end + (k + 1) % COARSE_SEGMENTS
+        seam += [[a + 1, a, c], [a + 1, c, d], [a + 1, d, b]]
+    both = joined([fine, coarse])
+    both.faces = np.vstack([both.faces, np.array(seam, dtype=np.int32)])
+    return welded(both)
 
 
 def corner_flesh() -> Solid:
     """Return the flesh in the corners of both eyes."""
-    polar, around = np.linspace(0.0, np.pi, 9), 2.0 * np.pi * np.arange(14) / 14
+    polar, around = np.linspace(0.0, np.pi, 7), 2.0 * np.pi * np.arange(10) / 10
     grid_polar, grid_around = (grid.ravel() for grid in np.meshgrid(polar, around, indexing="ij"))
     ball = np.column_stack(
         [
@@ -105,7 +112,7 @@ def corner_flesh() -> Solid:
             np.cos(grid_polar),
         ]
     )
-    faces = grid_faces(len(polar), 14, wrapped=True)[:, ::-1]
+    faces = grid_faces(len(polar), 10, wrapped=True)[:, ::-1]
     colours = np.tile(np.array(CONJUNCTIVA), (len(ball), 1))
     solids = []
     for centre, radii in CORNERS:

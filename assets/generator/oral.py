@@ -1,22 +1,32 @@
 """Tongue and oral cavity: what must be dark, and what must be seen in front of it.
 
-The cavity is two shells that open with the mouth like a clam: palate, sides and throat belong to
-the cranium, the floor to the mandible. Its sides hang down where the cheeks hide them, so that no
-gap opens at 20 degrees; together with the renderer's dark inner side of the skin nothing behind
-the head is ever seen through the mouth.
+The cavity is two shells that open with the mouth like a clam: palate, cheeks and throat belong to
+the cranium, the floor to the mandible. The lining of the cheeks runs outside both rows of teeth
+from the throat to the corners of the mouth and hangs down far enough that no gap opens with the
+jaw; behind the corners only its inner side is drawn, so that it cannot come before the lips.
 """
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
-from .fields import smooth_step
-from .solids import Solid, grid_faces, joined, mix, welded
+from .ambient import in_mouth_light
+from .fields import Points
+from .solids import Solid, grid_faces, joined, mix, smooth_step, welded
 
-PALATE_FRONT, PALATE_BACK = (0.36, 0.15, 0.145), (0.06, 0.018, 0.018)
-TONGUE, TONGUE_ROOT = (0.70, 0.37, 0.36), (0.25, 0.09, 0.09)
+PALATE, CHEEK, FLOOR = (0.66, 0.33, 0.31), (0.92, 0.40, 0.36), (0.60, 0.27, 0.25)
+TONGUE, TONGUE_ROOT = (0.74, 0.41, 0.40), (0.62, 0.30, 0.29)
 CENTRE = np.array([0.0, -66.0, 56.0])  # [mm]
-HALF_WIDTH, ROOF, FRONT, BACK = 32.0, 17.0, 29.0, 38.0  # [mm]; FRONT ends inside the gums
-FRONT_END_DEG, SIDE_END_DEG = 180.0, 118.0  # from straight back
-THROAT_DEPTH, FRONT_DEPTH = 40.0, 8.0  # [mm] how far the sides hang below the roof's edge
+HALF_WIDTH, ROOF, FRONT, BACK = 30.0, 17.0, 29.0, 38.0  # [mm]; FRONT ends inside the gums
+FRONT_RISE, FRONT_FROM_DEG = 8.0, 100.0  # the roof ends above the upper gums
+
+# The lining from the middle of the throat to the left corner of the mouth: x, z, height of the
+# upper and of the lower end [mm].
+LINING = (
+    (0, 18, -50, -108), (15, 21, -48, -108), (26, 30, -47, -107), (32.5, 42, -47, -105),
+    (35.5, 54, -48, -101), (36, 65, -50, -95), (33, 75, -53, -88), (28, 82, -57, -80),
+    (24, 85.5, -60, -73),
+)  # fmt: skip
+LINING_COLUMNS, LINING_ROWS = 17, 6
 
 
 def _outline(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -26,66 +36,72 @@ def _outline(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return x, z
 
 
-def _shade(z: np.ndarray) -> np.ndarray:
-    return mix(PALATE_BACK, PALATE_FRONT, smooth_step(35.0, 84.0, z))
+def _lit(points: Points, colour: tuple[float, float, float]) -> Points:
+    return in_mouth_light(points, np.tile(colour, (len(points), 1)))
+
+
+def _lining() -> Solid:
+    """The inner side of both cheeks and of the throat."""
+    table = np.array(LINING, dtype=np.float64)
+    steps = np.linalg.norm(np.diff(table[:, :2], axis=0), axis=1)
+    curve = PchipInterpolator(np.r_[0.0, np.cumsum(steps)], table)
+    left = curve(np.linspace(0.0, steps.sum(), LINING_COLUMNS))
+    whole = np.vstack([left[:0:-1] * [-1.0, 1.0, 1.0, 1.0], left])
+    rows = []
+    for level in np.linspace(0.0, 1.0, LINING_ROWS):
+        bulge = 1.0 - 0.10 * (2.0 * level - 1.0) ** 2  # hollow between its upper and lower end
+        height = whole[:, 2] + (whole[:, 3] - whole[:, 2]) * level
+        rows.append(np.column_stack([whole[:, 0] * bulge, height, whole[:, 1]]))
+    wall = np.vstack(rows)
+    return Solid(wall, grid_faces(LINING_ROWS, len(whole))[:, ::-1], _lit(wall, CHEEK))
 
 
 def upper_cavity() -> Solid:
-    """Return palate, sides and throat, visible from inside."""
-    angle = np.radians(np.linspace(-FRONT_END_DEG, FRONT_END_DEG, 49))
+    """Return palate, cheeks and throat, visible from inside."""
+    angle = np.radians(np.linspace(-180.0, 180.0, 37))
     x, z = _outline(angle)
     rows = []
-    for level in np.linspace(0.0, 1.0, 8):
+    for level in np.linspace(0.0, 1.0, 7):
         wide, high = np.sin(level * np.pi / 2) ** 0.8, np.cos(level * np.pi / 2)
-        in_front = np.abs(angle) > np.radians(SIDE_END_DEG)
-        least = np.where(in_front, 8.0, 0.0)  # in front the roof ends above the gum
+        in_front = np.abs(angle) > np.radians(FRONT_FROM_DEG)
+        least = np.where(in_front, FRONT_RISE, 0.0)
         rows.append(np.column_stack([x * wide, np.maximum(ROOF * high, least), z * wide]))
     dome = CENTRE + np.vstack(rows)
-    roof = Solid(dome, grid_faces(8, len(angle))[:, ::-1], _shade(dome[:, 2]))
-
-    angle = np.radians(np.linspace(-SIDE_END_DEG, SIDE_END_DEG, 33))
-    x, z = _outline(angle)
-    forward = np.abs(angle) / np.radians(SIDE_END_DEG)
-    hang = THROAT_DEPTH + (FRONT_DEPTH - THROAT_DEPTH) * smooth_step(0.45, 1.0, forward)
-    rows = [
-        np.column_stack([x * (1 - 0.12 * level), -hang * level, z * (1 - 0.06 * level)])
-        for level in np.linspace(0.0, 1.0, 6)
-    ]
-    skirt = CENTRE + np.vstack(rows)
-    sides = Solid(skirt, grid_faces(6, len(angle))[:, ::-1], 0.6 * _shade(skirt[:, 2]))
-    return welded(joined([roof, sides]))
+    roof = Solid(dome, grid_faces(7, len(angle))[:, ::-1], _lit(dome, PALATE))
+    return welded(joined([roof, _lining()]))
 
 
 def lower_cavity() -> Solid:
     """Return the floor under the tongue, visible from above."""
-    angle = np.radians(np.linspace(-180.0, 180.0, 41))
+    angle = np.radians(np.linspace(-180.0, 180.0, 33))
     x, z = _outline(angle)
     rows = []
-    for level in np.linspace(0.0, 1.0, 7):
+    for level in np.linspace(0.0, 1.0, 6):
         rise = 9.0 * level**3
         depth = np.where(z < 0, 0.62, 0.9) * z * level  # ends well in front of the neck
         rows.append(np.column_stack([0.82 * x * level, np.full(len(x), -22.0) + rise, depth]))
     floor = CENTRE + np.vstack(rows)
-    faces = grid_faces(7, len(angle))
-    return welded(Solid(floor, faces, 0.7 * _shade(floor[:, 2])))
+    return welded(Solid(floor, grid_faces(6, len(angle)), _lit(floor, FLOOR)))
 
 
 def tongue() -> Solid:
     """Return the resting tongue, its tip behind the lower incisors."""
-    lengthwise = np.linspace(0.0, 1.0, 19)  # tip to root
-    around = 2.0 * np.pi * np.arange(24) / 24
+    lengthwise = np.linspace(0.0, 1.0, 17) ** 1.25  # tip to root
+    around = 2.0 * np.pi * np.arange(20) / 20
     rows, roots = [], []
     for way in lengthwise:
         swell = np.sqrt(1.0 - (1.0 - min(way / 0.55, 1.0)) ** 2) if way > 0 else 0.03
         half_width = 18.5 * max(swell, 0.03)
         height = 10.0 * max(swell, 0.03)
-        centre_y = -78.5 + 5.0 * np.sin(np.pi * min(way, 0.8)) - 5.0 * max(way - 0.6, 0.0)
+        centre_y = -79.5 + 5.0 * np.sin(np.pi * min(way, 0.8)) - 5.0 * max(way - 0.6, 0.0)
         centre_z = 83.0 - 50.0 * way
         x = half_width * np.cos(around)
-        y = height * np.sin(around)
-        y = y - 1.6 * np.exp(-((x / 3.0) ** 2)) * (y > 0) * swell  # the groove in the middle
+        y = height * np.sign(np.sin(around)) * np.abs(np.sin(around)) ** 0.85
+        y = y - 2.2 * np.exp(-((x / 3.0) ** 2)) * (y > 0) * swell  # the groove in the middle
         rows.append(np.column_stack([x, centre_y + y, np.full(len(x), centre_z)]))
         roots.append(np.full(len(x), way))
     vertices = np.vstack(rows)
     colours = mix(TONGUE, TONGUE_ROOT, smooth_step(0.15, 0.85, np.concatenate(roots)))
-    return Solid(vertices, grid_faces(len(lengthwise), 24, wrapped=True)[:, ::-1], colours)
+    hollow = 0.88 + 0.12 * smooth_step(0.0, 5.0, np.abs(vertices[:, 0]))
+    colours = in_mouth_light(vertices, colours * hollow[:, None])
+    return Solid(vertices, grid_faces(len(lengthwise), 20, wrapped=True)[:, ::-1], colours)

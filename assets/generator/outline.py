@@ -7,11 +7,12 @@ from .fields import Points
 from .form import from_axis
 
 # The rim in capsule coordinates: angle about the axis [deg], height along the capsule [mm]. It
-# runs over the crown, down behind the place of the ear and forward around the neck.
+# runs over the back of the head, far behind the ears down to the nape, and forward around the neck:
+# from the front and from either side the head looks closed.
 RIM = (
-    (180, 119), (150, 113), (130, 99), (120, 77), (116, 52), (113, 28), (110, 4), (108, -20),
-    (106, -45), (106, -68), (107, -90), (107, -110), (105, -130), (98, -144),
-    (80, -152), (55, -156), (28, -158.5), (0, -159.5),
+    (180, 62), (174, 58), (168, 47), (165, 30), (163, 5), (161, -20), (160, -50), (159, -80),
+    (158, -105), (153, -126), (138, -140), (116, -147), (90, -152), (60, -156), (30, -158.5),
+    (0, -159.5),
 )  # fmt: skip
 DENSE = 900
 

@@ -43,7 +43,8 @@ def paint_skin(head: Head, *, tone: Tone, size: int = SIZE) -> Picture:
     for side in (1, -1):
         points = texels.points * [side, 1.0, 1.0]
         fine = _pores(points) + _freckles(texels, points, complexion, FRECKLE_SEED + side)
-        stubble = shadow * (1.0 + 0.22 * speckle(points, 0.6, seed=31))
+        grain = 0.12 + 0.10 * smooth_step(-25.0, 45.0, points[:, 2])
+        stubble = shadow * (1.0 + grain * speckle(points, 0.6, seed=31))
         colours = reflectance(melanin + fine, redness, stubble)
         for colour, cover in covers:
             colours += cover[:, None] * (colour - colours)
@@ -98,7 +99,8 @@ def _pigments(texels: Texels, complexion: Complexion) -> tuple[Values, Values, V
 def _pores(points: Points) -> Values:
     """Grain as fine as the picture can hold: it lets the eye see skin move."""
     coarse = noise(points, 1.7, seed=41)
-    return PORES * (0.6 * noise(points, 0.62, seed=42) + 0.7 * coarse)
+    seen = smooth_step(-25.0, 45.0, points[:, 2])  # behind, texels are coarser than pores
+    return PORES * seen * (0.6 * noise(points, 0.62, seed=42) + 0.7 * coarse)
 
 
 def _freckles(texels: Texels, points: Points, complexion: Complexion, seed: int) -> Values:

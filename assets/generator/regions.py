@@ -16,7 +16,8 @@ Spot = tuple[Triple, Triple, float]
 # Lines around the head: angle about its axis [deg], height along the capsule [mm].
 HAIRLINE = (
     (0, 75), (14, 77), (28, 82), (40, 81), (50, 69), (57, 52), (62, 36), (68, 27), (73, 19),
-    (77, 6), (81, -10), (86, -17), (92, -14), (97, -2), (103, -22), (110, -74), (125, -84),
+    (77, 6), (81, -8), (86, -15), (91, -12), (95, 4), (100, 20), (108, 27), (116, 24), (122, 8),
+    (126, -20), (131, -52), (138, -78), (150, -90), (180, -94),
 )  # fmt: skip
 BEARD_LINE = (
     (0, -46), (9, -48), (16, -53), (24, -62), (34, -66), (46, -64), (58, -56), (70, -42),
@@ -31,7 +32,7 @@ FLUSHED = (
     ((15, -40, 103), (6.5, 8, 9), 0.34),  # its wing
     ((0, -17, 105), (8, 14, 9), 0.12),  # its ridge
     ((0, -103, 99), (13, 9, 14), 0.16),  # chin
-    ((70, -14, -8), (14, 30, 20), 0.18),  # where the ear would be
+    ((68, -14, 0), (12, 26, 14), 0.08),  # in front of the ear
     ((0, 20, 97), (13, 9, 10), 0.08),  # between the brows
 )
 PALER = (
@@ -89,11 +90,16 @@ def blood(texels: Texels) -> Values:
     points = texels.points
     mottling = 0.055 * noise(points, 13.0, seed=1) + 0.045 * noise(points, 4.5, seed=2)
     lid = smooth_step(4.6, 2.6, texels.eye_row)
+    rim = bump(texels.ear_row, 1.4, 0.9) * smooth_step(0.3, 0.9, texels.ear_row)
+    ear = 0.08 * smooth_step(0.1, 0.8, texels.ear_row) + 0.24 * rim
+    ear += 0.06 * smooth_step(-28.0, -38.0, points[:, 1]) * (texels.ear_row > 0.5)  # its lobe
+    ear += 0.20 * smooth_step(4.2, 5.0, texels.ear_row)
     fold = bump(texels.points[:, 0] - np.interp(points[:, 1], (-46, -35), (17.5, 18.5)), 0.0, 2.2)
     fold *= bump(points[:, 1], -41.0, 5.5) * (points[:, 2] < 102.0)
     result: Values = (
         0.32 + _spots(points, FLUSHED) + _spots(points, PALER) + mottling + 0.16 * lid + 0.15 * fold
     )
+    result += ear
     return np.maximum(result, 0.02)
 
 
@@ -101,14 +107,15 @@ def tan(texels: Texels) -> Values:
     """Melanin beside that of the tone."""
     points = texels.points
     mottling = 0.018 * noise(points, 21.0, seed=3) + 0.014 * noise(points, 6.0, seed=4)
-    return np.asarray(_spots(points, TANNED) + mottling, dtype=np.float64)
+    hollow = 0.20 * bump(texels.ear_row, 3.0, 0.6) + 0.80 * smooth_step(4.05, 5.0, texels.ear_row)
+    return np.asarray(_spots(points, TANNED) + mottling + hollow, dtype=np.float64)
 
 
 def scalp(texels: Texels) -> Values:
     """How densely the shaved scalp is haired, 0 to 1; the hairline is frayed."""
     frayed = 2.6 * noise(texels.points, 5.0, seed=5) + 1.6 * noise(texels.points, 1.6, seed=6)
     beyond = texels.height - line_height(HAIRLINE, texels.angle) + frayed
-    return smooth_step(-8.0, 19.0, beyond)
+    return smooth_step(-8.0, 19.0, beyond) * smooth_step(0.35, 0.0, texels.ear_row)
 
 
 def beard(texels: Texels) -> Values:
@@ -123,4 +130,5 @@ def beard(texels: Texels) -> Values:
     growth *= smooth_step(0.8, 4.5, from_lip)
     growth *= 1.0 - 0.45 * bump(x, 0.0, 2.5) * bump(y, -53.0, 6.0)  # philtrum
     growth *= 1.0 - 0.6 * bump(x, 14.0, 7.0) * bump(y, -84.0, 5.0)  # beside the tuft
+    growth *= smooth_step(0.3, 0.0, texels.ear_row)
     return np.asarray(growth * (texels.mouth_row > 6.0), dtype=np.float64)

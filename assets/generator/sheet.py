@@ -17,24 +17,26 @@ from .form import from_axis, from_below, from_front
 from .topology import Edge, Faces, cross_products, edge_faces, edge_key
 
 VIEWPOINT = np.array([0.0, 10.0, 15.0])  # [mm]; sees the underside of nose and chin
-NECK_TOP, NECK_STRETCH = -108.0, 1.1  # below this the view is grazing: stretch the layout
+STRAIGHT_DOWN = np.array([0.0, -50.0 * np.pi])  # of the layout: the neck lies around it
+NECK_TOP, NECK_END, NECK_SHRINK = -108.0, -160.0, 0.75  # there the view is grazing: draw it inward
 DART_RADIUS = 0.80  # of the wanted edge length; chosen: leaves few gaps and few crowds
 ROW_RADIUS = 0.70  # distance of darts from rows, likewise
 
 # Wanted edge length [mm]: centre (x, y, z), radius within which it holds, length, growth per mm.
 SIZES = (
     ((31, 1, 78), 18.5, 5.9, 0.15),
-    ((10, -67, 100), 22.0, 5.9, 0.15),
-    ((0, -37, 110), 13.0, 4.9, 0.20),
-    ((14.0, -39.5, 102), 7.0, 3.2, 0.24),
+    ((10, -67, 100), 22.0, 5.7, 0.17),
+    ((0, -36, 112), 12.0, 4.0, 0.22),
+    ((14.0, -39.5, 102), 7.0, 2.9, 0.26),
     ((6.7, -45, 105), 5.0, 2.9, 0.34),
     ((4.0, -47.2, 102), 4.5, 2.5, 0.33),
     ((12.5, -46.5, 100), 3.5, 2.6, 0.33),
     ((0, -8, 98), 10.0, 6.2, 0.20),
     ((25, 20, 93), 14.0, 7.6, 0.16),
     ((0, -104, 92), 14.0, 8.4, 0.12),
+    ((69, -10, -12), 20.0, 8.0, 0.40),
 )
-LARGEST_IN_FACE, LARGEST_BEHIND = 12.6, 14.8  # [mm]
+LARGEST_IN_FACE, LARGEST_BEHIND, LARGEST_FAR_BEHIND = 14.6, 20.5, 26.0  # [mm]
 
 
 def wanted_length(points: Points) -> Values:
@@ -42,7 +44,11 @@ def wanted_length(points: Points) -> Values:
     half = np.column_stack([np.abs(points[:, 0]), points[:, 1], points[:, 2]])
     back = np.clip((60.0 - points[:, 2]) / 70.0, 0.0, 1.0)
     high = np.clip((points[:, 1] - 70.0) / 40.0, 0.0, 1.0)
-    result = LARGEST_IN_FACE + (LARGEST_BEHIND - LARGEST_IN_FACE) * np.maximum(back, high)
+    far = np.clip((5.0 - points[:, 2]) / 50.0, 0.0, 1.0)
+    low = np.clip((-112.0 - points[:, 1]) / 25.0, 0.0, 1.0)
+    beyond = np.maximum(np.maximum(back, high), low)
+    result = LARGEST_IN_FACE + (LARGEST_BEHIND - LARGEST_IN_FACE) * beyond
+    result = result + (LARGEST_FAR_BEHIND - LARGEST_BEHIND) * far
     for centre, radius, length, growth in SIZES:
         away = np.linalg.norm(half - np.array(centre), axis=1) - radius
         result = np.minimum(result, length + growth * np.maximum(away, 0.0))
@@ -55,9 +61,10 @@ def layout(points: Points) -> npt.NDArray[np.float64]:
     direction = points - VIEWPOINT
     beside = np.hypot(direction[:, 0], direction[:, 1])
     radius = 100.0 * np.arctan2(beside, direction[:, 2])
-    radius = radius + NECK_STRETCH * np.maximum(NECK_TOP - points[:, 1], 0.0)
-    flat: npt.NDArray[np.float64] = direction[:, :2] * (radius / np.maximum(beside, 1e-9))[:, None]
-    return flat
+    flat = direction[:, :2] * (radius / np.maximum(beside, 1e-9))[:, None]
+    below = np.clip((NECK_TOP - points[:, 1]) / (NECK_TOP - NECK_END), 0.0, 1.0)
+    flat += NECK_SHRINK * below[:, None] * (STRAIGHT_DOWN - flat)
+    return np.asarray(flat, dtype=np.float64)
 
 
 def inside_polygon(
@@ -107,8 +114,8 @@ class Domain:
 
 def _candidates(random: np.random.Generator) -> Points:
     """Points all over the half face, from three sides so that no part is hidden."""
-    angle = random.uniform(0.0, np.radians(125), 15000)
-    height = random.uniform(-160.0, 149.0, 15000)
+    angle = random.uniform(0.0, np.radians(180), 20000)
+    height = random.uniform(-160.0, 149.0, 20000)
     nose_x, nose_y = random.uniform(0, 22, 4000), random.uniform(-48, 0, 4000)
     under_x, under_z = random.uniform(0, 17, 2500), random.uniform(98, 122, 2500)
     below = from_below(under_x, under_z)

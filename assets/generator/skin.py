@@ -16,6 +16,8 @@ from .anchors import (
     lateral_anchors,
     midline_anchors,
 )
+from .ear_rows import COLUMNS as EAR_COLUMNS
+from .ear_rows import ear_root, ear_rows, face_count, floor_faces, merged_columns
 from .eye_rows import eye_rows
 from .fields import Points
 from .mouth_rows import mouth_rows
@@ -26,9 +28,9 @@ from .sheet import Domain, throw_darts, triangulate, wanted_length
 from .topology import Faces, halved, strip
 
 TARGET_HALF = 1015  # faces; the paper's face has 2030 triangles (Table 1)
-SCALE = 1.2  # of the wanted edge lengths; chosen: the rounds end 12 % above the target
-SEED = 3  # chosen among a few for the largest smallest angle
-RIM_SCALE = 0.62  # the rim is seen as an outline: finer
+SCALE = 1.28  # of the wanted edge lengths; chosen: the sheet ends 22 % above what it is cut to
+SEED = 4  # chosen among a few for the largest smallest angle
+RIM_SCALE, CROWN_SCALE = 0.50, 0.62  # rim and crown are seen as an outline: finer
 
 
 @dataclass
@@ -72,7 +74,8 @@ def _midline(
         name: int(np.argmin(np.linalg.norm(curve - point, axis=1)))
         for name, point in anchors.items()
     }
-    size = wanted_length(curve) * scale
+    is_crown = (curve[:, 1] > 60.0) & (curve[:, 2] < 70.0)
+    size = wanted_length(curve) * scale * np.where(is_crown, CROWN_SCALE, 1.0)
     numbers: list[int] = []
     named: dict[str, int] = {}
     ordered = [("", 0), *sorted(stops.items(), key=lambda item: item[1]), ("", len(curve) - 1)]
@@ -108,14 +111,14 @@ def build_half(*, scale: float = SCALE, seed: int = SEED, target: int = TARGET_H
     eye, mouth, ring = eye_rows(), mouth_rows(), nostril_ring()
     book = PointList()
     eye_outer, mouth_outer = book.add(eye[-1]), book.add(mouth[-1])
-    nostril = book.add(ring)
+    nostril, ear = book.add(ring), book.add(ear_root())
     outline, rim, names = _border(book, mouth_outer, scale)
     crease = book.add(alar_crease())
     anchors = lateral_anchors()
     names |= dict(zip(anchors, book.add(np.array(list(anchors.values()))), strict=True))
     names["alar_base"] = crease[-1]
 
-    domain = Domain(np.array(book.points), outline, [eye_outer, nostril], [crease])
+    domain = Domain(np.array(book.points), outline, [eye_outer, nostril, ear], [crease])
     points, faces = triangulate(domain, throw_darts(domain, scale=scale, seed=seed))
     freedom = np.full(len(points), Freedom.FREE, dtype=np.int8)
     freedom[: len(book.freedom)] = book.freedom
@@ -123,11 +126,13 @@ def build_half(*, scale: float = SCALE, seed: int = SEED, target: int = TARGET_H
     sheet.locked = {edge for edge in sheet.locked if not _on_midline(sheet, edge)}
 
     row_faces = 4 * 2 * len(eye_outer) + 7 * 2 * (len(mouth_outer) - 1) + 5 * len(nostril)
+    row_faces += face_count()
     remesh(sheet, scale=scale, target_faces=target - row_faces)
     half = Skin(sheet.vertices, sheet.faces, names, {"rim": rim, "alar_crease": crease})
     _hang_rows(half, "eye", eye, eye_outer, closed=True)
     _hang_rows(half, "mouth", mouth, mouth_outer, closed=False)
     _close_nostril(half, nostril)
+    _hang_ear(half, ear)
     return _compressed(half)
 
 
@@ -180,6 +185,27 @@ def _close_nostril(half: Skin, ring: list[int]) -> None:
     _join(half, faces, (ring[0], ring[1]))
     half.rings["nostril"] = ring
     half.names["nostril_roof"] = centre
+
+
+def _hang_ear(half: Skin, root: list[int]) -> None:
+    """Add the ear to its root; where a row falls onto the one before, quads become triangles."""
+    points, floor = ear_rows()
+    rows = [root]
+    for row, merged in zip(points, merged_columns(), strict=True):
+        own = [column for column in range(EAR_COLUMNS) if column not in merged]
+        numbers = list(rows[-1])
+        for column, number in zip(own, _append(half, row[own]), strict=True):
+            numbers[column] = number
+        rows.append(numbers)
+    quads = [quad for first, second in pairwise(rows) for quad in strip(first, second, closed=True)]
+    upper, lower = _append(half, floor)
+    whole = halved(half.vertices, [quad for quad in quads if len(set(quad)) == 4])
+    corners = [list(dict.fromkeys(quad)) for quad in quads if len(set(quad)) == 3]
+    closing = corners + floor_faces(rows[-1], upper, lower)
+    faces = np.vstack([whole, np.array(closing, dtype=np.int32)])
+    _join(half, faces, (root[3], root[4]))
+    half.rings |= {f"ear_{i}": row for i, row in enumerate(rows)}
+    half.rings["concha"] = [upper, lower]
 
 
 def _compressed(half: Skin) -> Skin:

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..model import Head
+from .ear_rows import ROWS as EAR_ROWS
 from .fields import Points, Values
 from .mouth_rows import OUTER_ROW, SIDE
 from .sections import direction_coordinates
@@ -33,6 +34,8 @@ class Texels:
     mouth_row: 0 to 2 behind the lips, 6 on the border of the red, 8 beyond, shape (n,).
     is_upper_lip: share of the upper lip, 0 to 1, shape (n,).
     nostril: 0 on the outside to 1 at the roof, shape (n,).
+    ear_row: 0 outside and at the ear's root, 1 to 2 on the helix, 4 around the concha, 5 in it,
+        shape (n,).
     """
 
     rows: npt.NDArray[np.int64]
@@ -45,14 +48,15 @@ class Texels:
     mouth_row: Values
     is_upper_lip: Values
     nostril: Values
+    ear_row: Values
 
 
 def corner_values(head: Head) -> npt.NDArray[np.float64]:
-    """Eye row, upper lid, mouth row, upper lip and nostril of every vertex, shape (V, 5).
+    """Eye row, upper lid, mouth row, upper lip, nostril and ear row of every vertex, shape (V, 6).
 
     The right half holds what lies beyond all rows: only the left one is painted.
     """
-    values = np.zeros((len(head.vertices), 5))
+    values = np.zeros((len(head.vertices), 6))
     values[:, 0], values[:, 2] = EYE_ROWS, OUTER_ROW + 1
     for row in range(EYE_ROWS):
         ring = head.rings[f"eye_{row}_left"]
@@ -68,6 +72,9 @@ def corner_values(head: Head) -> npt.NDArray[np.float64]:
     for step in range(NOSTRIL_DEPTH):
         values[reached, 4] = np.maximum(values[reached, 4], 1.0 - step / NOSTRIL_DEPTH)
         reached = np.unique(head.faces[np.isin(head.faces, reached).any(axis=1)])
+    for row in range(1, EAR_ROWS):
+        values[np.setdiff1d(head.rings[f"ear_{row}_left"], head.rings["ear_0_left"]), 5] = row
+    values[head.rings["concha_left"], 5] = EAR_ROWS
     return values
 
 

@@ -36,6 +36,18 @@ def test_rebuilt_head_can_be_loaded(rebuilt: Path) -> None:
     assert len(load_head(rebuilt).faces) == 2030
 
 
+def test_rebuilt_finer_meshes_are_the_shipped_ones(rebuilt: Path) -> None:
+    """New vertices within the tolerance; normals are of half precision."""
+    with (
+        np.load(load_head(rebuilt).finer_file) as fresh,
+        np.load(load("head").finer_file) as shipped,
+    ):
+        assert sorted(fresh.files) == sorted(shipped.files)
+        assert np.allclose(fresh["added_vertices"], shipped["added_vertices"], atol=TOLERANCE)
+        assert np.allclose(fresh["normals"], shipped["normals"], atol=0.02)
+    assert len(load_head(rebuilt).finer(2).faces) == 16 * 2030
+
+
 def test_repainted_skin_is_the_shipped_one(rebuilt: Path) -> None:
     """The picture beside the data file comes from the same command."""
     fresh, shipped = load_head(rebuilt).albedo.astype(int), load("head").albedo.astype(int)

@@ -99,6 +99,33 @@ def test_upper_incisors_overlap_the_lower(head: Head) -> None:
     assert 1.0 < front[0][:, 2].max() - front[1][:, 2].max() < 4.0
 
 
+def test_mouth_is_darker_toward_the_throat(head: Head) -> None:
+    """Teeth, tongue and cheeks lose light with depth, yet the throat is no black hole."""
+    for name in ("teeth_lower", "teeth_upper", "tongue", "oral_cavity_upper"):
+        found = part(head, name)
+        depth, brightness = found.vertices[:, 2], found.colours.mean(axis=1)
+        front = brightness[depth > np.percentile(depth, 80)].mean()
+        back = brightness[depth < np.percentile(depth, 20)].mean()
+        assert 0.01 < back < 0.75 * front, name
+
+
+def test_gums_hold_the_teeth(head: Head) -> None:
+    """Every crown is rooted in gum, and what stands out of it is as high as in a mouth."""
+    for row, up in (("upper", 1.0), ("lower", -1.0)):
+        teeth, gums = part(head, f"teeth_{row}").vertices, part(head, f"gums_{row}").vertices
+        margin = up * gums[:, 1]
+        for low, high, least, most in ((0.0, 9.0, 6.5, 10.0), (24.0, 30.0, 2.0, 7.0)):
+            beside = [(np.abs(p[:, 0]) > low) & (np.abs(p[:, 0]) < high) for p in (teeth, gums)]
+            crown = up * teeth[beside[0], 1]
+            assert crown.max() > margin[beside[1]].min() + 0.5
+            assert least < margin[beside[1]].min() + 1.5 - crown.min() < most, (row, low)
+
+
+def test_parts_cost_no_more_than_they_must(head: Head) -> None:
+    """On a software renderer they cost as much as the skin: 8000 to 12 000 triangles."""
+    assert 8000 <= sum(len(found.faces) for found in head.parts) <= 12000
+
+
 def test_eyeballs_fit_their_lids(head: Head) -> None:
     """The lid margin keeps clear of the ball, and the ball fills the fissure."""
     for eye, side in zip(head.eyes, ("right", "left"), strict=True):

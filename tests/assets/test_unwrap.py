@@ -115,7 +115,7 @@ def test_start_is_valid_and_relaxing_improves_it(head: Head) -> None:
     after, _ = unwrap._energy(relaxed, patch.faces, inverse, weights)
     assert signed_areas(start, patch.faces).min() > 0.0
     assert signed_areas(relaxed, patch.faces).min() > 0.0
-    assert 4.0 < after / weights.sum() < 5.0 < before / weights.sum()  # 4 would be no stretch
+    assert 4.0 < after / weights.sum() < 6.0 < before / weights.sum()  # 4 would be no stretch
     assert np.all(relaxed[patch.on_midline, 0] == 0.0)
 
 

@@ -1,0 +1,33 @@
+"""How much daylight reaches a place within the mouth: baked into the colours of teeth and flesh.
+
+The renderer casts the shadows of one lamp; what keeps the back of a mouth dark is that lips and
+cheeks cover most of the sky there (ambient occlusion). At the depth of the first molars little more
+than a narrow window is left.
+"""
+
+import numpy as np
+
+from .fields import Points, Values, smooth_step
+
+DAYLIGHT, GLOOM = 93.0, 30.0  # z [mm]: at the incisors, at the root of the tongue
+LEAST = 0.2  # chosen: the throat is dark, not black
+REDDENING = (0.92, 1.25, 1.3)  # powers for red, green, blue; chosen
+FALL = 1.35  # chosen: a straight fall leaves the molars too bright
+BESIDE, BESIDE_SHARE = 30.0, 0.12  # [mm], chosen: the cheeks cover the sides
+
+
+def mouth_light(points: Points) -> Values:
+    """Factor on sRGB colours at places within the mouth, LEAST to 1, shape (n,)."""
+    inward = np.clip((points[:, 2] - GLOOM) / (DAYLIGHT - GLOOM), 0.0, 1.0) ** FALL
+    side = 1.0 - BESIDE_SHARE * smooth_step(0.4 * BESIDE, BESIDE, np.abs(points[:, 0]))
+    light: Values = np.maximum(inward * side, LEAST)
+    return light
+
+
+def in_mouth_light(points: Points, colours: Points) -> Points:
+    """Colours as they look at their places within the mouth, shape (n, 3).
+
+    What light is left there has met red flesh before: green and blue fall faster.
+    """
+    dimmed: Points = colours * mouth_light(points)[:, None] ** np.array(REDDENING)
+    return dimmed

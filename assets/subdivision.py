@@ -1,0 +1,67 @@
+"""Every triangle cut into four: the connectivity of the finer heads.
+
+        c               New vertices lie on edges and are numbered behind the old ones, so that
+       / \\              every old vertex keeps its number. The four children of face f are the
+     ca---bc            faces 4 f to 4 f + 3: corner a, corner b, corner c, middle.
+     / \\ / \\
+    a---ab--b
+
+Nothing of this needs to be stored: the data file of the finer heads holds the places of the new
+vertices and normals only. Here, apart from `generator`, because loading must not need scipy.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+IndexArray = npt.NDArray[np.int32]
+# Corners of the children in the corners of the parent.
+_HALF = 0.5
+CHILDREN = np.array(
+    [
+        [[1, 0, 0], [_HALF, _HALF, 0], [_HALF, 0, _HALF]],
+        [[_HALF, _HALF, 0], [0, 1, 0], [0, _HALF, _HALF]],
+        [[_HALF, 0, _HALF], [0, _HALF, _HALF], [0, 0, 1]],
+        [[_HALF, _HALF, 0], [0, _HALF, _HALF], [_HALF, 0, _HALF]],
+    ]
+)
+
+
+@dataclass(frozen=True)
+class Quartered:
+    """A triangle list after one cut.
+
+    faces: shape (4 F, 3), int32.
+    edges: the ends of the edge that each new vertex lies on, lower number first, shape (E, 2).
+    """
+
+    faces: IndexArray
+    edges: IndexArray
+
+
+def quarter(faces: IndexArray, vertex_count: int) -> Quartered:
+    """Cut every triangle into four; edge e gets the new vertex `vertex_count` + e."""
+    sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
+    edges, number = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True)
+    ab, bc, ca = vertex_count + number.reshape(-1, 3).T
+    a, b, c = faces.T
+    children = np.stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], axis=1)
+    return Quartered(children.reshape(-1, 3).astype(np.int32), edges.astype(np.int32))
+
+
+def coarse_places(
+    faces: IndexArray, fine_faces: IndexArray
+) -> tuple[IndexArray, npt.NDArray[np.float64]]:
+    """Where fine vertices lie on the coarse mesh, by the order of the children alone.
+
+    faces, fine_faces: before the first and after the last cut. Returns a coarse triangle of each
+    fine vertex, shape (n,), and its barycentric coordinates there, shape (n, 3): exact multiples
+    of 1/2 to the power of the number of cuts.
+    """
+    corners = np.broadcast_to(np.eye(3), (len(faces), 3, 3))
+    while len(corners) < len(fine_faces):
+        corners = np.einsum("kij,fjl->fkil", CHILDREN, corners).reshape(-1, 3, 3)
+    _, first = np.unique(fine_faces, return_index=True)
+    triangle = (first // 3) * len(faces) // len(fine_faces)
+    return triangle.astype(np.int32), corners.reshape(-1, 3)[first]

@@ -1,0 +1,211 @@
+"""The finer meshes: the same head, more triangles, and the map between them."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import assets
+from assets import checks
+from assets.generator import form
+from assets.generator.topology import boundary_loops, cross_products
+from assets.loading import HEAD_FILE, load_head
+from assets.model import FineMesh, Head
+from assets.subdivision import coarse_places, quarter
+
+MOST_FINER_DATA = 1_500_000  # bytes
+
+Points = npt.NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def head() -> Head:
+    """The built-in head."""
+    return assets.load("head")
+
+
+@pytest.fixture(scope="module", params=[1, 2])
+def fine(request: pytest.FixtureRequest, head: Head) -> FineMesh:
+    """Its finer meshes, one after the other."""
+    return head.finer(request.param)
+
+
+def test_triangle_counts_are_powers_of_four(head: Head) -> None:
+    """About 8 and 32 thousand; one new vertex for each edge."""
+    assert [len(head.finer(level).faces) for level in (1, 2)] == [8120, 32480]
+    edges = quarter(head.faces, len(head.vertices)).edges
+    assert len(head.finer(1).vertices) == len(head.vertices) + len(edges)
+
+
+def test_coarse_vertices_are_fine_vertices(head: Head, fine: FineMesh) -> None:
+    """Bit for bit, under the same number: landmarks, rows and names hold as they are."""
+    count = len(head.vertices)
+    assert np.array_equal(fine.vertices[:count], head.vertices)
+    assert np.array_equal(np.unique(fine.faces), np.arange(len(fine.vertices)))
+
+
+def test_map_reproduces_the_coarse_mesh(head: Head, fine: FineMesh) -> None:
+    """Barycentric coordinates are coordinates; coarse vertices map onto themselves exactly."""
+    assert fine.coarse_triangle.shape == (len(fine.vertices),)
+    assert fine.barycentric.shape == (len(fine.vertices), 3)
+    assert np.all(fine.barycentric.sum(axis=1) == 1.0) and fine.barycentric.min() == 0.0
+    mapped = fine.carried(head.vertices)
+    assert np.array_equal(mapped[: len(head.vertices)], head.vertices)
+    number = fine.carried(np.arange(len(head.vertices), dtype=np.float64))
+    assert np.array_equal(number[: len(head.vertices)], np.arange(len(head.vertices)))
+    assert fine.carried(head.bone_depth).shape == (len(fine.vertices),)
+
+
+def test_children_stand_in_the_place_of_their_parent(head: Head, fine: FineMesh) -> None:
+    """Face k of the fine mesh lies in face k / 4^level of the coarse one, and covers its share."""
+    share = len(fine.faces) // len(head.faces)
+    flat = fine.carried(head.vertices)
+    parent = np.repeat(cross_products(head.vertices, head.faces), share, axis=0) / share
+    assert np.allclose(cross_products(flat, fine.faces), parent, atol=1e-9)
+
+
+def test_each_level_comes_nearer_to_the_form(head: Head) -> None:
+    """The way from the flat triangles to the next level's vertices shrinks about to a quarter."""
+    meshes = [(head.vertices, head.faces)]
+    meshes += [(mesh.vertices, mesh.faces) for mesh in (head.finer(1), head.finer(2))]
+    ways = []
+    for (vertices, faces), (finer, _) in pairwise(meshes):
+        middle = vertices[quarter(faces, len(vertices)).edges].mean(axis=1)
+        way = np.linalg.norm(finer[len(vertices) :] - middle, axis=1)
+        ways.append(float(np.sqrt((way**2).mean())))
+    assert 0.1 < ways[0] < 1.5
+    assert ways[1] < 0.4 * ways[0]
+
+
+def test_most_new_vertices_lie_on_the_form(head: Head, fine: FineMesh) -> None:
+    """All of forehead, cheek and chin; elsewhere rows were pressed in or hang inside."""
+    new = fine.vertices[len(head.vertices) :]
+    away = np.abs(form.distance(new))
+    plain = (new[:, 2] > 60.0) & ((new[:, 1] > 32.0) | (new[:, 1] < -85.0)) & (new[:, 1] > -120.0)
+    assert plain.sum() > 100
+    assert away[plain].max() < 0.05
+    assert (away < 0.05).mean() > 0.5
+
+
+def test_finer_mesh_is_its_own_mirror_image(fine: FineMesh) -> None:
+    """To the last bit: the mirrored vertices are the vertices."""
+    mirrored = fine.vertices * [-1.0, 1.0, 1.0] + 0.0  # + 0.0: no negative zero
+    assert np.array_equal(np.unique(mirrored, axis=0), np.unique(fine.vertices + 0.0, axis=0))
+
+
+def test_finer_mesh_is_one_manifold_piece(head: Head, fine: FineMesh) -> None:
+    """The topology of the coarse mesh: the same holes, no more."""
+    assert checks.is_manifold(fine.faces)
+    assert checks.component_count(fine.faces) == 1
+    assert checks.euler_characteristic(fine.vertices, fine.faces) == (
+        checks.euler_characteristic(head.vertices, head.faces)
+    )
+
+
+def test_no_triangle_is_turned_over(head: Head, fine: FineMesh) -> None:
+    """Every child looks about the way its parent does."""
+    cross = cross_products(fine.vertices, fine.faces)
+    parent = np.repeat(
+        cross_products(head.vertices, head.faces), len(fine.faces) // len(head.faces), axis=0
+    )
+    cosine = (cross * parent).sum(axis=1)
+    cosine /= np.linalg.norm(cross, axis=1) * np.linalg.norm(parent, axis=1)
+    assert cosine.min() > 0.1
+
+
+def test_finer_mesh_does_not_cut_itself(fine: FineMesh) -> None:
+    """The lips nearly touch; curving them must not push them into each other."""
+    assert len(checks.self_intersections(fine.vertices, fine.faces)) == 0
+
+
+def test_boundaries_become_smooth(head: Head) -> None:
+    """At half the spacing a smooth curve turns half as much from edge to edge."""
+
+    def turns(vertices: Points, faces: npt.NDArray[np.int32]) -> list[float]:
+        found = []
+        for loop in boundary_loops(faces):
+            along = np.diff(vertices[[*loop, loop[0]]], axis=0)
+            along /= np.linalg.norm(along, axis=1, keepdims=True)
+            cosine = (along * np.roll(along, 1, axis=0)).sum(axis=1)
+            found.append(float(np.median(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))))
+        return found
+
+    coarse, fine = (
+        turns(head.vertices, head.faces),
+        turns(head.finer(2).vertices, head.finer(2).faces),
+    )
+    for before, after in zip(coarse, fine, strict=True):
+        assert after < 0.5 * before
+
+
+def test_normals_are_unit_and_agree_with_the_faces(fine: FineMesh) -> None:
+    """A normal is that of the form, or of the mesh where the mesh left the form."""
+    assert np.allclose(np.linalg.norm(fine.normals, axis=1), 1.0)
+    cross = cross_products(fine.vertices, fine.faces)
+    total = np.zeros_like(fine.vertices)
+    for corner in range(3):
+        np.add.at(total, fine.faces[:, corner], cross)
+    cosine = (total * fine.normals).sum(axis=1) / np.linalg.norm(total, axis=1)
+    assert np.percentile(cosine, 1) > 0.8
+    assert cosine.min() > 0.0
+
+
+def test_quartering_follows_the_picture() -> None:
+    """Two triangles with one edge in common: five edges, eight children, one place for each."""
+    faces = np.array([[0, 1, 2], [2, 1, 3]], dtype=np.int32)
+    cut = quarter(faces, 4)
+    assert cut.edges.tolist() == [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]]
+    assert cut.faces[:4].tolist() == [[0, 4, 5], [4, 1, 6], [5, 6, 2], [4, 6, 5]]
+    triangle, places = coarse_places(faces, quarter(cut.faces, 9).faces)
+    assert set(triangle.tolist()) == {0, 1}
+    assert set(np.unique(places)) == {0.0, 0.25, 0.5, 0.75, 1.0}
+
+
+def test_arrays_cannot_be_written(fine: FineMesh) -> None:
+    """Two users of a finer mesh must not disturb each other."""
+    with pytest.raises(ValueError, match="read-only"):
+        fine.vertices[0] = 0.0
+    with pytest.raises(ValueError, match="read-only"):
+        fine.faces[0] = 0
+
+
+def test_other_levels_are_refused(head: Head) -> None:
+    """What there is is in the message."""
+    for level in (0, 3):
+        with pytest.raises(ValueError, match=rf"level was {level}; allowed are 1 .* and 2"):
+            head.finer(level)
+
+
+def test_missing_file_is_no_matter_until_it_is_needed(tmp_path: Path, head: Head) -> None:
+    """A head alone loads without it; then the cure is in the message."""
+    (tmp_path / "head.npz").write_bytes(HEAD_FILE.read_bytes())
+    lonely = load_head(tmp_path / "head.npz")
+    assert np.array_equal(lonely.vertices, head.vertices)
+    with pytest.raises(assets.AssetError, match=r"head_finer\.npz is missing; build it with"):
+        lonely.finer(1)
+
+
+def test_file_of_another_head_is_refused(head: Head) -> None:
+    """A finer mesh must never be laid over a head that it was not made from."""
+    other = replace(head, vertices=head.vertices * 1.01)
+    with pytest.raises(assets.AssetError, match="made for another head; rebuild it"):
+        other.finer(1)
+
+
+def test_finer_data_stay_small(head: Head) -> None:
+    """Connectivity and map are counted, not stored."""
+    assert head.finer_file.stat().st_size < MOST_FINER_DATA
+
+
+def test_finer_meshes_need_no_generator() -> None:
+    """Only a build imports scipy."""
+    code = (
+        "import sys, assets; assets.load('head').finer(2);"
+        "assert not any(n.startswith(('scipy', 'assets.generator')) for n in sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -1,0 +1,87 @@
+"""The mesh report and the published norms in it."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import assets
+from assets.model import Head
+from assets.norms import NORMS, Norm, Sample
+from assets.report import Row, distance_rows, line, main, report, table, text_lines
+
+
+@pytest.fixture(scope="module")
+def head() -> Head:
+    """The built-in head."""
+    return assets.load("head")
+
+
+def test_every_norm_is_measured(head: Head) -> None:
+    """No published figure lies unused, and codes in titles are spelt as the norms' are."""
+    measured = [row.title.rpartition(", ")[2] for row in distance_rows(head) if row.norm]
+    assert sorted(measured) == sorted(NORMS)
+
+
+def test_head_is_usual_in_every_measure_with_a_norm(head: Head) -> None:
+    """Within two deviations of the mean of women and of men: so it was when the norms came in."""
+    for row in distance_rows(head):
+        if row.norm is not None:
+            assert row.norm.usual_for(row.value) == "both", line(row)
+
+
+def test_head_is_near_the_middle_on_the_whole(head: Head) -> None:
+    """Usual in each measure is not enough: between the sexes the scores must not pile up."""
+    scores = [
+        0.5 * (row.norm.women.score(row.value) + row.norm.men.score(row.value))
+        for row in distance_rows(head)
+        if row.norm is not None
+    ]
+    assert abs(float(np.mean(scores))) < 0.6
+    assert float(np.sqrt(np.mean(np.square(scores)))) < 1.0
+
+
+def test_norms_are_plausible_figures() -> None:
+    """Against slips of the pen: deviations of 4 to 25 %, men larger, large samples."""
+    for code, norm in NORMS.items():
+        assert norm.men.mean > norm.women.mean, code
+        for sample in (norm.women, norm.men):
+            assert 0.03 < sample.deviation / sample.mean < 0.25, code
+            assert sample.size > 800, code
+        assert "doi 10." in norm.source
+
+
+def test_usual_means_two_deviations() -> None:
+    """Scores and verdicts of a made-up norm."""
+    norm = Norm(Sample(30.0, 2.0, 10), Sample(35.0, 2.0, 10))
+    assert norm.women.score(33.0) == pytest.approx(1.5)
+    verdicts = [norm.usual_for(value) for value in (25.0, 28.0, 32.5, 38.0, 40.0)]
+    assert verdicts == ["nobody", "women", "both", "men", "nobody"]
+
+
+def test_lines_show_norms_where_there_are_some() -> None:
+    """A count stands alone; a distance with a norm has two means, two scores and a verdict."""
+    assert line(Row("triangles", 2030)) == f"{'triangles':40s}    2030.00 "
+    text = line(Row("between inner eye corners, en-en", 40.0, "mm"))
+    assert re.search(r"31\.5 \+- 2\.7\s+\+3\.1\s+32\.7 \+- 2\.9\s+\+2\.5\s+nobody$", text)
+
+
+def test_command_writes_every_row_and_the_sources(
+    head: Head, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What `python -m assets.report` prints."""
+    main([])
+    written = capsys.readouterr().out.splitlines()
+    assert written == text_lines(report(head))
+    assert written[0].startswith("vertices") and written[-1].startswith("Norms: ")
+    assert sum("score" in text for text in written) == 1
+
+
+def test_page_shows_the_table(head: Head, capsys: pytest.CaptureFixture[str]) -> None:
+    """The documentation holds what `python -m assets.report --table` prints."""
+    main(["--table"])
+    written = capsys.readouterr().out.splitlines()
+    assert written == table(distance_rows(head))
+    page = (Path(__file__).parents[2] / "docs" / "head.md").read_text(encoding="utf-8")
+    assert "\n".join(written) in page
