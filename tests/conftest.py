@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+import os
 import random
 from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from hypothesis import settings
+
+# No deadlines: a shared machine may stall any example. In continuous integration the examples are
+# the same every time; at a developer's desk hypothesis keeps looking for new ones.
+settings.register_profile("everywhere", deadline=None)
+settings.register_profile("integration", deadline=None, derandomize=True)
+settings.load_profile("integration" if os.environ.get("CI") else "everywhere")
 
 
 @pytest.fixture(autouse=True)
