@@ -20,6 +20,8 @@ from .pipeline import Pipeline, side_by_side
 from .scenes import SCENES, Scene
 from .script import Script
 
+SETTLING = 1.0  # [s] after which the face rests in a pose
+
 
 @dataclass(frozen=True)
 class CaptureOptions:
@@ -61,7 +63,7 @@ class Capture:
     def picture(self) -> Frame:
         """Draw the scene as it is now, and read the picture back."""
         self.surface.begin()
-        self.pipeline.draw_frame(0.0, self.camera, self.options.style, self.viewports)
+        self.pipeline.draw(self.camera, self.options.style, self.viewports)
         self.surface.end()
         pictures = self.pipeline.pictures
         self.most_triangles = max(
@@ -80,15 +82,21 @@ class Capture:
     def play(
         self, script: Script, *, until: float | None = None, progress: bool = True
     ) -> Iterator[float]:
-        """Play a script from rest and yield the time [s] of each frame, the scene moved to it."""
+        """Play a script and yield the time [s] of each frame, the scene moved to it.
+
+        It begins in the script's first pose, as if that had been held for a while.
+        """
         self.scene.reset()
+        self.scene.pose(script.at(0.0))
+        if any(self.scene.values.values()):
+            self.pipeline.step(SETTLING)
         rate = self.options.frames_per_second
         last = round((script.duration if until is None else until) * rate)
         bar = tqdm(range(last + 1), unit="frame", disable=not progress or None, leave=False)
         for index in bar:
             self.scene.pose(script.at(index / rate))
             if index:
-                self.scene.step(1.0 / rate)
+                self.pipeline.step(1.0 / rate)
             yield index / rate
 
 
@@ -110,18 +118,21 @@ def capture(
     wanted = list(script.key_poses) if sheet else []
     if sheet and not wanted:
         raise UserError(f"{script.source}: no pose has a name, so there is nothing for a sheet")
+    if sheet:
+        outputs.check_picture(sheet)
     poses: list[tuple[str, Frame]] = []
     with contextlib.ExitStack() as stack:
         recording = stack.enter_context(Capture(scene_of(script), options))
         film = stack.enter_context(_sink_for(output, options, overwrite)) if output else None
+        half_a_frame = 0.5 / options.frames_per_second
         for time in recording.play(script, progress=progress):
-            is_wanted = bool(wanted) and wanted[0].time <= time + 0.5 / options.frames_per_second
+            is_wanted = bool(wanted) and wanted[0].time <= time + half_a_frame
             if film is None and not is_wanted:
                 continue
             frame = recording.picture()
             if film is not None:
                 film(frame)
-            if is_wanted:
+            while wanted and wanted[0].time <= time + half_a_frame:
                 poses.append((wanted.pop(0).name, frame))
         if sheet is not None:
             outputs.save_png(sheet, contact_sheet(poses, columns=2 if options.compare else 3))
@@ -129,9 +140,20 @@ def capture(
 
 
 def take_picture(
-    script: Script, options: CaptureOptions, output: Path, *, time: float, progress: bool = True
+    script: Script,
+    options: CaptureOptions,
+    output: Path,
+    *,
+    time: float | None = None,
+    progress: bool = True,
 ) -> int:
-    """Play `script` up to `time` [s] and write that moment; returns its number of triangles."""
+    """Play `script` up to `time` [s] and write that moment; returns its number of triangles.
+
+    Without a time it is the first pose that has a name, or else the end.
+    """
+    if time is None:
+        time = script.key_poses[0].time if script.key_poses else script.duration
+    outputs.check_picture(output)
     with Capture(scene_of(script), options) as recording:
         for _ in recording.play(script, until=time, progress=progress):
             pass

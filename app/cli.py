@@ -6,6 +6,7 @@ What needs OpenGL or compiled code is imported inside the commands, so that --he
 from __future__ import annotations
 
 import contextlib
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,7 +16,7 @@ import click
 
 from . import __version__
 from .errors import UserError
-from .size import Size
+from .parameters import FiniteRange, Size
 
 Command = Callable[..., Any]
 
@@ -32,7 +33,7 @@ def told_in_one_line() -> Iterator[None]:
         click.echo(f"risorius: {error}", err=True)
         sys.exit(2)
     except KeyboardInterrupt:
-        click.echo("risorius: stopped; what was not complete has been removed", err=True)
+        click.echo("risorius: stopped", err=True)
         sys.exit(130)
 
 
@@ -40,6 +41,8 @@ def told_in_one_line() -> Iterator[None]:
 @click.version_option(__version__, prog_name="risorius")
 def main() -> None:
     """Physics-based facial animation with dynamically refined triangle meshes."""
+    # Told to stop, clean up as after Ctrl-C: half-written outputs are removed on the way out.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
 
 
 def drawing_options(command: Command) -> Command:
@@ -53,7 +56,7 @@ def drawing_options(command: Command) -> Command:
         ),
         click.option(
             "--thresholds",
-            type=click.FloatRange(0.0, 2.0),
+            type=FiniteRange(0.0, 2.0),
             nargs=2,
             metavar="ONCE TWICE",
             help="Drops of the normals' dot product that split an edge once and twice.",
@@ -84,11 +87,16 @@ def drawing_options(command: Command) -> Command:
 @click.option("--sheet", type=click.Path(path_type=Path), help="Contact sheet of the named poses.")
 @click.option("--scene", type=click.Choice(["face", "plane"]), help="What is animated.")
 @click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told.")
-@click.option("--fps", type=click.FloatRange(1, 240), default=30.0, show_default=True)
+@click.option("--fps", type=FiniteRange(1, 240), default=30.0, show_default=True)
 @click.option("--compare", is_flag=True, help="The mesh as it is on the left, refined right.")
 @click.option("--captions/--no-captions", default=True, help="Words under a comparison.")
 @click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees.")
-@click.option("--time", "still_time", type=click.FloatRange(0), help="When a .png is taken [s].")
+@click.option(
+    "--time",
+    "still_time",
+    type=FiniteRange(0, 86_400),
+    help="When a .png is taken [s]: else in the first named pose, or at the end.",
+)
 @click.option("--samples", type=click.IntRange(0, 16), default=4, show_default=True)
 @click.option("--overwrite", is_flag=True, help="Replace a folder that is not empty.")
 @click.option("--quiet", is_flag=True, help="No progress bar.")
@@ -140,7 +148,7 @@ def capture(
         most = 0
         if picture is not None:
             most = capturing.take_picture(
-                performance, options, picture, time=still_time or 0.0, progress=not quiet
+                performance, options, picture, time=still_time, progress=not quiet
             )
         if picture is None or sheet is not None:
             film_most = capturing.capture(
@@ -153,17 +161,17 @@ def capture(
             )
             most = max(most, film_most)
         written = " and ".join(str(path) for path in (output, sheet) if path)
-        click.echo(f"{written}: at most {most} triangles in a frame")
+        click.echo(f"{written}: {most} triangles at most")
 
 
 @main.command()
 @click.option(
     "--size", type=Size(), default=(1280, 800), help="Of the window, 1280x800 unless told."
 )
-@click.option("--scene", type=click.Choice(["face", "plane"]), default="face", show_default=True)
+@click.option("--scene", type=click.Choice(["face", "plane"]), help="face, unless told.")
 @click.option("--script", type=click.Path(path_type=Path), help="What the space key plays.")
 @drawing_options
-def view(size: tuple[int, int], scene: str, script: Path | None, **options: Any) -> None:
+def view(size: tuple[int, int], scene: str | None, script: Path | None, **options: Any) -> None:
     """Open the window: a face with a slider for every muscle."""
     open_viewer(script, scene, size, playing=False, **options)
 
@@ -192,9 +200,7 @@ def demo() -> None:
         options = capturing.CaptureOptions(compare=True, camera=script.camera or DEFAULT_VIEW)
         film, sheet = Path("out/demo.mp4"), Path("out/demo.png")
         most = capturing.capture(script, options, output=film, sheet=sheet)
-        click.echo(
-            f"{film} ({script.duration:g} s) and {sheet}: at most {most} triangles in a frame"
-        )
+        click.echo(f"{film} ({script.duration:g} s) and {sheet}: {most} triangles at most")
 
 
 @main.command()

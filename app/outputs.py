@@ -23,7 +23,10 @@ FrameSink = Callable[[Frame], None]  # takes the frames of a film one after the 
 
 @contextlib.contextmanager
 def written_aside(target: Path) -> Iterator[Path]:
-    """Yield a path beside `target`, renamed to it if the block ends without an error."""
+    """Yield a path beside `target`, renamed to it if the block ends without an error.
+
+    A file takes the place of a file, a folder that of a folder; UserError where they would mix.
+    """
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         aside = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
@@ -32,6 +35,8 @@ def written_aside(target: Path) -> Iterator[Path]:
     try:
         part = aside / target.name
         yield part
+        if target.is_dir() != part.is_dir() and target.exists():
+            raise UserError(f"{target}: is there already, and of another kind; choose another name")
         if target.is_dir():  # a folder is not replaced in place: its old content leaves last
             os.replace(target, aside / "previous")
         os.replace(part, target)
@@ -39,8 +44,22 @@ def written_aside(target: Path) -> Iterator[Path]:
         shutil.rmtree(aside, ignore_errors=True)
 
 
+def refuse_folder(target: Path) -> None:
+    """Raise UserError, before any work is done, where a file is to be and a folder is."""
+    if target.is_dir():
+        raise UserError(f"{target}: is a folder; choose another name for the file")
+
+
+def check_picture(target: Path) -> None:
+    """Raise UserError, before any work is done, where no picture can be written."""
+    if target.suffix.lower() != ".png":
+        raise UserError(f"{target}: pictures are written as .png; choose a name that ends so")
+    refuse_folder(target)
+
+
 def save_png(target: Path, frame: Frame) -> None:
-    """Write one picture."""
+    """Write one picture; UserError for another suffix and for a folder."""
+    check_picture(target)
     with written_aside(target) as part:
         Image.fromarray(frame).save(part, format="PNG")
 
@@ -56,6 +75,7 @@ def film(target: Path, size: tuple[int, int], frames_per_second: float) -> Itera
             f"a film needs an even width and height, and --size is {size[0]}x{size[1]}; "
             f"take {size[0] + size[0] % 2}x{size[1] + size[1] % 2}, or write frames to a folder"
         )
+    refuse_folder(target)
     with written_aside(target) as part:
         writer = imageio_ffmpeg.write_frames(
             str(part),

@@ -1,6 +1,6 @@
 """The paper's Figure 1, end to end: simulation, triangle mesh, refinement, rendering.
 
-`draw_frame` is the figure. The simulation never learns that refinement exists; the
+`step` and `draw` are the figure. The simulation never learns that refinement exists; the
 refiner reads the mesh and writes only into the buffers that the renderer lent; what it wrote is
 forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
 """
@@ -69,16 +69,14 @@ class Pipeline:
             Picture.of(scene, renderer, name, options) for name, options in refiners.items()
         ]
 
-    def draw_frame(
-        self,
-        seconds: float,
-        camera: render.OrbitCamera,
-        style: render.Style,
-        viewports: Sequence[Viewport],
+    def step(self, seconds: float) -> None:
+        """The upper half of the figure: time passes, and the triangle mesh follows."""
+        self.scene.step(seconds)
+
+    def draw(
+        self, camera: render.OrbitCamera, style: render.Style, viewports: Sequence[Viewport]
     ) -> None:
-        """Let the scene move by `seconds`, then draw each picture into its viewport."""
-        if seconds > 0.0:
-            self.scene.step(seconds)
+        """The lower half: refine the mesh for each picture, and draw it into its viewport."""
         for picture, viewport in zip(self.pictures, viewports, strict=True):
             mesh = picture.refiner.refine(self.scene.positions, out=picture.stream)
             picture.stream.upload(len(mesh.positions), len(mesh.triangles))

@@ -20,8 +20,8 @@ A script is a list of poses and, beside them, tracks::
     [tracks]                     # single channels, added to the poses (a blink, a glance)
     blink = [
         { time = 2.0, value = 0 },
-        { time = 2.1, value = 1, easing = "ease-in" },
-        { time = 2.25, value = 0 },
+        { time = 2.12, value = 1, easing = "ease-in" },
+        { time = 2.3, value = 0 },
     ]
 
 Before its first key a channel keeps that key's value, after its last key the last one's.
@@ -41,6 +41,7 @@ from typing import Any
 from .easing import EASINGS
 from .errors import UserError
 
+LARGEST = 86_400.0  # of any number in a script; as a time [s] it is a day
 TOP_LEVEL_KEYS = ("title", "scene", "camera", "duration", "pose", "tracks")
 POSE_KEYS = ("time", "easing", "name")
 TRACK_KEYS = ("time", "value", "easing")
@@ -146,6 +147,12 @@ def parse_script(text: str, *, source: str) -> Script:
     duration = reader.number(document, "duration", where="top level", default=max(ends))
     if duration <= 0.0:
         raise UserError(f"{source}: duration is {duration:g} s; it must be above 0")
+    for pose in key_poses:
+        if pose.time > duration:
+            raise UserError(
+                f"{source}: pose '{pose.name}' at {pose.time:g} s comes after the duration, "
+                f"{duration:g} s"
+            )
     return Script(
         title=reader.text(document, "title", default=Path(source).stem),
         duration=duration,
@@ -181,8 +188,8 @@ class _Reader:
             raise self.fail(f"{where}: '{key}' is missing; it must be a number")
         if isinstance(value, bool) or not isinstance(value, int | float) or value != value:
             raise self.fail(f"{where}: '{key}' is {value!r}; it must be a number")
-        if abs(value) == float("inf"):
-            raise self.fail(f"{where}: '{key}' is {value!r}; it must be finite")
+        if abs(value) > LARGEST:
+            raise self.fail(f"{where}: '{key}' must lie between -{LARGEST:g} and {LARGEST:g}")
         return float(value)
 
     def text(self, table: Mapping[str, Any], key: str, *, default: str | None) -> Any:
@@ -195,7 +202,7 @@ class _Reader:
     def easing(self, table: Mapping[str, Any], *, where: str) -> str:
         """The name of an easing that there is."""
         value = table.get("easing", "smooth")
-        if value not in EASINGS:
+        if not isinstance(value, str) or value not in EASINGS:
             raise self.fail(f"{where}: easing {value!r}; allowed are {', '.join(EASINGS)}")
         return str(value)
 

@@ -102,8 +102,10 @@ class Viewer:
         seconds = min(elapsed, LONGEST_FRAME)
         self._play(seconds)
         self.scene.pose(self.controls)
+        if seconds > 0.0:
+            self.pipeline.step(seconds)
         self.surface.begin()
-        self.pipeline.draw_frame(seconds, self.camera, self._style(), [self._viewport()])
+        self.pipeline.draw(self.camera, self._style(), [self._viewport()])
         self.surface.resolve()  # the panel lies on top of the finished picture
         with self.gui.frame():
             self.panel.draw(imgui.get_io().display_size.y)
@@ -116,6 +118,7 @@ class Viewer:
     def set_control(self, name: str, value: float) -> None:
         """Take one control by hand; a script that plays is paused."""
         self.is_playing = False
+        self.expression = None
         self.controls[name] = value
 
     def toggle_expression(self, name: str) -> None:
@@ -141,6 +144,7 @@ class Viewer:
     def seek(self, time: float) -> None:
         """Go to a time of the script and take its pose."""
         self.script_time = time
+        self.expression = None
         self._take_script_pose()
 
     def next_shading(self) -> None:

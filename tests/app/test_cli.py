@@ -46,7 +46,7 @@ def test_a_script_becomes_a_film_and_a_sheet(smile: Path, tmp_path: Path) -> Non
         "capture", smile, "-o", film, "--sheet", sheet, "--compare", "--size", "256x144"
     )
     assert result.exit_code == 0, result.output
-    assert "triangles in a frame" in result.output
+    assert "triangles at most" in result.output
     count, _ = imageio_ffmpeg.count_frames_and_secs(str(film))
     assert count == 13
     assert Image.open(sheet).size == (1280, 400)
@@ -92,7 +92,7 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         "--quiet",
     )
     assert result.exit_code == 0, result.output
-    most = int(result.output.split("at most ")[1].split()[0])
+    most = int(result.output.split(": ")[1].split()[0])
     assert 1328 <= most <= 1540
     assert sheet.exists()
 
@@ -118,6 +118,10 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
             ["capture", "SMILE", "-o", "x.mp4", "--refiner", "loop", "--thresholds", "0", "1"],
             "--thresholds goes with --refiner kahler",
         ),
+        (["capture", "SMILE", "-o", "x.mp4", "--fps", "nan"], "nan is not a finite number"),
+        (["capture", "SMILE", "-o", "x.png", "--time", "nan"], "nan is not a finite number"),
+        (["capture", "SMILE", "-o", "x.mp4", "--thresholds", "nan", "nan"], "not a finite number"),
+        (["capture", "SMILE", "--sheet", "x.txt"], "pictures are written as .png"),
         (["replay", "no.toml"], "no.toml: no such script"),
     ],
 )
@@ -131,6 +135,31 @@ def test_mistakes_are_one_line(
     assert message.replace("'behind'; ", "'behind': ") in result.output
     assert "Traceback" not in result.output
     assert list(smile.parent.iterdir()) == [smile]
+
+
+def test_a_folder_is_never_replaced_by_a_file(smile: Path, tmp_path: Path) -> None:
+    """A film or sheet named like a folder of the user's is refused, and the folder stays."""
+    for name in ("keep.mp4", "keep.png"):
+        kept = tmp_path / name / "mine.txt"
+        kept.parent.mkdir()
+        kept.write_text("mine")
+        for option in ("-o", "--sheet"):
+            result = risorius("capture", smile, option, kept.parent, "--size", "64x64", "--quiet")
+            assert result.exit_code == 2, (name, option)
+        assert kept.read_text() == "mine"
+
+
+def test_a_script_begins_in_its_first_pose(tmp_path: Path) -> None:
+    """A pose at time 0 is there in the first frame: the face is in it, the plane is waving."""
+    path = tmp_path / "held.toml"
+    for scene, pose in (("face", "joy = 1"), ("plane", "amplitude = 1")):
+        path.write_text(f"scene = '{scene}'\nduration = 1\n[[pose]]\ntime = 0\n{pose}\n")
+        result = risorius(
+            "capture", path, "-o", tmp_path / "x.png", "--time", "0", "--size", "64x64", "--quiet"
+        )
+        assert result.exit_code == 0, result.output
+        count = int(result.output.split(": ")[1].split()[0])
+        assert count > (2300 if scene == "face" else 1000)
 
 
 def test_no_opengl_is_one_line(smile: Path) -> None:

@@ -56,7 +56,8 @@ def test_a_registered_refiner_is_drawn(surface: Any, monkeypatch: pytest.MonkeyP
     pipeline = Pipeline(scene, render.Renderer(surface), {"double": None})
     surface.begin()
     camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
-    pipeline.draw_frame(0.1, camera, render.Style(), [(0, 0, *SIZE)])
+    pipeline.step(0.1)
+    pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
     surface.end()
     assert pipeline.pictures[0].triangle_count == 308
     assert np.ptp(surface.read()) > 30
@@ -73,7 +74,8 @@ def test_the_mesh_and_the_simulation_never_notice(surface: Any) -> None:
         scene.pose({"surprise": 1.0})
         for _ in range(15):
             surface.begin()
-            pipeline.draw_frame(1 / 30, camera, render.Style(), [(0, 0, *SIZE)])
+            pipeline.step(1 / 30)
+            pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
             surface.end()
         assert np.array_equal(faces, scene.faces)
     assert scenes[0].positions.tobytes() == scenes[1].positions.tobytes()
@@ -89,7 +91,7 @@ def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:
     for name in ("none", "kahler"):
         pipeline = Pipeline(scene, renderer, {name: None})
         surface.begin()
-        pipeline.draw_frame(0.0, camera, render.Style(), [(0, 0, *SIZE)])
+        pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
         surface.end()
         pictures.append(surface.read())
     assert np.array_equal(*pictures)

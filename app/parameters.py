@@ -1,7 +1,8 @@
-"""A parameter of the command line: the size of a picture."""
+"""Kinds of parameters of the command line: the size of a picture, a number that is one."""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import click
@@ -24,3 +25,16 @@ class Size(click.ParamType[tuple[int, int]]):
             if all(16 <= side <= 8192 for side in size):
                 return size
         self.fail(f"'{value}' is no size; write width x height, each 16 to 8192, as in 1280x720")
+
+
+class FiniteRange(click.FloatRange):
+    """A number within limits; unlike its parent it lets no NaN through."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """Turn the text into a number, or fail with what is allowed."""
+        number = float(super().convert(value, param, ctx))
+        if not math.isfinite(number):
+            self.fail(f"{value} is not a finite number", param, ctx)
+        return number

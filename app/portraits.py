@@ -1,4 +1,4 @@
-"""The pictures of docs/head.md: `python -m bench.portraits [FOLDER]` draws them anew.
+"""The pictures of docs/head.md: `python -m app.portraits [FOLDER]` draws them anew.
 
 Two contact sheets, always from the same views and under the same light, so that two states of the
 head can be laid side by side: `head_views.png` (the head at rest, as painted skin, as clay, as flat
@@ -18,8 +18,9 @@ import assets
 import refine
 import render
 import sim
-from app.labels import contact_sheet
-from app.outputs import Frame, save_png
+
+from .labels import contact_sheet
+from .outputs import Frame, save_png
 
 FOLDER = Path("docs/pictures")
 CELL = (260, 320)  # [pixels] of one portrait: a sheet stays below 600 kB
@@ -125,7 +126,7 @@ def details(studio: Studio) -> list[tuple[str, Frame]]:
 def main(arguments: Sequence[str]) -> None:
     """Draw both sheets into the folder given."""
     parser = argparse.ArgumentParser(
-        prog="python -m bench.portraits", description=(__doc__ or "").splitlines()[0]
+        prog="python -m app.portraits", description=(__doc__ or "").splitlines()[0]
     )
     parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
     parser.add_argument("--width", type=int, default=CELL[0], help="of one portrait [pixels]")
