@@ -12,11 +12,11 @@ from tqdm import tqdm
 import render
 
 from . import outputs
-from .cameras import DEFAULT_VIEW, camera_for
+from .cameras import camera_for
 from .errors import UserError
 from .labels import caption, contact_sheet
 from .outputs import Frame
-from .pipeline import Pipeline, side_by_side
+from .pipeline import Pipeline, side_by_side, texture_of
 from .scenes import SCENES, Scene
 from .script import Script
 
@@ -33,7 +33,7 @@ class CaptureOptions:
     refiner_options: Mapping[str, float] | None = None  # None: what suits the scene
     compare: bool = False  # the mesh as it is on the left, refined on the right
     captions: bool = True  # names and triangle counts under a comparison
-    camera: str = DEFAULT_VIEW  # a named view, or yaw,pitch[,zoom] in degrees
+    camera: str | None = None  # a named view, or yaw,pitch[,zoom] in degrees
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
     samples: int = 4
 
@@ -49,7 +49,8 @@ class Capture:
         if options.compare:
             refiners["none"] = None
         refiners[options.refiner] = options.refiner_options
-        self.pipeline = Pipeline(scene, render.Renderer(self.surface), refiners)
+        renderer = render.Renderer(self.surface)
+        self.pipeline = Pipeline(scene, renderer, refiners, texture_of(scene, renderer))
         self.viewports = side_by_side(self.surface.size, len(refiners))
         self.camera = camera_for(scene, options.camera)
         self.most_triangles = 0

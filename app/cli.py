@@ -124,7 +124,6 @@ def capture(
     Without SCRIPT the scene's own one is played.
     """
     from . import capture as capturing
-    from .cameras import DEFAULT_VIEW
     from .choices import known_refiner, script_for, style_of, threshold_options
 
     with told_in_one_line():
@@ -136,7 +135,7 @@ def capture(
             refiner_options=threshold_options(refiner, thresholds),
             compare=compare,
             captions=captions,
-            camera=camera or performance.camera or DEFAULT_VIEW,
+            camera=camera or performance.camera,
             style=style_of(**look),
             samples=samples,
         )
@@ -192,12 +191,11 @@ def replay(script: Path, size: tuple[int, int], once: bool, **options: Any) -> N
 def demo() -> None:
     """Render the built-in head through its expressions to out/demo.mp4 and out/demo.png."""
     from . import capture as capturing
-    from .cameras import DEFAULT_VIEW
     from .choices import script_for
 
     with told_in_one_line():
         script = script_for(None, "face")
-        options = capturing.CaptureOptions(compare=True, camera=script.camera or DEFAULT_VIEW)
+        options = capturing.CaptureOptions(compare=True, camera=script.camera)
         film, sheet = Path("out/demo.mp4"), Path("out/demo.png")
         most = capturing.capture(script, options, output=film, sheet=sheet)
         click.echo(f"{film} ({script.duration:g} s) and {sheet}: {most} triangles at most")

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
+import render  # isort: skip - after imgui_bundle, see app/gui.py
+
 if TYPE_CHECKING:
     from .viewer import Viewer
 
@@ -63,21 +65,26 @@ class Panel:
 
     def _display(self) -> None:
         viewer = self.viewer
-        for label, name in (
-            ("Refine (R)", "is_refined"),
-            ("Wireframe (W)", "is_wireframe"),
-            ("Splits (C)", "shows_splits"),
-        ):
-            _, value = imgui.checkbox(label, getattr(viewer, name))
-            setattr(viewer, name, value)
-            self._remember(label)
-            if label != "Splits (C)":
-                imgui.same_line()
-        _, viewer.is_textured = imgui.checkbox("Texture (T)", viewer.is_textured)
-        self._remember("Texture (T)")
+        style = viewer.style
+        if self._checkbox("Refine (R)", viewer.is_refined):
+            viewer.toggle_refinement()
         imgui.same_line()
-        if imgui.button(f"Shading (S): {viewer.shading.name.lower()}"):
+        if self._checkbox("Wireframe (W)", style.wireframe):
+            viewer.restyle(wireframe=not style.wireframe)
+        imgui.same_line()
+        if self._checkbox("Splits (C)", style.colour_by is render.ColourBy.SPLITS):
+            viewer.toggle_splits()
+        if self._checkbox("Texture (T)", style.textured):
+            viewer.restyle(textured=not style.textured)
+        imgui.same_line()
+        if imgui.button(f"Shading (S): {style.shading.name.lower()}"):
             viewer.next_shading()
+
+    def _checkbox(self, label: str, is_on: bool) -> bool:
+        """Draw a checkbox; whether it was clicked."""
+        was_clicked, _ = imgui.checkbox(label, is_on)
+        self._remember(label)
+        return bool(was_clicked)
 
     def _script(self) -> None:
         viewer = self.viewer

@@ -60,11 +60,15 @@ class Pipeline:
         scene: Scene,
         renderer: render.Renderer,
         refiners: Mapping[str, Mapping[str, Any] | None],
+        texture: render.Texture | None = None,
     ) -> None:
-        """Bind `refiners` (name -> options, None: the scene's) to the scene, left to right."""
+        """Bind `refiners` (name -> options, None: the scene's) to the scene, left to right.
+
+        `texture`: the scene's albedo, as `texture_of` made it.
+        """
         self.scene = scene
         self.renderer = renderer
-        self.texture = None if scene.albedo is None else renderer.load_texture(scene.albedo)
+        self.texture = texture
         self.pictures = [
             Picture.of(scene, renderer, name, options) for name, options in refiners.items()
         ]
@@ -77,15 +81,17 @@ class Pipeline:
         self, camera: render.OrbitCamera, style: render.Style, viewports: Sequence[Viewport]
     ) -> None:
         """The lower half: refine the mesh for each picture, and draw it into its viewport."""
+        bones = self.scene.bone_transforms()
         for picture, viewport in zip(self.pictures, viewports, strict=True):
             mesh = picture.refiner.refine(self.scene.positions, out=picture.stream)
             picture.stream.upload(len(mesh.positions), len(mesh.triangles))
-            self._draw(picture, mesh, camera, style, viewport)
+            self._draw(picture, mesh, bones, camera, style, viewport)
 
     def _draw(
         self,
         picture: Picture,
         mesh: refine.RefinedMesh,
+        bones: Mapping[str, npt.NDArray[np.float64]],
         camera: render.OrbitCamera,
         style: render.Style,
         viewport: Viewport,
@@ -98,9 +104,12 @@ class Pipeline:
             picture.stream, camera, style, viewport=viewport, values=values, texture=self.texture
         )
         # After the mesh: the skin throws its shadow on eyes and teeth.
-        self.renderer.draw_parts(
-            self.scene.parts, self.scene.bone_transforms(), camera, style, viewport=viewport
-        )
+        self.renderer.draw_parts(self.scene.parts, bones, camera, style, viewport=viewport)
+
+
+def texture_of(scene: Scene, renderer: render.Renderer) -> render.Texture | None:
+    """Hand the scene's albedo to the renderer; None where it has none."""
+    return None if scene.albedo is None else renderer.load_texture(scene.albedo)
 
 
 def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> npt.NDArray[np.uint8]:

@@ -6,6 +6,7 @@ a window that was stalled (dragged, covered, stopped in a debugger) goes on calm
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -15,7 +16,7 @@ from imgui_bundle import imgui
 from .cameras import camera_for
 from .gui import Gui, poll_events, time_now  # before anything opens a window, see there
 from .panels import WIDTH, Panel
-from .pipeline import Picture, Pipeline
+from .pipeline import Picture, Pipeline, texture_of
 from .scenes import SCENES, mix
 from .script import Script
 
@@ -41,22 +42,22 @@ class Viewer:
         self.script = script
         self.scene = SCENES[script.scene]()
         script.check_names({*self.scene.expressions, *self.scene.limits})
-        self.surface = render.open_window(size, f"Risorius: {script.title}")
-        self.renderer = render.Renderer(self.surface)
-        self.gui = Gui(self.surface.handle)
-        self.panel = Panel(self)
-        shown = refiner if refiner != "none" else "kahler"
-        self.pipelines = {
-            "none": Pipeline(self.scene, self.renderer, {"none": None}),
-            shown: Pipeline(self.scene, self.renderer, {shown: refiner_options}),
-        }
-        self.refiner = shown
+        self.refiner = refiner if refiner != "none" else "kahler"
         self.is_refined = refiner != "none"
         self.style = style
-        self.is_wireframe = style.wireframe
-        self.shows_splits = style.colour_by is render.ColourBy.SPLITS
-        self.shading = style.shading
-        self.is_textured = style.textured
+        with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
+            self.surface = render.open_window(size, f"Risorius: {script.title}")
+            stack.callback(self.surface.close)
+            self.gui = Gui(self.surface.handle)
+            stack.callback(self.gui.close)
+            renderer = render.Renderer(self.surface)
+            texture = texture_of(self.scene, renderer)
+            self.pipelines = {
+                name: Pipeline(self.scene, renderer, {name: options}, texture)
+                for name, options in (("none", None), (self.refiner, refiner_options))
+            }
+            self._resources = stack.pop_all()
+        self.panel = Panel(self)
         self.camera = self._framed()
         self.controls = dict.fromkeys(self.scene.limits, 0.0)
         self.expression: str | None = None
@@ -69,8 +70,7 @@ class Viewer:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.gui.close()
-        self.surface.close()
+        self._resources.close()
 
     @property
     def pipeline(self) -> Pipeline:
@@ -105,7 +105,7 @@ class Viewer:
         if seconds > 0.0:
             self.pipeline.step(seconds)
         self.surface.begin()
-        self.pipeline.draw(self.camera, self._style(), [self._viewport()])
+        self.pipeline.draw(self.camera, self.style, [self._viewport()])
         self.surface.resolve()  # the panel lies on top of the finished picture
         with self.gui.frame():
             self.panel.draw(imgui.get_io().display_size.y)
@@ -147,10 +147,23 @@ class Viewer:
         self.expression = None
         self._take_script_pose()
 
+    def restyle(self, **changes: Any) -> None:
+        """Change how the picture is drawn: fields of `render.Style`."""
+        self.style = replace(self.style, **changes)
+
     def next_shading(self) -> None:
-        """Per pixel, flat, Gouraud, and round again."""
+        """Flat, Gouraud, per pixel, and round again."""
         order = list(render.Shading)
-        self.shading = order[(order.index(self.shading) + 1) % len(order)]
+        self.restyle(shading=order[(order.index(self.style.shading) + 1) % len(order)])
+
+    def toggle_splits(self) -> None:
+        """Colour triangles by their number of splits, or not."""
+        is_on = self.style.colour_by is render.ColourBy.SPLITS
+        self.restyle(colour_by=render.ColourBy.NONE if is_on else render.ColourBy.SPLITS)
+
+    def toggle_refinement(self) -> None:
+        """Draw the refined mesh, or the mesh as it is."""
+        self.is_refined = not self.is_refined
 
     # One frame's parts
 
@@ -174,18 +187,14 @@ class Viewer:
             imgui.Key.space: self.toggle_playing,
             imgui.Key.s: self.next_shading,
             imgui.Key.n: self.neutral,
+            imgui.Key.r: self.toggle_refinement,
+            imgui.Key.c: self.toggle_splits,
+            imgui.Key.w: lambda: self.restyle(wireframe=not self.style.wireframe),
+            imgui.Key.t: lambda: self.restyle(textured=not self.style.textured),
         }
         for key, action in actions.items():
             if imgui.is_key_pressed(key, False):
                 action()
-        for key, name in (
-            (imgui.Key.r, "is_refined"),
-            (imgui.Key.w, "is_wireframe"),
-            (imgui.Key.c, "shows_splits"),
-            (imgui.Key.t, "is_textured"),
-        ):
-            if imgui.is_key_pressed(key, False):
-                setattr(self, name, not getattr(self, name))
         if imgui.is_key_pressed(imgui.Key.f, False):
             self.camera = self._framed()
         for key, expression in zip(EXPRESSION_KEYS, self.scene.expressions, strict=False):
@@ -208,16 +217,6 @@ class Viewer:
 
     def _framed(self) -> render.OrbitCamera:
         return camera_for(self.scene, self.script.camera)
-
-    def _style(self) -> render.Style:
-        colour_by = render.ColourBy.SPLITS if self.shows_splits else render.ColourBy.NONE
-        return replace(
-            self.style,
-            shading=self.shading,
-            wireframe=self.is_wireframe,
-            textured=self.is_textured,
-            colour_by=colour_by,
-        )
 
     def _viewport(self) -> tuple[int, int, int, int]:
         """The part of the framebuffer to the right of the panel."""

@@ -42,7 +42,7 @@ def calm(viewer: Viewer) -> None:
     """Each test starts from the neutral face with refinement on."""
     viewer.neutral()
     viewer.scene.reset()
-    viewer.is_refined, viewer.is_wireframe, viewer.shows_splits = True, False, False
+    viewer.is_refined, viewer.style = True, render.Style()
     viewer.camera = viewer._framed()
     viewer.script_time = 0.0
     settle(viewer)
@@ -203,3 +203,13 @@ def test_replay_plays_a_script_and_ends(tmp_path: Path) -> None:
     assert result.returncode == 0, result.stderr
     assert result.stderr == ""
     assert time.monotonic() - start > 0.6
+
+
+def test_checkboxes_do_what_their_keys_do(viewer: Viewer) -> None:
+    """A click on each checkbox switches it, a second one switches it back."""
+    for label in ("Refine (R)", "Wireframe (W)", "Splits (C)", "Texture (T)"):
+        before = (viewer.is_refined, viewer.style)
+        click(viewer, label)
+        assert (viewer.is_refined, viewer.style) != before, label
+        click(viewer, label)
+        assert (viewer.is_refined, viewer.style) == before, label
