@@ -165,7 +165,7 @@ def take_picture(
 def scene_of(script: Script) -> Scene:
     """The scene that a script is written for; UserError if it names what the scene has not."""
     scene = SCENES[script.scene]()
-    script.check_names({*scene.expressions, *scene.limits})
+    script.check_names(scene.limits)
     return scene
 
 

@@ -204,20 +204,17 @@ def demo() -> None:
 @main.command()
 @click.option("--scene", type=click.Choice(["face", "plane"]), default="face", show_default=True)
 def controls(scene: str) -> None:
-    """List every expression and control that a script may name."""
+    """List every control that a script may name: muscles, action units, expressions, visemes."""
     from .scenes import SCENES
 
     with told_in_one_line():
         built = SCENES[scene]()
-        if built.expressions:
-            click.echo("Expressions (0..1)")
-            for name in built.expressions:
-                click.echo(f"  {name}")
         for title, names in built.groups.items():
             click.echo(title)
             for name in names:
                 low, high = built.limits[name]
-                click.echo(f"  {name}  {low:g}..{high:g}")
+                action = built.actions.get(name, "")
+                click.echo(f"  {name}  {low:g}..{high:g}  {action}".rstrip())
 
 
 @main.command()

@@ -17,7 +17,7 @@ from .cameras import camera_for
 from .gui import Gui, poll_events, time_now  # before anything opens a window, see there
 from .panels import WIDTH, Panel
 from .pipeline import Picture, Pipeline, texture_of
-from .scenes import SCENES, mix
+from .scenes import SCENES, within
 from .script import Script
 
 import render  # isort: skip - after imgui_bundle
@@ -41,7 +41,7 @@ class Viewer:
     ) -> None:
         self.script = script
         self.scene = SCENES[script.scene]()
-        script.check_names({*self.scene.expressions, *self.scene.limits})
+        script.check_names(self.scene.limits)
         self.refiner = refiner if refiner != "none" else "kahler"
         self.is_refined = refiner != "none"
         self.style = style
@@ -125,8 +125,9 @@ class Viewer:
         """Show an expression, or go back to neutral if it is shown already."""
         self.is_playing = False
         self.expression = None if self.expression == name else name
-        weights = {} if self.expression is None else {self.expression: 1.0}
-        self.controls = mix(weights, self.scene.expressions, self.scene.limits)
+        self.controls = dict.fromkeys(self.scene.limits, 0.0)
+        if self.expression is not None:
+            self.controls[self.expression] = 1.0
 
     def neutral(self) -> None:
         """All controls to zero; the skin swings back by itself."""
@@ -177,8 +178,8 @@ class Viewer:
         self._take_script_pose()
 
     def _take_script_pose(self) -> None:
-        channels = self.script.at(self.script_time)
-        self.controls = mix(channels, self.scene.expressions, self.scene.limits)
+        channels = within(self.scene.limits, self.script.at(self.script_time))
+        self.controls = {**dict.fromkeys(self.scene.limits, 0.0), **channels}
 
     def _keys(self) -> None:
         if imgui.get_io().want_text_input:

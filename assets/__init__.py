@@ -10,13 +10,14 @@ The programs that generate them are in this package too; `python -m assets.build
 
 from .loading import available, load
 from .meshes import Mesh, read_mesh
-from .model import AssetError, Eye, Head, Part, Plane, Tone
+from .model import AssetError, Eye, Head, Layer, Part, Plane, Tone
 from .painting import paint
 
 __all__ = [
     "AssetError",
     "Eye",
     "Head",
+    "Layer",
     "Mesh",
     "Part",
     "Plane",

@@ -181,11 +181,12 @@ def test_no_opengl_is_one_line(smile: Path) -> None:
 
 
 def test_controls_lists_what_scripts_may_name() -> None:
-    """Every expression and every muscle appears, with its limits."""
+    """Muscles and the names of every layer appear, with limits and what they do."""
     result = risorius("controls")
     assert result.exit_code == 0
-    for name in ("joy", "zygomaticus_major_left", "jaw_open"):
-        assert name in result.output
+    for name in ("joy", "zygomaticus_major_left", "jaw_open", "viseme_aa", "AU12_left"):
+        assert f"  {name}  " in result.output
+    assert "  AU12  0..1  lip corner puller" in result.output
 
 
 def test_doctor_reports_offscreen_opengl() -> None:
