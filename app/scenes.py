@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 import assets
 import sim
+from assets.fitting import FittedHead
 
 from .errors import UserError
 
@@ -72,12 +73,13 @@ class Scene(Protocol):
 
 
 class FaceScene:
-    """The built-in head, moved by muscles, jaw and gaze through the spring simulation."""
+    """A head, moved by muscles, jaw and gaze through the spring simulation."""
 
     name = "face"
 
-    def __init__(self) -> None:
-        head = assets.load("head")
+    def __init__(self, head: assets.Head | FittedHead | None = None) -> None:
+        """Simulate `head`, the built-in one unless told."""
+        head = assets.load("head") if head is None else head
         self.simulation = sim.create(head)
         self.faces = self.simulation.faces
         self.rest_positions = self.simulation.rest_positions
@@ -195,3 +197,15 @@ def within(
 
 
 SCENES: dict[str, Callable[[], Scene]] = {"face": FaceScene, "plane": PlaneScene}
+
+
+def build_scene(name: str, head: FittedHead | None = None) -> Scene:
+    """The scene called `name`, with a head that somebody brought; UserError where it has none."""
+    if head is None:
+        return SCENES[name]()
+    if name != "face":
+        raise UserError(f"--head goes with the scene face, not with '{name}'")
+    try:
+        return FaceScene(head)
+    except ValueError as error:
+        raise UserError(f"this head cannot be simulated: {error}") from None

@@ -17,10 +17,11 @@ from .cameras import camera_for
 from .gui import Gui, poll_events, time_now  # before anything opens a window, see there
 from .panels import WIDTH, Panel
 from .pipeline import Picture, Pipeline, texture_of
-from .scenes import SCENES, within
+from .scenes import build_scene, within
 from .script import Script
 
 import render  # isort: skip - after imgui_bundle
+from assets.fitting import FittedHead  # isort: skip
 
 LONGEST_FRAME = 0.1  # [s] what a stalled window catches up at most
 DEGREES_PER_PIXEL = 0.35
@@ -38,9 +39,10 @@ class Viewer:
         refiner: str,
         style: render.Style,
         refiner_options: Mapping[str, float] | None = None,
+        head: FittedHead | None = None,
     ) -> None:
         self.script = script
-        self.scene = SCENES[script.scene]()
+        self.scene = build_scene(script.scene, head)
         script.check_names(self.scene.limits)
         self.refiner = refiner if refiner != "none" else "kahler"
         self.is_refined = refiner != "none"

@@ -4,6 +4,7 @@
     plane = assets.load("plane")
     mesh = assets.read_mesh("cloth.ply")  # anything that trimesh reads
     picture = assets.paint(tone="dark")  # another skin for the head than `head.albedo`
+    head = assets.fitting.fit_head("anna.obj", "anna.json")  # import assets.fitting, for any head
 
 The programs that generate them are in this package too; `python -m assets.build` runs them.
 """
