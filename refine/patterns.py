@@ -165,7 +165,7 @@ def _squared_distance(first: int, second: int) -> int:
     return -(u * v + v * w + w * u)
 
 
-def _verify(splits: tuple[int, int, int], triangles: list[Triangle]) -> None:
+def verify(splits: tuple[int, int, int], triangles: list[Triangle]) -> None:
     """Raise AssertionError unless the subtriangles are a proper triangulation of the outline."""
     points = outline(splits)
     count = 1 + sum(POINTS_OF_EDGE[s] for s in splits)
@@ -188,7 +188,7 @@ def _build_table() -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint8]]:
     for configuration in range(27):
         splits = splits_of(configuration)
         triangles = subdivide(splits)
-        _verify(splits, triangles)
+        verify(splits, triangles)
         counts[configuration] = len(triangles)
         table[configuration, : len(triangles)] = triangles
     counts.flags.writeable = False
