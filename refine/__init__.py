@@ -18,9 +18,11 @@ masks.py and placement.py (where points go), patterns.py (the 27 triangulations)
 from .adaptive import Kahler
 from .checker import BrokenMeshError, check
 from .connectivity import Connectivity, connect, weld
-from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion
+from .criteria import Curvature, Maximum, ScreenEdge, Silhouette
+from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, Measured, NormalDrop
 from .passthrough import PassThrough
-from .plugin import Origins, RefinedMesh, Refiner, Stream, available, create, register
+from .plugin import Origins, RefinedMesh, Refiner, Stream, View, available, create, register
+from .schemes import Frame, Scheme
 from .uniform import Loop
 
 __all__ = [
@@ -29,13 +31,22 @@ __all__ = [
     "BrokenMeshError",
     "Connectivity",
     "Criterion",
+    "Curvature",
+    "Frame",
     "Kahler",
     "Loop",
+    "Maximum",
+    "Measured",
+    "NormalDrop",
     "Origins",
     "PassThrough",
     "RefinedMesh",
     "Refiner",
+    "Scheme",
+    "ScreenEdge",
+    "Silhouette",
     "Stream",
+    "View",
     "available",
     "check",
     "connect",
