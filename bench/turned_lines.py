@@ -7,11 +7,14 @@ there, and which is not, has turned: flat shaded, the triangle flickers.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable
 
 import numpy as np
+import numpy.typing as npt
 
 import refine
 
+Positions = npt.NDArray[np.floating]
 Point = tuple[int, int, int]
 """A point of a refined mesh for life: ends of its edge, and quarters from the first, lower one."""
 Line = tuple[int, Point, Point]
@@ -47,7 +50,7 @@ def turned(before: set[Line], now: set[Line], rows: dict[Point, int]) -> list[Li
     return sorted(line for line in before - now if line[1] in rows and line[2] in rows)
 
 
-def turned_per_frame(refiner: refine.Refiner, frames: list[np.ndarray]) -> list[int]:
+def turned_per_frame(refiner: refine.Refiner, frames: Iterable[Positions]) -> list[int]:
     """How many lines turn in each of `frames`, the first one left out."""
     counts: list[int] = []
     before: set[Line] | None = None

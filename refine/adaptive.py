@@ -24,6 +24,7 @@ from .arguments import AttributeLike
 from .binding import BoundRefiner
 from .blend import grow, grow_fully, number_centres, place_centres
 from .choices import scheme_of
+from .coherence_pass import Coherent
 from .criteria import criterion_of
 from .criterion import (
     THRESHOLD_ONCE,
@@ -124,6 +125,11 @@ class Kahler(BoundRefiner):
         )
         if self._blend:
             self._frame.centre_triangles = np.zeros(len(mesh.faces) + 1, dtype=np.uint32)
+
+    @property
+    def history(self) -> Coherent | None:
+        """What triangles remember of their splits; None unless `coherent`."""
+        return self._patterns if isinstance(self._patterns, Coherent) else None
 
     @property
     def splits(self) -> Small:
@@ -260,5 +266,5 @@ def _patterns_of(blend: bool, coherent: bool, face_count: int) -> Patterns:
             "ever turns a diagonal; ask for one of the two"
         )
     if coherent:
-        raise ValueError("coherent=True is not in this build")
+        return Coherent(face_count)
     return FANS if blend else CONFIGURATIONS
