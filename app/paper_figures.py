@@ -17,7 +17,7 @@ from .outputs import Frame
 from .scenes import FaceScene, PlaneScene
 
 FRAME_SECONDS = 1.0 / 30.0
-CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False)
+CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, background=render.WHITE)
 FLAT = replace(CLAY, shading=render.Shading.FLAT)
 GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
 SPLIT_EDGES = replace(FLAT, wireframe=True, colour_by=render.ColourBy.SPLITS)
@@ -28,10 +28,10 @@ MOUTH_ZOOM = 5.4
 SETTLED = 1.5  # [s] after which the face stands still
 
 
-def figure_9(size: tuple[int, int] = (420, 260)) -> Frame:
+def figure_9(size: tuple[int, int] = (380, 230)) -> Frame:
     """The plane under a strong sine, flat and Gouraud shaded, as it is and refined (Fig. 9)."""
     scene = PlaneScene()
-    camera = camera_for(scene, "-20,38,0.84")
+    camera = camera_for(scene, "24,-40,0.68")
     rows = []
     with Easel(size) as easel:
         for style, shading in ((FLAT, "flat"), (GOURAUD, "Gouraud")):
@@ -48,7 +48,7 @@ def figure_9(size: tuple[int, int] = (420, 260)) -> Frame:
     return table_of_pictures(rows)
 
 
-def figure_10(size: tuple[int, int] = (400, 300), *, poses: Sequence[str] = MOUTH_POSES) -> Frame:
+def figure_10(size: tuple[int, int] = (360, 270), *, poses: Sequence[str] = MOUTH_POSES) -> Frame:
     """The region of the mouth in three expressions, as it is and refined (Fig. 10)."""
     scene = FaceScene()
     style = replace(GOURAUD, albedo=render.SKIN)

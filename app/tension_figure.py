@@ -35,7 +35,7 @@ def tension_map(size: tuple[int, int] = SIZE, poses: Sequence[str] = POSES) -> F
     tension = Tension(scene.faces, scene.rest_positions)
     static = refine.create("none", scene.faces, scene.rest_positions)
     camera = camera_for(scene, "-18,2,1.45")
-    style = render.Style(shadows=False, background=render.LIGHT)
+    style = render.Style(shadows=False, background=render.WHITE)
     cells = []
     for pose in poses:
         scene.reset()

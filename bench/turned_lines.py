@@ -7,13 +7,16 @@ there, and which is not, has turned: flat shaded, the triangle flickers.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable
 
 import numpy as np
+import numpy.typing as npt
 
 import refine
 
+Positions = npt.NDArray[np.floating]
 Point = tuple[int, int, int]
-"""A point of a refined mesh for life: ends of its edge, and quarters from the first, lower one."""
+"""A point of a refined mesh for life: ends of its edge, and quarters from the lower one."""
 Line = tuple[int, Point, Point]
 """Input triangle and end points."""
 
@@ -27,7 +30,10 @@ def point_rows(refiner: refine.Refiner) -> dict[Point, int]:
             (int(v), round(4.0 * float(w))) for v, w in zip(vertices, weights, strict=True) if w
         )
         first, last = parts[0][0], parts[-1][0]
-        rows.setdefault((first, last, parts[-1][1] if last != first else 0), row)
+        if len(parts) == 3:  # a point in the middle of a triangle: blending makes them
+            rows[first, parts[1][0], -1 - last] = row
+        else:
+            rows.setdefault((first, last, parts[-1][1] if last != first else 0), row)
     return rows
 
 
@@ -47,7 +53,7 @@ def turned(before: set[Line], now: set[Line], rows: dict[Point, int]) -> list[Li
     return sorted(line for line in before - now if line[1] in rows and line[2] in rows)
 
 
-def turned_per_frame(refiner: refine.Refiner, frames: list[np.ndarray]) -> list[int]:
+def turned_per_frame(refiner: refine.Refiner, frames: Iterable[Positions]) -> list[int]:
     """How many lines turn in each of `frames`, the first one left out."""
     counts: list[int] = []
     before: set[Line] | None = None
