@@ -95,6 +95,7 @@ def built_in(level: int) -> Subject:
             faces=fine.faces,
             landmarks=head.landmarks,
             rig=head.rig,
+            layers=head.layers,
             bone_depth=fine.carried(head.bone_depth),
             mandible_weight=fine.carried(head.mandible_weight),
             jaw_axis=head.jaw_axis,
