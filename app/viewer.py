@@ -103,7 +103,7 @@ class Viewer:
             self.frames_per_second = rate
         seconds = min(elapsed, LONGEST_FRAME)
         self._play(seconds)
-        self.scene.pose(self.controls)
+        self.scene.pose({name: value for name, value in self.controls.items() if value})
         if seconds > 0.0:
             self.pipeline.step(seconds)
         self.surface.begin()
