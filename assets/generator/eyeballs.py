@@ -1,5 +1,7 @@
 """An eyeball: sclera, limbus, iris, pupil and the bulge of the cornea, as one surface.
 
+The shadow of the upper lid is painted: the lid is too thin to cast one, and without it eyes stare.
+
 The pole lies at the pupil, so that pupil and iris are round at any resolution. The iris is painted
 on the cornea: one opaque surface that glints is enough at the size of a face on a screen.
 """
@@ -18,11 +20,12 @@ FINE_SEGMENTS, COARSE_SEGMENTS = 60, 30  # as far as the limbus, beyond it
 RING_DISTANCES = (0.0, 1.2, 1.9, 2.25, 2.9, 3.7, 4.5, 5.1, 5.6, 6.0, 6.5)  # [mm] from the axis
 LAST_ANGLE_DEG, COARSE_RINGS = 112.0, 8  # the rest is never seen
 
-SCLERA = (0.925, 0.905, 0.885)
+SCLERA = (0.895, 0.87, 0.845)
+LID_SHADOW = 0.30  # of the light, lost on the sclera below the upper lid
 CANTHUS = (0.80, 0.55, 0.51)
 LIMBUS = (0.13, 0.16, 0.18)
-IRIS_OUTER = (0.33, 0.43, 0.46)
-IRIS_INNER = (0.52, 0.46, 0.33)
+IRIS_OUTER = (0.27, 0.36, 0.39)
+IRIS_INNER = (0.47, 0.40, 0.27)
 PUPIL = (0.015, 0.013, 0.013)
 CONJUNCTIVA = (0.79, 0.56, 0.51)
 
@@ -62,7 +65,8 @@ def _colours(beside: Values, around: Values, ahead: Points) -> npt.NDArray[np.fl
     colour = colour * (1.0 - in_iris[:, None]) + _iris(beside, around) * in_iris[:, None]
     ring = smooth_step(4.9, 5.7, beside) * (1.0 - smooth_step(5.9, 6.5, beside))
     colour = mix(colour, LIMBUS, 0.85 * ring)
-    return mix(colour, PUPIL, 1.0 - smooth_step(1.9, 2.3, beside))
+    colour = mix(colour, PUPIL, 1.0 - smooth_step(1.9, 2.3, beside))
+    return colour * (1.0 - LID_SHADOW * smooth_step(0.05, 0.42, ahead[:, 1]))[:, None]
 
 
 def _ball(angles: Values, segments: int) -> Solid:
