@@ -14,18 +14,18 @@ from .form import EYE_RADIUS
 from .solids import Solid, grid_faces, joined, mix, welded
 
 IRIS_RADIUS = 5.9  # [mm]
-PUPIL_RADIUS = 2.1
+PUPIL_RADIUS = 1.8  # in the light of a room
 CORNEA_RADIUS, CORNEA_RISE = 6.4, 1.1  # [mm]; less than in anatomy: the lids are thin
 FINE_SEGMENTS, COARSE_SEGMENTS = 60, 30  # as far as the limbus, beyond it
-RING_DISTANCES = (0.0, 1.2, 1.9, 2.25, 2.9, 3.7, 4.5, 5.1, 5.6, 6.0, 6.5)  # [mm] from the axis
+RING_DISTANCES = (0.0, 1.0, 1.6, 1.95, 2.8, 3.7, 4.5, 5.1, 5.6, 6.0, 6.5)  # [mm] from the axis
 LAST_ANGLE_DEG, COARSE_RINGS = 112.0, 8  # the rest is never seen
 
 SCLERA = (0.895, 0.87, 0.845)
 LID_SHADOW = 0.30  # of the light, lost on the sclera below the upper lid
 CANTHUS = (0.80, 0.55, 0.51)
-LIMBUS = (0.13, 0.16, 0.18)
-IRIS_OUTER = (0.27, 0.36, 0.39)
-IRIS_INNER = (0.47, 0.40, 0.27)
+LIMBUS = (0.19, 0.23, 0.26)
+IRIS_OUTER = (0.36, 0.47, 0.50)
+IRIS_INNER = (0.56, 0.48, 0.33)
 PUPIL = (0.015, 0.013, 0.013)
 CONJUNCTIVA = (0.79, 0.56, 0.51)
 
@@ -54,7 +54,7 @@ def _iris(beside: Values, around: Values) -> npt.NDArray[np.float64]:
     )
     collar = 1.0 - smooth_step(3.0, 4.4, beside + 0.35 * fibres)
     colour = mix(IRIS_OUTER, IRIS_INNER, 0.75 * collar)
-    middle = smooth_step(2.2, 3.0, beside) * (1.0 - smooth_step(4.8, 5.8, beside))
+    middle = smooth_step(1.9, 2.8, beside) * (1.0 - smooth_step(4.8, 5.8, beside))
     return colour * (1.0 + 0.22 * fibres * middle)[:, None]
 
 
@@ -64,8 +64,8 @@ def _colours(beside: Values, around: Values, ahead: Points) -> npt.NDArray[np.fl
     in_iris = 1.0 - smooth_step(5.75, 6.35, beside)
     colour = colour * (1.0 - in_iris[:, None]) + _iris(beside, around) * in_iris[:, None]
     ring = smooth_step(4.9, 5.7, beside) * (1.0 - smooth_step(5.9, 6.5, beside))
-    colour = mix(colour, LIMBUS, 0.85 * ring)
-    colour = mix(colour, PUPIL, 1.0 - smooth_step(1.9, 2.3, beside))
+    colour = mix(colour, LIMBUS, 0.75 * ring)
+    colour = mix(colour, PUPIL, 1.0 - smooth_step(PUPIL_RADIUS - 0.2, PUPIL_RADIUS + 0.2, beside))
     return colour * (1.0 - LID_SHADOW * smooth_step(0.05, 0.42, ahead[:, 1]))[:, None]
 
 
