@@ -12,8 +12,16 @@ figure have none. Sources:
   what was measured how. In that data zy-zy, go-go and ft-ft were taken with calipers, which press
   on the skin over the bone; a surface may read wider there.
 
-They describe that sample, not how a face ought to be. Cross-check of one row: a systematic review
-of 67 studies (pmc.ncbi.nlm.nih.gov/articles/PMC9029890) has 31.4 +- 2.5 mm for White en-en.
+Depths of bone below the skin, each read in the abstract of its study; the tables behind the pooled
+means could not be read:
+
+- Facial soft tissue of Lebanese adults with well-balanced faces (2018), doi
+  10.1016/j.forsciint.2018.10.021: cephalograms of 87 men and 135 women.
+- Soft tissue of the lower anterior face by cone-beam tomography (Angle Orthodontist 85:211-217,
+  2015), doi 10.2319/040114-237.1: 18 women with a normal vertical pattern.
+
+All of them describe samples, not how a face ought to be. Cross-check of one row: a systematic
+review of 67 studies (pmc.ncbi.nlm.nih.gov/articles/PMC9029890) has 31.4 +- 2.5 mm for White en-en.
 """
 
 from dataclasses import dataclass
@@ -74,4 +82,17 @@ NORMS = {
     "zy-zy": Norm(Sample(130.1, 5.3, 1337), Sample(137.1, 6.3, 883)),
     "go-go": Norm(Sample(97.0, 6.5, 1382), Sample(103.7, 7.1, 898)),
     "ft-ft": Norm(Sample(105.7, 7.8, 1404), Sample(110.4, 8.4, 913)),
+}
+
+
+LEBANON_2018 = "87 men, 135 women, doi 10.1016/j.forsciint.2018.10.021"
+TOMOGRAPHY_2015 = "18 women, doi 10.2319/040114-237.1"
+
+# Anatomical name: published depth of bone [mm] and its source; no other figure could be read.
+DEPTHS = {
+    "rhinion": (Sample(3.07, 0.72, 222), LEBANON_2018),
+    "subnasale": (Sample(15.61, 2.38, 222), LEBANON_2018),
+    "labiale_superius": (Sample(13.31, 2.01, 18), TOMOGRAPHY_2015),
+    "labiale_inferius": (Sample(15.08, 1.94, 18), TOMOGRAPHY_2015),
+    "pogonion": (Sample(14.69, 3.08, 18), TOMOGRAPHY_2015),
 }

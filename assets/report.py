@@ -23,7 +23,7 @@ from .checks import (
 from .generator.topology import boundary_loops, cross_products, smallest_angles
 from .loading import load
 from .model import Head
-from .norms import NORMS, Norm, Sample
+from .norms import DEPTHS, NORMS, Norm, Sample
 
 DISTANCES = (
     ("face height, n-gn", "nasion", "gnathion"),
@@ -49,6 +49,13 @@ DISTANCES = (
     ("jaw width, go-go", "gonion_right", "gonion_left"),
     ("ear to ear, t-t", "tragion_right", "tragion_left"),
 )
+
+# Where the depth of bone is shown; the right side has the same.
+DEPTH_NAMES = (
+    "vertex", "trichion", "glabella", "nasion", "rhinion", "subnasale", "labiale_superius",
+    "labiale_inferius", "sublabiale", "pogonion", "gnathion", "menton", "orbitale_left",
+    "alar_base_left", "cheek_left", "zygion_left", "gonion_left",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -159,16 +166,37 @@ def table(rows: list[Row]) -> list[str]:
     return lines
 
 
+def depth_table(head: Head) -> list[str]:
+    """How deep bone lies below named points as a table in Markdown, with what was published."""
+    lines = ["| bone below | ours | published | score | measured on |", "|---|---|---|---|---|"]
+    for name in DEPTH_NAMES:
+        ours = float(head.bone_depth[head.anatomy[name]])
+        cells = [name.removesuffix("_left").replace("_", " "), f"{ours:.1f}"]
+        text = f"| {' | '.join(cells)} | | | |"
+        if name in DEPTHS:
+            sample, source = DEPTHS[name]
+            text = " | ".join(
+                [
+                    f"| {' | '.join(cells)}",
+                    f"{sample.mean:.1f} ± {sample.deviation:.1f}",
+                    f"{sample.score(ours):+.1f}",
+                    f"{source} |",
+                ]
+            )
+        lines.append(text)
+    return lines
+
+
 def main(arguments: list[str]) -> None:
-    """Write the report of the built-in head, or only its distances as a table."""
+    """Write the report of the built-in head, or only its distances and depths as tables."""
     parser = argparse.ArgumentParser(
         prog="python -m assets.report", description=(__doc__ or "").splitlines()[0]
     )
-    parser.add_argument("--table", action="store_true", help="distances only, in Markdown")
+    parser.add_argument("--table", action="store_true", help="both tables only, in Markdown")
     head = load("head")
     is_table = parser.parse_args(arguments).table
     lines = table(distance_rows(head)) if is_table else text_lines(report(head))
-    sys.stdout.writelines(f"{text}\n" for text in lines)
+    sys.stdout.writelines(f"{text}\n" for text in [*lines, "", *depth_table(head)])
 
 
 if __name__ == "__main__":

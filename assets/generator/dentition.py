@@ -17,7 +17,7 @@ from .solids import Solid, grid_faces, joined, mix
 AROUND = 12
 LEVELS = (0.0, 0.4, 0.8, 1.0)  # rings of a crown, from the gum to the edge
 STATIONS = 77  # of the gums along the arch; chosen: five to a tooth
-EDGE_COLOUR, NECK_COLOUR = (0.925, 0.895, 0.825), (0.84, 0.755, 0.62)
+EDGE_COLOUR, NECK_COLOUR = (0.945, 0.905, 0.86), (0.90, 0.82, 0.73)
 FISSURE_COLOUR = (0.70, 0.60, 0.46)
 GUM_COLOUR, MUCOSA_COLOUR, POCKET_COLOUR = (0.76, 0.44, 0.42), (0.62, 0.25, 0.24), (0.34, 0.11, 0.1)
 TIP, FLAT, BROAD = "tip", "flat", "broad"

@@ -7,8 +7,8 @@ top, down the back to the lobe, and up again in front of the tragus. In front th
 side: there some rows fall onto the root, and the mesh has triangles instead of quadrilaterals.
 
 The ear is drawn in its own plane: `back` from its front line, `up` from the tragus, `out` from the
-plane [mm]. Size and place: adult means are about 62 by 33 mm, the top at the height of the brow,
-the lobe at that of the base of the nose (Farkas).
+plane [mm]. Size and place are chosen by eye, not after a table: 62 by 33 mm, the top at the height
+of the brow, the lobe at that of the base of the nose.
 """
 
 import numpy as np

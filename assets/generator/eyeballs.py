@@ -1,5 +1,7 @@
 """An eyeball: sclera, limbus, iris, pupil and the bulge of the cornea, as one surface.
 
+The shadow of the upper lid is painted: the lid is too thin to cast one, and without it eyes stare.
+
 The pole lies at the pupil, so that pupil and iris are round at any resolution. The iris is painted
 on the cornea: one opaque surface that glints is enough at the size of a face on a screen.
 """
@@ -12,17 +14,18 @@ from .form import EYE_RADIUS
 from .solids import Solid, grid_faces, joined, mix, welded
 
 IRIS_RADIUS = 5.9  # [mm]
-PUPIL_RADIUS = 2.1
+PUPIL_RADIUS = 1.8  # in the light of a room
 CORNEA_RADIUS, CORNEA_RISE = 6.4, 1.1  # [mm]; less than in anatomy: the lids are thin
 FINE_SEGMENTS, COARSE_SEGMENTS = 60, 30  # as far as the limbus, beyond it
-RING_DISTANCES = (0.0, 1.2, 1.9, 2.25, 2.9, 3.7, 4.5, 5.1, 5.6, 6.0, 6.5)  # [mm] from the axis
+RING_DISTANCES = (0.0, 1.0, 1.6, 1.95, 2.8, 3.7, 4.5, 5.1, 5.6, 6.0, 6.5)  # [mm] from the axis
 LAST_ANGLE_DEG, COARSE_RINGS = 112.0, 8  # the rest is never seen
 
-SCLERA = (0.925, 0.905, 0.885)
+SCLERA = (0.895, 0.87, 0.845)
+LID_SHADOW = 0.30  # of the light, lost on the sclera below the upper lid
 CANTHUS = (0.80, 0.55, 0.51)
-LIMBUS = (0.13, 0.16, 0.18)
-IRIS_OUTER = (0.33, 0.43, 0.46)
-IRIS_INNER = (0.52, 0.46, 0.33)
+LIMBUS = (0.19, 0.23, 0.26)
+IRIS_OUTER = (0.36, 0.47, 0.50)
+IRIS_INNER = (0.56, 0.48, 0.33)
 PUPIL = (0.015, 0.013, 0.013)
 CONJUNCTIVA = (0.79, 0.56, 0.51)
 
@@ -51,7 +54,7 @@ def _iris(beside: Values, around: Values) -> npt.NDArray[np.float64]:
     )
     collar = 1.0 - smooth_step(3.0, 4.4, beside + 0.35 * fibres)
     colour = mix(IRIS_OUTER, IRIS_INNER, 0.75 * collar)
-    middle = smooth_step(2.2, 3.0, beside) * (1.0 - smooth_step(4.8, 5.8, beside))
+    middle = smooth_step(1.9, 2.8, beside) * (1.0 - smooth_step(4.8, 5.8, beside))
     return colour * (1.0 + 0.22 * fibres * middle)[:, None]
 
 
@@ -61,8 +64,9 @@ def _colours(beside: Values, around: Values, ahead: Points) -> npt.NDArray[np.fl
     in_iris = 1.0 - smooth_step(5.75, 6.35, beside)
     colour = colour * (1.0 - in_iris[:, None]) + _iris(beside, around) * in_iris[:, None]
     ring = smooth_step(4.9, 5.7, beside) * (1.0 - smooth_step(5.9, 6.5, beside))
-    colour = mix(colour, LIMBUS, 0.85 * ring)
-    return mix(colour, PUPIL, 1.0 - smooth_step(1.9, 2.3, beside))
+    colour = mix(colour, LIMBUS, 0.75 * ring)
+    colour = mix(colour, PUPIL, 1.0 - smooth_step(PUPIL_RADIUS - 0.2, PUPIL_RADIUS + 0.2, beside))
+    return colour * (1.0 - LID_SHADOW * smooth_step(0.05, 0.42, ahead[:, 1]))[:, None]
 
 
 def _ball(angles: Values, segments: int) -> Solid:

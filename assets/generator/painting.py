@@ -12,6 +12,7 @@ from ..model import Head, Picture, Tone
 from . import lips
 from .brows import brow_cover
 from .fields import Points, Values, bump, smooth_step
+from .form import FOLD
 from .noise import noise, speckle
 from .pigments import COMPLEXIONS, MELANIN, Complexion, reflectance, to_linear, to_screen
 from .regions import beard, blood, red, scalp, tan
@@ -19,8 +20,8 @@ from .texels import Texels, left_texels
 
 Cover = tuple[Points, Values]  # a colour in linear light and how much of it lies on each texel
 
-SIZE = 1280  # texels; chosen: more than four lie on a millimetre of the brow, the file < 1 MB
-SCALP_SHADOW, BEARD_SHADOW = 0.98, 0.10  # density of shaved hair
+SIZE = 1280  # texels; chosen: more than three lie on a millimetre of the brow, the file < 1 MB
+SCALP_SHADOW, BEARD_SHADOW = 1.35, 0.12  # density of shaved hair
 LIP_BLOOD, LIP_MELANIN = 0.61, 0.22  # beside those of the skin
 PORES = 0.016  # density
 MUCOSA, MUCOSA_DEEP = (0.60, 0.27, 0.25), (0.30, 0.09, 0.09)  # sRGB
@@ -89,11 +90,28 @@ def _pigments(texels: Texels, complexion: Complexion) -> tuple[Values, Values, V
     roll = smooth_step(0.0, 0.5, lip) * smooth_step(1.0, 0.5, lip)
     melanin = melanin - 0.05 * roll * texels.is_upper_lip
 
+    melanin = melanin + 0.16 * _corner_of_mouth(points) + 0.05 * _fold_beside_mouth(points)
     fold_of_lid = bump(texels.eye_row, 4.0, 0.35) * texels.is_upper_lid
     melanin = melanin + 0.10 * fold_of_lid
     redness = redness * (1.0 - 0.45 * scalp(texels))
     shadow = SCALP_SHADOW * scalp(texels) + BEARD_SHADOW * beard(texels)
     return melanin, redness, shadow
+
+
+def _corner_of_mouth(points: Points) -> Values:
+    """The small hollow in which the line of the lips ends, shape (n,)."""
+    x, y = np.abs(points[:, 0]), points[:, 1]
+    end = lips.seam_height(np.array([lips.HALF_WIDTH]))[0] - 0.6
+    return bump(x, lips.HALF_WIDTH + 1.2, 3.2) * bump(y, end, 2.6)
+
+
+def _fold_beside_mouth(points: Points) -> Values:
+    """A hint of the nasolabial fold, strongest beside the wing of the nose, shape (n,)."""
+    sides, heights = np.array(FOLD[::-1]).T
+    beside = np.abs(points[:, 0]) - np.interp(points[:, 1], heights, sides)
+    in_front = smooth_step(50.0, 60.0, points[:, 2])
+    along = smooth_step(-74.0, -46.0, points[:, 1]) * smooth_step(-33.0, -39.0, points[:, 1])
+    return bump(beside, -0.5, 2.6) * along * in_front
 
 
 def _pores(points: Points) -> Values:
@@ -151,9 +169,12 @@ def _eye(texels: Texels, hair: Points, waterline: Points) -> list[Cover]:
 def _mouth(texels: Texels) -> list[Cover]:
     """Behind the lips, and the line where they meet."""
     row = texels.mouth_row
-    line = smooth_step(2.6, 2.0, row)
+    # Toward the corner the groove between the lips grows flat, and light would fall into it.
+    x = np.abs(texels.points[:, 0])
+    flat = smooth_step(lips.HALF_WIDTH - 9.0, lips.HALF_WIDTH - 2.0, x)
+    line = np.clip((2.6 + 0.9 * flat - row) / (0.6 + 0.9 * flat), 0.0, 1.0)
     return [
-        (to_linear(LINE_OF_LIPS), 0.42 * line * smooth_step(1.3, 1.9, row)),
+        (to_linear(LINE_OF_LIPS), 0.46 * line * smooth_step(1.3, 1.9, row)),
         (to_linear(MUCOSA), smooth_step(2.0, 1.4, row)),
         (to_linear(MUCOSA_DEEP), smooth_step(1.3, 0.1, row)),
     ]

@@ -15,9 +15,9 @@ Spot = tuple[Triple, Triple, float]
 
 # Lines around the head: angle about its axis [deg], height along the capsule [mm].
 HAIRLINE = (
-    (0, 75), (14, 77), (28, 82), (40, 81), (50, 69), (57, 52), (62, 36), (68, 27), (73, 19),
-    (77, 6), (81, -8), (86, -15), (91, -12), (95, 4), (100, 20), (108, 27), (116, 24), (122, 8),
-    (126, -20), (131, -52), (138, -78), (150, -90), (180, -94),
+    (0, 75), (14, 77), (28, 81), (40, 79), (50, 66), (57, 50), (62, 37), (68, 29), (74, 23),
+    (79, 10), (82, -8), (86, -18), (91, -21), (95, -19), (99, -4), (103, 10), (109, 18), (117, 16),
+    (123, 2), (126, -20), (131, -52), (138, -78), (150, -90), (180, -94),
 )  # fmt: skip
 BEARD_LINE = (
     (0, -46), (9, -48), (16, -53), (24, -62), (34, -66), (46, -64), (58, -56), (70, -42),
@@ -80,7 +80,7 @@ def red(texels: Texels) -> Values:
     edge = 0.22 * noise(texels.points, 1.3, seed=21)
     upper = smooth_step(-0.55, 1.0, above + edge - past_corner)
     lower = smooth_step(-1.1, 1.8, below + edge - past_corner)
-    toward_corner = smooth_step(lips.HALF_WIDTH + 2.0, lips.HALF_WIDTH - 5.0, x)
+    toward_corner = smooth_step(lips.HALF_WIDTH + 0.6, lips.HALF_WIDTH - 8.0, x)
     in_front = np.minimum(upper, lower) * toward_corner * (texels.mouth_row < 7.6)
     return np.where(texels.mouth_row < 2.0, 1.0, in_front)
 
@@ -94,7 +94,7 @@ def blood(texels: Texels) -> Values:
     ear = 0.08 * smooth_step(0.1, 0.8, texels.ear_row) + 0.24 * rim
     ear += 0.06 * smooth_step(-28.0, -38.0, points[:, 1]) * (texels.ear_row > 0.5)  # its lobe
     ear += 0.20 * smooth_step(4.2, 5.0, texels.ear_row)
-    fold = bump(texels.points[:, 0] - np.interp(points[:, 1], (-46, -35), (17.5, 18.5)), 0.0, 2.2)
+    fold = bump(texels.points[:, 0] - np.interp(points[:, 1], (-46, -35), (15.2, 16.4)), 0.0, 2.2)
     fold *= bump(points[:, 1], -41.0, 5.5) * (points[:, 2] < 102.0)
     result: Values = (
         0.32 + _spots(points, FLUSHED) + _spots(points, PALER) + mottling + 0.16 * lid + 0.15 * fold
@@ -115,7 +115,7 @@ def scalp(texels: Texels) -> Values:
     """How densely the shaved scalp is haired, 0 to 1; the hairline is frayed."""
     frayed = 2.6 * noise(texels.points, 5.0, seed=5) + 1.6 * noise(texels.points, 1.6, seed=6)
     beyond = texels.height - line_height(HAIRLINE, texels.angle) + frayed
-    return smooth_step(-8.0, 19.0, beyond) * smooth_step(0.35, 0.0, texels.ear_row)
+    return smooth_step(-5.0, 30.0, beyond) ** 0.8 * smooth_step(0.35, 0.0, texels.ear_row)
 
 
 def beard(texels: Texels) -> Values:

@@ -89,17 +89,17 @@ def test_rows_exist_on_both_sides(head: Head) -> None:
     assert {len(head.rings[f"mouth_{row}_left"]) for row in range(8)} == {15}
 
 
-def test_bone_depth_follows_the_published_means(head: Head) -> None:
+def test_bone_depth_is_what_was_chosen(head: Head) -> None:
     """Thin on nose bridge and forehead, thick in the cheek; the same on both sides."""
     depth, anatomy = head.bone_depth, head.anatomy
     assert depth.min() > 2.0 and depth.max() < 30.0
     assert np.allclose(depth, depth[head.mirror])
-    published = {
+    chosen = {
         "glabella": 5.5, "nasion": 6.5, "rhinion": 3.0, "subnasale": 13.0, "sublabiale": 11.0,
         "pogonion": 11.5, "gnathion": 8.5, "menton": 7.0, "orbitale_left": 7.0,
         "zygion_left": 8.0, "gonion_left": 13.0,
     }  # fmt: skip
-    for name, expected in published.items():
+    for name, expected in chosen.items():
         assert depth[anatomy[name]] == pytest.approx(expected, abs=1.5), name
     assert depth[anatomy["cheek_left"]] > 2.0 * depth[anatomy["glabella"]]
 

@@ -100,6 +100,15 @@ def test_form_is_mirror_symmetric_and_continuous_over_the_crown() -> None:
     assert abs(below - above)[0] < 0.02
 
 
+def test_form_has_no_step_where_relief_begins() -> None:
+    """Along the cheek, from its side to its front, the form's value changes evenly."""
+    for height in (-28.6, -10.0, 20.0):
+        depth = np.linspace(35.0, 60.0, 501)
+        line = np.column_stack([np.full(501, 62.6), np.full(501, height), depth])
+        steps = np.diff(form.head_distance(line))
+        assert np.abs(np.diff(steps)).max() < 0.002
+
+
 def test_lip_borders_enclose_the_seam() -> None:
     """Upper above, lower below, meeting at the corner; a bow in the middle."""
     x = np.linspace(0.0, lips.HALF_WIDTH, 30)

@@ -149,7 +149,18 @@ def test_pupil_is_at_the_pole_and_the_iris_has_its_radius(head: Head) -> None:
     assert brightness[ahead & (beside < 1.5)].max() < 0.1
     iris = brightness[ahead & (beside > 2.6) & (beside < eye.iris_radius - 0.8)]
     assert 0.2 < iris.mean() < 0.6 and iris.std() > 0.02
-    assert brightness[ahead & (beside > 6.8) & (np.abs(local[:, 0]) < 6.0)].min() > 0.8
+    sclera = ahead & (beside > 6.8) & (np.abs(local[:, 0]) < 6.0)
+    assert brightness[sclera & (local[:, 1] < 0.0)].min() > 0.8
+
+
+def test_upper_lid_throws_a_shadow_on_the_eye(head: Head) -> None:
+    """Painted: above, the sclera is darker than below, by a quarter to a half."""
+    ball = part(head, "eyeball_left")
+    local = ball.vertices - head.eyes[1].centre
+    sclera = (local[:, 2] > 6.0) & (np.hypot(local[:, 0], local[:, 1]) > 6.8)
+    brightness = ball.colours.mean(axis=1)
+    above, below = (brightness[sclera & (side * local[:, 1] > 6.0)].mean() for side in (1, -1))
+    assert 0.5 * below < above < 0.75 * below
 
 
 def test_eye_corners_are_filled(head: Head) -> None:

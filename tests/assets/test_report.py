@@ -8,8 +8,17 @@ import pytest
 
 import assets
 from assets.model import Head
-from assets.norms import NORMS, Norm, Sample
-from assets.report import Row, distance_rows, line, main, report, table, text_lines
+from assets.norms import DEPTHS, NORMS, Norm, Sample
+from assets.report import (
+    Row,
+    depth_table,
+    distance_rows,
+    line,
+    main,
+    report,
+    table,
+    text_lines,
+)
 
 
 @pytest.fixture(scope="module")
@@ -73,15 +82,26 @@ def test_command_writes_every_row_and_the_sources(
     """What `python -m assets.report` prints."""
     main([])
     written = capsys.readouterr().out.splitlines()
-    assert written == text_lines(report(head))
-    assert written[0].startswith("vertices") and written[-1].startswith("Norms: ")
-    assert sum("score" in text for text in written) == 1
+    rows = text_lines(report(head))
+    assert written == [*rows, "", *depth_table(head)]
+    assert rows[0].startswith("vertices") and rows[-1].startswith("Norms: ")
+    assert sum("score" in text for text in rows) == 1
 
 
 def test_page_shows_the_table(head: Head, capsys: pytest.CaptureFixture[str]) -> None:
-    """The documentation holds what `python -m assets.report --table` prints."""
+    """The documentation holds both tables that `python -m assets.report --table` prints."""
     main(["--table"])
     written = capsys.readouterr().out.splitlines()
-    assert written == table(distance_rows(head))
+    tables = [table(distance_rows(head)), depth_table(head)]
+    assert written == [*tables[0], "", *tables[1]]
     page = (Path(__file__).parents[2] / "docs" / "head.md").read_text(encoding="utf-8")
-    assert "\n".join(written) in page
+    for lines in tables:
+        assert "\n".join(lines) in page
+
+
+def test_bone_lies_as_deep_as_was_published(head: Head) -> None:
+    """Within two deviations wherever a figure could be read; every figure is in the table."""
+    lines = depth_table(head)
+    for name, (sample, source) in DEPTHS.items():
+        assert abs(sample.score(float(head.bone_depth[head.anatomy[name]]))) < 2.0, name
+        assert any(source in text and f"{sample.mean:.1f}" in text for text in lines), name
