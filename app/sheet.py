@@ -26,7 +26,7 @@ from .scenes import FaceScene, Scene
 
 FOLDER = Path("docs/pictures")
 TITLES = {"Action units": "action_units", "Expressions": "expressions", "Visemes": "visemes"}
-CELL = (162, 180)  # [pixels] of one view: a sheet stays below 1.5 MB
+CELL = (150, 168)  # [pixels] of one view: a sheet stays below 1.5 MB
 VIEWS = ("0,0,1.85", "-34,3,1.85")  # front and three-quarter
 FAR_VIEWS = ("0,0,1.1", "-34,3,1.1")  # of a head that turns
 COLUMNS = 4

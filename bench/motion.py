@@ -2,8 +2,9 @@
 
 Takes a folder with a neutral face and displacement fields under ARKit-like names as `face.npz`
 (ICT-FaceKit's layout: `vertices`, `triangles`, `landmarks68`, then one (V, 3) field per shape,
-`_L` and `_R` for one-sided ones), poses the rig on that head, which brings nothing but 68
-landmarks, and compares the fields, weighted by area. shapes.toml says which controls make a shape.
+`_L` and `_R` for one-sided ones), fits the rig to that head as to anybody's, by its 68 landmarks
+(assets/fitting), and compares the fields, weighted by area. shapes.toml says which controls make a
+shape.
 
     cosine      1 = same directions and proportions          magnitude   |simulated| / |scanned|
     residual    |simulated - scanned|^2 / |scanned|^2        half        share of the motion that
@@ -21,19 +22,19 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 import sim
+from assets.fitting import fit
+from assets.meshes import Mesh
 from sim.landmarks import FaceFrame, Side
 from sim.rig import LinearMuscle, RingMuscle
 
 Array = npt.NDArray[np.float64]
 
-RIG = Path(__file__).parent.parent / "assets" / "rigs" / "face.toml"
 SHAPES = Path(__file__).parent / "shapes.toml"
 FRAME = 1.0 / 60.0
 SETTLE = 60  # frames until a pose is still
@@ -64,18 +65,17 @@ def run(directory: str | Path) -> list[Row]:
     """
     with np.load(Path(directory) / "face.npz") as reference:
         fields = {name: reference[name] for name in reference.files}
-    with RIG.open("rb") as file:
-        rig = tomllib.load(file)
     with SHAPES.open("rb") as file:
         shapes = tomllib.load(file)
-    vertices = fields["vertices"].astype(np.float64)
-    faces = fields["triangles"].astype(np.int32)
-    landmarks = fields["landmarks68"].astype(np.int64)
-    head = SimpleNamespace(vertices=vertices, faces=faces, landmarks=landmarks, rig=rig)
+    mesh = Mesh(fields["vertices"].astype(np.float64), fields["triangles"].astype(np.int32))
+    head = fit(mesh, fields["landmarks68"].astype(np.int32))
     simulation = sim.create(head)
-    ruler = _Ruler(vertices, landmarks, _vertex_areas(vertices, faces), rig)
+    ruler = _Ruler(
+        head.vertices, head.landmarks, _vertex_areas(head.vertices, head.faces), head.rig
+    )
+    to_head = head.to_millimetres.vectors
     rows = [
-        ruler.row(simulation, name, values, base, fields[name].astype(np.float64))
+        ruler.row(simulation, name, values, base, to_head(fields[name][head.kept]))
         for name, values, base in _known(shapes, fields, simulation)
     ]
     if not rows:
@@ -131,7 +131,7 @@ def _controls(
 
 
 def _posed(simulation: sim.Simulation, values: Mapping[str, float]) -> Array:
-    """Displacement [reference units] of the settled pose, shape (V, 3)."""
+    """Displacement [mm] of the settled pose, shape (V, 3)."""
     simulation.reset()
     simulation.set_all(values)
     for _ in range(SETTLE):
@@ -144,7 +144,7 @@ class _Ruler:
     """Compares displacement fields on one head."""
 
     def __init__(
-        self, vertices: Array, landmarks: npt.NDArray[np.int64], areas: Array, rig: dict[str, Any]
+        self, vertices: Array, landmarks: npt.NDArray[np.int32], areas: Array, rig: dict[str, Any]
     ) -> None:
         self._frame = FaceFrame.from_landmarks(vertices[landmarks])
         self._x = self._frame.to_standard(vertices)

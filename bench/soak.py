@@ -96,7 +96,7 @@ def _wild_frame(
     simulation: sim.Simulation, generator: np.random.Generator, *, mirrored: bool = False
 ) -> float:
     """One frame of random length with every control at random; its length [s]."""
-    limits = simulation.limits
+    limits = {name: simulation.limits[name] for name in simulation.controls}
     share = generator.uniform(size=len(limits))
     # A third of the values are at a limit, the rest anywhere between.
     share = np.where(generator.uniform(size=len(limits)) < 1.0 / 3.0, np.round(share), share)

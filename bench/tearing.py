@@ -1,4 +1,4 @@
-"""Does the skin tear: every expression and hundreds of random mixtures of controls, settled.
+"""Does the skin tear: every control of each layer alone and hundreds of random mixtures, settled.
 
 Of each pose are counted the inverted triangles, those that turned by more than a right angle
 against the skin around them, and how deep skin sits in the other lip, an eyeball or the teeth.
@@ -37,13 +37,13 @@ class Pose:
 
 
 def run(*, mixtures: int = MIXTURES, seed: int = SEED) -> list[Pose]:
-    """Put the built-in head into each expression and `mixtures` random ones; ValueError below 0."""
+    """Put the built-in head into each pose and `mixtures` random ones; ValueError below 0."""
     if mixtures < 0:
         raise ValueError(f"mixtures: was {mixtures}, must be 0 or more")
     head = assets.load("head")
     simulation = sim.create(head)
     poses = []
-    for name, values in _values(simulation, head, mixtures, np.random.default_rng(seed)):
+    for name, values in _values(simulation, mixtures, np.random.default_rng(seed)):
         simulation.reset()
         simulation.set_all(values)
         for _ in range(SETTLE):
@@ -55,12 +55,13 @@ def run(*, mixtures: int = MIXTURES, seed: int = SEED) -> list[Pose]:
 
 
 def _values(
-    simulation: sim.Simulation, head: assets.Head, mixtures: int, generator: np.random.Generator
+    simulation: sim.Simulation, mixtures: int, generator: np.random.Generator
 ) -> Iterator[tuple[str, dict[str, float]]]:
-    """Name and control values of every expression, then of random mixtures."""
-    yield from head.expressions.items()
+    """Name and values of every action unit, expression and so on, then of random mixtures."""
+    for names_of_layer in simulation.layers.values():
+        yield from ((name, {name: 1.0}) for name in names_of_layer)
     # The pose of the head turns all triangles alike; it is left out.
-    limits = {n: at for n, at in simulation.limits.items() if not n.startswith("head_")}
+    limits = {n: simulation.limits[n] for n in simulation.controls if not n.startswith("head_")}
     names = np.array(list(limits))
     for number in range(mixtures):
         chosen = generator.choice(

@@ -138,7 +138,7 @@ def test_a_wrong_row_is_named(rows: dict[str, Any], message: str) -> None:
 def test_the_shipped_tables_are_complete(simulation: sim.Simulation, head: Head) -> None:
     """Every action unit, expression and viseme is there, with words for what it does."""
     names = simulation.limits
-    sided = {"AU30": ("AU30_left", "AU30_right")}
+    sided = {unit: (f"{unit}_left", f"{unit}_right") for unit in ("AU30", "AU46")}
     for unit in ACTION_UNITS:
         assert all(name in names for name in sided.get(unit, (unit,))), unit
     assert all(f"{unit}{side}" in names for unit in ONE_SIDED for side in ("_left", "_right"))

@@ -1,0 +1,41 @@
+"""The command behind the pictures of docs/controls.md."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from app import sheet
+from app.errors import UserError
+
+MOST_PICTURE = 1_500_000  # bytes, at full size
+
+
+def test_some_controls_are_drawn(tmp_path: Path) -> None:
+    """Two views of each; a face that does something looks different."""
+    sheet.main([str(tmp_path), "--width", "48", "--only", "viseme_sil", "AU27"])
+    picture = np.asarray(Image.open(tmp_path / "sheet.png").convert("RGB"))
+    assert picture.shape[1] == 4 * 48
+    rest, opened = picture[:50, :96].astype(int), picture[:50, 96:].astype(int)
+    assert rest.std() > 10.0
+    assert np.abs(rest - opened).max() > 50
+
+
+def test_an_unknown_control_is_named(tmp_path: Path) -> None:
+    """A typing error is no traceback."""
+    with pytest.raises(UserError, match="unknown control 'AU127'"):
+        sheet.main([str(tmp_path), "--width", "48", "--only", "AU127"])
+
+
+def test_one_tile_for_both_sides() -> None:
+    """Sides of a pair get no tile of their own; a name that only has sides does."""
+    names = ("AU1", "AU1_left", "AU1_right", "AU30_left", "AU30_right")
+    assert sheet.rows_of(names) == ["AU1", "AU30_left", "AU30_right"]
+
+
+def test_pictures_of_the_page_are_small() -> None:
+    """They travel with the source."""
+    for name in sheet.TITLES.values():
+        picture = Path(__file__).parents[2] / sheet.FOLDER / f"{name}.png"
+        assert picture.stat().st_size < MOST_PICTURE
