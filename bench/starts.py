@@ -1,7 +1,8 @@
-"""How long a program waits for its first refined frame: measured in fresh interpreters.
+"""What only a fresh interpreter can tell: how long the first frame takes, and the peak of memory.
 
 The first start ever compiles the kernels and keeps them on disk; every later one loads them. Import
-of numpy is not counted, since every user of the plug-in has it.
+of numpy is not counted, since every user of the plug-in has it. Nor is what the mesh itself takes
+in memory.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
+from .sheets import Load
+
 PROGRAM = """
 import time
 import numpy
@@ -24,6 +27,19 @@ faces = numpy.array([[0, 1, 2], [2, 1, 3]])
 rest = numpy.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
 refine.create("kahler", faces, rest).refine(rest + rest[:, :1] * rest[:, 1:2])
 print(time.perf_counter() - start)
+"""
+PEAK_PROGRAM = """
+import resource, sys
+import numpy, refine
+faces, rest, positions = (numpy.load(f"{sys.argv[1]}/{name}.npy") for name in "abc")
+flat = numpy.eye(3)
+refine.create("kahler", [[0, 1, 2]], flat).refine(flat)  # kernels are loaded
+with open("/proc/self/statm") as file:
+    before = int(file.read().split()[1]) * resource.getpagesize()
+once, twice = float(sys.argv[2]), float(sys.argv[3])
+refiner = refine.create("kahler", faces, rest, threshold_once=once, threshold_twice=twice)
+refiner.refine(positions)
+print(1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
 """
 REPEATS = 5
 ROOT = Path(__file__).parents[1]
@@ -48,13 +64,30 @@ def measure_starts() -> Starts:
     return Starts(first, float(np.median(later)), min(later))
 
 
+def measure_peak(load: Load, once: float, twice: float) -> float | None:
+    """Most memory that binding a mesh and refining its first frame take [MB], in a new process.
+
+    `once`, `twice`: thresholds. None where the system does not tell (it is read from /proc).
+    """
+    if not Path("/proc/self/statm").exists():
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        for name, array in zip("abc", (load.faces, load.rest, load.frames[0]), strict=True):
+            np.save(Path(folder) / f"{name}.npy", np.asarray(array))
+        return float(_run(PEAK_PROGRAM, folder, str(once), str(twice))) / 1e6
+
+
 def _start(cache: str) -> float:
+    return float(_run(PROGRAM, cache=cache))
+
+
+def _run(program: str, *arguments: str, cache: str | None = None) -> str:
     result = subprocess.run(
-        [sys.executable, "-c", PROGRAM],
-        env={**os.environ, "NUMBA_CACHE_DIR": cache},
+        [sys.executable, "-c", program, *arguments],
+        env=dict(os.environ) if cache is None else {**os.environ, "NUMBA_CACHE_DIR": cache},
         cwd=ROOT,
         capture_output=True,
         text=True,
         check=True,
     )
-    return float(result.stdout)
+    return result.stdout
