@@ -89,7 +89,7 @@ def number_points(
         rim_splits[r] = rim_splits[rim_edges[r]]
         first_points[r] = row
         row += points_on(rim_splits[r])
-    return row, once_count, twice_count, triangle_count
+    return row, int(once_count), int(twice_count), triangle_count
 
 
 @kernel
@@ -203,4 +203,4 @@ def look_up_triangles(
             source[count] = t
             count = np.uint32(count + one)
         points[CENTRE] += subtriangles[row, 0, 0] == CENTRE
-    return count
+    return int(count)
