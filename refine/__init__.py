@@ -18,7 +18,7 @@ masks.py and placement.py (where points go), patterns.py (the 27 triangulations)
 from .adaptive import Kahler
 from .checker import BrokenMeshError, check
 from .connectivity import Connectivity, connect, weld
-from .criteria import Curvature, Maximum, ScreenEdge, Silhouette
+from .criteria import Bulge, Curvature, Maximum, ScreenEdge, Silhouette
 from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, Measured, NormalDrop
 from .kernels import on_compile
 from .passthrough import PassThrough
@@ -30,6 +30,7 @@ __all__ = [
     "THRESHOLD_ONCE",
     "THRESHOLD_TWICE",
     "BrokenMeshError",
+    "Bulge",
     "Connectivity",
     "Criterion",
     "Curvature",
