@@ -21,9 +21,8 @@ from .adaptive import Kahler
 from .checker import BrokenMeshError, check
 from .coherence_pass import Coherent
 from .connectivity import Connectivity, connect, weld
-from .criteria import Curvature, Maximum, ScreenEdge, Silhouette
+from .criteria import Bulge, Curvature, Maximum, ScreenEdge, Silhouette
 from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, Measured, NormalDrop
-from .gap import Gap
 from .kernels import on_compile
 from .passthrough import PassThrough
 from .plugin import Origins, RefinedMesh, Refiner, Stream, View, available, create, register
@@ -35,12 +34,12 @@ __all__ = [
     "THRESHOLD_ONCE",
     "THRESHOLD_TWICE",
     "BrokenMeshError",
+    "Bulge",
     "Coherent",
     "Connectivity",
     "Criterion",
     "Curvature",
     "Frame",
-    "Gap",
     "Kahler",
     "Loop",
     "Maximum",
