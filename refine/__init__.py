@@ -11,8 +11,12 @@ Refiners by name: `none` hands the mesh through, `kahler` is the paper's, `loop`
 whole mesh once or twice for comparison. `refine(positions, out=stream)` writes straight into lent
 arrays. `check` is for tests: it names the relation that a refined mesh breaks.
 
-Read in this order: plugin.py (the border), adaptive.py (a frame), criterion.py (which edges),
-masks.py and placement.py (where points go), patterns.py (the 27 triangulations).
+`kahler` does what the paper says unless it is told otherwise: `scheme` says where points go,
+`criterion` which edges are split, `blend` that nothing pops, `attributes` what rides along.
+
+Read in this order: plugin.py (the border), adaptive.py (a frame), criterion.py and criteria.py
+(which edges), schemes.py (where points go: masks.py, cubic.py, butterfly.py, detail.py), blend.py,
+patterns.py (the tables), output.py (rows and triangles).
 """
 
 from .adaptive import Kahler
