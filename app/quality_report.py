@@ -33,9 +33,9 @@ COLUMNS: tuple[tuple[tuple[str, str], Key], ...] = (
     (("", "coarse"), (COARSE, "", 1.0)),
     (("drop", "loop 1.6x"), ("loop", "drop", 1.6)),
     (("drop", "cubic 1.6x"), ("cubic", "drop", 1.6)),
-    (("height", "butterfly 1.6x"), ("butterfly", "height", 1.6)),
-    (("height", "cubic 1.6x"), ("cubic", "height", 1.6)),
-    (("gap", "detail 2x"), ("detail", "gap", 2.0)),
+    (("bulge", "butterfly 1.6x"), ("butterfly", "bulge", 1.6)),
+    (("bulge", "cubic 1.6x"), ("cubic", "bulge", 1.6)),
+    (("bulge", "detail 2x"), ("detail", "bulge", 2.0)),
     *((("all twice", method), (method, "", EVERYWHERE)) for method in SCHEMES),
     (("uniform", "Loop 4x"), (UNIFORM[0], "", 1.0)),
     (("uniform", "Loop 16x"), (UNIFORM[0], "", 2.0)),
@@ -129,9 +129,7 @@ def targets_text(scores: Sequence[Score]) -> str:
         lines.append(
             f"  {verdict}  {scheme}: never worse than coarse; worst {worst:.4f} of it ({where})"
         )
-        # Only detail has a finer mesh to measure a gap to.
-        rules = RULES if scheme == "detail" else ("drop", "height")
-        judge(scheme, [(scheme, rule, ADAPTIVE[scheme]) for rule in rules], adaptive)
+        judge(scheme, [(scheme, rule, ADAPTIVE[scheme]) for rule in RULES], adaptive)
         judge(scheme, [(scheme, "", EVERYWHERE)], everything)
     judge(
         "detail", [("detail", rule, ADAPTIVE["detail"]) for rule in RULES], NORMALS_ASKED, "angle"

@@ -12,18 +12,22 @@ whole mesh once or twice for comparison. `refine(positions, out=stream)` writes 
 arrays. `Tension` measures how far the skin is stretched. `check` is for tests: it names the
 relation that a refined mesh breaks.
 
-Read in this order: plugin.py (the border), adaptive.py (a frame), criterion.py (which edges),
-schemes.py and masks.py (where points go), patterns.py (the 27 triangulations), coherence.py (the
-271 sequences); docs/refinement.md tells it all with pictures.
+`kahler` does what the paper says unless it is told otherwise: `scheme` says where points go,
+`criterion` which edges are split, `blend` that nothing pops, `coherent` that no triangulation
+turns, `attributes` what rides along.
+
+Read in this order: plugin.py (the border), adaptive.py (a frame), criterion.py and criteria.py
+(which edges), schemes.py (where points go: masks.py, cubic.py, butterfly.py, detail.py), blend.py,
+patterns.py and coherence.py (the tables), output.py (rows and triangles). docs/refinement.md tells
+it all with pictures.
 """
 
 from .adaptive import Kahler
 from .checker import BrokenMeshError, check
 from .coherence_pass import Coherent
 from .connectivity import Connectivity, connect, weld
-from .criteria import Curvature, Maximum, ScreenEdge, Silhouette
+from .criteria import Bulge, Curvature, Maximum, ScreenEdge, Silhouette
 from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, Measured, NormalDrop
-from .gap import Gap
 from .kernels import on_compile
 from .passthrough import PassThrough
 from .plugin import Origins, RefinedMesh, Refiner, Stream, View, available, create, register
@@ -35,12 +39,12 @@ __all__ = [
     "THRESHOLD_ONCE",
     "THRESHOLD_TWICE",
     "BrokenMeshError",
+    "Bulge",
     "Coherent",
     "Connectivity",
     "Criterion",
     "Curvature",
     "Frame",
-    "Gap",
     "Kahler",
     "Loop",
     "Maximum",

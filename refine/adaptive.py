@@ -75,8 +75,8 @@ class Kahler(BoundRefiner):
 
         `threshold_once`, `threshold_twice`: drop of the normal dot product above which an edge is
         split once or twice, for the paper's criterion, "normal".
-        `criterion`: "normal", "curvature", "silhouette", "screen", an object, or a list of them, of
-        which the one counts that asks for most.
+        `criterion`: "normal", "curvature", "silhouette", "screen", "bulge", an object, or a list of
+        them, of which the one counts that asks for most.
         `scheme`: "loop", the paper's, "butterfly", "cubic", "detail", or an object.
         `detail`: for "detail" the finer mesh at rest, its positions and its triangles.
         `blend`: whether points grow out of their edges, so that nothing pops. None stands for what
@@ -90,6 +90,8 @@ class Kahler(BoundRefiner):
         if blend is None:
             blend = self._scheme.interpolates and not coherent
             blend = blend and isinstance(self._criterion, Measured)
+        if hasattr(self._criterion, "use"):
+            self._criterion.use(self._scheme)
         self._looks = hasattr(self._criterion, "look")
         self._blend = blend
         self._patterns = _patterns_of(blend, coherent, len(mesh.faces))

@@ -36,8 +36,9 @@ Unsigned = npt.NDArray[np.uint32]
 Small = npt.NDArray[np.uint8]
 Short = npt.NDArray[np.uint16]
 
-RAMP = np.float32(0.5)
-"""Need over which a point grows. Chosen: half of what lies between the two thresholds."""
+RAMP = np.float32(0.25)
+"""Need over which a point grows, in what lies between the two thresholds. Chosen: points that are
+only half grown cost as much as whole ones."""
 ALONE = np.float32(2 / 3)
 """Weight of the only split edge in the place of C."""
 SHARED = np.float32(2 / 9)

@@ -1,4 +1,4 @@
-r"""Criteria beside the paper's: curvature, silhouette, length on the screen, and several at once.
+r"""Criteria beside the paper's: curvature, silhouette, screen, bulge, and several at once.
 
 Kähler, Haber, Seidel 2003, section 4.1 ("More complex criteria can be used as well, such as
 measuring discrete curvature on the mesh [19]") and section 6 ("refining the mesh along silhouette
@@ -9,6 +9,7 @@ edges. To achieve this, appropriate splitting criteria have to be developed").
     silhouette  how far the surface turns along     (1 - n_a . n_b) x facing; facing is 1 where the
                 an edge that is seen from aside     line of sight grazes the edge, 0 a BAND away
     screen      length of an edge as it is seen     L x focal / distance from the eye, in pixels
+    bulge       how far the scheme moves a middle   for schemes with curved edges (curves.py)
 
 Each has two thresholds, above which an edge is split once and twice, and says how much an edge
 needs a split, so that all of them can be blended (blend.py) and any of them combined.
@@ -22,6 +23,7 @@ import numpy.typing as npt
 
 from .connectivity import Connectivity
 from .criterion import Criterion, Measured, NormalDrop, Thresholds
+from .curves import CurveScheme
 from .kernels import kernel
 from .plugin import View
 
@@ -79,8 +81,7 @@ class Curvature(_Measuring):
         arc_heights(rest_positions, rest_normals, self._edges, self._rest, heights)
         if self.relative:
             self._rest = heights
-        lengths = np.linalg.norm(np.diff(rest_positions[connectivity.edges], axis=1)[:, 0], axis=1)
-        self._unit = np.float32(lengths.mean()) if len(lengths) else np.float32(1.0)
+        self._unit = _mean_length(connectivity, rest_positions)
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
@@ -143,6 +144,39 @@ class ScreenEdge(_Seen):
         scale_needs(need, limits.once, limits.width, limits.most)
 
 
+class Bulge(_Measuring):
+    """How far the scheme would move the middle of an edge: what is wrong without a split.
+
+    For the schemes that interpolate. What is coarse at rest counts as well, unlike in the paper.
+    """
+
+    def __init__(self, once: float = 0.03, twice: float = 0.15) -> None:
+        """`once`, `twice`: distances in mean edge lengths of the mesh at rest."""
+        super().__init__(once, twice, "distances in mean edge lengths")
+
+    def use(self, scheme: object) -> None:
+        """Take the scheme of the refiner; raises ValueError for one without curves."""
+        if not isinstance(scheme, CurveScheme):
+            raise ValueError(
+                'criterion "bulge" measures curved edges: it goes with the schemes "butterfly", '
+                f'"cubic" and "detail", got {type(scheme).__name__}'
+            )
+        self._scheme = scheme
+
+    def bind(
+        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+    ) -> None:
+        """Store the unit of length."""
+        super().bind(connectivity, rest_positions, rest_normals)
+        self._unit = _mean_length(connectivity, rest_positions)
+
+    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
+        """Write the need of every edge, shape (E,)."""
+        limits = self.thresholds
+        bulge_sizes(self._scheme.all_bulges(positions, normals), need)
+        scale_needs(need, limits.once * self._unit, limits.width * self._unit, limits.most)
+
+
 class Maximum:
     """Several criteria: each edge is split as often as the one that asks for most."""
 
@@ -162,6 +196,12 @@ class Maximum:
             criterion.bind(connectivity, rest_positions, rest_normals)
         self._splits = np.zeros(len(connectivity.edges), dtype=np.uint8)
         self._need = np.zeros(len(connectivity.edges), dtype=np.float32)
+
+    def use(self, scheme: object) -> None:
+        """Show the scheme to those that want it."""
+        for criterion in self.criteria:
+            if hasattr(criterion, "use"):
+                criterion.use(scheme)
 
     def look(self, view: View | None) -> None:
         """Show the view to those that want it."""
@@ -185,6 +225,7 @@ class Maximum:
 
 CRITERIA: dict[str, Callable[[], Criterion]] = {
     "curvature": Curvature,
+    "bulge": Bulge,
     "silhouette": Silhouette,
     "screen": ScreenEdge,
 }
@@ -210,6 +251,20 @@ def criterion_of(
             f"criterion must be a name, an object with bind and mark, or a list, got {chosen!r}"
         )
     return chosen
+
+
+def _mean_length(connectivity: Connectivity, positions: Doubles) -> np.float32:
+    """Mean length of the edges; 1 if there are none."""
+    lengths = np.linalg.norm(np.diff(positions[connectivity.edges], axis=1)[:, 0], axis=1)
+    return np.float32(lengths.mean() if len(lengths) else 1.0)
+
+
+@kernel
+def bulge_sizes(bulges: Floats, sizes: Floats) -> None:
+    """Write how far the middle of every edge bulges, shape (E,)."""
+    for e in range(sizes.shape[0]):
+        x, y, z = bulges[e, 1, 0], bulges[e, 1, 1], bulges[e, 1, 2]
+        sizes[e] = np.sqrt(x * x + y * y + z * z)
 
 
 @kernel

@@ -52,8 +52,9 @@ TINY = np.finfo(np.float32).tiny
 class Criterion(Protocol):
     """Decides on splits; anything with these two methods can take the place of the paper's rule.
 
-    Two more methods are used where they are there: `measure(positions, normals, need)`, which
-    blending asks for (see `Measured`), and `look(view)`, which gets the `view` of every frame.
+    More methods are used where they are there: `measure(positions, normals, need)`, which blending
+    asks for (see `Measured`); `look(view)`, which gets the `view` of every frame; `use(scheme)`,
+    which gets the smoothing scheme, once, before anything else.
     """
 
     def bind(

@@ -20,6 +20,7 @@ from .output import place_unmoved
 from .schemes import Frame
 
 Floats = npt.NDArray[np.float32]
+Doubles = npt.NDArray[np.float64]
 Unsigned = npt.NDArray[np.uint32]
 
 ZERO = np.float32(0.0)
@@ -41,12 +42,13 @@ class CurveScheme:
     def bind(
         self,
         connectivity: Connectivity,
-        rest_positions: npt.NDArray[np.float64],
+        rest_positions: Doubles,
         rest_normals: Floats,
     ) -> None:
         """Take the mesh; `rest_positions` and `rest_normals`, shape (V, 3)."""
         self._connectivity = connectivity
         self._bulges = np.zeros((len(connectivity.edges), 3, 3), dtype=np.float32)
+        self._everything: Frame | None = None
 
     def place(self, frame: Frame) -> None:
         """Write vertices as they are, and the points of split edges on their curves."""
@@ -63,6 +65,33 @@ class CurveScheme:
             self._bulges,
             frame.rows,
         )
+
+    def all_bulges(self, positions: Doubles, normals: Floats) -> Floats:
+        """Bulges of all edges as if each were split once, shape (E, 3, 3): middles are number 1.
+
+        For criteria that ask how far an edge is from where it should be. The array is the one that
+        `place` uses.
+        """
+        frame = self._everything
+        if frame is None or frame.positions is not positions or frame.normals is not normals:
+            edge_count = len(self._bulges)
+            none = np.zeros(0, dtype=np.float32)
+            every_edge = np.arange(edge_count, dtype=np.uint32)
+            frame = self._everything = Frame(
+                positions=positions,
+                points=none,
+                normals=normals,
+                splits=np.ones(edge_count, dtype=np.uint8),
+                growth_once=none,
+                growth_twice=none,
+                first_points=every_edge,
+                split_once=every_edge,
+                split_twice=every_edge,
+                rows=none,
+                once_count=edge_count,
+            )
+        self._bulge(frame, self._bulges)
+        return self._bulges
 
     def place_centres(self, frame: Frame) -> None:
         """Leave them as blending has them."""

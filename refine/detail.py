@@ -116,18 +116,9 @@ class DetailScheme(CubicScheme):
 
     def place(self, frame: Frame) -> None:
         """Write vertices and points, then the normals of the finer mesh at points."""
-        mesh = self._connectivity
-        edge_axes(
-            frame.positions,
-            frame.normals,
-            mesh.edge_points,
-            frame.split_once,
-            frame.once_count,
-            self._axes,
-        )
         super().place(frame)
         show_points(
-            mesh.edge_points,
+            self._connectivity.edge_points,
             self._looks,
             self._axes,
             frame.splits,
@@ -154,6 +145,14 @@ class DetailScheme(CubicScheme):
 
     def _bulge(self, frame: Frame, bulges: Floats) -> None:
         super()._bulge(frame, bulges)
+        edge_axes(
+            frame.positions,
+            frame.normals,
+            self._connectivity.edge_points,
+            frame.split_once,
+            frame.once_count,
+            self._axes,
+        )
         add_offsets(self._offsets, self._axes, frame.split_once, frame.once_count, bulges)
 
     def place_centres(self, frame: Frame) -> None:

@@ -22,7 +22,7 @@ ROUNDS = 4
 """
 STEPS = 20
 """Steps of conjugate gradients in each round."""
-STIFFNESS = 0.02
+STIFFNESS = 0.005
 """Pull back to where a point was, against 1 of a vertex of the finer mesh. Chosen by measurement:
 less fits the vertices better and what lies between them worse."""
 TOO_FAR = 1.0

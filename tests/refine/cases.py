@@ -7,6 +7,7 @@ import numpy.typing as npt
 from hypothesis import strategies as st
 
 import refine
+from refine.blend import RAMP
 from tests.refine import plain_twin
 
 
@@ -29,8 +30,8 @@ class Needed:
 
     def growth(self, edges: npt.NDArray[np.int32]) -> plain_twin.Growth:
         """What blending makes of the needs, for the plain twin."""
-        once = np.clip(self.need / 0.5, 0, 1)
-        twice = np.clip((self.need - 1) / 0.5, 0, 1)
+        once = np.clip(self.need / RAMP, 0, 1)
+        twice = np.clip((self.need - 1) / RAMP, 0, 1)
         names = [plain_twin.edge_name(int(a), int(b)) for a, b in edges]
         return {n: (float(p), float(q)) for n, p, q in zip(names, once, twice, strict=True)}
 

@@ -180,3 +180,35 @@ def test_bad_thresholds(kind: type) -> None:
     """Thresholds out of order are refused by every criterion."""
     with pytest.raises(ValueError, match="0 <= threshold_once <= threshold_twice"):
         kind(0.3, 0.2)
+
+
+@pytest.mark.parametrize("scheme", ["butterfly", "cubic", "detail"])
+def test_bulge(scheme: str) -> None:
+    """An edge is split where its full middle lies farther than the threshold from the straight."""
+    mesh = meshes.irregular(2)
+    deformed = meshes.wrinkled(mesh, 3)
+    detail = {"detail": (mesh.vertices + 0.01, mesh.faces)} if scheme == "detail" else {}
+    edges = refine.connect(mesh.faces, len(mesh.vertices)).edges
+    full = refine.create(
+        "kahler", mesh.faces, mesh.vertices, scheme=scheme, blend=False,
+        criterion=Forced(np.ones(len(edges))), **detail,
+    ).refine(deformed)  # fmt: skip
+    middles = full.positions[len(mesh.vertices) :]
+    heights = np.linalg.norm(middles - deformed[edges].mean(axis=1), axis=1)
+    unit = np.linalg.norm(np.diff(mesh.vertices[edges], axis=1)[:, 0], axis=1).mean()
+    once, twice = np.quantile(heights, [0.4, 0.8])
+    refiner = refine.create(
+        "kahler", mesh.faces, mesh.vertices, scheme=scheme,
+        criterion=[refine.Bulge(once / unit, twice / unit)], **detail,
+    )  # fmt: skip
+    refine.check(refiner, refiner.refine(deformed), deformed)
+    expected = (heights > once).astype(int) + (heights > twice)
+    assert (refiner.splits == expected).mean() > 0.99
+    assert set(refiner.splits.tolist()) == {0, 1, 2}
+
+
+def test_bulge_needs_curves() -> None:
+    """The paper's scheme has no curved edges to measure."""
+    mesh = meshes.octahedron()
+    with pytest.raises(ValueError, match=r"it goes with the schemes .* got LoopScheme"):
+        refine.create("kahler", mesh.faces, mesh.vertices, criterion="bulge")

@@ -1,0 +1,105 @@
+"""Closest points, the fit to a finer mesh, and detail that moves with the surface."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import refine
+from refine.closest import Surface
+from tests import meshes
+from tests.refine.cases import Needed
+
+
+def bumpy(columns: int, rows: int) -> meshes.Mesh:
+    """A sheet of 4 x 3 with bumps that a coarse grid cannot show."""
+    grid = meshes.open_grid(columns, rows)
+    vertices = grid.vertices * [4.0 / columns, 3.0 / rows, 1.0]
+    x, y = vertices[:, 0], vertices[:, 1]
+    vertices[:, 2] = 0.1 * np.sin(4.0 * x) * np.cos(5.0 * y) + 0.2 * np.sin(x)
+    return meshes.Mesh(vertices, grid.faces)
+
+
+COARSE, FINE = bumpy(8, 6), bumpy(48, 36)
+
+
+def distances(points: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Distance of each point from a mesh."""
+    surface = Surface(positions.astype(np.float64), triangles.astype(np.uint32))
+    hit, weights = surface.closest(points, np.zeros_like(points))
+    return np.linalg.norm(surface.at(surface.positions, hit, weights) - points, axis=1)
+
+
+def refined(scheme: str, positions: np.ndarray, **options: object) -> refine.RefinedMesh:
+    """The coarse sheet with all edges split twice."""
+    edge_count = len(refine.connect(COARSE.faces, len(COARSE.vertices)).edges)
+    if scheme == "detail":
+        options["detail"] = (FINE.vertices, FINE.faces)
+    refiner = refine.create(
+        "kahler", COARSE.faces, COARSE.vertices, scheme=scheme,
+        criterion=Needed(np.full(edge_count, 9.0)), **options,
+    )  # fmt: skip
+    mesh = refiner.refine(positions)
+    refine.check(refiner, mesh, positions)
+    return mesh
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_closest_points(seed: int) -> None:
+    """Nothing that lies on the mesh is closer than the point that is found, near the mesh."""
+    mesh = meshes.irregular(seed)
+    generator = np.random.default_rng(seed)
+    picked = mesh.faces[generator.integers(len(mesh.faces), size=60)]
+    shares = generator.dirichlet([1, 1, 1], 60)
+    points = np.einsum("nik,ni->nk", mesh.vertices[picked], shares)
+    points += 0.05 * generator.standard_normal(points.shape)
+    found = distances(points, mesh.vertices, mesh.faces)
+    samples = np.random.default_rng(9).dirichlet([0.6, 0.6, 0.6], 300)
+    cloud = np.einsum("fik,si->fsk", mesh.vertices[mesh.faces], samples).reshape(-1, 3)
+    nearest = np.array([np.linalg.norm(cloud - point, axis=1).min() for point in points])
+    assert (found <= nearest + 1e-12).all()
+    assert (nearest - found).max() < 0.2
+
+
+def test_closest_looks_the_same_way() -> None:
+    """Of two sheets that almost touch, each point finds the one that looks its way."""
+    sheet = meshes.open_grid(6, 6)
+    count = len(sheet.vertices)
+    below = sheet.vertices - [0.0, 0.0, 0.01]
+    vertices = np.concatenate([sheet.vertices, below])
+    faces = np.concatenate([sheet.faces, sheet.faces[:, ::-1] + count]).astype(np.uint32)
+    points = np.tile([[3.3, 2.2, -0.005]], (2, 1))
+    hit, _ = Surface(vertices, faces).closest(points, np.array([[0, 0, 1.0], [0, 0, -1.0]]))
+    assert hit[0] < len(sheet.faces) <= hit[1]
+
+
+@pytest.mark.parametrize("blend", [False, True])
+def test_lies_on_the_finer_mesh(blend: bool) -> None:
+    """At rest, with all edges split, the detail scheme is much closer to the finer mesh."""
+    errors = {}
+    for scheme in ("cubic", "detail"):
+        mesh = refined(scheme, COARSE.vertices, blend=blend)
+        errors[scheme] = distances(FINE.vertices, mesh.positions, mesh.triangles).mean()
+    coarse = distances(FINE.vertices, COARSE.vertices, COARSE.faces).mean()
+    assert errors["detail"] < 0.25 * coarse
+    assert errors["detail"] < 0.5 * errors["cubic"]
+
+
+def test_shows_finer_normals() -> None:
+    """Normals are those of the finer mesh where the vertices of the refined one are."""
+    mesh = refined("detail", COARSE.vertices)
+    surface = Surface(FINE.vertices, FINE.faces.astype(np.uint32))
+    hit, weights = surface.closest(mesh.positions.astype(np.float64), np.zeros(mesh.normals.shape))
+    expected = surface.at(surface.normals, hit, weights)
+    expected /= np.linalg.norm(expected, axis=1, keepdims=True)
+    assert np.median((expected * mesh.normals).sum(axis=1)) > 0.999
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_turns_with_the_mesh(seed: int) -> None:
+    """A rigid motion of the mesh moves everything along: points, middles and normals."""
+    turn = meshes.rotation(seed)
+    still = refined("detail", COARSE.vertices)
+    moved = refined("detail", COARSE.vertices @ turn.T + [1.0, 2.0, 3.0])
+    np.testing.assert_allclose(moved.positions, still.positions @ turn.T + [1, 2, 3], atol=2e-5)
+    np.testing.assert_allclose(moved.normals, still.normals @ turn.T, atol=2e-4)
