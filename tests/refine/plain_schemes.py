@@ -79,6 +79,24 @@ def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> Cur
     return curve
 
 
+def ring_weights(n: int) -> list[float]:
+    """Weights of a ring of n, the first one at the other end of the edge."""
+    if n == 3:
+        return [5 / 12, -1 / 12, -1 / 12]
+    if n == 4:
+        return [3 / 8, 0, -1 / 8, 0]
+    if n == 6:
+        return [1 / 2, 1 / 8, -1 / 8, 0, -1 / 8, 1 / 8]
+    turns = [2 * math.pi * j / n for j in range(n)]
+    return [(0.25 + math.cos(t) + 0.5 * math.cos(2 * t)) / n for t in turns]
+
+
+def from_ring(centre: Vector, points: list[Vector]) -> Vector:
+    """The point that a vertex and its ring give."""
+    parts = ring_weights(len(points))
+    return mix((1 - sum(parts), centre), *zip(parts, points, strict=True))
+
+
 def butterfly(positions: list[Vector], faces: list[Face]) -> Curve:
     """Modified butterfly subdivision, two levels."""
     around = Surroundings(faces)
@@ -96,20 +114,6 @@ def butterfly(positions: list[Vector], faces: list[Face]) -> Curve:
         while (after := following[v][found[-1]]) != start:
             found.append(after)
         return found if len(found) == len(neighbours) else []
-
-    def weights(n: int) -> list[float]:
-        if n == 3:
-            return [5 / 12, -1 / 12, -1 / 12]
-        if n == 4:
-            return [3 / 8, 0, -1 / 8, 0]
-        if n == 6:
-            return [1 / 2, 1 / 8, -1 / 8, 0, -1 / 8, 1 / 8]
-        turns = [2 * math.pi * j / n for j in range(n)]
-        return [(0.25 + math.cos(t) + 0.5 * math.cos(2 * t)) / n for t in turns]
-
-    def from_ring(centre: Vector, points: list[Vector]) -> Vector:
-        parts = weights(len(points))
-        return mix((1 - sum(parts), centre), *zip(parts, points, strict=True))
 
     def middle(a: int, b: int) -> Vector:
         straight = mix((0.5, positions[a]), (0.5, positions[b]))
