@@ -83,7 +83,7 @@ class OrbitCamera:
             scene_radius=radius,
             field_of_view=field_of_view,
         )
-        camera._fit(points, margin)
+        camera.fit(points, margin)
         return camera
 
     def copy(self) -> "OrbitCamera":
@@ -143,8 +143,8 @@ class OrbitCamera:
         near = max(depth - reach, 0.01 * self.scene_radius)
         return near, max(depth + reach, 2.0 * near)
 
-    def _fit(self, points: FloatArray, margin: float) -> None:
-        """Centre the points in the frame and step as close as the margin allows."""
+    def fit(self, points: npt.NDArray[Any], margin: float = MARGIN) -> None:
+        """Centre `points`, shape (n, 3), in the frame and step as close as the margin allows."""
         usable = (1.0 - 2.0 * margin) * math.tan(math.radians(0.5 * self.field_of_view))
         axes = np.stack(self.axes())
         for _ in range(8):  # each round centres better; perspective makes one round inexact
