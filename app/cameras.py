@@ -12,6 +12,16 @@ from .scenes import Scene
 DEFAULT_VIEW = "three-quarter"
 
 
+MARGIN = 0.05  # of the frame, free on each side of a whole scene
+
+
+def whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
+    """A camera from the side of `view` (as `camera_for` reads it) that sees the whole scene."""
+    camera = camera_for(scene, view)
+    camera.fit(scene.rest_positions, MARGIN)
+    return camera
+
+
 def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
     """The camera of a named view of the whole scene, or of "yaw,pitch[,zoom]" around its focus.
 

@@ -70,7 +70,7 @@ class FaceScene:
     name = "face"
 
     def __init__(self) -> None:
-        head = assets.load("head")
+        head = self.head = assets.load("head")
         self.simulation = sim.create(head)
         self.faces = self.simulation.faces
         self.rest_positions = self.simulation.rest_positions

@@ -123,6 +123,14 @@ def overlap(first: Rectangle, second: Rectangle) -> bool:
     )
 
 
+def common(first: Rectangle, second: Rectangle) -> Rectangle:
+    """The pixels of both rectangles; a width or height of 0 where they share none."""
+    left, bottom = max(first[0], second[0]), max(first[1], second[1])
+    right = min(first[0] + first[2], second[0] + second[2])
+    top = min(first[1] + first[3], second[1] + second[3])
+    return left, bottom, max(right - left, 0), max(top - bottom, 0)
+
+
 def hull(first: Rectangle, second: Rectangle) -> Rectangle:
     """The smallest rectangle that holds both."""
     left, bottom = min(first[0], second[0]), min(first[1], second[1])

@@ -1,7 +1,8 @@
 """Draws meshes, rigid parts, lines and backgrounds on a surface.
 
 Every call takes a viewport, (x, y, width, height) in pixels from the lower left corner, and leaves
-all other pixels alone; None is the whole surface. The camera's aspect is that of the viewport.
+all other pixels alone; None is the whole surface. The camera's aspect is that of the viewport. A
+`clip` draws only a part of what the viewport shows: two clips make one picture of two meshes.
 Programs are compiled on first use, one per combination of shading and options.
 Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the figures are shaded).
 """
@@ -93,6 +94,7 @@ class Renderer:
         style: Style,
         *,
         viewport: Viewport | None = None,
+        clip: Viewport | None = None,
         values: npt.NDArray[np.uint8] | None = None,
         texture: Texture | None = None,
     ) -> None:
@@ -105,7 +107,7 @@ class Renderer:
         """
         _check_texture(texture, stream)
         is_textured = texture is not None and style.textured
-        sight = self._sight(camera, viewport)
+        sight = self._sight(camera, viewport, clip)
         if style.colour_by is not ColourBy.NONE:
             self._values.upload(_checked_values(values, stream.triangle_count))
         if style.shadows:
@@ -146,13 +148,14 @@ class Renderer:
         style: Style,
         *,
         viewport: Viewport | None = None,
+        clip: Viewport | None = None,
     ) -> None:
         """Draw rigid coloured parts, each moved by the matrix of its bone (column vectors).
 
         Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
         is first seen and must not change after. Raises ValueError for a bone without transform.
         """
-        sight = self._sight(camera, viewport)
+        sight = self._sight(camera, viewport, clip)
         is_shadowed = style.shadows and self._shadow_key == self._key_of_shadow(sight)
         program = self._program(
             "surface.glsl", "PIXEL", "COLOURED", *(["SHADOWS"] if is_shadowed else [])
@@ -174,6 +177,7 @@ class Renderer:
         camera: OrbitCamera,
         *,
         viewport: Viewport | None = None,
+        clip: Viewport | None = None,
         width: float = 1.6,
         hidden_opacity: float = 0.45,
     ) -> None:
@@ -183,7 +187,7 @@ class Renderer:
         colour: sRGB of all lines, or one row per line, shape (len(polylines), 3).
         width: [pixels at scale 1]; hidden_opacity: 0 (hidden) to 1 (as if nothing were in front).
         """
-        sight = self._sight(camera, viewport)
+        sight = self._sight(camera, viewport, clip)
         program = self._program("lines.glsl")
         if not self._lines.upload(program, polylines, colour):
             return
@@ -192,6 +196,8 @@ class Renderer:
         write_uniform(program, "world_to_clip", sight.world_to_clip)
         program["viewport_size"] = sight.viewport[2:]
         program["half_width"] = 0.5 * width
+        if touched[2] < 1 or touched[3] < 1:
+            return
         gl, layers = self._gl, self.surface.layers
         layers.use_layer(sight.viewport, touched)
         gl.enable(moderngl.BLEND)
@@ -206,8 +212,11 @@ class Renderer:
         gl.depth_func = "<="
         gl.disable(moderngl.BLEND)
 
-    def _sight(self, camera: OrbitCamera, viewport: Viewport | None) -> Sight:
-        return Sight(camera, self._viewport(viewport))
+    def _sight(
+        self, camera: OrbitCamera, viewport: Viewport | None, clip: Viewport | None
+    ) -> Sight:
+        inside = None if clip is None else self._viewport(clip)
+        return Sight(camera, self._viewport(viewport), inside)
 
     def _viewport(self, viewport: Viewport | None) -> Viewport:
         self.surface.make_current()

@@ -39,6 +39,12 @@ class WindowSurface(Surface):
         return self._shown.size
 
     @property
+    def window_size(self) -> tuple[int, int]:
+        """Width and height of the window [screen units]."""
+        width, height = self._glfw.get_window_size(self.handle)
+        return int(width), int(height)
+
+    @property
     def is_resized(self) -> bool:
         """Whether the window is no longer of the size that was drawn last."""
         return _framebuffer_size(self._glfw, self.handle) != self.size

@@ -1,0 +1,196 @@
+"""The mechanism: refiner and its options, comparison, colours, overlays, what a frame costs."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from imgui_bundle import imgui
+
+import refine
+import render
+
+from .. import commands
+from ..colours import COLOURS
+from ..gui import colour, em
+from ..overlays import overlays_of
+from ..stage import COMPARISONS, SKINS, STAGES
+from .sliders import Sliders
+
+if TYPE_CHECKING:
+    from ..window import Viewer
+
+BORDER_OPTIONS = ("uv", "face_uv")  # every refiner takes them; the scene gives them
+HIGHEST = 0.25  # of a slider for a number that is no whole one, as far as it is not more already
+
+
+class MechanismPanel:
+    """Everything about how the mesh becomes a picture."""
+
+    def __init__(self, viewer: Viewer) -> None:
+        self._viewer = viewer
+        self._sliders = Sliders(viewer.gui)
+
+    def draw(self) -> None:
+        """Draw everything, inside the window's panel."""
+        imgui.begin_child("mechanism", imgui.ImVec2(0.0, 0.0))
+        self._draw_refinement()
+        self._draw_look()
+        self._draw_overlays()
+        self._draw_times()
+        imgui.end_child()
+
+    def _draw_refinement(self) -> None:
+        viewer, look = self._viewer, self._viewer.look
+        imgui.separator_text("Refinement")
+        self._check("Refine", look.is_refined, lambda: commands.toggle(viewer, "is_refined"))
+        names = [name for name in refine.available() if name != "none"]
+        self._choose("Refiner", "refiner", names)
+        self._choose("Compare", "compare", COMPARISONS)
+        for name, parameter in options_of(viewer.stage.refined.refiner).items():
+            self._draw_option(name, parameter.default)
+        shots = viewer.stage.shots(look, viewer.viewport)
+        base = len(viewer.scene.faces)
+        for shot in shots:
+            count = shot.picture.triangle_count
+            imgui.text(f"{shot.label}: {count} triangles")
+            imgui.same_line()
+            imgui.text_colored(colour(viewer.gui.theme.muted), f"({count / base:.2f} x)")
+        splits = viewer.stage.refined.refiner.splits
+        once, twice = int((splits == 1).sum()), int((splits == 2).sum())
+        imgui.text_colored(
+            colour(viewer.gui.theme.muted),
+            f"{len(splits)} edges: {once} split once, {twice} twice",
+        )
+
+    def _draw_option(self, name: str, default: Any) -> None:
+        """A slider, a checkbox or a list for an option, by what its default is."""
+        viewer, look = self._viewer, self._viewer.look
+        stored = look.options.setdefault(look.refiner, {})
+        scenes = viewer.scene.refiner_options.get(look.refiner, {})
+        value = stored.get(name, scenes.get(name, default))
+        label = name.replace("_", " ")
+        if isinstance(default, bool):
+            self._check(label, bool(value), lambda: stored.update({name: not value}))
+        elif isinstance(default, int):
+            is_changed, chosen = imgui.input_int(label, int(value))
+            viewer.gui.remember(label)
+            if is_changed:
+                stored[name] = chosen
+        elif isinstance(default, float):
+            most = max(HIGHEST, 2.0 * default)
+            imgui.align_text_to_frame_padding()
+            imgui.text(label)
+            imgui.same_line(em(10.2))
+            slid = self._sliders.draw(name, float(value), (0.0, most), width=-1.0, neutral=default)
+            if slid.is_changed:
+                stored[name] = slid.value
+                _keep_in_order(stored, name, slid.value, scenes)
+        elif isinstance(default, str):
+            choices = choices_of(look.refiner, name)
+            if choices:
+                self._choose(label, name, choices, of=stored, default=str(value))
+
+    def _draw_look(self) -> None:
+        viewer, look = self._viewer, self._viewer.look
+        imgui.separator_text("Look")
+        self._choose("Shading", "shading", [shading.value for shading in render.Shading])
+        self._choose("Colours", "colours", tuple(COLOURS))
+        if COLOURS[look.colours].legend:
+            imgui.text_colored(colour(viewer.gui.theme.muted), COLOURS[look.colours].legend)
+        self._choose("Skin", "skin", tuple(SKINS))
+        self._check("Wireframe", look.wireframe, lambda: commands.toggle(viewer, "wireframe"))
+
+    def _draw_overlays(self) -> None:
+        viewer = self._viewer
+        names = overlays_of(viewer.scene)
+        imgui.separator_text("Overlays")
+        for index, name in enumerate(names):
+            if index % 2:
+                imgui.same_line(em(10.2))
+            is_on = name in viewer.look.overlays
+            self._check(
+                name.capitalize(), is_on, lambda name=name: commands.toggle_overlay(viewer, name)
+            )
+
+    def _draw_times(self) -> None:
+        """A scrolling plot for each stage of the paper's Figure 1, and the median of a second."""
+        stage = self._viewer.stage
+        imgui.separator_text(f"Milliseconds, {self._viewer.frames_per_second:.0f} frames a second")
+        for name in STAGES:
+            times = np.array(stage.times[name], np.float32)
+            recent = times[-60:][times[-60:] > 0.0]
+            median = float(np.median(recent)) if len(recent) else 0.0
+            imgui.plot_lines(
+                f"##{name}",
+                times,
+                overlay_text=f"{name}  {median:.2f}",
+                scale_min=0.0,
+                scale_max=max(float(times.max()), 0.1) * 1.3,
+                graph_size=imgui.ImVec2(imgui.get_content_region_avail().x, em(2.4)),
+            )
+        self._viewer.gui.remember("plot")
+
+    def _check(self, label: str, is_on: bool, switch: Any) -> None:
+        is_clicked, _ = imgui.checkbox(label, is_on)
+        self._viewer.gui.remember(label)
+        if is_clicked:
+            switch()
+
+    def _choose(
+        self,
+        label: str,
+        name: str,
+        choices: Sequence[str],
+        *,
+        of: dict[str, Any] | None = None,
+        default: str = "",
+    ) -> None:
+        """A list to choose from, for a field of the look or an entry of a table."""
+        present = default if of is not None else getattr(self._viewer.look, name)
+        imgui.align_text_to_frame_padding()
+        imgui.text(label)
+        imgui.same_line(em(10.2))
+        imgui.set_next_item_width(-1.0)
+        is_open = imgui.begin_combo(f"##{label}", present)
+        self._viewer.gui.remember(label)
+        if not is_open:
+            return
+        for choice in choices:
+            is_clicked, _ = imgui.selectable(choice, choice == present)
+            self._viewer.gui.remember(f"{label}: {choice}")
+            if is_clicked and of is not None:
+                of[name] = choice
+            elif is_clicked:
+                setattr(self._viewer.look, name, choice)
+        imgui.end_combo()
+
+
+def options_of(refiner: refine.Refiner) -> Mapping[str, inspect.Parameter]:
+    """What a refiner can be told beyond the mesh, as its class declares it."""
+    parameters = inspect.signature(type(refiner)).parameters
+    return {
+        name: parameter
+        for name, parameter in parameters.items()
+        if parameter.kind is parameter.KEYWORD_ONLY and name not in BORDER_OPTIONS
+    }
+
+
+def choices_of(refiner: str, option: str) -> tuple[str, ...]:
+    """The words that an option of a refiner may be, where the package tells."""
+    listed = getattr(refine, f"{option}_names", None)
+    return tuple(listed()) if callable(listed) else ()
+
+
+def _keep_in_order(
+    stored: dict[str, Any], name: str, value: float, scenes: Mapping[str, float]
+) -> None:
+    """Splitting twice never begins before splitting once: the other threshold gives way."""
+    first, second = "threshold_once", "threshold_twice"
+    defaults = {first: refine.THRESHOLD_ONCE, second: refine.THRESHOLD_TWICE, **scenes}
+    if name == first:
+        stored[second] = max(value, stored.get(second, defaults[second]))
+    elif name == second:
+        stored[first] = min(value, stored.get(first, defaults[first]))
