@@ -10,6 +10,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 import render
+from assets.fitting import FittedHead
 
 from . import outputs
 from .cameras import camera_for
@@ -17,7 +18,7 @@ from .errors import UserError
 from .labels import caption, contact_sheet
 from .outputs import Frame
 from .pipeline import Pipeline, side_by_side, texture_of
-from .scenes import SCENES, Scene
+from .scenes import Scene, build_scene
 from .script import Script
 
 SETTLING = 1.0  # [s] after which the face rests in a pose
@@ -36,6 +37,7 @@ class CaptureOptions:
     camera: str | None = None  # a named view, or yaw,pitch[,zoom] in degrees
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
     samples: int = 4
+    head: FittedHead | None = None  # None: the built-in one
 
 
 class Capture:
@@ -123,7 +125,7 @@ def capture(
         outputs.check_picture(sheet)
     poses: list[tuple[str, Frame]] = []
     with contextlib.ExitStack() as stack:
-        recording = stack.enter_context(Capture(scene_of(script), options))
+        recording = stack.enter_context(Capture(scene_of(script, options.head), options))
         film = stack.enter_context(_sink_for(output, options, overwrite)) if output else None
         half_a_frame = 0.5 / options.frames_per_second
         for time in recording.play(script, progress=progress):
@@ -155,17 +157,17 @@ def take_picture(
     if time is None:
         time = script.key_poses[0].time if script.key_poses else script.duration
     outputs.check_picture(output)
-    with Capture(scene_of(script), options) as recording:
+    with Capture(scene_of(script, options.head), options) as recording:
         for _ in recording.play(script, until=time, progress=progress):
             pass
         outputs.save_png(output, recording.picture())
         return recording.most_triangles
 
 
-def scene_of(script: Script) -> Scene:
+def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
     """The scene that a script is written for; UserError if it names what the scene has not."""
-    scene = SCENES[script.scene]()
-    script.check_names({*scene.expressions, *scene.limits})
+    scene = build_scene(script.scene, head)
+    script.check_names(scene.limits)
     return scene
 
 

@@ -2,28 +2,60 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 
 import refine
 import render
+from assets.fitting import FittedHead, fit_head
 
 from .errors import UserError
 from .scenes import SCENES
-from .script import Script, load_script
+from .script import Channel, Key, Script, load_script
+
+HELD = 1.0  # [s] that a pose of --set lasts
 
 
-def script_for(path: Path | None, scene: str | None) -> Script:
-    """The script at `path`, or the one that comes with the scene."""
+def script_for(path: Path | None, scene: str | None, settings: Sequence[str] = ()) -> Script:
+    """The script at `path`, or the pose of `settings`, or the script that comes with the scene."""
+    if settings and path is not None:
+        raise UserError(f"{path}: a script and --set exclude each other")
     if path is None:
         path = Path(str(files("assets") / "scripts" / f"{scene or 'face'}.toml"))
-    script = load_script(path)
+    script = held_pose(settings) if settings else load_script(path)
     if scene is not None:
         script = replace(script, scene=scene)
     if script.scene not in SCENES:
         raise UserError(f"{path}: scene '{script.scene}'; allowed are {', '.join(SCENES)}")
     return script
+
+
+def head_for(head: Path | None, landmarks: Path | None) -> FittedHead | None:
+    """The head that somebody brought, fitted; None for the built-in one."""
+    if head is None and landmarks is None:
+        return None
+    if head is None or landmarks is None:
+        raise UserError("--head HEAD.obj and --landmarks LANDMARKS.json go together")
+    return fit_head(head, landmarks)
+
+
+def held_pose(settings: Sequence[str]) -> Script:
+    """The script that `--set NAME=VALUE ...` stands for: one pose, held. A bare NAME is at 1."""
+    poses = {}
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        try:
+            value = float(text) if equals else 1.0
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise UserError(f"--set {setting}: '{text}' is no number; write NAME=VALUE")
+        poses[name] = Channel((Key(0.0, value),))
+    title = ", ".join(settings)
+    return Script(title, duration=HELD, source="--set", poses=poses)
 
 
 def known_refiner(name: str) -> str:

@@ -81,8 +81,18 @@ def drawing_options(command: Command) -> Command:
     return command
 
 
+def head_options(command: Command) -> Command:
+    """The options that bring a head of one's own to view, replay and capture."""
+    path = click.Path(path_type=Path)
+    command = click.option(
+        "--landmarks", type=path, help="The 68 iBug landmarks of --head, as JSON."
+    )(command)
+    return click.option("--head", type=path, help="A head of your own: any triangle mesh.")(command)
+
+
 @main.command()
 @click.argument("script", type=click.Path(path_type=Path), required=False)
+@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="Instead of a SCRIPT.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="out.mp4, a folder, or .png")
 @click.option("--sheet", type=click.Path(path_type=Path), help="Contact sheet of the named poses.")
 @click.option("--scene", type=click.Choice(["face", "plane"]), help="What is animated.")
@@ -100,9 +110,11 @@ def drawing_options(command: Command) -> Command:
 @click.option("--samples", type=click.IntRange(0, 16), default=4, show_default=True)
 @click.option("--overwrite", is_flag=True, help="Replace a folder that is not empty.")
 @click.option("--quiet", is_flag=True, help="No progress bar.")
+@head_options
 @drawing_options
 def capture(
     script: Path | None,
+    settings: tuple[str, ...],
     output: Path | None,
     sheet: Path | None,
     scene: str | None,
@@ -115,19 +127,21 @@ def capture(
     samples: int,
     overwrite: bool,
     quiet: bool,
+    head: Path | None,
+    landmarks: Path | None,
     refiner: str,
     thresholds: tuple[float, float] | None,
     **look: Any,
 ) -> None:
     """Render SCRIPT offscreen into a film, frames, a picture or a contact sheet.
 
-    Without SCRIPT the scene's own one is played.
+    Without SCRIPT the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
     """
     from . import capture as capturing
-    from .choices import known_refiner, script_for, style_of, threshold_options
+    from .choices import head_for, known_refiner, script_for, style_of, threshold_options
 
     with told_in_one_line():
-        performance = script_for(script, scene)
+        performance = script_for(script, scene, settings)
         options = capturing.CaptureOptions(
             size=size,
             frames_per_second=fps,
@@ -138,6 +152,7 @@ def capture(
             camera=camera or performance.camera,
             style=style_of(**look),
             samples=samples,
+            head=head_for(head, landmarks),
         )
         if compare and refiner == "none":
             raise UserError("--compare sets the mesh as it is beside a --refiner other than none")
@@ -167,6 +182,7 @@ def capture(
 @click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
 @click.option("--scene", type=click.Choice(["face", "plane"]), help="face, unless told.")
 @click.option("--script", type=click.Path(path_type=Path), help="What the space key plays.")
+@head_options
 @drawing_options
 def view(
     size: tuple[int, int] | None, scene: str | None, script: Path | None, **options: Any
@@ -179,6 +195,7 @@ def view(
 @click.argument("script", type=click.Path(path_type=Path))
 @click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
 @click.option("--once", is_flag=True, help="Close the window at the end of the script.")
+@head_options
 @drawing_options
 def replay(script: Path, size: tuple[int, int] | None, once: bool, **options: Any) -> None:
     """Play SCRIPT in real time in the window."""
@@ -202,20 +219,17 @@ def demo() -> None:
 @main.command()
 @click.option("--scene", type=click.Choice(["face", "plane"]), default="face", show_default=True)
 def controls(scene: str) -> None:
-    """List every expression and control that a script may name."""
+    """List every control that a script may name: muscles, action units, expressions, visemes."""
     from .scenes import SCENES
 
     with told_in_one_line():
         built = SCENES[scene]()
-        if built.expressions:
-            click.echo("Expressions (0..1)")
-            for name in built.expressions:
-                click.echo(f"  {name}")
         for title, names in built.groups.items():
             click.echo(title)
             for name in names:
                 low, high = built.limits[name]
-                click.echo(f"  {name}  {low:g}..{high:g}")
+                action = built.actions.get(name, "")
+                click.echo(f"  {name}  {low:g}..{high:g}  {action}".rstrip())
 
 
 @main.command()
@@ -285,19 +299,23 @@ def open_viewer(
     *,
     playing: bool,
     once: bool = False,
+    head: Path | None,
+    landmarks: Path | None,
     refiner: str,
     thresholds: tuple[float, float] | None,
     **look: Any,
 ) -> None:
     """Open the viewer on a script's scene."""
     with told_in_one_line():
-        from .choices import known_refiner, script_for, threshold_options
+        from .choices import head_for, known_refiner, script_for, threshold_options
 
         performance = script_for(script, scene)
+        brought = head_for(head, landmarks)
         from .viewer import Viewer
         from .viewer.settings import look_of, settings_path
 
         options = threshold_options(known_refiner(refiner), thresholds)
         chosen = look_of(refiner, options, **look)
-        with Viewer(performance, size, chosen, settings_path=settings_path()) as viewer:
+        path = settings_path()
+        with Viewer(performance, size, chosen, head=brought, settings_path=path) as viewer:
             viewer.run(playing=playing, once=once)

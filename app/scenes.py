@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 import assets
 import sim
+from assets.fitting import FittedHead
 
 from .errors import UserError
 
@@ -28,7 +29,7 @@ class Scene(Protocol):
     faces: npt.NDArray[np.int32]
     rest_positions: npt.NDArray[np.float64]
     parts: tuple[Any, ...]
-    expressions: Mapping[str, Mapping[str, float]]
+    expressions: tuple[str, ...]  # controls that a panel shows as buttons
     focus: npt.NDArray[np.float64]  # where a camera close by looks [mm], shape (3,)
     uv: npt.NDArray[np.float32] | None  # texture coordinates (U, 2), None: no texture
     face_uv: npt.NDArray[np.int32] | None  # which of them each corner has (F, 3)
@@ -41,7 +42,7 @@ class Scene(Protocol):
 
     @property
     def groups(self) -> Mapping[str, tuple[str, ...]]:
-        """The controls by the heading under which a panel shows them."""
+        """All controls by the heading under which a panel shows them."""
 
     @property
     def limits(self) -> Mapping[str, tuple[float, float]]:
@@ -51,8 +52,15 @@ class Scene(Protocol):
     def values(self) -> Mapping[str, float]:
         """What each control is set to."""
 
+    @property
+    def actions(self) -> Mapping[str, str]:
+        """What controls do, in words, where that is known."""
+
     def pose(self, channels: Mapping[str, float]) -> None:
-        """Set all controls from expressions and controls; what is not named becomes 0."""
+        """Set controls, each cut off at its limits; what is not named becomes 0.
+
+        Raises UserError on a name that is no control.
+        """
 
     def step(self, seconds: float) -> None:
         """Let time pass."""
@@ -65,17 +73,19 @@ class Scene(Protocol):
 
 
 class FaceScene:
-    """The built-in head, moved by muscles, jaw and gaze through the spring simulation."""
+    """A head, moved by muscles, jaw and gaze through the spring simulation."""
 
     name = "face"
 
-    def __init__(self) -> None:
-        head = self.head = assets.load("head")
+    def __init__(self, head: assets.Head | FittedHead | None = None) -> None:
+        """Simulate `head`, the built-in one unless told."""
+        head = assets.load("head") if head is None else head
+        self.head = head
         self.simulation = sim.create(head)
         self.faces = self.simulation.faces
         self.rest_positions = self.simulation.rest_positions
         self.parts: tuple[Any, ...] = head.parts
-        self.expressions: Mapping[str, Mapping[str, float]] = head.expressions
+        self.expressions: tuple[str, ...] = self.simulation.layers.get("Expressions", ())
         self.uv: npt.NDArray[np.float32] | None = head.uv
         self.face_uv: npt.NDArray[np.int32] | None = head.face_uv
         self.albedo: npt.NDArray[np.uint8] | None = head.albedo
@@ -99,8 +109,12 @@ class FaceScene:
     def values(self) -> Mapping[str, float]:
         return self.simulation.values
 
+    @property
+    def actions(self) -> Mapping[str, str]:
+        return self.simulation.actions
+
     def pose(self, channels: Mapping[str, float]) -> None:
-        self.simulation.set_all(mix(channels, self.expressions, self.limits))
+        self.simulation.pose(within(self.limits, channels))
 
     def step(self, seconds: float) -> None:
         count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))
@@ -131,7 +145,7 @@ class PlaneScene:
         self.faces = plane.faces
         self.rest_positions = plane.vertices
         self.parts: tuple[Any, ...] = ()
-        self.expressions: Mapping[str, Mapping[str, float]] = {}
+        self.expressions: tuple[str, ...] = ()
         self.focus = plane.vertices.mean(axis=0)
         self.uv: npt.NDArray[np.float32] | None = None
         self.face_uv: npt.NDArray[np.int32] | None = None
@@ -146,6 +160,7 @@ class PlaneScene:
             "amplitude": (0.0, 1.0),
             "phase": (0.0, 100.0),
         }
+        self.actions: Mapping[str, str] = {}
         self.values = dict.fromkeys(self.limits, 0.0)
         extent = np.ptp(plane.vertices, axis=0)
         self._normal = int(np.argmin(extent))
@@ -155,7 +170,7 @@ class PlaneScene:
         self.positions = plane.vertices.copy()
 
     def pose(self, channels: Mapping[str, float]) -> None:
-        self.values.update(mix(channels, {}, self.limits))
+        self.values.update({**dict.fromkeys(self.limits, 0.0), **within(self.limits, channels)})
 
     def step(self, seconds: float) -> None:
         wave = np.sin(2.0 * np.pi * (self._turns - self.values["phase"]))
@@ -170,27 +185,28 @@ class PlaneScene:
         return {}
 
 
-def mix(
-    channels: Mapping[str, float],
-    expressions: Mapping[str, Mapping[str, float]],
-    limits: Mapping[str, tuple[float, float]],
+def within(
+    limits: Mapping[str, tuple[float, float]], channels: Mapping[str, float]
 ) -> dict[str, float]:
-    """Add up expressions and single controls into one value for each control, within its limits.
-
-    Raises UserError on a name that is neither an expression nor a control.
-    """
-    values = dict.fromkeys(limits, 0.0)
-    for channel, weight in channels.items():
-        if channel in expressions:
-            for control, share in expressions[channel].items():
-                values[control] += weight * share
-        elif channel in values:
-            values[channel] += weight
-        else:
-            raise UserError(f"unknown expression or control '{channel}'")
+    """The channels, each cut off at its limits. Raises UserError on one that has none."""
+    for name in channels:
+        if name not in limits:
+            raise UserError(f"unknown control '{name}'")
     return {
-        name: min(max(value, limits[name][0]), limits[name][1]) for name, value in values.items()
+        name: min(max(value, limits[name][0]), limits[name][1]) for name, value in channels.items()
     }
 
 
 SCENES: dict[str, Callable[[], Scene]] = {"face": FaceScene, "plane": PlaneScene}
+
+
+def build_scene(name: str, head: FittedHead | None = None) -> Scene:
+    """The scene called `name`, with a head that somebody brought; UserError where it has none."""
+    if head is None:
+        return SCENES[name]()
+    if name != "face":
+        raise UserError(f"--head goes with the scene face, not with '{name}'")
+    try:
+        return FaceScene(head)
+    except ValueError as error:
+        raise UserError(f"this head cannot be simulated: {error}") from None

@@ -1,4 +1,4 @@
-"""Animation scripts: keyframes of expressions and controls over time, in a TOML file.
+"""Animation scripts: keyframes of controls over time, in a TOML file.
 
 A script is a list of poses and, beside them, tracks::
 
@@ -14,8 +14,8 @@ A script is a list of poses and, beside them, tracks::
     time = 1.0
     easing = "smooth"            # how this pose is approached, see app/easing.py
     name = "joy"                 # optional: the label of this key pose on a contact sheet
-    joy = 1.0                    # an expression, or
-    jaw_open = 0.1               # a control (a muscle, the jaw, the gaze)
+    joy = 1.0                    # a control of any layer: an expression, an action unit,
+    jaw_open = 0.1               # a viseme, a muscle, the jaw, the gaze
 
     [tracks]                     # single channels, added to the poses (a blink, a glance)
     blink = [
@@ -58,7 +58,7 @@ class Key:
 
 @dataclass(frozen=True)
 class Channel:
-    """The keys of one expression or control, in the order of time."""
+    """The keys of one control, in the order of time."""
 
     keys: tuple[Key, ...]
 
@@ -85,7 +85,7 @@ class NamedPose:
 
 @dataclass(frozen=True)
 class Script:
-    """A performance: what each expression and control does over `duration` seconds."""
+    """A performance: what each control does over `duration` seconds."""
 
     title: str
     duration: float
@@ -115,7 +115,7 @@ def suggestion(name: str, allowed: Iterable[str]) -> str:
     near = difflib.get_close_matches(name, list(allowed), n=3)
     if near:
         return f"; did you mean {' or '.join(near)}?"
-    return "; `risorius controls` lists every expression and control"
+    return "; `risorius controls` lists every control"
 
 
 def load_script(path: Path) -> Script:

@@ -4,19 +4,21 @@
     plane = assets.load("plane")
     mesh = assets.read_mesh("cloth.ply")  # anything that trimesh reads
     picture = assets.paint(tone="dark")  # another skin for the head than `head.albedo`
+    head = assets.fitting.fit_head("anna.obj", "anna.json")  # import assets.fitting, for any head
 
 The programs that generate them are in this package too; `python -m assets.build` runs them.
 """
 
 from .loading import available, load
 from .meshes import Mesh, read_mesh
-from .model import AssetError, Eye, Head, Part, Plane, Tone
+from .model import AssetError, Eye, Head, Layer, Part, Plane, Tone
 from .painting import paint
 
 __all__ = [
     "AssetError",
     "Eye",
     "Head",
+    "Layer",
     "Mesh",
     "Part",
     "Plane",

@@ -1,26 +1,35 @@
 """Load an asset by name: the built-in head or the paper's plane.
 
-The head's numbers lie in `data/head.npz`, written by `python -m assets.build`; its rig and its
-expressions are text files, written by hand (`rigs/face.toml`, `expressions.toml`).
+The head's numbers lie in `data/head.npz`, written by `python -m assets.build`; its rig and the
+layers of controls above the muscles are text files, written by hand (`rigs/face.toml`,
+`action_units.toml`, `expressions.toml`, `visemes.toml`).
 """
 
 import tomllib
 import zipfile
 import zlib
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Literal, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from .model import AssetError, Eye, FineMesh, Head, Part, Plane
+from .model import AssetError, Eye, FineMesh, Head, Layer, Part, Plane
 from .plane import make_plane
 from .subdivision import coarse_places, quarter
 
 FOLDER = Path(__file__).parent
 HEAD_FILE = FOLDER / "data" / "head.npz"
 RIG_FILE = FOLDER / "rigs" / "face.toml"
-EXPRESSIONS_FILE = FOLDER / "expressions.toml"
+LAYER_FILES = MappingProxyType(  # title -> file, from the lowest layer up
+    {
+        "Action units": FOLDER / "action_units.toml",
+        "Expressions": FOLDER / "expressions.toml",
+        "Visemes": FOLDER / "visemes.toml",
+    }
+)
 FINER_LEVELS = (1, 2)
 
 
@@ -51,9 +60,9 @@ def load_head(
     head_file: Path = HEAD_FILE,
     *,
     rig_file: Path = RIG_FILE,
-    expressions_file: Path = EXPRESSIONS_FILE,
+    layer_files: Mapping[str, Path] = LAYER_FILES,
 ) -> Head:
-    """Read a head from its data file, its rig file and its expression file.
+    """Read a head from its data file, its rig file and the files of its layers of controls.
 
     The picture of the skin lies beside the data file, as a PNG file of the same name; so does the
     file of the finer meshes (`_finer.npz`), which is read only when one is asked for.
@@ -62,12 +71,20 @@ def load_head(
     """
     arrays = _read_arrays(head_file)
     try:
-        texts = _read_toml(rig_file), _read_toml(expressions_file)
-        return _assemble(arrays, head_file, *texts)
+        return _assemble(arrays, head_file, _read_toml(rig_file), read_layers(layer_files))
     except KeyError as error:
         raise AssetError(
             f"{head_file} has no array {error}; rebuild it with 'python -m assets.build'"
         ) from error
+
+
+def read_layers(files: Mapping[str, Path] = LAYER_FILES) -> tuple[Layer, ...]:
+    """Read layers of controls, title -> file, from the lowest up; a missing file is no layer.
+
+    Raises AssetError when a file is not TOML.
+    """
+    found = ((title, path, _read_toml(path)) for title, path in files.items())
+    return tuple(Layer(title, path.name, rows) for title, path, rows in found if rows)
 
 
 def read_finer(head: Head, level: int) -> FineMesh:
@@ -104,7 +121,7 @@ def _assemble(
     arrays: dict[str, npt.NDArray[Any]],
     head_file: Path,
     rig: dict[str, Any],
-    expressions: dict[str, Any],
+    layers: tuple[Layer, ...],
 ) -> Head:
     rings = {
         name.removeprefix("ring_"): array
@@ -129,7 +146,7 @@ def _assemble(
         albedo_file=head_file.with_suffix(".png"),
         finer_file=head_file.with_name(f"{head_file.stem}_finer.npz"),
         rig=rig,
-        expressions=expressions,
+        layers=layers,
     )
 
 
@@ -182,7 +199,7 @@ def _read_arrays(path: Path) -> dict[str, npt.NDArray[Any]]:
 
 
 def _read_toml(path: Path) -> dict[str, Any]:
-    """A head without a rig or without expressions is still a head: no file means {}."""
+    """A head without a rig or without a layer is still a head: no file means {}."""
     try:
         with path.open("rb") as file:
             return tomllib.load(file)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -77,6 +77,22 @@ class Part:
 
 
 @dataclass(frozen=True)
+class Layer:
+    """A table of controls above the muscles: action units, expressions or visemes.
+
+    title: heading under which a panel lists them.
+    source: the file it was read from, for error texts.
+    rows: control name -> {name of a lower control, "action" or "pair": value}, as in the file;
+        sim/layers.py says what they mean.
+    """
+
+    WORDS: ClassVar[tuple[str, ...]] = ("action", "pair")  # keys of a row that are no shares
+    title: str
+    source: str
+    rows: Mapping[str, Mapping[str, Any]]
+
+
+@dataclass(frozen=True)
 class FineMesh:
     """The skin of a head with more triangles, at rest, and where it lies on the coarse one.
 
@@ -133,7 +149,7 @@ class Head:
     albedo_file: the picture of the skin.
     finer_file: what the finer meshes of the same form need; read by `finer`.
     rig: the parsed rig file, {} where there is none.
-    expressions: expression name -> {control name: value}, {} where there is no such file.
+    layers: action units, expressions and visemes, from the lowest up; () where there are no files.
     """
 
     vertices: FloatArray
@@ -152,7 +168,16 @@ class Head:
     albedo_file: Path
     finer_file: Path
     rig: dict[str, Any]
-    expressions: dict[str, dict[str, float]]
+    layers: tuple[Layer, ...]
+
+    @property
+    def expressions(self) -> Mapping[str, Mapping[str, float]]:
+        """The shares of each expression, without words: a pose of action units and muscles."""
+        rows = next((layer.rows for layer in self.layers if layer.title == "Expressions"), {})
+        return {
+            name: {key: float(value) for key, value in row.items() if key not in Layer.WORDS}
+            for name, row in rows.items()
+        }
 
     @cached_property
     def albedo(self) -> Picture:

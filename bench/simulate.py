@@ -95,7 +95,7 @@ def run(*, rounds: int = 200, sizes: Sequence[int] = SIZES) -> list[Row]:
 def _head_at_work(generator: np.random.Generator) -> _Subject:
     """The built-in head; every control gets a new value, none is zero."""
     simulation = sim.create(assets.load("head"))
-    limits = simulation.limits
+    limits = {name: simulation.limits[name] for name in simulation.controls}
 
     def prepare() -> None:
         strengths = generator.uniform(0.2, 1.0, len(limits))

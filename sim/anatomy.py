@@ -5,6 +5,7 @@ A head may be any object with `vertices` and `faces`. What else it brings makes 
 
     landmarks                   frame, lips, lids; without them a plain spring mesh, still stable
     landmarks + rig             muscles
+    layers                      action units, expressions, ... above the muscles (layers.py)
     jaw_axis, mandible_weight   a jaw; guessed from landmarks where one is missing
     eyes                        gaze and contact; guessed from landmarks
 
@@ -23,6 +24,7 @@ from .contact import EyeContact, Grip, LipPairs, pair_lips, watch_eyeballs
 from .controls import GAZE_RATE, Control
 from .integrator import LONGEST_SUBSTEP, ROUNDING
 from .landmarks import LANDMARK_COUNT, Array, FaceFrame, Side
+from .layers import NO_LAYERS, Layers, read_layers
 from .lids import Lids, place_lids
 from .muscles import place_muscles, sides_of
 from .openings import lip_side
@@ -63,6 +65,7 @@ class Anatomy:
     passive_hold: Array  # (V,)
     mass: Array  # (V,)
     controls: tuple[Control, ...]
+    layers: Layers
 
     def grip(self, activation: Array, jaw: tuple[float, float, float]) -> Grip:
         """How firmly the lips stick together; the jaw and some muscles part them.
@@ -113,7 +116,7 @@ def build_anatomy(head: Any) -> Anatomy:
         lids=lids, springs=springs, edges=edges, lips=lips,
         eye_contact=watch_eyeballs(surface, skull.eyeballs), passive_hold=passive,
         mass=masses_for_step(surface.areas, bound, LONGEST_SUBSTEP * STEP_MARGIN),
-        controls=controls,
+        controls=controls, layers=_layers(head, rig, controls),
     )  # fmt: skip
 
 
@@ -219,7 +222,9 @@ def _holds(muscles: MusclePull, lids: Lids | None, count: int) -> tuple[Array, A
 
 def _controls(rig: Rig, skull: Skull) -> tuple[Control, ...]:
     """All controls of a face: its muscles in rig order, the jaw, the gaze."""
-    controls = [Control(name, m.group) for m in rig.muscles for name, _ in sides_of(m)]
+    controls = [
+        Control(name, m.group, action=m.action) for m in rig.muscles for name, _ in sides_of(m)
+    ]
     if skull.mandible_weight.any():
         controls.append(Control("jaw_open", "Jaw"))
         controls += [Control(name, "Jaw", -1.0) for name in ("jaw_forward", "jaw_sideways")]
@@ -227,3 +232,10 @@ def _controls(rig: Rig, skull: Skull) -> tuple[Control, ...]:
         for name in ("gaze_horizontal", "gaze_vertical"):
             controls.append(Control(name, "Gaze", -1.0, 1.0, GAZE_RATE))
     return tuple(controls)
+
+
+def _layers(head: Any, rig: Rig, controls: tuple[Control, ...]) -> Layers:
+    """The head's layers; a face without muscles has nothing that they could speak of."""
+    if not rig.muscles:
+        return NO_LAYERS
+    return read_layers(getattr(head, "layers", ()), [control.name for control in controls])

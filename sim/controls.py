@@ -1,5 +1,8 @@
 """Controls: the named values a caller sets, and how the face follows them.
 
+Lowest are muscles, jaw and gaze; controls of the layers above (layers.py) are set in the same way
+and add to them. What is `wanted` of a lowest control is that sum, cut off at its limits.
+
 A muscle does not jump to a new activation: each control follows its value as a critically damped
 oscillator (90 % after some 90 ms, no overshoot). The oscillator is solved exactly for every tick,
 so it is stable for any length and does not depend on the frame rate.
@@ -20,6 +23,7 @@ import numba
 import numpy as np
 
 from .landmarks import Array
+from .layers import NO_LAYERS, Layers
 
 MUSCLE_RATE = 45.0  # rad/s
 GAZE_RATE = 120.0  # rad/s: a saccade takes some 35 ms
@@ -29,46 +33,62 @@ SLACK = 1e-6  # beyond a limit by rounding is not an error
 
 @dataclass(frozen=True)
 class Control:
-    """One named input."""
+    """One lowest input: a muscle, or a degree of freedom of a bone or the eyes."""
 
     name: str
     group: str
     low: float = 0.0
     high: float = 1.0
     rate: float = MUSCLE_RATE
+    action: str = ""  # what it does, in words
 
 
 class Controls:
-    """All inputs of a face: values asked for, and the activations that follow them."""
+    """All inputs of a face: values asked for, and the activations that follow them.
 
-    def __init__(self, controls: tuple[Control, ...]) -> None:
-        self.names = tuple(control.name for control in controls)
-        self.limits = MappingProxyType({c.name: (c.low, c.high) for c in controls})
+    The first C of all N controls are the lowest; only they have a wanted sum and an activation.
+    """
+
+    def __init__(self, controls: tuple[Control, ...], layers: Layers = NO_LAYERS) -> None:
+        self.lowest = tuple(control.name for control in controls)
+        self.names = (*self.lowest, *layers.shares)
+        limits = {c.name: (c.low, c.high) for c in controls}
+        self.limits = MappingProxyType({**limits, **dict.fromkeys(layers.shares, (0.0, 1.0))})
         groups: dict[str, tuple[str, ...]] = {}
         for control in controls:
             groups[control.group] = (*groups.get(control.group, ()), control.name)
-        self.groups = MappingProxyType(groups)
+        self.groups = MappingProxyType({**groups, **layers.groups})
+        self.layers = layers.groups
+        self.actions = MappingProxyType({**{c.name: c.action for c in controls}, **layers.actions})
         self._index = {name: n for n, name in enumerate(self.names)}
         self._rate = np.array([c.rate for c in controls], dtype=np.float64)
+        self._low = np.array([c.low for c in controls], dtype=np.float64)
+        self._high = np.array([c.high for c in controls], dtype=np.float64)
+        self._shares = np.array([layers.shares[name] for name in layers.shares])  # (N - C, C)
+        self._values: Array = np.zeros(len(self.names))
         self.wanted: Array = np.zeros(len(controls))
         self.activation: Array = np.zeros(len(controls))
         self._speed: Array = np.zeros(len(controls))
 
     def index(self, name: str) -> int:
-        """Place of a control in `wanted` and `activation`; ValueError offers near names."""
+        """Place of a control among `names`, of a lowest one also in `wanted` and `activation`.
+
+        ValueError offers near names.
+        """
         if name not in self._index:
             near = difflib.get_close_matches(str(name), self.names, n=3, cutoff=0.4)
-            hint = f"did you mean {', '.join(near)}?" if near else "see .controls for all names"
+            hint = f"did you mean {', '.join(near)}?" if near else "see .limits for all names"
             raise ValueError(f"there is no control called {name!r}; {hint}")
         return self._index[name]
 
     def value(self, name: str) -> float:
-        """The value last asked for."""
-        return float(self.wanted[self.index(name)])
+        """The value last asked for, of this control alone."""
+        return float(self._values[self.index(name)])
 
     def now(self, name: str) -> float:
-        """The activation reached so far; 0 for a control this face does not have."""
-        return float(self.activation[self._index[name]]) if name in self._index else 0.0
+        """The activation of a lowest control; 0 for one that this face does not have."""
+        place = self._index.get(name, len(self.lowest))
+        return float(self.activation[place]) if place < len(self.lowest) else 0.0
 
     def checked(self, name: str, value: float) -> tuple[int, float]:
         """Place and value of a setting; ValueError if unknown, not finite or out of limits."""
@@ -83,11 +103,18 @@ class Controls:
             )
         return index, min(max(number, low), high)
 
-    def set_all(self, values: Mapping[str, float]) -> None:
-        """Set several values at once; none is set if one is refused."""
+    def set_all(self, values: Mapping[str, float], *, others_to_zero: bool = False) -> None:
+        """Set several values at once; nothing is changed if one is refused."""
         checked = [self.checked(name, value) for name, value in values.items()]
+        if others_to_zero:
+            self._values[:] = 0.0
         for index, value in checked:
-            self.wanted[index] = value
+            self._values[index] = value
+        count = len(self.lowest)
+        self.wanted[:] = self._values[:count]
+        if len(self._shares):
+            self.wanted += self._values[count:] @ self._shares
+            np.clip(self.wanted, self._low, self._high, out=self.wanted)
 
     def advance(self, dt: float) -> None:
         """Let activations follow their values for `dt` [s]: exact critically damped motion."""
@@ -95,7 +122,7 @@ class Controls:
 
     def reset(self) -> None:
         """All values and activations to zero at once."""
-        for array in (self.wanted, self.activation, self._speed):
+        for array in (self._values, self.wanted, self.activation, self._speed):
             array[:] = 0.0
 
 

@@ -47,7 +47,7 @@ class Simulation:
 
     def __init__(self, anatomy: Anatomy) -> None:
         self._anatomy = anatomy
-        self._controls = Controls(anatomy.controls)
+        self._controls = Controls(anatomy.controls, anatomy.layers)
         surface = anatomy.surface
         self._state = State.at_rest(surface)
         self._grip = SEALED
@@ -68,23 +68,41 @@ class Simulation:
 
     @property
     def controls(self) -> tuple[str, ...]:
-        """Names of all controls."""
-        return self._controls.names
+        """Names of the lowest controls: muscles, jaw, gaze."""
+        return self._controls.lowest
+
+    @property
+    def layers(self) -> Mapping[str, tuple[str, ...]]:
+        """Names of the controls above, by the title of their layer, from the bottom up."""
+        return self._controls.layers
 
     @property
     def limits(self) -> Mapping[str, tuple[float, float]]:
-        """Least and greatest value of each control."""
+        """Least and greatest value of each control, those of the layers included."""
         return self._controls.limits
 
     @property
     def groups(self) -> Mapping[str, tuple[str, ...]]:
-        """Control names by the title under which a panel may list them."""
+        """Control names by the title under which a panel may list them, layers last."""
         return self._controls.groups
 
     @property
+    def actions(self) -> Mapping[str, str]:
+        """What each control does, in words; "" where its file does not say."""
+        return self._controls.actions
+
+    @property
     def values(self) -> dict[str, float]:
-        """The value last set of each control (the face follows within some 0.1 s)."""
-        return {name: self._controls.value(name) for name in self.controls}
+        """The value last set of each control, those of the layers included.
+
+        The face follows within some 0.1 s.
+        """
+        return {name: self._controls.value(name) for name in self._controls.names}
+
+    @property
+    def sums(self) -> dict[str, float]:
+        """What each lowest control adds up to: its own value and those of the layers above it."""
+        return dict(zip(self.controls, self._controls.wanted.tolist(), strict=True))
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
@@ -108,6 +126,10 @@ class Simulation:
     def set_all(self, values: Mapping[str, float]) -> None:
         """Set several controls; if one is refused (see `set`), none is set."""
         self._controls.set_all(values)
+
+    def pose(self, values: Mapping[str, float]) -> None:
+        """Set several controls and all others to zero; if one is refused, none is set."""
+        self._controls.set_all(values, others_to_zero=True)
 
     def reset(self) -> None:
         """Relax everything and put the face back to rest at once."""

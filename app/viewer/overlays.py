@@ -42,7 +42,7 @@ class Lines(NamedTuple):
 def muscle_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.OrbitCamera) -> Lines:
     """All fibres now, redder the more they contract."""
     lines, colours = [], []
-    sums = getattr(scene.simulation, "sums", None) or scene.values
+    sums = scene.simulation.sums
     for name, fibres in scene.simulation.fibres().items():
         share = min(max(sums.get(name, 0.0), 0.0), 1.0)
         lines += fibres
@@ -90,12 +90,19 @@ OVERLAYS: dict[str, OverlayMaker] = {
     "skull": skull_lines,
     "landmarks": landmark_lines,
 }
-_NEEDS = {"muscles": "simulation", "skull": "head", "landmarks": "head"}  # of the scene
+_NEEDS = {"muscles": "simulation", "skull": "head.mandible_weight", "landmarks": "head.landmarks"}
 
 
 def overlays_of(scene: Scene) -> tuple[str, ...]:
     """The overlays that this scene has the data for."""
-    return tuple(name for name in OVERLAYS if hasattr(scene, _NEEDS.get(name, "faces")))
+
+    def has(path: str) -> bool:
+        found: Any = scene
+        for name in path.split("."):
+            found = getattr(found, name, None)
+        return found is not None
+
+    return tuple(name for name in OVERLAYS if has(_NEEDS.get(name, "faces")))
 
 
 def pointed_lines(scene: Any, names: Collection[str]) -> Lines:

@@ -6,14 +6,14 @@ units, expressions, visemes) is one entry of `values`; the scene adds them up.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import UserError
-from ..scenes import Scene
+from ..scenes import Scene, within
 from ..script import Script, load_script
 from ..script_writer import is_pose, pose_script, save_script
 from .history import History
@@ -38,11 +38,13 @@ class Session:
     """The controls of a scene and the script that may move them."""
 
     def __init__(self, scene: Scene, script: Script) -> None:
-        script.check_names({*scene.expressions, *scene.limits})
+        script.check_names(scene.limits)
         self.scene = scene
-        self.limits = {**dict.fromkeys(scene.expressions, (0.0, 1.0)), **scene.limits}
-        titled = {"Expressions": tuple(scene.expressions)} if scene.expressions else {}
-        self.groups = {**titled, **scene.groups}
+        self.limits = scene.limits
+        simulation = getattr(scene, "simulation", None)
+        # The lowest controls, to which all others add up; all where a scene does not tell.
+        self.muscles = frozenset(simulation.controls if simulation is not None else self.limits)
+        self.groups = _highest_first(scene.groups, self.muscles, scene.expressions)
         self.values = dict.fromkeys(self.limits, 0.0)
         self.script = script
         self.time = 0.0
@@ -105,12 +107,6 @@ class Session:
                     pose[name] = pose[twin_of(name)] = value
         self._take_pose(pose)
 
-    @property
-    def muscles(self) -> tuple[str, ...]:
-        """The lowest controls, to which all others add up; all where a scene does not tell."""
-        simulation = getattr(self.scene, "simulation", None)
-        return tuple(simulation.controls) if simulation is not None else tuple(self.limits)
-
     def _take_pose(self, pose: Mapping[str, float], *, is_unsaved: bool = True) -> None:
         self.is_playing = False
         self.values = dict(pose)
@@ -146,7 +142,7 @@ class Session:
 
     def _restore(self, document: Document) -> None:
         self.is_playing = False
-        self.values = {**dict.fromkeys(self.limits, 0.0), **document.values}
+        self.values = self._all(document.values)
         self.pose_is_unsaved = bool(document.values)
         if document.script != self.script:
             self.script, self.script_is_unsaved = document.script, True
@@ -191,10 +187,11 @@ class Session:
         self.scene.step(seconds)
 
     def _follow_script(self) -> None:
-        values = {**dict.fromkeys(self.limits, 0.0), **self.script.at(self.time), **self._held}
-        for name, value in values.items():
-            low, high = self.limits[name]
-            self.values[name] = min(max(value, low), high)
+        self.values = self._all({**self.script.at(self.time), **self._held})
+
+    def _all(self, values: Mapping[str, float]) -> dict[str, float]:
+        """A value for each control, within its limits; 0 where none is given."""
+        return {**dict.fromkeys(self.limits, 0.0), **within(self.limits, values)}
 
     @property
     def is_recording(self) -> bool:
@@ -236,9 +233,7 @@ class Session:
         script.check_names(self.limits)
         self.is_playing = False
         if is_pose(script):
-            values = {**dict.fromkeys(self.limits, 0.0), **script.at(0.0)}
-            limits = self.limits
-            self.values = {n: min(max(v, limits[n][0]), limits[n][1]) for n, v in values.items()}
+            self.values = self._all(script.at(0.0))
         else:
             self.script, self.script_is_unsaved = script, False
             self.seek(0.0)
@@ -269,3 +264,15 @@ class Session:
             if is_lost
         ]
         return " and ".join(lost) + (", and the recording" if self.is_recording else "")
+
+
+def _highest_first(
+    groups: Mapping[str, tuple[str, ...]], muscles: Collection[str], expressions: Collection[str]
+) -> dict[str, tuple[str, ...]]:
+    """Expressions, then the other layers above the muscles, then muscles, jaw and gaze."""
+
+    def rank(title: str) -> int:
+        first = groups[title][0]
+        return 0 if first in expressions else 1 if first not in muscles else 2
+
+    return {title: groups[title] for title in sorted(groups, key=rank)}

@@ -18,11 +18,12 @@ from imgui_bundle import imgui
 
 import refine
 import render
+from assets.fitting import FittedHead
 
 from ..cameras import whole_scene
 from ..errors import UserError
 from ..pipeline import Viewport
-from ..scenes import SCENES
+from ..scenes import build_scene
 from ..script import Script
 from . import commands
 from .actions import ACTIONS, expression_actions, run_pressed
@@ -64,18 +65,20 @@ class Viewer:
         size: tuple[int, int] | None = None,
         look: Look | None = None,
         *,
+        head: FittedHead | None = None,
         settings_path: Path | None = None,
     ) -> None:
         """Open the window.
 
-        size, look: None takes what was remembered. settings_path: where that is kept, None for
-        nowhere. Raises UserError for a script that names what the scene has not.
+        head: one that somebody brought, None for the built-in one. size, look: None takes what was
+        remembered. settings_path: where that is kept, None for nowhere. Raises UserError for a
+        script that names what the scene has not.
         """
         self.settings_path = settings_path
         self.settings, complaint = Settings(), ""
         if settings_path is not None:
             self.settings, complaint = load_settings(settings_path)
-        self.scene = SCENES[script.scene]()
+        self.scene = build_scene(script.scene, head)
         self.session = Session(self.scene, script)
         known = overlays_of(self.scene)
         self.look = checked(look or self.settings.look, refine.available(), known)

@@ -1,5 +1,6 @@
-"""Points that must be vertices: anatomical landmarks and the crease around the wing of the nose.
+"""Points that must be vertices: landmarks, the crease around the wing of the nose, the fold below.
 
+The nasolabial fold is a row of edges too: a smile can crease the skin only where the mesh has one.
 Every point is given for the left half and put onto the surface. Names are anatomical; numbers such
 as `jaw_12` are those of the iBug landmark at the point.
 """
@@ -8,7 +9,7 @@ import numpy as np
 
 from . import nose
 from .fields import Points, gradient, project
-from .form import distance, from_axis, from_front, head_distance
+from .form import FOLD, distance, from_axis, from_front, head_distance
 
 # Height [mm] of points in the mid-plane, from the top down.
 MIDLINE_ABOVE_MOUTH = {
@@ -57,6 +58,8 @@ FROM_AXIS = {
 }
 # Angles around the wing of the nose [deg], from above it to below, at which its crease is sought.
 CREASE_ANGLES = (62.0, 30.0, -2.0, -36.0, -72.0)
+FOLD_START = 1  # the first point of the fold's curve lies on the alar crease
+FOLD_ON_CREASE = 1  # and is that vertex of it
 WING_CENTRE, WING_RADIUS, WING_DEPTH = (11.5, -39.0), 7.0, 97.0  # [mm] x, y; radius; z
 
 
@@ -76,6 +79,12 @@ def midline_anchors(heights: dict[str, float]) -> dict[str, Points]:
     points = from_axis(np.zeros(len(values)), values)
     points[:, 0] = 0.0
     return dict(zip(heights, points, strict=True))
+
+
+def nasolabial_fold() -> Points:
+    """The fold from beside the alar crease past the corner of the mouth, shape (n, 3)."""
+    x, y = np.array(FOLD[FOLD_START:]).T
+    return from_front(x, y)
 
 
 def alar_crease() -> Points:

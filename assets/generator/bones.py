@@ -24,15 +24,15 @@ DEPTH_BY_NAME = {
     "vertex": 5.0, "trichion": 4.5, "metopion": 5.0, "glabella": 5.5, "nasion": 6.5,
     "rhinion": 3.0, "subnasale": 13.0, "sublabiale": 11.0, "pogonion": 11.5, "gnathion": 8.5,
     "menton": 7.0,
-    "brow_24": 6.0, "orbitale": 7.0, "alar_base": 9.5, "zygion": 6.5, "gonion": 10.5,
+    "brow_24": 6.0, "orbitale": 7.0, "alar_base": 9.5, "zygion": 8.0, "gonion": 13.0,
     # chosen: no bone beneath (cartilage of the nose, throat), temporal muscle, parotid
-    "supratip": 6.0, "pronasale": 16.0, "cervicale": 16.0, "temple": 9.0, "tragion": 9.0,
-    "frontotemporale": 5.5, "brow_22": 6.0, "brow_26": 6.0, "jaw_15": 17.0,
+    "cheek": 12.0, "supratip": 6.0, "pronasale": 16.0, "cervicale": 16.0, "temple": 9.0,
+    "tragion": 9.0, "frontotemporale": 5.5, "brow_22": 6.0, "brow_26": 6.0, "jaw_15": 17.0,
 }  # fmt: skip
 # x, y in front view [mm], depth [mm]: over canines and second molars, above and below
 DEPTH_IN_FRONT = (
     (0.0, -53.0, 11.0), (15.0, -54.0, 9.5), (15.0, -84.0, 10.5), (45.0, -50.0, 26.0),
-    (44.0, -74.0, 21.0), (30.0, -100.0, 11.0), (32.0, -36.0, 15.0),
+    (44.0, -74.0, 24.0), (30.0, -100.0, 11.0), (32.0, -36.0, 15.0),
 )  # fmt: skip
 LIP_DEPTH = 12.0  # [mm] on the red
 LID_DEPTH = 4.0  # [mm] chosen: to the eyeball, for want of bone

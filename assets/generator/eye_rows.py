@@ -14,15 +14,15 @@ from .form import EYE_CENTRE, EYE_RADIUS, distance
 COLUMNS = 20  # chosen: 3 mm edges along the margin
 INNER_CORNER = np.array([16.4, -1.5])  # [mm] x, y of the commissure
 OUTER_CORNER = np.array([45.6, 1.4])
-UPPER_RISE = 5.7  # [mm] of the upper margin above the line between the corners
+UPPER_RISE = 5.2  # [mm] of the upper margin above the line between the corners
 LOWER_DROP = 4.8
 CORNER_DEPTHS = (78.6, 72.6)  # [mm] z of the margin at the inner and the outer corner
 MARGIN_CLEARANCE = 0.25  # [mm] between eyeball and inner edge: touching would flicker
-MARGIN_THICKNESS = 1.2  # [mm] inner to outer edge
+MARGIN_THICKNESS = 1.9  # [mm] inner to outer edge
 # Rows on the lid: distance from the margin in its middle, at its inner and its outer corner [mm],
 # and rounds of smoothing, which draw in the corners: hence the large distances there.
-LID_ROWS = ((2.5, 3.0, 4.4, 1), (6.0, 6.4, 11.5, 2))
-CREASE_DEPTH = 0.9  # [mm] chosen: a line that shading shows, and skin to unroll in a blink
+LID_ROWS = ((2.5, 3.2, 5.6, 1), (5.6, 6.4, 12.0, 2))
+CREASE_DEPTH = 1.5  # [mm] chosen: a line that shading shows, and skin to unroll in a blink
 
 
 def margin_curve(parameter: Values) -> Points:
@@ -96,7 +96,7 @@ def eye_rows() -> list[Points]:
     curve = margin_curve(parameters)
     outward = _outward(curve)
     to_corner = np.abs(parameters[:, None] - [0.0, 0.5, 1.0]).min(axis=1)
-    width = MARGIN_THICKNESS + 0.5 * np.exp(-((to_corner / 0.035) ** 2))
+    width = MARGIN_THICKNESS - 0.2 * np.exp(-((to_corner / 0.035) ** 2))
     outer = curve + outward * width[:, None]
     clearance = MARGIN_CLEARANCE + MARGIN_THICKNESS
     rows = [

@@ -11,18 +11,22 @@ from .fields import (
     ellipsoid,
     smooth_maximum,
     smooth_minimum,
+    smooth_step,
 )
 from .sections import base_radius, direction_coordinates, rays
 
 EYE_CENTRE = np.array([32.0, 0.2, 70.8])  # [mm] the left eye
 EYE_RADIUS = 13.0  # [mm] 1 mm above anatomy: fills the fissure between the lids
-LID_RADII = (14.6, 14.0, 14.4)  # [mm] the lids are an ellipsoid around the eyeball
+LID_RADII = (15.2, 14.7, 15.1)  # [mm] the lids are an ellipsoid around the eyeball
 LID_FILLET = 3.8  # [mm]
 RADIAL_SLOPE = 0.8  # radii are measured along slanted rays; this makes them about distances
 
-# (y, x) of the fold from the wing of the nose past the corner of the mouth
-FOLD_HEIGHTS = np.array([-78.0, -69.0, -60.0, -51.0, -43.0, -36.0])
-FOLD_SIDES = np.array([32.5, 31.5, 28.5, 24.0, 19.5, 15.0])
+# x, y [mm] of the nasolabial fold, from the wing of the nose past the corner of the mouth
+FOLD = (
+    (15.6, -36.5), (21.4, -40.8), (26.2, -46.6), (29.9, -52.8), (33.0, -59.2), (35.1, -65.8),
+    (35.8, -72.6), (35.0, -79.4),
+)  # fmt: skip
+RELIEF_BEHIND, RELIEF_IN_FRONT = 40.0, 56.0  # [mm] z: small forms are drawn on the face alone
 
 
 def relief(x: Values, y: Values) -> Values:
@@ -30,15 +34,20 @@ def relief(x: Values, y: Values) -> Values:
     philtrum_part = np.exp(-(((y + 52.0) / 5.5) ** 4))
     philtrum = philtrum_part * (-0.9 * bump(x, 0.0, 2.2) + 0.6 * bump(x, 4.2, 1.7))
 
-    beside = x - np.interp(y, FOLD_HEIGHTS, FOLD_SIDES)
-    fold_part = np.exp(-(((y + 54.0) / 17.0) ** 4))
-    fold = fold_part * (-0.6 * bump(beside, 0.0, 3.4) + 1.2 * bump(beside, 9.0, 7.5))
+    sides, heights = np.array(FOLD[::-1]).T
+    beside = x - np.interp(y, heights, sides)
+    fold_part = np.exp(-(((y + 54.0) / 18.0) ** 4))
+    fold = fold_part * (-0.7 * bump(beside, -0.5, 3.0) + 1.1 * bump(beside, 8.0, 7.0))
 
     brow = 0.6 * bump(x, 38.0, 12.0) * bump(y, 21.0, 5.5)
-    cheek = 1.5 * bump(x, 40.0, 13.0) * bump(y, -25.0, 11.0)
+    lid_fold = 1.1 * bump(x, 37.0, 11.0) * bump(y, 13.0, 3.6)
+    cheek = 2.0 * bump(x, 42.0, 13.0) * bump(y, -22.0, 11.0)
+    hollows = -0.9 * bump(x, 47.0, 9.0) * bump(y, -58.0, 13.0)
+    hollows -= 1.2 * bump(x, 60.0, 8.0) * bump(y, 22.0, 14.0)
     chin = 0.6 * bump(x, 7.0, 7.0) * bump(y, -100.0, 8.0)
-    corner_dimple = -0.5 * bump(x, 30.5, 3.5) * bump(y, -66.0, 5.0)
-    return philtrum + fold + brow + cheek + chin + corner_dimple
+    corner = -0.7 * bump(x, 27.0, 3.4) * bump(y, -66.3, 3.4)
+    corner += 0.6 * bump(x, 30.0, 6.0) * bump(y, -70.0, 9.0)
+    return philtrum + fold + brow + lid_fold + cheek + hollows + chin + corner
 
 
 def head_distance(points: Points) -> Values:
@@ -46,10 +55,8 @@ def head_distance(points: Points) -> Values:
     angle, height, radius = direction_coordinates(points)
     x, y = np.abs(points[:, 0]), points[:, 1]
     surface = base_radius(angle, height)
-    in_front = points[:, 2] > 50.0
-    surface = surface + np.where(in_front, relief(x, y), 0.0)
-    at_lips = in_front & (x < lips.HALF_WIDTH)
-    surface = surface + np.where(at_lips, lips.displacement(x, y), 0.0)
+    in_front = smooth_step(RELIEF_BEHIND, RELIEF_IN_FRONT, points[:, 2])
+    surface = surface + in_front * (relief(x, y) + lips.displacement(x, y))
     return (radius - surface) * RADIAL_SLOPE
 
 

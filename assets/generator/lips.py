@@ -10,17 +10,17 @@ from scipy.interpolate import PchipInterpolator
 from .fields import Values, bump
 
 HALF_WIDTH = 25.5  # [mm] mid-plane to corner; chosen within one deviation of adult means
-CORNER_LIFT = 2.0  # [mm] corners above the straight line: a resting face that is friendly
+CORNER_LIFT = 0.7  # [mm] corners above the straight line: neither glad nor sad
 SEAM_HEIGHT = -66.6  # [mm]
 
 # (s, outward displacement [mm]): the lip rolls in at s = 0, crests, and ends in a slight ledge.
 _UPPER = PchipInterpolator(
-    [0, 0.07, 0.2, 0.42, 0.68, 0.9, 1, 1.22, 1.7, 2.4, 2.7],
-    [0.1, 1.05, 2.1, 3.1, 3.6, 3.55, 3.1, 1.6, 0.5, 0, 0],
+    [0, 0.07, 0.2, 0.42, 0.68, 0.9, 1, 1.15, 1.5, 2.1, 2.7],
+    [0.9, 1.5, 2.2, 3.0, 3.35, 3.2, 2.85, 1.95, 0.8, 0.15, 0],
 )
 _LOWER = PchipInterpolator(
     [0, 0.07, 0.2, 0.4, 0.6, 0.8, 1, 1.28, 1.65, 2.2, 2.7],
-    [0.0, 1.2, 2.6, 3.8, 4.1, 3.6, 2.5, 0.9, 0.1, 0, 0],
+    [0.9, 1.7, 2.7, 3.55, 3.8, 3.4, 2.5, 1.2, 0.4, 0, 0],
 )
 
 
@@ -31,28 +31,29 @@ def _relative(x: Values, limit: float = 1.0) -> Values:
 def seam_height(x: Values) -> Values:
     """Height y of the line between the lips [mm]: a dip in the middle, corners lifted."""
     t = _relative(x, 1.3)
-    return SEAM_HEIGHT - 0.6 * bump(t, 0.0, 0.2) + 0.7 * bump(t, 0.42, 0.3) + CORNER_LIFT * t**3
+    return SEAM_HEIGHT - 0.6 * bump(t, 0.0, 0.2) + 0.5 * bump(t, 0.42, 0.3) + CORNER_LIFT * t**3
 
 
 def upper_border(x: Values) -> Values:
     """Height y of the upper border of the red [mm], with Cupid's bow."""
     t = _relative(x)
-    height = 8.4 * (1 - t**1.8) ** 0.85 + 0.9 * bump(t, 0.2, 0.12) - 1.0 * bump(t, 0.0, 0.10)
+    height = 8.4 * (1 - t**1.7) ** 0.95 + 0.9 * bump(t, 0.2, 0.12) - 1.0 * bump(t, 0.0, 0.10)
     return seam_height(x) + height * (1 - t**6)
 
 
 def lower_border(x: Values) -> Values:
     """Height y of the lower border of the red [mm]."""
     t = _relative(x)
-    return seam_height(x) - 9.8 * (1 - t**2.3) ** 0.9
+    return seam_height(x) - 9.8 * (1 - t**2.1) ** 1.05
 
 
 def displacement(x: Values, y: Values) -> Values:
     """How far the lips stand out of the plain head [mm]."""
-    fade = np.clip(1 - (np.abs(x) / HALF_WIDTH) ** 2.6, 0.0, 1.0)
+    inside = np.clip(1 - (np.abs(x) / HALF_WIDTH) ** 3, 0.0, 1.0)
     seam = seam_height(x)
     above = (y - seam) / np.maximum(upper_border(x) - seam, 0.6)
     below = (seam - y) / np.maximum(seam - lower_border(x), 0.6)
     upper = _UPPER(np.clip(above, 0.0, 2.6))
     lower = _LOWER(np.clip(below, 0.0, 2.6))
-    return np.asarray(np.where(y >= seam, upper, lower) * fade, dtype=np.float64)
+    displaced = np.where(y >= seam, upper * inside**1.3, lower * inside**1.9)
+    return np.asarray(displaced, dtype=np.float64)

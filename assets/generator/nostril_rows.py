@@ -10,9 +10,9 @@ from .fields import Points
 from .form import from_below
 
 COLUMNS = 9
-CENTRE = (6.6, 108.2)  # [mm] x, z
-HALF_WIDTH, HALF_LENGTH = 2.4, 3.7  # [mm]
-TURN_DEG = 24.0  # the nostrils converge toward the tip
+CENTRE = (7.2, 108.5)  # [mm] x, z
+HALF_WIDTH, HALF_LENGTH = 2.8, 4.1  # [mm]
+TURN_DEG = 26.0  # the nostrils converge toward the tip
 
 
 def nostril_ring() -> Points:

@@ -5,20 +5,18 @@ from scipy.interpolate import CubicSpline
 
 from .fields import Points
 from .form import from_axis
+from .sections import CROWN, REFERENCE
 
 # The rim in capsule coordinates: angle about the axis [deg], height along the capsule [mm]. It
-# runs over the back of the head, far behind the ears down to the nape, and forward around the neck:
-# from the front and from either side the head looks closed.
+# runs around the neck as a collar does, higher at the nape than in front.
 RIM = (
-    (180, 62), (174, 58), (168, 47), (165, 30), (163, 5), (161, -20), (160, -50), (159, -80),
-    (158, -105), (153, -126), (138, -140), (116, -147), (90, -152), (60, -156), (30, -158.5),
-    (0, -159.5),
+    (180, -140), (150, -142), (120, -147), (90, -152), (60, -156), (30, -158.5), (0, -159.5),
 )  # fmt: skip
 DENSE = 900
 
 
 def rim_curve() -> Points:
-    """Return the rim of the left half from the crown to the front of the neck, densely sampled."""
+    """Return the rim of the left half from the nape to the front of the neck, densely sampled."""
     control = np.array(RIM, dtype=np.float64)
     spacing = np.hypot(np.diff(control[:, 0]), np.diff(control[:, 1]))
     parameter = np.r_[0.0, np.cumsum(spacing)]
@@ -38,11 +36,10 @@ def midline_curve(start_height: float, end_height: float) -> Points:
 
 
 def crown_curve(end: Points) -> Points:
-    """Return the part of the mid-plane line behind the pole: from the pole back to `end`."""
-    height = RIM[0][1]
-    pole = 40.0 + 70.0 * np.pi / 2
-    heights = np.linspace(pole - 0.05, height, 120)
-    curve = from_axis(np.full(120, np.pi), heights)
+    """Return the mid-plane line behind the pole: down the back of the head to `end`."""
+    pole = CROWN + REFERENCE * np.pi / 2
+    heights = np.linspace(pole - 0.05, RIM[0][1], DENSE)
+    curve = from_axis(np.full(DENSE, np.pi), heights)
     curve[:, 0] = 0.0
     curve[-1] = end
     return curve

@@ -1,8 +1,9 @@
 """The irregular sheet between the rows: darts on the surface, joined by a Delaunay triangulation.
 
-The sheet is laid out flat as seen from inside the head, with the angle from straight ahead as
-radius: so every point of the face is seen exactly once, the underside of the nose included. The
-triangulation is only a start: `remesh` works on it in space.
+The sheet is laid out flat as seen from inside the head, stereographically from the opening of the
+neck: so every point is seen exactly once, the underside of the nose and the back of the head
+included, and no angle is distorted. The triangulation is only a start: `remesh` works on it in
+space.
 """
 
 from dataclasses import dataclass
@@ -12,13 +13,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import Delaunay, cKDTree
 
-from .fields import Points, Values
+from .fields import Points, Values, smooth_step, unit
 from .form import from_axis, from_below, from_front
 from .topology import Edge, Faces, cross_products, edge_faces, edge_key
 
 VIEWPOINT = np.array([0.0, 10.0, 15.0])  # [mm]; sees the underside of nose and chin
-STRAIGHT_DOWN = np.array([0.0, -50.0 * np.pi])  # of the layout: the neck lies around it
-NECK_TOP, NECK_END, NECK_SHRINK = -108.0, -160.0, 0.75  # there the view is grazing: draw it inward
+NECK_DEG = 5.0  # from straight down backward: the middle of the neck's opening as seen from there
 DART_RADIUS = 0.80  # of the wanted edge length; chosen: leaves few gaps and few crowds
 ROW_RADIUS = 0.70  # distance of darts from rows, likewise
 
@@ -34,21 +34,24 @@ SIZES = (
     ((0, -8, 98), 10.0, 6.2, 0.20),
     ((25, 20, 93), 14.0, 7.6, 0.16),
     ((0, -104, 92), 14.0, 8.4, 0.12),
-    ((69, -10, -12), 20.0, 8.0, 0.40),
+    ((69, -10, -12), 20.0, 8.0, 0.32),
+    ((33, -115, 46), 14.0, 12.5, 0.35),
 )
-LARGEST_IN_FACE, LARGEST_BEHIND, LARGEST_FAR_BEHIND = 14.6, 20.5, 26.0  # [mm]
+LARGEST_IN_FACE, LARGEST_BEHIND, LARGEST_FAR_BEHIND = 15.2, 21.0, 24.0  # [mm]
+LARGEST_ON_CROWN = 14.0  # [mm] the crown is an outline from every side
 
 
 def wanted_length(points: Points) -> Values:
     """Edge length that the mesh should have near the points [mm], before scaling, shape (n,)."""
     half = np.column_stack([np.abs(points[:, 0]), points[:, 1], points[:, 2]])
     back = np.clip((60.0 - points[:, 2]) / 70.0, 0.0, 1.0)
-    high = np.clip((points[:, 1] - 70.0) / 40.0, 0.0, 1.0)
+    high = smooth_step(25.0, 65.0, points[:, 1])
     far = np.clip((5.0 - points[:, 2]) / 50.0, 0.0, 1.0)
     low = np.clip((-112.0 - points[:, 1]) / 25.0, 0.0, 1.0)
-    beyond = np.maximum(np.maximum(back, high), low)
+    beyond = np.maximum(back, low)
     result = LARGEST_IN_FACE + (LARGEST_BEHIND - LARGEST_IN_FACE) * beyond
     result = result + (LARGEST_FAR_BEHIND - LARGEST_BEHIND) * far
+    result = result + (LARGEST_ON_CROWN - result) * high
     for centre, radius, length, growth in SIZES:
         away = np.linalg.norm(half - np.array(centre), axis=1) - radius
         result = np.minimum(result, length + growth * np.maximum(away, 0.0))
@@ -58,12 +61,11 @@ def wanted_length(points: Points) -> Values:
 
 def layout(points: Points) -> npt.NDArray[np.float64]:
     """Flat coordinates of surface points, shape (n, 2)."""
-    direction = points - VIEWPOINT
-    beside = np.hypot(direction[:, 0], direction[:, 1])
-    radius = 100.0 * np.arctan2(beside, direction[:, 2])
-    flat = direction[:, :2] * (radius / np.maximum(beside, 1e-9))[:, None]
-    below = np.clip((NECK_TOP - points[:, 1]) / (NECK_TOP - NECK_END), 0.0, 1.0)
-    flat += NECK_SHRINK * below[:, None] * (STRAIGHT_DOWN - flat)
+    direction = unit(points - VIEWPOINT)
+    cosine, sine = np.cos(np.radians(NECK_DEG)), np.sin(np.radians(NECK_DEG))
+    up = direction @ [0.0, cosine, sine]
+    back = direction @ [0.0, sine, -cosine]
+    flat = np.stack([direction[:, 0], back], axis=1) * (100.0 / (1.0 + up))[:, None]
     return np.asarray(flat, dtype=np.float64)
 
 

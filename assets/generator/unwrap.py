@@ -3,7 +3,8 @@
 The left half is flattened, the right one is its mirror image. A Tutte embedding is a valid start:
 no triangle is turned over. Then the symmetric Dirichlet energy, which is infinite for a triangle
 without area, pulls every triangle toward its own shape and never turns one over; triangles of the
-face pull hardest, and what lies behind ears and hairline is given half the length.
+face pull hardest, and what lies behind ears and hairline is given half the length. The back of the
+head and the neck hardly pull at all: the skin is closed there, so it must be stretched somewhere.
 The holes of eye and mouth are filled while that goes on: so lids and lips cannot slide over each
 other, and what is tucked in behind them keeps a little room of its own.
 
@@ -29,6 +30,7 @@ Rings = Mapping[str, npt.NDArray[np.integer]]
 MARGIN = 0.012  # of the picture stays free on every side: for filtering
 BACK_SCALE = 0.40  # chosen: hair, neck and the sides need half the detail of the face
 TUCKED_WEIGHT, BACK_WEIGHT, HOLE_WEIGHT = 0.15, 0.15, 0.02  # of the energy; the face has 1
+FAR_SHARE = 0.02  # of that weight, on the back of the head and the lower neck
 ROUNDS, MEMORY = 1500, 12  # chosen: the energy has settled to 1e-5 by then
 ARMIJO, SETTLED = 1e-4, 1e-7
 
@@ -59,6 +61,12 @@ def detail(points: Points) -> Values:
     above = smooth_step(62.0, 92.0, y)
     below = smooth_step(-112.0, -128.0, y)
     return 1.0 - (1.0 - BACK_SCALE) * np.maximum(np.maximum(behind, above), below)
+
+
+def far(points: Points) -> Values:
+    """How far behind the ears or down the neck points lie, 0 to 1, shape (n,)."""
+    _, y, z = points.T
+    return np.maximum(smooth_step(20.0, -30.0, z), smooth_step(-125.0, -145.0, y))
 
 
 def _fan(ring: list[int], centre: int, *, closed: bool) -> list[list[int]]:
@@ -97,6 +105,7 @@ def fill_holes(vertices: Points, faces: Faces, rings: Rings) -> Patch:
     scales = detail(rest[half].mean(axis=1))
     share = (scales - BACK_SCALE) / (1.0 - BACK_SCALE)
     weights = BACK_WEIGHT + (1.0 - BACK_WEIGHT) * share
+    weights *= 1.0 - (1.0 - FAR_SHARE) * far(rest[half].mean(axis=1))
     weights[is_tucked] = TUCKED_WEIGHT
     return Patch(
         filled,

@@ -14,6 +14,7 @@ from click.testing import CliRunner, Result
 from PIL import Image
 
 from app.cli import main
+from tests.heads import stranger
 
 SMILE = """
 title = "Smile"
@@ -181,11 +182,69 @@ def test_no_opengl_is_one_line(smile: Path) -> None:
 
 
 def test_controls_lists_what_scripts_may_name() -> None:
-    """Every expression and every muscle appears, with its limits."""
+    """Muscles and the names of every layer appear, with limits and what they do."""
     result = risorius("controls")
     assert result.exit_code == 0
-    for name in ("joy", "zygomaticus_major_left", "jaw_open"):
-        assert name in result.output
+    for name in ("joy", "zygomaticus_major_left", "jaw_open", "viseme_aa", "AU12_left"):
+        assert f"  {name}  " in result.output
+    assert "  AU12  0..1  lip corner puller" in result.output
+
+
+def test_a_pose_needs_no_script(tmp_path: Path) -> None:
+    """`--set` holds controls of any layer; a bare name is at full value."""
+    size = ("--size", "160x120", "--samples", "0", "--quiet")
+    pictures = []
+    for settings in (("jaw_open=0",), ("AU27",), ("AU27=1", "AU4_left=0.5")):
+        picture = tmp_path / "held.png"
+        options = [word for setting in settings for word in ("--set", setting)]
+        result = risorius("capture", *options, "-o", picture, *size)
+        assert result.exit_code == 0, result.output
+        pictures.append(picture.read_bytes())
+    assert len(set(pictures)) == 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--set", "AU12=x"), "--set AU12=x: 'x' is no number"),
+        (("--set", "AU12="), "--set AU12=: '' is no number"),
+        (("--set", "AU121=1"), "--set: unknown name 'AU121'; did you mean AU"),
+        (("--head", "no.obj"), "--head HEAD.obj and --landmarks LANDMARKS.json go together"),
+        (("--head", "no.obj", "--landmarks", "no.json"), "no.obj: no such mesh file"),
+    ],
+)
+def test_mistakes_of_poses_and_heads(
+    tmp_path: Path, arguments: tuple[str, ...], message: str
+) -> None:
+    """One line and exit code 2."""
+    result = risorius("capture", *arguments, "-o", tmp_path / "a.png", "--quiet")
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert len(result.stderr.strip().splitlines()) == 1
+
+
+def test_a_script_and_a_pose_exclude_each_other(smile: Path, tmp_path: Path) -> None:
+    """It would not be clear which of them is meant."""
+    result = risorius("capture", smile, "--set", "joy", "-o", tmp_path / "a.png")
+    assert result.exit_code == 2
+    assert "a script and --set exclude each other" in result.stderr
+
+
+def test_a_head_of_ones_own_is_filmed(tmp_path: Path) -> None:
+    """`--head` and `--landmarks`: another head, in metres and z up, smiles; errors are one line."""
+    other = stranger()
+    mesh, landmarks = other.write(tmp_path)
+    picture = tmp_path / "smile.png"
+    arguments = ("capture", "--head", mesh, "--landmarks", landmarks, "--set", "joy")
+    result = risorius(*arguments, "-o", picture, "--size", "160x120", "--quiet")
+    assert result.exit_code == 0, result.output
+    assert np.asarray(Image.open(picture)).std() > 10.0
+    other.write(tmp_path, landmarks=other.landmarks[::-1])
+    result = risorius(*arguments, "-o", picture, "--quiet")
+    assert result.exit_code == 2
+    assert len(result.stderr.strip().splitlines()) == 1
+    result = risorius(*arguments[:5], "--scene", "plane", "-o", picture, "--quiet")
+    assert "--head goes with the scene face" in result.stderr or result.exit_code == 2
 
 
 def test_doctor_reports_offscreen_opengl() -> None:

@@ -1,4 +1,4 @@
-"""Scenes: expressions become controls, the plane waves, the face obeys."""
+"""Scenes: values are kept within limits, the plane waves, the face obeys."""
 
 from __future__ import annotations
 
@@ -6,18 +6,17 @@ import numpy as np
 import pytest
 
 from app.errors import UserError
-from app.scenes import FaceScene, PlaneScene, mix
+from app.scenes import FaceScene, PlaneScene, within
 
 LIMITS = {"a": (0.0, 1.0), "b": (-1.0, 1.0)}
 
 
-def test_mix_adds_and_keeps_the_limits() -> None:
-    """Expressions scale their table, single controls are added, limits hold."""
-    expressions = {"joy": {"a": 0.8, "b": -0.5}}
-    assert mix({"joy": 0.5}, expressions, LIMITS) == pytest.approx({"a": 0.4, "b": -0.25})
-    assert mix({"joy": 1.0, "a": 1.0, "b": -3.0}, expressions, LIMITS) == {"a": 1.0, "b": -1.0}
-    with pytest.raises(UserError, match="unknown expression or control 'c'"):
-        mix({"c": 1.0}, expressions, LIMITS)
+def test_values_are_cut_off_at_their_limits() -> None:
+    """What a script adds up to may be too much; a name without limits is an error."""
+    assert within(LIMITS, {"a": 1.4, "b": -3.0}) == {"a": 1.0, "b": -1.0}
+    assert within(LIMITS, {"a": 0.4}) == {"a": 0.4}
+    with pytest.raises(UserError, match="unknown control 'c'"):
+        within(LIMITS, {"c": 1.0})
 
 
 def test_the_plane_waves() -> None:
@@ -33,14 +32,14 @@ def test_the_plane_waves() -> None:
     assert np.array_equal(plane.positions, plane.rest_positions)
 
 
-def test_every_expression_names_controls() -> None:
-    """The table of expressions speaks of controls that the built-in head has, within limits."""
+def test_the_face_takes_controls_of_every_layer() -> None:
+    """A pose may mix layers; the next pose forgets it."""
     face = FaceScene()
     assert len(face.expressions) >= 9
-    for name, table in face.expressions.items():
-        for control, value in table.items():
-            low, high = face.limits[control]
-            assert low <= value <= high, f"{name}: {control} = {value}"
+    face.pose({"joy": 0.5, "AU4_left": 1.7, "viseme_aa": 0.2, "jaw_open": 0.1})
+    assert face.values["joy"] == 0.5 and face.values["AU4_left"] == 1.0
+    face.pose({"AU12": 1.0})
+    assert {name for name, value in face.values.items() if value} == {"AU12"}
 
 
 def test_a_long_step_is_divided() -> None:

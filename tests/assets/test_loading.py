@@ -48,7 +48,7 @@ def test_types_and_shapes_are_those_of_the_docstrings() -> None:
     assert head.mandible_weight.dtype == np.float64 and head.mandible_weight.shape == (count,)
     assert head.jaw_axis.shape == (2, 3)
     assert [eye.name for eye in head.eyes] == ["right", "left"]
-    assert isinstance(head.rig, dict) and isinstance(head.expressions, dict)
+    assert isinstance(head.rig, dict) and len(head.layers) == 3
 
 
 def test_arrays_cannot_be_written() -> None:
@@ -89,20 +89,23 @@ def test_incomplete_data_file_names_what_is_missing(tmp_path: Path) -> None:
 def test_text_files_are_optional_but_must_be_toml(tmp_path: Path) -> None:
     """No rig is an empty rig; a broken rig is an error that names the file."""
     nowhere = tmp_path / "none.toml"
-    head = load_head(rig_file=nowhere, expressions_file=nowhere)
-    assert head.rig == {} and head.expressions == {}
+    head = load_head(rig_file=nowhere, layer_files={"Expressions": nowhere})
+    assert head.rig == {} and head.layers == () and head.expressions == {}
     broken = tmp_path / "rig.toml"
     broken.write_text("[muscle\n", encoding="utf-8")
     with pytest.raises(assets.AssetError, match=r"rig\.toml is not readable as TOML"):
-        load_head(rig_file=broken, expressions_file=nowhere)
+        load_head(rig_file=broken, layer_files={})
 
 
-def test_expressions_are_numbers_by_control(tmp_path: Path) -> None:
-    """The expression file arrives as written."""
+def test_layers_arrive_as_written(tmp_path: Path) -> None:
+    """A table of expressions keeps its rows, and knows its file for error texts."""
     file = tmp_path / "expressions.toml"
     file.write_text("[smile]\nzygomaticus_major_left = 0.8\n", encoding="utf-8")
-    head = load_head(rig_file=tmp_path / "none.toml", expressions_file=file)
+    head = load_head(rig_file=tmp_path / "none.toml", layer_files={"Expressions": file})
     assert head.expressions == {"smile": {"zygomaticus_major_left": 0.8}}
+    assert [(layer.title, layer.source) for layer in head.layers] == [
+        ("Expressions", "expressions.toml")
+    ]
 
 
 def test_data_stay_small() -> None:

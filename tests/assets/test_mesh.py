@@ -1,8 +1,11 @@
 """The skin as a surface: one clean, symmetric piece with the holes it should have."""
 
+from itertools import pairwise
+
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy.spatial import cKDTree
 
 import assets
 from assets import checks
@@ -75,6 +78,45 @@ def test_lips_are_closed_but_not_welded(head: Head) -> None:
     assert gap.max() < 0.6
     assert gap.min() > 0.3
     assert np.array_equal(upper[:, 0], lower[:, 0])
+
+
+def test_edges_follow_the_nasolabial_fold(head: Head) -> None:
+    """A chain of mesh edges runs from the wing of the nose past the corner of the mouth.
+
+    There a smile creases the skin; and no vertex of it is further than 1 mm from the form's fold.
+    """
+    corner = head.vertices[head.anatomy["cheilion_left"]]
+    directed = np.vstack([head.faces[:, [0, 1]], head.faces[:, [1, 2]], head.faces[:, [2, 0]]])
+    edges = {*map(tuple, directed.tolist()), *map(tuple, directed[:, ::-1].tolist())}
+    for side in ("left", "right"):
+        fold = head.rings[f"nasolabial_fold_{side}"]
+        assert edges.issuperset(pairwise(fold.tolist()))
+        assert fold[0] in head.rings[f"alar_crease_{side}"]
+        points = np.abs(head.vertices[fold] * [1.0, 0.0, 0.0]) + head.vertices[fold] * [0, 1, 1]
+        assert np.all(np.diff(points[:, 1]) < 0.0)
+        beside = np.interp(-corner[1], -points[:, 1], points[:, 0]) - corner[0]
+        assert 8.0 < beside < 12.0
+        assert points[-1, 1] < corner[1] - 8.0
+        dense = np.linspace(points[:-1], points[1:], 20)[:, :, :2].reshape(-1, 2)
+        wanted = np.array(form.FOLD)
+        way = np.linspace(wanted[:-1], wanted[1:], 40).reshape(-1, 2)
+        assert cKDTree(way).query(dense)[0].max() < 1.0
+
+
+def test_outline_of_the_crown_is_smooth(head: Head) -> None:
+    """From no side does one see long edges on the upper half of the skull."""
+    edges = np.vstack([head.faces[:, [0, 1]], head.faces[:, [1, 2]], head.faces[:, [2, 0]]])
+    ends = head.vertices[edges]
+    on_crown = ends[:, :, 1].min(axis=1) > 45.0
+    length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    assert on_crown.sum() > 200 and length[on_crown].max() < 32.0
+
+
+def test_head_is_closed_behind(head: Head) -> None:
+    """The one free border is the collar."""
+    rim = head.vertices[head.rings["rim_left"]]
+    assert rim[:, 1].max() < -130.0
+    assert rim[0, 0] == rim[-1, 0] == 0.0 and rim[0, 2] < 0.0 < rim[-1, 2]
 
 
 def test_no_face_is_inside_out(head: Head) -> None:

@@ -10,10 +10,12 @@ from sim.controls import Control, Controls
 
 
 def test_every_control_has_limits_a_value_and_one_group(simulation: sim.Simulation) -> None:
-    """Names, limits, values and groups speak of the same controls."""
-    names = simulation.controls
-    assert len(set(names)) == len(names) > 40
+    """Limits, values and groups speak of the same controls, the lowest and those of layers."""
+    names = [*simulation.controls, *(n for layer in simulation.layers.values() for n in layer)]
+    assert len(simulation.controls) > 40
+    assert len(set(names)) == len(names)
     assert set(simulation.limits) == set(simulation.values) == set(names)
+    assert set(simulation.actions) == set(names)
     assert sorted(n for group in simulation.groups.values() for n in group) == sorted(names)
 
 

@@ -24,7 +24,7 @@ Array = npt.NDArray[np.float64]
 @pytest.fixture
 def stirred(simulation: sim.Simulation, generator: np.random.Generator) -> sim.Simulation:
     """A face in the middle of a wild pose."""
-    values = {name: generator.uniform(0.1, high) for name, (_, high) in simulation.limits.items()}
+    values = {name: generator.uniform(0.1, 1.0) for name in simulation.controls}
     settle(simulation, values, frames=5)
     return simulation
 

@@ -71,7 +71,7 @@ class FacePanel:
         viewer, session = self._viewer, self._viewer.session
         rows = rows_of(names, session.values, linked=viewer.settings.is_linked)
         if self.search:
-            actions = getattr(viewer.scene, "actions", {})
+            actions = viewer.scene.actions
             rows = found(rows, self.search, group=title, actions=actions)
             if not rows:
                 return
@@ -146,6 +146,6 @@ class FacePanel:
 
     def _explain(self, row: Row) -> None:
         """What the control does, where the scene says it in words."""
-        action = getattr(self._viewer.scene, "actions", {}).get(row.names[0], "")
+        action = self._viewer.scene.actions.get(row.names[0], "")
         sides = ": right, left" if len(row.names) > 1 else ""
         imgui.set_tooltip(action or f"{row.label}{sides}")

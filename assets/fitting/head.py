@@ -1,0 +1,163 @@
+"""Fit the built-in head's anatomy to another head by 68 landmarks.
+
+    landmarks  ->  similarity to millimetres and the face frame
+               ->  warp of the built-in head  ->  depth of bone, texture
+                                              ->  eyes, teeth, tongue, mouth
+
+Muscles, jaw axis and what belongs to the mandible need no fitting: the rig is written in landmarks
+(sim/rig.py) and its seeds for the jaw were fitted on scans. Carried over from the built-in head
+instead, an open jaw was less like a scanned one (cosine 0.88 against 0.93, 2026-11-21).
+
+Source: Kähler, Haber, Yamauchi, Seidel 2002, "Head shop".
+Differs from it: no mesh is fitted to scanned points; the mesh that is brought is animated itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..loading import load
+from ..meshes import Mesh, read_mesh
+from ..model import AssetError, Eye, FloatArray, Head, IndexArray, Layer, Part, Picture, SingleArray
+from .landmark_file import COUNT, read_landmarks
+from .organs import Place, place_eyes, place_parts
+from .soundness import Skin, check_manifold, check_openings, skin_of
+from .warp import Similarity, Warp, nearest_on
+
+ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere
+FARTHEST_FROM_A_FACE = 14.0  # [mm] mean distance of landmarks from those of the built-in head
+
+
+@dataclass(frozen=True)
+class FittedHead:
+    """A head that somebody brought, with all that `sim.create` and a renderer ask for.
+
+    The attributes are those of `Head`, in its millimetres and axes, but for the jaw's, which
+    `sim.create` finds by the landmarks. What hangs together with no landmark (eyeballs, teeth of
+    the mesh's own) was left away.
+
+    to_millimetres: takes the file's coordinates to these.
+    kept: numbers in the file of the vertices, shape (V,), int32.
+    """
+
+    vertices: FloatArray
+    faces: IndexArray
+    landmarks: IndexArray
+    bone_depth: FloatArray
+    eyes: tuple[Eye, ...]
+    parts: tuple[Part, ...]
+    uv: SingleArray
+    face_uv: IndexArray
+    albedo: Picture
+    rig: dict[str, Any]
+    layers: tuple[Layer, ...]
+    to_millimetres: Similarity
+    kept: IndexArray
+
+
+def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
+    """Read a mesh and its landmark file (see landmark_file.py) and fit the built-in head to it.
+
+    Raises AssetError, one line that names the file, for what is missing, broken or cannot work.
+    """
+    found = read_mesh(mesh)
+    numbers, points = read_landmarks(Path(landmarks), found)
+    try:
+        return fit(found, numbers, points=points)
+    except AssetError as error:
+        raise AssetError(f"{mesh}: {error}") from None
+
+
+def fit(
+    mesh: Mesh,
+    landmarks: IndexArray,
+    *,
+    points: FloatArray | None = None,
+    template: Head | None = None,
+) -> FittedHead:
+    """Fit a head (`template`, the built-in one unless told) to a mesh with 68 landmarks.
+
+    landmarks: vertex numbers, shape (68,); points: where they lie exactly [unit of the mesh], shape
+    (68, 3), unless at those vertices. Raises AssetError for a mesh that cannot work.
+    """
+    points = mesh.vertices[landmarks] if points is None else points
+    known = load("head") if template is None else template
+    skin = skin_of(mesh.vertices, mesh.faces, landmarks)
+    check_manifold(mesh.faces)
+    similarity = _placed(points, known)
+    skin = replace(skin, vertices=similarity.points(skin.vertices))
+    skin = _facing_outward(skin)
+    check_openings(skin)
+    normals = _normals(skin.vertices, skin.faces)
+    target = similarity.points(points)
+    warp = Warp(*_distinct(known.vertices[known.landmarks], target))
+    warped = warp.points(known.vertices)
+    foot = nearest_on(skin.vertices, normals, warped, known.faces)
+    weight = foot.carry(known.mandible_weight)
+    place = Place(skin.vertices, normals, target, weight)
+    eyes = place_eyes(known, place)
+    return FittedHead(
+        vertices=skin.vertices,
+        faces=skin.faces,
+        landmarks=skin.landmarks,
+        bone_depth=foot.carry(known.bone_depth),
+        eyes=eyes,
+        parts=place_parts(known, place, warp, eyes),
+        uv=foot.carry(known.uv).astype(np.float32),
+        face_uv=skin.faces,
+        albedo=known.albedo,
+        rig=known.rig,
+        layers=known.layers,
+        to_millimetres=similarity,
+        kept=skin.kept,
+    )
+
+
+def _placed(points: FloatArray, known: Head) -> Similarity:
+    """The similarity to millimetres and the face frame; AssetError if this is no face."""
+    template = known.vertices[known.landmarks]
+    if np.ptp(points[ORIENTING], axis=0).max() == 0.0:
+        raise AssetError("all landmarks are one point; give 68 different ones")
+    similarity = Similarity.between(points[ORIENTING], template[ORIENTING])
+    off = np.linalg.norm(similarity.points(points) - template, axis=1)
+    if off[ORIENTING].mean() > FARTHEST_FROM_A_FACE:
+        raise AssetError(
+            f"the landmarks are no face: landmark {off.argmax()} lies {off.max():.0f} mm off, the "
+            f"mean one {off[ORIENTING].mean():.0f} mm; give the 68 iBug points in their order"
+        )
+    if similarity.is_mirrored:
+        raise AssetError(
+            "left and right are swapped in the landmarks, or the mesh is mirrored; landmarks 0-16 "
+            "run from the subject's right ear to the left one, 36-41 are the right eye"
+        )
+    return similarity
+
+
+def _facing_outward(skin: Skin) -> Skin:
+    """The same skin with its triangles counter-clockwise seen from outside."""
+    normals = _normals(skin.vertices, skin.faces)
+    if normals[skin.landmarks[ORIENTING], 2].mean() > 0.0:
+        return skin
+    return replace(skin, faces=np.ascontiguousarray(skin.faces[:, ::-1]))
+
+
+def _normals(vertices: FloatArray, faces: IndexArray) -> FloatArray:
+    """Unit vertex normals, shape (V, 3)."""
+    corners = vertices[faces]
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = np.zeros_like(vertices)
+    for corner in range(3):
+        np.add.at(normals, faces[:, corner], cross)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals /= np.maximum(length, 1e-12)
+    return normals
+
+
+def _distinct(source: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Both point sets without those that repeat in the first one."""
+    first = np.sort(np.unique(source.round(6), axis=0, return_index=True)[1])
+    return source[first], target[first]

@@ -1,0 +1,171 @@
+"""Eyeballs, teeth, tongue and the mouth's inside of another head.
+
+Eyeballs stay round: each is moved and scaled by its own eye's landmarks, then set back until the
+lids lie on it. Teeth, gums and tongue stay stiff: they follow the warp by the similarity that comes
+nearest to it. The walls of the mouth and the corners of the eyes bend with it; the walls are pushed
+back where skin would come to lie behind them when the jaw opens.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
+
+from ..model import Eye, FloatArray, Head, Part
+from .warp import Similarity, Warp
+
+EYE_LANDMARKS = {"right": slice(36, 42), "left": slice(42, 48)}
+STIFF = ("gums", "teeth", "tongue")  # how the names of stiff parts begin
+WALLS = "oral_cavity"  # and those of the mouth's walls
+LID_THICKNESS = 0.3  # [mm] between eyeball and the landmarks on the lids' edges
+MOUTH = slice(48, 68)
+NARROWER = 0.25  # at their lower end: between the sides of the mandible, then of the throat
+LONGER = (
+    1.5  # walls hang so much farther below the lips: a jaw may open wider than the built-in one
+)
+WALL_DEPTH = 6.0  # [mm] of a wall of the mouth behind the skin
+BESIDE, AROUND = 9.0, 8  # [mm] and number of skin vertices that are in front of a wall
+FACING = 0.2  # forward share of a normal from which skin is in front of teeth
+TOUCHING = 4.0, 3  # [mm] and number of skin vertices that teeth and gums must keep away from
+STIFF_DEPTH = 2.5  # [mm] of teeth and gums behind the skin: the least that lips and cheeks are
+FARTHEST_BACK = 10.0  # [mm] that the teeth are set back for it
+JAW_SHARES = (0.0, 0.5, 1.0)  # of the way that the jaw opens
+
+
+@dataclass(frozen=True)
+class Place:
+    """What the organs of the built-in head are fitted into.
+
+    vertices, normals: the skin at rest [mm], shape (V, 3).
+    landmarks: their points [mm], shape (68, 3).
+    mandible_weight: carried over from the built-in head, shape (V,).
+    """
+
+    vertices: FloatArray
+    normals: FloatArray
+    landmarks: FloatArray
+    mandible_weight: FloatArray
+
+
+def place_eyes(known: Head, place: Place) -> tuple[Eye, ...]:
+    """The eyes of a head, round and behind its lids.
+
+    Eyeballs differ less than the openings in front of them: by the root of the ratio.
+    """
+    eyes = []
+    for eye in known.eyes:
+        around = EYE_LANDMARKS[eye.name]
+        source = known.vertices[known.landmarks[around]]
+        target = place.landmarks[around]
+        scale = _extent(target) / _extent(source)
+        centre = target.mean(axis=0) + scale * (eye.centre - source.mean(axis=0))
+        scale = float(np.sqrt(scale))
+        radius = scale * eye.radius
+        centre[2] += _way_forward(centre, radius + LID_THICKNESS, target)
+        eyes.append(Eye(eye.name, centre, radius, scale * eye.iris_radius))
+    return tuple(eyes)
+
+
+def _extent(points: FloatArray) -> float:
+    """From corner to corner of an eye [mm]."""
+    return float(np.linalg.norm(points[3] - points[0]))
+
+
+def _way_forward(centre: FloatArray, radius: float, lids: FloatArray) -> float:
+    """How far [mm] a sphere may move forward until it touches one of the four points on lids."""
+    away = (lids - centre)[[1, 2, 4, 5]]
+    across = np.linalg.norm(away[:, :2], axis=1)
+    return float((away[:, 2] - np.sqrt(np.maximum(radius**2 - across**2, 0.0))).min())
+
+
+def place_parts(known: Head, place: Place, warp: Warp, eyes: tuple[Eye, ...]) -> tuple[Part, ...]:
+    """The rigid parts of the built-in head, in another one."""
+    mouth = _mouth_of(known, place, warp)
+    balls = {}
+    for old, new in zip(known.eyes, eyes, strict=True):
+        scale = new.radius / old.radius
+        balls[f"eye_{new.name}"] = Similarity(scale, np.eye(3), new.centre - scale * old.centre)
+    parts = []
+    for part in known.parts:
+        stiffly = balls.get(part.bone) or (mouth if part.name.startswith(STIFF) else None)
+        placed = _bent(part, warp) if stiffly is None else _moved(part, stiffly)
+        if part.name.startswith(WALLS) and part.bone == "cranium":
+            lips = place.landmarks[MOUTH].mean(axis=0)
+            walls = _lengthened(placed.vertices.astype(np.float64), lips)
+            walls = _behind_skin(walls, _opening(known, place, warp))
+            placed = replace(placed, vertices=walls.astype(np.float32))
+        parts.append(placed)
+    return tuple(parts)
+
+
+def _mouth_of(known: Head, place: Place, warp: Warp) -> Similarity:
+    """Where the stiff parts of the mouth come to lie: behind the skin, as one."""
+    found = [
+        part.vertices.astype(np.float64) for part in known.parts if part.name.startswith(STIFF)
+    ]
+    stiff = np.vstack([*found, known.vertices[known.landmarks[MOUTH]]])
+    mouth = Similarity.between(stiff, warp.points(stiff))
+    placed = mouth.points(np.vstack(found)) if found else np.zeros((0, 3))
+    skin = place.vertices[place.normals[:, 2] > FACING]
+    distance, beside = cKDTree(skin[:, :2]).query(placed[:, :2], k=TOUCHING[1])
+    depth = np.where(distance < TOUCHING[0], skin[beside, 2], np.inf).min(axis=1) - STIFF_DEPTH
+    back = float(np.clip((placed[:, 2] - depth).max(initial=0.0), 0.0, FARTHEST_BACK))
+    return replace(mouth, shift=mouth.shift - np.array([0.0, 0.0, back]))
+
+
+def _moved(part: Part, similarity: Similarity) -> Part:
+    """A part that keeps its shape."""
+    normals = part.normals @ similarity.rotation.T
+    return replace(
+        part,
+        vertices=similarity.points(part.vertices).astype(np.float32),
+        normals=normals.astype(np.float32),
+    )
+
+
+def _bent(part: Part, warp: Warp) -> Part:
+    """A part that takes the shape of its new place."""
+    vertices = warp.points(part.vertices)
+    ahead = warp.points(part.vertices + part.normals) - vertices
+    normals = ahead / np.maximum(np.linalg.norm(ahead, axis=1, keepdims=True), 1e-9)
+    return replace(part, vertices=vertices.astype(np.float32), normals=normals.astype(np.float32))
+
+
+def _lengthened(walls: FloatArray, lips: FloatArray) -> FloatArray:
+    """Walls that hang farther down below the lips, and narrower."""
+    below = np.minimum(walls[:, 1] - lips[1], 0.0)
+    longer = walls.copy()
+    longer[:, 1] += (LONGER - 1.0) * below
+    longer[:, 0] -= NARROWER * (walls[:, 0] - lips[0]) * below / min(float(below.min()), -1.0)
+    return longer
+
+
+def _opening(known: Head, place: Place, warp: Warp) -> FloatArray:
+    """Points of the skin that faces forward while the jaw opens [mm], shape (n, 3).
+
+    As coarse as need be: each vertex turns about the condyles by its share of the jaw's angle.
+    """
+    jaw = known.rig.get("jaw", {})
+    right, left = warp.points(known.jaw_axis)
+    hinge = (left - right) / np.linalg.norm(left - right)
+    facing = place.normals[:, 2] > 0.0
+    skin, weight = place.vertices[facing], place.mandible_weight[facing]
+    seen = []
+    for share in JAW_SHARES:
+        angle = share * np.radians(float(jaw.get("opening_deg", 20.0)))
+        turned = Rotation.from_rotvec(angle * weight[:, None] * hinge).apply(skin - right) + right
+        glide = share * np.array(jaw.get("opening_glide", (0.0, 0.0, 0.0)))
+        seen.append(turned + weight[:, None] * glide)
+    return np.vstack(seen)
+
+
+def _behind_skin(points: FloatArray, skin: FloatArray) -> FloatArray:
+    """Points pushed back until they lie behind all skin that is seen in front of them."""
+    distance, beside = cKDTree(skin[:, :2]).query(points[:, :2], k=AROUND)
+    depth = np.where(distance < BESIDE, skin[beside, 2], np.inf).min(axis=1) - WALL_DEPTH
+    pushed = points.copy()
+    pushed[:, 2] = np.minimum(points[:, 2], depth)
+    return pushed

@@ -1,0 +1,126 @@
+"""Can this mesh be a face? The questions whose answer may be no, each with its one line.
+
+A mesh must be one manifold surface, oriented outward, with a mouth and two eyes that are open or at
+least slit: where the lips are welded no muscle can part them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+from scipy.sparse import csgraph
+
+from ..model import AssetError, FloatArray, IndexArray
+
+MOST_TRIANGLES = 50_000
+FEWEST_TRIANGLES = 300  # below it eyes and mouth have no shape (chosen)
+LIPS = ((61, 62, 63), (67, 66, 65))  # inner landmarks above and below
+LIP_CORNERS = (60, 64)
+# The two lips join around the corners of the mouth. If the way along the skin from one to the other
+# is less than this share of that way, they are welded; behind them a bag may join them honestly.
+WELDED = 0.6
+LIDS = {"right": ((37, 41), (38, 40)), "left": ((43, 47), (44, 46))}  # above and below
+COVERED = 6.0  # [mm] behind the lids' edges in which skin covers the eye: no socket is so shallow
+
+
+@dataclass(frozen=True)
+class Skin:
+    """The piece of a mesh that the landmarks lie on, and where its vertices were."""
+
+    vertices: FloatArray  # (V, 3)
+    faces: IndexArray  # (F, 3)
+    landmarks: IndexArray  # (68,) in this piece
+    kept: IndexArray  # (V,) numbers in the whole mesh
+
+
+def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> Skin:
+    """Leave away what hangs together with no landmark: eyeballs, teeth, vertices of no triangle.
+
+    Raises AssetError if landmarks lie on two pieces or on none, or there are too many triangles.
+    """
+    if not FEWEST_TRIANGLES <= len(faces) <= MOST_TRIANGLES:
+        raise AssetError(
+            f"the head has {len(faces)} triangles; allowed are {FEWEST_TRIANGLES} to "
+            f"{MOST_TRIANGLES}: reduce it in a modelling program"
+        )
+    count = len(vertices)
+    links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
+    graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(count, count))
+    piece = csgraph.connected_components(graph, directed=False)[1]
+    others = np.flatnonzero(piece[landmarks] != np.bincount(piece[landmarks]).argmax())
+    if len(others):
+        raise AssetError(
+            f"landmark {others[0]} lies on another piece of the mesh than most; the skin must hang "
+            "together (weld its seams)"
+        )
+    is_kept = piece == piece[landmarks[0]]
+    kept = np.flatnonzero(is_kept).astype(np.int32)
+    number = np.cumsum(is_kept).astype(np.int32) - 1
+    return Skin(vertices[kept], number[faces[is_kept[faces[:, 0]]]], number[landmarks], kept)
+
+
+def check_manifold(faces: IndexArray) -> None:
+    """Raise AssetError unless each edge has one or two triangles, which agree on the outside."""
+    directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    edges, uses = np.unique(np.sort(directed, axis=1), axis=0, return_counts=True)
+    if (uses > 2).any():
+        a, b = edges[uses.argmax()]
+        raise AssetError(
+            f"the mesh is not manifold: {uses.max()} triangles meet at the edge of its vertices "
+            f"{a} and {b}; remove doubled faces and inner walls"
+        )
+    ways, uses = np.unique(directed, axis=0, return_counts=True)
+    if (uses > 1).any():
+        a, b = ways[uses.argmax()]
+        raise AssetError(
+            f"the mesh is not oriented: both triangles at the edge of its vertices {a} and {b} run "
+            "along it the same way; make its normals agree"
+        )
+
+
+def check_openings(skin: Skin) -> None:
+    """Raise AssetError where lips are welded or skin covers an eye; in the face frame [mm]."""
+    over, under, ends = (skin.landmarks[list(n)] for n in (*LIPS, LIP_CORNERS))
+    from_above, from_below = (ways(skin.vertices, skin.faces, n) for n in (over, under))
+    across = from_above[np.arange(len(over)), under]
+    around = (from_above[:, ends] + from_below[:, ends]).min(axis=1)
+    worst = int((across / np.maximum(around, 1e-9)).argmin())
+    if across[worst] < WELDED * around[worst]:
+        raise AssetError(
+            f"the mouth is shut: skin joins landmarks {LIPS[0][worst]} and {LIPS[1][worst]} on a "
+            f"way of {across[worst]:.0f} mm; cut the mesh open between the lips"
+        )
+    corners = skin.vertices[skin.faces]
+    for side, pairs in LIDS.items():
+        middle = skin.vertices[skin.landmarks[list(sum(pairs, ()))]].mean(axis=0)
+        if _is_covered(corners, middle):
+            raise AssetError(
+                f"the {side} eye has no opening: skin lies between landmarks {pairs[0][0]} and "
+                f"{pairs[0][1]}; cut the mesh open between the lids (a head with its eyes open)"
+            )
+
+
+def _is_covered(corners: FloatArray, point: FloatArray) -> bool:
+    """Whether one who looks at a point from the front sees a triangle there, or a little behind."""
+    edges = np.roll(corners, -1, axis=1) - corners
+    to = point - corners
+    turn = edges[:, :, 0] * to[:, :, 1] - edges[:, :, 1] * to[:, :, 0]
+    hit = (turn > -1e-6).all(axis=1) | (turn < 1e-6).all(axis=1)
+    return bool((corners[hit, :, 2].mean(axis=1) > point[2] - COVERED).any())
+
+
+def ways(
+    vertices: FloatArray, faces: IndexArray, starts: npt.NDArray[np.integer[Any]]
+) -> FloatArray:
+    """Shortest ways along edges from each start to all vertices, shape (n, V)."""
+    count = len(vertices)
+    links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    links = np.unique(np.sort(links, axis=1), axis=0)
+    lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
+    graph = sparse.csr_array((np.maximum(lengths, 1e-9), links.T), shape=(count, count))
+    shortest: FloatArray = csgraph.dijkstra(graph, directed=False, indices=starts)
+    return shortest

@@ -1,0 +1,252 @@
+"""Any head: the built-in anatomy is carried over, and what cannot work says why in one line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import assets
+import sim
+from assets import AssetError
+from assets.fitting import FittedHead, fit, fit_head
+from assets.fitting.warp import Similarity, Warp, nearest_on
+from assets.meshes import Mesh
+from sim.landmarks import MIRRORED
+from tests.heads import Stranger, closed, stranger
+from tests.sim.poses import inverted_triangles, lid_gaps, lip_gap, moved_landmarks, settle
+
+
+@pytest.fixture(scope="module")
+def other() -> Stranger:
+    """A head of another shape, in metres, z up."""
+    return stranger()
+
+
+@pytest.fixture(scope="module")
+def fitted(other: Stranger) -> FittedHead:
+    """What was fitted to it."""
+    return fit(other.mesh, other.landmarks)
+
+
+@pytest.fixture(scope="module")
+def simulation(fitted: FittedHead) -> sim.Simulation:
+    """A simulation of it."""
+    return sim.create(fitted)
+
+
+def test_files_are_read_and_fitted(other: Stranger, fitted: FittedHead, tmp_path: Path) -> None:
+    """Vertex numbers and points give the same head; a bare list will do."""
+    mesh, numbers = other.write(tmp_path)
+    by_number = fit_head(mesh, numbers)
+    assert np.abs(by_number.vertices - fitted.vertices).max() < 1e-3
+    numbers.write_text(json.dumps(other.landmarks.tolist()))
+    assert np.array_equal(fit_head(mesh, numbers).landmarks, fitted.landmarks)
+    by_point = fit_head(*other.write(tmp_path, points=True))
+    assert np.array_equal(by_point.landmarks, fitted.landmarks)
+
+
+def test_head_comes_to_millimetres_and_the_face_frame(fitted: FittedHead) -> None:
+    """Whatever unit and axes the file has, landmarks lie near those of the built-in head."""
+    known = assets.load("head")
+    off = fitted.vertices[fitted.landmarks] - known.vertices[known.landmarks]
+    assert np.linalg.norm(off, axis=1).mean() < 10.0
+    assert fitted.to_millimetres.scale == pytest.approx(1000.0, rel=0.1)
+
+
+def test_eyes_lie_behind_their_lids(fitted: FittedHead) -> None:
+    """No lid landmark is inside of an eyeball, and one at least touches it."""
+    for eye, numbers in zip(fitted.eyes, ((37, 38, 40, 41), (43, 44, 46, 47)), strict=True):
+        lids = fitted.vertices[fitted.landmarks[list(numbers)]]
+        gap = np.linalg.norm(lids - eye.centre, axis=1) - eye.radius
+        assert 0.0 < gap.min() < 1.0
+        assert 9.0 < eye.radius < 15.0
+
+
+def test_teeth_lie_behind_the_skin(fitted: FittedHead) -> None:
+    """Seen from the front, no tooth is in front of the skin beside it."""
+    front = fitted.vertices[fitted.vertices[:, 2] > 40.0]
+    for part in fitted.parts:
+        if part.name.startswith(("teeth", "gums")):
+            away = np.linalg.norm(part.vertices[:, None, :2] - front[None, :, :2], axis=2)
+            beside = away.argmin(axis=1)
+            is_covered = away.min(axis=1) < 3.0
+            assert (part.vertices[:, 2] < front[beside, 2])[is_covered].all(), part.name
+
+
+def test_depth_and_texture_come_from_the_same_place(fitted: FittedHead) -> None:
+    """The built-in head's values at its own vertices come back from its likeness."""
+    known = assets.load("head")
+    count = len(known.vertices)
+    assert np.abs(fitted.bone_depth[:count] - known.bone_depth).mean() < 0.5
+    face = known.landmarks[17:]
+    assert np.abs(fitted.uv[face] - known.uv[face]).max() < 0.01
+
+
+def test_a_fitted_head_makes_faces(fitted: FittedHead, simulation: sim.Simulation) -> None:
+    """A smile pulls the corners, a blink closes the eyes, the jaw opens, lips stay closed."""
+    smile = settle(simulation, {"AU12": 1.0})
+    assert moved_landmarks(fitted, smile, 54)[1] > 4.0
+    assert lip_gap(simulation, fitted) < 0.8
+    settle(simulation, {"AU43": 1.0})
+    assert max(lid_gaps(simulation, fitted)) < 0.8
+    settle(simulation, {"AU27": 1.0})
+    assert lip_gap(simulation, fitted) > 20.0
+
+
+@pytest.mark.parametrize("name", ["joy", "sadness", "surprise", "anger", "disgust", "fear"])
+def test_expressions_keep_a_fitted_mesh_sound(
+    fitted: FittedHead, simulation: sim.Simulation, name: str
+) -> None:
+    """Hardly a triangle of eight thousand is turned over."""
+    settle(simulation, {name: 1.0})
+    assert inverted_triangles(fitted.faces, fitted.vertices, simulation.positions) <= 40
+
+
+def test_other_pieces_and_inside_out_meshes_do_no_harm(other: Stranger) -> None:
+    """Eyeballs of the file's own are left away, triangles that face inward are turned."""
+    vertices, faces = other.mesh.vertices, other.mesh.faces
+    ball = vertices[:3] + 0.01
+    mesh = Mesh(
+        np.vstack([ball, vertices]), np.vstack([[[0, 1, 2]], faces[:, ::-1] + 3]).astype(np.int32)
+    )
+    head = fit(mesh, (other.landmarks + 3).astype(np.int32))
+    assert np.array_equal(head.kept, np.arange(3, len(vertices) + 3))
+    assert np.array_equal(np.sort(head.faces, axis=None), np.sort(faces, axis=None))
+    corners = head.vertices[head.faces]
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert cross[(corners[:, :, 2] > 60.0).all(axis=1), 2].sum() > 0.0
+
+
+def _numbers(other: Stranger, **places: int) -> list[int]:
+    numbers = other.landmarks.tolist()
+    for place, number in places.items():
+        numbers[int(place[1:])] = number
+    return numbers
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{", "stranger.json: not readable as JSON"),
+        ("{}", "stranger.json: holds no list"),
+        ("[1, 2, 3]", "stranger.json: 3 landmarks; it must be the 68 iBug points"),
+        (json.dumps([0] * 67 + [10**7]), r"landmark 67 is vertex 10000000; .* has vertices 0 to"),
+        (json.dumps([-1] * 68), "landmark 0 is vertex -1"),
+        (json.dumps([0] * 67 + [[1.0, 2.0, 3.0]]), "every landmark must be a vertex number, or"),
+        (json.dumps([[1, 2]] * 68), "every landmark must be a vertex number, or"),
+        (json.dumps([[9.0, 9.0, float(n)] for n in range(68)]), "units off the mesh"),
+        (json.dumps([5] * 68), "all landmarks are one point"),
+    ],
+)
+def test_broken_landmark_files_are_named(
+    other: Stranger, tmp_path: Path, text: str, message: str
+) -> None:
+    """What is wrong in the file, and what is allowed."""
+    mesh, numbers = other.write(tmp_path)
+    numbers.write_text(text)
+    with pytest.raises(AssetError, match=message):
+        fit_head(mesh, numbers)
+
+
+def test_missing_landmark_file(other: Stranger, tmp_path: Path) -> None:
+    """A path that leads nowhere is one line."""
+    mesh, _ = other.write(tmp_path)
+    with pytest.raises(AssetError, match=r"nowhere.json: no such landmark file"):
+        fit_head(mesh, tmp_path / "nowhere.json")
+
+
+def test_swapped_sides_are_noticed(other: Stranger) -> None:
+    """Landmarks numbered from the viewer's side are the commonest mistake."""
+    with pytest.raises(AssetError, match="left and right are swapped in the landmarks"):
+        fit(other.mesh, other.landmarks[MIRRORED])
+    mirrored = Mesh(other.mesh.vertices * (-1.0, 1.0, 1.0), other.mesh.faces[:, ::-1])
+    with pytest.raises(AssetError, match="or the mesh is mirrored"):
+        fit(mirrored, other.landmarks)
+
+
+def test_shuffled_landmarks_are_no_face(other: Stranger) -> None:
+    """Points in another order than iBug's."""
+    with pytest.raises(AssetError, match=r"the landmarks are no face: landmark \d+ lies \d+ mm"):
+        fit(other.mesh, np.roll(other.landmarks, 20))
+
+
+@pytest.mark.parametrize(
+    ("landmarks", "message"),
+    [
+        (
+            (61, 62, 63, 65, 66, 67),
+            r"the mouth is shut: skin joins landmarks 62 and 66 on a way of \d+ mm",
+        ),
+        ((37, 38, 40, 41), r"the right eye has no opening: skin lies between landmarks 37 and 41"),
+        ((43, 44, 46, 47), r"the left eye has no opening: skin lies between landmarks 43 and 47"),
+    ],
+)
+def test_closed_openings_are_named(
+    other: Stranger, landmarks: tuple[int, ...], message: str
+) -> None:
+    """Lips or lids that skin joins cannot part."""
+    mesh = closed(other.mesh, other.landmarks[list(landmarks)])
+    with pytest.raises(AssetError, match=message):
+        fit(mesh, other.landmarks)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda f: np.vstack([f, f[:1]]), "not manifold: 3 triangles meet|not oriented"),
+        (lambda f: np.vstack([f[:1, ::-1], f[1:]]), "not oriented: both triangles at the edge"),
+        (lambda f: f[:100], "the head has 100 triangles; allowed are 300 to 50000"),
+        (lambda f: np.tile(f, (8, 1)), "the head has 64960 triangles"),
+    ],
+)
+def test_meshes_that_are_no_surface_are_named(other: Stranger, change: Any, message: str) -> None:
+    """Doubled, flipped, too few and too many triangles."""
+    faces = np.ascontiguousarray(change(other.mesh.faces))
+    with pytest.raises(AssetError, match=message):
+        fit(Mesh(other.mesh.vertices, faces), other.landmarks)
+
+
+def test_landmarks_on_two_pieces_are_named(other: Stranger) -> None:
+    """A landmark on an eyeball is no landmark of the skin."""
+    count = len(other.mesh.vertices)
+    mesh = Mesh(
+        np.vstack([other.mesh.vertices, other.mesh.vertices[:3]]),
+        np.vstack([other.mesh.faces, [[count, count + 1, count + 2]]]).astype(np.int32),
+    )
+    numbers = np.array(_numbers(other, _45=count), dtype=np.int32)
+    with pytest.raises(AssetError, match="landmark 45 lies on another piece of the mesh"):
+        fit(mesh, numbers)
+
+
+def test_warp_meets_its_points_and_keeps_similarities(generator: np.random.Generator) -> None:
+    """Landmarks go exactly where they should; a similarity is carried on everywhere."""
+    source = generator.normal(size=(20, 3))
+    target = source + 0.2 * generator.normal(size=(20, 3))
+    assert np.abs(Warp(source, target).points(source) - target).max() < 1e-9
+    turn, _ = np.linalg.qr(generator.normal(size=(3, 3)))
+    moved = Similarity(2.0, turn, np.array([1.0, 2.0, 3.0]))
+    far = 5.0 * generator.normal(size=(50, 3))
+    assert np.abs(Warp(source, moved.points(source)).points(far) - moved.points(far)).max() < 1e-7
+    again = Similarity.between(source, moved.points(source))
+    assert np.abs(again.points(far) - moved.points(far)).max() < 1e-9
+    assert again.is_mirrored == (np.linalg.det(turn) < 0.0)
+
+
+def test_nearest_point_agrees_with_a_plain_search(generator: np.random.Generator) -> None:
+    """Feet on a mesh are as near as those on a dense sampling of it."""
+    plane = assets.load("plane")
+    points = plane.vertices[:40] + generator.normal(scale=4.0, size=(40, 3))
+    foot = nearest_on(points, np.tile([0.0, 0.0, 1.0], (40, 1)), plane.vertices, plane.faces)
+    found = np.linalg.norm(foot.carry(plane.vertices) - points, axis=1)
+    a, b = np.meshgrid(np.linspace(0.0, 1.0, 21), np.linspace(0.0, 1.0, 21))
+    inside = a + b <= 1.0 + 1e-9
+    weights = np.stack([1.0 - a - b, a, b], axis=-1)[inside]
+    dense = np.einsum("sc,fcd->fsd", weights, plane.vertices[plane.faces]).reshape(-1, 3)
+    sampled = np.linalg.norm(points[:, None] - dense[None], axis=2).min(axis=1)
+    assert (found <= sampled + 1e-9).all()
+    assert (sampled - found < 0.5).all()
+    assert np.allclose(foot.weights.sum(axis=1), 1.0)

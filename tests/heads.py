@@ -1,0 +1,79 @@
+"""Another head to fit: the built-in one, finer, of another shape, unit and orientation."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import assets
+from assets.meshes import Mesh
+
+Array = npt.NDArray[np.float64]
+TURN = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])  # z up, looking along y
+METRES = 0.001
+SHIFT = (3.0, -2.0, 1.6)
+
+
+@dataclass(frozen=True)
+class Stranger:
+    """A head that somebody brings: metres, z up."""
+
+    mesh: Mesh
+    landmarks: npt.NDArray[np.int32]
+
+    def write(self, folder: Path, *, points: bool = False, **changes: Any) -> tuple[Path, Path]:
+        """Write both files as somebody would bring them; `changes`: other vertices or landmarks."""
+        vertices = changes.get("vertices", self.mesh.vertices)
+        landmarks = changes.get("landmarks", self.landmarks)
+        lines = [f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in vertices]
+        lines += [f"f {a} {b} {c}" for a, b, c in changes.get("faces", self.mesh.faces) + 1]
+        mesh, marks = folder / "stranger.obj", folder / "stranger.json"
+        mesh.write_text("\n".join(lines))
+        found = vertices[landmarks].tolist() if points else np.asarray(landmarks).tolist()
+        marks.write_text(json.dumps({"landmarks": found}))
+        return mesh, marks
+
+
+def shape(x: Array) -> Array:
+    """A smooth change of shape [mm]: a broader, shorter face with a longer chin and a bent nose."""
+    across, up, ahead = x.T
+    nose = np.exp(-((across / 18.0) ** 2) - ((up + 25.0) / 25.0) ** 2)
+    chin = np.exp(-(((up + 110.0) / 30.0) ** 2))
+    return np.stack(
+        [
+            across * (1.08 - 0.0006 * up) + 1.5 * nose,
+            up * 0.94 - 6.0 * chin,
+            ahead * 1.03 + 4.0 * nose * np.sign(ahead) - 3.0 * chin,
+        ],
+        axis=1,
+    )
+
+
+def stranger(level: int = 1) -> Stranger:
+    """The built-in head with 4^level times as many triangles, as another head."""
+    head = assets.load("head")
+    fine = head.finer(level)
+    vertices = shape(fine.vertices) @ TURN.T * METRES + SHIFT
+    return Stranger(Mesh(vertices, fine.faces), head.landmarks)
+
+
+def closed(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
+    """The mesh with a fan of triangles across the opening between some vertices on its edges."""
+    centre = mesh.vertices[vertices].mean(axis=0)
+    faces = mesh.faces
+    directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    ways = {tuple(way) for way in directed.tolist()}
+    following = {a: b for a, b in ways if (b, a) not in ways}
+    border = np.array(list(following))
+    off = np.linalg.norm(mesh.vertices[border] - centre, axis=1)
+    loop = [int(border[off.argmin()])]
+    while following[loop[-1]] != loop[0]:
+        loop.append(following[loop[-1]])
+    middle = len(mesh.vertices)
+    fan = [[following[a], a, middle] for a in loop]
+    return Mesh(np.vstack([mesh.vertices, centre]), np.vstack([faces, fan]).astype(np.int32))

@@ -1,0 +1,207 @@
+"""Layers: tables above the muscles add up, take sides, and name the row that is wrong."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import sim
+from assets.model import Head
+from sim.controls import Control, Controls
+from sim.layers import read_layers
+from tests.sim.poses import FRAME, inverted_triangles, lid_gaps, lip_slit, settle
+
+LOWEST = ("puller_left", "puller_right", "middle", "slide")
+ACTION_UNITS = (
+    *(f"AU{n}" for n in (1, 2, 4, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 20, 22, 23, 24)),
+    *(f"AU{n}" for n in (25, 26, 27, 28, 29, 30, 34, 43, 45, 46, 61, 62, 63, 64)),
+)
+ONE_SIDED = ("AU1", "AU2", "AU4", "AU6", "AU7", "AU9", "AU10", "AU12", "AU14", "AU15", "AU20")
+EXPRESSIONS = (
+    "joy", "sadness", "surprise", "anger", "disgust", "fear", "contempt", "wink", "kiss", "yawn",
+    "mouth_open", "blink",
+)  # fmt: skip
+HEAD_UNITS = ("AU51", "AU52", "AU53", "AU54", "AU55", "AU56")
+CLOSED = (
+    *(f"AU{n}" for n in (1, 2, 4, 5, 6, 7, 11, 12, 13, 14, 15, 17, 18, 20, 21, 23, 24, 28, 29)),
+    "AU30_left", "AU30_right", "AU34", "AU38", "AU43", "AU64", "viseme_PP", "sadness", "anger",
+    "contempt", "wink", "kiss",
+)  # fmt: skip
+VISEMES = "sil PP FF TH DD kk CH SS nn RR aa E ih oh ou".split()
+
+
+def layer(title: str, **rows: Any) -> SimpleNamespace:
+    """A table as assets reads it."""
+    return SimpleNamespace(title=title, source=f"{title}.toml", rows=rows)
+
+
+def controls(*layers: SimpleNamespace) -> Controls:
+    """Four lowest controls, one of them with two directions, under some layers."""
+    lowest = tuple(Control(name, "Lowest", -1.0 if name == "slide" else 0.0) for name in LOWEST)
+    return Controls(lowest, read_layers(layers, LOWEST))
+
+
+UNITS = layer(
+    "Units",
+    A={"action": "pulls", "pair": True, "puller": 0.8, "middle": 0.6},
+    B_left={"slide": 1.0},
+    B_right={"slide": -1.0},
+)
+FACES = layer("Faces", both={"A": 0.5, "slide": 0.25}, lopsided={"A_left": 1.5})
+
+
+def wanted(subject: Controls, **values: float) -> dict[str, float]:
+    """What the lowest controls add up to when these values are set and no others."""
+    subject.set_all(values, others_to_zero=True)
+    return dict(zip(LOWEST, subject.wanted.tolist(), strict=True))
+
+
+def test_rows_share_into_the_layers_below() -> None:
+    """A row scales its entries, through every layer down to the muscles."""
+    subject = controls(UNITS, FACES)
+    assert wanted(subject, both=1.0) == pytest.approx(
+        {"puller_left": 0.4, "puller_right": 0.4, "middle": 0.3, "slide": 0.25}
+    )
+    assert wanted(subject, both=0.5)["puller_left"] == pytest.approx(0.2)
+    assert wanted(subject, puller=0.7) == {
+        "puller_left": 0.7, "puller_right": 0.7, "middle": 0.0, "slide": 0.0,
+    }  # fmt: skip
+
+
+def test_sides_of_a_pair_add_up_to_the_whole() -> None:
+    """A side takes its own muscles and half of one in the middle."""
+    subject = controls(UNITS)
+    left, right = wanted(subject, A_left=1.0), wanted(subject, A_right=1.0)
+    assert left == pytest.approx(
+        {"puller_left": 0.8, "puller_right": 0.0, "middle": 0.3, "slide": 0.0}
+    )
+    assert wanted(subject, A=1.0) == pytest.approx({n: left[n] + right[n] for n in LOWEST})
+
+
+def test_sums_are_cut_off_once_and_in_any_order() -> None:
+    """Own value and contributions add up, opposite ones cancel, and limits hold at the end."""
+    subject, other = controls(UNITS, FACES), controls(UNITS, FACES)
+    values = {"puller_left": 0.5, "A": 0.9, "both": 1.0, "B_left": 1.0, "B_right": 0.4}
+    for name, value in values.items():
+        subject.set_all({name: value})
+    for name in reversed(values):
+        other.set_all({name: values[name]})
+    assert subject.wanted.tolist() == other.wanted.tolist()
+    sums = dict(zip(LOWEST, subject.wanted.tolist(), strict=True))
+    assert sums["puller_left"] == 1.0  # 0.5 + 0.72 + 0.4
+    assert sums["slide"] == pytest.approx(1.0 - 0.4 + 0.25)
+    assert subject.value("puller_left") == 0.5, "a layer does not change what was set below it"
+
+
+def test_setting_back_to_zero_leaves_nothing() -> None:
+    """A control of a layer gives back all that it added."""
+    subject = controls(UNITS, FACES)
+    subject.set_all({"both": 0.7, "A_left": 0.3})
+    subject.set_all({"both": 0.0, "A_left": 0.0})
+    assert not subject.wanted.any()
+
+
+def test_groups_end_with_the_layers() -> None:
+    """A panel finds every name under one title, the layers from the bottom up."""
+    subject = controls(UNITS, FACES)
+    assert list(subject.groups) == ["Lowest", "Both sides", "Units", "Faces"]
+    assert subject.groups["Units"] == ("A", "A_left", "A_right", "B_left", "B_right")
+    assert subject.actions["A_right"] == "pulls"
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ({"X": {"pullr": 1.0}}, r"X.toml, row 'X': no layer below .* 'pullr'; did you mean 'pull"),
+        ({"X": {"middle": "1"}}, r"X.toml, row 'X', 'middle': was '1', must be a number from -2"),
+        ({"X": {"middle": True}}, r"row 'X', 'middle': was True, must be a number"),
+        ({"X": {"middle": 2.5}}, r"row 'X', 'middle': was 2.5, .* from -2 to 2"),
+        ({"X": {"middle": float("nan")}}, r"row 'X', 'middle': was nan, must be a number"),
+        ({"X": 3}, r"row 'X': was 3, must be a table"),
+        ({"X": {"action": 3}}, r"row 'X': 'action' was 3, must be a text"),
+        ({"X": {"pair": 1}}, r"row 'X': 'pair' was 1, must be true or false"),
+        ({"X": {"pair": True, "puller_left": 1.0}}, r"in a pair leave the side of 'puller_left'"),
+        ({"X_left": {"pair": True, "puller": 1.0}}, r"row 'X_left': a pair adds the sides"),
+        ({"middle": {"slide": 1.0}}, r"row 'middle': there is a control called 'middle' already"),
+        ({"A": {}, "B": {"A": 1.0}}, r"row 'B': no layer below has a control called 'A'"),
+    ],
+)
+def test_a_wrong_row_is_named(rows: dict[str, Any], message: str) -> None:
+    """File, row and key stand in the error, with what is allowed."""
+    with pytest.raises(ValueError, match=message):
+        controls(layer("X", **rows))
+
+
+def test_the_shipped_tables_are_complete(simulation: sim.Simulation, head: Head) -> None:
+    """Every action unit, expression and viseme is there, with words for what it does."""
+    names = simulation.limits
+    sided = {"AU30": ("AU30_left", "AU30_right")}
+    for unit in ACTION_UNITS:
+        assert all(name in names for name in sided.get(unit, (unit,))), unit
+    assert all(f"{unit}{side}" in names for unit in ONE_SIDED for side in ("_left", "_right"))
+    assert set(EXPRESSIONS) <= set(simulation.layers["Expressions"])
+    assert simulation.layers["Visemes"] == tuple(f"viseme_{sound}" for sound in VISEMES)
+    for title in ("Action units", "Expressions", "Visemes"):
+        assert all(simulation.actions[name] for name in simulation.layers[title])
+
+
+def test_each_row_of_the_shipped_tables_does_something(simulation: sim.Simulation) -> None:
+    """At full value a muscle or a bone is asked for something; silence is silent."""
+    for title in ("Action units", "Expressions", "Visemes"):
+        for name in simulation.layers[title]:
+            simulation.pose({name: 1.0})
+            assert any(simulation.sums.values()) == (name != "viseme_sil"), name
+
+
+def test_sides_of_shipped_units_mirror_each_other(simulation: sim.Simulation, head: Head) -> None:
+    """A left unit is the mirror image of the right one."""
+    for unit in ("AU4", "AU12"):
+        left = settle(simulation, {f"{unit}_left": 1.0}, frames=20)
+        right = settle(simulation, {f"{unit}_right": 1.0}, frames=20)
+        assert np.abs(left[head.mirror] * (-1.0, 1.0, 1.0) - right).max() < 1e-6
+
+
+@pytest.mark.parametrize("title", ["Action units", "Visemes"])
+def test_rows_keep_the_mesh_sound(simulation: sim.Simulation, head: Head, title: str) -> None:
+    """No row turns more than a few triangles over, nor throws skin away."""
+    for name in simulation.layers[title]:
+        if name.endswith(("_left", "_right")) or name in HEAD_UNITS:
+            continue
+        moved = settle(simulation, {name: 1.0}, frames=45)
+        assert np.abs(moved).max() < 60.0, name
+        assert inverted_triangles(head.faces, head.vertices, simulation.positions) <= 6, name
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_closed_lips_stay_closed(simulation: sim.Simulation, head: Head, name: str) -> None:
+    """No unit parts the lips but those that are there for it."""
+    settle(simulation, {name: 1.0}, frames=45)
+    corners = simulation.positions[head.landmarks[[48, 54]]]
+    assert lip_slit(simulation.positions, head.faces, corners, yaw=0.0, pitch=0.0) < 0.5
+
+
+@pytest.mark.parametrize("name", ["AU43", "AU45", "blink", "yawn"])
+def test_shut_eyes_are_shut(simulation: sim.Simulation, head: Head, name: str) -> None:
+    """No eyeball is seen through closed lids, whatever else the face does."""
+    settle(simulation, {name: 1.0}, frames=45)
+    assert max(lid_gaps(simulation, head)) < (0.3 if name != "yawn" else 0.7)
+
+
+@pytest.mark.parametrize("sound", [sound for sound in VISEMES if sound != "sil"])
+def test_speech_is_crisp(simulation: sim.Simulation, head: Head, sound: str) -> None:
+    """A viseme stands after 120 ms, seen at the lips, and goes no more than 2 % too far."""
+    lips = head.landmarks[48:68]
+    target = settle(simulation, {f"viseme_{sound}": 1.0}, frames=90)[lips]
+    simulation.reset()
+    simulation.pose({f"viseme_{sound}": 1.0})
+    size = float((target**2).sum())
+    reached = []
+    for _ in range(60):
+        simulation.step(FRAME)
+        moved = (simulation.positions - simulation.rest_positions)[lips]
+        reached.append(float((moved * target).sum()) / size)
+    assert reached[6] > 0.9, "seven frames are 117 ms"
+    assert max(reached) < 1.02
