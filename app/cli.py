@@ -5,36 +5,20 @@ What needs OpenGL or compiled code is imported inside the commands, so that --he
 
 from __future__ import annotations
 
-import contextlib
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import click
 
 from . import __version__
-from .errors import UserError
+from .commands import bench_quality, bench_refine, reproduce
+from .errors import UserError, told_in_one_line
 from .parameters import FiniteRange, Size
 
 Command = Callable[..., Any]
-
-
-@contextlib.contextmanager
-def told_in_one_line() -> Iterator[None]:
-    """Turn what the user can mend into one line on the error stream and exit code 2."""
-    import assets
-    import render
-
-    try:
-        yield
-    except (UserError, render.GLError, assets.AssetError, OSError) as error:
-        click.echo(f"risorius: {error}", err=True)
-        sys.exit(2)
-    except KeyboardInterrupt:
-        click.echo("risorius: stopped", err=True)
-        sys.exit(130)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -254,15 +238,9 @@ def bench() -> None:
     """Measure; each command prints its figures and how they were taken."""
 
 
-@bench.command("refine")
-@click.option("--rounds", type=click.IntRange(1, 100_000), default=200, show_default=True)
-def bench_refine(rounds: int) -> None:
-    """Time the refiners on the built-in face in full expression and on the plane."""
-    from .benchmarks import refine_table
-    from .scenes import SCENES
-
-    with told_in_one_line():
-        click.echo(refine_table(rounds, [build() for build in SCENES.values()]))
+bench.add_command(bench_refine)
+bench.add_command(bench_quality)
+main.add_command(reproduce)
 
 
 @bench.command("simulate")

@@ -15,7 +15,8 @@ INK = (245, 245, 245)
 SHADE = (24, 26, 30)
 
 
-def _font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
+def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
+    """Pillow's own typeface at a size [pixels]."""
     return ImageFont.load_default(size=size)
 
 
@@ -27,8 +28,8 @@ def caption(frame: Frame, texts: Sequence[str], viewports: Sequence[Viewport]) -
     size = max(11.0, height / 36.0)
     for text, (left, bottom, _, _) in zip(texts, viewports, strict=True):
         place = (left + size, height - bottom - 2.1 * size)
-        draw.text((place[0] + 1, place[1] + 1), text, font=_font(size), fill=SHADE)
-        draw.text(place, text, font=_font(size), fill=INK)
+        draw.text((place[0] + 1, place[1] + 1), text, font=font(size), fill=SHADE)
+        draw.text(place, text, font=font(size), fill=INK)
         if left:
             draw.line([(left, 0), (left, height)], fill=INK, width=1)
     return np.asarray(picture)
@@ -50,5 +51,5 @@ def contact_sheet(
         small = Image.fromarray(frame).resize((cell_width, cell_height), Image.Resampling.LANCZOS)
         sheet.paste(small, (left, top))
         middle = (left + cell_width / 2, top + cell_height + strip / 2)
-        draw.text(middle, name, font=_font(strip * 0.55), fill=INK, anchor="mm")
+        draw.text(middle, name, font=font(strip * 0.55), fill=INK, anchor="mm")
     return np.asarray(sheet)

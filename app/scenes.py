@@ -90,6 +90,7 @@ class FaceScene:
         self.face_uv: npt.NDArray[np.int32] | None = head.face_uv
         self.albedo: npt.NDArray[np.uint8] | None = head.albedo
         self.refiner_options: Mapping[str, Mapping[str, float]] = {}
+        self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
 

@@ -1,48 +1,67 @@
-"""How long a frame of refinement takes, for every built-in refiner on the same mesh and motion.
+"""What a frame of refinement costs, beside what others offer, all in one run.
 
 Kähler, Haber, Seidel 2003, Table 1 compares the static with the refined mesh. Here the time of the
-refiner alone is taken, from positions to a filled stream, everything counted: normals, criterion,
-points, table, output and the call from Python.
+refiner is taken, from positions to a filled stream, everything counted: normals, criterion, points,
+table, output and the call from Python. Meshes: the built-in face in six full expressions with the
+default thresholds, and sheets (sheets.py) with thresholds that split 10, 50 or 100 % of the edges.
 
-The methods are run interleaved, forwards and backwards in turn, with garbage collection off, and
-medians are reported: on a shared machine times drift by a third within a run, and so only rows of
-one run can be compared. The best time is reported beside the median for the same reason.
+The methods of a mesh are run interleaved, forwards and backwards in turn, with garbage collection
+off, and medians are reported: on a shared machine times drift by a third within a run, and so only
+rows of one mesh can be compared. The best time is reported beside the median for the same reason.
 """
 
+from __future__ import annotations
+
+import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+import assets
 import refine
+import sim
 
+from .peers import peers_for
+from .sheets import Load, sheet
+from .starts import Starts, measure_starts
 from .timing import interleaved
 
+FULL_EXPRESSIONS = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
+SETTLED = 90  # steps of 1/60 s after which the face stands still
+SHARES = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
+"""Per cent of the edges that are split -> quantiles of the drops that are the two thresholds."""
+SHEETS = {"2k": 2_000, "20k": 20_000, "200k": 200_000, "1M": 1_000_000}
+SIZES = ("face", "20k", "200k", "1M", "1M shuffled")
+"""What is measured unless told; 2k is for a quick look."""
+FEWEST_ROUNDS, MOST_ROUNDS = 5, 200
+SECONDS = 7.0  # of timing for each mesh
 METHODS: tuple[tuple[str, Mapping[str, Any]], ...] = (
-    ("none", {}),
     ("kahler", {}),
-    ("loop", {"levels": 1}),
-    ("loop", {"levels": 2}),
+    ("kahler, blend", {"blend": True}),
+    ("kahler, coherent", {"coherent": True}),
+    ("butterfly", {"scheme": "butterfly"}),
+    ("butterfly, no blend", {"scheme": "butterfly", "blend": False}),
+    ("cubic", {"scheme": "cubic"}),
+    ("cubic, no blend", {"scheme": "cubic", "blend": False}),
+    ("detail", {"scheme": "detail"}),
+    ("detail, no blend", {"scheme": "detail", "blend": False}),
 )
-"""Refiners and their options, in the order of the rows."""
+"""Our methods on the face: the paper's, and what each scheme and each option costs."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """One refiner on one mesh."""
+    """One method on one mesh."""
 
-    refiner: str
-    """Name of the refiner."""
-    options: Mapping[str, Any]
-    """Its options."""
+    mesh: str
+    method: str
+    is_peer: bool
     triangles_in: int
-    """Triangles of the mesh."""
     triangles_out: float
-    """Triangles of the output, mean over the frames."""
-    triangles_most: int
-    """Triangles of the output, largest of all frames."""
+    """Mean over the frames."""
     milliseconds: float
     """Time of a frame, median over the rounds [ms]."""
     best_milliseconds: float
@@ -54,54 +73,212 @@ class Row:
         return 1e6 * self.milliseconds / max(self.triangles_out, 1.0)
 
 
+@dataclass(frozen=True)
+class Binding:
+    """What it takes to bind one mesh, and what the refiner then holds."""
+
+    mesh: str
+    triangles: int
+    seconds: float
+    """Shortest of two or more."""
+    megabytes: float
+    """Buffers of the refiner after its first frame at 10 %, output included."""
+
+
+@dataclass
+class Report:
+    """All that one run found."""
+
+    rows: list[Row] = field(default_factory=list)
+    bindings: list[Binding] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+    starts: Starts | None = None
+
+    def row(self, mesh: str, method: str) -> Row | None:
+        """The row of a method on a mesh, if it was measured."""
+        return next((r for r in self.rows if (r.mesh, r.method) == (mesh, method)), None)
+
+
+@dataclass(frozen=True)
+class _Case:
+    method: str
+    is_peer: bool
+    triangles: float
+    call: Callable[[], object]
+
+
 def run(
-    faces: npt.NDArray[np.integer],
-    rest_positions: npt.NDArray[np.floating],
-    frames: Sequence[npt.NDArray[np.floating]],
     *,
-    uv: npt.NDArray[np.floating] | None = None,
-    face_uv: npt.NDArray[np.integer] | None = None,
-    methods: Sequence[tuple[str, Mapping[str, Any]]] = METHODS,
-    rounds: int = 200,
-) -> list[Row]:
-    """Time each method over all `frames`, `rounds` times, and return one row for each.
+    sizes: Sequence[str] = SIZES,
+    seconds: float = SECONDS,
+    starts: bool = True,
+    progress: Callable[[str], object] = lambda _: None,
+) -> Report:
+    """Measure each of `sizes`, for about `seconds` each; `starts`: and how long a start takes.
 
-    `faces`: shape (F, 3); `rest_positions` and every frame: shape (V, 3); `uv`, `face_uv`: as for
-    `refine.create`. Raises ValueError without frames or rounds, and what binding raises.
+    Raises ValueError for a size that there is not.
     """
-    if not frames or rounds < 1:
-        raise ValueError(
-            f"at least one frame and one round are needed, got {len(frames)} and {rounds}"
-        )
-    refiners = [
-        refine.create(name, faces, rest_positions, uv, face_uv, **options)
-        for name, options in methods
-    ]
-    # The first pass compiles or loads the kernels, and counts.
-    counts = [[len(refiner.refine(frame).triangles) for frame in frames] for refiner in refiners]
-    calls = [_all_frames(refiner, frames) for refiner in refiners]
-    seconds = interleaved(calls, rounds) / len(frames)
-    return [
-        Row(
-            refiner=name,
-            options=options,
-            triangles_in=len(faces),
-            triangles_out=float(np.mean(count)),
-            triangles_most=max(count),
-            milliseconds=1e3 * float(np.median(times)),
-            best_milliseconds=1e3 * float(np.min(times)),
-        )
-        for (name, options), count, times in zip(methods, counts, seconds.T, strict=True)
-    ]
+    known = ("face", *SHEETS, "1M shuffled")
+    unknown = [size for size in sizes if size not in known]
+    if unknown:
+        raise ValueError(f"unknown size {unknown[0]!r}; there are {', '.join(known)}")
+    report = Report()
+    for size in sizes:
+        progress(size)
+        if size == "face":
+            load = face_load()
+            cases = _face_cases(load, report)
+        else:
+            count = SHEETS[size.partition(" ")[0]]
+            load = sheet(size, count, shuffled="shuffled" in size)
+            cases = _sheet_cases(load, report)
+        report.rows += _timed(load, cases, seconds)
+    if starts:
+        progress("starts")
+        report.starts = measure_starts()
+    return report
 
 
-def _all_frames(
-    refiner: refine.Refiner, frames: Sequence[npt.NDArray[np.floating]]
-) -> Callable[[], None]:
-    """A call that refines every frame once."""
+def face_load() -> Load:
+    """The built-in face in each of the six basic expressions, at full strength."""
+    head = assets.load("head")
+    simulation = sim.create(head)
+    frames = []
+    for name in FULL_EXPRESSIONS:
+        simulation.reset()
+        simulation.set_all(head.expressions[name])
+        for _ in range(SETTLED):
+            simulation.step(1.0 / 60.0)
+        frames.append(simulation.positions.copy())
+    return Load("face", head.faces, head.vertices, frames)
 
-    def refine_all() -> None:
-        for frame in frames:
+
+def method_options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of one of METHODS on the built-in face: detail needs its finer mesh."""
+    if options.get("scheme") != "detail":
+        return dict(options)
+    fine = assets.load("head").finer(1)
+    return {**options, "detail": (fine.vertices, fine.faces)}
+
+
+def _face_cases(load: Load, report: Report) -> list[_Case]:
+    static = refine.create("none", load.faces, load.rest)
+    cases = [_own("none", static, load)]
+    for method, options in METHODS:
+        refiner = refine.create("kahler", load.faces, load.rest, **method_options(options))
+        cases.append(_own(method, refiner, load))
+        if method == "kahler":
+            cases.append(_copy_of(refiner, load, "memcpy of that"))
+            report.bindings.append(_bound(load, {}))
+    for levels in (1, 2):
+        uniform = refine.create("loop", load.faces, load.rest, levels=levels)
+        cases.append(_own(f"uniform Loop {levels}x", uniform, load))
+    return cases + _peer_cases(load, report, cases[1].triangles)
+
+
+def _sheet_cases(load: Load, report: Report) -> list[_Case]:
+    thresholds = _thresholds(load)
+    cases = []
+    for share, (once, twice) in thresholds.items():
+        options = {"threshold_once": once, "threshold_twice": twice}
+        if share == min(thresholds):
+            report.bindings.append(_bound(load, options))
+        refiner = refine.create("kahler", load.faces, load.rest, **options)
+        cases.append(_own(f"kahler {share} %", refiner, load))
+        cases.append(_copy_of(refiner, load, f"memcpy of {share} %"))
+    return cases + _peer_cases(load, report, cases[0].triangles)
+
+
+def _peer_cases(load: Load, report: Report, target: float) -> list[_Case]:
+    peers = peers_for(load, round(target))
+    report.missing += [line for line in peers.missing if line not in report.missing]
+
+    def all_frames(call: Callable[[npt.NDArray[np.floating]], object]) -> Callable[[], None]:
+        def run_all() -> None:
+            for frame in load.frames:
+                call(frame)
+
+        return run_all
+
+    return [_Case(p.name, True, p.triangles, all_frames(p.call)) for p in peers.found]
+
+
+def _own(method: str, refiner: refine.Refiner, load: Load) -> _Case:
+    """One of our refiners over all frames; the first pass compiles or loads kernels, and counts."""
+    counts = [len(refiner.refine(frame).triangles) for frame in load.frames]
+
+    def run_all() -> None:
+        for frame in load.frames:
             refiner.refine(frame)
 
-    return refine_all
+    return _Case(method, False, float(np.mean(counts)), run_all)
+
+
+def _copy_of(refiner: refine.Refiner, load: Load, method: str) -> _Case:
+    """Copying an output as large as the refiner's, frame by frame: the speed of memory."""
+    meshes = [refiner.refine(frame) for frame in load.frames]
+    rows = [len(mesh.positions) for mesh in meshes]
+    counts = [len(mesh.triangles) for mesh in meshes]
+    vertices = [np.ones((max(rows), 6), np.float32) for _ in range(2)]
+    triangles = [np.ones((max(counts), 3), np.uint32) for _ in range(2)]
+
+    def run_all() -> None:
+        for row_count, count in zip(rows, counts, strict=True):
+            np.copyto(vertices[1][:row_count], vertices[0][:row_count])
+            np.copyto(triangles[1][:count], triangles[0][:count])
+
+    return _Case(method, False, float(np.mean(counts)), run_all)
+
+
+def _thresholds(load: Load) -> dict[int, tuple[float, float]]:
+    """Thresholds that split 10, 50 and 100 % of the edges, by the drops of all frames."""
+    plain = refine.create("none", load.faces, load.rest)
+    a, b = plain.edges.T
+    at_rest = _dots(plain.refine(load.rest).normals, a, b)
+    drops = np.concatenate(
+        [at_rest - _dots(plain.refine(frame).normals, a, b) for frame in load.frames]
+    )
+    found = {}
+    for share, quantiles in SHARES.items():
+        once, twice = (max(0.0, float(np.quantile(drops, q))) for q in quantiles)
+        found[share] = (once, twice)
+    return found
+
+
+def _dots(
+    normals: npt.NDArray[np.float32], a: npt.NDArray[np.int32], b: npt.NDArray[np.int32]
+) -> npt.NDArray[np.float32]:
+    return np.asarray(np.einsum("ei,ei->e", normals[a], normals[b]))
+
+
+def _bound(load: Load, options: Mapping[str, Any]) -> Binding:
+    seconds = []
+    for _ in range(2):
+        start = time.perf_counter()
+        refiner = refine.create("kahler", load.faces, load.rest, **options)
+        seconds.append(time.perf_counter() - start)
+    refiner.refine(load.frames[0])
+    assert isinstance(refiner, refine.Kahler)
+    return Binding(load.name, len(load.faces), min(seconds), refiner.memory / 1e6)
+
+
+def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:
+    """Rows of all cases, in as many rounds as fit the time."""
+    start = time.perf_counter()
+    for case in cases:
+        case.call()
+    spent = time.perf_counter() - start
+    rounds = int(np.clip(seconds / max(spent, 1e-9), FEWEST_ROUNDS, MOST_ROUNDS))
+    times = interleaved([case.call for case in cases], rounds) / len(load.frames)
+    return [
+        Row(
+            load.name,
+            case.method,
+            case.is_peer,
+            len(load.faces),
+            case.triangles,
+            1e3 * float(np.median(column)),
+            1e3 * float(np.min(column)),
+        )
+        for case, column in zip(cases, times.T, strict=True)
+    ]

@@ -9,33 +9,51 @@ Visual Computer 2003. The package stands alone: it needs numpy and numba and not
 
 Refiners by name: `none` hands the mesh through, `kahler` is the paper's, `loop` subdivides the
 whole mesh once or twice for comparison. `refine(positions, out=stream)` writes straight into lent
-arrays. `check` is for tests: it names the relation that a refined mesh breaks.
+arrays. `Tension` measures how far the skin is stretched. `check` is for tests: it names the
+relation that a refined mesh breaks.
 
 Read in this order: plugin.py (the border), adaptive.py (a frame), criterion.py (which edges),
-masks.py and placement.py (where points go), patterns.py (the 27 triangulations).
+schemes.py and masks.py (where points go), patterns.py (the 27 triangulations), coherence.py (the
+271 sequences); docs/refinement.md tells it all with pictures.
 """
 
 from .adaptive import Kahler
 from .checker import BrokenMeshError, check
+from .coherence_pass import Coherent
 from .connectivity import Connectivity, connect, weld
-from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion
+from .criteria import Curvature, Maximum, ScreenEdge, Silhouette
+from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, Measured, NormalDrop
 from .passthrough import PassThrough
-from .plugin import Origins, RefinedMesh, Refiner, Stream, available, create, register
+from .plugin import Origins, RefinedMesh, Refiner, Stream, View, available, create, register
+from .schemes import Frame, Scheme
+from .tension import Tension, TensionMap
 from .uniform import Loop
 
 __all__ = [
     "THRESHOLD_ONCE",
     "THRESHOLD_TWICE",
     "BrokenMeshError",
+    "Coherent",
     "Connectivity",
     "Criterion",
+    "Curvature",
+    "Frame",
     "Kahler",
     "Loop",
+    "Maximum",
+    "Measured",
+    "NormalDrop",
     "Origins",
     "PassThrough",
     "RefinedMesh",
     "Refiner",
+    "Scheme",
+    "ScreenEdge",
+    "Silhouette",
     "Stream",
+    "Tension",
+    "TensionMap",
+    "View",
     "available",
     "check",
     "connect",

@@ -2,43 +2,53 @@
 
 Kähler, Haber, Seidel 2003, sections 4.1 to 4.3. One frame is:
 
-    normals and drops   how often each edge is split                              (criterion.py)
-    numbering           rows of the output for new points, lists of split edges   (output.py)
-    first level         moved vertices, middle points                    (rings.py, masks.py)
-    second level        quarter points, middle points moved again                  (masks.py)
-    table               subtriangles of each triangle                (patterns.py, output.py)
+    normals and drops   how often each edge is split                (criterion.py, criteria.py)
+    numbering           lists of split edges, rows for new points                 (output.py)
+    points              moved vertices, first level, second level                (schemes.py)
+    table               subtriangles of each triangle               (patterns.py, output.py)
+
+By default this is the paper to the letter. Options put other criteria and smoothing schemes in
+place, and blend new points in (blend.py).
 
 Differs from the paper: normals of new points are interpolated linearly and then normalised; the
 deformed mesh is copied once, as a shield against a simulation that runs on meanwhile.
 """
 
+from collections.abc import Mapping, Sequence
 from typing import cast
 
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import AttributeLike
 from .binding import BoundRefiner
-from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, NormalDrop, vertex_normals
-from .masks import place_middles, place_quarters
-from .output import (
-    copy_rims,
-    copy_wedges,
-    look_up_triangles,
-    number_points,
-    place_texture,
+from .blend import grow, grow_fully, number_centres, place_centres
+from .choices import scheme_of
+from .coherence_pass import Coherent
+from .criteria import criterion_of
+from .criterion import (
+    THRESHOLD_ONCE,
+    THRESHOLD_TWICE,
+    Criterion,
+    Measured,
+    NormalDrop,
+    vertex_normals,
 )
+from .detail import FinerMesh
+from .output import CENTRE, copy_rims, copy_wedges, look_up_triangles, number_points
 from .patterns import (
+    CONFIGURATIONS,
+    FANS,
+    MAXIMUM_FAN,
     MAXIMUM_SUBTRIANGLES,
     MOST_SPLITS,
     POINTS_OF_EDGE,
-    SUBTRIANGLE_COUNTS,
-    SUBTRIANGLES,
+    Patterns,
 )
-from .plugin import Origins
-from .rings import place_vertices, vertex_rings
+from .plugin import Origins, Stream, View
+from .schemes import Frame, Scheme
 
 Floats = npt.NDArray[np.float32]
-Unsigned = npt.NDArray[np.uint32]
 Small = npt.NDArray[np.uint8]
 
 
@@ -52,36 +62,74 @@ class Kahler(BoundRefiner):
         *,
         uv: npt.ArrayLike | None = None,
         face_uv: npt.ArrayLike | None = None,
+        attributes: Mapping[str, AttributeLike] | None = None,
         threshold_once: float = THRESHOLD_ONCE,
         threshold_twice: float = THRESHOLD_TWICE,
-        criterion: Criterion | None = None,
+        criterion: str | Criterion | Sequence[str | Criterion] = "normal",
+        scheme: str | Scheme = "loop",
+        detail: FinerMesh | None = None,
+        blend: bool | None = None,
+        coherent: bool = False,
     ) -> None:
         """Bind to a mesh (see `plugin.create`).
 
         `threshold_once`, `threshold_twice`: drop of the normal dot product above which an edge is
-        split once or twice. `criterion`: another rule in place of these thresholds.
+        split once or twice, for the paper's criterion, "normal".
+        `criterion`: "normal", "curvature", "silhouette", "screen", an object, or a list of them, of
+        which the one counts that asks for most.
+        `scheme`: "loop", the paper's, "butterfly", "cubic", "detail", or an object.
+        `detail`: for "detail" the finer mesh at rest, its positions and its triangles.
+        `blend`: whether points grow out of their edges, so that nothing pops. None stands for what
+        costs nothing in faithfulness: True for the schemes that interpolate, False for the paper's.
+        `coherent`: whether triangulations continue those of the frame before (section 4.4).
         """
-        super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv)
-        connectivity = self.connectivity
-        edge_count, rim_count = len(connectivity.edges), len(connectivity.rim_edges)
-        self._rings = vertex_rings(connectivity)
+        super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv, attributes=attributes)
+        mesh = self.connectivity
+        self._scheme = scheme_of(scheme, detail)
+        self._criterion = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))
+        if blend is None:
+            blend = self._scheme.interpolates and not coherent
+            blend = blend and isinstance(self._criterion, Measured)
+        self._blend = blend
+        self._patterns = _patterns_of(blend, coherent, len(mesh.faces))
+        if blend and not isinstance(self._criterion, Measured):
+            raise ValueError(
+                f"blend=True needs a criterion that measures, but {type(self._criterion).__name__} "
+                "has no method measure(positions, normals, need)"
+            )
+        self._make_buffers()
+        vertex_normals(self._rest_positions, mesh.faces, self._normals)
+        self._criterion.bind(mesh, self._rest_positions, self._normals)
+        self._scheme.bind(mesh, self._rest_positions, self._normals)
+
+    def _make_buffers(self) -> None:
+        mesh = self.connectivity
+        edge_count, rim_count = len(mesh.edges), len(mesh.rim_edges)
         # One row more than rims: triangles without edges refer to it and find zero splits.
         self._rim_splits = np.zeros(rim_count + 1, dtype=np.uint8)
         self._edge_splits = self._rim_splits[:edge_count]
         self._splits = self._edge_splits.view()
         self._splits.flags.writeable = False
-        self._first_points = np.zeros(rim_count + 1, dtype=np.uint32)
-        self._middles = np.zeros((edge_count, 3), dtype=np.float32)
-        self._split_once = np.zeros(edge_count + 1, dtype=np.uint32)
-        self._split_twice = np.zeros(edge_count + 1, dtype=np.uint32)
-        self._moved = np.zeros(connectivity.vertex_count, dtype=np.uint8)
-        self._wedge_uv = self._texture_of(connectivity.wedge_uv)
-        self._rim_uv = self._texture_of(connectivity.rim_uv)
+        self._configurations = np.zeros(len(mesh.faces) + 1, dtype=np.uint16)
+        self._need = np.zeros(edge_count if self._blend else 0, dtype=np.float32)
+        self._frame = Frame(
+            positions=self._positions,
+            normals=self._normals,
+            splits=self._rim_splits,
+            growth_once=np.zeros(edge_count, dtype=np.float32),
+            growth_twice=np.zeros(edge_count, dtype=np.float32),
+            first_points=np.zeros(rim_count + 1, dtype=np.uint32),
+            split_once=np.zeros(edge_count + 1, dtype=np.uint32),
+            split_twice=np.zeros(edge_count + 1, dtype=np.uint32),
+            rows=np.zeros((0, self.vertex_columns), dtype=np.float32),
+        )
+        if self._blend:
+            self._frame.centre_triangles = np.zeros(len(mesh.faces) + 1, dtype=np.uint32)
 
-        vertex_normals(self._rest_positions, connectivity.faces, self._normals)
-        self._has_own_criterion = criterion is None
-        self._criterion = criterion or NormalDrop(threshold_once, threshold_twice)
-        self._criterion.bind(connectivity, self._rest_positions, self._normals)
+    @property
+    def history(self) -> Coherent | None:
+        """What triangles remember of their splits; None unless `coherent`."""
+        return self._patterns if isinstance(self._patterns, Coherent) else None
 
     @property
     def splits(self) -> Small:
@@ -90,93 +138,93 @@ class Kahler(BoundRefiner):
 
     @property
     def vertex_capacity(self) -> int:
-        """Most output vertices: every wedge, and three points on every rim."""
-        return len(self.connectivity.wedge_vertices) + 3 * len(self.connectivity.rim_edges)
+        """Most output vertices: every wedge, three points on every rim, centres when blending."""
+        mesh = self.connectivity
+        centres = len(mesh.faces) if self._blend else 0
+        return len(mesh.wedge_vertices) + 3 * len(mesh.rim_edges) + centres
 
     @property
     def triangle_capacity(self) -> int:
-        """Most output triangles: ten for each."""
-        return MAXIMUM_SUBTRIANGLES * len(self.connectivity.faces)
+        """Most output triangles: ten for each, twelve when blending."""
+        most = MAXIMUM_FAN if self._blend else MAXIMUM_SUBTRIANGLES
+        return most * len(self.connectivity.faces)
 
-    def _fill(
-        self, vertices: Floats, triangles: Unsigned, source: npt.NDArray[np.int32]
-    ) -> tuple[int, int]:
-        connectivity, splits = self.connectivity, self._rim_splits
-        vertex_normals(self._positions, connectivity.faces, self._normals)
-        self._criterion.mark(self._positions, self._normals, self._edge_splits)
-        if not self._has_own_criterion:
-            self._check_splits()
-        vertex_count, once_count, twice_count = number_points(
-            splits,
-            connectivity.edge_points,
-            connectivity.rim_edges,
-            len(connectivity.wedge_vertices),
-            self._first_points,
-            self._split_once,
-            self._split_twice,
-            self._moved,
+    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        mesh, frame, patterns = self.connectivity, self._frame, self._patterns
+        vertex_normals(self._positions, mesh.faces, self._normals)
+        self._mark(view)
+        vertex_count, frame.once_count, frame.twice_count, triangle_count = number_points(
+            self._rim_splits,
+            mesh.rim_edges,
+            mesh.edge_sides,
+            mesh.more_sides,
+            len(mesh.wedge_vertices),
+            frame.first_points,
+            frame.split_once,
+            frame.split_twice,
+            self._configurations,
         )
-        self._place_points(vertices, once_count, twice_count)
-        if self._uv is not None:
-            self._place_seams(vertices)
-        triangle_count = look_up_triangles(
-            connectivity.corners,
-            connectivity.triangle_rims,
-            splits,
-            self._first_points,
-            SUBTRIANGLE_COUNTS,
-            SUBTRIANGLES,
+        rows = patterns.rows(self._configurations[:-1])
+        frame.first_centre = vertex_count
+        if frame.centre_triangles is not None:
+            frame.centre_count, triangle_count = number_centres(
+                rows, patterns.counts, patterns.subtriangles, CENTRE, frame.centre_triangles
+            )
+            vertex_count += frame.centre_count
+        frame.rows, triangles, source = self._reserve(stream, vertex_count, triangle_count)
+        self._place()
+        look_up_triangles(
+            mesh.corners,
+            mesh.triangle_rims,
+            self._rim_splits,
+            frame.first_points,
+            frame.first_centre,
+            rows,
+            patterns.counts,
+            patterns.subtriangles,
             triangles,
             source,
         )
         return vertex_count, triangle_count
 
-    def _place_points(self, vertices: Floats, once_count: int, twice_count: int) -> None:
-        """Write positions and normals: moved vertices, first level, second level."""
-        rings, positions, normals = self._rings, self._positions, self._normals
-        edge_points, is_interior = self.connectivity.edge_points, self.connectivity.is_interior
-        first_points, middles = self._first_points, self._middles
-        place_vertices(
-            positions,
-            normals,
-            self._moved,
-            rings.own,
-            rings.ring,
-            rings.starts,
-            rings.vertices,
-            vertices,
-        )
-        place_middles(
-            positions,
-            normals,
-            edge_points,
-            is_interior,
-            first_points,
-            self._split_once,
-            once_count,
-            middles,
-            vertices,
-        )
-        place_quarters(
-            positions,
-            normals,
-            edge_points,
-            self.connectivity.edge_wings,
-            is_interior,
-            self._rim_splits,
-            first_points,
-            self._split_twice,
-            twice_count,
-            middles,
-            vertices,
-        )
+    def _mark(self, view: View | None) -> None:
+        """Decide on the splits of every edge, and how far their points have grown."""
+        frame, criterion = self._frame, self._criterion
+        if hasattr(criterion, "look"):
+            criterion.look(view)
+        if self._blend:
+            cast(Measured, criterion).measure(self._positions, self._normals, self._need)
+            grow(self._need, self._edge_splits, frame.growth_once, frame.growth_twice)
+            return
+        criterion.mark(self._positions, self._normals, self._edge_splits)
+        if not isinstance(criterion, NormalDrop):
+            self._check_splits()
+        grow_fully(self._edge_splits, frame.growth_once, frame.growth_twice)
 
-    def _place_seams(self, vertices: Floats) -> None:
-        """Copy geometry to the other sides of texture seams, and write texture coordinates."""
-        mesh, splits, first_points = self.connectivity, self._rim_splits, self._first_points
-        copy_wedges(mesh.vertex_count, mesh.wedge_vertices, vertices)
-        copy_rims(len(mesh.edges), mesh.rim_edges, splits, first_points, vertices)
-        place_texture(self._wedge_uv, self._rim_uv, splits, first_points, vertices)
+    def _place(self) -> None:
+        """Write all rows: points by the scheme, copies along seams, attributes, centres."""
+        mesh, frame = self.connectivity, self._frame
+        self._scheme.place(frame)
+        if self._values is not None:
+            copy_wedges(mesh.vertex_count, mesh.wedge_vertices, frame.rows)
+            copy_rims(
+                len(mesh.edges), mesh.rim_edges, self._rim_splits, frame.first_points, frame.rows
+            )
+            self._place_attributes(mesh, self._rim_splits, frame.first_points, frame.rows)
+        if frame.centre_triangles is not None:
+            place_centres(
+                mesh.faces,
+                mesh.corners,
+                mesh.triangle_edges,
+                self._rim_splits,
+                frame.growth_once,
+                frame.first_points,
+                frame.centre_triangles,
+                frame.centre_count,
+                frame.first_centre,
+                frame.rows,
+            )
+            self._scheme.place_centres(frame)
 
     def _check_splits(self) -> None:
         """Raise ValueError if a criterion from outside asks for more than the table has."""
@@ -189,19 +237,34 @@ class Kahler(BoundRefiner):
 
     def origins(self) -> Origins:
         """Say for every vertex of the last frame where it lies on the input mesh."""
-        connectivity = self.connectivity
+        mesh, frame = self.connectivity, self._frame
         point_counts = np.array(POINTS_OF_EDGE)[self._rim_splits[:-1]]
         # Place along the edge, in quarters, of the points of a block: x 2 x or 1 2 3.
         block_starts = np.cumsum(point_counts) - point_counts
         within = np.arange(point_counts.sum()) - np.repeat(block_starts, point_counts)
         place = np.where(np.repeat(point_counts, point_counts) == 1, 2, within + 1)
-        ends = np.repeat(connectivity.edges[connectivity.rim_edges], point_counts, axis=0)
-        wedges = connectivity.wedge_vertices.astype(np.int32)
-        vertices = np.concatenate(
-            [np.stack([wedges] * 3, axis=1), np.column_stack([ends, ends[:, 0]])]
+        ends = np.repeat(mesh.edges[mesh.rim_edges], point_counts, axis=0)
+        wedges = mesh.wedge_vertices.astype(np.int32)
+        vertices = [np.stack([wedges] * 3, axis=1), np.column_stack([ends, ends[:, 0]])]
+        weights = [np.zeros((len(wedges), 3)), np.zeros((len(ends), 3))]
+        weights[0][:, 0] = 1.0
+        weights[1][:, 0], weights[1][:, 1] = (4 - place) / 4.0, place / 4.0
+        if frame.centre_triangles is not None:
+            centres = mesh.faces[frame.centre_triangles[: frame.centre_count]]
+            vertices.append(centres.astype(np.int32))
+            weights.append(np.full((frame.centre_count, 3), 1.0 / 3.0))
+        return Origins(
+            np.concatenate(vertices).astype(np.int32), np.concatenate(weights).astype(np.float32)
         )
-        weights = np.zeros(vertices.shape, dtype=np.float32)
-        weights[: len(wedges), 0] = 1.0
-        weights[len(wedges) :, 0] = (4 - place) / 4.0
-        weights[len(wedges) :, 1] = place / 4.0
-        return Origins(cast(npt.NDArray[np.int32], vertices), weights)
+
+
+def _patterns_of(blend: bool, coherent: bool, face_count: int) -> Patterns:
+    """The table of a refiner: fans for blending, otherwise the paper's 27 patterns."""
+    if blend and coherent:
+        raise ValueError(
+            "coherent=True continues the triangulations of the frame before; with blend=True none "
+            "ever turns a diagonal; ask for one of the two"
+        )
+    if coherent:
+        return Coherent(face_count)
+    return FANS if blend else CONFIGURATIONS

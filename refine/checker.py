@@ -23,8 +23,9 @@ from .plugin import Origins, RefinedMesh, Refiner
 
 Wide = npt.NDArray[np.int64]
 
-QUARTERS = 4
-"""Points of the refined mesh lie at quarters of the edges of the input (section 4.1)."""
+PARTS = 12
+"""Points of the refined mesh lie at quarters of the edges of the input (section 4.1), or in the
+middle of a triangle: all are whole twelfths."""
 
 
 class BrokenMeshError(ValueError):
@@ -101,19 +102,19 @@ def _number_places(origins: Origins) -> Wide:
     vertices = np.where(origins.weights > 0.0, origins.vertices, -1)
     order = np.argsort(vertices, axis=1)
     vertices = np.take_along_axis(vertices, order, axis=1)
-    quarters = np.take_along_axis(_in_quarters(origins.weights), order, axis=1)
-    rows = np.concatenate([vertices, quarters], axis=1)
+    parts = np.take_along_axis(_in_parts(origins.weights), order, axis=1)
+    rows = np.concatenate([vertices, parts], axis=1)
     return np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
 
 
-def _in_quarters(weights: npt.NDArray[np.float32]) -> Wide:
-    quarters = np.rint(weights * QUARTERS).astype(np.int64)
-    exact = (quarters == weights * QUARTERS) & (quarters >= 0)
+def _in_parts(weights: npt.NDArray[np.float32]) -> Wide:
+    parts = np.rint(weights * PARTS).astype(np.int64)
+    exact = (abs(parts - weights * PARTS) < 1e-5) & (parts >= 0)
     _require_all(
-        exact.all(axis=1) & (quarters.sum(axis=1) == QUARTERS),
-        "origins have weights in quarters that add up to one",
+        exact.all(axis=1) & (parts.sum(axis=1) == PARTS),
+        "origins have weights in twelfths that add up to one",
     )
-    return quarters
+    return parts
 
 
 def _check_same_places(mesh: RefinedMesh, points: Wide) -> None:
@@ -138,13 +139,13 @@ def _check_sources(mesh: RefinedMesh, proper: npt.NDArray[np.bool_]) -> None:
 
 
 def _places_in_source(origins: Origins, triangles: Wide, source_faces: Wide) -> Wide:
-    """Corners of subtriangles in quarters of their source's coordinates, shape (M, 3, 3)."""
-    quarters = _in_quarters(origins.weights)[triangles]
+    """Corners of subtriangles in parts of their source's coordinates, shape (M, 3, 3)."""
+    parts = _in_parts(origins.weights)[triangles]
     vertices = origins.vertices[triangles]
     is_corner = vertices[..., None] == source_faces[:, None, None, :]
-    places = (quarters[..., None] * is_corner).sum(axis=2)
+    places = (parts[..., None] * is_corner).sum(axis=2)
     _require_all(
-        (places.sum(axis=2) == QUARTERS).all(axis=1),
+        (places.sum(axis=2) == PARTS).all(axis=1),
         "the vertices of a subtriangle lie in the input triangle it is part of",
     )
     return np.asarray(places, dtype=np.int64)
@@ -160,7 +161,7 @@ def _check_cover(corners: Wide, source: npt.NDArray[np.int32], proper: Wide, kep
     )
     covered = np.bincount(source, weights=areas, minlength=int(proper.max(initial=-1)) + 1)
     _require_all(
-        covered[proper] == QUARTERS**3,
+        covered[proper] == PARTS**3,
         "the areas of its subtriangles add up to that of the input triangle",
         proper,
     )

@@ -27,9 +27,12 @@ A triangle that names a vertex twice has no area and no edges: it is handed thro
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+
+from .kernels import kernel
 
 Indices = npt.NDArray[np.int32]
 Unsigned = npt.NDArray[np.uint32]
@@ -49,6 +52,10 @@ class Connectivity:
     """a, b and the opposite corners c, d, shape (E, 4); c = d = a on a border."""
     edge_wings: Unsigned
     """Edges ac, bc, ad, bd, shape (E, 4); the edge itself on a border."""
+    edge_sides: Unsigned
+    """The first two half-edges of each edge, 3 x triangle + i, shape (E, 2); 3 F where none."""
+    more_sides: Unsigned
+    """Edge and half-edge for sides beyond the first two, shape (X, 2): edges of three sheets."""
     is_interior: Flags
     """Whether two triangles run through the edge in opposite directions, shape (E,)."""
     triangle_edges: Indices
@@ -83,44 +90,175 @@ def connect(
 
     `face_uv`: texture coordinate index of each corner, shape (F, 3); None when each vertex has one.
     """
-    wide_faces = np.asarray(faces, dtype=np.int64)
-    corner_uv = wide_faces if face_uv is None else np.asarray(face_uv, dtype=np.int64)
-    is_proper = _has_three_corners(wide_faces)
-    starts = wide_faces[is_proper].ravel()
-    ends = np.roll(wide_faces[is_proper], -1, axis=1).ravel()
-
-    low, high = np.minimum(starts, ends), np.maximum(starts, ends)
-    edge_of, first = number_by_first_use(low * vertex_count + high)
-    edges = np.stack([starts[first], ends[first]], axis=1)
-    is_reversed = starts != edges[edge_of, 0]
-    is_interior, edge_points, edge_wings = _neighbourhoods(
-        wide_faces[is_proper], edges, edge_of, is_reversed, first
+    corners = np.array(faces, dtype=np.uint32, order="C").reshape(-1, 3)
+    half_edge_count = corners.size
+    edge_of = np.full(half_edge_count, -1, dtype=np.int32)
+    edges = np.empty((half_edge_count, 2), dtype=np.int32)
+    sides = np.full((half_edge_count, 2), half_edge_count, dtype=np.uint32)
+    side_counts = np.zeros(half_edge_count, dtype=np.int32)
+    edge_count = find_edges(corners, vertex_count, edge_of, edges, sides, side_counts)
+    edges, sides = edges[:edge_count].copy(), sides[:edge_count].copy()
+    edge_points = np.empty((edge_count, 4), dtype=np.uint32)
+    edge_wings = np.empty((edge_count, 4), dtype=np.uint32)
+    is_interior = np.empty(edge_count, dtype=np.bool_)
+    look_around(
+        corners,
+        edge_of,
+        edges,
+        sides,
+        side_counts[:edge_count],
+        is_interior,
+        edge_points,
+        edge_wings,
     )
-    rim_of, rim_edges, rim_uv = _rims(corner_uv[is_proper], edge_of, is_reversed, first)
-    corners, wedge_vertices, wedge_uv = _wedges(wide_faces, corner_uv, vertex_count)
-
-    triangle_edges = np.full(wide_faces.shape, -1, dtype=np.int32)
-    triangle_edges[is_proper] = edge_of.reshape(-1, 3)
-    edge_ends = edges.astype(np.int32)
-    for handed_out in (edge_ends, triangle_edges):
+    seams = _seams(corners, edge_of, edges, sides, vertex_count, face_uv)
+    triangle_edges = edge_of.reshape(-1, 3)
+    for handed_out in (edges, triangle_edges):
         handed_out.flags.writeable = False
-    triangle_rims = np.full(wide_faces.shape, 2 * len(rim_edges), dtype=np.uint32)
-    triangle_rims[is_proper] = (2 * rim_of + is_reversed).reshape(-1, 3)
     return Connectivity(
-        faces=wide_faces.astype(np.uint32),
-        edges=edge_ends,
-        edge_points=edge_points.astype(np.uint32),
-        edge_wings=edge_wings.astype(np.uint32),
+        faces=corners,
+        edges=edges,
+        edge_points=edge_points,
+        edge_wings=edge_wings,
+        edge_sides=sides,
+        more_sides=_more_sides(edge_of, sides, side_counts[:edge_count]),
         is_interior=is_interior,
         triangle_edges=triangle_edges,
-        corners=corners.astype(np.uint32),
-        triangle_rims=triangle_rims,
-        wedge_vertices=wedge_vertices.astype(np.uint32),
-        wedge_uv=wedge_uv.astype(np.int32),
-        rim_edges=rim_edges.astype(np.uint32),
-        rim_uv=rim_uv.astype(np.int32),
         vertex_count=vertex_count,
+        **seams,
     )
+
+
+@kernel
+def find_edges(
+    faces: Unsigned,
+    vertex_count: int,
+    edge_of: Indices,
+    edges: Indices,
+    sides: Unsigned,
+    side_counts: Indices,
+) -> int:
+    """Number the edges in the order of their first use, and return how many there are.
+
+    The order keeps neighbours in the mesh near each other in memory. Edges are found again in
+    lists that are chained by the sum of their end points: short ones, however large a valence is.
+    """
+    heads = np.full(2 * vertex_count, -1, np.int32)
+    following = np.empty(len(edge_of), np.int32)
+    count = 0
+    for t in range(faces.shape[0]):
+        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        if a == b or b == c or c == a:
+            continue
+        for i in range(3):
+            start, end = np.int32(faces[t, i]), np.int32(faces[t, (i + 1) % 3])
+            edge = heads[start + end]
+            while edge >= 0:
+                if edges[edge, 0] == start and edges[edge, 1] == end:
+                    break
+                if edges[edge, 0] == end and edges[edge, 1] == start:
+                    break
+                edge = following[edge]
+            if edge < 0:
+                edge = np.int32(count)
+                count += 1
+                edges[edge, 0], edges[edge, 1] = start, end
+                following[edge] = heads[start + end]
+                heads[start + end] = edge
+            edge_of[3 * t + i] = edge
+            if side_counts[edge] < 2:
+                sides[edge, side_counts[edge]] = 3 * t + i
+            side_counts[edge] += 1
+    return count
+
+
+@kernel
+def look_around(
+    faces: Unsigned,
+    edge_of: Indices,
+    edges: Indices,
+    sides: Unsigned,
+    side_counts: Indices,
+    is_interior: Flags,
+    edge_points: Unsigned,
+    edge_wings: Unsigned,
+) -> None:
+    """Find which edges are interior, and the corners and edges around each (see the picture)."""
+    for e in range(edges.shape[0]):
+        a, b = np.uint32(edges[e, 0]), np.uint32(edges[e, 1])
+        edge_points[e, 0], edge_points[e, 1], edge_points[e, 2], edge_points[e, 3] = a, b, a, a
+        edge_wings[e, :] = np.uint32(e)
+        t, i = sides[e, 0] // 3, sides[e, 0] % 3
+        is_interior[e] = False
+        if side_counts[e] != 2:
+            continue
+        u, j = sides[e, 1] // 3, sides[e, 1] % 3
+        if faces[u, j] != b:
+            continue
+        is_interior[e] = True
+        edge_points[e, 2] = faces[t, (i + 2) % 3]
+        edge_points[e, 3] = faces[u, (j + 2) % 3]
+        edge_wings[e, 0] = edge_of[3 * t + (i + 2) % 3]
+        edge_wings[e, 1] = edge_of[3 * t + (i + 1) % 3]
+        edge_wings[e, 2] = edge_of[3 * u + (j + 1) % 3]
+        edge_wings[e, 3] = edge_of[3 * u + (j + 2) % 3]
+
+
+def _more_sides(edge_of: Indices, sides: Unsigned, side_counts: Indices) -> Unsigned:
+    """Sides of edges of more than two triangles that `edge_sides` has no room for."""
+    proper = np.flatnonzero(edge_of >= 0)
+    crowded = proper[side_counts[edge_of[proper]] > 2]
+    edges = edge_of[crowded]
+    is_more = (sides[edges] != crowded[:, None]).all(axis=1)
+    return np.stack([edges[is_more], crowded[is_more]], axis=1).astype(np.uint32)
+
+
+def _seams(
+    faces: Unsigned,
+    edge_of: Indices,
+    edges: Indices,
+    sides: Unsigned,
+    vertex_count: int,
+    face_uv: npt.NDArray[np.integer] | None,
+) -> dict[str, npt.NDArray[Any]]:
+    """Wedges and rims: those of the vertices and edges, and their copies along seams."""
+    edge_count = len(edges)
+    none = np.uint32(2 * edge_count)
+    is_proper = edge_of >= 0
+    starts = faces.ravel()
+    is_reversed = is_proper & (starts != edges[edge_of, 0]) if edge_count else is_proper
+    if face_uv is None:
+        used = np.full(vertex_count, -1, dtype=np.int32)
+        used[starts] = starts
+        rims = np.where(is_proper, 2 * edge_of + is_reversed, none).astype(np.uint32)
+        return {
+            "corners": faces,
+            "triangle_rims": rims.reshape(-1, 3),
+            "wedge_vertices": np.arange(vertex_count, dtype=np.uint32),
+            "wedge_uv": used,
+            "rim_edges": np.arange(edge_count, dtype=np.uint32),
+            "rim_uv": edges,
+        }
+    corner_uv = np.asarray(face_uv, dtype=np.int64).reshape(-1, 3)
+    proper = is_proper.reshape(-1, 3)[:, 0]
+    place = np.cumsum(is_proper) - 1  # of a half-edge among those of proper triangles
+    rim_of, rim_edges, rim_uv = _rims(
+        corner_uv[proper],
+        edge_of[is_proper].astype(np.int64),
+        is_reversed[is_proper],
+        place[sides[:, 0]],
+    )
+    corners, wedge_vertices, wedge_uv = _wedges(faces.astype(np.int64), corner_uv, vertex_count)
+    triangle_rims = np.full(faces.size, 2 * len(rim_edges), dtype=np.uint32)
+    triangle_rims[is_proper] = 2 * rim_of + is_reversed[is_proper]
+    return {
+        "corners": corners.astype(np.uint32),
+        "triangle_rims": triangle_rims.reshape(-1, 3),
+        "wedge_vertices": wedge_vertices.astype(np.uint32),
+        "wedge_uv": wedge_uv.astype(np.int32),
+        "rim_edges": rim_edges.astype(np.uint32),
+        "rim_uv": rim_uv.astype(np.int32),
+    }
 
 
 def number_by_first_use(keys: Wide) -> tuple[Wide, Wide]:
@@ -152,40 +290,6 @@ def weld(
     rows = np.unique(points, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
     number, kept = number_by_first_use(rows)
     return kept.astype(np.int32), number[np.asarray(faces)].astype(np.int32)
-
-
-def _has_three_corners(faces: Wide) -> Flags:
-    following = np.roll(faces, -1, axis=1)
-    return np.asarray((faces != following).all(axis=1))
-
-
-def _neighbourhoods(
-    faces: Wide, edges: Wide, edge_of: Wide, is_reversed: Flags, first: Wide
-) -> tuple[Flags, Wide, Wide]:
-    """Which edges are interior, and the corners and edges around each (see the picture above)."""
-    side_count = np.bincount(edge_of, minlength=len(edges))
-    reversed_count = np.bincount(edge_of, weights=is_reversed, minlength=len(edges))
-    is_interior = (side_count == 2) & (reversed_count == 1)
-
-    half_edges = np.arange(len(edge_of))
-    following = half_edges - half_edges % 3 + (half_edges + 1) % 3
-    preceding = half_edges - half_edges % 3 + (half_edges + 2) % 3
-    opposite_corner = np.roll(faces, -2, axis=1).ravel()
-
-    edge_points = np.stack([edges[:, 0], edges[:, 1], edges[:, 0], edges[:, 0]], axis=1)
-    edge_wings = np.repeat(np.arange(len(edges))[:, None], 4, axis=1)
-    inner = np.flatnonzero(is_interior)
-    forward = first[inner]
-    backward_of = np.zeros(len(edges), dtype=np.int64)
-    backward_of[edge_of[is_reversed]] = half_edges[is_reversed]
-    backward = backward_of[inner]
-    edge_points[inner, 2] = opposite_corner[forward]
-    edge_points[inner, 3] = opposite_corner[backward]
-    edge_wings[inner, 0] = edge_of[preceding[forward]]
-    edge_wings[inner, 1] = edge_of[following[forward]]
-    edge_wings[inner, 2] = edge_of[following[backward]]
-    edge_wings[inner, 3] = edge_of[preceding[backward]]
-    return is_interior, edge_points, edge_wings
 
 
 def _rims(

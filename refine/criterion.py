@@ -18,13 +18,17 @@ wherever they are; float32 positions lose bits before they arrive here, 8e-6 aro
 one metre away, still far below the default thresholds.
 """
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
 
 from .connectivity import Connectivity
 from .kernels import kernel
+
+Floats = npt.NDArray[np.float32]
+Doubles = npt.NDArray[np.float64]
+Small = npt.NDArray[np.uint8]
 
 THRESHOLD_ONCE = 0.02
 """Default drop above which an edge is split once: a flat place bent by 11 degrees along an edge.
@@ -36,6 +40,8 @@ THRESHOLD_TWICE = 0.08
 """Default drop above which an edge is split twice: a flat place bent by 23 degrees."""
 ROUNDING = 1e-5
 """Drops up to this size are rounding (measured, see above)."""
+NARROWEST = 1e-6
+"""Least distance of two thresholds; where they are equal there is nothing to blend over."""
 UNDEFINED_NORMAL = 1e-6
 """A normal shorter than this fraction of the lengths that made it is rounding, not a direction."""
 
@@ -44,60 +50,101 @@ TINY = np.finfo(np.float32).tiny
 
 
 class Criterion(Protocol):
-    """Decides on splits; anything with these two methods can take the place of the paper's rule."""
+    """Decides on splits; anything with these two methods can take the place of the paper's rule.
+
+    Two more methods are used where they are there: `measure(positions, normals, need)`, which
+    blending asks for (see `Measured`), and `look(view)`, which gets the `view` of every frame.
+    """
 
     def bind(
         self,
         connectivity: Connectivity,
-        rest_positions: npt.NDArray[np.float64],
-        rest_normals: npt.NDArray[np.float32],
+        rest_positions: Doubles,
+        rest_normals: Floats,
     ) -> None:
         """Learn the undeformed mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
 
-    def mark(
-        self,
-        positions: npt.NDArray[np.float64],
-        normals: npt.NDArray[np.float32],
-        splits: npt.NDArray[np.uint8],
-    ) -> None:
+    def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write 0, 1 or 2 for every edge into `splits`, shape (E,)."""
+
+
+@runtime_checkable
+class Measured(Criterion, Protocol):
+    """A criterion that says how much an edge needs splits, and not only how many."""
+
+    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
+        """Write the need of every edge, shape (E,): above 0 one split, above 1 two.
+
+        It has to be a continuous function of the positions for blending to be one.
+        """
+
+
+class Thresholds:
+    """Two values of a measure: above the first an edge is split once, above the second twice."""
+
+    def __init__(self, once: float, twice: float, meaning: str, *, least: float = 0.0) -> None:
+        """`meaning`: what is measured, for the error; `least`: values up to this never count.
+
+        Raises ValueError if the two are out of order.
+        """
+        if not 0.0 <= once <= twice:
+            raise ValueError(
+                f"threshold_once and threshold_twice are {meaning} with "
+                "0 <= threshold_once <= threshold_twice (inf switches a level off), "
+                f"got {once!r} and {twice!r}"
+            )
+        self.once = np.float32(max(float(once), least))
+        self.twice = np.float32(max(float(twice), least))
+
+    @property
+    def width(self) -> np.float32:
+        """What lies between the two: the unit of need."""
+        if np.isinf(self.twice):
+            return self.once if 0.0 < self.once < np.inf else np.float32(1.0)
+        return np.float32(max(float(self.twice - self.once), NARROWEST))
+
+    @property
+    def most(self) -> np.float32:
+        """The need that cannot be exceeded: 1 where the second level is switched off."""
+        return np.float32(1.0 if np.isinf(self.twice) else np.inf)
 
 
 class NormalDrop:
     """The paper's criterion: drop of the dot product of the vertex normals along each edge."""
 
-    def __init__(self, threshold_once: float, threshold_twice: float) -> None:
-        if not 0.0 <= threshold_once <= threshold_twice:
-            raise ValueError(
-                "threshold_once and threshold_twice are drops of a dot product with "
-                "0 <= threshold_once <= threshold_twice (inf switches a level off), "
-                f"got {threshold_once!r} and {threshold_twice!r}"
-            )
-        self._once = np.float32(max(threshold_once, ROUNDING))
-        self._twice = np.float32(max(threshold_twice, ROUNDING))
+    def __init__(
+        self, threshold_once: float = THRESHOLD_ONCE, threshold_twice: float = THRESHOLD_TWICE
+    ) -> None:
+        self.thresholds = Thresholds(
+            threshold_once, threshold_twice, "drops of a dot product", least=ROUNDING
+        )
 
     def bind(
         self,
         connectivity: Connectivity,
-        rest_positions: npt.NDArray[np.float64],
-        rest_normals: npt.NDArray[np.float32],
+        rest_positions: Doubles,
+        rest_normals: Floats,
     ) -> None:
         """Store the dot product of every edge of the undeformed mesh."""
-        self._edges = connectivity.edges.astype(np.uint32)
+        self._edges = connectivity.edges.view(np.uint32)
         self._rest_dots = np.empty(len(self._edges), dtype=np.float32)
         edge_dots(rest_normals, self._edges, self._rest_dots)
         # No direction to compare with at rest (all triangles around are slivers): never split.
-        undefined = _undefined_normals(connectivity.faces, rest_positions)
-        self._rest_dots[undefined[self._edges].any(axis=1)] = -np.inf
+        undefined = np.empty(len(rest_positions), dtype=np.bool_)
+        find_undefined_normals(connectivity.faces, rest_positions, UNDEFINED_NORMAL, undefined)
+        if undefined.any():
+            self._rest_dots[undefined[self._edges].any(axis=1)] = -np.inf
 
-    def mark(
-        self,
-        positions: npt.NDArray[np.float64],
-        normals: npt.NDArray[np.float32],
-        splits: npt.NDArray[np.uint8],
-    ) -> None:
+    def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write the number of splits of every edge into `splits`, shape (E,)."""
-        mark_drops(normals, self._edges, self._rest_dots, self._once, self._twice, splits)
+        limits = self.thresholds
+        mark_drops(normals, self._edges, self._rest_dots, limits.once, limits.twice, splits)
+
+    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
+        """Write the need of every edge, shape (E,)."""
+        limits = self.thresholds
+        edge_dots(normals, self._edges, need)
+        needs_of_drops(need, self._rest_dots, limits.once, limits.width, limits.most)
 
 
 @kernel
@@ -172,16 +219,36 @@ def mark_drops(
         splits[e] = np.uint8(drop > once) + np.uint8(drop > twice)
 
 
-def _undefined_normals(
-    faces: npt.NDArray[np.uint32], positions: npt.NDArray[np.float64]
-) -> npt.NDArray[np.bool_]:
-    """Vertices whose normal is nothing but rounding, shape (V,)."""
-    a, b, c = (positions[faces[:, k]] for k in range(3))
-    cross = np.cross(b - a, c - a)
-    size = np.linalg.norm(b - a, axis=1) * np.linalg.norm(c - a, axis=1)
-    sums = np.zeros((len(positions), 3))
-    sizes = np.zeros(len(positions))
-    for k in range(3):
-        np.add.at(sums, faces[:, k], cross)
-        np.add.at(sizes, faces[:, k], size)
-    return np.asarray(np.linalg.norm(sums, axis=1) <= UNDEFINED_NORMAL * sizes)
+@kernel
+def needs_of_drops(
+    need: Floats, rest_dots: Floats, once: np.float32, width: np.float32, most: np.float32
+) -> None:
+    """Turn the dot products in `need`, shape (E,), into needs."""
+    for e in range(need.shape[0]):
+        need[e] = min((rest_dots[e] - need[e] - once) / width, most)
+
+
+@kernel
+def find_undefined_normals(
+    faces: npt.NDArray[np.uint32],
+    positions: Doubles,
+    limit: float,
+    undefined: npt.NDArray[np.bool_],
+) -> None:
+    """Flag the vertices, shape (V,), whose normal is nothing but rounding."""
+    sums = np.zeros((positions.shape[0], 4))
+    for t in range(faces.shape[0]):
+        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        ux, vx = positions[b, 0] - positions[a, 0], positions[c, 0] - positions[a, 0]
+        uy, vy = positions[b, 1] - positions[a, 1], positions[c, 1] - positions[a, 1]
+        uz, vz = positions[b, 2] - positions[a, 2], positions[c, 2] - positions[a, 2]
+        size = np.sqrt((ux * ux + uy * uy + uz * uz) * (vx * vx + vy * vy + vz * vz))
+        for i in range(3):
+            v = faces[t, i]
+            sums[v, 0] += uy * vz - uz * vy
+            sums[v, 1] += uz * vx - ux * vz
+            sums[v, 2] += ux * vy - uy * vx
+            sums[v, 3] += size
+    for v in range(positions.shape[0]):
+        length = np.sqrt(sums[v, 0] ** 2 + sums[v, 1] ** 2 + sums[v, 2] ** 2)
+        undefined[v] = length <= limit * sums[v, 3]

@@ -1,4 +1,4 @@
-r"""Weights of the smoothing rules: where the new points on split edges go.
+r"""The paper's smoothing: weights of the rules for vertices and for new points on split edges.
 
 Kähler, Haber, Seidel 2003, section 4.2 with Figs. 3 and 4, after Loop 1987. `o` is the point that
 is computed.
@@ -27,14 +27,19 @@ is computed.
             d
 
 m is the first-level point of the edge; p, q, r, s those of the neighbour edges ac, bc, ad, bd, or
-their midpoints where these are not split. a' and b' are the moved end points (rings.py).
+their midpoints where these are not split. a' and b' are the moved end points; their weights are in
+rings.py.
 
 The paper leaves open, and we decide: m, p, q, r, s enter the second level as the first level left
 them, so that the order of edges cannot matter.
 
-Normals of new points are interpolated linearly along the edge and normalised (section 4.4, first
-paragraph). Whole passes and not one function per point: numba pays for every array argument of a
-call, and a call per element made such loops five times slower (measured).
+*Growth* is how much of its way from the straight edge a point has gone: 0 to 1, for each level of
+each edge, and 1 always unless the frame is blended (blend.py). A mix with growth 0 or 1 returns one
+of its two sides to the last bit, so the same code serves both.
+
+Normals of new points are interpolated between their two neighbours on the edge and normalised
+(section 4.4, first paragraph). Whole passes and not one function per point: numba pays for every
+array argument of a call, and a call per element made such loops five times slower (measured).
 """
 
 import numpy as np
@@ -62,9 +67,7 @@ MIDDLE_RING = np.float32(1 / 16)
 """Its six neighbours, 3/(8 x 6) (Fig. 4 right)."""
 
 ZERO = np.float32(0.0)
-QUARTER = np.float32(0.25)
 HALF = np.float32(0.5)
-THREE_QUARTERS = np.float32(0.75)
 ONE = np.float32(1.0)
 TINY = np.finfo(np.float32).tiny
 """Squared length below which a vector is left as it is instead of being normalised."""
@@ -78,11 +81,66 @@ def unit(x: np.float32, y: np.float32, z: np.float32) -> tuple[np.float32, np.fl
 
 
 @kernel
+def mix(from_: np.float32, to: np.float32, growth: np.float32) -> np.float32:
+    """One side at growth 0, the other at growth 1, to the last bit."""
+    return (ONE - growth) * from_ + growth * to
+
+
+@kernel
+def grow_vertices(
+    edge_points: Unsigned,
+    growth_once: Floats,
+    split_once: Unsigned,
+    once_count: int,
+    vertex_growth: Floats,
+) -> None:
+    """A vertex moves as much as the most grown edge at it: 0 where none is split."""
+    vertex_growth[:] = ZERO
+    for k in range(once_count):
+        e = split_once[k]
+        a, b, growth = edge_points[e, 0], edge_points[e, 1], growth_once[e]
+        vertex_growth[a] = max(vertex_growth[a], growth)
+        vertex_growth[b] = max(vertex_growth[b], growth)
+
+
+@kernel
+def place_vertices(
+    positions: Doubles,
+    normals: Floats,
+    vertex_growth: Floats,
+    own: Floats,
+    ring: Floats,
+    ring_starts: Unsigned,
+    ring_vertices: Unsigned,
+    vertices: Floats,
+) -> None:
+    """Write the original vertices, those at split edges moved by the vertex rule (Fig. 3)."""
+    for v in range(positions.shape[0]):
+        x = np.float32(positions[v, 0])
+        y = np.float32(positions[v, 1])
+        z = np.float32(positions[v, 2])
+        if vertex_growth[v] > ZERO:
+            sum_x = sum_y = sum_z = ZERO
+            for k in range(ring_starts[v], ring_starts[v + 1]):
+                neighbour = ring_vertices[k]
+                sum_x += np.float32(positions[neighbour, 0])
+                sum_y += np.float32(positions[neighbour, 1])
+                sum_z += np.float32(positions[neighbour, 2])
+            x = mix(x, own[v] * x + ring[v] * sum_x, vertex_growth[v])
+            y = mix(y, own[v] * y + ring[v] * sum_y, vertex_growth[v])
+            z = mix(z, own[v] * z + ring[v] * sum_z, vertex_growth[v])
+        vertices[v, 0], vertices[v, 1], vertices[v, 2] = x, y, z
+        vertices[v, 3], vertices[v, 4], vertices[v, 5] = normals[v, 0], normals[v, 1], normals[v, 2]
+
+
+@kernel
 def place_middles(
     positions: Doubles,
     normals: Floats,
     edge_points: Unsigned,
     is_interior: npt.NDArray[np.bool_],
+    splits: npt.NDArray[np.uint8],
+    growth_once: Floats,
     first_points: Unsigned,
     split_once: Unsigned,
     once_count: int,
@@ -93,12 +151,15 @@ def place_middles(
     for k in range(once_count):
         e = split_once[k]
         a, b, c, d = edge_points[e, 0], edge_points[e, 1], edge_points[e, 2], edge_points[e, 3]
-        row = first_points[e]
+        row = first_points[e] + (splits[e] >> 1)
         end, wing = (EDGE_END, EDGE_WING) if is_interior[e] else (BORDER_EDGE_END, ZERO)
+        growth = growth_once[e]
         for i in range(3):
             ends = np.float32(positions[a, i]) + np.float32(positions[b, i])
             wings = np.float32(positions[c, i]) + np.float32(positions[d, i])
-            middles[e, i] = vertices[row, i] = end * ends + wing * wings
+            middle = end * ends + wing * wings
+            middles[e, i] = middle
+            vertices[row, i] = mix(HALF * (vertices[a, i] + vertices[b, i]), middle, growth)
         vertices[row, 3], vertices[row, 4], vertices[row, 5] = unit(
             normals[a, 0] + normals[b, 0],
             normals[a, 1] + normals[b, 1],
@@ -109,55 +170,54 @@ def place_middles(
 @kernel
 def place_quarters(
     positions: Doubles,
-    normals: Floats,
     edge_points: Unsigned,
     edge_wings: Unsigned,
     is_interior: npt.NDArray[np.bool_],
-    rim_splits: npt.NDArray[np.uint8],
+    growth_once: Floats,
+    growth_twice: Floats,
     first_points: Unsigned,
     split_twice: Unsigned,
     twice_count: int,
     middles: Floats,
     vertices: Floats,
 ) -> None:
-    """Write the three points of every edge that is split twice (Fig. 4)."""
+    """Write the quarter points of every edge that is split twice, and move its middle (Fig. 4)."""
     for k in range(twice_count):
         e = split_twice[k]
         a, b, c, d = edge_points[e, 0], edge_points[e, 1], edge_points[e, 2], edge_points[e, 3]
-        row = first_points[e]
-        has_p = rim_splits[edge_wings[e, 0]] > 0
-        has_q = rim_splits[edge_wings[e, 1]] > 0
-        has_r = rim_splits[edge_wings[e, 2]] > 0
-        has_s = rim_splits[edge_wings[e, 3]] > 0
-        for i in range(3):
-            m = middles[e, i]
-            moved_a, moved_b = vertices[a, i], vertices[b, i]
-            if is_interior[e]:
+        near_a = first_points[e]
+        centre, near_b = near_a + 1, near_a + 2
+        growth = growth_twice[e]
+        if is_interior[e]:
+            wing_p, wing_q = edge_wings[e, 0], edge_wings[e, 1]
+            wing_r, wing_s = edge_wings[e, 2], edge_wings[e, 3]
+            grown_p, grown_q = growth_once[wing_p], growth_once[wing_q]
+            grown_r, grown_s = growth_once[wing_r], growth_once[wing_s]
+            for i in range(3):
                 at_a, at_b = np.float32(positions[a, i]), np.float32(positions[b, i])
                 at_c, at_d = np.float32(positions[c, i]), np.float32(positions[d, i])
-                p = middles[edge_wings[e, 0], i] if has_p else HALF * (at_a + at_c)
-                q = middles[edge_wings[e, 1], i] if has_q else HALF * (at_b + at_c)
-                r = middles[edge_wings[e, 2], i] if has_r else HALF * (at_a + at_d)
-                s = middles[edge_wings[e, 3], i] if has_s else HALF * (at_b + at_d)
+                p = mix(HALF * (at_a + at_c), middles[wing_p, i], grown_p)
+                q = mix(HALF * (at_b + at_c), middles[wing_q, i], grown_q)
+                r = mix(HALF * (at_a + at_d), middles[wing_r, i], grown_r)
+                s = mix(HALF * (at_b + at_d), middles[wing_s, i], grown_s)
+                m, moved_a, moved_b = middles[e, i], vertices[a, i], vertices[b, i]
                 ring = (moved_a + moved_b) + ((p + r) + (q + s))
-                vertices[row, i] = EDGE_END * (moved_a + m) + EDGE_WING * (p + r)
-                vertices[row + 1, i] = MIDDLE_OWN * m + MIDDLE_RING * ring
-                vertices[row + 2, i] = EDGE_END * (moved_b + m) + EDGE_WING * (q + s)
-            else:
-                vertices[row, i] = BORDER_EDGE_END * (moved_a + m)
-                vertices[row + 1, i] = BORDER_MIDDLE_OWN * m + BORDER_MIDDLE_RING * (
-                    moved_a + moved_b
-                )
-                vertices[row + 2, i] = BORDER_EDGE_END * (moved_b + m)
-        ax, ay, az = normals[a, 0], normals[a, 1], normals[a, 2]
-        bx, by, bz = normals[b, 0], normals[b, 1], normals[b, 2]
-        near, far = THREE_QUARTERS, QUARTER
-        vertices[row, 3], vertices[row, 4], vertices[row, 5] = unit(
-            near * ax + far * bx, near * ay + far * by, near * az + far * bz
+                beside_a = EDGE_END * (moved_a + m) + EDGE_WING * (p + r)
+                beside_b = EDGE_END * (moved_b + m) + EDGE_WING * (q + s)
+                vertices[near_a, i] = mix(HALF * (moved_a + m), beside_a, growth)
+                vertices[centre, i] = mix(m, MIDDLE_OWN * m + MIDDLE_RING * ring, growth)
+                vertices[near_b, i] = mix(HALF * (moved_b + m), beside_b, growth)
+        else:
+            for i in range(3):
+                m, moved_a, moved_b = middles[e, i], vertices[a, i], vertices[b, i]
+                moved = BORDER_MIDDLE_OWN * m + BORDER_MIDDLE_RING * (moved_a + moved_b)
+                vertices[near_a, i] = BORDER_EDGE_END * (moved_a + m)
+                vertices[centre, i] = mix(m, moved, growth)
+                vertices[near_b, i] = BORDER_EDGE_END * (moved_b + m)
+        x, y, z = vertices[centre, 3], vertices[centre, 4], vertices[centre, 5]
+        vertices[near_a, 3], vertices[near_a, 4], vertices[near_a, 5] = unit(
+            vertices[a, 3] + x, vertices[a, 4] + y, vertices[a, 5] + z
         )
-        vertices[row + 1, 3], vertices[row + 1, 4], vertices[row + 1, 5] = unit(
-            ax + bx, ay + by, az + bz
-        )
-        vertices[row + 2, 3], vertices[row + 2, 4], vertices[row + 2, 5] = unit(
-            far * ax + near * bx, far * ay + near * by, far * az + near * bz
+        vertices[near_b, 3], vertices[near_b, 4], vertices[near_b, 5] = unit(
+            vertices[b, 3] + x, vertices[b, 4] + y, vertices[b, 5] + z
         )

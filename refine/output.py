@@ -2,10 +2,14 @@
 
 Kähler, Haber, Seidel 2003, section 4.3. The output begins with one row per wedge, so that vertex v
 of the input is row v. The points of a rim follow in a block, in the direction of its edge: the
-middle point, or quarter, middle, quarter.
+middle point, or quarter, middle, quarter. Points in the middle of triangles, which only blending
+has (blend.py), come last.
 
-A row is x y z, nx ny nz[, u v]. Texture coordinates of new points are interpolated linearly along
-their edge, with the values of their own side of a seam (section 4.4, first paragraph).
+A row is x y z, nx ny nz[, attributes]. Attributes (texture coordinates, colours) of new points are
+interpolated linearly along their edge, with the values of their own side of a seam (section 4.4,
+first paragraph).
+
+Everything here goes from the edges that are split, not from the triangles: most are not.
 """
 
 import numpy as np
@@ -15,13 +19,18 @@ from .kernels import kernel
 
 Floats = npt.NDArray[np.float32]
 Unsigned = npt.NDArray[np.uint32]
+Short = npt.NDArray[np.uint16]
 Small = npt.NDArray[np.uint8]
 
 GEOMETRY_COLUMNS = 6
-"""x y z, nx ny nz: columns of a row before texture coordinates."""
+"""x y z, nx ny nz: columns of a row before attributes."""
+CENTRE = 12
+"""Number of the point in the middle of a triangle (patterns.py)."""
 QUARTER = np.float32(0.25)
 HALF = np.float32(0.5)
 THREE_QUARTERS = np.float32(0.75)
+PLACE_VALUES = np.array([1, 3, 9], dtype=np.uint16)
+"""Of the splits of a triangle's three edges in the number of its configuration."""
 
 
 @kernel
@@ -33,40 +42,51 @@ def points_on(split: int) -> int:
 @kernel
 def number_points(
     rim_splits: Small,
-    edge_points: Unsigned,
     rim_edges: Unsigned,
+    edge_sides: Unsigned,
+    more_sides: Unsigned,
     wedge_count: int,
     first_points: Unsigned,
     split_once: Unsigned,
     split_twice: Unsigned,
-    moved: Small,
-) -> tuple[int, int, int]:
-    """Give new points their rows, list the split edges, flag the vertices that move.
+    configurations: Short,
+) -> tuple[int, int, int, int]:
+    """List the split edges, give new points their rows, and triangles their configuration.
 
-    `split_once` gets every split edge, `split_twice` those split twice. Edges that are not split
-    are skipped at once, because they are most; their entry of `first_points` has no meaning.
-    Returns the numbers of rows, of split edges, and of edges split twice.
+    `split_once` gets every split edge, `split_twice` those split twice. The entries of
+    `first_points` for edges that are not split have no meaning. `configurations` has one entry
+    more than triangles, for the sides that border edges do not have.
+    Returns the numbers of rows, of split edges, of edges split twice, and of subtriangles.
     """
-    edge_count = edge_points.shape[0]
-    moved[:] = 0
-    row, once_count, twice_count = wedge_count, 0, 0
+    edge_count = edge_sides.shape[0]
+    once_count, twice_count = 0, 0
+    # Written always and counted when split: no branch that a processor could guess wrong.
     for e in range(edge_count):
+        split_once[once_count] = e
+        split_twice[twice_count] = e
+        once_count += (rim_splits[e] + 1) >> 1
+        twice_count += rim_splits[e] >> 1
+    configurations[:] = 0
+    none = 3 * (configurations.shape[0] - 1)
+    row, triangle_count = wedge_count, configurations.shape[0] - 1
+    for k in range(once_count):
+        e = split_once[k]
         split = rim_splits[e]
-        if split == 0:
-            continue
         first_points[e] = row
         row += points_on(split)
-        split_once[once_count] = e
-        once_count += 1
-        if split == 2:
-            split_twice[twice_count] = e
-            twice_count += 1
-        moved[edge_points[e, 0]] = moved[edge_points[e, 1]] = 1
+        for i in range(2):
+            side = edge_sides[e, i]
+            configurations[side // 3] += split * PLACE_VALUES[side % 3]
+            triangle_count += points_on(split) * (side < none)
+    for k in range(more_sides.shape[0]):
+        split, side = rim_splits[more_sides[k, 0]], more_sides[k, 1]
+        configurations[side // 3] += split * PLACE_VALUES[side % 3]
+        triangle_count += points_on(split)
     for r in range(edge_count, len(rim_edges)):
         rim_splits[r] = rim_splits[rim_edges[r]]
         first_points[r] = row
         row += points_on(rim_splits[r])
-    return row, once_count, twice_count
+    return row, once_count, twice_count, triangle_count
 
 
 @kernel
@@ -104,26 +124,35 @@ def copy_rims(
 
 
 @kernel
-def place_texture(
-    wedge_uv: Floats,
-    rim_uv: Floats,
+def place_attributes(
+    values: Floats,
+    wedge_values: npt.NDArray[np.int32],
+    rim_values: npt.NDArray[np.int32],
     rim_splits: Small,
     first_points: Unsigned,
     vertices: Floats,
 ) -> None:
-    """Write texture coordinates: of wedges as given, of new points linearly along their rim."""
-    for w in range(wedge_uv.shape[0]):
-        vertices[w, 6], vertices[w, 7] = wedge_uv[w, 0], wedge_uv[w, 1]
-    for r in range(rim_uv.shape[0]):
+    """Write attributes: of wedges as given, of new points linearly along their rim.
+
+    `values`: shape (A, k); `wedge_values`, shape (W,), and `rim_values`, shape (R, 2), say which
+    row of it a wedge and the two ends of a rim have; -1 is zero.
+    """
+    columns = values.shape[1]
+    for w in range(wedge_values.shape[0]):
+        k = wedge_values[w]
+        for i in range(columns):
+            vertices[w, GEOMETRY_COLUMNS + i] = values[k, i] if k >= 0 else np.float32(0.0)
+    for r in range(rim_values.shape[0]):
         split, row = rim_splits[r], first_points[r]
-        for i in range(2):
-            at_a, at_b = rim_uv[r, 0, i], rim_uv[r, 1, i]
-            if split == 1:
-                vertices[row, 6 + i] = HALF * (at_a + at_b)
-            elif split == 2:
-                vertices[row, 6 + i] = THREE_QUARTERS * at_a + QUARTER * at_b
-                vertices[row + 1, 6 + i] = HALF * (at_a + at_b)
-                vertices[row + 2, 6 + i] = QUARTER * at_a + THREE_QUARTERS * at_b
+        if split == 0:
+            continue
+        a, b = rim_values[r, 0], rim_values[r, 1]
+        for i in range(columns):
+            at_a, at_b, column = values[a, i], values[b, i], GEOMETRY_COLUMNS + i
+            vertices[row + (split >> 1), column] = HALF * (at_a + at_b)
+            if split == 2:
+                vertices[row, column] = THREE_QUARTERS * at_a + QUARTER * at_b
+                vertices[row + 2, column] = QUARTER * at_a + THREE_QUARTERS * at_b
 
 
 @kernel
@@ -132,25 +161,25 @@ def look_up_triangles(
     triangle_rims: Unsigned,
     rim_splits: Small,
     first_points: Unsigned,
+    first_centre: int,
+    rows: Short,
     subtriangle_counts: Small,
     subtriangles: Small,
     triangles: Unsigned,
     source: npt.NDArray[np.int32],
 ) -> int:
-    """Write the subtriangles of every triangle by its table entry (section 4.3); return how many.
+    """Write the subtriangles of every triangle by its table row (section 4.3); return how many.
 
     A rim keeps its points in the direction of the edge; a triangle that runs against it reads the
-    quarter points in reverse.
+    quarter points in reverse. Centres are numbered in the order of the triangles that have one.
     """
-    points = np.empty(12, np.uint32)
+    points = np.empty(CENTRE + 1, np.uint32)
+    points[CENTRE] = first_centre
     count = 0
     for t in range(corners.shape[0]):
-        configuration, place_value = 0, 1
-        for i in range(3):
-            configuration += place_value * rim_splits[triangle_rims[t, i] >> 1]
-            place_value *= 3
+        row = rows[t]
         # Most triangles are not split: hand them through.
-        if configuration == 0:
+        if row == 0:
             for i in range(3):
                 triangles[count, i] = corners[t, i]
             source[count] = t
@@ -164,9 +193,10 @@ def look_up_triangles(
             points[3 + 3 * i] = first + (rim_splits[rim] >> 1)  # the only point, or the second
             points[4 + 3 * i] = first + 2 * against
             points[5 + 3 * i] = first + 2 - 2 * against
-        for k in range(subtriangle_counts[configuration]):
+        for k in range(subtriangle_counts[row]):
             for i in range(3):
-                triangles[count, i] = points[subtriangles[configuration, k, i]]
+                triangles[count, i] = points[subtriangles[row, k, i]]
             source[count] = t
             count += 1
+        points[CENTRE] += subtriangles[row, 0, 0] == CENTRE
     return count

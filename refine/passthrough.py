@@ -5,13 +5,16 @@ normals and texture coordinates are those that `kahler` hands out where no edge 
 last bit, so that switching between the two shows nothing but refinement.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import AttributeLike
 from .binding import BoundRefiner
 from .criterion import vertex_normals
-from .output import GEOMETRY_COLUMNS, copy_wedges, place_unmoved
-from .plugin import Origins
+from .output import copy_wedges, place_unmoved
+from .plugin import Origins, Stream, View
 
 
 class PassThrough(BoundRefiner):
@@ -24,13 +27,17 @@ class PassThrough(BoundRefiner):
         *,
         uv: npt.ArrayLike | None = None,
         face_uv: npt.ArrayLike | None = None,
+        attributes: Mapping[str, AttributeLike] | None = None,
     ) -> None:
         """Bind to a mesh (see `plugin.create`); there are no options."""
-        super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv)
+        super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv, attributes=attributes)
         self._splits = np.zeros(len(self.connectivity.edges), dtype=np.uint8)
         self._splits.flags.writeable = False
         self._source = np.arange(len(self.connectivity.faces), dtype=np.int32)
-        self._wedge_uv = self._texture_of(self.connectivity.wedge_uv)
+        # No rim is split, so attributes only need a row of zeros for each.
+        rim_count = len(self.connectivity.rim_edges)
+        self._rim_splits = np.zeros(rim_count, dtype=np.uint8)
+        self._first_points = np.zeros(rim_count, dtype=np.uint32)
 
     @property
     def splits(self) -> npt.NDArray[np.uint8]:
@@ -47,19 +54,15 @@ class PassThrough(BoundRefiner):
         """The triangles of the input."""
         return len(self.connectivity.faces)
 
-    def _fill(
-        self,
-        vertices: npt.NDArray[np.float32],
-        triangles: npt.NDArray[np.uint32],
-        source: npt.NDArray[np.int32],
-    ) -> tuple[int, int]:
+    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         connectivity = self.connectivity
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
+        vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
         vertex_normals(self._positions, connectivity.faces, self._normals)
         place_unmoved(self._positions, self._normals, vertices)
-        if self._uv is not None:
+        if self._values is not None:
             copy_wedges(connectivity.vertex_count, connectivity.wedge_vertices, vertices)
-            vertices[:vertex_count, GEOMETRY_COLUMNS:] = self._wedge_uv
+            self._place_attributes(connectivity, self._rim_splits, self._first_points, vertices)
         triangles[:triangle_count] = connectivity.corners
         source[:triangle_count] = self._source
         return vertex_count, triangle_count

@@ -54,17 +54,29 @@ number of subtriangles, dots are lines that no character fits:
      /  |  \ /  |  \     /  |  \ /  |/ \     / \...\ /  |/ \
     *---*---*---*---*   *---*---*---*---*   *---*---*---*---*
 
+With blending (blend.py) another table takes its place: a triangle with more than one split is a fan
+around a point in its middle, number 12, because then a new split cuts one triangle of the fan and
+never turns a diagonal. The paper's patterns have to turn one somewhere: between 110 and 010, for
+one, the diagonal from corner 2 becomes the one from corner 0, and what they span is not flat.
+
 The other sixteen configurations are rotations of these. Equal cuts are decided at the near-start
 point in every corner, so the table does not depend on which corner of a triangle comes first.
 The table is built at import, in a few milliseconds, and every entry is verified: its subtriangles
 have positive area, cover the triangle exactly, use every point, and share inner edges in pairs.
 """
 
+from dataclasses import dataclass
+from typing import Protocol
+
 import numpy as np
 import numpy.typing as npt
 
 MAXIMUM_SUBTRIANGLES = 10
 """Subtriangles of a triangle whose three edges are all split twice (section 4.3)."""
+CENTRE = 12
+"""Number of the point in the middle of a triangle, which fans have."""
+MAXIMUM_FAN = 12
+"""Subtriangles of a fan around the middle of a triangle whose edges are all split twice."""
 MOST_SPLITS = 2
 """An edge is split at most twice (section 4)."""
 POINTS_OF_EDGE = (0, 1, 3)
@@ -165,7 +177,7 @@ def _squared_distance(first: int, second: int) -> int:
     return -(u * v + v * w + w * u)
 
 
-def _verify(splits: tuple[int, int, int], triangles: list[Triangle]) -> None:
+def verify(splits: tuple[int, int, int], triangles: list[Triangle]) -> None:
     """Raise AssertionError unless the subtriangles are a proper triangulation of the outline."""
     points = outline(splits)
     count = 1 + sum(POINTS_OF_EDGE[s] for s in splits)
@@ -182,19 +194,74 @@ def _verify(splits: tuple[int, int, int], triangles: list[Triangle]) -> None:
     )
 
 
-def _build_table() -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint8]]:
+def fan(splits: tuple[int, int, int]) -> list[Triangle]:
+    """Cut a triangle into a fan around its middle; one with a single split into two, as above."""
+    if sum(splits) <= 1:
+        return subdivide(splits)
+    points = outline(splits)
+    pairs = zip(points, points[1:] + points[:1], strict=True)
+    return [(CENTRE, start, end) for start, end in pairs]
+
+
+class Patterns(Protocol):
+    """A table of subtriangles, and the row of it that each triangle takes in a frame."""
+
+    @property
+    def counts(self) -> npt.NDArray[np.uint8]:
+        """Subtriangles of each row, shape (K,)."""
+
+    @property
+    def subtriangles(self) -> npt.NDArray[np.uint8]:
+        """Their points, numbered as above, unused ones 0, shape (K, most, 3)."""
+
+    def rows(self, configurations: npt.NDArray[np.uint16]) -> npt.NDArray[np.uint16]:
+        """Return the row of each triangle, from s_0 + 3 s_1 + 9 s_2, both shape (F,).
+
+        Called once in every frame. Row 0 is the triangle as it is.
+        """
+
+
+@dataclass(frozen=True)
+class FixedPatterns:
+    """One row for each configuration, in their order: what the paper looks up (section 4.3)."""
+
+    counts: npt.NDArray[np.uint8]
+    subtriangles: npt.NDArray[np.uint8]
+
+    def rows(self, configurations: npt.NDArray[np.uint16]) -> npt.NDArray[np.uint16]:
+        """Return `configurations`."""
+        return configurations
+
+
+def _build_table() -> FixedPatterns:
     counts = np.zeros(27, dtype=np.uint8)
     table = np.zeros((27, MAXIMUM_SUBTRIANGLES, 3), dtype=np.uint8)
     for configuration in range(27):
         splits = splits_of(configuration)
         triangles = subdivide(splits)
-        _verify(splits, triangles)
+        verify(splits, triangles)
         counts[configuration] = len(triangles)
         table[configuration, : len(triangles)] = triangles
     counts.flags.writeable = False
     table.flags.writeable = False
-    return counts, table
+    return FixedPatterns(counts, table)
 
 
-SUBTRIANGLE_COUNTS, SUBTRIANGLES = _build_table()
+def _build_fans() -> FixedPatterns:
+    counts = np.zeros(27, dtype=np.uint8)
+    table = np.zeros((27, MAXIMUM_FAN, 3), dtype=np.uint8)
+    for configuration in range(27):
+        triangles = fan(splits_of(configuration))
+        counts[configuration] = len(triangles)
+        table[configuration, : len(triangles)] = triangles
+    counts.flags.writeable = False
+    table.flags.writeable = False
+    return FixedPatterns(counts, table)
+
+
+CONFIGURATIONS = _build_table()
+"""The paper's 27 patterns."""
+FANS = _build_fans()
+"""The patterns that blending needs."""
+SUBTRIANGLE_COUNTS, SUBTRIANGLES = CONFIGURATIONS.counts, CONFIGURATIONS.subtriangles
 """Number of subtriangles, shape (27,), and their points, shape (27, 10, 3), unused rows 0."""

@@ -12,8 +12,9 @@ New refiners join by name, with `register` or with an entry point in group `riso
 """
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib.metadata import EntryPoint, entry_points
+from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -35,6 +36,18 @@ class RefinedMesh(NamedTuple):
     """Input triangle that each triangle is part of, shape (M,)."""
     uv: npt.NDArray[np.float32] | None
     """Texture coordinates, shape (N, 2); None if the mesh was bound without."""
+    attributes: Mapping[str, npt.NDArray[np.float32]] = MappingProxyType({})
+    """The attributes that were bound, by name, shape (N, k)."""
+
+
+class View(NamedTuple):
+    """Where the mesh is looked at from, for criteria that depend on it."""
+
+    eye: npt.ArrayLike
+    """Position of the eye [unit of the input], shape (3,)."""
+    focal: float = 1000.0
+    """Pixels that a length of 1 covers at distance 1: viewport height / (2 tan(angle of view / 2)).
+    """
 
 
 class Origins(NamedTuple):
@@ -47,23 +60,28 @@ class Origins(NamedTuple):
     vertices: npt.NDArray[np.int32]
     """Input vertices, shape (N, 3)."""
     weights: npt.NDArray[np.float32]
-    """Their barycentric weights, multiples of 1/4, shape (N, 3)."""
+    """Their barycentric weights, shape (N, 3): quarters, or thirds in the middle of a triangle."""
 
 
 class Stream(Protocol):
-    """Arrays lent by the caller, which the refiner fills from the top: often mapped GPU memory."""
+    """Arrays lent by the caller, which the refiner fills from the top.
+
+    They have room for `vertex_capacity` and `triangle_capacity`, unless the stream has a method
+    `reserve(vertex_count, triangle_count)`: that is called before each frame is written, with what
+    the frame needs, and may put larger arrays in place.
+    """
 
     @property
     def vertices(self) -> npt.NDArray[np.float32]:
-        """Rows x y z, nx ny nz[, u v]; C-contiguous, shape (>= vertex_capacity, vertex_columns)."""
+        """Rows x y z, nx ny nz[, u v][, attributes]; C-contiguous, shape (.., vertex_columns)."""
 
     @property
     def triangles(self) -> npt.NDArray[np.uint32]:
-        """C-contiguous, shape (>= triangle_capacity, 3)."""
+        """C-contiguous, shape (.., 3)."""
 
     @property
     def source(self) -> npt.NDArray[np.int32]:
-        """C-contiguous, shape (>= triangle_capacity,)."""
+        """C-contiguous, shape (..,)."""
 
 
 @runtime_checkable
@@ -92,12 +110,18 @@ class Refiner(Protocol):
 
     @property
     def vertex_columns(self) -> int:
-        """Columns of a stream's vertices: 6, or 8 with texture coordinates."""
+        """Columns of a stream's vertices: 6, 2 for texture coordinates, those of attributes."""
 
-    def refine(self, positions: npt.NDArray[np.floating], out: Stream | None = None) -> RefinedMesh:
+    def refine(
+        self,
+        positions: npt.NDArray[np.floating],
+        out: Stream | None = None,
+        view: View | None = None,
+    ) -> RefinedMesh:
         """Turn deformed `positions`, shape (V, 3), any float type, into triangles; never writes it.
 
-        The result views the arrays of `out`, or of the refiner's own stream without it.
+        The result views the arrays of `out`, or of the refiner's own stream without it. `view`:
+        for criteria that ask where the eye is.
         """
 
     def origins(self) -> Origins:
@@ -140,7 +164,9 @@ def create(
     `rest_positions`: undeformed vertex positions [any unit], shape (V, 3), any float type.
     `uv`: texture coordinates, shape (U, 2); `face_uv`: the one of each corner, shape (F, 3), or
     None if vertex v has coordinate v (then U = V).
-    `options`: what the method takes; see `refine.Kahler` and `refine.Loop`.
+    `options`: what the method takes; see `refine.Kahler` and `refine.Loop`. The built-in ones all
+    take `attributes`: by name, values of each vertex, shape (V, k), or a pair of values, shape
+    (A, k), and the row of each corner, shape (F, 3), for values that part along seams.
     Raises ValueError for an unknown name or option and for arrays that do not fit together.
     """
     factory = _find(name)

@@ -18,7 +18,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .connectivity import Connectivity
-from .kernels import kernel
 
 BORDER_OWN = 3 / 4
 """Vertex on a border curve (Fig. 3, bottom right)."""
@@ -74,33 +73,3 @@ def vertex_rings(connectivity: Connectivity) -> Rings:
 def warren_weight(valence: npt.NDArray[np.integer]) -> npt.NDArray[np.float64]:
     """Weight of one neighbour of an interior vertex: 3/16 for valence 3, else 3/(8 valence)."""
     return np.where(valence == 3, 3.0 / 16.0, 3.0 / (8.0 * np.maximum(valence, 1)))
-
-
-@kernel
-def place_vertices(
-    positions: npt.NDArray[np.float64],
-    normals: npt.NDArray[np.float32],
-    moved: npt.NDArray[np.uint8],
-    own: npt.NDArray[np.float32],
-    ring: npt.NDArray[np.float32],
-    ring_starts: npt.NDArray[np.uint32],
-    ring_vertices: npt.NDArray[np.uint32],
-    vertices: npt.NDArray[np.float32],
-) -> None:
-    """Write the original vertices, those at split edges moved by the vertex rule (Fig. 3)."""
-    for v in range(positions.shape[0]):
-        x = np.float32(positions[v, 0])
-        y = np.float32(positions[v, 1])
-        z = np.float32(positions[v, 2])
-        if moved[v]:
-            sum_x = sum_y = sum_z = np.float32(0.0)
-            for k in range(ring_starts[v], ring_starts[v + 1]):
-                neighbour = ring_vertices[k]
-                sum_x += np.float32(positions[neighbour, 0])
-                sum_y += np.float32(positions[neighbour, 1])
-                sum_z += np.float32(positions[neighbour, 2])
-            x = own[v] * x + ring[v] * sum_x
-            y = own[v] * y + ring[v] * sum_y
-            z = own[v] * z + ring[v] * sum_z
-        vertices[v, 0], vertices[v, 1], vertices[v, 2] = x, y, z
-        vertices[v, 3], vertices[v, 4], vertices[v, 5] = normals[v, 0], normals[v, 1], normals[v, 2]

@@ -12,19 +12,21 @@ Differs from `kahler` where that splits all edges twice: a triangle becomes sixt
 three points in its interior, and the second level smooths all vertices of the first.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import AttributeLike
 from .binding import BoundRefiner
 from .connectivity import Connectivity, connect
 from .criterion import vertex_normals
-from .masks import place_middles
+from .masks import place_middles, place_vertices
 from .output import GEOMETRY_COLUMNS, copy_wedges
-from .plugin import Origins
-from .rings import Rings, place_vertices, vertex_rings
+from .plugin import Origins, Stream, View
+from .rings import Rings, vertex_rings
 
 Floats = npt.NDArray[np.float32]
 Wide = npt.NDArray[np.int64]
@@ -42,7 +44,9 @@ class Level:
         self.normals = normals
         self._connectivity = connectivity
         self._rings: Rings = vertex_rings(connectivity)
-        self._all_move = np.ones(vertex_count, dtype=np.uint8)
+        self._all_move = np.ones(vertex_count, dtype=np.float32)
+        self._all_grown = np.ones(edge_count, dtype=np.float32)
+        self._all_once = np.ones(edge_count, dtype=np.uint8)
         self._all_edges = np.arange(edge_count, dtype=np.uint32)
         self._first_points = self._all_edges + np.uint32(vertex_count)
         self._middles = np.zeros((edge_count, 3), dtype=np.float32)
@@ -65,6 +69,8 @@ class Level:
             self.normals,
             self._connectivity.edge_points,
             self._connectivity.is_interior,
+            self._all_once,
+            self._all_grown,
             self._first_points,
             self._all_edges,
             len(self._all_edges),
@@ -83,16 +89,19 @@ class Loop(BoundRefiner):
         *,
         uv: npt.ArrayLike | None = None,
         face_uv: npt.ArrayLike | None = None,
+        attributes: Mapping[str, AttributeLike] | None = None,
         levels: int = 1,
     ) -> None:
         """Bind to a mesh (see `plugin.create`). `levels`: 1 or 2, how often all edges are split."""
-        super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv)
+        super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv, attributes=attributes)
         if levels not in (1, 2):
             raise ValueError(f"levels must be 1 or 2, got {levels!r}")
         self._splits = np.full(len(self.connectivity.edges), levels, dtype=np.uint8)
         self._splits.flags.writeable = False
 
-        finest = _Refined.of(self.connectivity, self._uv)
+        finest = _Refined.of(
+            self.connectivity, None if self._values is None else self._values.values
+        )
         self._levels = [Level(finest.connectivity, self._positions, self._normals)]
         for _ in range(levels - 1):
             finest = finest.subdivided()
@@ -101,7 +110,7 @@ class Loop(BoundRefiner):
         self._rows = np.zeros((len(self._levels[-1].positions), GEOMETRY_COLUMNS), np.float32)
         self._finest = finest.subdivided()
         self._triangles = self._finest.connectivity.corners
-        self._wedge_uv = self._finest.wedge_uv()
+        self._wedge_values = self._finest.wedge_values()
 
     @property
     def splits(self) -> npt.NDArray[np.uint8]:
@@ -118,9 +127,9 @@ class Loop(BoundRefiner):
         """Triangles of the finest level: 4 or 16 for each."""
         return len(self._triangles)
 
-    def _fill(
-        self, vertices: Floats, triangles: npt.NDArray[np.uint32], source: npt.NDArray[np.int32]
-    ) -> tuple[int, int]:
+    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
+        vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
         vertex_normals(self._positions, self.connectivity.faces, self._normals)
         for level, finer in pairwise(self._levels):
             level.subdivide(self._rows)
@@ -129,10 +138,9 @@ class Loop(BoundRefiner):
         self._levels[-1].subdivide(vertices)
 
         finest = self._finest.connectivity
-        vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
-        if self._uv is not None:
+        if self._values is not None:
             copy_wedges(finest.vertex_count, finest.wedge_vertices, vertices)
-            vertices[:vertex_count, GEOMETRY_COLUMNS:] = self._wedge_uv
+            vertices[:vertex_count, GEOMETRY_COLUMNS:] = self._wedge_values
         triangles[:triangle_count] = self._triangles
         source[:triangle_count] = self._finest.source
         return vertex_count, triangle_count
@@ -154,20 +162,20 @@ class _Refined:
     """A subdivided mesh in terms of the mesh it came from."""
 
     connectivity: Connectivity
-    uv: Floats | None
-    """Texture coordinates, shape (U, 2)."""
+    values: Floats | None
+    """Texture coordinates and attributes, shape (A, k)."""
     source: npt.NDArray[np.int32]
     """Triangle of the input that each triangle is part of, shape (M,)."""
     barycentric: Floats
     """Corners of each triangle in coordinates of its source, shape (M, 3, 3)."""
 
     @classmethod
-    def of(cls, connectivity: Connectivity, uv: Floats | None) -> "_Refined":
+    def of(cls, connectivity: Connectivity, values: Floats | None) -> "_Refined":
         """Take a mesh as it is."""
         face_count = len(connectivity.faces)
         return cls(
             connectivity,
-            uv,
+            values,
             np.arange(face_count, dtype=np.int32),
             np.tile(np.eye(3, dtype=np.float32), (face_count, 1, 1)),
         )
@@ -184,30 +192,29 @@ class _Refined:
         children = _children(mesh.faces[split].astype(np.int64), vertex_middles)
         faces = np.concatenate([children, mesh.faces[whole]])[order]
 
-        face_uv, uv = None, self.uv
-        if uv is not None:
-            corner_uv = mesh.wedge_uv[mesh.corners].astype(np.int64)
-            uv_middles = len(uv) + (mesh.triangle_rims[split] >> 1).astype(np.int64)
-            children_uv = _children(corner_uv[split], uv_middles)
-            face_uv = np.concatenate([children_uv, corner_uv[whole]])[order]
-            uv = np.concatenate([uv, uv[mesh.rim_uv].mean(axis=1, dtype=np.float32)])
+        corner_rows, values = None, self.values
+        if values is not None:
+            rows = mesh.wedge_uv[mesh.corners].astype(np.int64)
+            middles = len(values) + (mesh.triangle_rims[split] >> 1).astype(np.int64)
+            corner_rows = np.concatenate([_children(rows[split], middles), rows[whole]])[order]
+            values = np.concatenate([values, values[mesh.rim_uv].mean(axis=1, dtype=np.float32)])
 
         barycentric = np.concatenate(
             [_children_coordinates(self.barycentric[split]), self.barycentric[whole]]
         )[order]
         return _Refined(
-            connect(faces, mesh.vertex_count + len(mesh.edges), face_uv),
-            uv,
+            connect(faces, mesh.vertex_count + len(mesh.edges), corner_rows),
+            values,
             self.source[parents[order]],
             barycentric,
         )
 
-    def wedge_uv(self) -> Floats:
-        """Texture coordinates of the output vertices, shape (W, 2)."""
+    def wedge_values(self) -> Floats:
+        """Texture coordinates and attributes of the output vertices, shape (W, k)."""
         indices = self.connectivity.wedge_uv
-        if self.uv is None:
-            return np.zeros((0, 2), dtype=np.float32)
-        return np.where(indices[:, None] < 0, np.float32(0.0), self.uv[indices])
+        if self.values is None:
+            return np.zeros((0, 0), dtype=np.float32)
+        return np.where(indices[:, None] < 0, np.float32(0.0), self.values[indices])
 
 
 def _children(corners: Wide, middles: Wide) -> Wide:

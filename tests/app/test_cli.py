@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -255,9 +256,31 @@ def test_doctor_reports_offscreen_opengl() -> None:
     assert risorius("doctor", "--offscreen", "--quiet").output == ""
 
 
-def test_bench_refine_prints_a_table() -> None:
-    """`bench refine` names the face, the refiners and the milliseconds."""
-    result = risorius("bench", "refine", "--rounds", "3")
+def test_bench_refine(tmp_path: Path) -> None:
+    """`bench refine` prints ours beside the peers, says what is missing, and writes JSON."""
+    target = tmp_path / "times.json"
+    result = risorius("bench", "refine", "--size", "2k", "--seconds", "0.05", "--json", target)
     assert result.exit_code == 0, result.output
-    for word in ("face", "kahler", "ms"):
+    for word in ("kahler 10 %", "memcpy of 10 %", "sparse Loop 1x, numba *", "ns/tri", "Targets"):
         assert word in result.output
+    figures = json.loads(target.read_text())
+    assert {row["mesh"] for row in figures["rows"]} == {"2k"}
+    assert figures["bindings"][0]["triangles"] == figures["rows"][0]["triangles_in"]
+
+
+def test_bench_quality_needs_a_subject(tmp_path: Path) -> None:
+    """Without anything to measure, and with a folder that is no reference, one line tells."""
+    result = risorius("bench", "quality", "--finer", "none")
+    assert result.exit_code == 2
+    assert "nothing to measure" in result.stderr
+    result = risorius("bench", "quality", "--reference", tmp_path)
+    assert result.exit_code == 2
+    assert "face.npz: is not there" in result.stderr
+
+
+def test_reproduce_table1() -> None:
+    """The paper's rows stand beside ours, for face and plane."""
+    result = risorius("reproduce", "table1", "--rounds", "3")
+    assert result.exit_code == 0, result.output
+    for words in ("face, the paper", "3120", "1.75", "plane, refinement alone", "1328", "c_rt"):
+        assert words in result.output

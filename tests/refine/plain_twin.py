@@ -171,10 +171,11 @@ def refine(
                 (2, centre),
                 (3, mix((0.5, moved[b]), (0.5, m))),
             ]
+        between = unit(mix((1, normals[a]), (1, normals[b])))
         for quarters, point in place:
-            t = quarters / 4
+            beside = {1: normals[a], 2: between, 3: normals[b]}[quarters]
             twin.positions[*name, quarters] = point
-            twin.normals[*name, quarters] = unit(mix((1 - t, normals[a]), (t, normals[b])))
+            twin.normals[*name, quarters] = unit(mix((1, beside), (1, between)))
 
     for source, face in enumerate(faces):
         twin.triangles += [(source, corners) for corners in _subtriangles(face, count)]

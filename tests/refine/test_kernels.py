@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import refine
-from refine import criterion, masks, output, rings
+from refine import criterion, masks, output
 
 FOLDER = Path(refine.__file__).parent
 MODULES = sorted(path.stem for path in FOLDER.glob("*.py") if path.stem != "__init__")
@@ -38,4 +38,4 @@ def test_there_are_kernels() -> None:
     for kernel in (criterion.vertex_normals, masks.place_quarters, output.number_points):
         assert hasattr(kernel, "py_func")
     assert "ONE" in masks.unit.py_func.__code__.co_names  # type: ignore[attr-defined]
-    assert rings.place_vertices.__module__ == "refine.rings"
+    assert masks.place_vertices.__module__ == "refine.masks"

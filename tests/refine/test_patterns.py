@@ -93,4 +93,4 @@ def test_verification_can_fail() -> None:
         (overlapping, "do not cover"),
     ):
         with pytest.raises(AssertionError, match=text):
-            patterns._verify((1, 1, 0), wrong)
+            patterns.verify((1, 1, 0), wrong)

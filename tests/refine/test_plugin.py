@@ -116,9 +116,12 @@ def test_unknown_name() -> None:
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("kahler", r"it takes \['criterion', 'threshold_once', 'threshold_twice'\]"),
-        ("loop", r"it takes \['levels'\]"),
-        ("none", "it takes none"),
+        (
+            "kahler",
+            r"it takes \['attributes', 'blend', 'coherent', 'criterion', 'detail', 'scheme'",
+        ),
+        ("loop", r"it takes \['attributes', 'levels'\]"),
+        ("none", r"it takes \['attributes'\]"),
     ],
 )
 def test_unknown_option(name: str, text: str) -> None:

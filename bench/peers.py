@@ -1,0 +1,112 @@
+"""What others offer for the same work, ready to be timed beside us in one run.
+
+- *sparse Loop*: the strongest, see sparse_loop.py: one or two uniform levels as matrices that are
+  built once, with scipy's product and with a compiled one.
+- *trimesh*: `trimesh.remesh.subdivide_loop`, one level.
+- *VTK*: `vtkAdaptiveSubdivisionFilter`, two passes at most, its edge length chosen so that the mesh
+  of the first frame gets as many triangles as ours. It computes no normals.
+
+What is not installed is left out, and named in `missing`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .sheets import Load
+from .sparse_loop import sparse_loop
+
+Frame = npt.NDArray[np.floating]
+Call = Callable[[Frame], object]
+
+SEARCH_STEPS = 14
+LARGEST_FOR_FILTERS = 30_000  # triangles; above, a call of these takes seconds
+LARGEST_FOR_TWO_LEVELS = 300_000  # triangles; a million needs a matrix of 65 million numbers
+
+
+@dataclass(frozen=True)
+class Peer:
+    """One method of somebody else, bound to a mesh."""
+
+    name: str
+    call: Call
+    triangles: int
+
+
+@dataclass
+class Peers:
+    """Those that could be bound, and a line for each that could not."""
+
+    found: list[Peer] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+
+
+def peers_for(load: Load, target: int) -> Peers:
+    """Bind all peers to a mesh; `target`: triangles that an adaptive one is to make."""
+    peers = Peers()
+    for levels in (1, 2) if len(load.faces) <= LARGEST_FOR_TWO_LEVELS else (1,):
+        matrices = sparse_loop(load, levels=levels)
+        for product, call in (("numba", matrices.by_numba), ("scipy", matrices.by_scipy)):
+            name = f"sparse Loop {levels}x, {product}"
+            peers.found.append(Peer(name, call, matrices.triangles))
+    if len(load.faces) > LARGEST_FOR_FILTERS:
+        return peers
+    for name, bind in (
+        ("VTK adaptive", lambda: _vtk(load, target)),
+        ("trimesh", lambda: _trimesh(load)),
+    ):
+        try:
+            peers.found.append(bind())
+        except ImportError as error:
+            package = (error.name or name).partition(".")[0]
+            peers.missing.append(f"{name}: left out, {package} is not installed (extra 'peers')")
+    return peers
+
+
+def _trimesh(load: Load) -> Peer:
+    import trimesh.remesh
+
+    def frame(positions: Frame) -> Any:
+        return trimesh.remesh.subdivide_loop(positions, load.faces, iterations=1)
+
+    return Peer("trimesh Loop 1x", frame, len(frame(load.frames[0])[1]))
+
+
+def _vtk(load: Load, target: int) -> Peer:
+    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+    from vtkmodules.vtkFiltersModeling import vtkAdaptiveSubdivisionFilter
+
+    cells = vtkCellArray()
+    offsets = np.arange(0, 3 * len(load.faces) + 1, 3, dtype=np.int64)
+    corners = load.faces.astype(np.int64).ravel()
+    cells.SetData(
+        numpy_to_vtkIdTypeArray(offsets, deep=True), numpy_to_vtkIdTypeArray(corners, deep=True)
+    )
+    points, mesh, refiner = vtkPoints(), vtkPolyData(), vtkAdaptiveSubdivisionFilter()
+    mesh.SetPoints(points)
+    mesh.SetPolys(cells)
+    refiner.SetInputData(mesh)
+    refiner.SetMaximumNumberOfPasses(2)
+    refiner.SetMaximumTriangleArea(1e30)
+
+    def frame(positions: Frame) -> int:
+        points.SetData(numpy_to_vtk(np.ascontiguousarray(positions)))
+        points.Modified()
+        refiner.Update()
+        return int(refiner.GetOutput().GetNumberOfPolys())
+
+    ends = load.frames[0][load.faces] - np.roll(load.frames[0][load.faces], -1, axis=1)
+    low, high = 0.0, float(np.linalg.norm(ends, axis=2).max())
+    for _ in range(SEARCH_STEPS):
+        middle = 0.5 * (low + high)
+        refiner.SetMaximumEdgeLength(middle)
+        low, high = (middle, high) if frame(load.frames[0]) > target else (low, middle)
+    refiner.SetMaximumEdgeLength(high)
+    return Peer("VTK adaptive", frame, frame(load.frames[0]))

@@ -1,0 +1,271 @@
+"""How near a refined mesh comes to the true surface, for the triangles that it spends.
+
+A coarse face moves with a dense one (subjects.py). From every dense vertex the nearest point of the
+refined coarse mesh is found, exactly; its distance and the angle between the two normals there are
+squared, averaged and rooted. Edges are split by one of two criteria, whose threshold is searched
+until the mesh has as many triangles as it may spend:
+
+    drop     the paper's: where the mesh bends more than at rest
+    height   where it is curved, at rest or not: refine.Curvature(relative=False)
+
+Beside that everything split twice, and subdivision of the whole mesh by uniform Loop (Loop 1987,
+Warren's weights) and uniform PN triangles (pn.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import refine
+
+from .nearest import nearest_points
+from .pn import tessellate
+from .subjects import Pose, Subject
+
+Array = npt.NDArray[np.float64]
+Narrow = npt.NDArray[np.float32]
+
+SCHEMES = ("loop", "butterfly", "cubic", "detail")
+BUDGETS = (1.6, 2.0)
+"""Triangles of a refined mesh over those of the coarse one, that the targets speak of."""
+CURVE_BUDGETS = (1.15, 1.3, 1.6, 2.0, 3.0, 5.0, 7.5)
+"""The same for curves."""
+RATIO = refine.THRESHOLD_TWICE / refine.THRESHOLD_ONCE
+HEIGHT_RATIO = 2.4  # as refine.Curvature has it
+SEARCH_STEPS = 18
+EVERYWHERE = float("inf")
+"""The budget that splits every edge twice."""
+COARSE = "coarse"
+IDEAL = "ideal"
+"""The mesh of `detail` with all its vertices moved to the nearest points of the true surface: about
+what such triangles can come to, whatever decides where points go. Not a bound: flat triangles fit a
+round surface better with corners a little outside it."""
+UNIFORM = ("uniform Loop", "uniform PN")
+Key = tuple[str, str, float]
+"""Method, criterion, budget."""
+
+
+@dataclass(frozen=True)
+class Score:
+    """Error of one mesh in one expression."""
+
+    method: str
+    """`coarse`, a scheme, or one of UNIFORM."""
+    criterion: str
+    """One of CRITERIA, empty where nothing decides."""
+    budget: float
+    """Triangles that it was allowed, over the coarse ones; EVERYWHERE, or levels for UNIFORM."""
+    expression: str
+    triangles: int
+    distance: float
+    """Root of the mean squared distance [mm]."""
+    angle: float
+    """Root of the mean squared angle between normals [degrees]."""
+
+    @property
+    def key(self) -> Key:
+        """What it is a score of, whatever the expression."""
+        return self.method, self.criterion, self.budget
+
+
+class SlidingCriterion:
+    """A criterion with a threshold that can be moved after binding (a refine.Criterion)."""
+
+    ratio = RATIO
+    """The threshold that splits twice, over the one that splits once."""
+
+    def __init__(self) -> None:
+        self.threshold = 1.0
+        self.is_everywhere = False
+
+    def bind(self, connectivity: refine.Connectivity, rest: Narrow, rest_normals: Narrow) -> None:
+        """Take the edges and what they measure in the undeformed mesh."""
+        self._ends = connectivity.edges.T
+        self._at_rest = self._value(rest, rest_normals)
+
+    def measure(self, positions: Narrow, normals: Narrow, need: Narrow) -> None:
+        """Write 0 at the threshold and 1 where twice is split, shape (E,)."""
+        value = self._value(positions, normals) - self._at_rest
+        need[:] = (value / self.threshold - 1.0) / (self.ratio - 1.0)
+        if self.is_everywhere:
+            need[:] = 2.0
+
+    def mark(self, positions: Narrow, normals: Narrow, splits: npt.NDArray[np.uint8]) -> None:
+        """Write 0, 1 or 2 for every edge, shape (E,)."""
+        need = np.empty(len(splits), dtype=np.float32)
+        self.measure(positions, normals, need)
+        splits[:] = (need > 0.0).astype(np.uint8) + (need > 1.0)
+
+    def _value(self, positions: Narrow, normals: Narrow) -> Array:
+        raise NotImplementedError
+
+
+class SlidingDrop(SlidingCriterion):
+    """The paper's: drop of the dot product of the normals since rest."""
+
+    def _value(self, positions: Narrow, normals: Narrow) -> Array:
+        a, b = (normals[ends].astype(np.float64) for ends in self._ends)
+        return np.asarray(-np.einsum("ei,ei->e", a, b))
+
+
+class SlidingHeight(SlidingCriterion):
+    """Height of the arc over an edge, as `refine.Curvature`, at rest or not: where it is curved."""
+
+    ratio = HEIGHT_RATIO
+
+    def bind(self, connectivity: refine.Connectivity, rest: Narrow, rest_normals: Narrow) -> None:
+        """Take the edges; rest counts for nothing."""
+        super().bind(connectivity, rest, rest_normals)
+        self._at_rest = np.zeros(len(connectivity.edges))
+
+    def _value(self, positions: Narrow, normals: Narrow) -> Array:
+        (from_a, to_b), (at_a, at_b) = (
+            [values[ends].astype(np.float64) for ends in self._ends]
+            for values in (positions, normals)
+        )
+        return np.asarray(np.abs(np.einsum("ei,ei->e", to_b - from_a, at_b - at_a)) / 8.0)
+
+
+CRITERIA: dict[str, type[SlidingCriterion]] = {"drop": SlidingDrop, "height": SlidingHeight}
+
+
+def run(
+    subject: Subject,
+    *,
+    schemes: Sequence[str] = SCHEMES,
+    budgets: Iterable[float] = BUDGETS,
+    expressions: Sequence[str] | None = None,
+    progress: Callable[[str], object] = lambda _: None,
+) -> list[Score]:
+    """Score all methods in all expressions of `subject` (or in those named).
+
+    `progress`: called with the name of each expression before it is measured.
+    """
+    budgets = tuple(budgets)
+    sliding = [_Sliding(subject, scheme, name) for scheme in schemes for name in CRITERIA]
+    scores = []
+    for name in expressions if expressions is not None else subject.poses:
+        progress(name)
+        scores += _scores_of(subject, sliding, budgets, name, subject.poses[name])
+    return scores
+
+
+def means(scores: Iterable[Score]) -> dict[Key, Score]:
+    """The mean over expressions for each method, criterion and budget; triangles are rounded."""
+    groups: dict[Key, list[Score]] = {}
+    for score in scores:
+        groups.setdefault(score.key, []).append(score)
+    return {
+        key: Score(
+            *key,
+            "mean",
+            round(float(np.mean([s.triangles for s in group]))),
+            float(np.mean([s.distance for s in group])),
+            float(np.mean([s.angle for s in group])),
+        )
+        for key, group in groups.items()
+    }
+
+
+class _Sliding:
+    """One scheme bound to the coarse mesh of a subject, for any number of triangles."""
+
+    def __init__(self, subject: Subject, scheme: str, criterion: str) -> None:
+        self.scheme, self.criterion = scheme, criterion
+        self._criterion = CRITERIA[criterion]()
+        options: dict[str, Any] = {"scheme": scheme, "criterion": self._criterion}
+        if scheme == "detail":
+            options["detail"] = (subject.rest.dense, subject.dense_faces)
+        self._refiner = refine.create(
+            "kahler", subject.coarse_faces, subject.rest.coarse, **options
+        )
+        self._coarse_count = len(subject.coarse_faces)
+
+    def refine(self, positions: Array, budget: float) -> refine.RefinedMesh:
+        """Refine with at most `budget` times the coarse triangles."""
+        self._criterion.is_everywhere = budget == EVERYWHERE
+        if not self._criterion.is_everywhere:
+            low, high = np.log(1e-6), np.log(20.0)  # thresholds: too many, too few triangles
+            for _ in range(SEARCH_STEPS):
+                middle = 0.5 * (low + high)
+                self._criterion.threshold = float(np.exp(middle))
+                count = len(self._refiner.refine(positions).triangles)
+                low, high = (middle, high) if count > budget * self._coarse_count else (low, middle)
+            self._criterion.threshold = float(np.exp(high))
+        return self._refiner.refine(positions)
+
+
+def _scores_of(
+    subject: Subject,
+    sliding: Sequence[_Sliding],
+    budgets: tuple[float, ...],
+    expression: str,
+    pose: Pose,
+) -> list[Score]:
+    normals = vertex_normals(pose.dense, subject.dense_faces)
+
+    def score(method: str, criterion: str, budget: float, mesh: Any) -> Score:
+        positions, mesh_normals, triangles = mesh[:3]
+        found = nearest_points(pose.dense, positions, triangles)
+        near = np.einsum("ni,nij->nj", found.weights, mesh_normals[triangles[found.triangle]])
+        length = np.maximum(np.linalg.norm(near, axis=1), 1e-300)
+        cosine = np.einsum("ni,ni->n", near, normals) / length
+        angles = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+        return Score(
+            method,
+            criterion,
+            budget,
+            expression,
+            len(triangles),
+            float(np.sqrt(np.mean(found.distance**2))),
+            float(np.sqrt(np.mean(angles**2))),
+        )
+
+    faces, rest = subject.coarse_faces, subject.rest.coarse
+    coarse_normals = vertex_normals(pose.coarse, faces)
+    scores = [score(COARSE, "", 1.0, (pose.coarse, coarse_normals, faces))]
+    for one in sliding:
+        for budget in budgets:
+            mesh = one.refine(pose.coarse, budget)
+            scores.append(score(one.scheme, one.criterion, budget, mesh))
+            if one.scheme == "detail":
+                moved = _on_truth(mesh, pose, subject, normals)
+                scores.append(score(IDEAL, one.criterion, budget, moved))
+    for one in {one.scheme: one for one in sliding}.values():
+        mesh = one.refine(pose.coarse, EVERYWHERE)
+        scores.append(score(one.scheme, "", EVERYWHERE, mesh))
+        if one.scheme == "detail":
+            scores.append(score(IDEAL, "", EVERYWHERE, _on_truth(mesh, pose, subject, normals)))
+    for levels in (1, 2):
+        loop = refine.create("loop", faces, rest, levels=levels).refine(pose.coarse)
+        scores.append(score(UNIFORM[0], "", levels, loop))
+        pn = tessellate(pose.coarse, coarse_normals, faces, 2**levels)
+        scores.append(score(UNIFORM[1], "", levels, pn))
+    return scores
+
+
+def _on_truth(
+    mesh: refine.RefinedMesh, pose: Pose, subject: Subject, normals: Array
+) -> tuple[Array, Array, npt.NDArray[np.uint32]]:
+    """The mesh with each vertex moved to the nearest point of the true surface."""
+    found = nearest_points(mesh.positions, pose.dense, subject.dense_faces)
+    corners = subject.dense_faces[found.triangle]
+    points, turned = (
+        np.einsum("ni,nij->nj", found.weights, values[corners]) for values in (pose.dense, normals)
+    )
+    return points, turned, mesh.triangles
+
+
+def vertex_normals(positions: Array, faces: npt.NDArray[np.integer]) -> Array:
+    """Unit vertex normals, weighted by area, shape (V, 3)."""
+    a, b, c = (positions[faces[:, k]] for k in range(3))
+    cross = np.cross(b - a, c - a)
+    sums = np.zeros_like(positions)
+    for k in range(3):
+        np.add.at(sums, faces[:, k], cross)
+    return np.asarray(sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-300))

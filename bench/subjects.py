@@ -1,0 +1,131 @@
+"""Faces that are known densely and coarsely, at rest and in expressions: truth to measure against.
+
+Two sources. A folder of scanned motion as `bench motion` takes it, with a decimation beside it:
+`face.npz` (vertices, triangles, a displacement field (V, 3) for each expression [cm]) and
+`coarse_2029.npz` (triangles, and where each coarse vertex lies on the dense mesh: fine_triangle,
+barycentric). And the built-in head: its finer meshes, moved by the simulation itself, and of their
+vertices those that the head has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import numpy.typing as npt
+
+import assets
+import sim
+
+Points = npt.NDArray[np.float64]
+Faces = npt.NDArray[np.int32]
+
+MILLIMETRES = 10.0  # per unit of a folder of scans (cm)
+COARSE = "coarse_2029.npz"
+DENSE = "face.npz"
+NOT_MOTION = ("vertices", "triangles", "landmarks68")
+SETTLE = 90  # frames of 1/60 s until a pose is still
+
+
+@dataclass(frozen=True)
+class Pose:
+    """One expression, on both meshes [mm]."""
+
+    dense: Points
+    coarse: Points
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A face as a dense mesh, a coarse one, and expressions of both."""
+
+    name: str
+    dense_faces: Faces
+    coarse_faces: Faces
+    rest: Pose
+    poses: Mapping[str, Pose]
+
+
+def scanned(folder: str | Path, *, apart: bool = False) -> Subject:
+    """Read a folder of scans, every expression in it.
+
+    Fields that end in _L and _R are two halves of one expression, and are added unless `apart`.
+    Raises ValueError, naming the file, if something is missing in it.
+    """
+    dense = _arrays(Path(folder) / DENSE, ("vertices", "triangles"))
+    coarse = _arrays(Path(folder) / COARSE, ("triangles", "fine_triangle", "barycentric"))
+    rest = MILLIMETRES * dense["vertices"].astype(np.float64)
+    corners = dense["triangles"][coarse["fine_triangle"]]
+    weights = coarse["barycentric"].astype(np.float64)
+
+    def pose(points: Points) -> Pose:
+        return Pose(points, np.einsum("vi,vij->vj", weights, points[corners]))
+
+    fields: dict[str, Points] = {}
+    for name, array in dense.items():
+        if name in NOT_MOTION or array.shape != rest.shape:
+            continue
+        expression = name if apart else name.removesuffix("_L").removesuffix("_R")
+        moved = MILLIMETRES * array.astype(np.float64)
+        fields[expression] = fields.get(expression, np.zeros_like(rest)) + moved
+    if not fields:
+        raise ValueError(f"{Path(folder) / DENSE}: no displacement field of shape {rest.shape}")
+    return Subject(
+        "scan",
+        dense["triangles"].astype(np.int32),
+        coarse["triangles"].astype(np.int32),
+        pose(rest),
+        {name: pose(rest + moved) for name, moved in fields.items()},
+    )
+
+
+def built_in(level: int) -> Subject:
+    """Take the built-in head with 4 or 16 times its triangles (level 1 or 2) as the dense mesh.
+
+    The muscles of its rig move the dense mesh; the coarse one goes along, as its first vertices.
+    """
+    head = assets.load("head")
+    fine = head.finer(level)
+    simulation = sim.create(
+        SimpleNamespace(
+            vertices=fine.vertices,
+            faces=fine.faces,
+            landmarks=head.landmarks,
+            rig=head.rig,
+            bone_depth=fine.carried(head.bone_depth),
+            mandible_weight=fine.carried(head.mandible_weight),
+            jaw_axis=head.jaw_axis,
+            eyes=head.eyes,
+        )
+    )
+    count = len(head.vertices)
+    poses = {}
+    for name, values in head.expressions.items():
+        simulation.reset()
+        simulation.set_all(values)
+        for _ in range(SETTLE):
+            simulation.step(1.0 / 60.0)
+        moved = simulation.positions.copy()
+        poses[name] = Pose(moved, moved[:count])
+    return Subject(
+        f"head x {4**level}",
+        fine.faces,
+        head.faces,
+        Pose(fine.vertices, fine.vertices[:count]),
+        poses,
+    )
+
+
+def _arrays(path: Path, needed: tuple[str, ...]) -> dict[str, npt.NDArray[np.generic]]:
+    """All arrays of a file; ValueError where it or one of `needed` is missing."""
+    if not path.is_file():
+        raise ValueError(f"{path}: is not there; a reference folder has {DENSE} and {COARSE}")
+    with np.load(path) as file:
+        arrays = {name: file[name] for name in file.files}
+    missing = [name for name in needed if name not in arrays]
+    if missing:
+        raise ValueError(f"{path}: has no array {missing[0]!r}; it has {sorted(arrays)}")
+    return arrays

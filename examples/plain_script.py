@@ -1,0 +1,71 @@
+"""The plug-in in a plain script: arrays in, refined triangles out, one OBJ file to look at.
+
+    python examples/plain_script.py [FILE.obj]
+
+A tube of 384 triangles bends to more than half a ring and back. It
+needs `refine/`, numpy and numba; nothing else.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+import refine
+
+Points = npt.NDArray[np.float64]
+Faces = npt.NDArray[np.int32]
+
+AROUND, ALONG = 12, 16  # cells of the tube
+RADIUS, LENGTH = 1.0, 8.0
+BEND = 3.5  # [radians] of the last frame
+
+
+def tube() -> tuple[Points, Faces]:
+    """A straight tube along y, open at both ends."""
+    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    circle = RADIUS * np.stack([np.cos(angle), np.zeros(AROUND), -np.sin(angle)], axis=1)
+    heights = LENGTH * np.linspace(0.0, 1.0, ALONG + 1)
+    vertices = (circle[None] + heights[:, None, None] * [0.0, 1.0, 0.0]).reshape(-1, 3)
+    ring, k = np.meshgrid(np.arange(ALONG), np.arange(AROUND), indexing="ij")
+    a, b = ring * AROUND + k, ring * AROUND + (k + 1) % AROUND
+    lower = np.stack([a, b, b + AROUND], axis=2)
+    upper = np.stack([a, b + AROUND, a + AROUND], axis=2)
+    return vertices, np.concatenate([lower, upper]).reshape(-1, 3).astype(np.int32)
+
+
+def bent(rest: Points, angle: float) -> Points:
+    """The tube bent to an arc of `angle` [radians]."""
+    curvature = max(angle, 1e-9) / LENGTH
+    turn = curvature * rest[:, 1]
+    across = 1.0 / curvature - rest[:, 0]  # distance from the middle of the arc
+    x, y = 1.0 / curvature - across * np.cos(turn), across * np.sin(turn)
+    return np.stack([x, y, rest[:, 2]], axis=1)
+
+
+def write_obj(path: Path, mesh: refine.RefinedMesh) -> None:
+    """Write triangles with their normals; every modelling program reads it."""
+    lines = [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in mesh.positions]
+    lines += [f"vn {x:.6f} {y:.6f} {z:.6f}" for x, y, z in mesh.normals]
+    lines += [f"f {a}//{a} {b}//{b} {c}//{c}" for a, b, c in mesh.triangles + 1]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def main(target: Path) -> list[int]:
+    """Refine 60 frames, write the one that is bent most, return the triangles of each."""
+    rest, faces = tube()
+    refiner = refine.create("kahler", faces, rest)  # once per mesh
+    counts = []
+    for frame in range(60):
+        angle = BEND * np.sin(np.pi * frame / 59)
+        mesh = refiner.refine(bent(rest, angle))  # each frame: views of reused buffers
+        counts.append(len(mesh.triangles))
+    write_obj(target, refiner.refine(bent(rest, BEND)))
+    return counts
+
+
+if __name__ == "__main__":
+    file = Path(sys.argv[1] if len(sys.argv) > 1 else "tube.obj")
+    triangles = main(file)
+    print(f"{triangles[0]} triangles at rest, {max(triangles)} at most; bent most: {file}")

@@ -1,0 +1,277 @@
+r"""Criteria beside the paper's: curvature, silhouette, length on the screen, and several at once.
+
+Kähler, Haber, Seidel 2003, section 4.1 ("More complex criteria can be used as well, such as
+measuring discrete curvature on the mesh [19]") and section 6 ("refining the mesh along silhouette
+edges. To achieve this, appropriate splitting criteria have to be developed").
+
+    curvature   height of the arc over an edge      |k| L^2 / 8, k = 2 n . (b - a) / L^2 the
+                in mean edge lengths at rest        curvature along it (Taubin 1995, section 3)
+    silhouette  how far the surface turns along     (1 - n_a . n_b) x facing; facing is 1 where the
+                an edge that is seen from aside     line of sight grazes the edge, 0 a BAND away
+    screen      length of an edge as it is seen     L x focal / distance from the eye, in pixels
+
+Each has two thresholds, above which an edge is split once and twice, and says how much an edge
+needs a split, so that all of them can be blended (blend.py) and any of them combined.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import cast
+
+import numpy as np
+import numpy.typing as npt
+
+from .connectivity import Connectivity
+from .criterion import Criterion, Measured, NormalDrop, Thresholds
+from .kernels import kernel
+from .plugin import View
+
+Floats = npt.NDArray[np.float32]
+Doubles = npt.NDArray[np.float64]
+Small = npt.NDArray[np.uint8]
+Unsigned = npt.NDArray[np.uint32]
+
+BAND = 0.3
+"""Cosine between normal and line of sight at which an edge is no silhouette: 17 degrees aside."""
+
+
+class _Measuring:
+    """What the criteria of this file share: thresholds, and splits that follow from needs."""
+
+    def __init__(self, once: float, twice: float, meaning: str) -> None:
+        self.thresholds = Thresholds(once, twice, meaning)
+
+    def bind(
+        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+    ) -> None:
+        """Take the edges."""
+        self._edges = connectivity.edges.view(np.uint32)
+        self._need = np.zeros(len(self._edges), dtype=np.float32)
+
+    def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
+        """Write the number of splits of every edge into `splits`, shape (E,)."""
+        self.measure(positions, normals, self._need)
+        splits_of_needs(self._need, splits)
+
+    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
+        """Write the need of every edge, shape (E,)."""
+        raise NotImplementedError
+
+
+class Curvature(_Measuring):
+    """Discrete curvature along the edges (Taubin 1995), as the height of the arc over them."""
+
+    def __init__(self, once: float = 0.025, twice: float = 0.06, *, relative: bool = True) -> None:
+        """`once`, `twice`: heights in mean edge lengths of the mesh at rest.
+
+        `relative`: only what has been added to the height at rest counts, as in the paper; without
+        it a mesh that is coarse at rest is refined where it is curved.
+        """
+        super().__init__(once, twice, "heights in mean edge lengths")
+        self.relative = relative
+
+    def bind(
+        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+    ) -> None:
+        """Store the heights of the undeformed mesh."""
+        super().bind(connectivity, rest_positions, rest_normals)
+        self._rest = np.zeros(len(self._edges), dtype=np.float32)
+        heights = np.empty_like(self._rest)
+        arc_heights(rest_positions, rest_normals, self._edges, self._rest, heights)
+        if self.relative:
+            self._rest = heights
+        lengths = np.linalg.norm(np.diff(rest_positions[connectivity.edges], axis=1)[:, 0], axis=1)
+        self._unit = np.float32(lengths.mean()) if len(lengths) else np.float32(1.0)
+
+    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
+        """Write the need of every edge, shape (E,)."""
+        limits = self.thresholds
+        arc_heights(positions, normals, self._edges, self._rest, need)
+        scale_needs(need, limits.once * self._unit, limits.width * self._unit, limits.most)
+
+
+class _Seen(_Measuring):
+    """A criterion that depends on where the eye is."""
+
+    _view: View | None = None
+
+    def look(self, view: View | None) -> None:
+        """Take the view of this frame; raises ValueError if there is none, or no place for it."""
+        if view is None:
+            raise ValueError(
+                f"{type(self).__name__} needs to know where the eye is; pass "
+                "view=refine.View(eye, focal) to refine()"
+            )
+        eye = np.asarray(view.eye, dtype=np.float64)
+        if eye.shape != (3,) or not np.isfinite(eye).all() or not 0.0 < view.focal < np.inf:
+            raise ValueError(
+                "view must have an eye of shape (3,) and a focal length in pixels above 0, all "
+                f"finite, got {view!r}"
+            )
+        self._view = View(eye, float(view.focal))
+
+    def _looked(self) -> tuple[Doubles, np.float32]:
+        if self._view is None:
+            raise ValueError(f"{type(self).__name__}.look(view) must be called before every frame")
+        return cast(Doubles, self._view.eye), np.float32(self._view.focal)
+
+
+class Silhouette(_Seen):
+    """Edges along which the surface turns away from the eye."""
+
+    def __init__(self, once: float = 0.005, twice: float = 0.03) -> None:
+        """`once`, `twice`: 1 - the cosine between the normals at both ends."""
+        super().__init__(once, twice, "1 - the cosine between two normals")
+
+    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
+        """Write the need of every edge, shape (E,)."""
+        limits = self.thresholds
+        turns_at_silhouette(positions, normals, self._edges, self._looked()[0], need)
+        scale_needs(need, limits.once, limits.width, limits.most)
+
+
+class ScreenEdge(_Seen):
+    """Edges that are long on the screen."""
+
+    def __init__(self, once: float = 32.0, twice: float = 64.0) -> None:
+        """`once`, `twice`: lengths in pixels."""
+        super().__init__(once, twice, "lengths in pixels")
+
+    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
+        """Write the need of every edge, shape (E,)."""
+        limits, (eye, focal) = self.thresholds, self._looked()
+        lengths_on_screen(positions, self._edges, eye, focal, need)
+        scale_needs(need, limits.once, limits.width, limits.most)
+
+
+class Maximum:
+    """Several criteria: each edge is split as often as the one that asks for most."""
+
+    def __init__(self, criteria: Sequence[Criterion]) -> None:
+        if not criteria:
+            raise ValueError("criterion: an empty list decides nothing; name at least one")
+        self.criteria = tuple(criteria)
+        # Only a whole of measuring parts measures; others decide in whole splits.
+        if all(isinstance(criterion, Measured) for criterion in self.criteria):
+            self.measure = self._measure
+
+    def bind(
+        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+    ) -> None:
+        """Bind them all."""
+        for criterion in self.criteria:
+            criterion.bind(connectivity, rest_positions, rest_normals)
+        self._splits = np.zeros(len(connectivity.edges), dtype=np.uint8)
+        self._need = np.zeros(len(connectivity.edges), dtype=np.float32)
+
+    def look(self, view: View | None) -> None:
+        """Show the view to those that want it."""
+        for criterion in self.criteria:
+            if hasattr(criterion, "look"):
+                criterion.look(view)
+
+    def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
+        """Write the largest number of splits of every edge into `splits`, shape (E,)."""
+        splits[:] = 0
+        for criterion in self.criteria:
+            criterion.mark(positions, normals, self._splits)
+            np.maximum(splits, self._splits, out=splits)
+
+    def _measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
+        need[:] = -np.inf
+        for criterion in self.criteria:
+            cast(Measured, criterion).measure(positions, normals, self._need)
+            np.maximum(need, self._need, out=need)
+
+
+CRITERIA: dict[str, Callable[[], Criterion]] = {
+    "curvature": Curvature,
+    "silhouette": Silhouette,
+    "screen": ScreenEdge,
+}
+
+
+def criterion_of(
+    chosen: str | Criterion | Sequence[str | Criterion], normal_drop: NormalDrop
+) -> Criterion:
+    """Return the criterion of a name, of several, or of an object; `normal_drop` for "normal"."""
+    if isinstance(chosen, str):
+        if chosen == "normal":
+            return normal_drop
+        if chosen not in CRITERIA:
+            raise ValueError(
+                f"criterion {chosen!r} is unknown; there are {['normal', *CRITERIA]}, and any "
+                "object with bind and mark"
+            )
+        return CRITERIA[chosen]()
+    if isinstance(chosen, Sequence):
+        return Maximum([criterion_of(one, normal_drop) for one in chosen])
+    if not (hasattr(chosen, "bind") and hasattr(chosen, "mark")):
+        raise ValueError(
+            f"criterion must be a name, an object with bind and mark, or a list, got {chosen!r}"
+        )
+    return chosen
+
+
+@kernel
+def splits_of_needs(need: Floats, splits: Small) -> None:
+    """Write 0, 1 or 2 into `splits`, shape (E,): above 0 once, above 1 twice."""
+    for e in range(need.shape[0]):
+        splits[e] = np.uint8(need[e] > np.float32(0.0)) + np.uint8(need[e] > np.float32(1.0))
+
+
+@kernel
+def scale_needs(need: Floats, once: np.float32, width: np.float32, most: np.float32) -> None:
+    """Turn the measures in `need`, shape (E,), into needs."""
+    for e in range(need.shape[0]):
+        need[e] = min((need[e] - once) / width, most)
+
+
+@kernel
+def arc_heights(
+    positions: Doubles, normals: Floats, edges: Unsigned, rest: Floats, heights: Floats
+) -> None:
+    """Write the height of the arc over every edge, less that at rest, shape (E,)."""
+    for e in range(edges.shape[0]):
+        a, b = edges[e, 0], edges[e, 1]
+        at_a = at_b = np.float32(0.0)
+        for i in range(3):
+            d = np.float32(positions[b, i] - positions[a, i])
+            at_a += d * normals[a, i]
+            at_b += d * normals[b, i]
+        # k L^2 / 8 with k the mean of 2 n_a . d / L^2 and, from the other side, -2 n_b . d / L^2.
+        heights[e] = np.float32(0.125) * abs(at_a - at_b) - rest[e]
+
+
+@kernel
+def turns_at_silhouette(
+    positions: Doubles, normals: Floats, edges: Unsigned, eye: Doubles, turns: Floats
+) -> None:
+    """Write 1 - the cosine of the normals of every edge, faded out aside of the silhouette."""
+    for e in range(edges.shape[0]):
+        a, b = edges[e, 0], edges[e, 1]
+        cosine = seen_a = seen_b = length_a = length_b = 0.0
+        for i in range(3):
+            to_a, to_b = eye[i] - positions[a, i], eye[i] - positions[b, i]
+            cosine += normals[a, i] * normals[b, i]
+            seen_a += to_a * normals[a, i]
+            seen_b += to_b * normals[b, i]
+            length_a += to_a * to_a
+            length_b += to_b * to_b
+        seen_a /= np.sqrt(max(length_a, 1e-30))
+        seen_b /= np.sqrt(max(length_b, 1e-30))
+        aside = 0.0 if seen_a * seen_b <= 0.0 else min(abs(seen_a), abs(seen_b))
+        turns[e] = (1.0 - cosine) * max(0.0, 1.0 - aside / BAND)
+
+
+@kernel
+def lengths_on_screen(
+    positions: Doubles, edges: Unsigned, eye: Doubles, focal: np.float32, lengths: Floats
+) -> None:
+    """Write the length [pixels] of every edge as if it were seen square on, shape (E,)."""
+    for e in range(edges.shape[0]):
+        a, b = edges[e, 0], edges[e, 1]
+        length = distance = 0.0
+        for i in range(3):
+            length += (positions[b, i] - positions[a, i]) ** 2
+            distance += (0.5 * (positions[a, i] + positions[b, i]) - eye[i]) ** 2
+        lengths[e] = focal * np.sqrt(length / max(distance, 1e-30))

@@ -1,0 +1,126 @@
+r"""What the interpolating schemes share: edges that bulge between end points that stay.
+
+A scheme says how far the points of a split edge stand out of the straight edge, its *bulge*; this
+pass puts them there, as far as they have grown (blend.py), with their normals.
+
+                 .  m  .                 m      =  (a + b) / 2          +  bulge
+              n           n              n at a =  (3 a + b) / 4        +  bulge
+            a---------------b            grown   =  mix of (a + m) / 2 and n
+
+Kähler, Haber, Seidel 2003, section 4.2 asks for rules that are cheap, local, close to the input
+mesh, and correct at borders; these are all, and leave every vertex where the simulation has it.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from .connectivity import Connectivity
+from .kernels import kernel
+from .output import place_unmoved
+from .schemes import Frame
+
+Floats = npt.NDArray[np.float32]
+Unsigned = npt.NDArray[np.uint32]
+
+ZERO = np.float32(0.0)
+QUARTER = np.float32(0.25)
+HALF = np.float32(0.5)
+THREE_QUARTERS = np.float32(0.75)
+ONE = np.float32(1.0)
+TINY = np.finfo(np.float32).tiny
+
+NEAR_START, MIDDLE, NEAR_END = 0, 1, 2
+"""Points of an edge in an array of bulges, shape (E, 3, 3): edge, point, x y z."""
+
+
+class CurveScheme:
+    """A scheme whose original vertices stay and whose edges are curves; fill in `_bulge`."""
+
+    interpolates = True
+
+    def bind(
+        self,
+        connectivity: Connectivity,
+        rest_positions: npt.NDArray[np.float64],
+        rest_normals: Floats,
+    ) -> None:
+        """Take the mesh; `rest_positions` and `rest_normals`, shape (V, 3)."""
+        self._connectivity = connectivity
+        self._bulges = np.zeros((len(connectivity.edges), 3, 3), dtype=np.float32)
+
+    def place(self, frame: Frame) -> None:
+        """Write vertices as they are, and the points of split edges on their curves."""
+        self._bulge(frame, self._bulges)
+        place_unmoved(frame.positions, self._vertex_normals(frame), frame.rows)
+        place_on_curves(
+            self._connectivity.edge_points,
+            frame.splits,
+            frame.growth_once,
+            frame.growth_twice,
+            frame.first_points,
+            frame.split_once,
+            frame.once_count,
+            self._bulges,
+            frame.rows,
+        )
+
+    def place_centres(self, frame: Frame) -> None:
+        """Leave them as blending has them."""
+
+    def _vertex_normals(self, frame: Frame) -> Floats:
+        """Return the normals that the vertices get in the output, shape (V, 3)."""
+        return frame.normals
+
+    def _bulge(self, frame: Frame, bulges: Floats) -> None:
+        """Write the bulges of the split edges; of those split once the middle is enough."""
+        raise NotImplementedError
+
+
+@kernel
+def unit(x: np.float32, y: np.float32, z: np.float32) -> tuple[np.float32, np.float32, np.float32]:
+    """Normalise a vector; zero stays zero."""
+    scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
+    return x * scale, y * scale, z * scale
+
+
+@kernel
+def place_on_curves(
+    edge_points: Unsigned,
+    splits: npt.NDArray[np.uint8],
+    growth_once: Floats,
+    growth_twice: Floats,
+    first_points: Unsigned,
+    split_once: Unsigned,
+    once_count: int,
+    bulges: Floats,
+    vertices: Floats,
+) -> None:
+    """Write the one or three points of every split edge; the vertices are there already."""
+    for k in range(once_count):
+        e = split_once[k]
+        a, b = edge_points[e, 0], edge_points[e, 1]
+        row, growth = first_points[e] + (splits[e] >> 1), growth_once[e]
+        for i in range(3):
+            straight = HALF * (vertices[a, i] + vertices[b, i])
+            vertices[row, i] = straight + growth * bulges[e, MIDDLE, i]
+        vertices[row, 3], vertices[row, 4], vertices[row, 5] = unit(
+            vertices[a, 3] + vertices[b, 3],
+            vertices[a, 4] + vertices[b, 4],
+            vertices[a, 5] + vertices[b, 5],
+        )
+        if splits[e] < 2:
+            continue
+        for end in range(2):
+            near, far = (a, b) if end == 0 else (b, a)
+            point = row - 1 + 2 * end
+            growth = growth_twice[e]
+            for i in range(3):
+                chord = HALF * (vertices[near, i] + vertices[row, i])
+                straight = THREE_QUARTERS * vertices[near, i] + QUARTER * vertices[far, i]
+                on_curve = straight + bulges[e, NEAR_START + 2 * end, i]
+                vertices[point, i] = (ONE - growth) * chord + growth * on_curve
+            vertices[point, 3], vertices[point, 4], vertices[point, 5] = unit(
+                vertices[near, 3] + vertices[row, 3],
+                vertices[near, 4] + vertices[row, 4],
+                vertices[near, 5] + vertices[row, 5],
+            )

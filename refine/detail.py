@@ -1,0 +1,410 @@
+r"""Detail of a finer mesh on the split points: the scheme named `detail`.
+
+Kähler, Haber, Seidel 2003, section 6: "If the input geometry has been produced from a finer mesh,
+one could do even better than smoothing: detail information can be stored locally and used to place
+generated split vertices on the surface, as has been exercised in multiresolution editing."
+
+At binding, the points that all edges would get from the scheme `cubic` are compared with the finer
+mesh, both at rest. What is missing is stored in a frame of directions that moves with the edge:
+
+          n = (n_a + n_b) normal to it                stored:  how the finer surface lies beside
+          |                                                    the point, and its normal, along
+    a-----o------> t = b - a                                   t, n and t x n
+         /
+        t x n
+
+In a frame the same directions are found in the deformed mesh and the detail is added to the cubic.
+Vertices stay where they are (they lie on the finer mesh if they are taken from it); those at split
+edges get their normals from it, in a frame of their normal and one of their edges.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from .arguments import checked_indices, checked_positions
+from .closest import Surface
+from .connectivity import Connectivity
+from .cubic import CubicScheme
+from .fit import fitted
+from .kernels import kernel
+from .masks import grow_vertices
+from .schemes import Frame
+
+Floats = npt.NDArray[np.float32]
+Doubles = npt.NDArray[np.float64]
+Unsigned = npt.NDArray[np.uint32]
+
+FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
+"""Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
+
+ZERO = np.float32(0.0)
+ONE = np.float32(1.0)
+TINY = np.finfo(np.float32).tiny
+
+
+class DetailScheme(CubicScheme):
+    """Cubic edges with what a finer mesh at rest has in addition."""
+
+    def __init__(self, finer: FinerMesh) -> None:
+        """`finer`: positions at rest, in the place of the coarse mesh, and triangles."""
+        if not isinstance(finer, tuple) or len(finer) != 2:
+            raise ValueError(
+                "detail must be a pair (finer rest positions, finer triangles), "
+                f"got {type(finer).__name__}"
+            )
+        positions = checked_positions(finer[0], "detail[0]")
+        faces = checked_indices("detail[1]", finer[1], len(positions), "detail[0]")
+        if len(faces) == 0:
+            raise ValueError("detail[1] must have triangles, got none")
+        self._surface: Surface | None = Surface(positions, faces.astype(np.uint32))
+
+    def bind(
+        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+    ) -> None:
+        """Compare the cubic at rest with the finer mesh, point by point."""
+        super().bind(connectivity, rest_positions, rest_normals)
+        assert self._surface is not None, "a scheme is bound once"
+        edge_count = len(connectivity.edges)
+        self._axes = np.zeros((edge_count, 3, 3), dtype=np.float32)
+        self._shown = np.zeros_like(rest_normals)
+        self._vertex_growth = np.zeros(len(rest_normals), dtype=np.float32)
+        everything = np.arange(edge_count, dtype=np.uint32)
+        self._bulge_cubic(rest_positions, everything, edge_count, self._bulges)
+        edge_axes(
+            rest_positions, rest_normals, connectivity.edge_points, everything, edge_count,
+            self._axes,
+        )  # fmt: skip
+        points, normals = _points_on(self._bulges, connectivity, rest_positions, rest_normals)
+        places, _ = _closest(self._surface, points, normals)
+        centres, centre_normals = _centres_of(places, connectivity, rest_positions, rest_normals)
+        centre_places, _ = _closest(self._surface, centres, centre_normals)
+        places, centre_places = fitted(
+            self._surface, connectivity, rest_positions, places, centre_places
+        )
+        _, looks = _closest(self._surface, places, normals)
+        axes = self._axes[:, None]
+        self._offsets, self._looks = _along(axes, places - points), _along(axes, looks)
+        self._bind_vertices(rest_positions, rest_normals)
+        centres, _ = _centres_of(places, connectivity, rest_positions, rest_normals)
+        _, looks = _closest(self._surface, centre_places, centre_normals)
+        face_count = len(connectivity.faces)
+        self._centre_axes = np.zeros((face_count, 3, 3), dtype=np.float32)
+        everything = np.arange(face_count, dtype=np.uint32)
+        triangle_axes(
+            rest_positions, rest_normals, connectivity.faces, everything, face_count,
+            self._centre_axes,
+        )  # fmt: skip
+        self._centre_offsets = _along(self._centre_axes, centre_places - centres)
+        self._centre_looks = _along(self._centre_axes, looks)
+        self._surface = None
+
+    def _bind_vertices(self, rest_positions: Doubles, rest_normals: Floats) -> None:
+        """Store the finer normal of every vertex, in a frame of its normal and an edge."""
+        mesh, surface = self._connectivity, self._surface
+        assert surface is not None
+        self._towards = np.arange(mesh.vertex_count, dtype=np.uint32)
+        self._towards[mesh.edges[:, 0]] = mesh.edges[:, 1]
+        self._towards[mesh.edges[:, 1]] = mesh.edges[:, 0]
+        axes = np.zeros((mesh.vertex_count, 3, 3), dtype=np.float32)
+        vertex_axes(rest_positions, rest_normals, self._towards, axes)
+        _, looks = _closest(surface, rest_positions, rest_normals.astype(np.float64))
+        # A vertex without a normal has no frame: nothing to show there.
+        self._vertex_looks = _along(axes, looks)
+
+    def place(self, frame: Frame) -> None:
+        """Write vertices and points, then the normals of the finer mesh at points."""
+        mesh = self._connectivity
+        edge_axes(
+            frame.positions,
+            frame.normals,
+            mesh.edge_points,
+            frame.split_once,
+            frame.once_count,
+            self._axes,
+        )
+        super().place(frame)
+        show_points(
+            self._looks,
+            self._axes,
+            frame.splits,
+            frame.growth_once,
+            frame.growth_twice,
+            frame.first_points,
+            frame.split_once,
+            frame.once_count,
+            frame.rows,
+        )
+
+    def _vertex_normals(self, frame: Frame) -> Floats:
+        grow_vertices(
+            self._connectivity.edge_points,
+            frame.growth_once,
+            frame.split_once,
+            frame.once_count,
+            self._vertex_growth,
+        )
+        show_vertices(
+            frame.positions,
+            frame.normals,
+            self._vertex_growth,
+            self._towards,
+            self._vertex_looks,
+            self._shown,
+        )
+        return self._shown
+
+    def _bulge(self, frame: Frame, bulges: Floats) -> None:
+        super()._bulge(frame, bulges)
+        add_offsets(self._offsets, self._axes, frame.split_once, frame.once_count, bulges)
+
+    def place_centres(self, frame: Frame) -> None:
+        """Move the points in the middle of triangles as far as the edges around have grown."""
+        assert frame.centre_triangles is not None
+        mesh = self._connectivity
+        triangle_axes(
+            frame.positions,
+            frame.normals,
+            mesh.faces,
+            frame.centre_triangles,
+            frame.centre_count,
+            self._centre_axes,
+        )
+        show_centres(
+            self._centre_offsets,
+            self._centre_looks,
+            self._centre_axes,
+            mesh.triangle_edges,
+            frame.growth_once,
+            frame.centre_triangles,
+            frame.centre_count,
+            frame.first_centre,
+            frame.rows,
+        )
+
+
+def _points_on(
+    bulges: Floats, mesh: Connectivity, positions: Doubles, normals: Floats
+) -> tuple[Doubles, Doubles]:
+    """Points of all edges split twice, and normals there, both of shape (E, 3, 3)."""
+    share = np.array([0.25, 0.5, 0.75])[:, None]
+    a, b = mesh.edges[:, 0], mesh.edges[:, 1]
+    points = (1.0 - share) * positions[a][:, None] + share * positions[b][:, None] + bulges
+    between = (1.0 - share) * normals[a][:, None] + share * normals[b][:, None]
+    return points, between
+
+
+def _centres_of(
+    places: Doubles, mesh: Connectivity, positions: Doubles, normals: Floats
+) -> tuple[Doubles, Doubles]:
+    """Middles of triangles whose edges are all split, as blending has them, and normals there."""
+    edges = np.maximum(mesh.triangle_edges, 0)
+    bulges = places[edges, 1] - positions[mesh.edges[edges]].mean(axis=2)
+    centres = positions[mesh.faces].mean(axis=1) + 4.0 / 9.0 * bulges.sum(axis=1)
+    return centres, normals[mesh.faces].sum(axis=1, dtype=np.float64)
+
+
+def _closest(surface: Surface, points: Doubles, normals: Doubles) -> tuple[Doubles, Doubles]:
+    """Closest points on the finer mesh, and its unit normals there, in the shape of `points`."""
+    triangles, weights = surface.closest(points.reshape(-1, 3), normals.reshape(-1, 3))
+    looks = surface.at(surface.normals, triangles, weights)
+    looks /= np.maximum(np.linalg.norm(looks, axis=1, keepdims=True), 1e-12)
+    places = surface.at(surface.positions, triangles, weights)
+    return places.reshape(points.shape), looks.reshape(points.shape)
+
+
+def _along(axes: Floats, vectors: Doubles) -> Floats:
+    """Components of vectors (.., 3) along the rows of axes (.., 3, 3)."""
+    components: Doubles = np.einsum("...ij,...j->...i", axes.astype(np.float64), vectors)
+    return components.astype(np.float32)
+
+
+@kernel
+def write_axes(
+    x: np.float32,
+    y: np.float32,
+    z: np.float32,
+    u: np.float32,
+    v: np.float32,
+    w: np.float32,
+    axes: Floats,
+) -> None:
+    """Write three orthogonal directions of length one: (x y z), then (u v w) made normal to it."""
+    scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
+    x, y, z = x * scale, y * scale, z * scale
+    slope = x * u + y * v + z * w
+    u, v, w = u - slope * x, v - slope * y, w - slope * z
+    scale = ONE / np.sqrt(max(u * u + v * v + w * w, TINY))
+    u, v, w = u * scale, v * scale, w * scale
+    axes[0, 0], axes[0, 1], axes[0, 2] = x, y, z
+    axes[1, 0], axes[1, 1], axes[1, 2] = u, v, w
+    axes[2, 0], axes[2, 1], axes[2, 2] = y * w - z * v, z * u - x * w, x * v - y * u
+
+
+@kernel
+def edge_axes(
+    positions: Doubles,
+    normals: Floats,
+    edge_points: Unsigned,
+    listed: Unsigned,
+    count: int,
+    axes: Floats,
+) -> None:
+    """Write the directions of the listed edges: along the edge, up, across."""
+    for k in range(count):
+        e = listed[k]
+        a, b = edge_points[e, 0], edge_points[e, 1]
+        write_axes(
+            np.float32(positions[b, 0] - positions[a, 0]),
+            np.float32(positions[b, 1] - positions[a, 1]),
+            np.float32(positions[b, 2] - positions[a, 2]),
+            normals[a, 0] + normals[b, 0],
+            normals[a, 1] + normals[b, 1],
+            normals[a, 2] + normals[b, 2],
+            axes[e],
+        )
+
+
+@kernel
+def vertex_axes(positions: Doubles, normals: Floats, towards: Unsigned, axes: Floats) -> None:
+    """Write the directions of every vertex: up, towards a neighbour, across."""
+    for v in range(positions.shape[0]):
+        u = towards[v]
+        write_axes(
+            normals[v, 0],
+            normals[v, 1],
+            normals[v, 2],
+            np.float32(positions[u, 0] - positions[v, 0]),
+            np.float32(positions[u, 1] - positions[v, 1]),
+            np.float32(positions[u, 2] - positions[v, 2]),
+            axes[v],
+        )
+
+
+@kernel
+def triangle_axes(
+    positions: Doubles,
+    normals: Floats,
+    faces: Unsigned,
+    listed: Unsigned,
+    count: int,
+    axes: Floats,
+) -> None:
+    """Write the directions of the listed triangles: up, along edge 0, across."""
+    for k in range(count):
+        t = listed[k]
+        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        write_axes(
+            normals[a, 0] + normals[b, 0] + normals[c, 0],
+            normals[a, 1] + normals[b, 1] + normals[c, 1],
+            normals[a, 2] + normals[b, 2] + normals[c, 2],
+            np.float32(positions[b, 0] - positions[a, 0]),
+            np.float32(positions[b, 1] - positions[a, 1]),
+            np.float32(positions[b, 2] - positions[a, 2]),
+            axes[t],
+        )
+
+
+@kernel
+def add_offsets(
+    offsets: Floats, axes: Floats, split_once: Unsigned, once_count: int, bulges: Floats
+) -> None:
+    """Add the stored offsets of the split edges to their bulges."""
+    for k in range(once_count):
+        e = split_once[k]
+        for point in range(3):
+            for i in range(3):
+                bulges[e, point, i] += (
+                    offsets[e, point, 0] * axes[e, 0, i]
+                    + offsets[e, point, 1] * axes[e, 1, i]
+                    + offsets[e, point, 2] * axes[e, 2, i]
+                )
+
+
+@kernel
+def turn(normal: Floats, look: Floats, axes: Floats, growth: np.float32) -> None:
+    """Turn a unit normal, as far as `growth` says, to the one that is stored along the axes."""
+    x = y = z = ZERO
+    for k in range(3):
+        x += look[k] * axes[k, 0]
+        y += look[k] * axes[k, 1]
+        z += look[k] * axes[k, 2]
+    x = normal[0] + growth * (x - normal[0])
+    y = normal[1] + growth * (y - normal[1])
+    z = normal[2] + growth * (z - normal[2])
+    scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
+    normal[0], normal[1], normal[2] = x * scale, y * scale, z * scale
+
+
+@kernel
+def show_vertices(
+    positions: Doubles,
+    normals: Floats,
+    vertex_growth: Floats,
+    towards: Unsigned,
+    looks: Floats,
+    shown: Floats,
+) -> None:
+    """Write the finer normal of every vertex at a split edge, turned with its surroundings."""
+    axes = np.empty((3, 3), np.float32)
+    for v in range(positions.shape[0]):
+        for i in range(3):
+            shown[v, i] = normals[v, i]
+        if vertex_growth[v] == ZERO:
+            continue
+        u = towards[v]
+        write_axes(
+            normals[v, 0],
+            normals[v, 1],
+            normals[v, 2],
+            np.float32(positions[u, 0] - positions[v, 0]),
+            np.float32(positions[u, 1] - positions[v, 1]),
+            np.float32(positions[u, 2] - positions[v, 2]),
+            axes,
+        )
+        turn(shown[v], looks[v], axes, vertex_growth[v])
+
+
+@kernel
+def show_points(
+    looks: Floats,
+    axes: Floats,
+    splits: npt.NDArray[np.uint8],
+    growth_once: Floats,
+    growth_twice: Floats,
+    first_points: Unsigned,
+    split_once: Unsigned,
+    once_count: int,
+    vertices: Floats,
+) -> None:
+    """Turn the normals of the points of split edges to those of the finer mesh."""
+    for k in range(once_count):
+        e = split_once[k]
+        row = first_points[e] + (splits[e] >> 1)
+        turn(vertices[row, 3:6], looks[e, 1], axes[e], growth_once[e])
+        if splits[e] == 2:
+            turn(vertices[row - 1, 3:6], looks[e, 0], axes[e], growth_twice[e])
+            turn(vertices[row + 1, 3:6], looks[e, 2], axes[e], growth_twice[e])
+
+
+@kernel
+def show_centres(
+    offsets: Floats,
+    looks: Floats,
+    axes: Floats,
+    triangle_edges: npt.NDArray[np.int32],
+    growth_once: Floats,
+    centre_triangles: Unsigned,
+    centre_count: int,
+    first_centre: int,
+    vertices: Floats,
+) -> None:
+    """Move and turn the points in the middle of triangles as the least grown edge allows."""
+    for k in range(centre_count):
+        t, row = centre_triangles[k], first_centre + k
+        growth = ONE
+        for i in range(3):
+            growth = min(growth, growth_once[triangle_edges[t, i]])
+        for j in range(3):
+            for i in range(3):
+                vertices[row, i] += growth * offsets[t, j] * axes[t, j, i]
+        turn(vertices[row, 3:6], looks[t], axes[t], growth)

@@ -1,0 +1,146 @@
+"""Smoothing schemes: what decides where the points of split edges go.
+
+Kähler, Haber, Seidel 2003, section 6: "it would be interesting to investigate the effects of other
+smoothing schemes, since we currently don't interpolate, but only approximate". So a scheme is one
+small class, bound once to the mesh and called once in every frame, when it is known which edges are
+split and where in the output their points go:
+
+    loop        the paper's rules (masks.py); original vertices at split edges move
+    butterfly   modified butterfly subdivision (butterfly.py); original vertices stay
+    cubic       cubic edges from end points and normals (cubic.py); original vertices stay
+    detail      cubic, plus what a finer mesh at rest has in addition (detail.py)
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from .connectivity import Connectivity
+from .masks import grow_vertices, place_middles, place_quarters, place_vertices
+from .rings import vertex_rings
+
+Floats = npt.NDArray[np.float32]
+Unsigned = npt.NDArray[np.uint32]
+
+
+@dataclass
+class Frame:
+    """What a scheme reads and writes; the arrays stay the same from frame to frame but `rows`."""
+
+    positions: npt.NDArray[np.float64]
+    """Deformed vertex positions, shape (V, 3)."""
+    normals: Floats
+    """Their unit normals, shape (V, 3)."""
+    splits: npt.NDArray[np.uint8]
+    """Splits of every rim, edges first."""
+    growth_once: Floats
+    """How far the middle point of an edge has grown, 0 to 1 (blend.py), shape (E,)."""
+    growth_twice: Floats
+    """How far its quarter points have."""
+    first_points: Unsigned
+    """Output row of the first point of every split rim."""
+    split_once: Unsigned
+    """The edges that are split; the first `once_count` count."""
+    split_twice: Unsigned
+    """The edges that are split twice; the first `twice_count` count."""
+    rows: Floats
+    """The output: x y z, nx ny nz, attributes; row v is vertex v."""
+    once_count: int = 0
+    twice_count: int = 0
+    centre_triangles: Unsigned | None = None
+    """The triangles with a point in the middle, only with blending; `centre_count` of them."""
+    centre_count: int = 0
+    first_centre: int = 0
+    """Output row of the first of these points."""
+
+
+class Scheme(Protocol):
+    """Places points; anything with these members can take the place of the built-in schemes."""
+
+    @property
+    def interpolates(self) -> bool:
+        """Whether the original vertices stay where they are."""
+
+    def bind(
+        self,
+        connectivity: Connectivity,
+        rest_positions: npt.NDArray[np.float64],
+        rest_normals: Floats,
+    ) -> None:
+        """Learn the mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
+
+    def place(self, frame: Frame) -> None:
+        """Write positions and normals of vertices and of points on split edges into the rows."""
+
+    def place_centres(self, frame: Frame) -> None:
+        """Correct the points in the middle of triangles, which have been written already."""
+
+
+class LoopScheme:
+    """The paper's scheme: Loop's rules with Warren's weights (section 4.2)."""
+
+    interpolates = False
+
+    def bind(
+        self,
+        connectivity: Connectivity,
+        rest_positions: npt.NDArray[np.float64],
+        rest_normals: Floats,
+    ) -> None:
+        """Work out the weights of every vertex."""
+        self._connectivity = connectivity
+        self._rings = vertex_rings(connectivity)
+        self._vertex_growth = np.zeros(connectivity.vertex_count, dtype=np.float32)
+        self._middles = np.zeros((len(connectivity.edges), 3), dtype=np.float32)
+
+    def place(self, frame: Frame) -> None:
+        """Write moved vertices, first level, second level."""
+        mesh, rings = self._connectivity, self._rings
+        grow_vertices(
+            mesh.edge_points,
+            frame.growth_once,
+            frame.split_once,
+            frame.once_count,
+            self._vertex_growth,
+        )
+        place_vertices(
+            frame.positions,
+            frame.normals,
+            self._vertex_growth,
+            rings.own,
+            rings.ring,
+            rings.starts,
+            rings.vertices,
+            frame.rows,
+        )
+        place_middles(
+            frame.positions,
+            frame.normals,
+            mesh.edge_points,
+            mesh.is_interior,
+            frame.splits,
+            frame.growth_once,
+            frame.first_points,
+            frame.split_once,
+            frame.once_count,
+            self._middles,
+            frame.rows,
+        )
+        place_quarters(
+            frame.positions,
+            mesh.edge_points,
+            mesh.edge_wings,
+            mesh.is_interior,
+            frame.growth_once,
+            frame.growth_twice,
+            frame.first_points,
+            frame.split_twice,
+            frame.twice_count,
+            self._middles,
+            frame.rows,
+        )
+
+    def place_centres(self, frame: Frame) -> None:
+        """Leave them as blending has them."""

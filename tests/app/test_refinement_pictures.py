@@ -1,0 +1,53 @@
+"""The pictures of docs/refinement.md and the paper's figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from app import paper_figures, refinement_figures
+from app.charts import Axis, Series, chart
+
+PICTURES = Path(__file__).parents[2] / "docs" / "pictures"
+MOST_PICTURE = 450_000  # bytes
+
+
+def test_figures_are_drawn(tmp_path: Path) -> None:
+    """Every figure of the page, and ink on each; the same again to the last pixel."""
+    refinement_figures.main([str(tmp_path)])
+    for name, figure in refinement_figures.FIGURES.items():
+        drawn = np.asarray(Image.open(tmp_path / f"refine_{name}.png"))
+        assert 0.01 < (drawn.min(axis=2) < 128).mean() < 0.8
+        assert name == "tension" or (figure() == drawn).all()
+
+
+def test_paper_figures() -> None:
+    """Rows and columns of Fig. 9 and Fig. 10, refined rows with more triangles than static ones."""
+    nine = paper_figures.figure_9((96, 64))
+    assert nine.shape[1] == 3 * 96
+    assert nine.std() > 10.0
+    ten = paper_figures.figure_10((80, 64), poses=("joy",))
+    assert ten.shape[1] == 3 * 80
+    left, right = ten[30:90, :80].astype(int), ten[30:90, 80:160].astype(int)
+    assert np.abs(left - right).max() > 20  # refinement shows
+
+
+def test_chart() -> None:
+    """Curves lie where their values say, and names do not touch."""
+    across = Axis("triangles", 1.0, 16.0, (1, 4, 16), is_logarithmic=True)
+    up = Axis("error", 0.0, 1.0, (0, 0.5, 1))
+    assert across.fraction(4.0) == pytest.approx(0.5)
+    assert up.fraction(0.25) == 0.25
+    series = [Series(name, [(1, 0.5), (16, 0.5)]) for name in "abc"]
+    drawn = chart("title", across, up, series, (300, 200))
+    assert drawn.shape == (200, 300, 3)
+    assert (drawn.min(axis=2) < 128).any()
+
+
+@pytest.mark.parametrize("path", sorted(PICTURES.glob("refine_*.png")), ids=lambda path: path.stem)
+def test_pictures_of_the_page_are_small(path: Path) -> None:
+    """They travel with the source."""
+    assert path.stat().st_size < MOST_PICTURE

@@ -1,0 +1,129 @@
+"""`coherent=True` through the whole refiner, frame after frame (section 4.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import refine
+from bench.turned_lines import turned_per_frame
+from tests import meshes
+from tests.refine.cases import Forced
+
+Positions = npt.NDArray[np.float64]
+Frames = list[Positions]
+
+
+def history_of(refiner: refine.Refiner) -> refine.Coherent:
+    """What the refiner remembers."""
+    assert isinstance(refiner, refine.Kahler)
+    assert refiner.history is not None
+    return refiner.history
+
+
+def growing(mesh: meshes.Mesh, seed: int, count: int = 25) -> Frames:
+    """A deformation that grows from nothing."""
+    full = meshes.wrinkled(mesh, seed, 0.5) - mesh.vertices
+    return [mesh.vertices + share * full for share in np.linspace(0.0, 1.0, count)]
+
+
+def splitting(mesh: meshes.Mesh, seed: int, count: int = 12) -> tuple[Forced, Frames]:
+    """A criterion that splits ever more edges at random, and frames that call it."""
+    generator = np.random.default_rng(seed)
+    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    criterion = Forced(np.zeros(edge_count))
+    return criterion, [generator.random(edge_count) for _ in range(count)]
+
+
+def played(mesh: meshes.Mesh, criterion: Forced, chances: Frames) -> Iterator[Positions]:
+    """The mesh as it is, again and again, while a fifth of the edges is split further."""
+    for chance in chances:
+        criterion.wanted = np.minimum(2, criterion.wanted + (chance < 0.2)).astype(np.uint8)
+        yield mesh.vertices
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_growth_turns_no_line(seed: int) -> None:
+    """While splits are only added no line turns; looked up by splits alone, many do."""
+    mesh = meshes.irregular(seed)
+    counts = {}
+    for is_coherent in (False, True):
+        criterion, chances = splitting(mesh, seed)
+        refiner = refine.create(
+            "kahler", mesh.faces, mesh.vertices, criterion=criterion, coherent=is_coherent
+        )
+        counts[is_coherent] = sum(turned_per_frame(refiner, played(mesh, criterion, chances)))
+        if is_coherent:
+            assert history_of(refiner).removals_out_of_order == 0
+    assert counts[True] == 0
+    assert counts[False] > 50
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_growing_deformation(seed: int) -> None:
+    """A deformation that grows turns fewer lines than without memory, none where none is freed."""
+    mesh = meshes.irregular(seed)
+    turned = {}
+    for is_coherent in (False, True):
+        refiner = refine.create("kahler", mesh.faces, mesh.vertices, coherent=is_coherent)
+        turned[is_coherent] = sum(turned_per_frame(refiner, growing(mesh, seed + 5)))
+        if is_coherent:
+            # A drop may fall while all grows; only then may a line turn, and it is counted.
+            assert turned[True] == 0 or history_of(refiner).removals_out_of_order > 0
+    assert turned[True] < 0.2 * turned[False]
+
+
+@settings(max_examples=25)
+@given(seed=st.integers(0, 1000), history=st.lists(st.integers(0, 2**16), min_size=1, max_size=6))
+def test_any_history_is_crack_free(seed: int, history: list[int]) -> None:
+    """Whatever was split and taken back, in any order, the mesh passes the checker."""
+    mesh = meshes.irregular(seed % 20, 4, 4, 1)
+    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    criterion = Forced(np.zeros(edge_count))
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion, coherent=True)
+    for number in history:
+        criterion.wanted = np.random.default_rng(number).integers(0, 3, edge_count, dtype=np.uint8)
+        refined = refiner.refine(mesh.vertices)
+        refine.check(refiner, refined, mesh.vertices)
+        assert (refiner.splits == criterion.wanted).all()
+    criterion.wanted = np.zeros(edge_count, dtype=np.uint8)
+    assert len(refiner.refine(mesh.vertices).triangles) == len(mesh.faces)
+    assert history_of(refiner).states.max() == 0
+
+
+def test_states_are_all_the_memory() -> None:
+    """One number per triangle, carried over to a new refiner, is all that the past was."""
+    mesh = meshes.irregular(3)
+    frames = [*growing(mesh, 8), *growing(mesh, 9)[::-1]]
+    old = refine.create("kahler", mesh.faces, mesh.vertices, coherent=True)
+    for positions in frames[:30]:
+        old.refine(positions)
+    new = refine.create("kahler", mesh.faces, mesh.vertices, coherent=True)
+    history_of(new).states[:] = history_of(old).states
+    for positions in frames[30:]:
+        for ours, theirs in zip(old.refine(positions)[:4], new.refine(positions)[:4], strict=True):
+            assert ours.tobytes() == theirs.tobytes()
+
+
+def test_forgetting() -> None:
+    """After `forget` a frame is what it would be as the first one."""
+    mesh = meshes.irregular(4)
+    positions = growing(mesh, 3)[-1]
+    used = refine.create("kahler", mesh.faces, mesh.vertices, coherent=True)
+    for earlier in growing(mesh, 7):
+        used.refine(earlier)
+    history_of(used).forget()
+    fresh = refine.create("kahler", mesh.faces, mesh.vertices, coherent=True)
+    assert (used.refine(positions).triangles == fresh.refine(positions).triangles).all()
+
+
+def test_not_with_blending() -> None:
+    """Blended triangles have no lines to turn: the two options exclude each other."""
+    mesh = meshes.octahedron()
+    with pytest.raises(ValueError, match="coherent"):
+        refine.create("kahler", mesh.faces, mesh.vertices, coherent=True, blend=True)
