@@ -17,9 +17,7 @@ from .outputs import Frame
 from .scenes import FaceScene, PlaneScene
 
 FRAME_SECONDS = 1.0 / 30.0
-CLAY = render.Style(
-    textured=False, albedo=render.CLAY, shadows=False, background=render.WHITE
-)
+CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, background=render.WHITE)
 FLAT = replace(CLAY, shading=render.Shading.FLAT)
 GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
 SPLIT_EDGES = replace(FLAT, wireframe=True, colour_by=render.ColourBy.SPLITS)

@@ -7,6 +7,7 @@ forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -47,9 +48,15 @@ class Picture:
         )
         return cls(name, refiner, stream)
 
-    def refine(self, positions: npt.NDArray[np.float64]) -> None:
-        """Fill the lent buffers with refined triangles."""
-        self.mesh = self.refiner.refine(positions, out=self.stream)
+    def refine(
+        self, positions: npt.NDArray[np.float64], camera: render.OrbitCamera, viewport: Viewport
+    ) -> None:
+        """Fill the lent buffers with refined triangles, for whoever looks through the viewport."""
+        seen = {}
+        if "view" in inspect.signature(self.refiner.refine).parameters:  # some have no use for it
+            focal = camera.focal(viewport[2] / viewport[3], viewport[3])
+            seen["view"] = refine.View(camera.eye, focal)
+        self.mesh = self.refiner.refine(positions, out=self.stream, **seen)
 
     def upload(self) -> None:
         """Hand over what was refined last."""
@@ -93,7 +100,7 @@ class Pipeline:
         """The lower half: refine the mesh for each picture, and draw it into its viewport."""
         bones = self.scene.bone_transforms()
         for picture, viewport in zip(self.pictures, viewports, strict=True):
-            picture.refine(self.scene.positions)
+            picture.refine(self.scene.positions, camera, viewport)
             picture.upload()
             self._draw(picture, bones, camera, style, viewport)
 

@@ -128,13 +128,20 @@ class OrbitCamera:
 
     def projection_matrix(self, aspect: float) -> Matrix44:
         """Camera -> clip space, for a frame of that width / height."""
+        near, far = self._depth_range()
+        degrees = 2.0 * math.degrees(math.atan(self._half_height(aspect)))
+        return Matrix44.perspective_projection(degrees, aspect, near, far, dtype=np.float64)
+
+    def focal(self, aspect: float, height: int) -> float:
+        """Pixels that a length of 1 covers at distance 1, in a frame of `height` pixels."""
+        return 0.5 * height / self._half_height(aspect)
+
+    def _half_height(self, aspect: float) -> float:
+        """Half the frame's height at distance 1."""
         if not aspect > 0.0:
             raise ValueError(f"aspect is {aspect}; it must be positive (width / height)")
         half_height = math.tan(math.radians(0.5 * self.field_of_view))
-        half_height *= max(1.0, self.narrowest_aspect / aspect)
-        near, far = self._depth_range()
-        degrees = 2.0 * math.degrees(math.atan(half_height))
-        return Matrix44.perspective_projection(degrees, aspect, near, far, dtype=np.float64)
+        return half_height * max(1.0, self.narrowest_aspect / aspect)
 
     def _depth_range(self) -> tuple[float, float]:
         """Clipping planes just around the scene, for the best use of the depth buffer."""

@@ -7,6 +7,7 @@ Programs are compiled on first use, one per combination of shading and options.
 Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the figures are shaded).
 """
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -230,9 +231,9 @@ class Renderer:
         if scale == 1.0:
             return viewport
         left, bottom, width, height = viewport
-        x, y = round(scale * left), round(scale * bottom)
-        right, top = round(scale * (left + width)), round(scale * (bottom + height))
-        return x, y, max(right - x, 1), max(top - y, 1)
+        x, y = math.floor(scale * left), math.floor(scale * bottom)
+        right, top = math.ceil(scale * (left + width)), math.ceil(scale * (bottom + height))
+        return x, y, right - x, top - y
 
     @property
     def _line_scale(self) -> float:

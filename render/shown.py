@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import moderngl
 
-from .layers import Layers
+from .layers import Layers, Rectangle
 from .programs import compile_program
 
 _UNIT = 4  # texture unit while enlarging
@@ -42,11 +42,11 @@ class Shown:
         self._program["picture"] = _UNIT
         self._triangle = gl.vertex_array(self._program, [])
 
-    def lay(self, layers: Layers) -> None:
-        """Take the scene's pixels; all that was shown is gone. The frame stays bound."""
+    def lay(self, layers: Layers, area: Rectangle | None) -> None:
+        """Take the scene's pixels, in all of the window or one area; the frame stays bound."""
         gl = self._gl
         layers.flush()
-        gl.scissor = None
+        gl.scissor = area
         if layers.size == self.size:
             gl.copy_framebuffer(self.frame, layers.frame)
         self.frame.use()
@@ -56,6 +56,7 @@ class Shown:
             layers.colour.use(_UNIT)
             self._triangle.render(moderngl.TRIANGLES, vertices=3)
             gl.enable(moderngl.DEPTH_TEST)
+        gl.scissor = None
 
     def copy_to(self, target: moderngl.Framebuffer) -> None:
         """Copy everything to a framebuffer of the same size."""

@@ -12,8 +12,9 @@ from typing import Any
 import moderngl
 
 from .errors import GLError, diagnose
-from .layers import Layers
+from .layers import Layers, Rectangle
 from .shown import Detail, Shown
+from .style import Colour
 from .surface import Frame, Surface, check_size, clamp_samples, most_samples, picture_of
 
 
@@ -21,6 +22,7 @@ class WindowSurface(Surface):
     """A surface that people see.
 
     handle: the GLFW window, for input and GUI libraries. detail: settable, for the next frames.
+    area: the part in which the scene is seen, where panels hide the rest; None: all. Settable.
     """
 
     def __init__(self, glfw: ModuleType, handle: Any, gl: moderngl.Context, samples: int) -> None:
@@ -29,6 +31,7 @@ class WindowSurface(Surface):
         size = _framebuffer_size(glfw, handle)
         super().__init__(gl, size, samples)
         self.detail = Detail(self.samples)
+        self.area: Rectangle | None = None
         self._shown = Shown(gl, size)
         self._is_resolved = False
         self.pixel_scale = max(glfw.get_window_content_scale(handle))
@@ -79,8 +82,12 @@ class WindowSurface(Surface):
     def resolve(self) -> None:
         """End the scene: panels lie on top. Again: forget the panels, keep the scene."""
         self.make_current()
-        self._shown.lay(self.layers)
+        self._shown.lay(self.layers, self.area)
         self._is_resolved = True
+
+    def fill(self, area: Rectangle, colour: Colour) -> None:
+        """Paint a part of the resolved frame in one colour, behind a panel: cheaper than a quad."""
+        self._shown.frame.clear(*colour, viewport=area)
 
     def end(self) -> None:
         """Finish the frame and show it."""

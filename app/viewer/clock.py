@@ -5,8 +5,10 @@ Source: Fiedler 2004, "Fix your timestep!".
 
 from __future__ import annotations
 
-STEP = 1.0 / 120.0  # [s] finer than any screen's frames, so that motion does not judder
-MOST_STEPS = 12  # a tenth of a second: what a stalled window catches up
+STEP = 1.0 / 60.0  # [s] as in films and tests; the simulation divides it further by itself
+MOST_STEPS = 6  # a tenth of a second: what a stalled window catches up
+EARLY = 0.25  # of a step that may be taken before it is due: a screen of 60 Hz that is now a little
+# late and now early gets one step for each of its frames, and motion does not judder
 
 
 class Clock:
@@ -18,7 +20,7 @@ class Clock:
     def steps(self, elapsed: float) -> int:
         """How many steps to take after `elapsed` more seconds; the rest of a stall is forgotten."""
         self._owed += max(elapsed, 0.0)
-        due = int(self._owed / STEP + 1e-6)
+        due = max(int(self._owed / STEP + EARLY), 0)
         if due > MOST_STEPS:
             self._owed = 0.0
             return MOST_STEPS

@@ -6,8 +6,10 @@ their source. So the same colours are seen with and without refinement.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +21,7 @@ from ..pipeline import Picture, splits_of_source
 from ..scenes import Scene
 
 MOST_DROP = 0.3  # of the normals' dot product, drawn darkest: a bend of 45 degrees
-MOST_STRAIN = 0.35  # of an edge's length, drawn darkest; skin stiffens well before
+MOST_STRAIN = 0.35  # of a length, drawn darkest; skin stiffens well before
 
 FloatArray = npt.NDArray[np.float64]
 Amounts = npt.NDArray[np.uint8]
@@ -52,10 +54,17 @@ def curvature_drops(scene: Scene, refiner: refine.Refiner) -> Amounts:
     return np.asarray(np.clip(255.0 * worst / MOST_DROP, 0.0, 255.0), np.uint8)
 
 
-def strains(scene: Scene, refiner: refine.Refiner) -> Amounts:
-    """How much longer or shorter than at rest the edges of each triangle are, in the mean."""
-    strain = edge_strains(scene, refiner.edges)[refiner.triangle_edges].mean(axis=1)
-    return np.asarray(np.clip(128.0 + 127.0 * strain / MOST_STRAIN, 0.0, 255.0), np.uint8)
+def tensions(scene: Scene, refiner: refine.Refiner) -> Amounts:
+    """How far each triangle is stretched, less how far it is compressed."""
+    anything: Any = scene
+    stretch, compression, _ = _tension_of(anything).measure(scene.positions)
+    tension = (stretch - compression)[scene.faces].mean(axis=1)
+    return np.asarray(np.clip(128.0 + 127.0 * tension / MOST_STRAIN, 0.0, 255.0), np.uint8)
+
+
+@functools.cache
+def _tension_of(scene: Any) -> refine.Tension:
+    return refine.Tension(scene.faces, scene.rest_positions)
 
 
 def edge_strains(scene: Scene, edges: npt.NDArray[np.int32]) -> FloatArray:
@@ -94,6 +103,6 @@ COLOURS = {
     "tension": Colours(
         render.ColourBy.SIGNED,
         f"red: {MOST_STRAIN:.0%} stretched, blue: as much compressed",
-        strains,
+        tensions,
     ),
 }

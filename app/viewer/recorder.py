@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from ..script import Channel, Key, Script
 
-TOLERANCE = 1e-3  # of a value: what a straight line between keys may be off
+TOLERANCE = 2e-3  # of a value: what a straight line between keys may be off
 
 
 class Recorder:

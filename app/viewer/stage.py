@@ -33,6 +33,7 @@ SKINS = {
     "clay": (False, render.CLAY),
 }
 COMPARISONS = ("off", "wipe", "side by side")
+DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `can_detail`
 LEAST_SHARE = 0.08  # of the picture that each side of a comparison keeps
 
 
@@ -72,6 +73,9 @@ class Stage:
         self._adopted = wanted  # refused options are refused once, not in every frame
         try:
             merged = {**self.scene.refiner_options.get(look.refiner, {}), **(options or {})}
+            if merged.get("scheme") == DETAIL:
+                finer = self.scene.head.finer(1)  # type: ignore[attr-defined]
+                merged["detail"] = finer.vertices, finer.faces
             refined = Picture.of(self.scene, self.renderer, look.refiner, merged)
         except (ValueError, TypeError) as error:
             raise UserError(f"refiner {look.refiner}: {error}") from None
@@ -121,7 +125,7 @@ class Stage:
         shots = self.shots(look, viewport)
         for shot in shots:
             with self.timed("refinement"):
-                shot.picture.refine(self.scene.positions)
+                shot.picture.refine(self.scene.positions, camera, shot.viewport)
             with self.timed("upload"):
                 shot.picture.upload()
         with self.timed("draw"):
@@ -208,6 +212,11 @@ def style_of(look: Look, background: render.Background) -> render.Style:
         albedo=albedo,
         background=background,
     )
+
+
+def can_detail(scene: Scene) -> bool:
+    """Whether the scene's head comes with a finer mesh."""
+    return hasattr(getattr(scene, "head", None), "finer")
 
 
 def checked(look: Look, refiners: Sequence[str], overlays: Sequence[str]) -> Look:

@@ -154,6 +154,9 @@ class Viewer:
             self.frames_per_second = rate
         self._let_time_pass(elapsed if self.film is None else 1.0 / FRAMES_PER_SECOND)
         is_moving = self._draw_scene(elapsed)
+        left, bottom, width, _ = self.viewport
+        self.surface.fill((0, 0, left, self.surface.size[1]), self.gui.theme.panel)
+        self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
         with self.gui.frame():
             self.gui.dress(self.settings.theme, self.settings.zoom)
             self._draw_panels(elapsed)
@@ -221,6 +224,7 @@ class Viewer:
 
     def _draw_scene(self, elapsed: float) -> bool:
         """Draw the scene if it has changed, or is not drawn in full yet; whether it changed."""
+        self.surface.area = self.viewport
         shown = self._shown()
         drawn, detail = self._drawn
         has_changed = shown != drawn or self._has_stepped or self.surface.is_resized
@@ -328,6 +332,7 @@ def _fixed(name: str, left: float, top: float, width: float, height: float) -> I
     imgui.set_next_window_pos(imgui.ImVec2(left, top))
     imgui.set_next_window_size(imgui.ImVec2(max(width, 1.0), max(height, 1.0)))
     flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move
+    flags |= imgui.WindowFlags_.no_background  # which the surface was filled with
     imgui.begin(name, None, flags | imgui.WindowFlags_.no_bring_to_front_on_focus)
     try:
         yield

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,18 +11,23 @@ from imgui_bundle import imgui
 
 import refine
 import render
+from refine import choices, criteria
 
 from .. import commands
 from ..colours import COLOURS
 from ..gui import colour, em
 from ..overlays import overlays_of
-from ..stage import COMPARISONS, SKINS, STAGES
+from ..stage import COMPARISONS, DETAIL, SKINS, STAGES, can_detail
 from .sliders import Sliders
 
 if TYPE_CHECKING:
     from ..window import Viewer
 
-BORDER_OPTIONS = ("uv", "face_uv")  # every refiner takes them; the scene gives them
+# Words that options of refiners may be, asked of the plug-in.
+CHOICES: dict[str, Sequence[str]] = {
+    "scheme": choices.NAMES,
+    "criterion": ("normal", *criteria.CRITERIA),
+}
 HIGHEST = 0.25  # of a slider for a number that is no whole one, as far as it is not more already
 
 
@@ -49,8 +54,8 @@ class MechanismPanel:
         names = [name for name in refine.available() if name != "none"]
         self._choose("Refiner", "refiner", names)
         self._choose("Compare", "compare", COMPARISONS)
-        for name, parameter in options_of(viewer.stage.refined.refiner).items():
-            self._draw_option(name, parameter.default)
+        for name, default in options_of(viewer.stage.refined.refiner).items():
+            self._draw_option(name, default)
         shots = viewer.stage.shots(look, viewer.viewport)
         base = len(viewer.scene.faces)
         for shot in shots:
@@ -73,7 +78,7 @@ class MechanismPanel:
         value = stored.get(name, scenes.get(name, default))
         label = name.replace("_", " ")
         if isinstance(default, bool):
-            self._check(label, bool(value), lambda: stored.update({name: not value}))
+            self._check(label, bool(value), lambda: _put(stored, name, not value))
         elif isinstance(default, int):
             is_changed, chosen = imgui.input_int(label, int(value))
             viewer.gui.remember(label)
@@ -89,9 +94,14 @@ class MechanismPanel:
                 stored[name] = slid.value
                 _keep_in_order(stored, name, slid.value, scenes)
         elif isinstance(default, str):
-            choices = choices_of(look.refiner, name)
-            if choices:
-                self._choose(label, name, choices, of=stored, default=str(value))
+            has_finer = can_detail(viewer.scene)
+            allowed = [word for word in CHOICES.get(name, ()) if word != DETAIL or has_finer]
+            if allowed:
+                self._choose(label, name, allowed, of=stored, default=str(value))
+        elif default is None:
+            words = {"as it suits": None, "on": True, "off": False}
+            present = next(word for word, each in words.items() if each is value)
+            self._choose_among(label, present, list(words), lambda w: _put(stored, name, words[w]))
 
     def _draw_look(self) -> None:
         viewer, look = self._viewer, self._viewer.look
@@ -129,7 +139,7 @@ class MechanismPanel:
                 overlay_text=f"{name}  {median:.2f}",
                 scale_min=0.0,
                 scale_max=max(float(times.max()), 0.1) * 1.3,
-                graph_size=imgui.ImVec2(imgui.get_content_region_avail().x, em(2.4)),
+                graph_size=imgui.ImVec2(imgui.get_content_region_avail().x, em(1.9)),
             )
         self._viewer.gui.remember("plot")
 
@@ -149,7 +159,19 @@ class MechanismPanel:
         default: str = "",
     ) -> None:
         """A list to choose from, for a field of the look or an entry of a table."""
+
+        def take(choice: str) -> None:
+            if of is not None:
+                of[name] = choice
+            else:
+                setattr(self._viewer.look, name, choice)
+
         present = default if of is not None else getattr(self._viewer.look, name)
+        self._choose_among(label, present, choices, take)
+
+    def _choose_among(
+        self, label: str, present: str, choices: Sequence[str], take: Callable[[str], None]
+    ) -> None:
         imgui.align_text_to_frame_padding()
         imgui.text(label)
         imgui.same_line(em(10.2))
@@ -161,27 +183,27 @@ class MechanismPanel:
         for choice in choices:
             is_clicked, _ = imgui.selectable(choice, choice == present)
             self._viewer.gui.remember(f"{label}: {choice}")
-            if is_clicked and of is not None:
-                of[name] = choice
-            elif is_clicked:
-                setattr(self._viewer.look, name, choice)
+            if is_clicked:
+                take(choice)
         imgui.end_combo()
 
 
-def options_of(refiner: refine.Refiner) -> Mapping[str, inspect.Parameter]:
-    """What a refiner can be told beyond the mesh, as its class declares it."""
-    parameters = inspect.signature(type(refiner)).parameters
+def options_of(refiner: refine.Refiner) -> dict[str, Any]:
+    """What a refiner can be told in numbers and words, as its class declares it, and its defaults.
+
+    An option whose default is None is left out, unless it may be on or off.
+    """
+    parameters = inspect.signature(type(refiner)).parameters.values()
     return {
-        name: parameter
-        for name, parameter in parameters.items()
-        if parameter.kind is parameter.KEYWORD_ONLY and name not in BORDER_OPTIONS
+        each.name: each.default
+        for each in parameters
+        if each.kind is each.KEYWORD_ONLY
+        and (isinstance(each.default, bool | int | float | str) or "bool" in str(each.annotation))
     }
 
 
-def choices_of(refiner: str, option: str) -> tuple[str, ...]:
-    """The words that an option of a refiner may be, where the package tells."""
-    listed = getattr(refine, f"{option}_names", None)
-    return tuple(listed()) if callable(listed) else ()
+def _put(stored: dict[str, Any], name: str, value: Any) -> None:
+    stored[name] = value
 
 
 def _keep_in_order(
