@@ -75,7 +75,7 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None)
 @click.option(
     "--curves",
     type=click.Path(path_type=Path),
-    help="NAME.png: error over triangles, as NAME_SUBJECT_CRITERION.png.",
+    help="NAME.png: error over triangles, as NAME_SUBJECT_RULE.png.",
 )
 def bench_quality(reference: Path | None, finer: str, apart: bool, curves: Path | None) -> None:
     """Measure how near every scheme comes to a dense face, for the triangles it spends."""
@@ -83,7 +83,7 @@ def bench_quality(reference: Path | None, finer: str, apart: bool, curves: Path 
     from bench.subjects import Subject, built_in, scanned
 
     from .outputs import check_picture, save_png
-    from .quality_report import error_curves, quality_table, targets_text
+    from .quality_report import error_curves, quality_table, rules_table, targets_text
 
     with told_in_one_line():
         if curves is not None:
@@ -105,13 +105,13 @@ def bench_quality(reference: Path | None, finer: str, apart: bool, curves: Path 
                 f"{subject.name}: {len(subject.coarse_faces)} triangles against "
                 f"{len(subject.dense_faces)}"
             )
-            click.echo(quality_table(title, scores) + "\n")
+            click.echo(quality_table(title, scores) + "\n\n" + rules_table(scores) + "\n")
             click.echo(targets_text(scores) + "\n")
             if curves is None:
                 continue
-            for criterion in quality.CRITERIA:
-                name = f"{curves.stem}_{subject.name.replace(' ', '_')}_{criterion}"
-                save_png(curves.with_stem(name), error_curves(title, scores, criterion))
+            for rule in quality.RULES:
+                name = f"{curves.stem}_{subject.name}_{rule}".replace(" ", "_").replace(",", "")
+                save_png(curves.with_stem(name), error_curves(title, scores, rule))
                 click.echo(f"{curves.with_stem(name)}: written", err=True)
 
 

@@ -2,14 +2,17 @@
 
 A coarse face moves with a dense one (subjects.py). From every dense vertex the nearest point of the
 refined coarse mesh is found, exactly; its distance and the angle between the two normals there are
-squared, averaged and rooted. Edges are split by one of two criteria, whose threshold is searched
+squared, averaged and rooted. Edges are split by one of these rules, whose threshold is searched
 until the mesh has as many triangles as it may spend:
 
-    drop     the paper's: where the mesh bends more than at rest
-    height   where it is curved, at rest or not: refine.Curvature(relative=False)
+    drop        the paper's: where the mesh bends more than at rest       refine.NormalDrop
+    height      where it is curved, at rest or not         refine.Curvature, relative=False
+    gap         where it is far from the finer mesh                              refine.Gap
+    gap, grown  the same with blend=True: nothing pops, at the price of triangles that are there
+                before they have grown
 
-Beside that everything split twice, and subdivision of the whole mesh by uniform Loop (Loop 1987,
-Warren's weights) and uniform PN triangles (pn.py).
+Beside that everything split twice (blended where that is the default), and subdivision of the whole
+mesh by uniform Loop (Loop 1987, Warren's weights) and uniform PN triangles (pn.py).
 """
 
 from __future__ import annotations
@@ -22,6 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 import refine
+from refine.criterion import Thresholds
 
 from .nearest import nearest_points
 from .pn import tessellate
@@ -35,8 +39,9 @@ BUDGETS = (1.6, 2.0)
 """Triangles of a refined mesh over those of the coarse one, that the targets speak of."""
 CURVE_BUDGETS = (1.15, 1.3, 1.6, 2.0, 3.0, 5.0, 7.5)
 """The same for curves."""
-RATIO = refine.THRESHOLD_TWICE / refine.THRESHOLD_ONCE
-HEIGHT_RATIO = 2.4  # as refine.Curvature has it
+RULES = ("drop", "height", "gap", "gap, grown")
+RATIOS = {"drop": 4.0, "height": 2.4, "gap": 3.0, "gap, grown": 3.0}
+"""The threshold that splits twice over the one that splits once, as by default."""
 SEARCH_STEPS = 18
 EVERYWHERE = float("inf")
 """The budget that splits every edge twice."""
@@ -47,7 +52,7 @@ what such triangles can come to, whatever decides where points go. Not a bound: 
 round surface better with corners a little outside it."""
 UNIFORM = ("uniform Loop", "uniform PN")
 Key = tuple[str, str, float]
-"""Method, criterion, budget."""
+"""Method, rule, budget."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +61,8 @@ class Score:
 
     method: str
     """`coarse`, a scheme, or one of UNIFORM."""
-    criterion: str
-    """One of CRITERIA, empty where nothing decides."""
+    rule: str
+    """One of RULES, empty where nothing decides."""
     budget: float
     """Triangles that it was allowed, over the coarse ones; EVERYWHERE, or levels for UNIFORM."""
     expression: str
@@ -70,68 +75,22 @@ class Score:
     @property
     def key(self) -> Key:
         """What it is a score of, whatever the expression."""
-        return self.method, self.criterion, self.budget
+        return self.method, self.rule, self.budget
 
 
-class SlidingCriterion:
-    """A criterion with a threshold that can be moved after binding (a refine.Criterion)."""
+class _Everywhere:
+    """The criterion that splits every edge twice."""
 
-    ratio = RATIO
-    """The threshold that splits twice, over the one that splits once."""
+    def bind(self, connectivity: object, rest: object, rest_normals: object) -> None:
+        """Need nothing of the mesh."""
 
-    def __init__(self) -> None:
-        self.threshold = 1.0
-        self.is_everywhere = False
+    def measure(self, positions: object, normals: object, need: Narrow) -> None:
+        """Write needs at which all points have grown."""
+        need[:] = 2.0
 
-    def bind(self, connectivity: refine.Connectivity, rest: Narrow, rest_normals: Narrow) -> None:
-        """Take the edges and what they measure in the undeformed mesh."""
-        self._ends = connectivity.edges.T
-        self._at_rest = self._value(rest, rest_normals)
-
-    def measure(self, positions: Narrow, normals: Narrow, need: Narrow) -> None:
-        """Write 0 at the threshold and 1 where twice is split, shape (E,)."""
-        value = self._value(positions, normals) - self._at_rest
-        need[:] = (value / self.threshold - 1.0) / (self.ratio - 1.0)
-        if self.is_everywhere:
-            need[:] = 2.0
-
-    def mark(self, positions: Narrow, normals: Narrow, splits: npt.NDArray[np.uint8]) -> None:
-        """Write 0, 1 or 2 for every edge, shape (E,)."""
-        need = np.empty(len(splits), dtype=np.float32)
-        self.measure(positions, normals, need)
-        splits[:] = (need > 0.0).astype(np.uint8) + (need > 1.0)
-
-    def _value(self, positions: Narrow, normals: Narrow) -> Array:
-        raise NotImplementedError
-
-
-class SlidingDrop(SlidingCriterion):
-    """The paper's: drop of the dot product of the normals since rest."""
-
-    def _value(self, positions: Narrow, normals: Narrow) -> Array:
-        a, b = (normals[ends].astype(np.float64) for ends in self._ends)
-        return np.asarray(-np.einsum("ei,ei->e", a, b))
-
-
-class SlidingHeight(SlidingCriterion):
-    """Height of the arc over an edge, as `refine.Curvature`, at rest or not: where it is curved."""
-
-    ratio = HEIGHT_RATIO
-
-    def bind(self, connectivity: refine.Connectivity, rest: Narrow, rest_normals: Narrow) -> None:
-        """Take the edges; rest counts for nothing."""
-        super().bind(connectivity, rest, rest_normals)
-        self._at_rest = np.zeros(len(connectivity.edges))
-
-    def _value(self, positions: Narrow, normals: Narrow) -> Array:
-        (from_a, to_b), (at_a, at_b) = (
-            [values[ends].astype(np.float64) for ends in self._ends]
-            for values in (positions, normals)
-        )
-        return np.asarray(np.abs(np.einsum("ei,ei->e", to_b - from_a, at_b - at_a)) / 8.0)
-
-
-CRITERIA: dict[str, type[SlidingCriterion]] = {"drop": SlidingDrop, "height": SlidingHeight}
+    def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
+        """Write 2 for every edge."""
+        splits[:] = 2
 
 
 def run(
@@ -147,7 +106,7 @@ def run(
     `progress`: called with the name of each expression before it is measured.
     """
     budgets = tuple(budgets)
-    sliding = [_Sliding(subject, scheme, name) for scheme in schemes for name in CRITERIA]
+    sliding = [_Sliding(subject, scheme, rule) for scheme in schemes for rule in RULES]
     scores = []
     for name in expressions if expressions is not None else subject.poses:
         progress(name)
@@ -156,7 +115,7 @@ def run(
 
 
 def means(scores: Iterable[Score]) -> dict[Key, Score]:
-    """The mean over expressions for each method, criterion and budget; triangles are rounded."""
+    """The mean over expressions for each method, rule and budget; triangles are rounded."""
     groups: dict[Key, list[Score]] = {}
     for score in scores:
         groups.setdefault(score.key, []).append(score)
@@ -173,30 +132,43 @@ def means(scores: Iterable[Score]) -> dict[Key, Score]:
 
 
 class _Sliding:
-    """One scheme bound to the coarse mesh of a subject, for any number of triangles."""
+    """One scheme and one rule bound to the coarse mesh, for any number of triangles."""
 
-    def __init__(self, subject: Subject, scheme: str, criterion: str) -> None:
-        self.scheme, self.criterion = scheme, criterion
-        self._criterion = CRITERIA[criterion]()
-        options: dict[str, Any] = {"scheme": scheme, "criterion": self._criterion}
+    def __init__(self, subject: Subject, scheme: str, rule: str) -> None:
+        self.scheme, self.rule = scheme, rule
+        finer = (subject.rest.dense, subject.dense_faces)
+        self._criterion: refine.NormalDrop | refine.Curvature | refine.Gap
+        if rule == "drop":
+            self._criterion = refine.NormalDrop()
+        elif rule == "height":
+            self._criterion = refine.Curvature(relative=False)
+        else:
+            self._criterion = refine.Gap(finer)
+        options: dict[str, Any] = {"scheme": scheme}
         if scheme == "detail":
-            options["detail"] = (subject.rest.dense, subject.dense_faces)
+            options["detail"] = finer
+        faces, rest = subject.coarse_faces, subject.rest.coarse
+        blend = rule == "gap, grown"
         self._refiner = refine.create(
-            "kahler", subject.coarse_faces, subject.rest.coarse, **options
+            "kahler", faces, rest, criterion=self._criterion, blend=blend, **options
         )
-        self._coarse_count = len(subject.coarse_faces)
+        self._everywhere = refine.create("kahler", faces, rest, criterion=_Everywhere(), **options)
+        self._coarse_count = len(faces)
 
-    def refine(self, positions: Array, budget: float) -> refine.RefinedMesh:
+    def within(self, positions: Array, budget: float) -> refine.RefinedMesh:
         """Refine with at most `budget` times the coarse triangles."""
-        self._criterion.is_everywhere = budget == EVERYWHERE
-        if not self._criterion.is_everywhere:
-            low, high = np.log(1e-6), np.log(20.0)  # thresholds: too many, too few triangles
-            for _ in range(SEARCH_STEPS):
-                middle = 0.5 * (low + high)
-                self._criterion.threshold = float(np.exp(middle))
-                count = len(self._refiner.refine(positions).triangles)
-                low, high = (middle, high) if count > budget * self._coarse_count else (low, middle)
-            self._criterion.threshold = float(np.exp(high))
+        if budget == EVERYWHERE:
+            return self._everywhere.refine(positions)
+        low, high = np.log(1e-6), np.log(20.0)  # thresholds: too many, too few triangles
+        for _ in range(SEARCH_STEPS):
+            middle = 0.5 * (low + high)
+            count = len(self._refined(positions, middle).triangles)
+            low, high = (middle, high) if count > budget * self._coarse_count else (low, middle)
+        return self._refined(positions, high)
+
+    def _refined(self, positions: Array, logarithm: float) -> refine.RefinedMesh:
+        once = float(np.exp(logarithm))
+        self._criterion.thresholds = Thresholds(once, RATIOS[self.rule] * once, "distances")
         return self._refiner.refine(positions)
 
 
@@ -209,7 +181,7 @@ def _scores_of(
 ) -> list[Score]:
     normals = vertex_normals(pose.dense, subject.dense_faces)
 
-    def score(method: str, criterion: str, budget: float, mesh: Any) -> Score:
+    def score(method: str, rule: str, budget: float, mesh: Any) -> Score:
         positions, mesh_normals, triangles = mesh[:3]
         found = nearest_points(pose.dense, positions, triangles)
         near = np.einsum("ni,nij->nj", found.weights, mesh_normals[triangles[found.triangle]])
@@ -218,7 +190,7 @@ def _scores_of(
         angles = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
         return Score(
             method,
-            criterion,
+            rule,
             budget,
             expression,
             len(triangles),
@@ -231,13 +203,13 @@ def _scores_of(
     scores = [score(COARSE, "", 1.0, (pose.coarse, coarse_normals, faces))]
     for one in sliding:
         for budget in budgets:
-            mesh = one.refine(pose.coarse, budget)
-            scores.append(score(one.scheme, one.criterion, budget, mesh))
+            mesh = one.within(pose.coarse, budget)
+            scores.append(score(one.scheme, one.rule, budget, mesh))
             if one.scheme == "detail":
                 moved = _on_truth(mesh, pose, subject, normals)
-                scores.append(score(IDEAL, one.criterion, budget, moved))
+                scores.append(score(IDEAL, one.rule, budget, moved))
     for one in {one.scheme: one for one in sliding}.values():
-        mesh = one.refine(pose.coarse, EVERYWHERE)
+        mesh = one.within(pose.coarse, EVERYWHERE)
         scores.append(score(one.scheme, "", EVERYWHERE, mesh))
         if one.scheme == "detail":
             scores.append(score(IDEAL, "", EVERYWHERE, _on_truth(mesh, pose, subject, normals)))

@@ -23,6 +23,7 @@ from .coherence_pass import Coherent
 from .connectivity import Connectivity, connect, weld
 from .criteria import Curvature, Maximum, ScreenEdge, Silhouette
 from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, Measured, NormalDrop
+from .gap import Gap
 from .passthrough import PassThrough
 from .plugin import Origins, RefinedMesh, Refiner, Stream, View, available, create, register
 from .schemes import Frame, Scheme
@@ -38,6 +39,7 @@ __all__ = [
     "Criterion",
     "Curvature",
     "Frame",
+    "Gap",
     "Kahler",
     "Loop",
     "Maximum",

@@ -103,7 +103,10 @@ def _number_places(origins: Origins) -> Wide:
     order = np.argsort(vertices, axis=1)
     vertices = np.take_along_axis(vertices, order, axis=1)
     parts = np.take_along_axis(_in_parts(origins.weights), order, axis=1)
-    rows = np.concatenate([vertices, parts], axis=1)
+    # The middle of a triangle is one point of one triangle, even if another has the same corners.
+    is_middle = (parts > 0).all(axis=1)
+    own_number = np.where(is_middle, np.arange(len(parts)), -1)
+    rows = np.column_stack([vertices, parts, own_number])
     return np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
 
 

@@ -67,7 +67,7 @@ class Connectivity:
     wedge_vertices: Unsigned
     """Vertex of each wedge, shape (W,)."""
     wedge_uv: Indices
-    """Texture coordinate of each wedge, shape (W,); -1 where no triangle uses the vertex."""
+    """Texture coordinate of each wedge, shape (W,); -1 where no corner gives the vertex one."""
     rim_edges: Unsigned
     """Edge of each rim, shape (R,)."""
     rim_uv: Indices
@@ -228,14 +228,12 @@ def _seams(
     starts = faces.ravel()
     is_reversed = is_proper & (starts != edges[edge_of, 0]) if edge_count else is_proper
     if face_uv is None:
-        used = np.full(vertex_count, -1, dtype=np.int32)
-        used[starts] = starts
         rims = np.where(is_proper, 2 * edge_of + is_reversed, none).astype(np.uint32)
         return {
             "corners": faces,
             "triangle_rims": rims.reshape(-1, 3),
             "wedge_vertices": np.arange(vertex_count, dtype=np.uint32),
-            "wedge_uv": used,
+            "wedge_uv": np.arange(vertex_count, dtype=np.int32),
             "rim_edges": np.arange(edge_count, dtype=np.uint32),
             "rim_uv": edges,
         }

@@ -38,6 +38,7 @@ FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 """Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
 
 ZERO = np.float32(0.0)
+HALF = np.float32(0.5)
 ONE = np.float32(1.0)
 TINY = np.finfo(np.float32).tiny
 
@@ -124,6 +125,7 @@ class DetailScheme(CubicScheme):
         )
         super().place(frame)
         show_points(
+            mesh.edge_points,
             self._looks,
             self._axes,
             frame.splits,
@@ -197,9 +199,9 @@ def _centres_of(
     places: Doubles, mesh: Connectivity, positions: Doubles, normals: Floats
 ) -> tuple[Doubles, Doubles]:
     """Middles of triangles whose edges are all split, as blending has them, and normals there."""
-    edges = np.maximum(mesh.triangle_edges, 0)
-    bulges = places[edges, 1] - positions[mesh.edges[edges]].mean(axis=2)
-    centres = positions[mesh.faces].mean(axis=1) + 4.0 / 9.0 * bulges.sum(axis=1)
+    bulges = places[:, 1] - positions[mesh.edges].mean(axis=1)
+    bulges = np.concatenate([bulges, np.zeros((1, 3))])  # found at -1, where there is no edge
+    centres = positions[mesh.faces].mean(axis=1) + 4.0 / 9.0 * bulges[mesh.triangle_edges].sum(1)
     return centres, normals[mesh.faces].sum(axis=1, dtype=np.float64)
 
 
@@ -366,6 +368,7 @@ def show_vertices(
 
 @kernel
 def show_points(
+    edge_points: Unsigned,
     looks: Floats,
     axes: Floats,
     splits: npt.NDArray[np.uint8],
@@ -381,9 +384,14 @@ def show_points(
         e = split_once[k]
         row = first_points[e] + (splits[e] >> 1)
         turn(vertices[row, 3:6], looks[e, 1], axes[e], growth_once[e])
-        if splits[e] == 2:
-            turn(vertices[row - 1, 3:6], looks[e, 0], axes[e], growth_twice[e])
-            turn(vertices[row + 1, 3:6], looks[e, 2], axes[e], growth_twice[e])
+        if splits[e] < 2:
+            continue
+        for end in range(2):
+            # Between its neighbours at first, of which the middle has just been turned.
+            vertex, point = edge_points[e, end], row - 1 + 2 * end
+            for i in range(3, 6):
+                vertices[point, i] = HALF * (vertices[vertex, i] + vertices[row, i])
+            turn(vertices[point, 3:6], looks[e, 2 * end], axes[e], growth_twice[e])
 
 
 @kernel

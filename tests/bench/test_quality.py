@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 import assets
-from app.quality_report import error_curves, quality_table, targets_text
+from app.quality_report import error_curves, quality_table, rules_table, targets_text
 from bench import quality, subjects
 from bench.subjects import Pose, Subject
 
@@ -44,9 +44,9 @@ def test_scores_of_a_cylinder() -> None:
     coarse = average[quality.COARSE, "", 1.0]
     assert coarse.triangles == 72
     for scheme in quality.SCHEMES:
-        for criterion in quality.CRITERIA:
-            assert average[scheme, criterion, 1.6].triangles <= 1.6 * 72
-            assert average[scheme, criterion, 2.0].triangles <= 2.0 * 72
+        for rule in quality.RULES:
+            assert average[scheme, rule, 1.6].triangles <= 1.6 * 72
+            assert average[scheme, rule, 2.0].triangles <= 2.0 * 72
         assert average[scheme, "", quality.EVERYWHERE].triangles >= 10 * 72
     assert average["cubic", "", quality.EVERYWHERE].distance < 0.5 * coarse.distance
     assert average["loop", "", quality.EVERYWHERE].distance > coarse.distance
@@ -56,6 +56,7 @@ def test_scores_of_a_cylinder() -> None:
     table = quality_table("a sheet", scores)
     assert "roll 0.5" in table
     assert f"{coarse.distance:.3f}" in table
+    assert "cubic, height" in rules_table(scores)
     assert "cubic: never worse than coarse" in targets_text(scores)
     assert error_curves("a sheet", scores, "drop", (300, 200)).shape == (200, 300, 3)
 

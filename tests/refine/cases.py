@@ -10,6 +10,31 @@ import refine
 from tests.refine import plain_twin
 
 
+class Needed:
+    """A criterion that measures what it is told."""
+
+    def __init__(self, need: npt.ArrayLike) -> None:
+        self.need = np.asarray(need, dtype=np.float32)
+
+    def bind(self, connectivity: object, rest_positions: object, rest_normals: object) -> None:
+        """Need nothing of the undeformed mesh."""
+
+    def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
+        """Write the splits that belong to the needs."""
+        splits[:] = (self.need > 0).astype(np.uint8) + (self.need > 1)
+
+    def measure(self, positions: object, normals: object, need: npt.NDArray[np.float32]) -> None:
+        """Write the needs."""
+        need[:] = self.need
+
+    def growth(self, edges: npt.NDArray[np.int32]) -> plain_twin.Growth:
+        """What blending makes of the needs, for the plain twin."""
+        once = np.clip(self.need / 0.5, 0, 1)
+        twice = np.clip((self.need - 1) / 0.5, 0, 1)
+        names = [plain_twin.edge_name(int(a), int(b)) for a, b in edges]
+        return {n: (float(p), float(q)) for n, p, q in zip(names, once, twice, strict=True)}
+
+
 class Forced:
     """A criterion that splits as it is told, whatever the mesh does."""
 
@@ -29,7 +54,9 @@ def point_names(origins: refine.Origins) -> list[plain_twin.Name]:
     names: list[plain_twin.Name] = []
     for vertices, weights in zip(origins.vertices, origins.weights, strict=True):
         parts = sorted((int(v), 4 * float(w)) for v, w in zip(vertices, weights, strict=True) if w)
-        if len(parts) == 1:
+        if len(parts) == 3:
+            names.append(("centre", *(v for v, _ in parts)))
+        elif len(parts) == 1:
             names.append(("vertex", parts[0][0]))
         else:
             (low, _), (high, from_low) = parts

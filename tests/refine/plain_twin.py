@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter, defaultdict
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 Vector = tuple[float, float, float]
@@ -130,56 +131,139 @@ def first_level_point(edge: EdgeName, positions: list[Vector], around: Surroundi
     return mix((3 / 8, a), (3 / 8, b), (1 / 8, c), (1 / 8, d))
 
 
-def refine(
-    positions: list[Vector], faces: list[tuple[int, int, int]], splits: dict[EdgeName, int]
-) -> Twin:
-    """Split each edge as often as `splits` says, 0 where it says nothing."""
-    around, twin = Surroundings(faces), Twin()
-    count = Counter(splits)
-    touched = {v for edge, number in count.items() if number for v in edge}
-    normals = vertex_normals(positions, faces)
-    moved = [
-        moved_vertex(v, positions, around) if v in touched else positions[v]
-        for v in range(len(positions))
-    ]
-    for v in range(len(positions)):
-        twin.positions["vertex", v], twin.normals["vertex", v] = moved[v], normals[v]
+Growth = dict[EdgeName, tuple[float, float]]
+Curve = Callable[[EdgeName, int], Vector]
 
-    first = {e: first_level_point(e, positions, around) for e, number in count.items() if number}
+
+def refine(
+    positions: list[Vector],
+    faces: list[tuple[int, int, int]],
+    splits: dict[EdgeName, int],
+    *,
+    growth: Growth | None = None,
+    curve: Curve | None = None,
+) -> Twin:
+    """Split each edge as often as `splits` says, 0 where it says nothing.
+
+    `growth`: how far the points of an edge have grown on both levels, for blending, which also
+    makes fans of the triangles; `curve`: the full point of an edge at a number of quarters, for the
+    schemes whose vertices stay.
+    """
+    twin, count = Twin(), Counter(splits)
+    grown = {e: (1.0, 1.0) if growth is None else growth[e] for e in count if count[e]}
+    normals = vertex_normals(positions, faces)
+    place = _curved(positions, curve, grown) if curve else _smoothed(positions, faces, count, grown)
+    for v in range(len(positions)):
+        twin.positions["vertex", v], twin.normals["vertex", v] = place.vertices[v], normals[v]
+    for (a, b), points in place.points.items():
+        between = unit(mix((1, normals[a]), (1, normals[b])))
+        for quarters, point in points.items() if count[a, b] == 2 else [(2, points[2])]:
+            beside = {1: normals[a], 2: between, 3: normals[b]}[quarters]
+            twin.positions["edge", a, b, quarters] = point
+            twin.normals["edge", a, b, quarters] = unit(mix((1, beside), (1, between)))
+    for source, face in enumerate(faces):
+        split_edges = sum(count[edge_name(face[i], face[(i + 1) % 3])] for i in range(3))
+        if growth is not None and is_proper(face) and split_edges > 1:
+            twin.triangles += [(source, corners) for corners in _fan(twin, face, count, grown)]
+        else:
+            twin.triangles += [(source, corners) for corners in _subtriangles(face, count)]
+    return twin
+
+
+@dataclass
+class Placed:
+    """Positions of vertices, and of the points of split edges by quarters."""
+
+    vertices: list[Vector]
+    points: dict[EdgeName, dict[int, Vector]]
+
+
+def _curved(positions: list[Vector], curve: Curve, grown: Growth) -> Placed:
+    """Vertices stay; points go to the curve as far as they have grown."""
+    points: dict[EdgeName, dict[int, Vector]] = {}
+    for (a, b), (once, twice) in grown.items():
+        straight = mix((0.5, positions[a]), (0.5, positions[b]))
+        m = mix((1 - once, straight), (once, curve((a, b), 2)))
+        points[a, b] = {2: m}
+        for quarters, end in ((1, a), (3, b)):
+            chord = mix((0.5, positions[end]), (0.5, m))
+            points[a, b][quarters] = mix((1 - twice, chord), (twice, curve((a, b), quarters)))
+    return Placed(positions, points)
+
+
+def _smoothed(
+    positions: list[Vector], faces: list[tuple[int, int, int]], count: Counter[EdgeName],
+    grown: Growth,
+) -> Placed:  # fmt: skip
+    """The paper's rules, with growth."""
+    around = Surroundings(faces)
+    moved = []
+    for v, position in enumerate(positions):
+        share = max((once for edge, (once, _) in grown.items() if v in edge), default=0.0)
+        moved.append(mix((1 - share, position), (share, moved_vertex(v, positions, around))))
+    first = {e: first_level_point(e, positions, around) for e in grown}
 
     def first_or_middle(u: int, v: int) -> Vector:
         middle = mix((0.5, positions[u]), (0.5, positions[v]))
-        return first.get(edge_name(u, v), middle)
+        share = grown.get(edge_name(u, v), (0.0, 0.0))[0]
+        return mix((1 - share, middle), (share, first.get(edge_name(u, v), middle)))
 
+    points: dict[EdgeName, dict[int, Vector]] = {}
     for edge, m in first.items():
         a, b = edge
-        name = ("edge", a, b)
-        place = {1: [(2, m)], 2: []}[count[edge]]
-        if count[edge] == 2 and edge in around.inner:
+        once, twice = grown[edge]
+        chords = {end: mix((0.5, moved[end]), (0.5, m)) for end in edge}
+        straight = mix((0.5, moved[a]), (0.5, moved[b]))
+        if count[edge] == 1:
+            points[edge] = {2: mix((1 - once, straight), (once, m))}
+        elif edge in around.inner:
             c, d = around.opposite[edge]
-            beside_a = [first_or_middle(a, c), first_or_middle(a, d)]
-            beside_b = [first_or_middle(b, c), first_or_middle(b, d)]
-            near_a = mix((3 / 8, moved[a]), (3 / 8, m), *((1 / 8, p) for p in beside_a))
-            near_b = mix((3 / 8, moved[b]), (3 / 8, m), *((1 / 8, p) for p in beside_b))
-            ring = [moved[a], moved[b], *beside_a, *beside_b]
+            beside = {end: [first_or_middle(end, c), first_or_middle(end, d)] for end in edge}
+            near = {
+                end: mix((3 / 8, moved[end]), (3 / 8, m), *((1 / 8, p) for p in beside[end]))
+                for end in edge
+            }
+            ring = [moved[a], moved[b], *beside[a], *beside[b]]
             centre = mix((5 / 8, m), *((1 / 16, p) for p in ring))
-            place = [(1, near_a), (2, centre), (3, near_b)]
-        elif count[edge] == 2:
+            points[edge] = {
+                1: mix((1 - twice, chords[a]), (twice, near[a])),
+                2: mix((1 - twice, m), (twice, centre)),
+                3: mix((1 - twice, chords[b]), (twice, near[b])),
+            }
+        else:
             centre = mix((3 / 4, m), (1 / 8, moved[a]), (1 / 8, moved[b]))
-            place = [
-                (1, mix((0.5, moved[a]), (0.5, m))),
-                (2, centre),
-                (3, mix((0.5, moved[b]), (0.5, m))),
-            ]
-        between = unit(mix((1, normals[a]), (1, normals[b])))
-        for quarters, point in place:
-            beside = {1: normals[a], 2: between, 3: normals[b]}[quarters]
-            twin.positions[*name, quarters] = point
-            twin.normals[*name, quarters] = unit(mix((1, beside), (1, between)))
+            middle = mix((1 - twice, m), (twice, centre))
+            points[edge] = {1: chords[a], 2: middle, 3: chords[b]}
+    return Placed(moved, points)
 
-    for source, face in enumerate(faces):
-        twin.triangles += [(source, corners) for corners in _subtriangles(face, count)]
-    return twin
+
+def _fan(
+    twin: Twin, face: tuple[int, int, int], count: Counter[EdgeName], grown: Growth
+) -> list[tuple[Name, Name, Name]]:
+    """Subtriangles around the middle of a triangle; adds that point to the twin."""
+    outline: list[Name] = []
+    centre: Name = ("centre", *sorted(face))
+    edges = [edge_name(face[i], face[(i + 1) % 3]) for i in range(3)]
+    sums = {}
+    for kind in ("positions", "normals"):
+        values = getattr(twin, kind)
+        terms = [(1 / 3, values["vertex", v]) for v in face]
+        for i, edge in enumerate(edges):
+            others = [grown.get(edges[(i + k) % 3], (0.0, 0.0))[0] for k in (1, 2)]
+            weight = 2 / 3 - 2 / 9 * max(others)
+            if count[edge]:
+                terms.append((weight, values["edge", *edge, 2]))
+                terms += [(-weight / 2, values["vertex", v]) for v in edge]
+        sums[kind] = mix(*terms)
+    twin.positions[centre], twin.normals[centre] = sums["positions"], unit(sums["normals"])
+    for i, edge in enumerate(edges):
+        outline.append(("vertex", face[i]))
+        places = {0: [], 1: [2], 2: [1, 2, 3]}[count[edge]]
+        if face[i] != edge[0]:
+            places = places[::-1]
+        outline += [("edge", *edge, quarters) for quarters in places]
+    following = outline[1:] + outline[:1]
+    return [starting_at_least([centre, p, q]) for p, q in zip(outline, following, strict=True)]
 
 
 def starting_at_least(corners: list[Name]) -> tuple[Name, Name, Name]:

@@ -1,0 +1,172 @@
+"""Attributes of any width ride along; inputs of any type and order are taken."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+import refine
+from tests import meshes
+from tests.refine.cases import Needed
+
+REFINERS = [
+    ("none", {}),
+    ("loop", {"levels": 2}),
+    ("kahler", {}),
+    ("kahler", {"scheme": "cubic"}),
+    ("kahler", {"blend": True}),
+]
+
+
+@pytest.mark.parametrize(("name", "options"), REFINERS)
+def test_attributes_are_linear(name: str, options: dict[str, object]) -> None:
+    """Every attribute has the value of its place in its triangle, on both sides of seams."""
+    tube = meshes.tube(10, 6)
+    assert tube.uv is not None and tube.face_uv is not None
+    deformed = meshes.wrinkled(tube, 3, 0.3)
+    generator = np.random.default_rng(4)
+    colours = generator.random((len(tube.vertices), 4))
+    corner_rows = generator.integers(5, size=tube.faces.shape)
+    parts = generator.random((5, 1))
+    refiner = refine.create(
+        name,
+        tube.faces,
+        tube.vertices,
+        uv=tube.uv,
+        face_uv=tube.face_uv,
+        attributes={"colour": colours, "part": (parts, corner_rows)},
+        **options,
+    )
+    refined = refiner.refine(deformed)
+    refine.check(refiner, refined, deformed)
+    assert refiner.vertex_columns == 6 + 2 + 4 + 1
+    assert refined.uv is not None
+    origins = refiner.origins()
+    at_corner = (
+        origins.vertices[refined.triangles][..., None]
+        == tube.faces[refined.source][:, None, None, :]
+    )
+    places = (origins.weights[refined.triangles][..., None] * at_corner).sum(axis=2)
+    for values, found in (
+        (tube.uv[tube.face_uv], refined.uv),
+        (colours[tube.faces], refined.attributes["colour"]),
+        (parts[corner_rows], refined.attributes["part"]),
+    ):
+        expected = np.einsum("tci,tiu->tcu", places, values[refined.source])
+        np.testing.assert_allclose(found[refined.triangles], expected, rtol=0, atol=1e-6)
+
+
+def test_attributes_without_uv() -> None:
+    """Attributes alone: no texture coordinates come out, and nothing is doubled."""
+    mesh = meshes.irregular(3)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, attributes={"rest": mesh.vertices})
+    refined = refiner.refine(meshes.wrinkled(mesh, 4))
+    assert refined.uv is None
+    origins = refiner.origins()
+    expected = (mesh.vertices[origins.vertices] * origins.weights[..., None]).sum(axis=1)
+    np.testing.assert_allclose(refined.attributes["rest"], expected, rtol=0, atol=1e-5)
+    assert refined.attributes["rest"].shape == (len(refined.positions), 3)
+
+
+@pytest.mark.parametrize(
+    ("attribute", "text"),
+    [
+        (np.zeros(6), r"attributes\['heat'\] must be numbers of shape \(V, k\), got float64"),
+        (np.zeros((5, 2)), "needs one row per vertex .6., got 5"),
+        (np.full((6, 1), np.nan), "must be finite"),
+        ((np.zeros((3, 1)), np.full((8, 3), 3)), r"must hold indices from 0 to 2 into attributes"),
+        ((np.zeros((3, 1)), np.zeros((7, 3), int)), "one row per triangle .8., got 7"),
+        (np.array([["a"]] * 6), "must be numbers"),
+    ],
+)
+def test_bad_attributes(attribute: object, text: str) -> None:
+    """Attributes that do not fit are refused with their name."""
+    mesh = meshes.octahedron()
+    with pytest.raises(ValueError, match=text):
+        refine.create("kahler", mesh.faces, mesh.vertices, attributes={"heat": attribute})
+
+
+@pytest.mark.parametrize("scheme", ["loop", "butterfly", "cubic", "detail"])
+def test_any_type_and_order(scheme: str) -> None:
+    """float32 or float64, C or Fortran order, strides, int32 or int64: one and the same frame."""
+    mesh = meshes.irregular(6)
+    rest = mesh.vertices.astype(np.float32)
+    deformed = meshes.wrinkled(mesh, 7).astype(np.float32)
+    detail = {"detail": (rest, mesh.faces)} if scheme == "detail" else {}
+    expected = None
+    orders = (np.ascontiguousarray, np.asfortranarray, lambda a: np.repeat(a, 2, axis=0)[::2])
+    kinds = itertools.product((np.float32, np.float64), (np.int32, np.int64, np.uint16), orders)
+    for number, index, order in kinds:
+        refiner = refine.create(
+            "kahler",
+            order(mesh.faces.astype(index)),
+            order(rest.astype(number)),
+            scheme=scheme,
+            **detail,
+        )
+        frame = [a.tobytes() for a in refiner.refine(order(deformed.astype(number)))[:4]]
+        expected = expected or frame
+        assert frame == expected
+
+
+@pytest.mark.parametrize("blend", [False, True])
+def test_own_stream_grows(blend: bool) -> None:
+    """A refiner's own stream has room for its frames, not for the worst case, and only grows."""
+    mesh = meshes.irregular(8, 30, 30)
+    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    needed = Needed(np.full(edge_count, -1.0))
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=needed, blend=blend)
+    before = refiner.memory
+    refiner.refine(mesh.vertices)
+    unsplit = refiner.memory - before
+    assert unsplit < 1.5 * (24 * len(mesh.vertices) + 16 * len(mesh.faces))
+    needed.need[:] = 2.0
+    all_split = refiner.refine(mesh.vertices)
+    refine.check(refiner, all_split, mesh.vertices)
+    assert len(all_split.triangles) == refiner.triangle_capacity
+    assert refiner.memory > before + 5 * unsplit
+    most = refiner.memory
+    needed.need[:] = -1.0
+    refine.check(refiner, refiner.refine(mesh.vertices), mesh.vertices)
+    assert refiner.memory == most
+
+
+class Growing:
+    """A lent stream that grows when it is asked to, and counts."""
+
+    def __init__(self, columns: int) -> None:
+        self.columns, self.asked = columns, 0
+        self.make(0, 0)
+
+    def make(self, vertex_count: int, triangle_count: int) -> None:
+        """Arrays of exactly this size."""
+        self.vertices = np.zeros((vertex_count, self.columns), dtype=np.float32)
+        self.triangles = np.zeros((triangle_count, 3), dtype=np.uint32)
+        self.source = np.zeros(triangle_count, dtype=np.int32)
+
+    def reserve(self, vertex_count: int, triangle_count: int) -> None:
+        """Make room."""
+        self.asked += 1
+        if len(self.vertices) < vertex_count or len(self.triangles) < triangle_count:
+            self.make(vertex_count, triangle_count)
+
+
+@pytest.mark.parametrize(("name", "options"), REFINERS)
+def test_lent_stream_that_grows(name: str, options: dict[str, object]) -> None:
+    """A stream with `reserve` is asked in every frame, and needs no worst case."""
+    mesh = meshes.irregular(9)
+    refiner = refine.create(name, mesh.faces, mesh.vertices, **options)
+    stream = Growing(refiner.vertex_columns)
+    for seed in range(3):
+        deformed = meshes.wrinkled(mesh, seed)
+        expected = [a.copy() for a in refiner.refine(deformed)[:4]]
+        lent = refiner.refine(deformed, out=stream)
+        assert all((a == b).all() for a, b in zip(lent[:4], expected, strict=True))
+        assert np.shares_memory(lent.positions, stream.vertices)
+    assert stream.asked == 3
+    stubborn = Growing(refiner.vertex_columns)
+    stubborn.make = lambda *_: None  # type: ignore[method-assign]
+    with pytest.raises(ValueError, match=r"stream.vertices must be a writable"):
+        refiner.refine(deformed, out=stubborn)
