@@ -16,9 +16,11 @@ MARGIN = 0.05  # of the frame, free on each side of a whole scene
 
 
 def whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
-    """A camera from the side of `view` (as `camera_for` reads it) that sees the whole scene."""
+    """A camera like that of `camera_for`, or further away, so that it sees the whole scene."""
     camera = camera_for(scene, view)
+    wanted = camera.distance
     camera.fit(scene.rest_positions, MARGIN)
+    camera.distance = max(camera.distance, wanted)
     return camera
 
 

@@ -54,6 +54,7 @@ class Session:
         self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
         self.script_is_unsaved = False
         self._recorder: Recorder | None = None
+        self._moved_by: dict[str, frozenset[str]] = {}
         self._held: dict[str, float] = {}  # by hand while a recording plays the script
         self._history = History(self._document())
 
@@ -112,6 +113,19 @@ class Session:
         self.values = dict(pose)
         self.pose_is_unsaved = is_unsaved
         self.note()
+
+    def moved_by(self, name: str) -> frozenset[str]:
+        """The muscles that a control moves: itself, or those that a layer's control adds to."""
+        simulation = getattr(self.scene, "simulation", None)
+        if simulation is None or name in self.muscles:
+            return frozenset({name})
+        if name not in self._moved_by:
+            # Asked of the simulation, between two steps, so that nothing of it is known here.
+            simulation.pose({name: self.limits[name][1]})
+            sums = simulation.sums
+            self.scene.pose(self.values)
+            self._moved_by[name] = frozenset(each for each, share in sums.items() if share)
+        return self._moved_by[name]
 
     # Undo
 

@@ -97,7 +97,7 @@ class Touch:
         elif self._is_at_divider(io.mouse_pos.x):
             self._doing = "divider"
         else:
-            point = self._skin(io)
+            point = self._skin(io) if hasattr(self._viewer.scene, "simulation") else None
             self._doing = "orbit" if point is None else "pull"
             if point is not None:
                 self.pull = Pull(self._viewer.scene, point)
@@ -114,18 +114,14 @@ class Touch:
             left, _, width, _ = viewer.picture_area
             viewer.look.divider = min(max((io.mouse_pos.x - left) / width, 0.0), 1.0)
         elif self.pull is not None and (self._has_moved(io) or self.is_pulling):
-            if hasattr(viewer.scene, "simulation"):
-                axis = viewer.camera.axes()[2]
-                self.pull.to(self._ray(io).at_depth_of(self.pull.point, axis))
-            else:
-                self._doing = "orbit"
+            axis = viewer.camera.axes()[2]
+            self.pull.to(self._ray(io).at_depth_of(self.pull.point, axis))
 
     def _release(self, io: Any) -> None:
         if self.pull is not None:
-            if hasattr(self._viewer.scene, "simulation"):
-                self.pull.let_go()
-                if not self.is_pulling and not self._has_moved(io):
-                    commands.select_muscle(self._viewer, self._muscle_at(self.pull.point))
+            self.pull.let_go()
+            if not self.is_pulling and not self._has_moved(io):
+                commands.select_muscle(self._viewer, self._muscle_at(self.pull.point))
             self.pull = None
         self._doing = ""
 

@@ -18,6 +18,7 @@ from imgui_bundle import imgui
 
 import refine
 import render
+import sim
 from assets.fitting import FittedHead
 
 from ..cameras import whole_scene
@@ -45,7 +46,8 @@ from .touch import Touch
 PANEL_WIDTH = 22.5  # [em]
 STILL = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
 CALM = 0.15  # [s] without change before physics rests and the scene is drawn in full
-IDLE_WAIT = 0.5  # [s] between looks at the clock while nothing happens
+IDLE_WAIT = 2.0  # [s] between two frames while nothing happens
+WATCHFUL_WAIT = 0.1  # [s] the same while a file dialog is open, or words are typed
 FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
 SMOOTHING = 0.9  # of the shown frame rate, from frame to frame
 
@@ -183,17 +185,14 @@ class Viewer:
         )
 
     def _wait(self) -> None:
-        """Sleep until an event comes; the clock does not run on meanwhile."""
+        """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
+        is_watching = self.files.is_waiting or imgui.get_io().want_text_input  # a cursor blinks
+        patience = WATCHFUL_WAIT if is_watching else IDLE_WAIT
         begin = time.perf_counter()
-        while not self.surface.should_close:
-            patience = IDLE_WAIT if not self.files.is_waiting else 0.05
-            wait_for_event(patience)
-            waited = time.perf_counter() - begin
-            if waited < patience - 0.005 or self.files.is_waiting or imgui.get_io().want_text_input:
-                break
-            begin = time.perf_counter()
-        self._awake = FRAMES_AFTER_EVENT
+        wait_for_event(patience)
         self._last = time.perf_counter()
+        if self._last - begin < patience:
+            self._awake = FRAMES_AFTER_EVENT
 
     def _let_time_pass(self, seconds: float) -> None:
         """As many steps of physics as are due; none for a face at rest that nobody moves."""
@@ -207,10 +206,16 @@ class Viewer:
             return
         self._posed = wanted
         self.stage.next_frame()
+        before = scene.positions
         with self.stage.timed("simulation"):
-            for _ in range(steps):
-                before = scene.positions.copy()
-                session.advance(STEP)
+            try:
+                for _ in range(steps):
+                    before = scene.positions.copy()
+                    session.advance(STEP)
+            except sim.SimulationUnstable as error:
+                session.neutral()
+                scene.reset()
+                self.messages.say(str(error), error=True)
         moved = float(np.abs(scene.positions - before).max(initial=0.0))
         # Muscles follow late: what has not moved yet may still be about to.
         self._still_for = 0.0 if is_driven or moved > STILL else self._still_for + steps * STEP

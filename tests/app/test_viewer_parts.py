@@ -21,6 +21,7 @@ from app.viewer.recorder import TOLERANCE, Recorder
 from app.viewer.rows import found, mirrored, rows_of
 from app.viewer.session import Session
 from app.viewer.settings import Look, Settings, load_settings, save_settings
+from app.viewer.tour import STOPS
 
 import render  # isort: skip - after the viewer, see app/viewer/gui.py
 
@@ -256,3 +257,12 @@ def test_the_muscle_under_a_point(scene: FaceScene) -> None:
         assert picking.muscle_at(line[len(line) // 2], {name: fibres[name]}) == name
     assert picking.muscle_at(np.array([0.0, 0.0, 1e4]), fibres) is None
     assert picking.muscle_at(np.zeros(3), {}) is None
+
+
+def test_the_page_shows_every_picture_of_the_tour() -> None:
+    """docs/viewer.md and the program that draws its pictures agree, and the files are there."""
+    page = Path("docs/viewer.md").read_text(encoding="utf-8")
+    for name in STOPS:
+        picture = Path("docs/pictures") / f"{name}.png"
+        assert f"pictures/{name}.png" in page
+        assert 10_000 < picture.stat().st_size < 400_000

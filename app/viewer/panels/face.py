@@ -121,7 +121,7 @@ class FacePanel:
         is_marked = any(values) or (self._flash and is_selected)
         imgui.align_text_to_frame_padding()
         theme = viewer.gui.theme
-        imgui.text_colored(colour(theme.accent if is_marked else theme.muted), row.label)
+        imgui.text_colored(colour(theme.accent if is_marked else theme.muted), self._title(row))
         is_pointed = imgui.is_item_hovered()
         if is_pointed:
             self._explain(row)
@@ -140,9 +140,19 @@ class FacePanel:
             if slid.is_done:
                 session.note()
         if is_pointed:
-            self.pointed = row.names
+            self.pointed = tuple(sorted(set().union(*map(session.moved_by, row.names))))
         if is_selected and not self._flash:
             self._selected = None
+
+    def _title(self, row: Row) -> str:
+        """The name, and where that is a code (an action unit's) what it does."""
+        scene, name = self._viewer.scene, row.names[0]
+        is_code = name not in self._viewer.session.muscles and name not in scene.expressions
+        title = f"{row.label} {scene.actions.get(name, '')}" if is_code else row.label
+        room, cut = em(LABEL_WIDTH - 0.4), title
+        while len(cut) > 1 and imgui.calc_text_size(cut).x > room:
+            cut = f"{cut.rstrip('.')[:-1]}.."
+        return cut
 
     def _explain(self, row: Row) -> None:
         """What the control does, where the scene says it in words."""
