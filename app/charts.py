@@ -24,8 +24,9 @@ COLOURS = (
     (204, 121, 167),
     (86, 180, 233),
     (230, 159, 0),
+    (110, 114, 122),
 )
-MARGINS = (0.11, 0.09, 0.22, 0.17)  # left, top, right, bottom, over the height
+MARGINS = (0.11, 0.14, 0.22, 0.17)  # left, top, right, bottom, over the height
 
 
 @dataclass(frozen=True)
@@ -82,8 +83,8 @@ def chart(
     draw.line([place(across.low, up.low), place(across.high, up.low)], fill=INK, width=SCALE)
     middle = (left + (width - left - right) / 2, height - 5 * SCALE)
     draw.text(middle, across.title, font=text, fill=INK, anchor="mb")
-    draw.text((left, 0.6 * top), f"{title}: {up.title}", font=font(0.04 * height), fill=INK,
-              anchor="lm")  # fmt: skip
+    draw.text((left, 0.35 * top), title, font=font(0.04 * height), fill=INK, anchor="lm")
+    draw.text((left, 0.35 * top + 0.05 * height), up.title, font=text, fill=FAINT, anchor="lm")
     names = []
     for number, one in enumerate(series):
         colour = COLOURS[number % len(COLOURS)]

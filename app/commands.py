@@ -111,7 +111,9 @@ def bench_quality(reference: Path | None, finer: str, apart: bool, curves: Path 
                 continue
             for rule in quality.RULES:
                 name = f"{curves.stem}_{subject.name}_{rule}".replace(" ", "_").replace(",", "")
-                save_png(curves.with_stem(name), error_curves(title, scores, rule))
+                save_png(
+                    curves.with_stem(name), error_curves(f"{title}, split by {rule}", scores, rule)
+                )
                 click.echo(f"{curves.with_stem(name)}: written", err=True)
 
 

@@ -35,17 +35,20 @@ def refine_text(report: Report) -> str:
     ]
     for mesh, rows in groupby(report.rows, key=lambda row: row.mesh):
         lines += ["", *_table(mesh, list(rows))]
-    lines += ["", f"{'bound mesh':14} {'triangles':>9} {'bind s':>8} {'buffers MB':>10}"]
+    lines += ["", f"{'bound':14} {'triangles':>9} {'seconds':>8} {'buffers MB':>10} {'peak MB':>8}"]
     for bound in report.bindings:
+        peak = "" if bound.peak_megabytes is None else f"{bound.peak_megabytes:8.0f}"
         lines.append(
-            f"{bound.mesh:14} {bound.triangles:9d} {bound.seconds:8.3f} {bound.megabytes:10.1f}"
+            f"{bound.mesh:14} {bound.triangles:9d} {bound.seconds:8.3f} {bound.megabytes:10.1f} "
+            f"{peak}"
         )
     if report.starts is not None:
         lines += [
             "",
             "From numpy's import to the first refined frame: "
             f"{report.starts.first:.1f} s when kernels compile, once; then "
-            f"{report.starts.later:.2f} s (best {report.starts.best_later:.2f} s).",
+            f"{report.starts.later:.2f} s (best {report.starts.best_later:.2f} s), of which "
+            f"numba's own import takes {report.starts.numba:.2f} s.",
         ]
     lines += ["", *report.missing] if report.missing else []
     lines += ["", "Targets, by medians:", *_targets(report)]

@@ -26,7 +26,7 @@ import sim
 
 from .peers import peers_for
 from .sheets import Load, sheet
-from .starts import Starts, measure_starts
+from .starts import Starts, measure_peak, measure_starts
 from .timing import interleaved
 
 FULL_EXPRESSIONS = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
@@ -36,6 +36,7 @@ SHARES = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
 SHEETS = {"2k": 2_000, "20k": 20_000, "200k": 200_000, "1M": 1_000_000}
 SIZES = ("face", "20k", "200k", "1M", "1M shuffled")
 """What is measured unless told; 2k is for a quick look."""
+LARGE = 500_000  # triangles from which on two frames must do
 FEWEST_ROUNDS, MOST_ROUNDS = 5, 200
 SECONDS = 7.0  # of timing for each mesh
 METHODS: tuple[tuple[str, Mapping[str, Any]], ...] = (
@@ -83,6 +84,8 @@ class Binding:
     """Shortest of two or more."""
     megabytes: float
     """Buffers of the refiner after its first frame at 10 %, output included."""
+    peak_megabytes: float | None
+    """Most memory from before binding to after that frame; None where the system does not tell."""
 
 
 @dataclass
@@ -129,9 +132,10 @@ def run(
             load = face_load()
             cases = _face_cases(load, report)
         else:
-            count = SHEETS[size.partition(" ")[0]]
-            load = sheet(size, count, shuffled="shuffled" in size)
-            cases = _sheet_cases(load, report)
+            count, is_shuffled = SHEETS[size.partition(" ")[0]], size.endswith("shuffled")
+            frame_count = 4 if count < LARGE else 2
+            load = sheet(size, count, frame_count=frame_count, shuffled=is_shuffled)
+            cases = _sheet_cases(load, report, SHARES if not is_shuffled else {10: SHARES[10]})
         report.rows += _timed(load, cases, seconds)
     if starts:
         progress("starts")
@@ -169,20 +173,23 @@ def _face_cases(load: Load, report: Report) -> list[_Case]:
         cases.append(_own(method, refiner, load))
         if method == "kahler":
             cases.append(_copy_of(refiner, load, "memcpy of that"))
-            report.bindings.append(_bound(load, {}))
+            defaults = refine.THRESHOLD_ONCE, refine.THRESHOLD_TWICE
+            report.bindings.append(_bound(load, *defaults))
     for levels in (1, 2):
         uniform = refine.create("loop", load.faces, load.rest, levels=levels)
         cases.append(_own(f"uniform Loop {levels}x", uniform, load))
     return cases + _peer_cases(load, report, cases[1].triangles)
 
 
-def _sheet_cases(load: Load, report: Report) -> list[_Case]:
-    thresholds = _thresholds(load)
+def _sheet_cases(
+    load: Load, report: Report, shares: Mapping[int, tuple[float, float]]
+) -> list[_Case]:
+    thresholds = _thresholds(load, shares)
     cases = []
     for share, (once, twice) in thresholds.items():
         options = {"threshold_once": once, "threshold_twice": twice}
         if share == min(thresholds):
-            report.bindings.append(_bound(load, options))
+            report.bindings.append(_bound(load, once, twice))
         refiner = refine.create("kahler", load.faces, load.rest, **options)
         cases.append(_own(f"kahler {share} %", refiner, load))
         cases.append(_copy_of(refiner, load, f"memcpy of {share} %"))
@@ -230,8 +237,10 @@ def _copy_of(refiner: refine.Refiner, load: Load, method: str) -> _Case:
     return _Case(method, False, float(np.mean(counts)), run_all)
 
 
-def _thresholds(load: Load) -> dict[int, tuple[float, float]]:
-    """Thresholds that split 10, 50 and 100 % of the edges, by the drops of all frames."""
+def _thresholds(
+    load: Load, shares: Mapping[int, tuple[float, float]]
+) -> dict[int, tuple[float, float]]:
+    """Thresholds that split so many per cent of the edges, by the drops of all frames."""
     plain = refine.create("none", load.faces, load.rest)
     a, b = plain.edges.T
     at_rest = _dots(plain.refine(load.rest).normals, a, b)
@@ -239,7 +248,7 @@ def _thresholds(load: Load) -> dict[int, tuple[float, float]]:
         [at_rest - _dots(plain.refine(frame).normals, a, b) for frame in load.frames]
     )
     found = {}
-    for share, quantiles in SHARES.items():
+    for share, quantiles in shares.items():
         once, twice = (max(0.0, float(np.quantile(drops, q))) for q in quantiles)
         found[share] = (once, twice)
     return found
@@ -251,15 +260,18 @@ def _dots(
     return np.asarray(np.einsum("ei,ei->e", normals[a], normals[b]))
 
 
-def _bound(load: Load, options: Mapping[str, Any]) -> Binding:
+def _bound(load: Load, once: float, twice: float) -> Binding:
     seconds = []
     for _ in range(2):
         start = time.perf_counter()
-        refiner = refine.create("kahler", load.faces, load.rest, **options)
+        refiner = refine.create(
+            "kahler", load.faces, load.rest, threshold_once=once, threshold_twice=twice
+        )
         seconds.append(time.perf_counter() - start)
     refiner.refine(load.frames[0])
     assert isinstance(refiner, refine.Kahler)
-    return Binding(load.name, len(load.faces), min(seconds), refiner.memory / 1e6)
+    peak = measure_peak(load, once, twice)
+    return Binding(load.name, len(load.faces), min(seconds), refiner.memory / 1e6, peak)
 
 
 def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:

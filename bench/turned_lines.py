@@ -16,7 +16,7 @@ import refine
 
 Positions = npt.NDArray[np.floating]
 Point = tuple[int, int, int]
-"""A point of a refined mesh for life: ends of its edge, and quarters from the first, lower one."""
+"""A point of a refined mesh for life: ends of its edge, and quarters from the lower one."""
 Line = tuple[int, Point, Point]
 """Input triangle and end points."""
 
@@ -30,7 +30,10 @@ def point_rows(refiner: refine.Refiner) -> dict[Point, int]:
             (int(v), round(4.0 * float(w))) for v, w in zip(vertices, weights, strict=True) if w
         )
         first, last = parts[0][0], parts[-1][0]
-        rows.setdefault((first, last, parts[-1][1] if last != first else 0), row)
+        if len(parts) == 3:  # a point in the middle of a triangle: blending makes them
+            rows[first, parts[1][0], -1 - last] = row
+        else:
+            rows.setdefault((first, last, parts[-1][1] if last != first else 0), row)
     return rows
 
 

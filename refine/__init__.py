@@ -24,6 +24,7 @@ from .connectivity import Connectivity, connect, weld
 from .criteria import Curvature, Maximum, ScreenEdge, Silhouette
 from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, Measured, NormalDrop
 from .gap import Gap
+from .kernels import on_compile
 from .passthrough import PassThrough
 from .plugin import Origins, RefinedMesh, Refiner, Stream, View, available, create, register
 from .schemes import Frame, Scheme
@@ -60,6 +61,7 @@ __all__ = [
     "check",
     "connect",
     "create",
+    "on_compile",
     "register",
     "weld",
 ]

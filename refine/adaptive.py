@@ -90,6 +90,7 @@ class Kahler(BoundRefiner):
         if blend is None:
             blend = self._scheme.interpolates and not coherent
             blend = blend and isinstance(self._criterion, Measured)
+        self._looks = hasattr(self._criterion, "look")
         self._blend = blend
         self._patterns = _patterns_of(blend, coherent, len(mesh.faces))
         if blend and not isinstance(self._criterion, Measured):
@@ -114,6 +115,7 @@ class Kahler(BoundRefiner):
         self._need = np.zeros(edge_count if self._blend else 0, dtype=np.float32)
         self._frame = Frame(
             positions=self._positions,
+            points=self._points,
             normals=self._normals,
             splits=self._rim_splits,
             growth_once=np.zeros(edge_count, dtype=np.float32),
@@ -190,8 +192,8 @@ class Kahler(BoundRefiner):
     def _mark(self, view: View | None) -> None:
         """Decide on the splits of every edge, and how far their points have grown."""
         frame, criterion = self._frame, self._criterion
-        if hasattr(criterion, "look"):
-            criterion.look(view)
+        if self._looks:
+            criterion.look(view)  # type: ignore[attr-defined]
         if self._blend:
             cast(Measured, criterion).measure(self._positions, self._normals, self._need)
             grow(self._need, self._edge_splits, frame.growth_once, frame.growth_twice)

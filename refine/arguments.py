@@ -168,9 +168,12 @@ def _checked_values(
     return np.array(array, dtype=np.float32), rows
 
 
-def check_finite(positions: npt.NDArray[np.float64]) -> None:
-    """Raise ValueError if a frame's positions are not numbers: the simulation has blown up."""
-    if not is_finite(positions):
+def take_in(positions: npt.NDArray[np.float64], points: npt.NDArray[np.float32]) -> None:
+    """Write positions, shape (V, 3), as single precision into `points`.
+
+    Raises ValueError if they are not numbers: what moves the mesh has blown up.
+    """
+    if not round_finite(positions.reshape(-1), points.reshape(-1)):
         bad = np.flatnonzero(~np.isfinite(positions).all(axis=1))
         raise ValueError(
             f"positions must be finite, but vertex {bad[0]} is {positions[bad[0]]} "
@@ -179,9 +182,10 @@ def check_finite(positions: npt.NDArray[np.float64]) -> None:
 
 
 @kernel
-def is_finite(positions: npt.NDArray[np.float64]) -> bool:
-    """Whether there is no NaN and no infinity: times zero both are NaN, all else is zero."""
-    total = 0.0
-    for v in range(positions.shape[0]):
-        total += 0.0 * positions[v, 0] + 0.0 * positions[v, 1] + 0.0 * positions[v, 2]
-    return total == 0.0
+def round_finite(numbers: npt.NDArray[np.float64], rounded: npt.NDArray[np.float32]) -> bool:
+    """Write numbers as single precision; return whether there is no NaN and no infinity."""
+    finite = 0  # counted, not left early: so the loop takes several at a time
+    for k in range(len(numbers)):
+        rounded[k] = numbers[k]
+        finite += abs(numbers[k]) < np.inf
+    return finite == len(numbers)

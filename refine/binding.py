@@ -16,11 +16,11 @@ import numpy.typing as npt
 
 from .arguments import (
     AttributeLike,
-    check_finite,
     check_lent,
     checked_corner_values,
     checked_indices,
     checked_positions,
+    take_in,
 )
 from .connectivity import Connectivity, connect
 from .output import GEOMETRY_COLUMNS, place_attributes
@@ -72,6 +72,7 @@ class BoundRefiner(ABC):
         self.connectivity: Connectivity = connect(triangles, len(positions), corners)
         self._rest_positions = positions
         self._positions = positions.copy()
+        self._points = positions.astype(np.float32)
         self._normals = np.zeros((len(positions), 3), dtype=np.float32)
         self._own_stream: OwnStream | None = None
         self._accepted: tuple[object, object, object] = (None, None, None)
@@ -140,7 +141,7 @@ class BoundRefiner(ABC):
                 f"was bound, got {positions.dtype} of shape {positions.shape}"
             )
         np.copyto(self._positions, positions)
-        check_finite(self._positions)
+        take_in(self._positions, self._points)
         stream = self._lend_own_stream() if out is None else out
         if not hasattr(stream, "reserve"):
             self._accept(stream, self.vertex_capacity, self.triangle_capacity)

@@ -18,7 +18,7 @@ Quarter points are those of the next level: the same rules for the half-edges, w
 the edges around in place of the ring, split or not, as if the whole mesh had been subdivided.
 
 Differs from the authors' rules: theirs for inner edges at a border need the ring of the border.
-Here a quarter point without a ring lies on the parabola through a, m and b.
+Here the quarter points of a border edge lie on the parabola through a, m and b.
 """
 
 import numpy as np
@@ -80,12 +80,11 @@ class ButterflyScheme(CurveScheme):
         follow_borders(connectivity.edges, connectivity.is_interior, rest_normals, self._beyond)
         self._middles = np.zeros((edge_count, 3), dtype=np.float64)
         self._is_known = np.zeros(edge_count, dtype=np.bool_)
-        self._ring = np.zeros(MOST_RING + 1, dtype=np.uint32)
 
     def _bulge(self, frame: Frame, bulges: Floats) -> None:
         mesh = self._connectivity
         self._is_known[:] = False
-        bulge_butterfly(
+        find_middles(
             frame.positions,
             mesh.edge_points,
             mesh.edge_wings,
@@ -96,8 +95,19 @@ class ButterflyScheme(CurveScheme):
             frame.splits,
             frame.split_once,
             frame.once_count,
-            self._ring,
             self._is_known,
+            self._middles,
+        )
+        bulge_butterfly(
+            frame.positions,
+            mesh.edge_points,
+            mesh.edge_wings,
+            mesh.is_interior,
+            self._valence,
+            self._weights,
+            frame.splits,
+            frame.split_once,
+            frame.once_count,
             self._middles,
             bulges,
         )
@@ -203,7 +213,42 @@ def place_middle(
 
 
 @kernel
-def bulge_butterfly(
+def quarter_point(
+    near: int,
+    middle: Doubles,
+    beside: Doubles,
+    count: int,
+    around: Unsigned,
+    positions: Doubles,
+    weights: Floats,
+    middles: Doubles,
+    point: Doubles,
+) -> None:
+    """Write the point between `near` and the middle of an inner edge.
+
+    `beside`: the middles p, r, q, s of the neighbour edges, those at `near` first, shape (4, 3);
+    `around`: the edges around `near`, `count` of them, none where it has no ring.
+    """
+    for i in range(3):
+        # The middle is a vertex of valence 6 on its level: near, p, q, far, s, r around it.
+        from_middle = (
+            0.5 * (middle[i] + positions[near, i])
+            + 0.125 * (beside[0, i] + beside[1, i])
+            - 0.125 * (beside[2, i] + beside[3, i])
+        )
+        from_near = weights[count, MOST_RING] * positions[near, i]
+        for j in range(count):
+            from_near += weights[count, j] * middles[around[j], i]
+        if count == 0:
+            point[i] = from_middle
+        elif count == REGULAR:
+            point[i] = 0.5 * (from_near + from_middle)
+        else:
+            point[i] = from_near
+
+
+@kernel
+def find_middles(
     positions: Doubles,
     edge_points: Unsigned,
     edge_wings: Unsigned,
@@ -214,73 +259,77 @@ def bulge_butterfly(
     splits: npt.NDArray[np.uint8],
     split_once: Unsigned,
     once_count: int,
-    ring: Unsigned,
     is_known: Flags,
+    middles: Doubles,
+) -> None:
+    """Write the middles of the split edges, and of all edges that quarter points ask for."""
+    ring = np.empty(MOST_RING + 1, np.uint32)
+    asked = np.empty(2 * MOST_RING + 8, np.uint32)
+    for k in range(once_count):
+        asked[0], count = split_once[k], 1
+        if splits[asked[0]] == 2 and is_interior[asked[0]]:
+            for j in range(4):
+                asked[1 + j] = edge_wings[asked[0], j]
+            count = 5
+            for end in range(2):
+                v = edge_points[asked[0], end]
+                if valence[v] > 0:
+                    walk_ring(asked[0], v, edge_points, edge_wings, ring)
+                for j in range(valence[v]):
+                    asked[count] = ring[j]
+                    count += 1
+        for j in range(count):
+            e = asked[j]
+            if not is_known[e]:
+                is_known[e] = True
+                place_middle(
+                    e, positions, edge_points, edge_wings, is_interior, beyond, valence, weights,
+                    ring, middles,
+                )  # fmt: skip
+
+
+@kernel
+def bulge_butterfly(
+    positions: Doubles,
+    edge_points: Unsigned,
+    edge_wings: Unsigned,
+    is_interior: Flags,
+    valence: npt.NDArray[np.uint8],
+    weights: Floats,
+    splits: npt.NDArray[np.uint8],
+    split_once: Unsigned,
+    once_count: int,
     middles: Doubles,
     bulges: Floats,
 ) -> None:
-    """Write the bulges of the split edges; middles of other edges are found when needed."""
+    """Write the bulges of the split edges, whose middles are there already."""
     around = np.empty(MOST_RING + 1, np.uint32)
-    point = np.empty(3, np.float64)
+    point, beside = np.empty(3), np.empty((4, 3))
     for k in range(once_count):
         e = split_once[k]
-        if not is_known[e]:
-            place_middle(e, positions, edge_points, edge_wings, is_interior, beyond, valence,
-                         weights, ring, middles)  # fmt: skip
-            is_known[e] = True
-        a, b = edge_points[e, 0], edge_points[e, 1]
         for i in range(3):
-            bulges[e, MIDDLE, i] = middles[e, i] - 0.5 * (positions[a, i] + positions[b, i])
+            straight = 0.5 * (positions[edge_points[e, 0], i] + positions[edge_points[e, 1], i])
+            bulges[e, MIDDLE, i] = middles[e, i] - straight
         if splits[e] < 2:
             continue
         for end in range(2):
             near, far = edge_points[e, end], edge_points[e, 1 - end]
-            # Without any ring: the parabola through near, middle and far.
-            for i in range(3):
-                point[i] = (
-                    0.375 * positions[near, i] + 0.75 * middles[e, i] - 0.125 * positions[far, i]
-                )
             if is_interior[e]:
-                count = valence[near]
-                if count == 0:
-                    around[0], around[1], around[2], around[3] = (
-                        edge_wings[e, 0], edge_wings[e, 1], edge_wings[e, 2], edge_wings[e, 3]
-                    )  # fmt: skip
-                    count = 4
-                else:
+                if valence[near] > 0:
                     walk_ring(e, near, edge_points, edge_wings, around)
-                    count = valence[near]
-                for j in range(count):
-                    f = around[j]
-                    if not is_known[f]:
-                        place_middle(f, positions, edge_points, edge_wings, is_interior, beyond,
-                                     valence, weights, ring, middles)  # fmt: skip
-                        is_known[f] = True
-                for j in range(4):
-                    f = edge_wings[e, j]
-                    if not is_known[f]:
-                        place_middle(f, positions, edge_points, edge_wings, is_interior, beyond,
-                                     valence, weights, ring, middles)  # fmt: skip
-                        is_known[f] = True
-                # The middle is a vertex of valence 6 on its level; its ring begins at `near`.
-                p, q = edge_wings[e, end], edge_wings[e, 1 - end]
-                r, s = edge_wings[e, 2 + end], edge_wings[e, 3 - end]
-                own = weights[valence[near], MOST_RING]
                 for i in range(3):
-                    from_middle = (
-                        0.5 * (middles[e, i] + positions[near, i])
-                        + 0.125 * (middles[p, i] + middles[r, i])
-                        - 0.125 * (middles[q, i] + middles[s, i])
-                    )
-                    if valence[near] == 0:
-                        point[i] = from_middle
-                        continue
-                    from_near = own * positions[near, i]
-                    for j in range(count):
-                        from_near += weights[count, j] * middles[around[j], i]
-                    if count == REGULAR:
-                        from_near = 0.5 * (from_near + from_middle)
-                    point[i] = from_near
+                    beside[0, i] = middles[edge_wings[e, end], i]
+                    beside[1, i] = middles[edge_wings[e, 2 + end], i]
+                    beside[2, i] = middles[edge_wings[e, 1 - end], i]
+                    beside[3, i] = middles[edge_wings[e, 3 - end], i]
+                quarter_point(
+                    near, middles[e], beside, valence[near], around, positions, weights, middles,
+                    point,
+                )  # fmt: skip
+            else:
+                for i in range(3):  # the parabola through near, middle and far
+                    ends = 0.375 * positions[near, i] - 0.125 * positions[far, i]
+                    point[i] = ends + 0.75 * middles[e, i]
             for i in range(3):
                 straight = 0.75 * positions[near, i] + 0.25 * positions[far, i]
                 bulges[e, NEAR_START if end == 0 else NEAR_END, i] = point[i] - straight

@@ -53,9 +53,9 @@ class Connectivity:
     edge_wings: Unsigned
     """Edges ac, bc, ad, bd, shape (E, 4); the edge itself on a border."""
     edge_sides: Unsigned
-    """The first two half-edges of each edge, 3 x triangle + i, shape (E, 2); 3 F where none."""
+    """The first two sides of each edge, 4 x triangle + i, shape (E, 2); 4 F where there is none."""
     more_sides: Unsigned
-    """Edge and half-edge for sides beyond the first two, shape (X, 2): edges of three sheets."""
+    """Edge and side beyond the first two, shape (X, 2): edges of three sheets."""
     is_interior: Flags
     """Whether two triangles run through the edge in opposite directions, shape (E,)."""
     triangle_edges: Indices
@@ -94,7 +94,7 @@ def connect(
     half_edge_count = corners.size
     edge_of = np.full(half_edge_count, -1, dtype=np.int32)
     edges = np.empty((half_edge_count, 2), dtype=np.int32)
-    sides = np.full((half_edge_count, 2), half_edge_count, dtype=np.uint32)
+    sides = np.full((half_edge_count, 2), 4 * len(corners), dtype=np.uint32)
     side_counts = np.zeros(half_edge_count, dtype=np.int32)
     edge_count = find_edges(corners, vertex_count, edge_of, edges, sides, side_counts)
     edges, sides = edges[:edge_count].copy(), sides[:edge_count].copy()
@@ -167,7 +167,7 @@ def find_edges(
                 heads[start + end] = edge
             edge_of[3 * t + i] = edge
             if side_counts[edge] < 2:
-                sides[edge, side_counts[edge]] = 3 * t + i
+                sides[edge, side_counts[edge]] = 4 * t + i
             side_counts[edge] += 1
     return count
 
@@ -188,11 +188,11 @@ def look_around(
         a, b = np.uint32(edges[e, 0]), np.uint32(edges[e, 1])
         edge_points[e, 0], edge_points[e, 1], edge_points[e, 2], edge_points[e, 3] = a, b, a, a
         edge_wings[e, :] = np.uint32(e)
-        t, i = sides[e, 0] // 3, sides[e, 0] % 3
+        t, i = sides[e, 0] >> 2, sides[e, 0] & 3
         is_interior[e] = False
         if side_counts[e] != 2:
             continue
-        u, j = sides[e, 1] // 3, sides[e, 1] % 3
+        u, j = sides[e, 1] >> 2, sides[e, 1] & 3
         if faces[u, j] != b:
             continue
         is_interior[e] = True
@@ -208,9 +208,9 @@ def _more_sides(edge_of: Indices, sides: Unsigned, side_counts: Indices) -> Unsi
     """Sides of edges of more than two triangles that `edge_sides` has no room for."""
     proper = np.flatnonzero(edge_of >= 0)
     crowded = proper[side_counts[edge_of[proper]] > 2]
-    edges = edge_of[crowded]
-    is_more = (sides[edges] != crowded[:, None]).all(axis=1)
-    return np.stack([edges[is_more], crowded[is_more]], axis=1).astype(np.uint32)
+    edges, side = edge_of[crowded], crowded // 3 * 4 + crowded % 3
+    is_more = (sides[edges] != side[:, None]).all(axis=1)
+    return np.stack([edges[is_more], side[is_more]], axis=1).astype(np.uint32)
 
 
 def _seams(
@@ -244,7 +244,7 @@ def _seams(
         corner_uv[proper],
         edge_of[is_proper].astype(np.int64),
         is_reversed[is_proper],
-        place[sides[:, 0]],
+        place[(sides[:, 0] >> 2) * 3 + (sides[:, 0] & 3)],
     )
     corners, wedge_vertices, wedge_uv = _wedges(faces.astype(np.int64), corner_uv, vertex_count)
     triangle_rims = np.full(faces.size, 2 * len(rim_edges), dtype=np.uint32)

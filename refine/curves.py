@@ -51,7 +51,7 @@ class CurveScheme:
     def place(self, frame: Frame) -> None:
         """Write vertices as they are, and the points of split edges on their curves."""
         self._bulge(frame, self._bulges)
-        place_unmoved(frame.positions, self._vertex_normals(frame), frame.rows)
+        place_unmoved(frame.points, self._vertex_normals(frame), frame.rows)
         place_on_curves(
             self._connectivity.edge_points,
             frame.splits,
@@ -99,7 +99,7 @@ def place_on_curves(
     for k in range(once_count):
         e = split_once[k]
         a, b = edge_points[e, 0], edge_points[e, 1]
-        row, growth = first_points[e] + (splits[e] >> 1), growth_once[e]
+        row, growth = np.uint32(first_points[e] + (splits[e] >> 1)), growth_once[e]
         for i in range(3):
             straight = HALF * (vertices[a, i] + vertices[b, i])
             vertices[row, i] = straight + growth * bulges[e, MIDDLE, i]
@@ -112,7 +112,7 @@ def place_on_curves(
             continue
         for end in range(2):
             near, far = (a, b) if end == 0 else (b, a)
-            point = row - 1 + 2 * end
+            point = np.uint32(row - 1 + 2 * end)
             growth = growth_twice[e]
             for i in range(3):
                 chord = HALF * (vertices[near, i] + vertices[row, i])

@@ -27,6 +27,7 @@ from .connectivity import Connectivity
 from .cubic import CubicScheme
 from .fit import fitted
 from .kernels import kernel
+from .local_frames import edge_axes, triangle_axes, vertex_axes
 from .masks import grow_vertices
 from .schemes import Frame
 
@@ -106,8 +107,9 @@ class DetailScheme(CubicScheme):
         self._towards = np.arange(mesh.vertex_count, dtype=np.uint32)
         self._towards[mesh.edges[:, 0]] = mesh.edges[:, 1]
         self._towards[mesh.edges[:, 1]] = mesh.edges[:, 0]
-        axes = np.zeros((mesh.vertex_count, 3, 3), dtype=np.float32)
-        vertex_axes(rest_positions, rest_normals, self._towards, axes)
+        axes = self._vertex_axes = np.zeros((mesh.vertex_count, 3, 3), dtype=np.float32)
+        everywhere = np.ones(mesh.vertex_count, dtype=np.float32)
+        vertex_axes(rest_positions, rest_normals, everywhere, self._towards, axes)
         _, looks = _closest(surface, rest_positions, rest_normals.astype(np.float64))
         # A vertex without a normal has no frame: nothing to show there.
         self._vertex_looks = _along(axes, looks)
@@ -145,14 +147,9 @@ class DetailScheme(CubicScheme):
             frame.once_count,
             self._vertex_growth,
         )
-        show_vertices(
-            frame.positions,
-            frame.normals,
-            self._vertex_growth,
-            self._towards,
-            self._vertex_looks,
-            self._shown,
-        )
+        growth, axes = self._vertex_growth, self._vertex_axes
+        vertex_axes(frame.positions, frame.normals, growth, self._towards, axes)
+        show_vertices(frame.normals, growth, self._vertex_looks, axes, self._shown)
         return self._shown
 
     def _bulge(self, frame: Frame, bulges: Floats) -> None:
@@ -221,92 +218,6 @@ def _along(axes: Floats, vectors: Doubles) -> Floats:
 
 
 @kernel
-def write_axes(
-    x: np.float32,
-    y: np.float32,
-    z: np.float32,
-    u: np.float32,
-    v: np.float32,
-    w: np.float32,
-    axes: Floats,
-) -> None:
-    """Write three orthogonal directions of length one: (x y z), then (u v w) made normal to it."""
-    scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
-    x, y, z = x * scale, y * scale, z * scale
-    slope = x * u + y * v + z * w
-    u, v, w = u - slope * x, v - slope * y, w - slope * z
-    scale = ONE / np.sqrt(max(u * u + v * v + w * w, TINY))
-    u, v, w = u * scale, v * scale, w * scale
-    axes[0, 0], axes[0, 1], axes[0, 2] = x, y, z
-    axes[1, 0], axes[1, 1], axes[1, 2] = u, v, w
-    axes[2, 0], axes[2, 1], axes[2, 2] = y * w - z * v, z * u - x * w, x * v - y * u
-
-
-@kernel
-def edge_axes(
-    positions: Doubles,
-    normals: Floats,
-    edge_points: Unsigned,
-    listed: Unsigned,
-    count: int,
-    axes: Floats,
-) -> None:
-    """Write the directions of the listed edges: along the edge, up, across."""
-    for k in range(count):
-        e = listed[k]
-        a, b = edge_points[e, 0], edge_points[e, 1]
-        write_axes(
-            np.float32(positions[b, 0] - positions[a, 0]),
-            np.float32(positions[b, 1] - positions[a, 1]),
-            np.float32(positions[b, 2] - positions[a, 2]),
-            normals[a, 0] + normals[b, 0],
-            normals[a, 1] + normals[b, 1],
-            normals[a, 2] + normals[b, 2],
-            axes[e],
-        )
-
-
-@kernel
-def vertex_axes(positions: Doubles, normals: Floats, towards: Unsigned, axes: Floats) -> None:
-    """Write the directions of every vertex: up, towards a neighbour, across."""
-    for v in range(positions.shape[0]):
-        u = towards[v]
-        write_axes(
-            normals[v, 0],
-            normals[v, 1],
-            normals[v, 2],
-            np.float32(positions[u, 0] - positions[v, 0]),
-            np.float32(positions[u, 1] - positions[v, 1]),
-            np.float32(positions[u, 2] - positions[v, 2]),
-            axes[v],
-        )
-
-
-@kernel
-def triangle_axes(
-    positions: Doubles,
-    normals: Floats,
-    faces: Unsigned,
-    listed: Unsigned,
-    count: int,
-    axes: Floats,
-) -> None:
-    """Write the directions of the listed triangles: up, along edge 0, across."""
-    for k in range(count):
-        t = listed[k]
-        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        write_axes(
-            normals[a, 0] + normals[b, 0] + normals[c, 0],
-            normals[a, 1] + normals[b, 1] + normals[c, 1],
-            normals[a, 2] + normals[b, 2] + normals[c, 2],
-            np.float32(positions[b, 0] - positions[a, 0]),
-            np.float32(positions[b, 1] - positions[a, 1]),
-            np.float32(positions[b, 2] - positions[a, 2]),
-            axes[t],
-        )
-
-
-@kernel
 def add_offsets(
     offsets: Floats, axes: Floats, split_once: Unsigned, once_count: int, bulges: Floats
 ) -> None:
@@ -339,31 +250,14 @@ def turn(normal: Floats, look: Floats, axes: Floats, growth: np.float32) -> None
 
 @kernel
 def show_vertices(
-    positions: Doubles,
-    normals: Floats,
-    vertex_growth: Floats,
-    towards: Unsigned,
-    looks: Floats,
-    shown: Floats,
+    normals: Floats, vertex_growth: Floats, looks: Floats, axes: Floats, shown: Floats
 ) -> None:
     """Write the finer normal of every vertex at a split edge, turned with its surroundings."""
-    axes = np.empty((3, 3), np.float32)
-    for v in range(positions.shape[0]):
+    for v in range(normals.shape[0]):
         for i in range(3):
             shown[v, i] = normals[v, i]
-        if vertex_growth[v] == ZERO:
-            continue
-        u = towards[v]
-        write_axes(
-            normals[v, 0],
-            normals[v, 1],
-            normals[v, 2],
-            np.float32(positions[u, 0] - positions[v, 0]),
-            np.float32(positions[u, 1] - positions[v, 1]),
-            np.float32(positions[u, 2] - positions[v, 2]),
-            axes,
-        )
-        turn(shown[v], looks[v], axes, vertex_growth[v])
+        if vertex_growth[v] > ZERO:
+            turn(shown[v], looks[v], axes[v], vertex_growth[v])
 
 
 @kernel

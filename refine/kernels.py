@@ -13,9 +13,10 @@ Serial on purpose: at the size of a face the start of a parallel region costs mo
 """
 
 from collections.abc import Callable
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import numba
+from numba.core import event
 
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
@@ -27,3 +28,29 @@ def kernel(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]
         cache=True, nogil=True, error_model="numpy", boundscheck=False
     )(function)
     return compiled
+
+
+class _FirstCompilation(event.Listener):
+    """Tells once that a kernel of this package has to be compiled."""
+
+    def __init__(self, tell: Callable[[], object]) -> None:
+        self._tell: Callable[[], object] | None = tell
+
+    def on_start(self, event: Any) -> None:
+        """Hear of a compilation: only kernels that the cache on disk does not have come here."""
+        module = event.data["dispatcher"].py_func.__module__
+        if self._tell is not None and module.startswith(f"{__package__}."):
+            tell, self._tell = self._tell, None
+            tell()
+
+    def on_end(self, event: Any) -> None:
+        """Nothing is told of the end."""
+
+
+def on_compile(tell: Callable[[], object]) -> None:
+    """Call `tell` once, just before the first kernel is compiled: it takes seconds, once.
+
+    Later starts find the machine code on disk and are not told of. For a program that wants to say
+    why it hesitates; call it before `create`.
+    """
+    event.register("numba:compile", _FirstCompilation(tell))  # type: ignore[no-untyped-call]

@@ -48,7 +48,6 @@ import numpy.typing as npt
 from .kernels import kernel
 
 Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
 Unsigned = npt.NDArray[np.uint32]
 
 EDGE_END = np.float32(3 / 8)
@@ -105,7 +104,7 @@ def grow_vertices(
 
 @kernel
 def place_vertices(
-    positions: Doubles,
+    points: Floats,
     normals: Floats,
     vertex_growth: Floats,
     own: Floats,
@@ -115,17 +114,17 @@ def place_vertices(
     vertices: Floats,
 ) -> None:
     """Write the original vertices, those at split edges moved by the vertex rule (Fig. 3)."""
-    for v in range(positions.shape[0]):
-        x = np.float32(positions[v, 0])
-        y = np.float32(positions[v, 1])
-        z = np.float32(positions[v, 2])
+    for v in range(points.shape[0]):
+        x = points[v, 0]
+        y = points[v, 1]
+        z = points[v, 2]
         if vertex_growth[v] > ZERO:
             sum_x = sum_y = sum_z = ZERO
             for k in range(ring_starts[v], ring_starts[v + 1]):
                 neighbour = ring_vertices[k]
-                sum_x += np.float32(positions[neighbour, 0])
-                sum_y += np.float32(positions[neighbour, 1])
-                sum_z += np.float32(positions[neighbour, 2])
+                sum_x += points[neighbour, 0]
+                sum_y += points[neighbour, 1]
+                sum_z += points[neighbour, 2]
             x = mix(x, own[v] * x + ring[v] * sum_x, vertex_growth[v])
             y = mix(y, own[v] * y + ring[v] * sum_y, vertex_growth[v])
             z = mix(z, own[v] * z + ring[v] * sum_z, vertex_growth[v])
@@ -135,7 +134,7 @@ def place_vertices(
 
 @kernel
 def place_middles(
-    positions: Doubles,
+    points: Floats,
     normals: Floats,
     edge_points: Unsigned,
     is_interior: npt.NDArray[np.bool_],
@@ -151,15 +150,18 @@ def place_middles(
     for k in range(once_count):
         e = split_once[k]
         a, b, c, d = edge_points[e, 0], edge_points[e, 1], edge_points[e, 2], edge_points[e, 3]
-        row = first_points[e] + (splits[e] >> 1)
+        row = np.uint32(first_points[e] + (splits[e] >> 1))
         end, wing = (EDGE_END, EDGE_WING) if is_interior[e] else (BORDER_EDGE_END, ZERO)
         growth = growth_once[e]
         for i in range(3):
-            ends = np.float32(positions[a, i]) + np.float32(positions[b, i])
-            wings = np.float32(positions[c, i]) + np.float32(positions[d, i])
+            ends = points[a, i] + points[b, i]
+            wings = points[c, i] + points[d, i]
             middle = end * ends + wing * wings
-            middles[e, i] = middle
-            vertices[row, i] = mix(HALF * (vertices[a, i] + vertices[b, i]), middle, growth)
+            middles[e, i] = vertices[row, i] = middle
+        if growth < ONE:
+            for i in range(3):
+                straight = HALF * (vertices[a, i] + vertices[b, i])
+                vertices[row, i] = mix(straight, middles[e, i], growth)
         vertices[row, 3], vertices[row, 4], vertices[row, 5] = unit(
             normals[a, 0] + normals[b, 0],
             normals[a, 1] + normals[b, 1],
@@ -169,7 +171,7 @@ def place_middles(
 
 @kernel
 def place_quarters(
-    positions: Doubles,
+    points: Floats,
     edge_points: Unsigned,
     edge_wings: Unsigned,
     is_interior: npt.NDArray[np.bool_],
@@ -186,7 +188,7 @@ def place_quarters(
         e = split_twice[k]
         a, b, c, d = edge_points[e, 0], edge_points[e, 1], edge_points[e, 2], edge_points[e, 3]
         near_a = first_points[e]
-        centre, near_b = near_a + 1, near_a + 2
+        centre, near_b = np.uint32(near_a + 1), np.uint32(near_a + 2)
         growth = growth_twice[e]
         if is_interior[e]:
             wing_p, wing_q = edge_wings[e, 0], edge_wings[e, 1]
@@ -194,8 +196,8 @@ def place_quarters(
             grown_p, grown_q = growth_once[wing_p], growth_once[wing_q]
             grown_r, grown_s = growth_once[wing_r], growth_once[wing_s]
             for i in range(3):
-                at_a, at_b = np.float32(positions[a, i]), np.float32(positions[b, i])
-                at_c, at_d = np.float32(positions[c, i]), np.float32(positions[d, i])
+                at_a, at_b = points[a, i], points[b, i]
+                at_c, at_d = points[c, i], points[d, i]
                 p = mix(HALF * (at_a + at_c), middles[wing_p, i], grown_p)
                 q = mix(HALF * (at_b + at_c), middles[wing_q, i], grown_q)
                 r = mix(HALF * (at_a + at_d), middles[wing_r, i], grown_r)
@@ -221,3 +223,39 @@ def place_quarters(
         vertices[near_b, 3], vertices[near_b, 4], vertices[near_b, 5] = unit(
             vertices[b, 3] + x, vertices[b, 4] + y, vertices[b, 5] + z
         )
+
+
+@kernel
+def place_points(
+    points: Floats,
+    normals: Floats,
+    edge_points: Unsigned,
+    edge_wings: Unsigned,
+    is_interior: npt.NDArray[np.bool_],
+    own: Floats,
+    ring: Floats,
+    ring_starts: Unsigned,
+    ring_vertices: Unsigned,
+    splits: npt.NDArray[np.uint8],
+    growth_once: Floats,
+    growth_twice: Floats,
+    first_points: Unsigned,
+    split_once: Unsigned,
+    once_count: int,
+    split_twice: Unsigned,
+    twice_count: int,
+    vertex_growth: Floats,
+    middles: Floats,
+    vertices: Floats,
+) -> None:
+    """Write moved vertices, first level, second level: all passes in one call of compiled code."""
+    grow_vertices(edge_points, growth_once, split_once, once_count, vertex_growth)
+    place_vertices(points, normals, vertex_growth, own, ring, ring_starts, ring_vertices, vertices)
+    place_middles(
+        points, normals, edge_points, is_interior, splits, growth_once, first_points, split_once,
+        once_count, middles, vertices,
+    )  # fmt: skip
+    place_quarters(
+        points, edge_points, edge_wings, is_interior, growth_once, growth_twice, first_points,
+        split_twice, twice_count, middles, vertices,
+    )  # fmt: skip

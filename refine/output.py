@@ -29,6 +29,8 @@ CENTRE = 12
 QUARTER = np.float32(0.25)
 HALF = np.float32(0.5)
 THREE_QUARTERS = np.float32(0.75)
+SIDE_BITS, SIDE_MASK = np.uint32(2), np.uint32(3)
+"""A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
 PLACE_VALUES = np.array([1, 3, 9], dtype=np.uint16)
 """Of the splits of a triangle's three edges in the number of its configuration."""
 
@@ -59,42 +61,43 @@ def number_points(
     Returns the numbers of rows, of split edges, of edges split twice, and of subtriangles.
     """
     edge_count = edge_sides.shape[0]
-    once_count, twice_count = 0, 0
+    once_count = twice_count = np.uint32(0)
     # Written always and counted when split: no branch that a processor could guess wrong.
     for e in range(edge_count):
-        split_once[once_count] = e
-        split_twice[twice_count] = e
-        once_count += (rim_splits[e] + 1) >> 1
-        twice_count += rim_splits[e] >> 1
+        split = rim_splits[e]
+        split_once[once_count] = split_twice[twice_count] = e
+        once_count = np.uint32(once_count + (split > 0))
+        twice_count = np.uint32(twice_count + (split > 1))
     configurations[:] = 0
-    none = 3 * (configurations.shape[0] - 1)
+    none = np.uint32(4 * (configurations.shape[0] - 1))
     row, triangle_count = wedge_count, configurations.shape[0] - 1
     for k in range(once_count):
         e = split_once[k]
         split = rim_splits[e]
+        points = points_on(split)
         first_points[e] = row
-        row += points_on(split)
+        row += points
         for i in range(2):
             side = edge_sides[e, i]
-            configurations[side // 3] += split * PLACE_VALUES[side % 3]
-            triangle_count += points_on(split) * (side < none)
+            configurations[side >> SIDE_BITS] += split * PLACE_VALUES[side & SIDE_MASK]
+            triangle_count += points * (side < none)
     for k in range(more_sides.shape[0]):
         split, side = rim_splits[more_sides[k, 0]], more_sides[k, 1]
-        configurations[side // 3] += split * PLACE_VALUES[side % 3]
+        configurations[side >> SIDE_BITS] += split * PLACE_VALUES[side & SIDE_MASK]
         triangle_count += points_on(split)
     for r in range(edge_count, len(rim_edges)):
         rim_splits[r] = rim_splits[rim_edges[r]]
         first_points[r] = row
         row += points_on(rim_splits[r])
-    return row, once_count, twice_count, triangle_count
+    return row, int(once_count), int(twice_count), triangle_count
 
 
 @kernel
-def place_unmoved(positions: npt.NDArray[np.floating], normals: Floats, vertices: Floats) -> None:
-    """Write vertices as they are, rounded to float32."""
-    for v in range(positions.shape[0]):
+def place_unmoved(points: Floats, normals: Floats, vertices: Floats) -> None:
+    """Write vertices as they are."""
+    for v in range(points.shape[0]):
         for i in range(3):
-            vertices[v, i] = positions[v, i]
+            vertices[v, i] = points[v, i]
             vertices[v, 3 + i] = normals[v, i]
 
 
@@ -175,7 +178,8 @@ def look_up_triangles(
     """
     points = np.empty(CENTRE + 1, np.uint32)
     points[CENTRE] = first_centre
-    count = 0
+    one, two = np.uint32(1), np.uint32(2)  # unsigned, or every index is tested for being negative
+    count = np.uint32(0)
     for t in range(corners.shape[0]):
         row = rows[t]
         # Most triangles are not split: hand them through.
@@ -183,20 +187,20 @@ def look_up_triangles(
             for i in range(3):
                 triangles[count, i] = corners[t, i]
             source[count] = t
-            count += 1
+            count = np.uint32(count + one)
             continue
         # The 12 numbered points; those of edges that are not split are never looked up.
         for i in range(3):
-            rim, against = triangle_rims[t, i] >> 1, triangle_rims[t, i] & 1
+            rim, against = triangle_rims[t, i] >> one, triangle_rims[t, i] & one
             first = first_points[rim]
             points[i] = corners[t, i]
             points[3 + 3 * i] = first + (rim_splits[rim] >> 1)  # the only point, or the second
-            points[4 + 3 * i] = first + 2 * against
-            points[5 + 3 * i] = first + 2 - 2 * against
+            points[4 + 3 * i] = first + two * against
+            points[5 + 3 * i] = first + two - two * against
         for k in range(subtriangle_counts[row]):
             for i in range(3):
                 triangles[count, i] = points[subtriangles[row, k, i]]
             source[count] = t
-            count += 1
+            count = np.uint32(count + one)
         points[CENTRE] += subtriangles[row, 0, 0] == CENTRE
-    return count
+    return int(count)

@@ -59,7 +59,7 @@ class PassThrough(BoundRefiner):
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
         vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
         vertex_normals(self._positions, connectivity.faces, self._normals)
-        place_unmoved(self._positions, self._normals, vertices)
+        place_unmoved(self._points, self._normals, vertices)
         if self._values is not None:
             copy_wedges(connectivity.vertex_count, connectivity.wedge_vertices, vertices)
             self._place_attributes(connectivity, self._rim_splits, self._first_points, vertices)

@@ -96,6 +96,7 @@ def _point_coordinates() -> npt.NDArray[np.int64]:
 
 
 POINTS = _point_coordinates()
+_PLACES = [tuple(point) for point in POINTS.tolist()]  # the same in plain Python, faster for few
 
 
 def configuration_of(splits: tuple[int, int, int]) -> int:
@@ -161,20 +162,20 @@ def _is_near_end(point: int) -> bool:
 
 def _on_one_edge(polygon: list[int], *, without: int) -> bool:
     """Whether the points that are left without one of them lie on one edge of the triangle."""
-    left = [point for point in polygon if point != without]
-    return bool((POINTS[left] == 0).all(axis=0).any())
+    left = [_PLACES[point] for point in polygon if point != without]
+    return any(all(place[k] == 0 for place in left) for k in range(3))
 
 
 def _area(triangle: Triangle) -> int:
     """Signed area in sixteenths of the whole triangle."""
-    a, b, c = POINTS[list(triangle)]
-    return int(np.dot(a, np.cross(b, c))) // 4
+    (a, b, c), (d, e, f), (g, h, i) = (_PLACES[point] for point in triangle)
+    return int(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)) // 4
 
 
 def _squared_distance(first: int, second: int) -> int:
     """Squared distance in an equilateral triangle of side 4."""
-    u, v, w = (int(x) for x in POINTS[first] - POINTS[second])
-    return -(u * v + v * w + w * u)
+    u, v, w = (p - q for p, q in zip(_PLACES[first], _PLACES[second], strict=True))
+    return int(-(u * v + v * w + w * u))
 
 
 def verify(splits: tuple[int, int, int], triangles: list[Triangle]) -> None:

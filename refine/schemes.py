@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .connectivity import Connectivity
-from .masks import grow_vertices, place_middles, place_quarters, place_vertices
+from .masks import place_points
 from .rings import vertex_rings
 
 Floats = npt.NDArray[np.float32]
@@ -31,6 +31,8 @@ class Frame:
 
     positions: npt.NDArray[np.float64]
     """Deformed vertex positions, shape (V, 3)."""
+    points: Floats
+    """The same in single precision, which is enough for all but differences."""
     normals: Floats
     """Their unit normals, shape (V, 3)."""
     splits: npt.NDArray[np.uint8]
@@ -98,46 +100,25 @@ class LoopScheme:
     def place(self, frame: Frame) -> None:
         """Write moved vertices, first level, second level."""
         mesh, rings = self._connectivity, self._rings
-        grow_vertices(
-            mesh.edge_points,
-            frame.growth_once,
-            frame.split_once,
-            frame.once_count,
-            self._vertex_growth,
-        )
-        place_vertices(
-            frame.positions,
+        place_points(
+            frame.points,
             frame.normals,
-            self._vertex_growth,
+            mesh.edge_points,
+            mesh.edge_wings,
+            mesh.is_interior,
             rings.own,
             rings.ring,
             rings.starts,
             rings.vertices,
-            frame.rows,
-        )
-        place_middles(
-            frame.positions,
-            frame.normals,
-            mesh.edge_points,
-            mesh.is_interior,
             frame.splits,
-            frame.growth_once,
-            frame.first_points,
-            frame.split_once,
-            frame.once_count,
-            self._middles,
-            frame.rows,
-        )
-        place_quarters(
-            frame.positions,
-            mesh.edge_points,
-            mesh.edge_wings,
-            mesh.is_interior,
             frame.growth_once,
             frame.growth_twice,
             frame.first_points,
+            frame.split_once,
+            frame.once_count,
             frame.split_twice,
             frame.twice_count,
+            self._vertex_growth,
             self._middles,
             frame.rows,
         )

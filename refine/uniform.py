@@ -35,12 +35,10 @@ Wide = npt.NDArray[np.int64]
 class Level:
     """One step of subdivision of a mesh with V vertices and E edges: every edge split once."""
 
-    def __init__(
-        self, connectivity: Connectivity, positions: npt.NDArray[np.float64], normals: Floats
-    ) -> None:
-        """Take `positions` and `normals`, shape (V, 3), as buffers that a frame fills."""
+    def __init__(self, connectivity: Connectivity, points: Floats, normals: Floats) -> None:
+        """Take `points` and `normals`, shape (V, 3), as buffers that a frame fills."""
         vertex_count, edge_count = connectivity.vertex_count, len(connectivity.edges)
-        self.positions = positions
+        self.points = points
         self.normals = normals
         self._connectivity = connectivity
         self._rings: Rings = vertex_rings(connectivity)
@@ -55,7 +53,7 @@ class Level:
         """Write the moved vertices, then one point per edge, into the first V + E `rows`."""
         rings = self._rings
         place_vertices(
-            self.positions,
+            self.points,
             self.normals,
             self._all_move,
             rings.own,
@@ -65,7 +63,7 @@ class Level:
             rows,
         )
         place_middles(
-            self.positions,
+            self.points,
             self.normals,
             self._connectivity.edge_points,
             self._connectivity.is_interior,
@@ -102,12 +100,12 @@ class Loop(BoundRefiner):
         finest = _Refined.of(
             self.connectivity, None if self._values is None else self._values.values
         )
-        self._levels = [Level(finest.connectivity, self._positions, self._normals)]
+        self._levels = [Level(finest.connectivity, self._points, self._normals)]
         for _ in range(levels - 1):
             finest = finest.subdivided()
-            buffer = np.zeros((finest.connectivity.vertex_count, 3))
-            self._levels.append(Level(finest.connectivity, buffer, buffer.astype(np.float32)))
-        self._rows = np.zeros((len(self._levels[-1].positions), GEOMETRY_COLUMNS), np.float32)
+            points = np.zeros((finest.connectivity.vertex_count, 3), dtype=np.float32)
+            self._levels.append(Level(finest.connectivity, points, np.zeros_like(points)))
+        self._rows = np.zeros((len(self._levels[-1].points), GEOMETRY_COLUMNS), np.float32)
         self._finest = finest.subdivided()
         self._triangles = self._finest.connectivity.corners
         self._wedge_values = self._finest.wedge_values()
@@ -133,7 +131,7 @@ class Loop(BoundRefiner):
         vertex_normals(self._positions, self.connectivity.faces, self._normals)
         for level, finer in pairwise(self._levels):
             level.subdivide(self._rows)
-            np.copyto(finer.positions, self._rows[:, :3])
+            np.copyto(finer.points, self._rows[:, :3])
             np.copyto(finer.normals, self._rows[:, 3:])
         self._levels[-1].subdivide(vertices)
 

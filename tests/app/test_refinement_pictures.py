@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app import paper_figures, refinement_figures
+from app import paper_figures, refinement_figures, strip
 from app.charts import Axis, Series, chart
 
 PICTURES = Path(__file__).parents[2] / "docs" / "pictures"
@@ -33,6 +33,16 @@ def test_paper_figures() -> None:
     assert ten.shape[1] == 3 * 80
     left, right = ten[30:90, :80].astype(int), ten[30:90, 80:160].astype(int)
     assert np.abs(left - right).max() > 20  # refinement shows
+
+
+def test_film_strip() -> None:
+    """Red lines are in the row without memory, and none in the row with it."""
+    drawn = strip.coherence_strip((120, 96)).astype(int)
+    assert drawn.shape[1] == len(strip.AMPLITUDES) * 120
+    is_red = (drawn[..., 0] > 150) & (drawn[..., 1:].max(axis=2) < 90)
+    half = len(drawn) // 2
+    assert is_red[:half].sum() > 200
+    assert is_red[half:].sum() == 0
 
 
 def test_chart() -> None:

@@ -34,6 +34,7 @@ def test_rows() -> None:
     assert bound.triangles == count
     assert bound.seconds > 0.0
     assert 0.1 < bound.megabytes < 10.0
+    assert bound.peak_megabytes is None or 0.1 < bound.peak_megabytes < 50.0
     assert gc.isenabled()
 
 

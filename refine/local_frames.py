@@ -1,0 +1,109 @@
+"""Directions that move with a surface: what detail is stored along (detail.py).
+
+Three orthogonal directions of length one, as rows of a matrix, for edges, vertices and triangles.
+They turn with the surface whatever it does, because they are found anew from it in every frame; and
+they change without a jump as long as normals and edges do.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from .kernels import kernel
+
+Floats = npt.NDArray[np.float32]
+Doubles = npt.NDArray[np.float64]
+Unsigned = npt.NDArray[np.uint32]
+
+ZERO = np.float32(0.0)
+ONE = np.float32(1.0)
+TINY = np.finfo(np.float32).tiny
+
+
+@kernel
+def write_axes(
+    x: np.float32,
+    y: np.float32,
+    z: np.float32,
+    u: np.float32,
+    v: np.float32,
+    w: np.float32,
+    axes: Floats,
+) -> None:
+    """Write three orthogonal directions of length one: (x y z), then (u v w) made normal to it."""
+    scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
+    x, y, z = x * scale, y * scale, z * scale
+    slope = x * u + y * v + z * w
+    u, v, w = u - slope * x, v - slope * y, w - slope * z
+    scale = ONE / np.sqrt(max(u * u + v * v + w * w, TINY))
+    u, v, w = u * scale, v * scale, w * scale
+    axes[0, 0], axes[0, 1], axes[0, 2] = x, y, z
+    axes[1, 0], axes[1, 1], axes[1, 2] = u, v, w
+    axes[2, 0], axes[2, 1], axes[2, 2] = y * w - z * v, z * u - x * w, x * v - y * u
+
+
+@kernel
+def edge_axes(
+    positions: Doubles,
+    normals: Floats,
+    edge_points: Unsigned,
+    listed: Unsigned,
+    count: int,
+    axes: Floats,
+) -> None:
+    """Write the directions of the listed edges: along the edge, up, across."""
+    for k in range(count):
+        e = listed[k]
+        a, b = edge_points[e, 0], edge_points[e, 1]
+        write_axes(
+            np.float32(positions[b, 0] - positions[a, 0]),
+            np.float32(positions[b, 1] - positions[a, 1]),
+            np.float32(positions[b, 2] - positions[a, 2]),
+            normals[a, 0] + normals[b, 0],
+            normals[a, 1] + normals[b, 1],
+            normals[a, 2] + normals[b, 2],
+            axes[e],
+        )
+
+
+@kernel
+def vertex_axes(
+    positions: Doubles, normals: Floats, vertex_growth: Floats, towards: Unsigned, axes: Floats
+) -> None:
+    """Write the directions of the vertices that have grown: up, towards a neighbour, across."""
+    for v in range(positions.shape[0]):
+        if vertex_growth[v] == ZERO:
+            continue
+        u = towards[v]
+        write_axes(
+            normals[v, 0],
+            normals[v, 1],
+            normals[v, 2],
+            np.float32(positions[u, 0] - positions[v, 0]),
+            np.float32(positions[u, 1] - positions[v, 1]),
+            np.float32(positions[u, 2] - positions[v, 2]),
+            axes[v],
+        )
+
+
+@kernel
+def triangle_axes(
+    positions: Doubles,
+    normals: Floats,
+    faces: Unsigned,
+    listed: Unsigned,
+    count: int,
+    axes: Floats,
+) -> None:
+    """Write the directions of the listed triangles: up, along edge 0, across."""
+    for k in range(count):
+        t = listed[k]
+        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        write_axes(
+            normals[a, 0] + normals[b, 0] + normals[c, 0],
+            normals[a, 1] + normals[b, 1] + normals[c, 1],
+            normals[a, 2] + normals[b, 2] + normals[c, 2],
+            np.float32(positions[b, 0] - positions[a, 0]),
+            np.float32(positions[b, 1] - positions[a, 1]),
+            np.float32(positions[b, 2] - positions[a, 2]),
+            axes[t],
+        )
