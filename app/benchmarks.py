@@ -8,6 +8,8 @@ from pathlib import Path
 
 import bench.motion
 import bench.simulate
+import bench.soak
+import bench.tearing
 
 
 def simulate_table(rounds: int, sizes: Sequence[int] = bench.simulate.SIZES) -> str:
@@ -28,17 +30,61 @@ def simulate_table(rounds: int, sizes: Sequence[int] = bench.simulate.SIZES) -> 
 
 def motion_table(reference: Path) -> str:
     """Score simulated against scanned skin motion; the text to print."""
+    rows = bench.motion.run(reference)
     lines = [
         "Simulated against scanned displacement, area weighted: cosine 1 and magnitude 1 are equal",
-        "fields, residual is the squared difference over the squared scan, peak is simulated.",
+        "fields, residual is the squared difference over the squared scan, half is the share of",
+        "the motion that half the controls give. Yardsticks (cosine): a rigid blob at the scanned",
+        "peak and the geometric muscle of Waters 1987, each the best of several.",
         "",
-        f"{'expression':18} {'cosine':>7} {'magnitude':>9} {'residual':>8} {'peak':>7}",
+        f"{'shape':20} {'cosine':>7} {'magnitude':>9} {'residual':>8} {'half':>5} "
+        f"{'blob':>6} {'Waters':>6}",
     ]
-    for row in bench.motion.run(reference):
+    for row in [*rows, bench.motion.mean_row(rows)]:
         lines.append(
-            f"{row.expression:18} {row.cosine:7.3f} {row.magnitude:9.2f} {row.residual:8.3f} "
-            f"{row.peak:7.2f}"
+            f"{row.shape:20} {row.cosine:7.3f} {row.magnitude:9.2f} {row.residual:8.3f} "
+            f"{row.half:5.2f} {row.blob:6.3f} {row.waters:6.3f}"
         )
+    unknown = bench.motion.unknown_fields(reference)
+    if unknown:
+        lines += ["", f"no controls known for: {', '.join(unknown)} (bench/shapes.toml)"]
+    return "\n".join(lines)
+
+
+def soak_table(minutes: float) -> str:
+    """Drive the face with random input for a long time; the text to print."""
+    seen = bench.soak.run(minutes=minutes)
+    return "\n".join(
+        [
+            f"{seen.seconds / 60.0:.1f} simulated minutes, {seen.frames} frames of 1/240 to",
+            "1/20 s, every control at random in every frame:",
+            f"finite            {'yes' if seen.finite else 'NO'}",
+            f"furthest          {seen.furthest:.2f} mm from rest",
+            f"2 s after release {seen.left_over:.6f} mm from rest",
+            f"energy growth     {seen.growth:.1e} of a blow, most in a frame without input",
+            f"same bytes        {'yes' if seen.same_bytes else 'NO'}",
+            f"mirrored input    {seen.mirror_error:.1e} mm from the mirrored motion",
+        ]
+    )
+
+
+def tearing_table(mixtures: int) -> str:
+    """Look for torn skin in all expressions and in random mixtures; the text to print."""
+    poses = bench.tearing.run(mixtures=mixtures)
+    lines = [
+        f"{len(poses)} poses: every expression and {mixtures} random mixtures of controls.",
+        f"triangles turned by more than a right angle: {sum(pose.inverted for pose in poses)} "
+        f"in {sum(pose.inverted > 0 for pose in poses)} poses",
+        "",
+        "worst         value  in",
+    ]
+    for title, unit, part in (
+        ("inverted", "", "inverted"), ("lips", " mm", "lips"), ("lids", " mm", "lids"),
+        ("teeth", " mm", "teeth"),
+    ):  # fmt: skip
+        worst = max(poses, key=lambda pose: float(getattr(pose, part)))
+        value = float(getattr(worst, part))
+        lines.append(f"{title:10} {f'{value:.4g}{unit}':>9}  {worst.name if value > 0.0 else '-'}")
     return "\n".join(lines)
 
 

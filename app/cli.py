@@ -261,13 +261,35 @@ def bench_simulate(rounds: int) -> None:
     help=REFERENCE_FILES,
 )
 def bench_motion(reference: Path) -> None:
-    """Compare simulated with scanned skin motion, expression by expression."""
+    """Compare simulated with scanned skin motion, shape by shape."""
     from .benchmarks import motion_table
 
     with told_in_one_line():
         if not (reference / "face.npz").is_file():
             raise UserError(f"{reference}: no face.npz in it; it must be {REFERENCE_FILES}")
         click.echo(motion_table(reference))
+
+
+@bench.command("soak")
+@click.option(
+    "--minutes", type=FiniteRange(0.01, 1e4), default=60.0, show_default=True, help="Simulated."
+)
+def bench_soak(minutes: float) -> None:
+    """Drive the face with random input for a simulated hour: does it stay sound, and come back."""
+    from .benchmarks import soak_table
+
+    with told_in_one_line():
+        click.echo(soak_table(minutes))
+
+
+@bench.command("tearing")
+@click.option("--mixtures", type=click.IntRange(0, 100_000), default=500, show_default=True)
+def bench_tearing(mixtures: int) -> None:
+    """Look for torn skin and for contacts that fail, in all expressions and random mixtures."""
+    from .benchmarks import tearing_table
+
+    with told_in_one_line():
+        click.echo(tearing_table(mixtures))
 
 
 def open_viewer(

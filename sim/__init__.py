@@ -18,10 +18,11 @@ from .rig_reader import read_rig
 __all__ = ["Rig", "Simulation", "SimulationUnstable", "create", "read_rig"]
 
 
-def create(head: Any) -> Simulation:
+def create(head: Any, *, gravity: bool = False, inertia: bool = False) -> Simulation:
     """Build the simulation of a head: any object with `vertices` (V, 3) and `faces` (F, 3).
 
     Optional attributes (landmarks, rig, mandible_weight, jaw_axis, eyes) add muscles, jaw and gaze,
-    see anatomy.py. Raises ValueError naming what is wrong with the head or its rig.
+    see anatomy.py. gravity: soft tissue hangs when the head is tilted; inertia: it follows when the
+    head moves, see weight.py. Raises ValueError naming what is wrong with the head or its rig.
     """
-    return Simulation(build_anatomy(head))
+    return Simulation(build_anatomy(head), gravity=gravity, inertia=inertia)

@@ -8,6 +8,7 @@ A head may be any object with `vertices` and `faces`. What else it brings makes 
     layers                      action units, expressions, ... above the muscles (layers.py)
     jaw_axis, mandible_weight   a jaw; guessed from landmarks where one is missing
     eyes                        gaze and contact; guessed from landmarks
+    parts                       teeth (parts named "teeth_..."), which lips and cheeks rest on
 
 Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landmarks alone.
 """
@@ -23,7 +24,17 @@ import numpy.typing as npt
 from .contact import EyeContact, Grip, LipPairs, pair_lips, watch_eyeballs
 from .controls import GAZE_RATE, Control
 from .integrator import LONGEST_SUBSTEP, ROUNDING
-from .landmarks import LANDMARK_COUNT, Array, FaceFrame, Side
+from .landmarks import (
+    LANDMARK_COUNT,
+    LOWER_INNER,
+    UPPER_INNER,
+    Array,
+    FaceFrame,
+    Side,
+    polyline_distance,
+    select,
+    smoothstep,
+)
 from .layers import NO_LAYERS, Layers, read_layers
 from .lids import Lids, place_lids
 from .muscles import place_muscles, sides_of
@@ -32,6 +43,8 @@ from .pull import MusclePull, prepare_pull
 from .rig import Rig
 from .rig_reader import read_rig
 from .skull import (
+    HEAD_CONTROLS,
+    HEAD_RATE,
     Eyeball,
     Skull,
     condyles_from_landmarks,
@@ -40,9 +53,13 @@ from .skull import (
 )
 from .springs import EdgeSprings
 from .surface import Surface, build_surface
+from .teeth import Teeth, watch_teeth
 from .tissue import TissueSprings, masses_for_step
 
 SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
+NECK_TOP, NECK_FOOT = 0.0, 55.0  # mm below the chin: the neck, where the head's turn fades
+LIPS_MEET_AT = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
+LIPS_WHOLE, LIPS_END = 7.0, 32.0  # mm from the mouth line: skin that goes along, in full and at all
 LEAST_MANDIBLE = 1e-4  # share of the jaw's motion that is none
 STEP_MARGIN = 1.0 + ROUNDING  # a substep may be this much longer than LONGEST_SUBSTEP
 
@@ -62,20 +79,24 @@ class Anatomy:
     edges: EdgeSprings
     lips: LipPairs
     eye_contact: EyeContact
+    teeth: Teeth
+    turns: Array  # (V, 1) share of the head's pose: 1, fading to 0 down the neck
     passive_hold: Array  # (V,)
+    closed_weight: Array  # (V,) of the mandible while the lips are kept closed over an open jaw
     mass: Array  # (V,)
     controls: tuple[Control, ...]
     layers: Layers
 
-    def grip(self, activation: Array, jaw: tuple[float, float, float]) -> Grip:
+    def grip(self, activation: Array, jaw: tuple[float, float, float], closed: float) -> Grip:
         """How firmly the lips stick together; the jaw and some muscles part them.
 
-        activation: of each muscle, shape (M,); jaw: its values open, forward, sideways.
+        activation: of each muscle, shape (M,); jaw: its values open, forward, sideways; closed: how
+        far the lips are kept together over an open jaw, 0..1.
         """
         if not len(self.lips.lower):
             return Grip(0.0, 0.0)
         muscles = self.muscles
-        strength = max(0.0, 1.0 - jaw[0] / SEAL_BROKEN_BY_JAW)
+        strength = max(0.0, 1.0 - (1.0 - closed) * jaw[0] / SEAL_BROKEN_BY_JAW)
         if strength == 0.0:
             return Grip(0.0, 0.0)
         strength *= float((1.0 - activation * muscles.opens_lips).prod())
@@ -101,7 +122,7 @@ def build_anatomy(head: Any) -> Anatomy:
     seal = rig.tissue.lip_seal * rig.tissue.stiffness_scale
     lips = pair_lips(surface, known, side, seal)
     muscles = prepare_pull(placed, rig, surface, skull.mandible_weight, lips.members)
-    controls = _controls(rig, skull)
+    controls = _controls(rig, skull, lips, landmarks is not None)
     lids = None
     if landmarks is not None and skull.eyeballs:
         names = [control.name for control in controls]
@@ -115,6 +136,9 @@ def build_anatomy(head: Any) -> Anatomy:
         vertices=vertices, frame=frame, rig=rig, surface=surface, skull=skull, muscles=muscles,
         lids=lids, springs=springs, edges=edges, lips=lips,
         eye_contact=watch_eyeballs(surface, skull.eyeballs), passive_hold=passive,
+        teeth=watch_teeth(getattr(head, "parts", None), surface, frame),
+        turns=_turning_share(surface, landmarks),
+        closed_weight=_closed_weight(surface, known, skull.mandible_weight, lips),
         mass=masses_for_step(surface.areas, bound, LONGEST_SUBSTEP * STEP_MARGIN),
         controls=controls, layers=_layers(head, rig, controls),
     )  # fmt: skip
@@ -193,7 +217,7 @@ def _skull(
     # Lips clamped to one bone open like a letter box; skin between the bones rounds the mouth.
     weight = np.clip(surface.smoothed(weight, rig.jaw.softness), 0.0, 1.0)
     weight[weight < LEAST_MANDIBLE] = 0.0
-    return Skull(condyles, weight, _eyeballs(head, frame, landmarks), rig.jaw, rig.eyes)
+    return Skull(condyles, weight, _eyeballs(head, frame, landmarks), rig.jaw, rig.eyes, rig.head)
 
 
 def _eyeballs(head: Any, frame: FaceFrame, landmarks: Array | None) -> tuple[Eyeball, ...]:
@@ -212,25 +236,50 @@ def _eyeballs(head: Any, frame: FaceFrame, landmarks: Array | None) -> tuple[Eye
 
 def _holds(muscles: MusclePull, lids: Lids | None, count: int) -> tuple[Array, Array]:
     """Stiffness of relaxed and of fully active muscles, lids included, per vertex."""
-    greatest = muscles.greatest_hold(count)
-    passive = muscles.passive * greatest
+    greatest = muscles.hold_of(np.ones_like(muscles.passive), count)
+    passive = muscles.hold_of(muscles.passive, count)
     if lids is not None:
         for hold in (passive, greatest):
             np.add.at(hold, lids.vertices.vertex, lids.hold)
     return passive, greatest
 
 
-def _controls(rig: Rig, skull: Skull) -> tuple[Control, ...]:
-    """All controls of a face: its muscles in rig order, the jaw, the gaze."""
-    controls = [
-        Control(name, m.group, action=m.action) for m in rig.muscles for name, _ in sides_of(m)
-    ]
+def _turning_share(surface: Surface, landmarks: Array | None) -> Array:
+    """How far skin follows the pose of the head, shape (V, 1): the foot of the neck stays."""
+    if landmarks is None:
+        return np.ones((surface.vertex_count, 1))
+    below = landmarks[8, 1] - surface.positions[:, 1]
+    return smoothstep((NECK_FOOT - below) / (NECK_FOOT - NECK_TOP))[:, None]
+
+
+def _closed_weight(surface: Surface, landmarks: Array, weight: Array, lips: LipPairs) -> Array:
+    """The mandible's weight where both lips meet although the jaw is open, shape (V,)."""
+    if not len(lips.lower):
+        return weight.copy()
+    line = (select(landmarks, UPPER_INNER) + select(landmarks, LOWER_INNER)) / 2.0
+    reach = (LIPS_END - polyline_distance(surface.positions, line)) / (LIPS_END - LIPS_WHOLE)
+    closed: Array = weight + smoothstep(reach) * (LIPS_MEET_AT - weight)
+    return closed
+
+
+def _controls(rig: Rig, skull: Skull, lips: LipPairs, is_face: bool) -> tuple[Control, ...]:
+    """All controls of a face: its muscles in rig order, the lips, the jaw, the gaze, the head."""
+    controls = []
+    for muscle in rig.muscles:
+        both = [muscle.name] if muscle.halves else []
+        names = [*both, *(name for name, _ in sides_of(muscle))]
+        controls += [Control(name, muscle.group, action=muscle.action) for name in names]
+    if skull.mandible_weight.any() and len(lips.lower):
+        controls.append(Control("lips_closed", "Lips"))
     if skull.mandible_weight.any():
         controls.append(Control("jaw_open", "Jaw"))
         controls += [Control(name, "Jaw", -1.0) for name in ("jaw_forward", "jaw_sideways")]
     if skull.eyeballs:
         for name in ("gaze_horizontal", "gaze_vertical"):
             controls.append(Control(name, "Gaze", -1.0, 1.0, GAZE_RATE))
+    if is_face:
+        for name in HEAD_CONTROLS:
+            controls.append(Control(name, "Head", -1.0, 1.0, HEAD_RATE))
     return tuple(controls)
 
 

@@ -20,9 +20,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .landmarks import Array, polyline_distance, select
+from .landmarks import LOWER_INNER, UPPER_INNER, Array, polyline_distance, select
 from .skull import Eyeball
-from .substep import SEAL_AXES
+from .substep import SEAL_AXES, SLIDES_IN_FRONT
 from .surface import Surface
 
 LIP_EDGE = 5.0  # mm around the mouth line in which lip vertices are looked for
@@ -31,7 +31,7 @@ PAIR_GAP = 3.0  # mm: lips further apart at rest are no pair
 LEAST_SEAL_AREA = 4.0  # mm2: tiny vertices of a lip edge still carry their share
 UNBROKEN_SEAL = 100.0  # x the rig's seal while nothing opens the lips: gaps below 0.1 mm
 FULLY_PRESSED = 0.25  # activity from which they overlap in full
-PRESSED_OVERLAP = 0.5  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
+PRESSED_OVERLAP = 0.65  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
 EYE_REACH = 12.0  # mm around an eyeball in which skin is watched
 EYE_CLEARANCE = 0.3  # mm of lid thickness that stay between a vertex and the eyeball
 
@@ -55,6 +55,20 @@ class LipPairs(NamedTuple):
         stored = self.seal * (apart**2 @ np.array(SEAL_AXES))
         return float(grip.stiffness * stored.sum() / 2.0)
 
+    def deepest(self, x: Array, rest: Array, pressed: float) -> float:
+        """How far the lips cross at most at positions (V, 3), more than `pressed` and at rest [mm].
+
+        A lower lip that has come out in front of the upper one (see substep.py) crosses nothing.
+        """
+        if not len(self.lower):
+            return 0.0
+        a, b = self.upper.T
+        above = self.share[:, None] * x[a] + (1.0 - self.share)[:, None] * x[b]
+        below = self.share[:, None] * rest[a] + (1.0 - self.share)[:, None] * rest[b]
+        forward = (x - rest)[self.lower, 2] - (above - below)[:, 2]
+        crossing = self.least_gap - pressed - (above[:, 1] - x[self.lower, 1])
+        return float(np.where(forward < SLIDES_IN_FRONT, crossing, 0.0).max(initial=0.0))
+
 
 class Grip(NamedTuple):
     """How firmly the lips hold each other at the moment."""
@@ -68,7 +82,7 @@ class Grip(NamedTuple):
 
         Whole, it outdoes every muscle; it must give way early or the mouth would pop open.
         """
-        stiffness = strength**3 / (1.0 - strength + 1.0 / UNBROKEN_SEAL)
+        stiffness = strength**5 / (1.0 - strength + 1.0 / UNBROKEN_SEAL)
         return cls(stiffness, PRESSED_OVERLAP * strength * min(activity / FULLY_PRESSED, 1.0))
 
 
@@ -78,7 +92,7 @@ SEALED = Grip.of(1.0, 0.0)
 def pair_lips(surface: Surface, landmarks: Array, lip_side: Array, seal: float) -> LipPairs:
     """Pair the edges of the lips; no pairs if the mouth is open at rest or has no slit."""
     x = surface.positions
-    line = (select(landmarks, (60, 61, 62, 63, 64)) + select(landmarks, (60, 67, 66, 65, 64))) / 2.0
+    line = (select(landmarks, UPPER_INNER) + select(landmarks, LOWER_INNER)) / 2.0
     at_edge = polyline_distance(x, line) < LIP_EDGE
     at_edge &= np.abs(x[:, 0] - line[2, 0]) < 0.51 * abs(line[-1, 0] - line[0, 0])
     upper = np.flatnonzero(at_edge & (lip_side > OWN_SIDE))
@@ -129,6 +143,11 @@ class EyeContact(NamedTuple):
     vertex: npt.NDArray[np.int32]  # (C,)
     centre: Array  # (C, 3)
     least_distance: Array  # (C,)
+
+    def deepest(self, x: Array) -> float:
+        """How far skin at positions (V, 3) is inside an eyeball at most [mm]."""
+        distance = np.linalg.norm(x[self.vertex] - self.centre, axis=1)
+        return float((self.least_distance - distance).max(initial=0.0))
 
 
 def watch_eyeballs(surface: Surface, eyeballs: tuple[Eyeball, ...]) -> EyeContact:

@@ -6,12 +6,14 @@
     muscles    ->  one anchor per skin vertex                            muscles.py, fibres.py
                       |
     tissue + edges + lip seal  ->  velocity  ->  position                tissue.py, springs.py
+    gravity, inertia (optional)                                          weight.py
                       |
     lips and eyeballs keep skin out                                      contact.py, substep.py
 
 Built once from a mesh (anatomy.py), then `step` moves it. Everything inside runs in the standard
-face frame; only displacements are turned back into the head's own coordinates, so a face at rest
-has exactly the positions it came with.
+face frame, fixed to the cranium; only displacements are turned back into the head's own
+coordinates, so a face at rest has exactly the positions it came with. The pose of the head moves
+the result as a whole, but for the foot of the neck.
 
 Source: Kähler, Haber, Seidel 2001, "Geometry-based muscle modeling for facial animation"; Kähler
 et al. 2003, Figure 1 (left half).
@@ -29,11 +31,14 @@ from . import integrator
 from .anatomy import Anatomy
 from .contact import SEALED
 from .controls import Controls
+from .drive import MuscleDrive
 from .lids import turn_lids
-from .skull import REST, Pose
+from .skull import HEAD_CONTROLS, REST, Pose
 from .state import State
 from .substep import advance
+from .teeth import deepest
 from .tissue import carry, tissue_energy
+from .weight import Weight
 
 FINGER_RATE = 350.0  # rad/s of the firmest pull: outdoes the skin, stable at the longest substep
 
@@ -45,7 +50,7 @@ class SimulationUnstable(RuntimeError):  # noqa: N818, the name the whole projec
 class Simulation:
     """A face that follows its controls; made by `sim.create`."""
 
-    def __init__(self, anatomy: Anatomy) -> None:
+    def __init__(self, anatomy: Anatomy, *, gravity: bool = False, inertia: bool = False) -> None:
         self._anatomy = anatomy
         self._controls = Controls(anatomy.controls, anatomy.layers)
         surface = anatomy.surface
@@ -53,9 +58,11 @@ class Simulation:
         self._grip = SEALED
         self._jaw = (0.0, 0.0, 0.0)
         self._mandible: Pose = REST
-        self._muscle_index = np.array(
-            [self._controls.index(name) for name in anatomy.muscles.names], dtype=np.int64
-        )
+        self._head: Pose = REST
+        heaviness = anatomy.rig.tissue.heaviness
+        self._weight = Weight(surface.areas, heaviness, gravity=gravity, inertia=inertia)
+        self._weighs = gravity or inertia
+        self._drive = MuscleDrive(anatomy.rig, anatomy.muscles.names, self._controls)
         self._rest = anatomy.vertices.copy()
         self._positions = anatomy.vertices.copy()
         self._rest.flags.writeable = False
@@ -139,6 +146,7 @@ class Simulation:
         self._positions[:] = self._rest
         self.let_go()
         self._place_targets()
+        self._weight.forget()
 
     def kick(self, velocities: npt.ArrayLike) -> None:
         """Add velocities [head units / s], shape (V, 3): a blow, or a mouse pulling at the skin."""
@@ -147,7 +155,7 @@ class Simulation:
             raise ValueError(
                 f"velocities: shape was {added.shape}, must be {self._state.v.shape} and finite"
             )
-        self._state.v[:] += self._anatomy.frame.vectors_to_standard(added)
+        self._state.v[:] += self._anatomy.frame.vectors_to_standard(added) @ self._head.rotation
 
     def pull(
         self, vertices: npt.ArrayLike, targets: npt.ArrayLike, firmness: npt.ArrayLike
@@ -171,9 +179,9 @@ class Simulation:
             raise ValueError("targets must be finite, and firmness from 0 to 1")
         if len(np.unique(numbers)) < len(numbers) or ((numbers < 0) | (numbers >= count)).any():
             raise ValueError(f"vertices must be different numbers from 0 to {count - 1}")
-        moved = self._anatomy.frame.vectors_to_standard(points - self._rest[numbers])
+        away = self._anatomy.frame.vectors_to_standard(points - self._positions[numbers])
         self._pulled = numbers
-        self._pulled_to = self._anatomy.surface.positions[numbers] + moved
+        self._pulled_to = self._state.x[numbers] + away @ self._head.rotation
         self._pulled_by = share * self._anatomy.mass[numbers] * FINGER_RATE**2
 
     def let_go(self) -> None:
@@ -198,6 +206,8 @@ class Simulation:
         for _ in range(ticks):
             self._controls.advance(dt / ticks / 2.0)
             self._place_targets()
+            if self._weighs:
+                self._weight.add(self._head, dt / ticks, self._state.x, self._state.pull)
             self._advance(dt / ticks)
             self._controls.advance(dt / ticks / 2.0)
         moved = self._state.x - self._anatomy.surface.positions
@@ -207,6 +217,10 @@ class Simulation:
                 "finite; call reset(), and report the mesh if it was built from a sound one"
             )
         np.add(self._rest, self._anatomy.frame.vectors_to_head(moved), out=self._positions)
+        if self._head is not REST:
+            turn = self._head.matrix(self._anatomy.frame)
+            turned = self._positions @ turn[:3, :3].T + turn[:3, 3]
+            self._positions += self._anatomy.turns * (turned - self._positions)
 
     def _place_targets(self) -> None:
         """Bones, lids and muscles for the activations reached: where each spring pulls to."""
@@ -216,21 +230,25 @@ class Simulation:
         if jaw != self._jaw:
             self._jaw = jaw
             self._mandible = anatomy.skull.mandible_pose(*jaw)
-        weight = anatomy.skull.mandible_weight
+        pitch, yaw, roll = (now(name) for name in HEAD_CONTROLS)
+        self._head = anatomy.skull.head_pose(pitch, yaw, roll)
+        weight, closed = anatomy.skull.mandible_weight, now("lips_closed")
+        if closed > 0.0:
+            weight = weight + closed * (anatomy.closed_weight - weight)
         turn, shift = self._mandible.rotation, self._mandible.shift
         carry(surface.positions, surface.normals, weight, turn, shift, state)
         if anatomy.lids is not None:
             drive = anatomy.lids.drive(self._controls.activation)
             gaze = self._gaze_angle()
             turn_lids(state, surface.positions, anatomy.lids.vertices, drive, gaze)
-        activation = np.maximum(self._controls.activation[self._muscle_index], 0.0)
+        activation = self._drive.activation()
         state.hold[:] = anatomy.passive_hold
         state.pull[:] = 0.0
-        muscles.add(activation, self._mandible, weight, state.hold, state.pull)
+        muscles.add(self._drive.pull(activation), self._mandible, weight, state.hold, state.pull)
         drawn = self._pulled_to - state.carried[self._pulled]
         state.hold[self._pulled] += self._pulled_by
         state.pull[self._pulled] += self._pulled_by[:, None] * drawn
-        self._grip = anatomy.grip(activation, jaw)
+        self._grip = anatomy.grip(activation, jaw, closed)
 
     def _advance(self, tick: float) -> None:
         """One tick [s] in substeps: all forces on the skin (substep.py)."""
@@ -238,6 +256,7 @@ class Simulation:
         advance(
             self._state, count, tick / count, anatomy.surface.positions, anatomy.mass,
             anatomy.springs, anatomy.edges, anatomy.lips, self._grip, anatomy.eye_contact,
+            anatomy.teeth, self._mandible.rotation, self._mandible.shift,
         )  # fmt: skip
 
     def _gaze_angle(self) -> float:
@@ -250,19 +269,38 @@ class Simulation:
     def bone_transforms(self) -> dict[str, npt.NDArray[np.float64]]:
         """Motion of each bone from rest to now, name -> (4, 4) for column vectors [head units]."""
         anatomy = self._anatomy
-        transforms = {"cranium": np.eye(4), "mandible": self._mandible.matrix(anatomy.frame)}
+        transforms = {
+            "cranium": self._head.matrix(anatomy.frame),
+            "mandible": self._head.after(self._mandible).matrix(anatomy.frame),
+        }
         gaze = self._controls.now("gaze_horizontal"), self._controls.now("gaze_vertical")
         for ball in anatomy.skull.eyeballs:
             pose = anatomy.skull.eye_pose(ball, *gaze)
-            transforms[f"eye_{ball.side.value}"] = pose.matrix(anatomy.frame)
+            transforms[f"eye_{ball.side.value}"] = self._head.after(pose).matrix(anatomy.frame)
         return transforms
 
     def fibres(self) -> dict[str, list[npt.NDArray[np.float64]]]:
         """Contracted muscle fibres now, control name -> polylines (n, 3) [head units], to draw."""
-        activation = np.maximum(self._controls.activation[self._muscle_index], 0.0)
-        lines = self._anatomy.muscles.lines(activation, self._mandible, self._state.x)
-        to_head = self._anatomy.frame.to_head
-        return {name: [to_head(line) for line in found] for name, found in lines.items()}
+        pull = self._drive.pull(self._drive.activation())
+        lines = self._anatomy.muscles.lines(pull, self._mandible, self._state.x)
+        frame, head = self._anatomy.frame, self._head
+        return {
+            name: [frame.to_head(line + head.displacements(line)) for line in found]
+            for name, found in lines.items()
+        }
+
+    def penetrations(self) -> dict[str, float]:
+        """How deep skin sits in what it must not enter, at most, less than at rest [mm].
+
+        Names: "lips" (in the other lip, more than sealed lips are pressed together), "lids" (in an
+        eyeball), "teeth".
+        """
+        anatomy, x = self._anatomy, self._state.x
+        return {
+            "lips": anatomy.lips.deepest(x, anatomy.surface.positions, self._grip.overlap),
+            "lids": anatomy.eye_contact.deepest(x),
+            "teeth": deepest(anatomy.teeth, x, self._mandible),
+        }
 
     def energy(self) -> float:
         """Kinetic energy plus what the springs hold, in skin mass units times (mm/s)^2.

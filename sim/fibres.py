@@ -2,8 +2,10 @@
 
 A fibre is FIBRE_POINTS points p_0 (origin) .. p_n (insertion). Its skin is attached by arc length
 t in 0..1. Contracted by c, the point at t moves to where t (1 - c) was: skin slides along the
-fibre's own arc towards the origin. All fibres share one table of displacements at SAMPLES places
-along them, filled again each tick; the skin reads it by linear interpolation.
+fibre's own arc towards the origin. A muscle whose origin is no bone (frontalis: the scalp) stays
+still at t = f instead, and both ends slide to it: t moves to f + (t - f)(1 - c). All fibres share
+one table of displacements at SAMPLES places along them, filled again each tick; the skin reads it
+by linear interpolation.
 
                       t = 0                t (1 - c)   t                 t = 1
     origin on bone      o-------.-------.----*<--------o-------.-----------o  insertion in the skin
@@ -39,6 +41,7 @@ class FibreBundle:
     points: Array  # (B, FIBRE_POINTS, 3) mm at rest
     mandible: Array  # (B, FIBRE_POINTS) share of the mandible's motion
     contraction: Array  # (B,) share of the length lost at full activation
+    fixed_at: Array  # (B,) place along the fibre that stays still
     gain: Array  # (B,)
 
 
@@ -100,7 +103,9 @@ CUT = 2.2  # widths at which the Gaussian (0.8 %) is cut to zero
 
 
 @numba.njit(cache=True)
-def contract_fibres(points, mandible, contraction, gain, activation, turn, shift, table):  # type: ignore[no-untyped-def]
+def contract_fibres(  # type: ignore[no-untyped-def]
+    points, mandible, contraction, fixed_at, gain, activation, turn, shift, table
+):
     """Fill `table` (B, SAMPLES, 3) with the displacement [mm] of the skin along each active fibre.
 
     The fibre's points first move with the bones (`turn`, `shift` of the mandible by their share),
@@ -126,11 +131,12 @@ def contract_fibres(points, mandible, contraction, gain, activation, turn, shift
             dz = moved[p, 2] - moved[p - 1, 2]
             arc[p] = arc[p - 1] + np.sqrt(dx * dx + dy * dy + dz * dz)
         kept = max(1.0 - contraction[b] * activation[b], LEAST_ARC)
-        # `there` trails `here` along the fibre, so both find their segment by walking on.
+        fixed = fixed_at[b] * arc[count - 1]
+        # `there` and `here` only grow, so both find their segment by walking on.
         near, far = 1, 1
         for s in range(samples):
             here = arc[count - 1] * s / (samples - 1)
-            there = kept * here
+            there = fixed + kept * (here - fixed)
             while near < count - 1 and arc[near] < there:
                 near += 1
             while far < count - 1 and arc[far] < here:

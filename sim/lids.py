@@ -7,6 +7,7 @@ it that runs from corner to corner of the eye. Angles are measured per column of
     (1 - close) (raise + gaze) + close (lower lid's angle - alpha)
 
 so that at close = 1 the margins meet on every eye, however wide, and wherever the lower lid is.
+A closing lid also slides towards the nose, as the ring of fibres in it is fixed there.
 The turn fades from the margin to the edge of the lid. It moves the tissue springs' far ends, not
 the skin: skin still slides and is still kept off the eyeball.
 
@@ -32,8 +33,9 @@ COLUMNS = 41  # places along the opening where its height is known
 SMOOTH_COLUMNS = 13  # a third of the opening's width
 COLUMN_REACH = 0.045  # of the opening's width: a column of lid vertices
 MARGIN_REACH = 3.5  # mm around the lid landmarks in which the lid's edge is looked for
-OVERLAP = 0.07  # rad (0.9 mm): the upper margin comes to lie in front of the lower one, refined too
+OVERLAP = 0.09  # rad (1.1 mm): the upper margin comes to lie in front of the lower one, refined too
 LEAST_OPENING = 0.05  # rad: at the corners lids do not overlap
+SLIDE_REACH = 1.9  # x the reach of the turn: skin around the lid slides along with it
 LEAST_TURN = 1e-3  # lid vertices that move less are not lid
 
 
@@ -48,6 +50,9 @@ class LidVertices(NamedTuple):
     centres: Array  # (eyes, 3)
     up: Array  # (eyes, 3) unit, across the lid axis
     forward: Array  # (eyes, 3) unit
+    inward: Array  # (eyes, 3) unit, from the outer to the inner corner
+    along: Array  # (L,) share of the slide: 1 at the middle of the margin .. 0 around the eye
+    slide: tuple[float, float]  # mm inward when closed: upper, lower lid
     upper_follows: float  # share of the vertical gaze
     lower_follows: float
     meeting: float  # share of the opening that the lower lid rises in a blink
@@ -92,6 +97,10 @@ def place_lids(
         centres=np.array([ball.centre for ball in eyeballs]),
         up=np.array([up for up, _ in axes]),
         forward=np.array([forward for _, forward in axes]),
+        inward=np.array([np.cross(up, forward) for up, forward in axes])
+        * np.array([[-ball.side.sign] for ball in eyeballs]),
+        along=np.concatenate([p[4] for p in parts]),
+        slide=eyes.blink_slide,
         upper_follows=eyes.upper_lid_follows,
         lower_follows=eyes.lower_lid_follows,
         meeting=eyes.blink_meeting,
@@ -113,8 +122,8 @@ def _lid_axes(landmarks: Array, ball: Eyeball) -> tuple[Array, Array]:
 
 def _one_eye(
     eyes: Eyes, surface: Surface, landmarks: Array, ball: Eyeball, up: Array, forward: Array
-) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_], Array, Array]:
-    """Vertices, upper/lower, weight and opening angle of one eye's lids."""
+) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_], Array, Array, Array]:
+    """Vertices, upper/lower, weight, opening angle and share of the slide of one eye's lids."""
     outer, upper_outer, upper_inner, inner, lower_outer, lower_inner = EYE_LANDMARKS[ball.side]
     side = lid_side(surface, landmarks, ball.side)
     x = surface.positions
@@ -133,12 +142,13 @@ def _one_eye(
         True: select(landmarks, (outer, upper_outer, upper_inner, inner)),
         False: select(landmarks, (outer, lower_outer, lower_inner, inner)),
     }
-    edges, weight = {}, np.zeros(surface.vertex_count)
+    edges, weight, slide = {}, np.zeros(surface.vertex_count), np.zeros(surface.vertex_count)
     for upper, line in rows.items():
         on_lid = side > 0.0 if upper else side < 0.0
         distance = polyline_distance(x, _margin(column_of(line), line))
         reach = 1.0 - (distance - eyes.lid_plateau) / max(eyes.lid_reach - eyes.lid_plateau, 0.1)
         weight = np.where(on_lid, smoothstep(reach), weight)
+        slide = np.where(on_lid, smoothstep(1.0 - distance / (SLIDE_REACH * eyes.lid_reach)), slide)
         near = on_lid & (distance < MARGIN_REACH) & (column > -0.02) & (column < 1.02)
         arch = np.polynomial.Polynomial.fit(column_of(line), angle_of(line), 3)
         edges[upper] = _edge(arch, column[near], angle[near], lowest=upper)
@@ -153,8 +163,11 @@ def _one_eye(
     broad = np.interp(column, where, wide[start : start + COLUMNS])
     opening = weight * exact + (1.0 - weight) * np.minimum(broad, height.max())
     weight *= x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is no lid
-    vertices = np.flatnonzero(weight > LEAST_TURN)
-    return vertices, side[vertices] > 0.0, weight[vertices], opening[vertices]
+    slide *= np.interp(column, where, wide[start : start + COLUMNS], 0.0, 0.0) / max(
+        height.max(), LEAST_OPENING
+    )
+    lid = np.flatnonzero((weight > LEAST_TURN) | (slide > LEAST_TURN))
+    return lid, side[lid] > 0.0, weight[lid], opening[lid], slide[lid]
 
 
 def _margin(column: Array, line: Array) -> Array:
@@ -211,6 +224,7 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
             raised = max(alpha * drive[e, 2] + lids.upper_follows * gaze, lower - alpha)
             overlap = OVERLAP if alpha > LEAST_OPENING else 0.0
             angle = (1.0 - close) * raised + close * (lower - alpha - overlap)
+        inward = close * lids.along[row] * lids.slide[0 if lids.upper[row] else 1]
         angle *= lids.weight[row]
         c, s = np.cos(angle) - 1.0, np.sin(angle)
         high, far, normal_high, normal_far = 0.0, 0.0, 0.0, 0.0
@@ -224,3 +238,13 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
             carried[i, k] += (high * c + far * s) * u + (far * c - high * s) * f
             normals[i, k] += (normal_high * c + normal_far * s) * u
             normals[i, k] += (normal_far * c - normal_high * s) * f
+        if inward != 0.0:
+            side, far = 0.0, 0.0
+            for k in range(3):
+                side += (carried[i, k] - centres[e, k]) * lids.inward[e, k]
+                far += (carried[i, k] - centres[e, k]) * forward[e, k]
+            angle = inward / np.sqrt(side * side + far * far)
+            c, s = np.cos(angle) - 1.0, np.sin(angle)
+            for k in range(3):
+                carried[i, k] += (side * c + far * s) * lids.inward[e, k]
+                carried[i, k] += (far * c - side * s) * forward[e, k]

@@ -26,6 +26,7 @@ BULGE_SPREAD = 0.3  # of the fibre's length (fitted)
 GATE_ENDS = -0.6  # of the lip side field: beyond it a gated muscle leaves the other lip alone
 GATE_FULL = 1.0  # where it has its full hold; in between it fades, or corners get square
 FLARE_HEIGHT = 5.0  # mm from the mouth line where the flare is three quarters of its full size
+MIDLINE_FADE = 20.0  # mm across the midline over which a paired muscle yields to its twin
 FACE_DEPTH = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
 
 
@@ -57,8 +58,9 @@ def place_muscles(
     """Lay all linear and ring muscles of a rig into a face, in rig order, left before right."""
     placed = []
     for muscle in rig.muscles:
-        gate = _gate(muscle, lip_side)
+        lip = _lip_gate(muscle, lip_side)
         for name, side in sides_of(muscle):
+            gate = lip * _side_gate(muscle, surface.positions[:, 0], side)
             if isinstance(muscle, LinearMuscle):
                 placed.append(_place_linear(name, muscle, surface, landmarks, gate, side))
             elif isinstance(muscle, RingMuscle):
@@ -73,7 +75,15 @@ def sides_of(muscle: Muscle) -> tuple[tuple[str, Side], ...]:
     return ((f"{muscle.name}_left", Side.LEFT), (f"{muscle.name}_right", Side.RIGHT))
 
 
-def _gate(muscle: Muscle, lip_side: Array) -> Array:
+def _side_gate(muscle: Muscle, lateral: Array, side: Side) -> Array:
+    """1 on a paired muscle's own side, fading to 0 across the midline; twins add up to 1."""
+    if not muscle.pair or muscle.crosses:
+        return np.ones_like(lateral)
+    gate: Array = np.clip(0.5 + side.sign * lateral / (2.0 * MIDLINE_FADE), 0.0, 1.0)
+    return gate
+
+
+def _lip_gate(muscle: Muscle, lip_side: Array) -> Array:
     """1 where a muscle may act, fading to 0 on the lip it must leave alone, shape (V,)."""
     if muscle.gate == "none":
         return np.ones_like(lip_side)
@@ -97,6 +107,7 @@ def _place_linear(
         weight = fibre.weight * skin.weight * gate
         drawn = fibre.gain * fibre.convergence * muscle.contraction * skin.arc
         bulge = muscle.bulge * np.exp(-(((skin.arc - muscle.bulge_at) / BULGE_SPREAD) ** 2))
+        bulge += fibre.lift
         steady += (weight * drawn)[:, None] * (skin.foot - surface.positions)
         steady += (weight * bulge)[:, None] * surface.normals
         strongest = np.maximum(strongest, weight)
@@ -129,6 +140,7 @@ def _place_ring(
     across = np.exp(-((d[:, 0] / lateral) ** 2))
     pull[:, 1] += muscle.flare * np.tanh((x[:, 1] - seam) / FLARE_HEIGHT) * across
     ring = _ring_vertices(muscle, x, middle, weight, side)
+    pull += muscle.bulge * surface.normals
     return Placed(name, muscle, weight, weight[:, None] * pull, ring=ring)
 
 

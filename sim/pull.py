@@ -32,7 +32,7 @@ from .surface import Surface
 Indices = npt.NDArray[np.int32]
 Unsigned = npt.NDArray[np.uint32]  # saves the kernels a test per access
 
-LEAST_WEIGHT = 2e-3  # attachments below it are dropped
+LEAST_WEIGHT = 6e-3  # attachments below it are dropped
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class MusclePull:
     """All muscles of a face, ready to pull."""
 
     names: tuple[str, ...]  # M control names
-    passive: float
+    passive: Array  # (M,) share of the stiffness that is there at rest
     opens_lips: Array  # (M,)
     reaches_lips: Array  # (M,) greatest attachment to the edge of a lip, 0..1
     holds: Attachments  # by muscle
@@ -60,9 +60,11 @@ class MusclePull:
     steady: Array  # (V, 3) work space
     rings: tuple[tuple[int, Indices], ...]  # muscle, skin vertices along its ring
 
-    def greatest_hold(self, vertex_count: int) -> Array:
-        """Stiffness per vertex with every muscle fully active: what the time step must bear."""
-        hold = np.bincount(self.holds.vertex, self.holds.weight, minlength=vertex_count)
+    def hold_of(self, share: Array, vertex_count: int) -> Array:
+        """Stiffness per vertex, shape (V,), with each muscle's scaled by `share` (M,)."""
+        rows = self.holds.rows.astype(np.int64)
+        weight = self.holds.weight * np.repeat(share, rows[1:] - rows[:-1])
+        hold = np.bincount(self.holds.vertex, weight, minlength=vertex_count)
         result: Array = hold.astype(np.float64)
         return result
 
@@ -75,7 +77,7 @@ class MusclePull:
         """
         bundle, holds, pulls = self.bundle, self.holds, self.pulls
         contract_fibres(
-            bundle.points, bundle.mandible, bundle.contraction, bundle.gain,
+            bundle.points, bundle.mandible, bundle.contraction, bundle.fixed_at, bundle.gain,
             activation[bundle.muscle], mandible.rotation, mandible.shift, self.table,
         )  # fmt: skip
         gather(
@@ -92,7 +94,8 @@ class MusclePull:
             moved = points + self.bundle.mandible[b][:, None] * mandible.displacements(points)
             arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))])
             kept = max(1.0 - self.bundle.contraction[b] * activation[muscle], LEAST_ARC)
-            line = [np.interp(kept * arc, arc, moved[:, k]) for k in range(3)]
+            fixed = self.bundle.fixed_at[b] * arc[-1]
+            line = [np.interp(fixed + kept * (arc - fixed), arc, moved[:, k]) for k in range(3)]
             lines[self.names[muscle]].append(np.stack(line, axis=1))
         for muscle, row in self.rings:
             lines[self.names[muscle]].append(x[row])
@@ -117,7 +120,7 @@ def prepare_pull(
     unit = strength * max((at.muscle.stiffness for at in placed), default=1.0)
     return MusclePull(
         names=tuple(at.name for at in placed),
-        passive=rig.tissue.passive,
+        passive=np.array([rig.tissue.passive * at.muscle.tone for at in placed], dtype=np.float64),
         opens_lips=np.array([at.muscle.opens_lips for at in placed], dtype=np.float64),
         reaches_lips=np.array(
             [min(float(at.weight[lips].max(initial=0.0)), 1.0) for at in placed], dtype=np.float64
@@ -134,17 +137,20 @@ def prepare_pull(
 def _bundle(placed: Sequence[Placed], surface: Surface, mandible_weight: Array) -> FibreBundle:
     """All fibres in muscle order; origins on their bone, insertions carried like the skin there."""
     fibres = [(n, at.muscle, fibre) for n, at in enumerate(placed) for fibre in at.fibres]
-    carried, contraction = [], []
+    carried, contraction, fixed_at = [], [], []
     for _, muscle, fibre in fibres:
         start = 1.0 if muscle.bone == "mandible" else 0.0
         end = mandible_weight[surface.nearest(fibre.points[-1:])[0]]
         carried.append(np.linspace(start, end, FIBRE_POINTS))
-        contraction.append(muscle.contraction if isinstance(muscle, LinearMuscle) else 0.0)
+        assert isinstance(muscle, LinearMuscle)
+        contraction.append(muscle.contraction)
+        fixed_at.append(muscle.fixed_at)
     return FibreBundle(
         muscle=np.array([n for n, _, _ in fibres], dtype=np.int32),
         points=np.array([fibre.points for _, _, fibre in fibres]).reshape(-1, FIBRE_POINTS, 3),
         mandible=np.array(carried).reshape(-1, FIBRE_POINTS),
         contraction=np.array(contraction, dtype=np.float64),
+        fixed_at=np.array(fixed_at, dtype=np.float64),
         gain=np.array([fibre.fibre.gain for _, _, fibre in fibres], dtype=np.float64),
     )
 
@@ -175,8 +181,8 @@ def gather(  # type: ignore[no-untyped-def]
         a = activation[m]
         if a <= 0.0:
             continue
-        grip = (1.0 - passive) * a
-        scale = (passive + grip) * a
+        grip = (1.0 - passive[m]) * a
+        scale = (passive[m] + grip) * a
         for row in range(hold_rows[m], hold_rows[m + 1]):
             i = hold_vertex[row]
             hold[i] += grip * hold_weight[row]
@@ -190,10 +196,11 @@ def gather(  # type: ignore[no-untyped-def]
             force[i, k] += steady[i, k] + mandible[i] * (turned - steady[i, k])
     last = table.shape[1] - 2
     for b in range(len(fibre_muscle)):
-        a = activation[fibre_muscle[b]]
+        m = fibre_muscle[b]
+        a = activation[m]
         if a <= 0.0:
             continue
-        scale = passive + (1.0 - passive) * a
+        scale = passive[m] + (1.0 - passive[m]) * a
         for row in range(pull_rows[b], pull_rows[b + 1]):
             i = pull_vertex[row]
             s = min(np.uint32(pull_sample[row]), last)

@@ -8,6 +8,7 @@ head at hand. Muscles are written for the subject's left side and mirrored.
     [tissue]                 membrane, tissue springs, damping: class Tissue
     [jaw]                    hinge, glide, seeds of the mandible weight: class Jaw
     [eyes]                   gaze, lids resting on the eyeballs: class Eyes
+    [head]                   how far and about what the head turns: class Head
     [muscle.<name>]          kind = "linear" | "ring" | "lid", then the keys of class LinearMuscle,
                              RingMuscle or LidMuscle; <name> in full anatomical words, without side
     [[muscle.<name>.fibre]]  one table per fibre of a linear muscle: class Fibre
@@ -70,7 +71,9 @@ class Tissue:
     stiffening: float = _number(1.0, 20.0, default=4.0)  # slope of an edge spring beyond the limit
     stiffening_strain: float = _number(0.0, 2.0, default=0.25)  # strain where it starts (biphasic)
     passive: float = _number(0.0, 1.0, default=0.2)  # share of a muscle's stiffness when relaxed
+    heaviness: float = _number(0.0, 1.0, default=0.1)  # share of weight and inertia that is free
     lip_seal: float = _number(0.0, 1000.0, default=40.0)  # springs that hold closed lips together
+    drive_power: float = _number(0.3, 1.5, default=1.0)  # pull = activation to this power
     stiffness_scale: float = _number(1.0, 1e5, default=600.0)  # 1/s2
     damping: float = _number(0.0, 1000.0, default=8.0)  # 1/s, everywhere
     damping_ratio: float = _number(
@@ -105,6 +108,19 @@ class Eyes:
     blink_meeting: float = _number(
         0.0, 0.5, default=0.12
     )  # share of the way the lower lid comes up
+    blink_slide: tuple[float, float] = _vector(2, -5.0, 5.0, default=(0.0, 0.0))  # mm to the nose
+
+
+@dataclass(frozen=True)
+class Head:
+    """The head turns as a whole about the joint between skull and spine."""
+
+    pitch_deg: float = _number(0.0, 90.0, default=30.0)  # at head_pitch = 1, up
+    yaw_deg: float = _number(0.0, 90.0, default=45.0)  # at head_yaw = 1, to the subject's left
+    roll_deg: float = _number(0.0, 90.0, default=30.0)  # at head_roll = 1, to the left shoulder
+    joint: tuple[float, float, float] = _vector(
+        3, -200.0, 200.0, default=(0.0, -15.0, -20.0)
+    )  # mm from the middle between the condyles
 
 
 @dataclass(frozen=True)
@@ -114,9 +130,10 @@ class Fibre:
     origin: LandmarkPoint = field(metadata=POINT)
     insertion: LandmarkPoint = field(metadata=POINT)
     weight: float = _number(0.0, 3.0, default=1.0)  # how firmly skin around it is attached
-    gain: float = _number(0.0, 3.0, default=1.0)  # of its pull against the other fibres
+    gain: float = _number(0.0, 6.0, default=1.0)  # of its pull against the other fibres
     width_factor: float = _number(0.1, 4.0, default=1.0)  # x the muscle's width
     convergence: float = _number(-2.0, 2.0, default=0.0)  # skin drawn towards the fibre line
+    lift: float = _number(-20.0, 20.0, default=0.0)  # mm outward all along; below 0 a crease
 
 
 @dataclass(frozen=True)
@@ -128,6 +145,9 @@ class Muscle:
     group: str = field(metadata=TEXT)  # title under which a panel lists it
     stiffness: float = _number(0.0, 500.0, default=30.0)  # of its hold on the skin, per area
     pair: bool = field(default=True, metadata=BOOLEAN)  # one on each side, or one in the middle
+    halves: bool = field(default=False, metadata=BOOLEAN)  # a pair with a control for both, too
+    crosses: bool = field(default=False, metadata=BOOLEAN)  # a pair, each also on the other side
+    tone: bool = field(default=True, metadata=BOOLEAN)  # holds the skin when relaxed, too
     bone: str = _choice(BONES, default="cranium")  # where the origin is fixed
     gate: str = _choice(GATES, default="none")  # which lip it may move
     opens_lips: float = _number(0.0, 1.0, default=0.0)  # how far it breaks the lip seal
@@ -142,6 +162,7 @@ class LinearMuscle(Muscle):
     contraction: float = _number(
         0.0, 0.95, default=0.3
     )  # share of its length lost at full activation
+    fixed_at: float = _number(0.0, 0.5, default=0.0)  # where it stays: 0 bone, more slides there
     wrap: float = _number(0.0, 1.5, default=0.7)  # 0 straight .. 1 bent to follow the skin
     bulge: float = _number(0.0, 20.0, default=0.0)  # mm of thickening at full activation
     bulge_at: float = _number(0.0, 1.0, default=0.5)  # where along the fibre
@@ -160,6 +181,7 @@ class RingMuscle(Muscle):
     )  # falloff outside, inside
     contraction: tuple[float, float, float] = _vector(3, -2.0, 2.0, default=(0.2, 0.2, 0.2))
     push: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, 0.0, 0.0))
+    bulge: float = _number(0.0, 40.0, default=0.0)  # mm outward along the skin's normal
     flare: float = _number(-30.0, 30.0, default=0.0)  # mm up for the upper, down for the lower lip
     arc_deg: tuple[float, float, float] = _vector(3, -360.0, 360.0, default=(0.0, 180.0, 1.0))
 
@@ -179,4 +201,5 @@ class Rig:
     tissue: Tissue = Tissue()
     jaw: Jaw = Jaw()
     eyes: Eyes = Eyes()
+    head: Head = Head()
     muscles: tuple[Muscle, ...] = ()

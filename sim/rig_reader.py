@@ -15,7 +15,19 @@ from dataclasses import MISSING, Field, fields
 from typing import Any, TypeVar, cast
 
 from .landmarks import LANDMARK_COUNT, LandmarkPoint
-from .rig import FORMAT, Eyes, Fibre, Jaw, LidMuscle, LinearMuscle, Muscle, Rig, RingMuscle, Tissue
+from .rig import (
+    FORMAT,
+    Eyes,
+    Fibre,
+    Head,
+    Jaw,
+    LidMuscle,
+    LinearMuscle,
+    Muscle,
+    Rig,
+    RingMuscle,
+    Tissue,
+)
 
 Record = TypeVar("Record")
 
@@ -28,7 +40,7 @@ KINDS: dict[str, type[Muscle]] = {
 
 def read_rig(document: Mapping[str, Any]) -> Rig:
     """Read a rig from the parsed rig file; ValueError names the muscle and key that is wrong."""
-    _known_keys(document, ("format", "tissue", "jaw", "eyes", "muscle"), "rig")
+    _known_keys(document, ("format", "tissue", "jaw", "eyes", "head", "muscle"), "rig")
     version = document.get("format", FORMAT)
     if version != FORMAT:
         raise ValueError(f"rig, key 'format': was {version!r}, this version reads {FORMAT}")
@@ -46,6 +58,7 @@ def read_rig(document: Mapping[str, Any]) -> Rig:
         tissue=_read(Tissue, _table(document, "tissue", "rig"), "rig, tissue"),
         jaw=_read(Jaw, _table(document, "jaw", "rig"), "rig, jaw"),
         eyes=_read(Eyes, _table(document, "eyes", "rig"), "rig, eyes"),
+        head=_read(Head, _table(document, "head", "rig"), "rig, head"),
         muscles=tuple(muscles),
     )
 

@@ -13,17 +13,19 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-LIP_PASSES = 2  # averaged projections need a second pass where lips are pressed hard
+LIP_PASSES = 5  # averaged projections need a second pass where lips are pressed hard
 FASTEST = 5000.0  # mm/s per axis; a face never reaches it, a vertex thrown by the caller may
 SHORTEST = 1e-6  # mm: the direction of a shorter edge is noise
 SEAL_AXES = (0.5, 1.0, 0.5)  # the seal's stiffness sideways, up and down, forward (last fitted)
 SLIDES_IN_FRONT = 3.0  # mm the lower lip may come forward before it passes before the upper one
 SLIDE_FADE = 3.0  # mm over which it then does
+TOOTH_FADE = 3.0  # mm above and below the teeth over which they cease to be felt
+LEAST_SHARE = 0.1  # of an arch: nearer to its axis the way out is uncertain
 
 
 @numba.njit(cache=True)
 def advance(  # type: ignore[no-untyped-def]
-    state, substeps, h, rest, mass, tissue, edges, lips, grip, eyes
+    state, substeps, h, rest, mass, tissue, edges, lips, grip, eyes, teeth, turn, shift
 ):
     """Advance a face by `substeps` of length `h` [s]: the list of all forces and constraints."""
     damp(state, h, mass, tissue)
@@ -36,6 +38,7 @@ def advance(  # type: ignore[no-untyped-def]
         for _ in range(LIP_PASSES):
             keep_lips_apart(state, rest, mass, lips, grip.overlap)
         keep_out_of_eyeballs(state, eyes)
+        keep_out_of_teeth(state, teeth, turn, shift)
 
 
 @numba.njit(cache=True)
@@ -183,6 +186,47 @@ def keep_lips_apart(state, rest, mass, lips, overlap):  # type: ignore[no-untype
             i = lips.members[row]
             x[i, 1] += move[i, 0]
             v[i, 1] += move[i, 1]
+
+
+@numba.njit(cache=True)
+def keep_out_of_teeth(state, teeth, turn, shift):  # type: ignore[no-untyped-def]
+    """Project skin out of the dental arches, away from their axes, and stop its approach.
+
+    The lower arch is where the mandible is: turned by `turn`, moved by `shift`.
+    """
+    x, v = state.x, state.v
+    for c in range(len(teeth.vertex)):
+        i = teeth.vertex[c]
+        px, py, pz = x[i, 0], x[i, 1], x[i, 2]
+        if teeth.lower[c]:  # into the mandible's own frame
+            dx, dy, dz = px - shift[0], py - shift[1], pz - shift[2]
+            px = turn[0, 0] * dx + turn[1, 0] * dy + turn[2, 0] * dz
+            py = turn[0, 1] * dx + turn[1, 1] * dy + turn[2, 1] * dz
+            pz = turn[0, 2] * dx + turn[1, 2] * dy + turn[2, 2] * dz
+        beyond = max(teeth.arch[c, 3] - py, py - teeth.arch[c, 4], 0.0)
+        ahead = pz - teeth.arch[c, 2]
+        if beyond >= TOOTH_FADE or ahead <= 0.0:
+            continue
+        share = np.sqrt((px / teeth.arch[c, 0]) ** 2 + (ahead / teeth.arch[c, 1]) ** 2)
+        sunk = (teeth.least[c] - share) * (1.0 - beyond / TOOTH_FADE)
+        if sunk <= 0.0 or share < LEAST_SHARE:
+            continue
+        out = sunk / share
+        dx, dy, dz = out * px, 0.0, out * ahead
+        if teeth.lower[c]:
+            ax = turn[0, 0] * dx + turn[0, 2] * dz
+            ay = turn[1, 0] * dx + turn[1, 2] * dz
+            az = turn[2, 0] * dx + turn[2, 2] * dz
+            dx, dy, dz = ax, ay, az
+        x[i, 0] += dx
+        x[i, 1] += dy
+        x[i, 2] += dz
+        length = dx * dx + dy * dy + dz * dz
+        approach = (v[i, 0] * dx + v[i, 1] * dy + v[i, 2] * dz) / max(length, 1e-18)
+        if approach < 0.0:
+            v[i, 0] -= approach * dx
+            v[i, 1] -= approach * dy
+            v[i, 2] -= approach * dz
 
 
 @numba.njit(cache=True)

@@ -63,9 +63,12 @@ def skull_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.OrbitCa
     head = scene.head
     rest = scene.rest_positions
     bone = rest - head.bone_depth[:, None] * vertex_normals(rest, scene)
-    jaw = scene.bone_transforms()["mandible"]
+    bones = scene.bone_transforms()
+    fixed, turned = (
+        bone @ bones[name][:3, :3].T + bones[name][:3, 3] for name in ("cranium", "mandible")
+    )
     weight = head.mandible_weight[:, None]
-    bone = bone + weight * (bone @ jaw[:3, :3].T + jaw[:3, 3] - bone)
+    bone = fixed + weight * (turned - fixed)
     share = weight[edges].mean(axis=1)
     colours = BONE + (share > 0.5) * (MANDIBLE - BONE)
     return Lines(list(bone[edges]), colours, width=1.2, hidden_opacity=0.6)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 # Controls of the middle that a mirror turns round, by the end of their names; and action units
 # that are each other's mirror image without saying so (eyes turn left, right).
-TURNED = ("_sideways", "_horizontal")
+TURNED = ("_sideways", "_horizontal", "_yaw", "_roll")
 TWINS = {"AU61": "AU62", "AU62": "AU61"}
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 import assets
-from app.benchmarks import motion_table, simulate_table
+from app.benchmarks import motion_table, simulate_table, soak_table, tearing_table
 
 
 def test_simulate_table() -> None:
@@ -21,13 +21,16 @@ def test_simulate_table() -> None:
 def test_motion_table(tmp_path: Path) -> None:
     """A reference of one's own, here the built-in head pulled up at the brows, is scored."""
     head = assets.load("head")
-    brow = head.vertices[head.landmarks[19]]
-    near = np.exp(-(((head.vertices - brow) / 20.0) ** 2).sum(axis=1))
-    lift = near[:, None] * np.array([0.0, 8.0, 0.0])
+    lifts = {}
+    for side, landmark in (("L", 23), ("R", 20)):
+        off = (head.vertices - head.vertices[head.landmarks[landmark]]) / 20.0
+        near = np.exp(-(off**2).sum(axis=1))
+        lifts[side] = near[:, None] * np.array([0.0, 8.0, 0.0])
+    lift = lifts["L"] + lifts["R"]
     zero = np.zeros_like(lift)
     shapes = ("browInnerUp", "browDown", "eyeBlink", "noseSneer", "mouthSmile", "mouthFrown")
     shapes += ("mouthStretch", "mouthLowerDown")
-    fields = {f"{name}_{side}": lift for name in shapes for side in "LR"}
+    fields = {f"{name}_{side}": lifts[side] for name in shapes for side in "LR"}
     np.savez(
         tmp_path / "face.npz",
         vertices=head.vertices,
@@ -35,10 +38,28 @@ def test_motion_table(tmp_path: Path) -> None:
         landmarks68=head.landmarks,
         jawOpen=zero + lift,
         mouthPucker=zero + lift,
+        earWiggle=lift,
         **fields,
     )
     table = motion_table(tmp_path)
-    scores = {line.split()[0]: float(line.split()[1]) for line in table.splitlines()[4:]}
-    assert scores["browInnerUp"] > 0.5
-    assert scores["browInnerUp"] > scores["browDown"]
-    assert set(shapes) < set(scores)
+    rows, _, unknown = table.partition("mean")
+    scores = {line.split()[0]: float(line.split()[1]) for line in rows.splitlines()[6:]}
+    for side in "LR":
+        assert scores[f"browInnerUp_{side}"] > 0.5
+        assert scores[f"browInnerUp_{side}"] > scores[f"browDown_{side}"]
+    assert set(fields) < set(scores)
+    assert "no controls known for: earWiggle" in unknown
+
+
+def test_soak_table() -> None:
+    """A few seconds of wild input are reported, and the face stays sound."""
+    table = soak_table(0.05)
+    assert "NO" not in table
+    assert "0.1 simulated minutes" in table or "0.0 simulated minutes" in table
+
+
+def test_tearing_table() -> None:
+    """Expressions and mixtures are looked at, and the worst is named."""
+    table = tearing_table(3)
+    assert "3 random mixtures" in table
+    assert table.splitlines()[-1].startswith("teeth")

@@ -77,9 +77,9 @@ def test_input_arrays_are_copied(head: Head) -> None:
 
 
 def test_mesh_with_landmarks_but_no_rig_has_no_muscles(head: Head) -> None:
-    """Landmarks alone give a gaze and, with the head's own weights, a jaw; a rig gives muscles."""
+    """Landmarks alone give gaze and head pose, own weights a jaw and lips; a rig gives muscles."""
     simulation = sim.create(without(head, "rig"))
-    assert set(simulation.groups) == {"Jaw", "Gaze"}
+    assert set(simulation.groups) == {"Lips", "Jaw", "Gaze", "Head"}
     assert moved_landmarks(head, settle(simulation, {"jaw_open": 1.0}), 8)[1] < -15.0
 
 

@@ -34,6 +34,22 @@ def test_skin_follows_a_finger_and_swings_back(simulation: sim.Simulation) -> No
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 0.01
 
 
+def test_a_finger_knows_where_a_turned_head_is(simulation: sim.Simulation) -> None:
+    """With the head turned aside the skin still goes where the finger goes."""
+    simulation.set("head_yaw", 1.0)
+    for _ in range(90):
+        simulation.step(FRAME)
+    before = simulation.positions.copy()
+    grabbed = cheek(simulation)
+    offset = np.array([10.0, 12.0, 0.0])
+    simulation.pull(grabbed, before[grabbed] + offset, np.ones(len(grabbed)))
+    for _ in range(60):
+        simulation.step(FRAME)
+    moved = (simulation.positions - before)[grabbed].mean(axis=0)
+    assert moved @ offset > 0.9 * np.linalg.norm(moved) * np.linalg.norm(offset)
+    assert np.linalg.norm(moved) > 0.6 * np.linalg.norm(offset)
+
+
 def test_a_mad_finger_breaks_nothing(
     simulation: sim.Simulation, generator: np.random.Generator
 ) -> None:

@@ -131,23 +131,25 @@ def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
 
 
 def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
-    """The point at arc length t goes to where t (1 - c a) was, on the fibre moved by the jaw."""
+    """The point at arc length t goes to f + (t - f)(1 - c a) on the fibre moved by the jaw."""
     muscles, mandible = stirred._anatomy.muscles, stirred._mandible
     bundle = muscles.bundle
     activation = np.linspace(0.0, 1.0, len(bundle.muscle))
     table = np.zeros_like(muscles.table)
     contract_fibres(
-        bundle.points, bundle.mandible, bundle.contraction, bundle.gain, activation,
-        mandible.rotation, mandible.shift, table,
+        bundle.points, bundle.mandible, bundle.contraction, bundle.fixed_at, bundle.gain,
+        activation, mandible.rotation, mandible.shift, table,
     )  # fmt: skip
+    assert bundle.fixed_at.max() > 0.0
     t = np.linspace(0.0, 1.0, SAMPLES)
     for b in range(1, len(bundle.muscle)):
         points = bundle.points[b]
         moved = points + bundle.mandible[b][:, None] * mandible.displacements(points)
         arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))]
         kept = max(1.0 - bundle.contraction[b] * activation[b], LEAST_ARC)
+        there = bundle.fixed_at[b] + kept * (t - bundle.fixed_at[b])
         for k in range(3):
-            to = np.interp(kept * t * arc[-1], arc, moved[:, k])
+            to = np.interp(there * arc[-1], arc, moved[:, k])
             at = np.interp(t * arc[-1], arc, moved[:, k])
             assert np.allclose(table[b, :, k], bundle.gain[b] * (to - at), atol=1e-9)
 
@@ -160,11 +162,12 @@ def test_muscle_pull(stirred: sim.Simulation) -> None:
     hold, force = np.zeros(len(weight)), np.zeros((len(weight), 3))
     muscles.add(activation, mandible, weight, hold, force)
     a = np.maximum(activation, 0.0)
+    assert 0.0 in muscles.passive
     tight = muscles.passive + (1.0 - muscles.passive) * a
     owner = np.repeat(np.arange(len(a)), np.diff(muscles.holds.rows))
     i, steady = muscles.holds.vertex, muscles.holds.value
     expected_hold = np.zeros_like(hold)
-    np.add.at(expected_hold, i, (1.0 - muscles.passive) * a[owner] * muscles.holds.weight)
+    np.add.at(expected_hold, i, ((1.0 - muscles.passive) * a)[owner] * muscles.holds.weight)
     turned = steady + weight[i, None] * (steady @ mandible.rotation.T - steady)
     expected = np.zeros_like(force)
     np.add.at(expected, i, (tight * a)[owner, None] * turned)
@@ -201,6 +204,9 @@ def test_lids_turn_about_the_eyeball(simulation: sim.Simulation) -> None:
     before = np.linalg.norm(rest[lids.vertex] - centre, axis=1)
     after = np.linalg.norm(state.carried[lids.vertex] - centre, axis=1)
     assert np.allclose(before, after)
+    state.carried[:] = rest
+    straight = lids._replace(slide=(0.0, 0.0))
+    turn_lids(state, rest, straight, np.array([[1.0, 0.4, 0.0]] * len(lids.centres)), 0.3)
 
     def angle(x: Array) -> Array:
         high = ((x[lids.vertex] - centre) * lids.up[lids.eye]).sum(axis=1)

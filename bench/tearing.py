@@ -1,0 +1,90 @@
+"""Does the skin tear: every expression and hundreds of random mixtures of controls, settled.
+
+Of each pose are counted the inverted triangles, those that turned by more than a right angle
+against the skin around them, and how deep skin sits in the other lip, an eyeball or the teeth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+import assets
+import sim
+
+Array = npt.NDArray[np.float64]
+
+SEED = 2001
+MIXTURES = 500
+MOST_CONTROLS = 8  # in a mixture
+FRAME = 1.0 / 60.0
+SETTLE = 40  # frames
+AROUND = 12.0  # mm around a triangle whose mean turn it is compared with
+
+
+@dataclass(frozen=True)
+class Pose:
+    """What one pose does to the skin."""
+
+    name: str
+    inverted: int  # triangles
+    lips: float  # mm deep in the other lip
+    lids: float  # mm deep in an eyeball
+    teeth: float  # mm deep in the teeth
+
+
+def run(*, mixtures: int = MIXTURES, seed: int = SEED) -> list[Pose]:
+    """Put the built-in head into each expression and `mixtures` random ones; ValueError below 0."""
+    if mixtures < 0:
+        raise ValueError(f"mixtures: was {mixtures}, must be 0 or more")
+    head = assets.load("head")
+    simulation = sim.create(head)
+    poses = []
+    for name, values in _values(simulation, head, mixtures, np.random.default_rng(seed)):
+        simulation.reset()
+        simulation.set_all(values)
+        for _ in range(SETTLE):
+            simulation.step(FRAME)
+        deep = simulation.penetrations()
+        inverted = _inverted(simulation.rest_positions, simulation.positions, head.faces)
+        poses.append(Pose(name, inverted, deep["lips"], deep["lids"], deep["teeth"]))
+    return poses
+
+
+def _values(
+    simulation: sim.Simulation, head: assets.Head, mixtures: int, generator: np.random.Generator
+) -> Iterator[tuple[str, dict[str, float]]]:
+    """Name and control values of every expression, then of random mixtures."""
+    yield from head.expressions.items()
+    # The pose of the head turns all triangles alike; it is left out.
+    limits = {n: at for n, at in simulation.limits.items() if not n.startswith("head_")}
+    names = np.array(list(limits))
+    for number in range(mixtures):
+        chosen = generator.choice(
+            names, size=generator.integers(2, MOST_CONTROLS + 1), replace=False
+        )
+        values = {str(name): float(generator.uniform(*limits[str(name)])) for name in chosen}
+        yield f"mixture {number}: {', '.join(values)}", values
+
+
+def _inverted(rest: Array, now: Array, faces: npt.NDArray[np.int32]) -> int:
+    """How many triangles turned by more than a right angle against the skin around them."""
+    before, after = _normals(rest, faces), _normals(now, faces)
+    count = 0
+    for face in np.flatnonzero((before * after).sum(axis=1) < 0.0):
+        middle = rest[faces[face]].mean(axis=0)
+        near = np.linalg.norm(rest - middle, axis=1) < AROUND
+        a, b = rest[near] - rest[near].mean(axis=0), now[near] - now[near].mean(axis=0)
+        left, _, right = np.linalg.svd(a.T @ b)
+        turn = right.T @ np.diag([1.0, 1.0, np.linalg.det(right.T @ left.T)]) @ left.T
+        count += int((turn @ before[face]) @ after[face] < 0.0)
+    return count
+
+
+def _normals(x: Array, faces: npt.NDArray[np.int32]) -> Array:
+    """Normals of triangles, shape (F, 3), not of unit length."""
+    normals: Array = np.cross(x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]])
+    return normals

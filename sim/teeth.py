@@ -1,0 +1,90 @@
+"""Teeth as something hard behind lips and cheeks: one elliptic arch on each jaw.
+
+An arch is half an elliptic cylinder that stands on its bone: around the middle of the molars,
+half as wide as they are, as deep as the incisors are in front of them. Skin near it is kept out
+along the way from its axis; the upper arch stays with the cranium, the lower moves with the jaw.
+Towards the free edges of the teeth the arch fades, so that a lip can slip off.
+
+Source: own; contact by projection as in contact.py. Anatomy: dental arches are close to half
+ellipses.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .landmarks import Array, FaceFrame
+from .skull import Pose
+from .surface import Surface
+
+REACH = 18.0  # mm around an arch in which skin is watched
+LIP_THICKNESS = 0.5  # mm that stay between the skin's inner side and a tooth
+BONES = ("cranium", "mandible")
+
+
+class Teeth(NamedTuple):
+    """Skin vertices near an arch, one row for each vertex and arch."""
+
+    vertex: npt.NDArray[np.int32]  # (C,)
+    lower: npt.NDArray[np.bool_]  # (C,) moves with the mandible
+    arch: Array  # (C, 5) mm: half width, depth, z of the axis, lowest and highest tooth
+    least: Array  # (C,) how near to the axis it may come, 1 = the arch
+
+
+def watch_teeth(parts: Any, surface: Surface, frame: FaceFrame) -> Teeth:
+    """Find the skin that could touch the teeth: the parts whose name starts with "teeth_".
+
+    Skin that starts inside an arch may not sink deeper.
+    """
+    rows: list[tuple[npt.NDArray[np.int64], bool, Array, Array]] = []
+    for part in parts or ():
+        if str(part.name).startswith("teeth_") and part.bone in BONES:
+            arch = _arch(frame.to_standard(part.vertices))
+            inside = _inside(surface.positions, arch)
+            off = surface.positions - (0.0, 0.0, arch[2])
+            near = inside < 1.0 + REACH / min(arch[0], arch[1])
+            near &= (off[:, 1] > arch[3] - REACH) & (off[:, 1] < arch[4] + REACH)
+            near &= off[:, 2] > 0.0
+            vertices = np.flatnonzero(near)
+            rows.append((vertices, part.bone == "mandible", arch, inside[vertices]))
+    if not rows:
+        nothing = np.zeros(0)
+        return Teeth(nothing.astype(np.int32), nothing > 0.0, np.zeros((0, 5)), nothing)
+    return Teeth(
+        np.concatenate([v for v, _, _, _ in rows]).astype(np.int32),
+        np.concatenate([np.full(len(v), lower) for v, lower, _, _ in rows]),
+        np.vstack([np.tile(arch, (len(v), 1)) for v, _, arch, _ in rows]),
+        np.concatenate([np.minimum(inside, 1.0) for _, _, _, inside in rows]),
+    )
+
+
+def _arch(teeth: Array) -> Array:
+    """Half width, depth, z of the axis, lowest and highest y of some teeth (n, 3) [mm]."""
+    half_width = np.abs(teeth[:, 0]).max()
+    back = teeth[np.abs(teeth[:, 0]) > 0.9 * half_width, 2].mean()
+    depth = teeth[:, 2].max() - back
+    low, high = teeth[:, 1].min(), teeth[:, 1].max()
+    return np.array([half_width + LIP_THICKNESS, depth + LIP_THICKNESS, back, low, high])
+
+
+def _inside(points: Array, arch: Array) -> Array:
+    """Distance to the axis as a share of the arch's, shape (n,)."""
+    share: Array = np.hypot(points[:, 0] / arch[0], (points[:, 2] - arch[2]) / arch[1])
+    return share
+
+
+def deepest(teeth: Teeth, x: Array, mandible: Pose) -> float:
+    """How deep skin at `x` (V, 3) sits in the teeth at most, less what it did at rest [mm]."""
+    if not len(teeth.vertex):
+        return 0.0
+    points = x[teeth.vertex]
+    in_jaw = (points - mandible.shift) @ mandible.rotation
+    points = np.where(teeth.lower[:, None], in_jaw, points)
+    width, depth, axis, low, high = teeth.arch.T
+    share = np.hypot(points[:, 0] / width, (points[:, 2] - axis) / depth)
+    met = (points[:, 2] > axis) & (points[:, 1] > low) & (points[:, 1] < high)
+    sunk = np.where(met, (teeth.least - share) * np.minimum(width, depth), 0.0)
+    return float(max(sunk.max(), 0.0))
