@@ -12,6 +12,18 @@ from .scenes import Scene
 DEFAULT_VIEW = "three-quarter"
 
 
+MARGIN = 0.05  # of the frame, free on each side of a whole scene
+
+
+def whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
+    """A camera like that of `camera_for`, or further away, so that it sees the whole scene."""
+    camera = camera_for(scene, view)
+    wanted = camera.distance
+    camera.fit(scene.rest_positions, MARGIN)
+    camera.distance = max(camera.distance, wanted)
+    return camera
+
+
 def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
     """The camera of a named view of the whole scene, or of "yaw,pitch[,zoom]" around its focus.
 

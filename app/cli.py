@@ -163,27 +163,25 @@ def capture(
 
 
 @main.command()
-@click.option(
-    "--size", type=Size(), default=(1280, 800), help="Of the window, 1280x800 unless told."
-)
+@click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
 @click.option("--scene", type=click.Choice(["face", "plane"]), help="face, unless told.")
 @click.option("--script", type=click.Path(path_type=Path), help="What the space key plays.")
 @head_options
 @drawing_options
-def view(size: tuple[int, int], scene: str | None, script: Path | None, **options: Any) -> None:
+def view(
+    size: tuple[int, int] | None, scene: str | None, script: Path | None, **options: Any
+) -> None:
     """Open the window: a face with a slider for every muscle."""
     open_viewer(script, scene, size, playing=False, **options)
 
 
 @main.command()
 @click.argument("script", type=click.Path(path_type=Path))
-@click.option(
-    "--size", type=Size(), default=(1280, 800), help="Of the window, 1280x800 unless told."
-)
+@click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
 @click.option("--once", is_flag=True, help="Close the window at the end of the script.")
 @head_options
 @drawing_options
-def replay(script: Path, size: tuple[int, int], once: bool, **options: Any) -> None:
+def replay(script: Path, size: tuple[int, int] | None, once: bool, **options: Any) -> None:
     """Play SCRIPT in real time in the window."""
     open_viewer(script, None, size, playing=True, once=once, **options)
 
@@ -297,7 +295,7 @@ def bench_tearing(mixtures: int) -> None:
 def open_viewer(
     script: Path | None,
     scene: str | None,
-    size: tuple[int, int],
+    size: tuple[int, int] | None,
     *,
     playing: bool,
     once: bool = False,
@@ -309,13 +307,15 @@ def open_viewer(
 ) -> None:
     """Open the viewer on a script's scene."""
     with told_in_one_line():
-        from .choices import head_for, known_refiner, script_for, style_of, threshold_options
+        from .choices import head_for, known_refiner, script_for, threshold_options
 
         performance = script_for(script, scene)
         brought = head_for(head, landmarks)
         from .viewer import Viewer
+        from .viewer.settings import look_of, settings_path
 
-        style = style_of(**look)
-        options = threshold_options(refiner, thresholds)
-        with Viewer(performance, size, known_refiner(refiner), style, options, brought) as viewer:
+        options = threshold_options(known_refiner(refiner), thresholds)
+        chosen = look_of(refiner, options, **look)
+        path = settings_path()
+        with Viewer(performance, size, chosen, head=brought, settings_path=path) as viewer:
             viewer.run(playing=playing, once=once)

@@ -7,6 +7,7 @@ forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -30,6 +31,7 @@ class Picture:
     refiner_name: str
     refiner: refine.Refiner
     stream: render.Stream
+    mesh: refine.RefinedMesh | None = None  # what was refined last
 
     @classmethod
     def of(
@@ -45,6 +47,21 @@ class Picture:
             refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
         )
         return cls(name, refiner, stream)
+
+    def refine(
+        self, positions: npt.NDArray[np.float64], camera: render.OrbitCamera, viewport: Viewport
+    ) -> None:
+        """Fill the lent buffers with refined triangles, for whoever looks through the viewport."""
+        seen = {}
+        if "view" in inspect.signature(self.refiner.refine).parameters:  # some have no use for it
+            focal = camera.focal(viewport[2] / viewport[3], viewport[3])
+            seen["view"] = refine.View(camera.eye, focal)
+        self.mesh = self.refiner.refine(positions, out=self.stream, **seen)
+
+    def upload(self) -> None:
+        """Hand over what was refined last."""
+        assert self.mesh is not None
+        self.stream.upload(len(self.mesh.positions), len(self.mesh.triangles))
 
     @property
     def triangle_count(self) -> int:
@@ -83,22 +100,21 @@ class Pipeline:
         """The lower half: refine the mesh for each picture, and draw it into its viewport."""
         bones = self.scene.bone_transforms()
         for picture, viewport in zip(self.pictures, viewports, strict=True):
-            mesh = picture.refiner.refine(self.scene.positions, out=picture.stream)
-            picture.stream.upload(len(mesh.positions), len(mesh.triangles))
-            self._draw(picture, mesh, bones, camera, style, viewport)
+            picture.refine(self.scene.positions, camera, viewport)
+            picture.upload()
+            self._draw(picture, bones, camera, style, viewport)
 
     def _draw(
         self,
         picture: Picture,
-        mesh: refine.RefinedMesh,
         bones: Mapping[str, npt.NDArray[np.float64]],
         camera: render.OrbitCamera,
         style: render.Style,
         viewport: Viewport,
     ) -> None:
         values = None
-        if style.colour_by is render.ColourBy.SPLITS:
-            values = splits_of_source(picture.refiner, mesh)
+        if style.colour_by is render.ColourBy.SPLITS and picture.mesh is not None:
+            values = splits_of_source(picture.refiner, picture.mesh)
         self.renderer.draw_background(style, viewport)
         self.renderer.draw_mesh(
             picture.stream, camera, style, viewport=viewport, values=values, texture=self.texture

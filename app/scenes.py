@@ -80,6 +80,7 @@ class FaceScene:
     def __init__(self, head: assets.Head | FittedHead | None = None) -> None:
         """Simulate `head`, the built-in one unless told."""
         head = assets.load("head") if head is None else head
+        self.head = head
         self.simulation = sim.create(head)
         self.faces = self.simulation.faces
         self.rest_positions = self.simulation.rest_positions

@@ -22,6 +22,7 @@ from .errors import GLError
 from .parts import Part
 from .probe import Finding, probe
 from .renderer import Renderer, Viewport
+from .shown import Detail
 from .stream import Stream
 from .style import (
     CLAY,
@@ -55,6 +56,7 @@ __all__ = [
     "Background",
     "Colour",
     "ColourBy",
+    "Detail",
     "Finding",
     "Frame",
     "GLError",

@@ -23,10 +23,6 @@ class Backdrop:
 
     def paint(self, layers: Layers, viewport: Rectangle, background: Background) -> None:
         """Paint the background over the viewport; what was drawn there is gone."""
-        if not layers.samples:  # then the frame has depth, which has to be emptied too
-            layers.use_frame(viewport)
-            self._paint(viewport, background)
-            return
         if self._store is None or self._store.size != layers.size:
             self._forget()
             self._store = self._gl.framebuffer([self._gl.renderbuffer(layers.size, 4)])
@@ -39,15 +35,17 @@ class Backdrop:
             self._paint(viewport, background)
         layers.use_frame(viewport)  # its scissor restricts the copy to the viewport
         self._gl.copy_framebuffer(layers.frame, self._store)
+        if not layers.samples:  # then the frame has depth, too
+            layers.frame.color_mask = False, False, False, False
+            layers.frame.clear(depth=1.0, viewport=viewport)
+            layers.frame.color_mask = True, True, True, True
 
     def _paint(self, viewport: Rectangle, background: Background) -> None:
         gl = self._gl
         gl.viewport = gl.scissor = viewport
         self._program["centre"] = background.centre
         self._program["edge"] = background.edge
-        gl.depth_func = "1"  # always: the far end of depth wins over what was there
         self._triangle.render(moderngl.TRIANGLES, vertices=3)
-        gl.depth_func = "<="
 
     def _forget(self) -> None:
         if self._store is not None:

@@ -83,7 +83,7 @@ class OrbitCamera:
             scene_radius=radius,
             field_of_view=field_of_view,
         )
-        camera._fit(points, margin)
+        camera.fit(points, margin)
         return camera
 
     def copy(self) -> "OrbitCamera":
@@ -128,13 +128,20 @@ class OrbitCamera:
 
     def projection_matrix(self, aspect: float) -> Matrix44:
         """Camera -> clip space, for a frame of that width / height."""
+        near, far = self._depth_range()
+        degrees = 2.0 * math.degrees(math.atan(self._half_height(aspect)))
+        return Matrix44.perspective_projection(degrees, aspect, near, far, dtype=np.float64)
+
+    def focal(self, aspect: float, height: int) -> float:
+        """Pixels that a length of 1 covers at distance 1, in a frame of `height` pixels."""
+        return 0.5 * height / self._half_height(aspect)
+
+    def _half_height(self, aspect: float) -> float:
+        """Half the frame's height at distance 1."""
         if not aspect > 0.0:
             raise ValueError(f"aspect is {aspect}; it must be positive (width / height)")
         half_height = math.tan(math.radians(0.5 * self.field_of_view))
-        half_height *= max(1.0, self.narrowest_aspect / aspect)
-        near, far = self._depth_range()
-        degrees = 2.0 * math.degrees(math.atan(half_height))
-        return Matrix44.perspective_projection(degrees, aspect, near, far, dtype=np.float64)
+        return half_height * max(1.0, self.narrowest_aspect / aspect)
 
     def _depth_range(self) -> tuple[float, float]:
         """Clipping planes just around the scene, for the best use of the depth buffer."""
@@ -143,8 +150,8 @@ class OrbitCamera:
         near = max(depth - reach, 0.01 * self.scene_radius)
         return near, max(depth + reach, 2.0 * near)
 
-    def _fit(self, points: FloatArray, margin: float) -> None:
-        """Centre the points in the frame and step as close as the margin allows."""
+    def fit(self, points: npt.NDArray[Any], margin: float = MARGIN) -> None:
+        """Centre `points`, shape (n, 3), in the frame and step as close as the margin allows."""
         usable = (1.0 - 2.0 * margin) * math.tan(math.radians(0.5 * self.field_of_view))
         axes = np.stack(self.axes())
         for _ in range(8):  # each round centres better; perspective makes one round inexact

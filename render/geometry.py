@@ -10,29 +10,29 @@ import numpy.typing as npt
 from .sight import box_corners
 from .style import Colour
 
-SPLITS_PER_ROW = 1024  # texels per row of the split texture; surface.glsl reads it so
+VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl reads it so
 
 
-class SplitTexture:
+class ValueTexture:
     """One small number per triangle, for the fragment shader to look up by gl_PrimitiveID."""
 
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
         self._texture: moderngl.Texture | None = None
-        self._rows = np.zeros((0, SPLITS_PER_ROW), np.uint8)
+        self._rows = np.zeros((0, VALUES_PER_ROW), np.uint8)
 
     def upload(self, values: npt.NDArray[np.uint8]) -> None:
         """Hand over the numbers, shape (M,), uint8; the texture grows only when it must."""
-        row_count = max(-(-len(values) // SPLITS_PER_ROW), 1)
+        row_count = max(-(-len(values) // VALUES_PER_ROW), 1)
         if self._texture is None or row_count > len(self._rows):
             if self._texture is not None:
                 self._texture.release()
             rows = max(row_count, 2 * len(self._rows))
-            self._rows = np.zeros((rows, SPLITS_PER_ROW), np.uint8)
-            self._texture = self._gl.texture((SPLITS_PER_ROW, rows), 1, dtype="u1", alignment=1)
+            self._rows = np.zeros((rows, VALUES_PER_ROW), np.uint8)
+            self._texture = self._gl.texture((VALUES_PER_ROW, rows), 1, dtype="u1", alignment=1)
         self._rows.reshape(-1)[: len(values)] = values
         self._texture.write(
-            self._rows[:row_count], viewport=(0, 0, SPLITS_PER_ROW, row_count), alignment=1
+            self._rows[:row_count], viewport=(0, 0, VALUES_PER_ROW, row_count), alignment=1
         )
 
     def bind(self, unit: int) -> int:

@@ -34,15 +34,16 @@ class Layers:
         self.frame_number = 0  # counts the frames since the layers were made
         self._touched: list[Rectangle] = []  # apart from each other
         self._is_worn = False
-        self._frame_colour = gl.renderbuffer(size, 4)
+        self.colour = gl.texture(size, 4)
+        self.colour.repeat_x = self.colour.repeat_y = False
         self.depth = gl.depth_texture(size, samples=samples)
         if not samples:
             self.depth.compare_func = ""
         if not samples:
-            self.frame = gl.framebuffer([self._frame_colour], self.depth)
+            self.frame = gl.framebuffer([self.colour], self.depth)
             self._layer = self.frame
             return
-        self.frame = gl.framebuffer([self._frame_colour])
+        self.frame = gl.framebuffer([self.colour])
         self._layer_colour = gl.texture(size, 4, samples=samples)
         self._layer = gl.framebuffer([self._layer_colour], self.depth)
         self._layer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
@@ -98,12 +99,6 @@ class Layers:
         self.flush()
         return bytes(self.frame.read(components=3, alignment=1))
 
-    def copy_to(self, target: moderngl.Framebuffer) -> None:
-        """Copy the frame to a framebuffer of the same size."""
-        self.use_frame((0, 0, *self.size))
-        self._gl.scissor = None  # it would cut the copy
-        self._gl.copy_framebuffer(target, self.frame)
-
     def release(self) -> None:
         """Give everything back to OpenGL."""
         if self.samples:
@@ -114,7 +109,7 @@ class Layers:
                 self._layer_colour,
             ):
                 resource.release()
-        for buffer in (self.frame, self._frame_colour, self.depth):
+        for buffer in (self.frame, self.colour, self.depth):
             buffer.release()
 
 
@@ -126,6 +121,14 @@ def overlap(first: Rectangle, second: Rectangle) -> bool:
         and first[1] < second[1] + second[3]
         and second[1] < first[1] + first[3]
     )
+
+
+def common(first: Rectangle, second: Rectangle) -> Rectangle:
+    """The pixels of both rectangles; a width or height of 0 where they share none."""
+    left, bottom = max(first[0], second[0]), max(first[1], second[1])
+    right = min(first[0] + first[2], second[0] + second[2])
+    top = min(first[1] + first[3], second[1] + second[3])
+    return left, bottom, max(right - left, 0), max(top - bottom, 0)
 
 
 def hull(first: Rectangle, second: Rectangle) -> Rectangle:

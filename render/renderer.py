@@ -1,11 +1,13 @@
 """Draws meshes, rigid parts, lines and backgrounds on a surface.
 
 Every call takes a viewport, (x, y, width, height) in pixels from the lower left corner, and leaves
-all other pixels alone; None is the whole surface. The camera's aspect is that of the viewport.
+all other pixels alone; None is the whole surface. The camera's aspect is that of the viewport. A
+`clip` draws only a part of what the viewport shows: two clips make one picture of two meshes.
 Programs are compiled on first use, one per combination of shading and options.
 Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the figures are shaded).
 """
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -15,13 +17,13 @@ import numpy.typing as npt
 
 from .backdrop import Backdrop
 from .camera import OrbitCamera
-from .geometry import LineBuffer, SplitTexture
+from .geometry import LineBuffer, ValueTexture
 from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
 from .shadow import TEXEL, ShadowMap
 from .sight import Sight
 from .stream import Stream
-from .style import SPLIT_PALETTE, Colour, ColourBy, Style, linear
+from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, Colour, ColourBy, Style, linear
 from .surface import Surface
 from .texture import Texture
 
@@ -32,8 +34,18 @@ SHADOW_OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a 
 SHADOW_REACH = 2.0 * TEXEL  # how far the shadow's look-up reaches to each side
 TO_KEY = (-0.5300, 0.6300, 0.5677)  # unit vector in view space: over the viewer's left shoulder
 
-_SPLIT_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the layers use 1
+_VALUE_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the layers use 1
 _PALETTE = np.array([linear(colour) for colour in SPLIT_PALETTE], np.float32)
+_RAMPS = {
+    kind: np.array([(*linear(colour), cover) for colour, cover in ramp], np.float32)
+    for kind, ramp in ((ColourBy.AMOUNT, AMOUNT_RAMP), (ColourBy.SIGNED, SIGNED_RAMP))
+}
+_DEFINES = {
+    ColourBy.NONE: (),
+    ColourBy.SPLITS: ("VALUES", "SPLITS"),
+    ColourBy.AMOUNT: ("VALUES", "RAMP"),
+    ColourBy.SIGNED: ("VALUES", "RAMP"),
+}
 # Colour as usual; the layer starts out transparent and collects premultiplied colour.
 _PREMULTIPLYING_BLEND: Any = (
     moderngl.SRC_ALPHA,
@@ -52,7 +64,7 @@ class Renderer:
         self._gl = surface.gl
         self._programs: dict[tuple[str, ...], moderngl.Program] = {}
         self._parts = PartStore(self._gl)
-        self._splits = SplitTexture(self._gl)
+        self._values = ValueTexture(self._gl)
         self._lines = LineBuffer(self._gl)
         self._backdrop = Backdrop(self._gl)
         self._shadow: ShadowMap | None = None
@@ -83,29 +95,29 @@ class Renderer:
         style: Style,
         *,
         viewport: Viewport | None = None,
+        clip: Viewport | None = None,
         values: npt.NDArray[np.uint8] | None = None,
         texture: Texture | None = None,
     ) -> None:
         """Draw what `stream` last uploaded.
 
-        values: how many splits (0..6) the edges of each triangle's source have, shape (M,), uint8;
-            needed where the style colours by splits. Raises ValueError where it does not fit.
+        values: what each triangle is coloured by, as `ColourBy` says, shape (M,), uint8; needed
+            unless that is NONE. Raises ValueError where it does not fit.
         texture: the albedo of the front side, unless the style is not textured; needs a stream of
             8 columns, ValueError else.
         """
         _check_texture(texture, stream)
         is_textured = texture is not None and style.textured
-        sight = self._sight(camera, viewport)
-        colours_splits = style.colour_by is ColourBy.SPLITS
-        if colours_splits:
-            self._splits.upload(_checked_values(values, stream.triangle_count))
+        sight = self._sight(camera, viewport, clip)
+        if style.colour_by is not ColourBy.NONE:
+            self._values.upload(_checked_values(values, stream.triangle_count))
         if style.shadows:
             self._draw_shadow(stream, sight)
         program = self._program(
             "surface.glsl",
             style.shading.name,
             *(["WIREFRAME"] if style.wireframe else []),
-            *(["SPLITS"] if colours_splits else []),
+            *_DEFINES[style.colour_by],
             *(["TEXTURED"] if is_textured else []),
             *(["SHADOWS"] if style.shadows else []),
         )
@@ -116,14 +128,17 @@ class Renderer:
             self._set_shadow(program, sight)
         if style.wireframe:
             program["viewport_size"] = sight.viewport[2:]
-            program["wire_half_width"] = 0.5 * style.wire_width * self.surface.pixel_scale
+            program["wire_half_width"] = 0.5 * style.wire_width * self._line_scale
             program["wire_colour"] = *style.wire_colour, style.wire_opacity
         if is_textured and texture is not None:
             program["albedo_texture"] = texture.bind(_ALBEDO_UNIT)
             program["redness"] = texture.redness
-        if colours_splits:
-            program["split_counts"] = self._splits.bind(_SPLIT_UNIT)
-            write_uniform(program, "split_palette", _PALETTE)
+        if style.colour_by is not ColourBy.NONE:
+            program["triangle_values"] = self._values.bind(_VALUE_UNIT)
+            if style.colour_by is ColourBy.SPLITS:
+                write_uniform(program, "split_palette", _PALETTE)
+            else:
+                write_uniform(program, "ramp", _RAMPS[style.colour_by])
         stream.draw(program)
 
     def draw_parts(
@@ -134,13 +149,14 @@ class Renderer:
         style: Style,
         *,
         viewport: Viewport | None = None,
+        clip: Viewport | None = None,
     ) -> None:
         """Draw rigid coloured parts, each moved by the matrix of its bone (column vectors).
 
         Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
         is first seen and must not change after. Raises ValueError for a bone without transform.
         """
-        sight = self._sight(camera, viewport)
+        sight = self._sight(camera, viewport, clip)
         is_shadowed = style.shadows and self._shadow_key == self._key_of_shadow(sight)
         program = self._program(
             "surface.glsl", "PIXEL", "COLOURED", *(["SHADOWS"] if is_shadowed else [])
@@ -162,6 +178,7 @@ class Renderer:
         camera: OrbitCamera,
         *,
         viewport: Viewport | None = None,
+        clip: Viewport | None = None,
         width: float = 1.6,
         hidden_opacity: float = 0.45,
     ) -> None:
@@ -171,15 +188,17 @@ class Renderer:
         colour: sRGB of all lines, or one row per line, shape (len(polylines), 3).
         width: [pixels at scale 1]; hidden_opacity: 0 (hidden) to 1 (as if nothing were in front).
         """
-        sight = self._sight(camera, viewport)
+        sight = self._sight(camera, viewport, clip)
         program = self._program("lines.glsl")
         if not self._lines.upload(program, polylines, colour):
             return
-        width *= self.surface.pixel_scale
+        width *= self._line_scale
         touched = sight.touched_pixels(self._lines.corners, padding=2.0 + width)
         write_uniform(program, "world_to_clip", sight.world_to_clip)
         program["viewport_size"] = sight.viewport[2:]
         program["half_width"] = 0.5 * width
+        if touched[2] < 1 or touched[3] < 1:
+            return
         gl, layers = self._gl, self.surface.layers
         layers.use_layer(sight.viewport, touched)
         gl.enable(moderngl.BLEND)
@@ -194,18 +213,31 @@ class Renderer:
         gl.depth_func = "<="
         gl.disable(moderngl.BLEND)
 
-    def _sight(self, camera: OrbitCamera, viewport: Viewport | None) -> Sight:
-        return Sight(camera, self._viewport(viewport))
+    def _sight(
+        self, camera: OrbitCamera, viewport: Viewport | None, clip: Viewport | None
+    ) -> Sight:
+        inside = None if clip is None else self._viewport(clip)
+        return Sight(camera, self._viewport(viewport), inside)
 
     def _viewport(self, viewport: Viewport | None) -> Viewport:
         self.surface.make_current()
+        scale = self.surface.scale
         if viewport is None:
-            return (0, 0, *self.surface.size)
+            return (0, 0, *self.surface.layers.size)
         if viewport[2] < 1 or viewport[3] < 1:
             raise ValueError(
                 f"viewport is {viewport}; it must be (x, y, width, height) of 1 pixel or more"
             )
-        return viewport
+        if scale == 1.0:
+            return viewport
+        left, bottom, width, height = viewport
+        x, y = math.floor(scale * left), math.floor(scale * bottom)
+        right, top = math.ceil(scale * (left + width)), math.ceil(scale * (bottom + height))
+        return x, y, right - x, top - y
+
+    @property
+    def _line_scale(self) -> float:
+        return self.surface.pixel_scale * self.surface.scale
 
     def _program(self, name: str, *defines: str) -> moderngl.Program:
         key = (name, *defines)
@@ -281,7 +313,7 @@ def _checked_values(
     values: npt.NDArray[np.uint8] | None, triangle_count: int
 ) -> npt.NDArray[np.uint8]:
     if values is None:
-        raise ValueError("the style colours by splits, so draw_mesh needs values, one per triangle")
+        raise ValueError("the style colours by values, so draw_mesh needs values, one per triangle")
     if values.shape != (triangle_count,) or values.dtype != np.uint8:
         raise ValueError(
             f"values has shape {values.shape} and dtype {values.dtype}; it must be "

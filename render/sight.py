@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .camera import OrbitCamera
-from .layers import Rectangle
+from .layers import Rectangle, common
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -17,12 +17,16 @@ _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)],
 class Sight:
     """The matrices of one camera in one viewport, for row vectors, computed once.
 
+    clip: the part of the viewport outside which nothing is drawn.
     view: world -> view space; projection: view -> clip space; shape (4, 4), float64.
     """
 
-    def __init__(self, camera: OrbitCamera, viewport: Rectangle) -> None:
+    def __init__(
+        self, camera: OrbitCamera, viewport: Rectangle, clip: Rectangle | None = None
+    ) -> None:
         self.camera = camera
         self.viewport = viewport
+        self.clip = viewport if clip is None else common(viewport, clip)
         self.view: FloatArray = np.asarray(camera.view_matrix())
         self.projection: FloatArray = np.asarray(
             camera.projection_matrix(viewport[2] / viewport[3])
@@ -42,21 +46,22 @@ class Sight:
     def touched_pixels(
         self, corners: FloatArray, *, model: FloatArray | None = None, padding: float = 2.0
     ) -> Rectangle:
-        """The pixels of the viewport that the hull of `corners`, shape (n, 3), can touch.
+        """The pixels of the clip that the hull of `corners`, shape (n, 3), can touch.
 
-        model: moves the corners into the world, for row vectors. The whole viewport where a corner
+        model: moves the corners into the world, for row vectors. The whole clip where a corner
         is not finite or lies behind the eye; a width or height of 0 where nothing is seen.
         """
         matrix = self.world_to_clip if model is None else model @ self.world_to_clip
         with np.errstate(over="ignore", invalid="ignore"):
             clip = corners @ matrix[:3] + matrix[3]
         if not np.isfinite(clip).all() or clip[:, 3].min() <= 0.0:
-            return self.viewport
+            return self.clip
         x, y, width, height = self.viewport
         place = 0.5 * (clip[:, :2] / clip[:, 3:] + 1.0) * (width, height)
         low = np.clip(np.floor(place.min(axis=0) - padding), 0.0, (width, height))
         high = np.clip(np.ceil(place.max(axis=0) + padding), 0.0, (width, height))
-        return x + int(low[0]), y + int(low[1]), int(high[0] - low[0]), int(high[1] - low[1])
+        touched = x + int(low[0]), y + int(low[1]), int(high[0] - low[0]), int(high[1] - low[1])
+        return common(touched, self.clip)
 
 
 def box_corners(points: npt.NDArray[Any]) -> FloatArray:

@@ -1,8 +1,8 @@
 """What is drawn on: an offscreen frame or a window, behind one interface.
 
-Both kinds draw into a frame of their own (`layers.py`), which a window then shows. So `read` gives
-what is seen for both, even while a window is hidden or covered, and a panel that is drawn after
-`resolve` is part of it.
+Both kinds draw the scene into layers of their own (`layers.py`), which a window then lays under
+its panels (`shown.py`). So `read` gives what is seen for both, even while a window is hidden or
+covered, and a panel that is drawn after `resolve` is part of it.
     surface.begin();  ...draw...;  [surface.resolve(); ...draw a panel on top...;]  surface.end()
 """
 
@@ -26,14 +26,15 @@ class Surface:
 
     gl: the OpenGL context. samples: per pixel, 0 = none. layers: where the Renderer draws.
     pixel_scale: pixels per unit of line width: 1, or 2 on a dense screen.
+    scale: pixels of the layers per pixel of the surface; below 1 only in a window in a hurry.
     """
 
     _current: ClassVar["Surface | None"] = None
 
     def __init__(self, gl: moderngl.Context, size: tuple[int, int], samples: int) -> None:
         self.gl = gl
-        self.pixel_scale = 1.0
-        self.samples = clamp_samples(samples, _most_samples(gl))
+        self.pixel_scale = self.scale = 1.0
+        self.samples = clamp_samples(samples, most_samples(gl))
         self.layers = Layers(gl, size, self.samples)
         self._is_open = True
 
@@ -69,9 +70,12 @@ class Surface:
 
     def read(self) -> Frame:
         """Return the frame as it is seen, top row first, shape (H, W, 3), uint8, a new array."""
+        return self.read_scene()
+
+    def read_scene(self) -> Frame:
+        """Return the scene without panels, as finely as it was drawn: like `read`."""
         self.make_current()
-        width, height = self.size
-        return np.frombuffer(self.layers.read(), np.uint8).reshape(height, width, 3)[::-1].copy()
+        return picture_of(self.layers.read(), self.layers.size)
 
     def make_current(self) -> None:
         """Direct this thread's OpenGL calls here; needed only where several surfaces are open."""
@@ -194,6 +198,12 @@ def _offscreen_context() -> tuple[moderngl.Context, bool]:
     raise diagnose("offscreen OpenGL (EGL)", egl_error) from None
 
 
+def picture_of(pixels: bytes, size: tuple[int, int]) -> Frame:
+    """OpenGL's bytes, bottom row first, as a picture with the top row first, (H, W, 3) uint8."""
+    width, height = size
+    return np.frombuffer(pixels, np.uint8).reshape(height, width, 3)[::-1].copy()
+
+
 def check_size(size: tuple[int, int]) -> None:
     """Raise ValueError unless `size` is a width and a height of at least one pixel."""
     if len(size) != 2 or min(size) < 1:
@@ -208,7 +218,7 @@ def clamp_samples(samples: int, most: int) -> int:
     return 0 if allowed < 2 else 1 << (allowed.bit_length() - 1)
 
 
-def _most_samples(gl: moderngl.Context) -> int:
+def most_samples(gl: moderngl.Context) -> int:
     """What the driver can do for both attachments of the layer."""
     return min(gl.max_samples, int(gl.info["GL_MAX_COLOR_TEXTURE_SAMPLES"]))
 

@@ -12,18 +12,45 @@ from typing import Any
 import moderngl
 
 from .errors import GLError, diagnose
-from .layers import Layers
-from .surface import Surface, check_size
+from .layers import Layers, Rectangle
+from .shown import Detail, Shown
+from .style import Colour
+from .surface import Frame, Surface, check_size, clamp_samples, most_samples, picture_of
 
 
 class WindowSurface(Surface):
-    """A surface that people see; `handle` is the GLFW window for input and GUI libraries."""
+    """A surface that people see.
+
+    handle: the GLFW window, for input and GUI libraries. detail: settable, for the next frames.
+    area: the part in which the scene is seen, where panels hide the rest; None: all. Settable.
+    """
 
     def __init__(self, glfw: ModuleType, handle: Any, gl: moderngl.Context, samples: int) -> None:
         self._glfw = glfw
         self.handle = handle
-        super().__init__(gl, _framebuffer_size(glfw, handle), samples)
+        size = _framebuffer_size(glfw, handle)
+        super().__init__(gl, size, samples)
+        self.detail = Detail(self.samples)
+        self.area: Rectangle | None = None
+        self._shown = Shown(gl, size)
+        self._is_resolved = False
         self.pixel_scale = max(glfw.get_window_content_scale(handle))
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the window's frame [pixels], in which viewports are given."""
+        return self._shown.size
+
+    @property
+    def window_size(self) -> tuple[int, int]:
+        """Width and height of the window [screen units]."""
+        width, height = self._glfw.get_window_size(self.handle)
+        return int(width), int(height)
+
+    @property
+    def is_resized(self) -> bool:
+        """Whether the window is no longer of the size that was drawn last."""
+        return _framebuffer_size(self._glfw, self.handle) != self.size
 
     @property
     def should_close(self) -> bool:
@@ -35,21 +62,45 @@ class WindowSurface(Surface):
         self._glfw.set_window_should_close(self.handle, value)
 
     def begin(self) -> None:
-        """Start a frame in the size that the window has now."""
+        """Start a frame in the size that the window has now, as finely as `detail` says."""
         self.make_current()
         size = _framebuffer_size(self._glfw, self.handle)
         if size != self.size:
-            old_layers = self.layers
-            self.layers = Layers(self.gl, size, self.samples)
-            old_layers.release()
+            self._shown.release()
+            self._shown = Shown(self.gl, size)
             self.pixel_scale = max(self._glfw.get_window_content_scale(self.handle))
+        self.samples = clamp_samples(self.detail.samples, most_samples(self.gl))
+        self.scale = self.detail.scale
+        scaled = self.detail.scaled(size)
+        if (scaled, self.samples) != (self.layers.size, self.layers.samples):
+            old_layers = self.layers
+            self.layers = Layers(self.gl, scaled, self.samples)
+            old_layers.release()
+        self._is_resolved = False
         super().begin()
+
+    def resolve(self) -> None:
+        """End the scene: panels lie on top. Again: forget the panels, keep the scene."""
+        self.make_current()
+        self._shown.lay(self.layers, self.area)
+        self._is_resolved = True
+
+    def fill(self, area: Rectangle, colour: Colour) -> None:
+        """Paint a part of the resolved frame in one colour, behind a panel: cheaper than a quad."""
+        self._shown.frame.clear(*colour, viewport=area)
 
     def end(self) -> None:
         """Finish the frame and show it."""
+        if not self._is_resolved:
+            self.resolve()
         self.make_current()
-        self.layers.copy_to(self.gl.screen)
+        self._shown.copy_to(self.gl.screen)
         self._glfw.swap_buffers(self.handle)
+
+    def read(self) -> Frame:
+        """Return the frame as it is seen, with the panels; see `Surface.read`."""
+        self.make_current()
+        return picture_of(self._shown.read(), self.size)
 
     def _bind(self) -> None:
         self._glfw.make_context_current(self.handle)
@@ -58,6 +109,7 @@ class WindowSurface(Surface):
         self._glfw.make_context_current(None)
 
     def _close_context(self) -> None:
+        self._shown.release()
         self.gl.release()
         self._glfw.destroy_window(self.handle)
 

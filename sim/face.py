@@ -40,6 +40,8 @@ from .teeth import deepest
 from .tissue import carry, tissue_energy
 from .weight import Weight
 
+FINGER_RATE = 350.0  # rad/s of the firmest pull: outdoes the skin, stable at the longest substep
+
 
 class SimulationUnstable(RuntimeError):  # noqa: N818, the name the whole project uses
     """A position is no longer a finite number: the input was broken, or the model has an error."""
@@ -66,6 +68,7 @@ class Simulation:
         self._rest.flags.writeable = False
         self._view = self._positions.view()
         self._view.flags.writeable = False
+        self.let_go()
         self._place_targets()
 
     # What a caller may set and read.
@@ -141,6 +144,7 @@ class Simulation:
         self._state.x[:] = self._anatomy.surface.positions
         self._state.v[:] = 0.0
         self._positions[:] = self._rest
+        self.let_go()
         self._place_targets()
         self._weight.forget()
 
@@ -152,6 +156,39 @@ class Simulation:
                 f"velocities: shape was {added.shape}, must be {self._state.v.shape} and finite"
             )
         self._state.v[:] += self._anatomy.frame.vectors_to_standard(added) @ self._head.rotation
+
+    def pull(
+        self, vertices: npt.ArrayLike, targets: npt.ArrayLike, firmness: npt.ArrayLike
+    ) -> None:
+        """Hang vertices on springs until the next `pull` or `let_go`: a finger draws at the skin.
+
+        vertices: their numbers, shape (n,), none twice. targets: where each is drawn to [head
+        units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),
+        shape (n,). Raises ValueError where they do not fit together.
+        """
+        numbers = np.asarray(vertices, dtype=np.int64)
+        points = np.asarray(targets, dtype=np.float64)
+        share = np.asarray(firmness, dtype=np.float64)
+        count = len(self._rest)
+        if points.shape != (len(numbers), 3) or share.shape != numbers.shape:
+            raise ValueError(
+                f"pull of {numbers.shape} vertices: targets has shape {points.shape} and firmness "
+                f"{share.shape}; they must be (n, 3) and (n,) for vertices (n,)"
+            )
+        if not np.isfinite(points).all() or not ((share >= 0.0) & (share <= 1.0)).all():
+            raise ValueError("targets must be finite, and firmness from 0 to 1")
+        if len(np.unique(numbers)) < len(numbers) or ((numbers < 0) | (numbers >= count)).any():
+            raise ValueError(f"vertices must be different numbers from 0 to {count - 1}")
+        away = self._anatomy.frame.vectors_to_standard(points - self._positions[numbers])
+        self._pulled = numbers
+        self._pulled_to = self._state.x[numbers] + away @ self._head.rotation
+        self._pulled_by = share * self._anatomy.mass[numbers] * FINGER_RATE**2
+
+    def let_go(self) -> None:
+        """End every `pull`; the skin swings back."""
+        self._pulled = np.zeros(0, np.int64)
+        self._pulled_to = np.zeros((0, 3))
+        self._pulled_by = np.zeros(0)
 
     # The simulation.
 
@@ -208,6 +245,9 @@ class Simulation:
         state.hold[:] = anatomy.passive_hold
         state.pull[:] = 0.0
         muscles.add(self._drive.pull(activation), self._mandible, weight, state.hold, state.pull)
+        drawn = self._pulled_to - state.carried[self._pulled]
+        state.hold[self._pulled] += self._pulled_by
+        state.pull[self._pulled] += self._pulled_by[:, None] * drawn
         self._grip = anatomy.grip(activation, jaw, closed)
 
     def _advance(self, tick: float) -> None:

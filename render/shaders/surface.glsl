@@ -1,6 +1,6 @@
 // Skin and rigid parts.
 // One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
-// stage), SPLITS (colour by number of splits), COLOURED (vertex colours), TEXTURED (skin's albedo from
+// stage), VALUES (colour by a value per triangle: SPLITS a count, RAMP an amount), COLOURED (vertex colours), TEXTURED (skin's albedo from
 // a picture), SHADOWS (of the key).
 
 #include "lighting.glsl"
@@ -162,9 +162,13 @@ uniform float redness;  // of most of the picture: red over green
 #elif !defined(COLOURED)
 uniform vec3 albedo;
 #endif
+#if defined(VALUES)
+uniform usampler2D triangle_values;
+#endif
 #if defined(SPLITS)
-uniform usampler2D split_counts;
 uniform vec3 split_palette[6];
+#elif defined(RAMP)
+uniform vec4 ramp[5];  // colour, and how much of it
 #endif
 #if defined(SHADOWS)
 uniform sampler2DShadow shadow_map;
@@ -179,15 +183,22 @@ vec3 front_albedo() {
 #else
     vec3 front = albedo;
 #endif
-#if defined(SPLITS)
+#if defined(VALUES)
     ivec2 texel = ivec2(gl_PrimitiveID & 1023, gl_PrimitiveID >> 10);
-    int splits = int(texelFetch(split_counts, texel, 0).r);
+    int value = int(texelFetch(triangle_values, texel, 0).r);
+#endif
+#if defined(RAMP)
+    float step = float(value) * (4.0 / 255.0);
+    int below = min(int(step), 3);
+    vec4 tint = mix(ramp[below], ramp[below + 1], step - float(below));
+    front = mix(front, tint.rgb, tint.a);
+#elif defined(SPLITS)
 #if defined(TEXTURED)
     const float STRENGTH = 0.8;  // brows and lips still show through the tint
 #else
     const float STRENGTH = 1.0;
 #endif
-    if (splits > 0) front = mix(front, split_palette[min(splits, 6) - 1], STRENGTH);
+    if (value > 0) front = mix(front, split_palette[min(value, 6) - 1], STRENGTH);
 #endif
     return front;
 }

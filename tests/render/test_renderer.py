@@ -152,7 +152,7 @@ def test_palette_darkens_with_the_number_of_splits() -> None:
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        (None, "the style colours by splits, so draw_mesh needs values"),
+        (None, "the style colours by values, so draw_mesh needs values"),
         (np.zeros(3, np.uint8), r"values has shape \(3,\) and dtype uint8; it must be \(2,\)"),
         (np.zeros(2, np.int32), r"dtype int32; it must be \(2,\) uint8"),
     ],
@@ -420,3 +420,19 @@ def test_line_colours_must_fit(surface: render.Surface) -> None:
     line = np.zeros((3, 3))
     with pytest.raises(ValueError, match=r"colour has shape \(2, 3\); it must be \(3,\), or one"):
         render.Renderer(surface).draw_lines([line], np.zeros((2, 3)), facing())
+
+
+@pytest.mark.parametrize("kind", [render.ColourBy.AMOUNT, render.ColourBy.SIGNED])
+def test_amounts_colour_triangles(surface: render.Surface, kind: render.ColourBy) -> None:
+    """None leaves the skin as it is; the most is another colour; the least only with a sign."""
+    nothing = 128 if kind is render.ColourBy.SIGNED else 0
+    style, shape = replace(PLAIN, colour_by=kind), sphere()
+    plain = picture(surface, shape)
+    pictures = {
+        value: picture(surface, shape, style, values=np.full(len(shape.triangles), value, np.uint8))
+        for value in (0, nothing, 255)
+    }
+    difference = {value: np.abs(picture - plain).max() for value, picture in pictures.items()}
+    assert difference[nothing] < 8
+    assert difference[255] > 60
+    assert (difference[0] > 60) == (kind is render.ColourBy.SIGNED)

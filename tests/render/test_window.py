@@ -88,3 +88,33 @@ def test_bad_size() -> None:
     """A window without extent is refused before GLFW is asked."""
     with pytest.raises(ValueError, match=r"size is \(10, 0\)"):
         render.open_window((10, 0), "flat")
+
+
+def test_a_coarser_scene_fills_the_window(window: render.WindowSurface) -> None:
+    """With fewer pixels and samples the same picture is seen, enlarged; panels keep their own."""
+    renderer = render.Renderer(window)
+    pictures = []
+    for detail in (render.Detail(), render.Detail(samples=0, scale=0.5)):
+        window.detail = detail
+        window.begin()
+        renderer.draw_background(render.Style(), (0, 0, 48, 96))
+        window.end()
+        pictures.append(window.read().astype(int))
+        assert window.read_scene().shape[:2] == (96 * detail.scale, 96 * detail.scale)
+    assert pictures[0].shape == pictures[1].shape == (96, 96, 3)
+    assert np.abs(pictures[0] - pictures[1])[:, :46].max() < 4
+    assert not pictures[1][:, 50:].any()
+
+
+def test_the_scene_outlives_its_panels(window: render.WindowSurface) -> None:
+    """Resolving again shows the scene as before the panel was drawn."""
+    renderer = render.Renderer(window)
+    window.begin()
+    renderer.draw_background(render.Style())
+    window.end()
+    before = window.read()
+    window.resolve()
+    window.gl.fbo.clear(1.0, 0.0, 0.0)
+    assert (window.read() != before).any()
+    window.resolve()
+    assert np.array_equal(window.read(), before)

@@ -1,0 +1,15 @@
+"""The window: a face that answers to sliders, keys, the mouse and a script.
+
+window.py     one turn of the loop: input, time, picture, panels     (start reading here)
+session.py    what the user does: controls, script, recording, undo, unsaved work; knows no window
+stage.py      which meshes are drawn where, how they are coloured, what lies over them
+touch.py      the mouse in the picture
+actions.py    every key and menu, as data
+panels/       what stands around the picture
+quality.py, clock.py    the two that keep it smooth: detail by need, physics by steps
+"""
+
+from . import gui  # first, before anything opens a window: see there
+from .window import Viewer
+
+__all__ = ["Viewer", "gui"]

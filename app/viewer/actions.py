@@ -1,0 +1,155 @@
+"""Everything that a key or a menu does, as data: menus, keys and their help come from here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from imgui_bundle import imgui
+
+from . import commands
+
+if TYPE_CHECKING:
+    from .window import Viewer
+
+_MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Shift": imgui.Key.mod_shift, "Alt": imgui.Key.mod_alt}
+
+
+@dataclass(frozen=True)
+class Action:
+    """One thing to do: where it stands, its key, what it does, and whether it is switched on."""
+
+    menu: str
+    label: str
+    key: str
+    run: Callable[[Viewer], None]
+    is_on: Callable[[Viewer], bool] | None = None
+    can_run: Callable[[Viewer], bool] = lambda viewer: True
+
+    @property
+    def chord(self) -> int:
+        """The key as imgui counts it; 0 for none."""
+        if not self.key:
+            return 0
+        *modifiers, last = self.key.split("+")
+        name = {"Space": "space", "Esc": "escape"}.get(last, last.lower())
+        key: Any = getattr(imgui.Key, f"_{name}" if name.isdigit() else name)
+        chord = int(key)
+        for modifier in modifiers:
+            chord |= int(_MODIFIERS[modifier])
+        return chord
+
+
+def expression_actions(viewer: Viewer) -> list[Action]:
+    """Keys 1 to 9 show the first expressions of the scene."""
+
+    def action(number: int, name: str) -> Action:
+        return Action(
+            "Expression",
+            name.replace("_", " "),
+            str(number),
+            lambda v: v.session.show(name),
+            is_on=lambda v: v.session.shown == name,
+        )
+
+    names = list(viewer.scene.expressions)[:9]
+    return [action(number, name) for number, name in enumerate(names, start=1)]
+
+
+def _can_undo(viewer: Viewer) -> bool:
+    return viewer.session.can_undo
+
+
+def _can_redo(viewer: Viewer) -> bool:
+    return viewer.session.can_redo
+
+
+def _is_dark(viewer: Viewer) -> bool:
+    return viewer.settings.theme == "dark"
+
+
+def _look(label: str, key: str, field: str, value: str, other: str) -> Action:
+    """Switch a field of the look between two values."""
+    return Action(
+        "View",
+        label,
+        key,
+        lambda v: commands.switch(v, field, value, other),
+        lambda v: getattr(v.look, field) == value,
+    )
+
+
+def _flag(label: str, key: str, field: str) -> Action:
+    """Switch a field of the look that is on or off."""
+    return Action(
+        "View",
+        label,
+        key,
+        lambda v: commands.toggle(v, field),
+        lambda v: bool(getattr(v.look, field)),
+    )
+
+
+_FILE = (
+    Action("File", "Open script or pose ...", "Ctrl+O", commands.open_file),
+    Action("File", "Save script ...", "Ctrl+S", commands.save_script),
+    Action("File", "Save pose ...", "Ctrl+Shift+S", commands.save_pose),
+    Action("File", "Screenshot", "F12", commands.screenshot),
+    Action("File", "Film", "F10", commands.toggle_film, lambda v: v.film is not None),
+    Action("File", "Quit", "Ctrl+Q", commands.close_politely),
+)
+_EDIT = (
+    Action("Edit", "Undo", "Ctrl+Z", lambda v: v.session.undo(), None, _can_undo),
+    Action("Edit", "Redo", "Ctrl+Shift+Z", lambda v: v.session.redo(), None, _can_redo),
+    Action("Edit", "Neutral", "N", lambda v: v.session.neutral()),
+    Action("Edit", "Mirror", "M", lambda v: v.session.mirror()),
+    Action("Edit", "Randomise", "X", commands.randomise),
+)
+_TIME = (
+    Action("Time", "Play", "Space", commands.toggle_playing, lambda v: v.session.is_playing),
+    Action("Time", "Record", "Ctrl+R", commands.toggle_recording, lambda v: v.session.is_recording),
+    Action("Time", "Loop", "L", commands.toggle_looping, lambda v: v.session.is_looping),
+)
+_VIEW = (
+    _flag("Refine", "R", "is_refined"),
+    _look("Compare: wipe", "D", "compare", "wipe", "off"),
+    _look("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
+    _flag("Wireframe", "W", "wireframe"),
+    _look("Colour by splits", "C", "colours", "splits", "none"),
+    Action("View", "Next shading", "S", commands.next_shading),
+    _look("Texture", "T", "skin", "textured", "plain"),
+    Action(
+        "View",
+        "Muscles",
+        "U",
+        lambda v: commands.toggle_overlay(v, "muscles"),
+        lambda v: "muscles" in v.look.overlays,
+    ),
+    Action("View", "Frame the face", "F", commands.frame_face),
+    Action("View", "Dark theme", "F2", commands.toggle_theme, _is_dark),
+    Action("View", "Larger words", "Ctrl+Equal", lambda v: commands.enlarge(v, 1.1)),
+    Action("View", "Smaller words", "Ctrl+Minus", lambda v: commands.enlarge(v, 1.0 / 1.1)),
+)
+_HELP = (Action("Help", "Keys and mouse", "F1", commands.toggle_help, lambda v: v.is_help_open),)
+ACTIONS = (*_FILE, *_EDIT, *_TIME, *_VIEW, *_HELP)
+
+MOUSE = (
+    ("left on the skin", "pull it; a click shows its muscle"),
+    ("left beside it, or right", "orbit"),
+    ("middle, or Shift", "pan"),
+    ("wheel", "zoom"),
+    ("double click a slider", "type a number; right click: back to 0"),
+    ("drop a file", "open a script or a pose"),
+)
+
+
+def run_pressed(viewer: Viewer, actions: tuple[Action, ...]) -> None:
+    """Carry out the actions whose keys were pressed in this frame."""
+    io = imgui.get_io()
+    for action in actions:
+        is_typing = io.want_text_input and "+" not in action.key
+        if action.chord and not is_typing and imgui.is_key_chord_pressed(action.chord):
+            if action.can_run(viewer):
+                viewer.attempt(partial(action.run, viewer))

@@ -1,0 +1,108 @@
+"""What colours the triangles: how often they were split, how far they bend, how they are strained.
+
+Every amount belongs to a triangle of the mesh that is simulated; refined triangles take it from
+their source. So the same colours are seen with and without refinement.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import refine
+import render
+
+from ..pipeline import Picture, splits_of_source
+from ..scenes import Scene
+
+MOST_DROP = 0.3  # of the normals' dot product, drawn darkest: a bend of 45 degrees
+MOST_STRAIN = 0.35  # of a length, drawn darkest; skin stiffens well before
+
+FloatArray = npt.NDArray[np.float64]
+Amounts = npt.NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class Colours:
+    """A way to colour triangles: how the renderer takes the values, and what they mean."""
+
+    kind: render.ColourBy
+    legend: str
+    of_source: Callable[[Scene, refine.Refiner], Amounts] | None = None
+
+    def values(self, scene: Scene, picture: Picture) -> Amounts | None:
+        """One value for each drawn triangle, as `kind` wants it."""
+        assert picture.mesh is not None
+        if self.kind is render.ColourBy.SPLITS:
+            return splits_of_source(picture.refiner, picture.mesh)
+        if self.of_source is None:
+            return None
+        return self.of_source(scene, picture.refiner)[picture.mesh.source]
+
+
+def curvature_drops(scene: Scene, refiner: refine.Refiner) -> Amounts:
+    """How far the dot product of the normals fell along the worst edge of each triangle."""
+    edges = refiner.edges
+    now, rest = vertex_normals(scene.positions, scene), vertex_normals(scene.rest_positions, scene)
+    drops = _dots(rest, edges) - _dots(now, edges)
+    worst = drops[refiner.triangle_edges].max(axis=1)
+    return np.asarray(np.clip(255.0 * worst / MOST_DROP, 0.0, 255.0), np.uint8)
+
+
+def tensions(scene: Scene, refiner: refine.Refiner) -> Amounts:
+    """How far each triangle is stretched, less how far it is compressed."""
+    anything: Any = scene
+    stretch, compression, _ = _tension_of(anything).measure(scene.positions)
+    tension = (stretch - compression)[scene.faces].mean(axis=1)
+    return np.asarray(np.clip(128.0 + 127.0 * tension / MOST_STRAIN, 0.0, 255.0), np.uint8)
+
+
+@functools.cache
+def _tension_of(scene: Any) -> refine.Tension:
+    return refine.Tension(scene.faces, scene.rest_positions)
+
+
+def edge_strains(scene: Scene, edges: npt.NDArray[np.int32]) -> FloatArray:
+    """Length of each edge over its length at rest, less 1."""
+    now, rest = (
+        np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1)
+        for points in (scene.positions, scene.rest_positions)
+    )
+    strain: FloatArray = now / np.maximum(rest, 1e-9) - 1.0
+    return strain
+
+
+def vertex_normals(positions: FloatArray, scene: Scene) -> FloatArray:
+    """Unit normals of the simulated mesh, weighted by area, shape (V, 3)."""
+    a, b, c = (positions[scene.faces[:, corner]] for corner in range(3))
+    cross = np.cross(b - a, c - a)
+    corners = scene.faces.T.ravel()
+    normals = np.stack(
+        [np.bincount(corners, np.tile(cross[:, k], 3), len(positions)) for k in range(3)], axis=1
+    )
+    unit: FloatArray = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    return unit
+
+
+def _dots(normals: FloatArray, edges: npt.NDArray[np.int32]) -> FloatArray:
+    dots: FloatArray = (normals[edges[:, 0]] * normals[edges[:, 1]]).sum(axis=1)
+    return dots
+
+
+COLOURS = {
+    "none": Colours(render.ColourBy.NONE, ""),
+    "splits": Colours(render.ColourBy.SPLITS, "green: one split, to indigo: six"),
+    "curvature drop": Colours(
+        render.ColourBy.AMOUNT, f"dark: the dot product fell by {MOST_DROP:g}", curvature_drops
+    ),
+    "tension": Colours(
+        render.ColourBy.SIGNED,
+        f"red: {MOST_STRAIN:.0%} stretched, blue: as much compressed",
+        tensions,
+    ),
+}

@@ -1,0 +1,190 @@
+"""Dear ImGui in the GLFW window: set up, themes, one frame, shut down.
+
+imgui-bundle brings GLFW of its own and must be imported before `glfw` is, so that both speak to
+the same library; this module is therefore imported before a window is opened. It was chosen among
+the bindings because its own C++ backends draw in the window that moderngl draws in, without
+PyOpenGL; it also brings native file dialogs.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import imgui_bundle
+from imgui_bundle import imgui
+
+import render
+
+import glfw  # isort: skip - after imgui_bundle, see above
+
+FONT = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.ttf"
+FONT_SIZE = 15.0  # [window units at scale 1]
+
+
+@dataclass(frozen=True)
+class Theme:
+    """Colours of the panels (sRGB), and the background behind the face that goes with them."""
+
+    background: render.Background
+    is_dark: bool
+    panel: tuple[float, float, float]
+    field: tuple[float, float, float]
+    raised: tuple[float, float, float]
+    accent: tuple[float, float, float]
+    muted: tuple[float, float, float]
+    error: tuple[float, float, float]
+
+
+THEMES = {
+    "light": Theme(
+        background=render.LIGHT,
+        is_dark=False,
+        panel=(0.945, 0.945, 0.95),
+        field=(0.865, 0.87, 0.88),
+        raised=(0.82, 0.825, 0.84),
+        accent=(0.72, 0.33, 0.22),
+        muted=(0.40, 0.41, 0.44),
+        error=(0.70, 0.10, 0.10),
+    ),
+    "dark": Theme(
+        background=render.DARK,
+        is_dark=True,
+        panel=(0.115, 0.12, 0.13),
+        field=(0.19, 0.195, 0.215),
+        raised=(0.25, 0.26, 0.29),
+        accent=(0.93, 0.58, 0.43),
+        muted=(0.62, 0.64, 0.68),
+        error=(1.0, 0.50, 0.45),
+    ),
+}
+
+
+class Gui:
+    """The Dear ImGui context of one window; `places` says where each item is, for who drives it."""
+
+    def __init__(self, window: Any) -> None:
+        self._window = window
+        self._context = imgui.create_context()
+        self.places: dict[str, tuple[float, float, float, float]] = {}
+        self.theme = THEMES["light"]
+        self._dressed: object = None
+        io = imgui.get_io()
+        io.set_ini_filename("")  # settings.py remembers what is worth it
+        if FONT.exists():
+            io.fonts.add_font_from_file_ttf(str(FONT), FONT_SIZE)
+        address = ctypes.cast(window, ctypes.c_void_p).value
+        if address is None:
+            raise RuntimeError("the window is closed already")
+        imgui.backends.glfw_init_for_opengl(address, True)
+        imgui.backends.opengl3_init("#version 330")
+
+    def dress(self, theme: str, zoom: float) -> None:
+        """Take on a theme; everything is `zoom` times as large, and more on a dense screen."""
+        scale = zoom * self._screen_scale()
+        if self._dressed == (theme, scale):
+            return
+        self._dressed = theme, scale
+        self.theme = THEMES[theme]
+        style = imgui.get_style()
+        _dress(style, self.theme)
+        style.scale_all_sizes(scale)
+        style.font_scale_main = scale
+
+    def _screen_scale(self) -> float:
+        """How much larger than its pixels a dense screen wants things, where GLFW leaves it to us.
+
+        On macOS a window unit is two pixels and imgui knows; on Windows and X11 it is one.
+        """
+        width = max(glfw.get_window_size(self._window)[0], 1)
+        pixels_per_unit = glfw.get_framebuffer_size(self._window)[0] / width
+        return max(
+            max(glfw.get_window_content_scale(self._window)) / max(pixels_per_unit, 1.0), 1.0
+        )
+
+    @contextlib.contextmanager
+    def frame(self) -> Iterator[None]:
+        """Everything drawn with imgui in this block appears over what was drawn before."""
+        imgui.backends.opengl3_new_frame()
+        imgui.backends.glfw_new_frame()
+        imgui.new_frame()
+        self.places.clear()
+        try:
+            yield
+        finally:
+            imgui.render()
+            imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
+
+    def remember(self, name: str) -> None:
+        """Keep where the item drawn last is."""
+        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        self.places[name] = (low.x, low.y, high.x, high.y)
+
+    def close(self) -> None:
+        """Give back what the GUI holds; the window stays."""
+        imgui.backends.opengl3_shutdown()
+        imgui.backends.glfw_shutdown()
+        imgui.destroy_context(self._context)
+
+
+def poll_events() -> None:
+    """Take in what the user did since the last call."""
+    glfw.poll_events()
+
+
+def wait_for_event(seconds: float) -> None:
+    """Sleep until the user does something, or so long."""
+    glfw.wait_events_timeout(seconds)
+
+
+def on_drop(window: Any, take: Callable[[Sequence[str]], None]) -> None:
+    """Call `take` with the paths of files that are dropped onto the window."""
+
+    def dropped(_: Any, paths: Any) -> None:
+        take(paths)
+
+    callback: Any = dropped  # the stubs have it otherwise than the library calls it
+    glfw.set_drop_callback(window, callback)
+
+
+def em(count: float = 1.0) -> float:
+    """So many letters' heights [window units]: the measure of all widths."""
+    return float(count * imgui.get_font_size())
+
+
+def colour(rgb: tuple[float, float, float], opacity: float = 1.0) -> Any:
+    """A colour as imgui wants it."""
+    return imgui.ImVec4(*rgb, opacity)
+
+
+def _dress(style: Any, theme: Theme) -> None:
+    """Quiet panels: the face is what is looked at."""
+    fresh = imgui.Style()
+    for name in ("window_padding", "frame_padding", "item_inner_spacing", "scrollbar_size",
+                 "grab_min_size", "indent_spacing", "tab_rounding", "popup_rounding",
+                 "cell_padding", "separator_text_padding"):  # fmt: skip
+        setattr(style, name, getattr(fresh, name))
+    (imgui.style_colors_dark if theme.is_dark else imgui.style_colors_light)(style)
+    style.window_rounding = 0.0
+    style.frame_rounding = style.grab_rounding = 3.0
+    style.window_border_size = 0.0
+    style.item_spacing = imgui.ImVec2(7.0, 4.0)
+    which = imgui.Col_
+    for indices, value in (
+        ((which.window_bg, which.menu_bar_bg, which.title_bg, which.title_bg_active), theme.panel),
+        ((which.popup_bg, which.tab), theme.panel),
+        ((which.frame_bg, which.header, which.tab_hovered), theme.field),
+        ((which.frame_bg_hovered, which.frame_bg_active, which.header_hovered), theme.raised),
+        ((which.header_active, which.button, which.tab_selected), theme.raised),
+        ((which.slider_grab, which.slider_grab_active, which.check_mark), theme.accent),
+        ((which.plot_lines, which.tab_selected_overline), theme.accent),
+    ):
+        for index in indices:
+            style.set_color_(index, colour(value))
+    for index in (which.button_hovered, which.button_active):
+        style.set_color_(index, colour(theme.accent, 0.55))
+    style.set_color_(which.modal_window_dim_bg, colour((0.0, 0.0, 0.0), 0.3))

@@ -1,0 +1,119 @@
+"""Lines over the face that show what moves it: muscles, springs, the skull, landmarks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+import render
+
+from ..scenes import Scene
+from .colours import edge_strains, vertex_normals
+
+FloatArray = npt.NDArray[np.float64]
+
+# sRGB
+RELAXED, CONTRACTED = np.array([0.80, 0.55, 0.50]), np.array([0.78, 0.05, 0.08])
+POINTED_AT = np.array([1.0, 0.66, 0.10])
+BONE = np.array([0.93, 0.89, 0.74])
+MANDIBLE = np.array([0.80, 0.87, 0.93])
+SLACK, STRETCHED, SQUEEZED = (
+    np.array([0.45, 0.47, 0.50]),
+    np.array([0.80, 0.15, 0.12]),
+    np.array([0.13, 0.33, 0.75]),
+)
+MARK = np.array([0.05, 0.55, 0.40])
+MARK_SIZE = 1.6  # [mm] half of a landmark's cross
+MOST_STRAIN = 0.3  # an edge in its full colour
+
+
+class Lines(NamedTuple):
+    """Polylines (n, 3) with a colour each, and how they are drawn."""
+
+    polylines: Sequence[FloatArray]
+    colours: FloatArray
+    width: float = 1.6
+    hidden_opacity: float = 0.45
+
+
+def muscle_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.OrbitCamera) -> Lines:
+    """All fibres now, redder the more they contract."""
+    lines, colours = [], []
+    sums = scene.simulation.sums
+    for name, fibres in scene.simulation.fibres().items():
+        share = min(max(sums.get(name, 0.0), 0.0), 1.0)
+        lines += fibres
+        colours += [RELAXED + share * (CONTRACTED - RELAXED)] * len(fibres)
+    return Lines(lines, _rows(colours), width=2.2, hidden_opacity=0.75)
+
+
+def spring_lines(scene: Scene, edges: npt.NDArray[np.int32], camera: render.OrbitCamera) -> Lines:
+    """The skin's edge springs: stretched red, compressed blue."""
+    strain = np.clip(edge_strains(scene, edges) / MOST_STRAIN, -1.0, 1.0)[:, None]
+    colours = SLACK + np.maximum(strain, 0.0) * (STRETCHED - SLACK)
+    colours += np.maximum(-strain, 0.0) * (SQUEEZED - SLACK)
+    return Lines(list(scene.positions[edges]), colours, width=1.3, hidden_opacity=0.08)
+
+
+def skull_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.OrbitCamera) -> Lines:
+    """The skull under the skin, as deep as the tissue is thick; the mandible moves with the jaw."""
+    head = scene.head
+    rest = scene.rest_positions
+    bone = rest - head.bone_depth[:, None] * vertex_normals(rest, scene)
+    bones = scene.bone_transforms()
+    fixed, turned = (
+        bone @ bones[name][:3, :3].T + bones[name][:3, 3] for name in ("cranium", "mandible")
+    )
+    weight = head.mandible_weight[:, None]
+    bone = fixed + weight * (turned - fixed)
+    share = weight[edges].mean(axis=1)
+    colours = BONE + (share > 0.5) * (MANDIBLE - BONE)
+    return Lines(list(bone[edges]), colours, width=1.2, hidden_opacity=0.6)
+
+
+def landmark_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.OrbitCamera) -> Lines:
+    """A cross on each of the 68 landmarks, facing the camera."""
+    right, up, _ = camera.axes()
+    points = scene.positions[scene.head.landmarks]
+    arms = [
+        np.stack([points - MARK_SIZE * axis, points + MARK_SIZE * axis], axis=1)
+        for axis in (right, up)
+    ]
+    lines = [line for arm in arms for line in arm]
+    return Lines(lines, np.tile(MARK, (len(lines), 1)), width=2.0, hidden_opacity=0.5)
+
+
+OverlayMaker = Callable[[Any, npt.NDArray[np.int32], render.OrbitCamera], Lines]
+OVERLAYS: dict[str, OverlayMaker] = {
+    "muscles": muscle_lines,
+    "springs": spring_lines,
+    "skull": skull_lines,
+    "landmarks": landmark_lines,
+}
+_NEEDS = {"muscles": "simulation", "skull": "head.mandible_weight", "landmarks": "head.landmarks"}
+
+
+def overlays_of(scene: Scene) -> tuple[str, ...]:
+    """The overlays that this scene has the data for."""
+
+    def has(path: str) -> bool:
+        found: Any = scene
+        for name in path.split("."):
+            found = getattr(found, name, None)
+        return found is not None
+
+    return tuple(name for name in OVERLAYS if has(_NEEDS.get(name, "faces")))
+
+
+def pointed_lines(scene: Any, names: Collection[str]) -> Lines:
+    """The fibres of some muscles, for whoever points at their sliders."""
+    fibres = scene.simulation.fibres() if hasattr(scene, "simulation") else {}
+    lines = [line for name in names for line in fibres.get(name, ())]
+    return Lines(lines, np.tile(POINTED_AT, (len(lines), 1)), width=3.0, hidden_opacity=1.0)
+
+
+def _rows(colours: Sequence[FloatArray]) -> FloatArray:
+    return np.array(colours).reshape(-1, 3)

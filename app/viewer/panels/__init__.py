@@ -1,0 +1,1 @@
+"""What the window shows around the picture: each file is one panel, drawn anew in every frame."""

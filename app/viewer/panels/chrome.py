@@ -1,0 +1,171 @@
+"""Around it all: the menu bar, messages, the question before work is lost, help."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+from imgui_bundle import imgui
+
+from .. import commands
+from ..actions import MOUSE, Action
+from ..gui import colour, em
+
+if TYPE_CHECKING:
+    from ..window import Viewer
+
+MESSAGE_SECONDS = 6.0
+QUESTION = "Unsaved work"
+
+
+def draw_menus(viewer: Viewer, actions: Sequence[Action]) -> float:
+    """The menu bar, made of the actions; returns its height."""
+    if not imgui.begin_main_menu_bar():
+        return 0.0
+    height = float(round(imgui.get_window_size().y))
+    for title in dict.fromkeys(action.menu for action in actions):
+        is_open = imgui.begin_menu(title)
+        viewer.gui.remember(f"menu {title}")
+        if not is_open:
+            continue
+        for action in actions:
+            if action.menu != title:
+                continue
+            is_on = action.is_on is not None and action.is_on(viewer)
+            is_clicked, _ = imgui.menu_item(action.label, action.key, is_on, action.can_run(viewer))
+            viewer.gui.remember(f"menu {title}: {action.label}")
+            if is_clicked:
+                viewer.attempt(partial(action.run, viewer))
+        imgui.end_menu()
+    unsaved = viewer.session.unsaved
+    if unsaved:
+        imgui.text_colored(colour(viewer.gui.theme.muted), f"   unsaved: {unsaved}")
+    imgui.end_main_menu_bar()
+    return height
+
+
+@dataclass
+class Messages:
+    """One line at a time, at the foot of the picture; an error stays until it is clicked."""
+
+    text: str = ""
+    is_error: bool = False
+    left: float = 0.0  # [s]
+
+    def say(self, text: str, *, error: bool = False) -> None:
+        """Show a line in place of the one before."""
+        self.text, self.is_error, self.left = text, error, MESSAGE_SECONDS
+
+    def draw(self, viewer: Viewer, seconds: float) -> None:
+        """Draw the line, if there is one."""
+        if not self.is_error:
+            self.left -= seconds
+        if not self.text or self.left <= 0.0:
+            self.text = ""
+            return
+        left, top, width, height = viewer.picture_area
+        imgui.set_next_window_pos(
+            imgui.ImVec2(left + em(0.8), top + height - em(0.8)), 0, imgui.ImVec2(0.0, 1.0)
+        )
+        imgui.set_next_window_size_constraints(
+            imgui.ImVec2(0.0, 0.0), imgui.ImVec2(max(width - em(1.6), 50.0), em(20))
+        )
+        flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_decoration
+        imgui.begin("##message", None, flags | imgui.WindowFlags_.no_focus_on_appearing)
+        imgui.push_text_wrap_pos(min(width - em(2.4), em(46)))
+        theme = viewer.gui.theme
+        if self.is_error:
+            imgui.text_colored(colour(theme.error), self.text)
+        else:
+            imgui.text_unformatted(self.text)
+        imgui.pop_text_wrap_pos()
+        if imgui.is_window_hovered() and imgui.is_mouse_clicked(0):
+            self.text = ""
+        imgui.end()
+        viewer.gui.places["message"] = (left, top, left + width, top + height)
+
+    @property
+    def is_fading(self) -> bool:
+        """Whether it goes away by itself."""
+        return bool(self.text) and not self.is_error
+
+
+class Question:
+    """Asks before work is lost: save it, lose it, or go back."""
+
+    def __init__(self) -> None:
+        self._then: Callable[[], None] | None = None
+        self._is_new = False
+
+    @property
+    def is_open(self) -> bool:
+        """Whether an answer is awaited."""
+        return self._then is not None
+
+    def ask(self, then: Callable[[], None]) -> None:
+        """Go on with `then` when the user agrees that the work is lost, or has saved it."""
+        self._then, self._is_new = then, True
+
+    def draw(self, viewer: Viewer) -> None:
+        """Draw the question, if there is one."""
+        then = self._then
+        if then is None:
+            return
+        if self._is_new:
+            imgui.open_popup(QUESTION)
+            self._is_new = False
+        is_open, _ = imgui.begin_popup_modal(QUESTION, None, imgui.WindowFlags_.always_auto_resize)
+        if not is_open:
+            return
+        imgui.text(f"Not saved: {viewer.session.unsaved or 'nothing any more'}.")
+        choices = {
+            "Save script ...": (lambda: commands.save_script(viewer))
+            if viewer.session.script_is_unsaved
+            else None,
+            "Save pose ...": (lambda: commands.save_pose(viewer))
+            if viewer.session.pose_is_unsaved
+            else None,
+            "Go on without saving": then,
+            "Back": lambda: None,
+        }
+        for label, run in choices.items():
+            if run is None:
+                continue
+            is_clicked = imgui.button(label)
+            viewer.gui.remember(f"question: {label}")
+            imgui.same_line()
+            if is_clicked:
+                self._then = None
+                imgui.close_current_popup()
+                run()
+        imgui.end_popup()
+
+
+def draw_help(viewer: Viewer, actions: Sequence[Action]) -> bool:
+    """The sheet of keys and mouse; whether it stays open."""
+    display = imgui.get_io().display_size
+    imgui.set_next_window_pos(
+        imgui.ImVec2(0.5 * display.x, 0.5 * display.y), 0, imgui.ImVec2(0.5, 0.5)
+    )
+    flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_collapse
+    _, stays = imgui.begin("Keys and mouse (F1)", True, flags)
+    if imgui.begin_table("keys", 4, imgui.TableFlags_.sizing_fixed_fit):
+        lines = [(action.key, action.label) for action in actions if action.key]
+        rows = (len(lines) + 1) // 2
+        for index in range(rows):
+            imgui.table_next_row()
+            for key, label in lines[index : index + 1] + lines[index + rows : index + rows + 1]:
+                imgui.table_next_column()
+                imgui.text_colored(colour(viewer.gui.theme.accent), key)
+                imgui.table_next_column()
+                imgui.text(f"{label}    ")
+        imgui.end_table()
+    imgui.separator()
+    for gesture, meaning in MOUSE:
+        imgui.text_colored(colour(viewer.gui.theme.accent), gesture)
+        imgui.same_line(em(12))
+        imgui.text(meaning)
+    imgui.end()
+    return bool(stays)

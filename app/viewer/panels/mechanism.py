@@ -1,0 +1,218 @@
+"""The mechanism: refiner and its options, comparison, colours, overlays, what a frame costs."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from imgui_bundle import imgui
+
+import refine
+import render
+from refine import choices, criteria
+
+from .. import commands
+from ..colours import COLOURS
+from ..gui import colour, em
+from ..overlays import overlays_of
+from ..stage import COMPARISONS, DETAIL, SKINS, STAGES, can_detail
+from .sliders import Sliders
+
+if TYPE_CHECKING:
+    from ..window import Viewer
+
+# Words that options of refiners may be, asked of the plug-in.
+CHOICES: dict[str, Sequence[str]] = {
+    "scheme": choices.NAMES,
+    "criterion": ("normal", *criteria.CRITERIA),
+}
+HIGHEST = 0.25  # of a slider for a number that is no whole one, as far as it is not more already
+
+
+class MechanismPanel:
+    """Everything about how the mesh becomes a picture."""
+
+    def __init__(self, viewer: Viewer) -> None:
+        self._viewer = viewer
+        self._sliders = Sliders(viewer.gui)
+
+    def draw(self) -> None:
+        """Draw everything, inside the window's panel."""
+        imgui.begin_child("mechanism", imgui.ImVec2(0.0, 0.0))
+        self._draw_refinement()
+        self._draw_look()
+        self._draw_overlays()
+        self._draw_times()
+        imgui.end_child()
+
+    def _draw_refinement(self) -> None:
+        viewer, look = self._viewer, self._viewer.look
+        imgui.separator_text("Refinement")
+        self._check("Refine", look.is_refined, lambda: commands.toggle(viewer, "is_refined"))
+        names = [name for name in refine.available() if name != "none"]
+        self._choose("Refiner", "refiner", names)
+        self._choose("Compare", "compare", COMPARISONS)
+        for name, default in options_of(viewer.stage.refined.refiner).items():
+            self._draw_option(name, default)
+        shots = viewer.stage.shots(look, viewer.viewport)
+        base = len(viewer.scene.faces)
+        for shot in shots:
+            count = shot.picture.triangle_count
+            imgui.text(f"{shot.label}: {count} triangles")
+            imgui.same_line()
+            imgui.text_colored(colour(viewer.gui.theme.muted), f"({count / base:.2f} x)")
+        splits = viewer.stage.refined.refiner.splits
+        once, twice = int((splits == 1).sum()), int((splits == 2).sum())
+        imgui.text_colored(
+            colour(viewer.gui.theme.muted),
+            f"{len(splits)} edges: {once} split once, {twice} twice",
+        )
+
+    def _draw_option(self, name: str, default: Any) -> None:
+        """A slider, a checkbox or a list for an option, by what its default is."""
+        viewer, look = self._viewer, self._viewer.look
+        stored = look.options.setdefault(look.refiner, {})
+        scenes = viewer.scene.refiner_options.get(look.refiner, {})
+        value = stored.get(name, scenes.get(name, default))
+        label = name.replace("_", " ")
+        if isinstance(default, bool):
+            self._check(label, bool(value), lambda: _put(stored, name, not value))
+        elif isinstance(default, int):
+            is_changed, chosen = imgui.input_int(label, int(value))
+            viewer.gui.remember(label)
+            if is_changed:
+                stored[name] = chosen
+        elif isinstance(default, float):
+            most = max(HIGHEST, 2.0 * default)
+            imgui.align_text_to_frame_padding()
+            imgui.text(label)
+            imgui.same_line(em(10.2))
+            slid = self._sliders.draw(name, float(value), (0.0, most), width=-1.0, neutral=default)
+            if slid.is_changed:
+                stored[name] = slid.value
+                _keep_in_order(stored, name, slid.value, scenes)
+        elif isinstance(default, str):
+            has_finer = can_detail(viewer.scene)
+            allowed = [word for word in CHOICES.get(name, ()) if word != DETAIL or has_finer]
+            if allowed:
+                self._choose(label, name, allowed, of=stored, default=str(value))
+        elif default is None:
+            words = {"as it suits": None, "on": True, "off": False}
+            present = next(word for word, each in words.items() if each is value)
+            self._choose_among(label, present, list(words), lambda w: _put(stored, name, words[w]))
+
+    def _draw_look(self) -> None:
+        viewer, look = self._viewer, self._viewer.look
+        imgui.separator_text("Look")
+        self._choose("Shading", "shading", [shading.value for shading in render.Shading])
+        self._choose("Colours", "colours", tuple(COLOURS))
+        if COLOURS[look.colours].legend:
+            imgui.text_colored(colour(viewer.gui.theme.muted), COLOURS[look.colours].legend)
+        self._choose("Skin", "skin", tuple(SKINS))
+        self._check("Wireframe", look.wireframe, lambda: commands.toggle(viewer, "wireframe"))
+
+    def _draw_overlays(self) -> None:
+        viewer = self._viewer
+        names = overlays_of(viewer.scene)
+        imgui.separator_text("Overlays")
+        for index, name in enumerate(names):
+            if index % 2:
+                imgui.same_line(em(10.2))
+            is_on = name in viewer.look.overlays
+            self._check(
+                name.capitalize(), is_on, lambda name=name: commands.toggle_overlay(viewer, name)
+            )
+
+    def _draw_times(self) -> None:
+        """A scrolling plot for each stage of the paper's Figure 1, and the median of a second."""
+        stage = self._viewer.stage
+        imgui.separator_text(f"Milliseconds, {self._viewer.frames_per_second:.0f} frames a second")
+        for name in STAGES:
+            times = np.array(stage.times[name], np.float32)
+            recent = times[-60:][times[-60:] > 0.0]
+            median = float(np.median(recent)) if len(recent) else 0.0
+            imgui.plot_lines(
+                f"##{name}",
+                times,
+                overlay_text=f"{name}  {median:.2f}",
+                scale_min=0.0,
+                scale_max=max(float(times.max()), 0.1) * 1.3,
+                graph_size=imgui.ImVec2(imgui.get_content_region_avail().x, em(1.9)),
+            )
+        self._viewer.gui.remember("plot")
+
+    def _check(self, label: str, is_on: bool, switch: Any) -> None:
+        is_clicked, _ = imgui.checkbox(label, is_on)
+        self._viewer.gui.remember(label)
+        if is_clicked:
+            switch()
+
+    def _choose(
+        self,
+        label: str,
+        name: str,
+        choices: Sequence[str],
+        *,
+        of: dict[str, Any] | None = None,
+        default: str = "",
+    ) -> None:
+        """A list to choose from, for a field of the look or an entry of a table."""
+
+        def take(choice: str) -> None:
+            if of is not None:
+                of[name] = choice
+            else:
+                setattr(self._viewer.look, name, choice)
+
+        present = default if of is not None else getattr(self._viewer.look, name)
+        self._choose_among(label, present, choices, take)
+
+    def _choose_among(
+        self, label: str, present: str, choices: Sequence[str], take: Callable[[str], None]
+    ) -> None:
+        imgui.align_text_to_frame_padding()
+        imgui.text(label)
+        imgui.same_line(em(10.2))
+        imgui.set_next_item_width(-1.0)
+        is_open = imgui.begin_combo(f"##{label}", present)
+        self._viewer.gui.remember(label)
+        if not is_open:
+            return
+        for choice in choices:
+            is_clicked, _ = imgui.selectable(choice, choice == present)
+            self._viewer.gui.remember(f"{label}: {choice}")
+            if is_clicked:
+                take(choice)
+        imgui.end_combo()
+
+
+def options_of(refiner: refine.Refiner) -> dict[str, Any]:
+    """What a refiner can be told in numbers and words, as its class declares it, and its defaults.
+
+    An option whose default is None is left out, unless it may be on or off.
+    """
+    parameters = inspect.signature(type(refiner)).parameters.values()
+    return {
+        each.name: each.default
+        for each in parameters
+        if each.kind is each.KEYWORD_ONLY
+        and (isinstance(each.default, bool | int | float | str) or "bool" in str(each.annotation))
+    }
+
+
+def _put(stored: dict[str, Any], name: str, value: Any) -> None:
+    stored[name] = value
+
+
+def _keep_in_order(
+    stored: dict[str, Any], name: str, value: float, scenes: Mapping[str, float]
+) -> None:
+    """Splitting twice never begins before splitting once: the other threshold gives way."""
+    first, second = "threshold_once", "threshold_twice"
+    defaults = {first: refine.THRESHOLD_ONCE, second: refine.THRESHOLD_TWICE, **scenes}
+    if name == first:
+        stored[second] = max(value, stored.get(second, defaults[second]))
+    elif name == second:
+        stored[first] = min(value, stored.get(first, defaults[first]))

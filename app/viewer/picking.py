@@ -1,0 +1,94 @@
+"""What lies under the mouse: a point of the skin, and the muscle nearest to it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import render
+
+from ..pipeline import Viewport
+
+FloatArray = npt.NDArray[np.float64]
+MUSCLE_REACH = 14.0  # [mm] from a fibre within which a click on the skin means its muscle
+
+
+@dataclass(frozen=True)
+class Ray:
+    """What the camera sees in one pixel; matrices: of a point, row vector, to clip space."""
+
+    origin: FloatArray
+    direction: FloatArray
+    to_clip: FloatArray
+
+    @classmethod
+    def through(
+        cls, camera: render.OrbitCamera, viewport: Viewport, place: tuple[float, float]
+    ) -> Ray:
+        """The ray of `place` [pixels from the lower left corner of the surface]."""
+        left, bottom, width, height = viewport
+        to_clip = np.asarray(camera.view_matrix() @ camera.projection_matrix(width / height))
+        x = 2.0 * (place[0] - left) / width - 1.0
+        y = 2.0 * (place[1] - bottom) / height - 1.0
+        ends = np.array([[x, y, -1.0, 1.0], [x, y, 1.0, 1.0]]) @ np.linalg.inv(to_clip)
+        near, far = ends[:, :3] / ends[:, 3:]
+        return cls(near, (far - near) / np.linalg.norm(far - near), to_clip)
+
+    def at_depth_of(self, point: FloatArray, axis: FloatArray) -> FloatArray:
+        """Where the ray meets the plane through `point` across `axis` (the line of sight)."""
+        along = float((point - self.origin) @ axis) / float(self.direction @ axis)
+        met: FloatArray = self.origin + along * self.direction
+        return met
+
+
+def skin_under(ray: Ray, positions: FloatArray, faces: npt.NDArray[Any]) -> FloatArray | None:
+    """The nearest point of the mesh that the ray meets from outside, or None.
+
+    Möller and Trumbore 1997, for all triangles at once.
+    """
+    a, b, c = (positions[faces[:, corner]] for corner in range(3))
+    ab, ac = b - a, c - a
+    across = np.cross(ray.direction, ac)
+    volume = (ab * across).sum(axis=1)
+    front = volume > 1e-12
+    volume = np.where(front, volume, 1.0)
+    from_a = ray.origin - a
+    u = (from_a * across).sum(axis=1) / volume
+    turned = np.cross(from_a, ab)
+    v = (turned @ ray.direction) / volume
+    distance = (ac * turned).sum(axis=1) / volume
+    hit = front & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (distance > 0.0)
+    if not hit.any():
+        return None
+    point: FloatArray = ray.origin + distance[hit].min() * ray.direction
+    return point
+
+
+def muscle_at(
+    point: FloatArray, fibres: Mapping[str, Sequence[FloatArray]], reach: float = MUSCLE_REACH
+) -> str | None:
+    """The muscle whose fibres come nearest to a point of the skin, or None if all are far."""
+    nearest = {
+        name: min(_distance(point, line) for line in lines)
+        for name, lines in fibres.items()
+        if lines
+    }
+    if not nearest:
+        return None
+    name = min(nearest, key=lambda each: nearest[each])
+    return name if nearest[name] <= reach else None
+
+
+def _distance(point: FloatArray, line: FloatArray) -> float:
+    """From a point to a polyline (n, 3)."""
+    if len(line) < 2:
+        return float(np.linalg.norm(line - point, axis=1).min(initial=np.inf))
+    start, segment = line[:-1], np.diff(line, axis=0)
+    length = np.maximum((segment**2).sum(axis=1), 1e-12)
+    along = np.clip(((point - start) * segment).sum(axis=1) / length, 0.0, 1.0)
+    feet = start + along[:, None] * segment
+    return float(np.linalg.norm(feet - point, axis=1).min())

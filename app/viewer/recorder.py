@@ -1,0 +1,60 @@
+"""Movements of controls over time, as the tracks of a script."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..script import Channel, Key, Script
+
+TOLERANCE = 2e-3  # of a value: what a straight line between keys may be off
+
+
+class Recorder:
+    """Takes the value of every control at every step; `script` is what was played."""
+
+    def __init__(self) -> None:
+        self.time = 0.0
+        self._tracks: dict[str, list[tuple[float, float]]] = {}
+
+    def take(self, seconds: float, values: Mapping[str, float]) -> None:
+        """`seconds` went by since the last call, and the controls are now at `values`."""
+        before, self.time = self.time, self.time + seconds
+        for name, value in values.items():
+            track = self._tracks.get(name)
+            if track is None:
+                if value == 0.0:
+                    continue
+                track = self._tracks[name] = [(0.0, 0.0 if before else value)]
+            if value != track[-1][1]:
+                if track[-1][0] < before:
+                    track.append((before, track[-1][1]))
+                track.append((self.time, value))
+
+    def script(self, *, title: str, scene: str, camera: str | None) -> Script | None:
+        """What was taken, or None where nothing was."""
+        if self.time <= 0.0 or not self._tracks:
+            return None
+        tracks = {
+            name: Channel(tuple(Key(time, value, "linear") for time, value in straightened(track)))
+            for name, track in sorted(self._tracks.items())
+        }
+        return Script(title, self.time, title, scene=scene, camera=camera, tracks=tracks)
+
+
+def straightened(track: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Leave out keys that lie on a straight line between others (Ramer, Douglas, Peucker)."""
+    kept = {0, len(track) - 1}
+    spans = [(0, len(track) - 1)]
+    while spans:
+        first, last = spans.pop()
+        (start, low), (end, high) = track[first], track[last]
+        most, worst = TOLERANCE, -1
+        for index in range(first + 1, last):
+            time, value = track[index]
+            off = abs(low + (high - low) * (time - start) / (end - start) - value)
+            if off > most:
+                most, worst = off, index
+        if worst >= 0:
+            kept.add(worst)
+            spans += [(first, worst), (worst, last)]
+    return [track[index] for index in sorted(kept)]

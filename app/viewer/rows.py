@@ -1,0 +1,78 @@
+"""Controls as a panel lists them: one row for a muscle and its twin on the other side."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+# Controls of the middle that a mirror turns round, by the end of their names; and action units
+# that are each other's mirror image without saying so (eyes turn left, right).
+TURNED = ("_sideways", "_horizontal", "_yaw", "_roll")
+TWINS = {"AU61": "AU62", "AU62": "AU61"}
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line: its label, and the controls that it has sliders for, the subject's right first."""
+
+    label: str
+    names: tuple[str, ...]
+
+
+def twin_of(name: str) -> str:
+    """The control of the other side; itself for one of the middle."""
+    for side, other in (("_left", "_right"), ("_right", "_left")):
+        if name.endswith(side):
+            return name.removesuffix(side) + other
+    return TWINS.get(name, name)
+
+
+def readable(name: str) -> str:
+    """A control's name in words."""
+    return name.replace("_", " ")
+
+
+def mirrored(values: Mapping[str, float]) -> dict[str, float]:
+    """What is left becomes right; the middle turns round."""
+    result = dict(values)
+    for name, value in values.items():
+        if twin_of(name) in values:
+            result[twin_of(name)] = -value if name.endswith(TURNED) else value
+    return result
+
+
+def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) -> list[Row]:
+    """The rows of a group.
+
+    linked: both sides share a slider as long as they agree. A control for both sides at once
+    (AU12 beside AU12_left and AU12_right) stands for them, unless one of them is in use.
+    """
+    known = set(names)
+    rows = []
+    for name in names:
+        base, _, side = name.rpartition("_")
+        if side not in ("left", "right"):
+            sides = (f"{name}_right", f"{name}_left")
+            if not known.issuperset(sides):
+                rows.append(Row(readable(name), (name,)))
+                continue
+            shown = [name] if linked or values[name] else []
+            is_apart = not linked or any(values[one] for one in sides)
+            rows.append(Row(readable(name), (*shown, *(sides if is_apart else ()))))
+        elif base not in known and (side == "left" or twin_of(name) not in known):
+            both = (twin_of(name), name) if twin_of(name) in known else (name,)
+            rows.append(Row(readable(base), both))
+    return rows
+
+
+def found(rows: Iterable[Row], words: str, *, group: str, actions: Mapping[str, str]) -> list[Row]:
+    """The rows in which all words occur: in name, group, or what the control does."""
+    wanted = words.lower().split()
+    return [
+        row
+        for row in rows
+        if all(
+            word in f"{row.label} {group} {actions.get(row.names[0], '')}".lower()
+            for word in wanted
+        )
+    ]

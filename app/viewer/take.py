@@ -1,0 +1,55 @@
+"""Take away: a picture or a film of what is shown, written as `risorius capture` writes them."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from pathlib import Path
+
+import numpy as np
+
+from .. import outputs
+from ..errors import UserError
+from ..outputs import Frame, FrameSink
+
+FRAMES_PER_SECOND = 30.0
+
+
+def free_name(folder: Path, suffix: str) -> Path:
+    """A name by date and time that no file has yet."""
+    stem = time.strftime("risorius-%Y%m%d-%H%M%S")
+    names = (f"{stem}{extra}{suffix}" for extra in ("", *(f"-{n}" for n in range(2, 100))))
+    return next((folder / name for name in names if not (folder / name).exists()), folder / stem)
+
+
+class Film:
+    """A film that grows by a frame at a time; the file is there once it is closed."""
+
+    def __init__(self, target: Path) -> None:
+        self.target = target
+        self.frame_count = 0
+        self._size: tuple[int, int] | None = None
+        self._files = contextlib.ExitStack()
+        self._sink: FrameSink | None = None
+
+    @property
+    def seconds(self) -> float:
+        """How long it is so far."""
+        return self.frame_count / FRAMES_PER_SECOND
+
+    def add(self, frame: Frame) -> None:
+        """Add a frame, an odd row or column cut off; UserError where the size has changed."""
+        height, width = frame.shape[0] // 2 * 2, frame.shape[1] // 2 * 2
+        if self._sink is None:
+            self._size = width, height
+            opened = outputs.film(self.target, self._size, FRAMES_PER_SECOND)
+            self._sink = self._files.enter_context(opened)
+        if self._size != (width, height):
+            raise UserError("the film ends here, because the picture has another size now")
+        self._sink(np.ascontiguousarray(frame[:height, :width]))
+        self.frame_count += 1
+
+    def close(self) -> None:
+        """Finish the file."""
+        self._files.close()
+        self._sink = None

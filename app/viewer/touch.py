@@ -1,0 +1,156 @@
+"""The mouse in the picture: pull the skin, click a muscle, turn the camera, drag the divider.
+
+Left on the skin pulls it, left beside it orbits, right orbits anywhere, middle or Shift pans, the
+wheel zooms. Pulled skin hangs on springs between the vertices under the mouse and where it drags.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+from imgui_bundle import imgui
+
+from . import commands
+from .gui import em
+from .picking import Ray, muscle_at, skin_under
+
+if TYPE_CHECKING:
+    from .window import Viewer
+
+DEGREES_PER_EM = 5.5
+ZOOM_PER_NOTCH = 1.1
+FINGER = 16.0  # [mm] the finger's radius
+FARTHEST = 45.0  # [mm] that a finger drags, lest the skin turns inside out
+CLICK = 4.0  # [window units] a press that moves less is a click, not a drag
+LEFT, RIGHT, MIDDLE = 0, 1, 2
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Pull:
+    """A finger that holds on to the skin."""
+
+    def __init__(self, scene: Any, point: FloatArray) -> None:
+        self._scene = scene
+        self.point = point
+        distance = np.linalg.norm(scene.positions - point, axis=1)
+        self._vertices = np.flatnonzero(distance < FINGER)
+        if not len(self._vertices):
+            self._vertices = distance.argmin(keepdims=True)
+        self._from = scene.positions[self._vertices].copy()
+        near = distance[self._vertices] / FINGER
+        self._firmness = (
+            np.maximum((1.0 - near**2) ** 2, 0.02) if near.max() < 1.0 else near * 0 + 1
+        )
+        self.offset = np.zeros(3)
+
+    def to(self, point: FloatArray) -> None:
+        """Drag to a point, or toward it if that is too far."""
+        offset = point - self.point
+        length = float(np.linalg.norm(offset))
+        self.offset = offset * (FARTHEST * np.tanh(length / FARTHEST) / max(length, 1e-9))
+        self._scene.simulation.pull(self._vertices, self._from + self.offset, self._firmness)
+
+    def let_go(self) -> None:
+        """The skin swings back."""
+        self._scene.simulation.let_go()
+
+
+class Touch:
+    """Follows the mouse from press to release."""
+
+    def __init__(self, viewer: Viewer) -> None:
+        self._viewer = viewer
+        self._doing = ""  # orbit, pan, divider, pull
+        self._pressed_at = (0.0, 0.0)
+        self.pull: Pull | None = None
+
+    @property
+    def is_pulling(self) -> bool:
+        """Whether the skin is being dragged."""
+        return self.pull is not None and bool(self.pull.offset.any())
+
+    def follow(self) -> None:
+        """Carry out what the mouse did since the last frame."""
+        io = imgui.get_io()
+        if self._doing:
+            self._drag(io)
+            if not any(imgui.is_mouse_down(button) for button in (LEFT, RIGHT, MIDDLE)):
+                self._release(io)
+        elif not io.want_capture_mouse:
+            if self._is_at_divider(io.mouse_pos.x):
+                imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+            for button in (LEFT, RIGHT, MIDDLE):
+                if imgui.is_mouse_clicked(button):
+                    self._press(io, button)
+            if io.mouse_wheel:
+                self._viewer.camera.zoom(ZOOM_PER_NOTCH**io.mouse_wheel)
+
+    def _press(self, io: Any, button: int) -> None:
+        self._pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
+        if button == MIDDLE or io.key_shift:
+            self._doing = "pan"
+        elif button == RIGHT or io.key_alt:
+            self._doing = "orbit"
+        elif self._is_at_divider(io.mouse_pos.x):
+            self._doing = "divider"
+        else:
+            point = self._skin(io) if hasattr(self._viewer.scene, "simulation") else None
+            self._doing = "orbit" if point is None else "pull"
+            if point is not None:
+                self.pull = Pull(self._viewer.scene, point)
+
+    def _drag(self, io: Any) -> None:
+        viewer, delta = self._viewer, io.mouse_delta
+        if self._doing == "orbit":
+            degrees = DEGREES_PER_EM / em()
+            viewer.camera.orbit(-delta.x * degrees, delta.y * degrees)
+        elif self._doing == "pan":
+            height = max(viewer.picture_area[3], 1.0)
+            viewer.camera.pan(-delta.x / height, delta.y / height)
+        elif self._doing == "divider":
+            left, _, width, _ = viewer.picture_area
+            viewer.look.divider = min(max((io.mouse_pos.x - left) / width, 0.0), 1.0)
+        elif self.pull is not None and (self._has_moved(io) or self.is_pulling):
+            axis = viewer.camera.axes()[2]
+            self.pull.to(self._ray(io).at_depth_of(self.pull.point, axis))
+
+    def _release(self, io: Any) -> None:
+        if self.pull is not None:
+            self.pull.let_go()
+            if not self.is_pulling and not self._has_moved(io):
+                commands.select_muscle(self._viewer, self._muscle_at(self.pull.point))
+            self.pull = None
+        self._doing = ""
+
+    def _has_moved(self, io: Any) -> bool:
+        x, y = self._pressed_at
+        return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > CLICK)
+
+    def _muscle_at(self, point: FloatArray) -> str | None:
+        scene: Any = self._viewer.scene
+        return muscle_at(point, scene.simulation.fibres())
+
+    def _is_at_divider(self, x: float) -> bool:
+        look = self._viewer.look
+        left, _, width, _ = self._viewer.picture_area
+        return look.compare != "off" and abs(x - left - look.divider * width) < 0.4 * em()
+
+    def _ray(self, io: Any) -> Ray:
+        """Through the mouse, in the viewport that it is in."""
+        viewer = self._viewer
+        window_width, window_height = imgui.get_io().display_size
+        width, height = viewer.surface.size
+        place = (
+            io.mouse_pos.x * width / max(window_width, 1.0),
+            height - io.mouse_pos.y * height / max(window_height, 1.0),
+        )
+        shots = viewer.stage.shots(viewer.look, viewer.viewport)
+        under = [shot for shot in shots if place[0] >= shot.clip[0]] or shots[:1]
+        return Ray.through(viewer.camera, under[-1].viewport, place)
+
+    def _skin(self, io: Any) -> FloatArray | None:
+        scene = self._viewer.scene
+        return skin_under(self._ray(io), scene.positions, scene.faces)

@@ -1,0 +1,139 @@
+"""The pictures of docs/viewer.md: `xvfb-run -a python -m app.viewer.tour [FOLDER]` draws them anew.
+
+Each is a window as a user would see it, brought there by the same commands that menus use.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from ..choices import script_for
+from ..outputs import written_aside
+from . import commands
+from .settings import Look
+from .touch import Pull
+from .window import Viewer
+
+FOLDER = Path("docs/pictures")
+SIZE = (1200, 720)
+KEPT_BITS = 0xFE  # of a colour: the last one is the noise against banding, and costs a fifth more
+MOST_FRAMES = 400
+
+
+def settled(viewer: Viewer) -> None:
+    """Let the face come to rest, and the picture be drawn in full."""
+    for _ in range(8):
+        viewer.frame()
+    for _ in range(MOST_FRAMES):
+        if viewer.is_idle:
+            return
+        viewer.messages.left = 0.0 if viewer.messages.is_fading else viewer.messages.left
+        viewer.frame()
+
+
+def face(viewer: Viewer) -> None:
+    """The window as it opens, smiling."""
+    viewer.session.show("joy")
+
+
+def controls(viewer: Viewer) -> None:
+    """Search, sides apart, and a muscle that was clicked in the face."""
+    viewer.settings.is_linked = False
+    viewer.face_panel.search = "lip"
+    viewer.session.set("levator_labii_superioris_left", 0.9)
+    viewer.look.overlays = ["muscles"]
+
+
+def wipe(viewer: Viewer) -> None:
+    """Static and refined, divided by a line; the dark theme."""
+    viewer.session.show("disgust")
+    viewer.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
+    viewer.look = Look(compare="wipe", divider=0.46, wireframe=True, colours="splits", skin="clay")
+    viewer.camera.zoom(1.5)
+
+
+def side_by_side(viewer: Viewer) -> None:
+    """Two viewports under one camera, coloured by how far the normals turned apart."""
+    viewer.session.show("surprise")
+    viewer.wanted_tab = "Mechanism"
+    viewer.look = Look(compare="side by side", colours="curvature drop", skin="clay")
+
+
+def tension(viewer: Viewer) -> None:
+    """What is stretched and what is compressed, with the springs."""
+    viewer.session.show("yawn")
+    viewer.wanted_tab = "Mechanism"
+    viewer.look = Look(colours="tension", overlays=["springs"], skin="clay")
+
+
+def anatomy(viewer: Viewer) -> None:
+    """Skull, muscles and landmarks."""
+    viewer.session.set("jaw_open", 0.5)
+    viewer.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
+    viewer.look = Look(overlays=["skull", "muscles", "landmarks"])
+
+
+def finger(viewer: Viewer) -> None:
+    """The skin, pulled by the mouse."""
+    scene = viewer.scene
+    corner = scene.positions[scene.head.landmarks[48]]  # type: ignore[attr-defined]
+    viewer.touch.pull = Pull(scene, corner.copy())
+    viewer.touch.pull.to(corner + np.array([-30.0, 16.0, 12.0]))
+    for _ in range(20):
+        viewer.frame()
+
+
+def keys(viewer: Viewer) -> None:
+    """Help, made of the same table as the menus."""
+    viewer.is_help_open = True
+
+
+def unsaved(viewer: Viewer) -> None:
+    """A question before work is lost."""
+    viewer.session.set("jaw_open", 0.4)
+    commands.close_politely(viewer)
+
+
+def large(viewer: Viewer) -> None:
+    """Everything as on a screen of twice the density."""
+    viewer.settings.zoom = 2.0
+    viewer.session.show("kiss")
+
+
+STOPS: dict[str, Callable[[Viewer], None]] = {
+    "viewer": face,
+    "viewer_controls": controls,
+    "viewer_wipe": wipe,
+    "viewer_side_by_side": side_by_side,
+    "viewer_tension": tension,
+    "viewer_anatomy": anatomy,
+    "viewer_pull": finger,
+    "viewer_keys": keys,
+    "viewer_unsaved": unsaved,
+    "viewer_large": large,
+}
+
+
+def main(arguments: list[str]) -> None:
+    """Draw the pictures into the folder given; further arguments choose some of them."""
+    folder = Path(arguments[0]) if arguments else FOLDER
+    for name in arguments[1:] or STOPS:
+        with Viewer(script_for(None, "face"), SIZE) as viewer:
+            settled(viewer)
+            STOPS[name](viewer)
+            if viewer.touch.pull is None:
+                settled(viewer)
+            else:
+                viewer.surface.detail = viewer.quality.detail
+            picture = Image.fromarray(viewer.surface.read() & KEPT_BITS)
+        with written_aside(folder / f"{name}.png") as part:
+            picture.save(part, format="PNG", optimize=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

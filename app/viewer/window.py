@@ -1,0 +1,345 @@
+"""The window: one turn of the loop, and what menus and panels ask for.
+
+Physics goes in steps of its own, apart from frames (clock.py). The scene is drawn only when
+something in it has changed, with less detail while it moves if the machine is slow (quality.py);
+panels are drawn over it anew each time. A window in which nothing happens waits for events.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+from imgui_bundle import imgui
+
+import refine
+import render
+import sim
+from assets.fitting import FittedHead
+
+from ..cameras import whole_scene
+from ..errors import UserError
+from ..pipeline import Viewport
+from ..scenes import build_scene
+from ..script import Script
+from . import commands
+from .actions import ACTIONS, expression_actions, run_pressed
+from .clock import STEP, Clock
+from .files import Files
+from .gui import THEMES, Gui, em, on_drop, poll_events, wait_for_event
+from .overlays import overlays_of
+from .panels.chrome import Messages, Question, draw_help, draw_menus
+from .panels.face import FacePanel
+from .panels.mechanism import MechanismPanel
+from .panels.timeline import Timeline
+from .quality import FULL, Quality
+from .session import Session
+from .settings import Look, Settings, load_settings
+from .stage import SceneView, Stage, checked
+from .take import FRAMES_PER_SECOND, Film
+from .touch import Touch
+
+PANEL_WIDTH = 22.5  # [em]
+STILL = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
+CALM = 0.15  # [s] without change before physics rests and the scene is drawn in full
+IDLE_WAIT = 2.0  # [s] between two frames while nothing happens
+WATCHFUL_WAIT = 0.1  # [s] the same while a file dialog is open, or words are typed
+FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
+SMOOTHING = 0.9  # of the shown frame rate, from frame to frame
+
+
+class Viewer:
+    """The window with everything in it; a context manager."""
+
+    session: Session
+    look: Look
+    settings: Settings
+    is_help_open: bool
+    film: Film | None
+
+    def __init__(
+        self,
+        script: Script,
+        size: tuple[int, int] | None = None,
+        look: Look | None = None,
+        *,
+        head: FittedHead | None = None,
+        settings_path: Path | None = None,
+    ) -> None:
+        """Open the window.
+
+        head: one that somebody brought, None for the built-in one. size, look: None takes what was
+        remembered. settings_path: where that is kept, None for nowhere. Raises UserError for a
+        script that names what the scene has not.
+        """
+        self.settings_path = settings_path
+        self.settings, complaint = Settings(), ""
+        if settings_path is not None:
+            self.settings, complaint = load_settings(settings_path)
+        self.scene = build_scene(script.scene, head)
+        self.session = Session(self.scene, script)
+        known = overlays_of(self.scene)
+        self.look = checked(look or self.settings.look, refine.available(), known)
+        with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
+            title = f"Risorius: {script.title}"
+            self.surface = render.open_window(size or self.settings.size or (1280, 800), title)
+            stack.callback(self.surface.close)
+            self.gui = Gui(self.surface.handle)
+            stack.callback(self.gui.close)
+            self.stage = Stage(self.surface, self.scene, self.look)
+            self._resources = stack.pop_all()
+        self.camera = commands.remembered_camera(self) or whole_scene(self.scene, script.camera)
+        self.quality = Quality(is_software=self.surface.is_software)
+        self.touch = Touch(self)
+        self.files, self.messages, self.question = Files(), Messages(), Question()
+        self.face_panel, self.mechanism_panel = FacePanel(self), MechanismPanel(self)
+        self.timeline = Timeline(self)
+        self.actions = (*ACTIONS, *expression_actions(self))
+        self.film: Film | None = None
+        self.is_help_open = self.is_leaving = False
+        self.frames_per_second = 0.0
+        self.picture_area = (0.0, 0.0, 1.0, 1.0)  # left, top, width, height [window units]
+        self._clock = Clock()
+        self.generator = np.random.default_rng()
+        self.wanted_tab = self.settings.tab
+        self._last = time.perf_counter()
+        self._drawn: tuple[object, render.Detail] = (None, FULL)  # what the scene's pixels show
+        self._posed: dict[str, float] = {}  # the values at the last step of physics
+        self._has_stepped = False
+        self._still_for = 0.0  # [s] that no vertex has moved
+        self._calm_for = 0.0  # [s] that the picture has not changed
+        self._awake = FRAMES_AFTER_EVENT
+        on_drop(self.surface.handle, self.drop)
+        if complaint:
+            self.messages.say(complaint, error=True)
+
+    def __enter__(self) -> Viewer:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        with contextlib.suppress(UserError):  # a disk that is full must not keep the window open
+            commands.remember(self)
+        if self.film is not None:
+            self.film.close()
+        self._resources.close()
+
+    def run(self, *, playing: bool = False, once: bool = False) -> None:
+        """Show the window until it is closed (with `once`: until the script has ended)."""
+        if playing:
+            self.session.toggle_playing()
+        self._last = time.perf_counter()
+        while True:
+            self.frame()
+            if self.surface.should_close:
+                self.surface.should_close = False
+                commands.close_politely(self)
+                if self.surface.should_close:
+                    break
+            if once and playing and not self.session.is_playing:
+                break
+            if self.is_idle:
+                self._wait()
+
+    # One turn of the loop
+
+    def frame(self) -> None:
+        """Input, time, picture, panels."""
+        poll_events()
+        now = time.perf_counter()
+        elapsed, self._last = now - self._last, now
+        if elapsed > 0.0:
+            rate = SMOOTHING * self.frames_per_second + (1.0 - SMOOTHING) / elapsed
+            self.frames_per_second = rate
+        self._let_time_pass(elapsed if self.film is None else 1.0 / FRAMES_PER_SECOND)
+        is_moving = self._draw_scene(elapsed)
+        left, bottom, width, _ = self.viewport
+        self.surface.fill((0, 0, left, self.surface.size[1]), self.gui.theme.panel)
+        self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
+        with self.gui.frame():
+            self.gui.dress(self.settings.theme, self.settings.zoom)
+            self._draw_panels(elapsed)
+            if not self._is_asking:
+                run_pressed(self, self.actions)
+                self.touch.follow()
+        self.surface.end()
+        if is_moving:
+            self.quality.note(time.perf_counter() - now)
+        if self.film is not None:  # on a fast machine a film is made in real time
+            time.sleep(max(1.0 / FRAMES_PER_SECOND - (time.perf_counter() - now), 0.0))
+        self._awake = max(self._awake - 1, 0)
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing moves, and nothing is about to."""
+        return (
+            self._still_for > CALM
+            and self._awake == 0
+            and self._drawn == (self._shown(), FULL)
+            and not self.session.is_recording
+            and not self.messages.is_fading
+            and self.film is None
+        )
+
+    def _wait(self) -> None:
+        """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
+        is_watching = self.files.is_waiting or imgui.get_io().want_text_input  # a cursor blinks
+        patience = WATCHFUL_WAIT if is_watching else IDLE_WAIT
+        begin = time.perf_counter()
+        wait_for_event(patience)
+        self._last = time.perf_counter()
+        if self._last - begin < patience:
+            self._awake = FRAMES_AFTER_EVENT
+
+    def _let_time_pass(self, seconds: float) -> None:
+        """As many steps of physics as are due; none for a face at rest that nobody moves."""
+        steps = self._clock.steps(seconds)
+        session, scene = self.session, self.scene
+        wanted = dict(session.values)
+        is_driven = session.is_playing or session.is_recording or self.touch.is_pulling
+        is_driven = is_driven or wanted != self._posed
+        self._has_stepped = steps > 0 and (is_driven or self._still_for <= CALM)
+        if not self._has_stepped:
+            return
+        self._posed = wanted
+        self.stage.next_frame()
+        before = scene.positions
+        with self.stage.timed("simulation"):
+            try:
+                for _ in range(steps):
+                    before = scene.positions.copy()
+                    session.advance(STEP)
+            except sim.SimulationUnstable as error:
+                session.neutral()
+                scene.reset()
+                self.messages.say(str(error), error=True)
+        moved = float(np.abs(scene.positions - before).max(initial=0.0))
+        # Muscles follow late: what has not moved yet may still be about to.
+        self._still_for = 0.0 if is_driven or moved > STILL else self._still_for + steps * STEP
+
+    def _shown(self) -> object:
+        """Everything that the picture depends on, but for the motion of the scene."""
+        camera = self.camera
+        place = (camera.yaw, camera.pitch, camera.distance, *camera.target.tolist())
+        look = repr(asdict(self.look))
+        return place, look, self.settings.theme, self.viewport, self.face_panel.pointed
+
+    def _draw_scene(self, elapsed: float) -> bool:
+        """Draw the scene if it has changed, or is not drawn in full yet; whether it changed."""
+        self.surface.area = self.viewport
+        shown = self._shown()
+        drawn, detail = self._drawn
+        has_changed = shown != drawn or self._has_stepped or self.surface.is_resized
+        if has_changed and self._calm_for > CALM:
+            self.quality.begin_motion()
+        self._calm_for = 0.0 if has_changed else self._calm_for + elapsed
+        if has_changed or self.film is not None:
+            self._paint(self.quality.detail, shown)
+        elif detail != FULL and self._calm_for > CALM:
+            self._paint(FULL, shown)
+        else:
+            self.surface.resolve()
+        return has_changed
+
+    def _paint(self, detail: render.Detail, shown: object) -> None:
+        self.attempt(lambda: self.stage.adopt(self.look))
+        if self.film is None:
+            self.surface.detail = detail
+            self.stage.draw(*self.scene_view)
+        else:
+            detail, film = FULL, self.film
+            frame = self.stage.photograph(*self.scene_view)
+            self.attempt(lambda: film.add(frame), otherwise=lambda: commands.toggle_film(self))
+        self._drawn = shown, detail
+
+    @property
+    def scene_view(self) -> SceneView:
+        """What the stage draws: camera, look, background, viewport, muscles pointed at."""
+        background = THEMES[self.settings.theme].background
+        return self.camera, self.look, background, self.viewport, self.face_panel.pointed
+
+    @property
+    def viewport(self) -> Viewport:
+        """The picture's part of the framebuffer."""
+        display = imgui.get_io().display_size
+        width, height = self.surface.size
+        across, along = width / max(display.x, 1.0), height / max(display.y, 1.0)
+        left, top, wide, high = self.picture_area
+        x, y = round(left * across), round((display.y - top - high) * along)
+        return max(x, 0), max(y, 0), max(round(wide * across), 1), max(round(high * along), 1)
+
+    def _draw_panels(self, elapsed: float) -> None:
+        display = imgui.get_io().display_size
+        top = draw_menus(self, self.actions)
+        left, strip = round(em(PANEL_WIDTH)), round(self.timeline.height())
+        with _fixed("Controls", 0.0, top, left, display.y - top):
+            self._draw_tabs()
+        with _fixed("Time", left, display.y - strip, display.x - left, strip):
+            self.timeline.draw()
+        width, height = max(display.x - left, 1.0), max(display.y - top - strip, 1.0)
+        self.picture_area = (left, top, width, height)
+        if self.look.compare != "off":
+            x = left + self.look.divider * width
+            ink = imgui.get_color_u32(imgui.ImVec4(1.0, 1.0, 1.0, 0.9))
+            lines = imgui.get_background_draw_list()
+            lines.add_line(imgui.ImVec2(x, top), imgui.ImVec2(x, top + height), ink, 2.0)
+            lines.add_circle_filled(imgui.ImVec2(x, top + 0.5 * height), em(0.45), ink)
+        self.messages.draw(self, elapsed)
+        self.attempt(lambda: self.files.draw(self.gui))
+        self.attempt(lambda: self.question.draw(self))
+        if self.is_help_open:
+            self.is_help_open = draw_help(self, self.actions)
+
+    def _draw_tabs(self) -> None:
+        self.face_panel.pointed = ()
+        if not imgui.begin_tab_bar("tabs"):
+            return
+        for title, panel in (("Face", self.face_panel), ("Mechanism", self.mechanism_panel)):
+            flags = imgui.TabItemFlags_.set_selected if self.wanted_tab == title else 0
+            is_open, _ = imgui.begin_tab_item(title, None, flags)
+            self.gui.remember(f"tab {title}")
+            if is_open:
+                if self.wanted_tab in ("", title):
+                    self.settings.tab, self.wanted_tab = title, ""
+                panel.draw()
+                imgui.end_tab_item()
+        imgui.end_tab_bar()
+
+    # What actions and panels share
+
+    def attempt(
+        self, run: Callable[[], None], otherwise: Callable[[], None] = lambda: None
+    ) -> None:
+        """Do something that the user may have to mend: the error is shown, the window lives on."""
+        try:
+            run()
+        except (UserError, OSError) as error:
+            self.messages.say(str(error), error=True)
+            otherwise()
+
+    def drop(self, paths: Sequence[str]) -> None:
+        """Open a file that was dropped onto the window."""
+        self._awake = FRAMES_AFTER_EVENT
+        if paths:
+            self.attempt(lambda: commands.load(self, Path(paths[0])))
+
+    @property
+    def _is_asking(self) -> bool:
+        return self.files.is_waiting or self.question.is_open
+
+
+@contextlib.contextmanager
+def _fixed(name: str, left: float, top: float, width: float, height: float) -> Iterator[None]:
+    """A panel that stays where it is."""
+    imgui.set_next_window_pos(imgui.ImVec2(left, top))
+    imgui.set_next_window_size(imgui.ImVec2(max(width, 1.0), max(height, 1.0)))
+    flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move
+    flags |= imgui.WindowFlags_.no_background  # which the surface was filled with
+    imgui.begin(name, None, flags | imgui.WindowFlags_.no_bring_to_front_on_focus)
+    try:
+        yield
+    finally:
+        imgui.end()

@@ -1,0 +1,74 @@
+"""What a window shows: the scene, enlarged where it was drawn smaller, and panels over it.
+
+Software OpenGL pays for every pixel, so a scene that moves may be drawn with fewer (`Detail`) and
+is enlarged here. The scene's own pixels stay as they are: when only a panel changes, the scene is
+laid under it again without being drawn again.
+"""
+
+from dataclasses import dataclass
+
+import moderngl
+
+from .layers import Layers, Rectangle
+from .programs import compile_program
+
+_UNIT = 4  # texture unit while enlarging
+
+
+@dataclass(frozen=True)
+class Detail:
+    """How finely a window's scene is drawn.
+
+    samples: per pixel, 0 = none. scale: pixels of the scene per pixel of the window, 0..1.
+    """
+
+    samples: int = 4
+    scale: float = 1.0
+
+    def scaled(self, size: tuple[int, int]) -> tuple[int, int]:
+        """The scene's size in a window of `size` pixels."""
+        return max(round(self.scale * size[0]), 1), max(round(self.scale * size[1]), 1)
+
+
+class Shown:
+    """A frame of the window's size, apart from the scene's layers; panels are drawn on it."""
+
+    def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
+        self.size = size
+        self._gl = gl
+        self._colour = gl.renderbuffer(size, 4)
+        self.frame = gl.framebuffer([self._colour])
+        self._program = compile_program(gl, "stretch.glsl")
+        self._program["picture"] = _UNIT
+        self._triangle = gl.vertex_array(self._program, [])
+
+    def lay(self, layers: Layers, area: Rectangle | None) -> None:
+        """Take the scene's pixels, in all of the window or one area; the frame stays bound."""
+        gl = self._gl
+        layers.flush()
+        gl.scissor = area
+        if layers.size == self.size:
+            gl.copy_framebuffer(self.frame, layers.frame)
+        self.frame.use()
+        gl.viewport = 0, 0, *self.size
+        if layers.size != self.size:
+            gl.disable(moderngl.DEPTH_TEST)
+            layers.colour.use(_UNIT)
+            self._triangle.render(moderngl.TRIANGLES, vertices=3)
+            gl.enable(moderngl.DEPTH_TEST)
+        gl.scissor = None
+
+    def copy_to(self, target: moderngl.Framebuffer) -> None:
+        """Copy everything to a framebuffer of the same size."""
+        self._gl.scissor = None  # it would cut the copy
+        self._gl.copy_framebuffer(target, self.frame)
+
+    def read(self) -> bytes:
+        """The pixels, bottom row first, three bytes each."""
+        return bytes(self.frame.read(components=3, alignment=1))
+
+    def release(self) -> None:
+        """Give everything back to OpenGL."""
+        self._gl.screen.use()  # moderngl binds what was bound last again, even if it is gone
+        for resource in (self.frame, self._colour, self._triangle, self._program):
+            resource.release()

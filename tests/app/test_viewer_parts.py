@@ -1,0 +1,268 @@
+"""What the viewer is made of, without a window: session, recorder, settings, clock, picking."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.choices import script_for
+from app.errors import UserError
+from app.scenes import FaceScene
+from app.script import load_script, parse_script
+from app.script_writer import is_pose, pose_script, save_script, script_text
+from app.viewer import picking
+from app.viewer.clock import MOST_STEPS, STEP, Clock
+from app.viewer.history import History
+from app.viewer.quality import FULL, LEVELS, PATIENCE, Quality
+from app.viewer.recorder import TOLERANCE, Recorder
+from app.viewer.rows import found, mirrored, rows_of
+from app.viewer.session import Session
+from app.viewer.settings import Look, Settings, load_settings, save_settings
+from app.viewer.tour import STOPS
+
+import render  # isort: skip - after the viewer, see app/viewer/gui.py
+
+SMILE = "zygomaticus_major"
+STEPS = 90
+
+
+@pytest.fixture(scope="module")
+def scene() -> FaceScene:
+    """One face for all tests of this file."""
+    return FaceScene()
+
+
+@pytest.fixture
+def session(scene: FaceScene) -> Session:
+    """A session that begins with the neutral face."""
+    scene.reset()
+    return Session(scene, script_for(None, "face"))
+
+
+def run(session: Session, steps: int = STEPS) -> None:
+    """Let so many steps of time pass."""
+    for _ in range(steps):
+        session.advance(STEP)
+
+
+@pytest.mark.parametrize("path", [None, Path("docs/hello.toml")])
+def test_scripts_survive_being_written(path: Path | None) -> None:
+    """What a script says is the same after it was written and read again."""
+    script = script_for(path, "face")
+    again = parse_script(script_text(script), source=script.source)
+    assert again == script
+
+
+def test_a_pose_is_a_script_that_stands_still(tmp_path: Path) -> None:
+    """A pose file holds what is not zero, and is told from a script."""
+    pose = pose_script({"jaw_open": 0.5, "joy": 0.0}, title='A "pose"', scene="face")
+    save_script(tmp_path / "pose.toml", pose)
+    read = load_script(tmp_path / "pose.toml")
+    assert is_pose(read) and read.at(0.0) == {"jaw_open": 0.5}
+    assert read.title == 'A "pose"'
+    assert not is_pose(script_for(None, "face"))
+
+
+def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path: Path) -> None:
+    """Record, save, load, replay: every vertex ends where it was, to a hundredth of a mm."""
+    session.toggle_recording()
+    run(session, 30)
+    for step in range(60):
+        session.set("jaw_open", step / 60.0)
+        session.advance(STEP)
+    session.set(f"{SMILE}_left", 0.8)
+    run(session, 60)
+    wanted = session.scene.positions.copy()
+    assert np.abs(wanted - session.scene.rest_positions).max() > 10.0
+    session.toggle_recording()
+    assert "recorded script" in session.unsaved
+    session.save_script(tmp_path / "take.toml")
+    assert not session.unsaved
+    session.neutral()
+    run(session)
+    session.load(tmp_path / "take.toml")
+    session.toggle_playing()
+    while session.is_playing:
+        session.advance(STEP)
+    assert np.abs(session.scene.positions - wanted).max() < 0.01
+
+
+def test_an_empty_recording_is_refused(session: Session) -> None:
+    """Where nothing moved there is nothing to keep, and the script stays."""
+    script = session.script
+    session.toggle_recording()
+    run(session, 5)
+    with pytest.raises(UserError, match="no control moved"):
+        session.toggle_recording()
+    assert session.script is script and not session.is_recording
+
+
+def test_recordings_keep_corners_only() -> None:
+    """Straight movements need two keys, and no key is further off than the tolerance."""
+    recorder = Recorder()
+    times = np.arange(1, 241) * STEP
+    wave = 0.5 - 0.5 * np.cos(3.0 * times)
+    for time, value in zip(times, wave, strict=True):
+        recorder.take(STEP, {"wave": value, "ramp": time / 4.0, "rest": 0.0})
+    script = recorder.script(title="t", scene="face", camera=None)
+    assert script is not None and set(script.tracks) == {"wave", "ramp"}
+    assert len(script.tracks["ramp"].keys) <= 3
+    assert len(script.tracks["wave"].keys) < 100
+    played = [script.at(time)["wave"] for time in times]
+    assert np.abs(np.array(played) - wave).max() <= TOLERANCE + 1e-9
+
+
+def test_undo_and_redo(session: Session) -> None:
+    """Every complete change can be taken back and done again; a new one ends redoing."""
+    session.set("jaw_open", 0.3)
+    session.set("jaw_open", 0.6)
+    session.note()
+    session.mirror()
+    session.show("joy")
+    session.undo()
+    assert session.values["jaw_open"] == 0.6 and not session.values["joy"]
+    session.undo()
+    assert not any(session.values.values()) and not session.can_undo
+    session.redo()
+    assert session.values["jaw_open"] == 0.6
+    session.neutral()
+    assert not session.can_redo
+
+
+def test_history_ends_somewhere() -> None:
+    """Undoing before the first state stays there; equal states count once."""
+    history = History(0)
+    for state in (1, 1, 2):
+        history.note(state)
+    assert [history.undo(), history.undo(), history.undo()] == [1, 0, 0]
+    assert [history.redo(), history.redo(), history.redo()] == [1, 2, 2]
+
+
+def test_mirror_and_links(session: Session) -> None:
+    """Left becomes right, sideways turns round; a linked slider moves both sides."""
+    session.set(f"{SMILE}_left", 0.7)
+    session.set("jaw_sideways", 0.4)
+    session.mirror()
+    assert session.values[f"{SMILE}_right"] == 0.7 and not session.values[f"{SMILE}_left"]
+    assert session.values["jaw_sideways"] == -0.4
+    session.set(f"{SMILE}_left", 5.0, linked=True)
+    assert session.values[f"{SMILE}_left"] == session.values[f"{SMILE}_right"] == 1.0
+    assert mirrored(mirrored(session.values)) == session.values
+
+
+def test_random_faces_are_symmetric_and_within_limits(session: Session) -> None:
+    """A random face moves some muscles, both sides alike, and can be undone."""
+    session.randomise(np.random.default_rng(3))
+    moved = {name: value for name, value in session.values.items() if value}
+    assert moved == mirrored(moved) and 4 < len(moved) < 60
+    session.undo()
+    assert not any(session.values.values())
+
+
+def test_rows_join_sides() -> None:
+    """Twins share a row; a control for both sides stands for them unless they differ."""
+    names = ["AU12", "AU12_left", "AU12_right", "lid_left", "lid_right", "procerus"]
+    values = dict.fromkeys(names, 0.0)
+    linked = {row.label: row.names for row in rows_of(names, values, linked=True)}
+    assert linked["AU12"] == ("AU12",) and linked["lid"] == ("lid_right", "lid_left")
+    apart = {row.label: row.names for row in rows_of(names, values, linked=False)}
+    assert apart["AU12"] == ("AU12_right", "AU12_left") and apart["procerus"] == ("procerus",)
+    values["AU12_left"] = 0.5
+    assert len(rows_of(names, values, linked=True)[0].names) == 3
+    rows = rows_of(names, values, linked=True)
+    assert [row.label for row in found(rows, "smile au", group="", actions={"AU12": "Smile"})] == [
+        "AU12"
+    ]
+
+
+def test_settings_come_back(tmp_path: Path) -> None:
+    """What is written is read again."""
+    path = tmp_path / "deep" / "viewer.json"
+    settings = Settings(size=(900, 700), theme="dark", cameras={"face": [1.0, 2.0]})
+    settings.look.overlays = ["muscles"]
+    settings.look.options = {"kahler": {"threshold_once": 0.1}}
+    save_settings(path, settings)
+    read, complaint = load_settings(path)
+    assert complaint == "" and json.dumps(read.__dict__, default=vars) == json.dumps(
+        settings.__dict__, default=vars
+    )
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "not json", "[]", '{"look": 3}', '{"size": "big"}', '{"size": [1, "x"]}', "\x00\x01"],
+)
+def test_broken_settings_are_passed_by(tmp_path: Path, text: str) -> None:
+    """A file that is damaged gives the first settings, and a line that says so where it is."""
+    path = tmp_path / "viewer.json"
+    path.write_text(text)
+    settings, complaint = load_settings(path)
+    assert settings.look == Look() and (settings.size is None or min(settings.size) >= 200)
+    assert complaint == "" or str(path) in complaint
+
+
+def test_clock_steps_at_its_own_rate() -> None:
+    """Steps are as many as the time wants, whatever the frames; a stall is mostly forgotten."""
+    for frame in (1.0 / 144.0, 1.0 / 60.0, 1.0 / 20.0):
+        clock = Clock()
+        steps = sum(clock.steps(frame) for _ in range(round(2.0 / frame)))
+        assert abs(steps - 2.0 / STEP) <= 1
+    clock = Clock()
+    assert clock.steps(30.0) == MOST_STEPS
+    assert clock.steps(STEP) == 1
+
+
+def test_quality_falls_once_and_does_not_flicker() -> None:
+    """Slow frames lower the level; fast ones raise it by one, and only as a motion begins."""
+    quality = Quality(is_software=False)
+    assert quality.detail == FULL
+    for _ in range(2 * PATIENCE):
+        quality.note(0.08)
+    assert quality.level == 2
+    for _ in range(100):
+        quality.note(0.01)
+    assert quality.level == 2
+    quality.begin_motion()
+    assert quality.level == 1
+    for _ in range(100):
+        quality.note(0.08)
+    assert quality.detail == LEVELS[-1]
+
+
+def test_the_point_under_the_mouse(scene: FaceScene) -> None:
+    """The ray through the tip of the nose meets it; one through a corner meets nothing."""
+    camera = render.OrbitCamera.framing(scene.rest_positions)
+    viewport = (30, 20, 400, 500)
+    tip = scene.rest_positions[scene.rest_positions[:, 2].argmax()]
+    clip = np.append(tip, 1.0) @ np.asarray(
+        camera.view_matrix() @ camera.projection_matrix(400 / 500)
+    )
+    x, y = clip[:2] / clip[3]
+    place = 30 + 200 * (x + 1), 20 + 250 * (y + 1)
+    ray = picking.Ray.through(camera, viewport, place)
+    point = picking.skin_under(ray, scene.rest_positions, scene.faces)
+    assert point is not None and np.linalg.norm(point - tip) < 0.5
+    missed = picking.Ray.through(camera, viewport, (31, 21))
+    assert picking.skin_under(missed, scene.rest_positions, scene.faces) is None
+
+
+def test_the_muscle_under_a_point(scene: FaceScene) -> None:
+    """The nearest fibre's muscle within reach, or none."""
+    fibres = scene.simulation.fibres()
+    for name in (f"{SMILE}_left", "frontalis_medial_right", "mentalis_left"):
+        line = fibres[name][0]
+        assert picking.muscle_at(line[len(line) // 2], {name: fibres[name]}) == name
+    assert picking.muscle_at(np.array([0.0, 0.0, 1e4]), fibres) is None
+    assert picking.muscle_at(np.zeros(3), {}) is None
+
+
+def test_the_page_shows_every_picture_of_the_tour() -> None:
+    """docs/viewer.md and the program that draws its pictures agree, and the files are there."""
+    page = Path("docs/viewer.md").read_text(encoding="utf-8")
+    for name in STOPS:
+        picture = Path("docs/pictures") / f"{name}.png"
+        assert f"pictures/{name}.png" in page
+        assert 10_000 < picture.stat().st_size < 400_000

@@ -1,0 +1,87 @@
+"""A finger on the skin: it follows, it stays stable, it swings back."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import sim
+from tests.sim.poses import FRAME
+
+
+def cheek(simulation: sim.Simulation) -> npt.NDArray[np.int64]:
+    """The vertices within 12 mm of one on the left cheek."""
+    rest = simulation.rest_positions
+    middle = rest[np.abs(rest - rest.mean(axis=0) - (40.0, -20.0, 60.0)).sum(axis=1).argmin()]
+    return np.flatnonzero(np.linalg.norm(rest - middle, axis=1) < 12.0)
+
+
+def test_skin_follows_a_finger_and_swings_back(simulation: sim.Simulation) -> None:
+    """Pulled by 20 mm it comes most of the way and takes skin around along; let go, it rests."""
+    grabbed = cheek(simulation)
+    target = simulation.rest_positions[grabbed] + (20.0, 0.0, 0.0)
+    simulation.pull(grabbed, target, np.ones(len(grabbed)))
+    for _ in range(60):
+        simulation.step(FRAME)
+    moved = simulation.positions - simulation.rest_positions
+    assert moved[grabbed, 0].min() > 12.0
+    others = np.setdiff1d(np.arange(len(moved)), grabbed)
+    assert 2.0 < np.abs(moved[others]).max() < 20.0
+    simulation.let_go()
+    for _ in range(120):
+        simulation.step(FRAME)
+    assert np.abs(simulation.positions - simulation.rest_positions).max() < 0.01
+
+
+def test_a_finger_knows_where_a_turned_head_is(simulation: sim.Simulation) -> None:
+    """With the head turned aside the skin still goes where the finger goes."""
+    simulation.set("head_yaw", 1.0)
+    for _ in range(90):
+        simulation.step(FRAME)
+    before = simulation.positions.copy()
+    grabbed = cheek(simulation)
+    offset = np.array([10.0, 12.0, 0.0])
+    simulation.pull(grabbed, before[grabbed] + offset, np.ones(len(grabbed)))
+    for _ in range(60):
+        simulation.step(FRAME)
+    moved = (simulation.positions - before)[grabbed].mean(axis=0)
+    assert moved @ offset > 0.9 * np.linalg.norm(moved) * np.linalg.norm(offset)
+    assert np.linalg.norm(moved) > 0.6 * np.linalg.norm(offset)
+
+
+def test_a_mad_finger_breaks_nothing(
+    simulation: sim.Simulation, generator: np.random.Generator
+) -> None:
+    """Jumps of 100 mm in every frame stay bounded, at the longest step."""
+    grabbed = cheek(simulation)
+    for _ in range(40):
+        offset = generator.uniform(-100.0, 100.0, 3)
+        target = simulation.rest_positions[grabbed] + offset
+        simulation.pull(grabbed, target, np.ones(len(grabbed)))
+        simulation.step(1.0 / 20.0)
+        assert np.abs(simulation.positions - simulation.rest_positions).max() < 200.0
+
+
+@pytest.mark.parametrize(
+    ("vertices", "targets", "firmness", "message"),
+    [
+        ([1, 2], np.zeros((1, 3)), [1.0, 1.0], r"must be \(n, 3\)"),
+        ([1], np.full((1, 3), np.nan), [1.0], "must be finite"),
+        ([1], np.zeros((1, 3)), [2.0], "from 0 to 1"),
+        ([1, 1], np.zeros((2, 3)), [1.0, 1.0], "different numbers"),
+        ([-1], np.zeros((1, 3)), [1.0], "different numbers"),
+    ],
+)
+def test_pulls_that_do_not_fit(
+    simulation: sim.Simulation,
+    vertices: list[int],
+    targets: npt.NDArray[np.float64],
+    firmness: list[float],
+    message: str,
+) -> None:
+    """What cannot be pulled is refused, and nothing is pulled then."""
+    with pytest.raises(ValueError, match=message):
+        simulation.pull(vertices, targets, firmness)
+    simulation.step(FRAME)
+    assert np.abs(simulation.positions - simulation.rest_positions).max() < 1e-6
