@@ -25,6 +25,7 @@ from .contact import EyeContact, Grip, LipPairs, pair_lips, watch_eyeballs
 from .controls import GAZE_RATE, Control
 from .integrator import LONGEST_SUBSTEP, ROUNDING
 from .landmarks import (
+    INNER_CORNERS,
     LANDMARK_COUNT,
     LOWER_INNER,
     UPPER_INNER,
@@ -57,7 +58,7 @@ from .teeth import Teeth, watch_teeth
 from .tissue import TissueSprings, masses_for_step
 
 SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
-NECK_TOP, NECK_FOOT = 0.0, 55.0  # mm below the chin: the neck, where the head's turn fades
+NECK_TOP, NECK_FOOT = 0.0, 45.0  # mm below the chin: the neck, where the head's turn fades
 LIPS_MEET_AT = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
 LIPS_WHOLE, LIPS_END = 7.0, 32.0  # mm from the mouth line: skin that goes along, in full and at all
 LEAST_MANDIBLE = 1e-4  # share of the jaw's motion that is none
@@ -127,8 +128,9 @@ def build_anatomy(head: Any) -> Anatomy:
     if landmarks is not None and skull.eyeballs:
         names = [control.name for control in controls]
         lids = place_lids(rig, surface, landmarks, skull.eyeballs, names)
+    corners = np.zeros((0, 3)) if landmarks is None else select(landmarks, INNER_CORNERS)
     springs = TissueSprings.under(surface, rig.tissue)
-    edges = EdgeSprings.along(surface, rig.tissue)
+    edges = EdgeSprings.along(surface, rig.tissue, corners)
     passive, greatest = _holds(muscles, lids, surface.vertex_count)
     bound = edges.row_bound(surface.vertex_count)
     bound += np.maximum(springs.tangential, springs.normal) + greatest

@@ -33,7 +33,8 @@ from .contact import SEALED
 from .controls import Controls
 from .drive import MuscleDrive
 from .lids import turn_lids
-from .skull import HEAD_CONTROLS, REST, Pose
+from .outlet import place
+from .skull import REST, Pose
 from .state import State
 from .substep import advance
 from .teeth import deepest
@@ -56,7 +57,10 @@ class Simulation:
         self._grip = SEALED
         self._jaw = (0.0, 0.0, 0.0)
         self._mandible: Pose = REST
+        self._head_values = (0.0, 0.0, 0.0)
         self._head: Pose = REST
+        self._turn = np.eye(4)
+        self._axes = anatomy.frame.axes * anatomy.frame.scale
         heaviness = anatomy.rig.tissue.heaviness
         self._weight = Weight(surface.areas, heaviness, gravity=gravity, inertia=inertia)
         self._weighs = gravity or inertia
@@ -173,17 +177,16 @@ class Simulation:
                 self._weight.add(self._head, dt / ticks, self._state.x, self._state.pull)
             self._advance(dt / ticks)
             self._controls.advance(dt / ticks / 2.0)
-        moved = self._state.x - self._anatomy.surface.positions
-        if not np.isfinite(moved).all():
+        anatomy, state = self._anatomy, self._state
+        broken = place(
+            state.x, anatomy.surface.positions, self._axes, self._rest, self._turn, anatomy.turns,
+            self._positions,
+        )  # fmt: skip
+        if broken:
             raise SimulationUnstable(
-                f"{int((~np.isfinite(moved)).any(axis=1).sum())} of {len(moved)} vertices are not "
-                "finite; call reset(), and report the mesh if it was built from a sound one"
+                f"{broken} of {len(state.x)} vertices are not finite; "
+                "call reset(), and report the mesh if it was built from a sound one"
             )
-        np.add(self._rest, self._anatomy.frame.vectors_to_head(moved), out=self._positions)
-        if self._head is not REST:
-            turn = self._head.matrix(self._anatomy.frame)
-            turned = self._positions @ turn[:3, :3].T + turn[:3, 3]
-            self._positions += self._anatomy.turns * (turned - self._positions)
 
     def _place_targets(self) -> None:
         """Bones, lids and muscles for the activations reached: where each spring pulls to."""
@@ -193,8 +196,11 @@ class Simulation:
         if jaw != self._jaw:
             self._jaw = jaw
             self._mandible = anatomy.skull.mandible_pose(*jaw)
-        pitch, yaw, roll = (now(name) for name in HEAD_CONTROLS)
-        self._head = anatomy.skull.head_pose(pitch, yaw, roll)
+        head = now("head_pitch"), now("head_yaw"), now("head_roll")
+        if head != self._head_values:
+            self._head_values = head
+            self._head = anatomy.skull.head_pose(*head)
+            self._turn = np.eye(4) if self._head is REST else self._head.matrix(anatomy.frame)
         weight, closed = anatomy.skull.mandible_weight, now("lips_closed")
         if closed > 0.0:
             weight = weight + closed * (anatomy.closed_weight - weight)

@@ -38,6 +38,7 @@ STANDARD_DIAGONAL = (
 UPPER_LIP = (50, 51, 52)
 LOWER_LIP = (56, 57, 58)
 MOUTH_CORNERS = (48, 54, 60, 64)
+INNER_CORNERS = (60, 64)
 UPPER_INNER, LOWER_INNER = (60, 61, 62, 63, 64), (60, 67, 66, 65, 64)  # lines of the inner lips
 
 

@@ -11,11 +11,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from .landmarks import EYE_LANDMARKS, LOWER_LIP, UPPER_LIP, Array, Side, select, smoothstep
+from .landmarks import (
+    EYE_LANDMARKS,
+    INNER_CORNERS,
+    LOWER_LIP,
+    UPPER_LIP,
+    Array,
+    Side,
+    select,
+    smoothstep,
+)
 from .surface import Surface
 
 LIP_REACH = 20.0  # mm from the middle of a lip within which skin belongs to it
-INNER_CORNERS = (60, 64)
 CORNER_FADE = 10.0  # mm from the mouth corner where a lip moves fully on its own
 LID_REACH = 14.0  # mm from the lid landmarks
 CERTAIN = 3.0  # mm by which one lid must be nearer; less only happens at the corners

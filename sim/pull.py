@@ -32,7 +32,7 @@ from .surface import Surface
 Indices = npt.NDArray[np.int32]
 Unsigned = npt.NDArray[np.uint32]  # saves the kernels a test per access
 
-LEAST_WEIGHT = 6e-3  # attachments below it are dropped
+LEAST_WEIGHT = 1e-2  # attachments below it are dropped
 
 
 @dataclass(frozen=True)

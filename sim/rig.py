@@ -70,6 +70,7 @@ class Tissue:
     shear: float = _number(0.0, 100.0, default=4.0)  # x membrane: neighbours move alike
     stiffening: float = _number(1.0, 20.0, default=4.0)  # slope of an edge spring beyond the limit
     stiffening_strain: float = _number(0.0, 2.0, default=0.25)  # strain where it starts (biphasic)
+    modiolus: float = _number(0.0, 50.0, default=0.0)  # how much firmer skin is at mouth corners
     passive: float = _number(0.0, 1.0, default=0.2)  # share of a muscle's stiffness when relaxed
     heaviness: float = _number(0.0, 1.0, default=0.1)  # share of weight and inertia that is free
     lip_seal: float = _number(0.0, 1000.0, default=40.0)  # springs that hold closed lips together

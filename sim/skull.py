@@ -92,7 +92,9 @@ class Skull:
         turn = rotation(UP, np.radians(head.yaw_deg) * yaw)
         turn = turn @ rotation(LATERAL, -np.radians(head.pitch_deg) * pitch)
         turn = turn @ rotation(FORWARD, -np.radians(head.roll_deg) * roll)
-        return Pose.about(self.condyles.mean(axis=0) + head.joint, turn, np.zeros(3))
+        return Pose.about(
+            (self.condyles[0] + self.condyles[1]) / 2.0 + head.joint, turn, np.zeros(3)
+        )
 
     def mandible_pose(self, opening: float, forward: float, sideways: float) -> Pose:
         """The mandible for jaw_open (0..1), jaw_forward and jaw_sideways (-1..1)."""

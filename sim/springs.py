@@ -22,6 +22,8 @@ from .landmarks import Array
 from .rig import Tissue
 from .surface import Surface
 
+MODIOLUS = 5.0  # mm: its radius (anatomy: a knot of some 10 mm across)
+
 
 class EdgeSprings(NamedTuple):
     """All edges of the skin as springs."""
@@ -34,9 +36,17 @@ class EdgeSprings(NamedTuple):
     strain_limit: float
 
     @classmethod
-    def along(cls, surface: Surface, tissue: Tissue) -> EdgeSprings:
-        """Springs along all edges of a surface."""
+    def along(cls, surface: Surface, tissue: Tissue, knots: Array) -> EdgeSprings:
+        """Springs along all edges of a surface.
+
+        knots: points (K, 3) [mm] around which skin is firm, the mouth corners: there many muscles
+        are knotted together (the modiolus), and no fold may turn inside out.
+        """
         stiffness = tissue.membrane * tissue.stiffness_scale * surface.edge_stiffness
+        middle = surface.positions[surface.edges].mean(axis=1)
+        for knot in knots:
+            squared = ((middle - knot) ** 2).sum(axis=1)
+            stiffness = stiffness * (1.0 + tissue.modiolus * np.exp(-squared / MODIOLUS**2))
         return cls(
             surface.edges.astype(np.uint32), surface.lengths, stiffness, tissue.shear * stiffness,
             tissue.stiffening, tissue.stiffening_strain,
