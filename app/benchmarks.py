@@ -72,7 +72,7 @@ def tearing_table(mixtures: int) -> str:
     """Look for torn skin in all expressions and in random mixtures; the text to print."""
     poses = bench.tearing.run(mixtures=mixtures)
     lines = [
-        f"{len(poses)} poses: every action unit, expression and so on, and {mixtures} random mixtures of controls.",
+        f"{len(poses)} poses: every row of the layers and {mixtures} random mixtures of muscles.",
         f"triangles turned by more than a right angle: {sum(pose.inverted for pose in poses)} "
         f"in {sum(pose.inverted > 0 for pose in poses)} poses",
         "",

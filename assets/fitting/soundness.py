@@ -18,7 +18,7 @@ from ..model import AssetError, FloatArray, IndexArray
 
 MOST_TRIANGLES = 50_000
 FEWEST_TRIANGLES = 300  # below it eyes and mouth have no shape (chosen)
-LIPS = ((61, 62, 63), (67, 66, 65))  # inner landmarks above and below
+LIPS = (62, 66)  # inner landmarks in the middle, above and below
 LIP_CORNERS = (60, 64)
 # The two lips join around the corners of the mouth. If the way along the skin from one to the other
 # is less than this share of that way, they are welded; behind them a bag may join them honestly.
@@ -84,15 +84,14 @@ def check_manifold(faces: IndexArray) -> None:
 
 def check_openings(skin: Skin) -> None:
     """Raise AssetError where lips are welded or skin covers an eye; in the face frame [mm]."""
-    over, under, ends = (skin.landmarks[list(n)] for n in (*LIPS, LIP_CORNERS))
-    from_above, from_below = (ways(skin.vertices, skin.faces, n) for n in (over, under))
-    across = from_above[np.arange(len(over)), under]
-    around = (from_above[:, ends] + from_below[:, ends]).min(axis=1)
-    worst = int((across / np.maximum(around, 1e-9)).argmin())
-    if across[worst] < WELDED * around[worst]:
+    over, under = skin.landmarks[list(LIPS)]
+    from_above, from_below = ways(skin.vertices, skin.faces, skin.landmarks[list(LIPS)])
+    ends = skin.landmarks[list(LIP_CORNERS)]
+    across, around = from_above[under], (from_above[ends] + from_below[ends]).min()
+    if over == under or across < WELDED * around:
         raise AssetError(
-            f"the mouth is shut: skin joins landmarks {LIPS[0][worst]} and {LIPS[1][worst]} on a "
-            f"way of {across[worst]:.0f} mm; cut the mesh open between the lips"
+            f"the mouth is shut: skin joins landmarks {LIPS[0]} and {LIPS[1]} on a way of "
+            f"{across:.0f} mm; cut the mesh open between the lips"
         )
     corners = skin.vertices[skin.faces]
     for side, pairs in LIDS.items():
