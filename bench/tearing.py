@@ -6,7 +6,7 @@ against the skin around them, and how deep skin sits in the other lip, an eyebal
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,7 +56,7 @@ def run(*, mixtures: int = MIXTURES, seed: int = SEED) -> list[Pose]:
 
 def _values(
     simulation: sim.Simulation, head: assets.Head, mixtures: int, generator: np.random.Generator
-) -> Iterator[tuple[str, dict[str, float]]]:
+) -> Iterator[tuple[str, Mapping[str, float]]]:
     """Name and control values of every expression, then of random mixtures."""
     yield from head.expressions.items()
     # The pose of the head turns all triangles alike; it is left out.
