@@ -86,6 +86,8 @@ def finger(viewer: Viewer) -> None:
     viewer.touch.pull.to(corner + np.array([-30.0, 16.0, 12.0]))
     for _ in range(20):
         viewer.frame()
+    viewer.quality.level = 0
+    viewer.frame()
 
 
 def keys(viewer: Viewer) -> None:
@@ -128,8 +130,6 @@ def main(arguments: list[str]) -> None:
             STOPS[name](viewer)
             if viewer.touch.pull is None:
                 settled(viewer)
-            else:
-                viewer.surface.detail = viewer.quality.detail
             picture = Image.fromarray(viewer.surface.read() & KEPT_BITS)
         with written_aside(folder / f"{name}.png") as part:
             picture.save(part, format="PNG", optimize=True)

@@ -7,13 +7,14 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from imgui_bundle import imgui
 from PIL import Image
 
 from app.choices import script_for
@@ -22,6 +23,21 @@ from app.viewer.clock import MOST_STEPS
 from app.viewer.files import Files
 from app.viewer.settings import Look, load_settings
 from app.viewer.window import FULL
+
+from .driving import (
+    clear_search,
+    click,
+    drag,
+    middle,
+    moved,
+    nose,
+    on_screen,
+    settle,
+    show_controls,
+    until,
+    write,
+    xdotool,
+)
 
 pytestmark = [
     pytest.mark.window,
@@ -40,6 +56,8 @@ def viewer() -> Iterator[Viewer]:
     script = replace(script_for(None, "face"), duration=0.5)
     with Viewer(script, SIZE) as opened:
         opened.files = Files(is_native=False)
+        io = imgui.get_io()  # slower than people, for a machine that is busy [s]
+        io.mouse_single_click_delay, io.mouse_double_click_time = 1.5, 1.0
         settle(opened)
         yield opened
 
@@ -57,91 +75,6 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     viewer.messages.text = ""
     viewer.wanted_tab = "Face"
     xdotool(viewer, "key", "f")
-
-
-def settle(viewer: Viewer, frames: int = 4) -> None:
-    """Let the window run for a few frames."""
-    for _ in range(frames):
-        viewer.frame()
-
-
-def xdotool(viewer: Viewer, *words: object) -> None:
-    """Send real events and let the window take them in."""
-    subprocess.run(["xdotool", *map(str, words)], check=True, capture_output=True)
-    settle(viewer)
-
-
-def until(viewer: Viewer, condition: Callable[[], bool], seconds: float = 10.0) -> bool:
-    """Run until something has come true, or too long."""
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        if condition():
-            return True
-        viewer.frame()
-    return False
-
-
-def on_screen(viewer: Viewer, x: float, y: float) -> tuple[int, int]:
-    """A place of the window, on the screen."""
-    import glfw
-
-    left, top = glfw.get_window_pos(viewer.surface.handle)
-    return round(left + x), round(top + y)
-
-
-def middle(viewer: Viewer, name: str) -> tuple[int, int]:
-    """Where an item of a panel is, on the screen."""
-    assert until(viewer, lambda: name in viewer.gui.places, 3.0), name
-    left, top, right, bottom = viewer.gui.places[name]
-    return on_screen(viewer, 0.5 * (left + right), 0.5 * (top + bottom))
-
-
-def click(viewer: Viewer, name: str, *, times: int = 1) -> None:
-    """Click in the middle of an item."""
-    xdotool(viewer, "mousemove", *middle(viewer, name))
-    xdotool(viewer, "click", "--repeat", times, "--delay", 50, 1)
-    settle(viewer)
-
-
-def drag(viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button: int = 1) -> None:
-    """Press, move and stay pressed."""
-    xdotool(viewer, "mousemove", *place)
-    xdotool(viewer, "mousedown", button)
-    xdotool(viewer, "mousemove_relative", "--", *by)
-
-
-def write(viewer: Viewer, text: str) -> None:
-    """Type into the line that has the focus; the window takes in about a key in two frames."""
-    xdotool(viewer, "type", text)
-    settle(viewer, 2 * len(text))
-
-
-def show_controls(viewer: Viewer, words: str) -> None:
-    """Type into the search line."""
-    click(viewer, "search")
-    write(viewer, words)
-
-
-def clear_search(viewer: Viewer) -> None:
-    """Empty the search line."""
-    click(viewer, "search")
-    xdotool(viewer, "key", "ctrl+a", "BackSpace", "Return")
-
-
-def moved(viewer: Viewer) -> float:
-    """How far the farthest vertex is from rest [mm]."""
-    return float(np.abs(viewer.scene.positions - viewer.scene.rest_positions).max())
-
-
-def nose(viewer: Viewer) -> tuple[int, int]:
-    """The tip of the nose, on the screen."""
-    tip = viewer.scene.positions[viewer.scene.positions[:, 2].argmax()]
-    left, top, width, height = viewer.picture_area
-    camera = viewer.camera
-    matrix = np.asarray(camera.view_matrix() @ camera.projection_matrix(width / height))
-    clip = np.append(tip, 1.0) @ matrix
-    x, y = clip[:2] / clip[3]
-    return on_screen(viewer, left + width * (0.5 + 0.5 * x), top + height * (0.5 - 0.5 * y))
 
 
 def test_a_slider_moves_the_skin_and_undo_moves_it_back(viewer: Viewer) -> None:
