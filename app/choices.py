@@ -65,20 +65,6 @@ def known_refiner(name: str) -> str:
     return name
 
 
-def threshold_options(
-    refiner: str, thresholds: tuple[float, float] | None
-) -> dict[str, float] | None:
-    """The refiner's options that --thresholds stands for; None where it was not given."""
-    if not thresholds:
-        return None
-    if refiner != "kahler":
-        raise UserError(f"--thresholds goes with --refiner kahler, not with '{refiner}'")
-    once, twice = thresholds
-    if once > twice:
-        raise UserError(f"--thresholds {once:g} {twice:g}: the first must not be above the second")
-    return {"threshold_once": once, "threshold_twice": twice}
-
-
 def style_of(shading: str, wireframe: bool, splits: bool, skin: str) -> render.Style:
     """The style that the drawing options ask for."""
     return render.Style(

@@ -39,11 +39,11 @@ def drawing_options(command: Command) -> Command:
             help="Refine plug-in; none draws the mesh as it is.",
         ),
         click.option(
-            "--thresholds",
-            type=FiniteRange(0.0, 2.0),
-            nargs=2,
-            metavar="ONCE TWICE",
-            help="Drops of the normals' dot product that split an edge once and twice.",
+            "--option",
+            "settings_of_refiner",
+            multiple=True,
+            metavar="NAME=VALUE",
+            help="Of the refiner: scheme=cubic, criterion=bulge, threshold_once=0.01, ...",
         ),
         click.option(
             "--shading",
@@ -114,7 +114,7 @@ def capture(
     head: Path | None,
     landmarks: Path | None,
     refiner: str,
-    thresholds: tuple[float, float] | None,
+    settings_of_refiner: tuple[str, ...],
     **look: Any,
 ) -> None:
     """Render SCRIPT offscreen into a film, frames, a picture or a contact sheet.
@@ -122,7 +122,8 @@ def capture(
     Without SCRIPT the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
     """
     from . import capture as capturing
-    from .choices import head_for, known_refiner, script_for, style_of, threshold_options
+    from .choices import head_for, known_refiner, script_for, style_of
+    from .refining import options_in_words
 
     with told_in_one_line():
         performance = script_for(script, scene, settings)
@@ -130,7 +131,7 @@ def capture(
             size=size,
             frames_per_second=fps,
             refiner=known_refiner(refiner),
-            refiner_options=threshold_options(refiner, thresholds),
+            refiner_options=options_in_words(settings_of_refiner),
             compare=compare,
             captions=captions,
             camera=camera or performance.camera,
@@ -302,20 +303,21 @@ def open_viewer(
     head: Path | None,
     landmarks: Path | None,
     refiner: str,
-    thresholds: tuple[float, float] | None,
+    settings_of_refiner: tuple[str, ...],
     **look: Any,
 ) -> None:
     """Open the viewer on a script's scene."""
     with told_in_one_line():
-        from .choices import head_for, known_refiner, script_for, threshold_options
+        from .choices import head_for, known_refiner, script_for
+        from .refining import options_in_words
 
         performance = script_for(script, scene)
         brought = head_for(head, landmarks)
         from .viewer import Viewer
         from .viewer.settings import look_of, settings_path
 
-        options = threshold_options(known_refiner(refiner), thresholds)
-        chosen = look_of(refiner, options, **look)
+        options = options_in_words(settings_of_refiner)
+        chosen = look_of(known_refiner(refiner), options, **look)
         path = settings_path()
         with Viewer(performance, size, chosen, head=brought, settings_path=path) as viewer:
             viewer.run(playing=playing, once=once)

@@ -19,6 +19,7 @@ import numpy.typing as npt
 import refine
 import render
 
+from .refining import refiner_for
 from .scenes import Scene
 
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
@@ -38,11 +39,7 @@ class Picture:
         cls, scene: Scene, renderer: render.Renderer, name: str, options: Mapping[str, Any] | None
     ) -> Picture:
         """Bind the refiner `name` to the scene's mesh and borrow render buffers for it."""
-        if options is None:
-            options = scene.refiner_options.get(name, {})
-        refiner = refine.create(
-            name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **options
-        )
+        refiner = refiner_for(scene, name, options)
         stream = renderer.lend_stream(
             refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
         )
@@ -79,7 +76,7 @@ class Pipeline:
         refiners: Mapping[str, Mapping[str, Any] | None],
         texture: render.Texture | None = None,
     ) -> None:
-        """Bind `refiners` (name -> options, None: the scene's) to the scene, left to right.
+        """Bind `refiners` (name -> options beside the scene's own) to the scene, left to right.
 
         `texture`: the scene's albedo, as `texture_of` made it.
         """

@@ -15,7 +15,6 @@ import numpy as np
 
 import render
 
-from ..errors import UserError
 from ..labels import caption
 from ..outputs import Frame
 from ..pipeline import Picture, Viewport, texture_of
@@ -33,7 +32,6 @@ SKINS = {
     "clay": (False, render.CLAY),
 }
 COMPARISONS = ("off", "wipe", "side by side")
-DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `can_detail`
 LEAST_SHARE = 0.08  # of the picture that each side of a comparison keeps
 
 
@@ -71,14 +69,7 @@ class Stage:
         if wanted == self._adopted:
             return
         self._adopted = wanted  # refused options are refused once, not in every frame
-        try:
-            merged = {**self.scene.refiner_options.get(look.refiner, {}), **(options or {})}
-            if merged.get("scheme") == DETAIL:
-                finer = self.scene.head.finer(1)  # type: ignore[attr-defined]
-                merged["detail"] = finer.vertices, finer.faces
-            refined = Picture.of(self.scene, self.renderer, look.refiner, merged)
-        except (ValueError, TypeError) as error:
-            raise UserError(f"refiner {look.refiner}: {error}") from None
+        refined = Picture.of(self.scene, self.renderer, look.refiner, options)
         if self.refined is not self.static:
             self.refined.stream.release()
         self.refined = refined
@@ -212,11 +203,6 @@ def style_of(look: Look, background: render.Background) -> render.Style:
         albedo=albedo,
         background=background,
     )
-
-
-def can_detail(scene: Scene) -> bool:
-    """Whether the scene's head comes with a finer mesh."""
-    return hasattr(getattr(scene, "head", None), "finer")
 
 
 def checked(look: Look, refiners: Sequence[str], overlays: Sequence[str]) -> Look:

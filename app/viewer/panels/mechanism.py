@@ -13,11 +13,12 @@ import refine
 import render
 from refine import choices, criteria
 
+from ...refining import DETAIL, can_detail
 from .. import commands
 from ..colours import COLOURS
 from ..gui import colour, em
 from ..overlays import overlays_of
-from ..stage import COMPARISONS, DETAIL, SKINS, STAGES, can_detail
+from ..stage import COMPARISONS, SKINS, STAGES
 from .sliders import Sliders
 
 if TYPE_CHECKING:

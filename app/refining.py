@@ -1,0 +1,78 @@
+"""Refiners for scenes: options as words of the command line, and what a scene adds to them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import click
+import numpy as np
+import numpy.typing as npt
+
+import refine
+
+from .errors import UserError
+from .scenes import Scene
+
+DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
+WORDS = {"on": True, "true": True, "off": False, "false": False}
+
+refine.on_compile(
+    lambda: click.echo("Compiling the refinement, this once; it takes some seconds.", err=True)
+)
+
+
+def refiner_for(scene: Scene, name: str, options: Mapping[str, Any] | None) -> refine.Refiner:
+    """Bind the refiner `name` to the scene's mesh; UserError if it refuses an option.
+
+    options: over those that suit the scene; None for the latter alone.
+    """
+    merged: dict[str, Any] = {**scene.refiner_options.get(name, {}), **(options or {})}
+    if merged.get("scheme") == DETAIL and "detail" not in merged:
+        merged["detail"] = finer_mesh(scene)
+        if merged["detail"] is None:
+            raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
+    try:
+        return refine.create(
+            name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **merged
+        )
+    except (ValueError, TypeError) as error:
+        raise UserError(f"refiner {name}: {error}") from None
+
+
+def can_detail(scene: Scene) -> bool:
+    """Whether the scene's head comes with a finer mesh."""
+    return hasattr(getattr(scene, "head", None), "finer")
+
+
+def finer_mesh(scene: Scene) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]] | None:
+    """Vertices and triangles of the scene's head with four times its triangles, if it has them."""
+    if not can_detail(scene):
+        return None
+    finer = scene.head.finer(1)  # type: ignore[attr-defined]
+    return finer.vertices, finer.faces
+
+
+def options_in_words(settings: Sequence[str]) -> dict[str, Any] | None:
+    """What `--option NAME=VALUE ...` says: numbers, on and off, or words; None for nothing."""
+    options: dict[str, Any] = {}
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        if not (name and equals and text):
+            raise UserError(f"--option {setting}: write NAME=VALUE, as in scheme=cubic")
+        options[name] = _value(text)
+        if isinstance(options[name], float) and not math.isfinite(options[name]):
+            raise UserError(f"--option {setting}: {text} is not a finite number")
+    return options or None
+
+
+def _value(text: str) -> bool | int | float | str:
+    if text in WORDS:
+        return WORDS[text]
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text
