@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -28,6 +29,8 @@ def refiner_for(scene: Scene, name: str, options: Mapping[str, Any] | None) -> r
 
     options: over those that suit the scene; None for the latter alone.
     """
+    if options:
+        _check(name, options_of(refine.create(name, scene.faces, scene.rest_positions)), options)
     merged: dict[str, Any] = {**scene.refiner_options.get(name, {}), **(options or {})}
     if merged.get("scheme") == DETAIL and "detail" not in merged:
         merged["detail"] = finer_mesh(scene)
@@ -39,6 +42,38 @@ def refiner_for(scene: Scene, name: str, options: Mapping[str, Any] | None) -> r
         )
     except (ValueError, TypeError) as error:
         raise UserError(f"refiner {name}: {error}") from None
+
+
+def options_of(refiner: refine.Refiner) -> dict[str, Any]:
+    """What a refiner can be told in numbers and words, as its class declares it, and its defaults.
+
+    An option whose default is None is left out, unless it may be on or off.
+    """
+    parameters = inspect.signature(type(refiner)).parameters.values()
+    return {
+        each.name: each.default
+        for each in parameters
+        if each.kind is each.KEYWORD_ONLY
+        and (isinstance(each.default, bool | int | float | str) or "bool" in str(each.annotation))
+    }
+
+
+def _check(name: str, offered: Mapping[str, Any], options: Mapping[str, Any]) -> None:
+    """UserError for an option that the refiner does not offer, or of another kind."""
+    for option, value in options.items():
+        if option not in offered:
+            takes = ", ".join(offered) or "none"
+            raise UserError(f"refiner {name}: unknown option {option}; it takes {takes}")
+        default = offered[option]
+        if default is None or isinstance(default, bool):
+            is_right, wanted = value is None or isinstance(value, bool), "on or off"
+        elif isinstance(default, str):
+            is_right, wanted = isinstance(value, str), "a word"
+        else:
+            is_right = isinstance(value, int | float) and not isinstance(value, bool)
+            wanted = "a number"
+        if not is_right:
+            raise UserError(f"refiner {name}: option {option} was {value}, must be {wanted}")
 
 
 def can_detail(scene: Scene) -> bool:

@@ -45,7 +45,7 @@ class Action:
 def expression_actions(viewer: Viewer) -> list[Action]:
     """Keys 1 to 9 show the first expressions of the scene."""
 
-    def action(number: int, name: str) -> Action:
+    def show(number: int, name: str) -> Action:
         return Action(
             "Expression",
             name.replace("_", " "),
@@ -55,7 +55,7 @@ def expression_actions(viewer: Viewer) -> list[Action]:
         )
 
     names = list(viewer.scene.expressions)[:9]
-    return [action(number, name) for number, name in enumerate(names, start=1)]
+    return [show(number, name) for number, name in enumerate(names, start=1)]
 
 
 def _can_undo(viewer: Viewer) -> bool:

@@ -152,8 +152,9 @@ class Viewer:
         now = time.perf_counter()
         elapsed, self._last = now - self._last, now
         if elapsed > 0.0:
-            rate = SMOOTHING * self.frames_per_second + (1.0 - SMOOTHING) / elapsed
-            self.frames_per_second = rate
+            # The mean of times, not of rates: a few quick frames must not outweigh the slow ones.
+            shown = 1.0 / self.frames_per_second if self.frames_per_second else elapsed
+            self.frames_per_second = 1.0 / (SMOOTHING * shown + (1.0 - SMOOTHING) * elapsed)
         self._let_time_pass(elapsed if self.film is None else 1.0 / FRAMES_PER_SECOND)
         is_moving = self._draw_scene(elapsed)
         left, bottom, width, _ = self.viewport

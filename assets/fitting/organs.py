@@ -1,9 +1,9 @@
 """Eyeballs, teeth, tongue and the mouth's inside of another head.
 
-Eyeballs stay round: each is moved and scaled by its own eye's landmarks, then set back until the
-lids lie on it. Teeth, gums and tongue stay stiff: they follow the warp by the similarity that comes
-nearest to it. The walls of the mouth and the corners of the eyes bend with it; the walls are pushed
-back where skin would come to lie behind them when the jaw opens.
+Eyeballs stay round: each is moved and scaled by its own eye's landmarks, then forward or back until
+the lids lie on it. Teeth, gums and tongue stay stiff: they follow the warp by the similarity that
+comes nearest to it. The walls of the mouth and the corners of the eyes bend with it; the walls are
+pushed back where skin would come to lie behind them when the jaw opens.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from .warp import Similarity, Warp
 EYE_LANDMARKS = {"right": slice(36, 42), "left": slice(42, 48)}
 STIFF = ("gums", "teeth", "tongue")  # how the names of stiff parts begin
 WALLS = "oral_cavity"  # and those of the mouth's walls
-LID_THICKNESS = 0.3  # [mm] between eyeball and the landmarks on the lids' edges
+LID_CLEARANCE = 0.3  # [mm] between eyeball and the skin of the lids
+LID_DEPTH = 5.0  # [mm] from the landmarks on a lid's edge, as far as its inner skin may reach
 MOUTH = slice(48, 68)
 NARROWER = 0.25  # at their lower end: between the sides of the mandible, then of the throat
 LONGER = (
@@ -64,7 +65,10 @@ def place_eyes(known: Head, place: Place) -> tuple[Eye, ...]:
         centre = target.mean(axis=0) + scale * (eye.centre - source.mean(axis=0))
         scale = float(np.sqrt(scale))
         radius = scale * eye.radius
-        centre[2] += _way_forward(centre, radius + LID_THICKNESS, target)
+        lids = target[[1, 2, 4, 5]]
+        near = cKDTree(lids).query(place.vertices)[0] < LID_DEPTH
+        skin = np.vstack([lids, place.vertices[near]])
+        centre[2] += _way_forward(centre, radius + LID_CLEARANCE, skin)
         eyes.append(Eye(eye.name, centre, radius, scale * eye.iris_radius))
     return tuple(eyes)
 
@@ -74,11 +78,15 @@ def _extent(points: FloatArray) -> float:
     return float(np.linalg.norm(points[3] - points[0]))
 
 
-def _way_forward(centre: FloatArray, radius: float, lids: FloatArray) -> float:
-    """How far [mm] a sphere may move forward until it touches one of the four points on lids."""
-    away = (lids - centre)[[1, 2, 4, 5]]
+def _way_forward(centre: FloatArray, radius: float, skin: FloatArray) -> float:
+    """How far [mm] a sphere may move forward until it touches one of the points in front of it."""
+    away = skin - centre
     across = np.linalg.norm(away[:, :2], axis=1)
-    return float((away[:, 2] - np.sqrt(np.maximum(radius**2 - across**2, 0.0))).min())
+    in_front = (away[:, 2] > 0.0) & (across < radius)
+    if not in_front.any():
+        return 0.0
+    height = np.sqrt(radius**2 - across[in_front] ** 2)
+    return float((away[in_front, 2] - height).min())
 
 
 def place_parts(known: Head, place: Place, warp: Warp, eyes: tuple[Eye, ...]) -> tuple[Part, ...]:

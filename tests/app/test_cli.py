@@ -121,9 +121,12 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         ),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "scheme=round"], "'round' is unknown"),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "cubic"], "write NAME=VALUE"),
+        (["capture", "SMILE", "-o", "x.mp4", "--option", "attributes=3"], "option attributes; it"),
+        (["capture", "SMILE", "-o", "x.mp4", "--option", "threshold_once=a"], "be a number"),
+        (["capture", "SMILE", "-o", "x.mp4", "--option", "blend=maybe"], "must be on or off"),
         (
             ["capture", "SMILE", "-o", "x.mp4", "--refiner", "loop", "--option", "scheme=cubic"],
-            "unknown option 'scheme' for refiner 'loop'",
+            "unknown option scheme; it takes levels",
         ),
         (["capture", "SMILE", "-o", "x.mp4", "--fps", "nan"], "nan is not a finite number"),
         (["capture", "SMILE", "-o", "x.png", "--time", "nan"], "nan is not a finite number"),

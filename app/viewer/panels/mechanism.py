@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +12,7 @@ import refine
 import render
 from refine import choices, criteria
 
-from ...refining import DETAIL, can_detail
+from ...refining import DETAIL, can_detail, options_of
 from .. import commands
 from ..colours import COLOURS
 from ..gui import colour, em
@@ -187,20 +186,6 @@ class MechanismPanel:
             if is_clicked:
                 take(choice)
         imgui.end_combo()
-
-
-def options_of(refiner: refine.Refiner) -> dict[str, Any]:
-    """What a refiner can be told in numbers and words, as its class declares it, and its defaults.
-
-    An option whose default is None is left out, unless it may be on or off.
-    """
-    parameters = inspect.signature(type(refiner)).parameters.values()
-    return {
-        each.name: each.default
-        for each in parameters
-        if each.kind is each.KEYWORD_ONLY
-        and (isinstance(each.default, bool | int | float | str) or "bool" in str(each.annotation))
-    }
 
 
 def _put(stored: dict[str, Any], name: str, value: Any) -> None:
