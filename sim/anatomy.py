@@ -58,7 +58,8 @@ from .teeth import Teeth, watch_teeth
 from .tissue import TissueSprings, masses_for_step
 
 SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
-NECK_TOP, NECK_FOOT = 0.0, 45.0  # mm below the chin: the neck, where the head's turn fades
+SEAL_LOST_BY_THRUST = 0.2  # at full jaw_forward: lips slide, or the upper turns inside out
+NECK = 45.0  # mm below the chin; the turn of the head fades evenly, or the throat turns over
 LIPS_MEET_AT = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
 LIPS_WHOLE, LIPS_END = 7.0, 32.0  # mm from the mouth line: skin that goes along, in full and at all
 LEAST_MANDIBLE = 1e-4  # share of the jaw's motion that is none
@@ -100,6 +101,7 @@ class Anatomy:
         strength = max(0.0, 1.0 - (1.0 - closed) * jaw[0] / SEAL_BROKEN_BY_JAW)
         if strength == 0.0:
             return Grip(0.0, 0.0)
+        strength *= 1.0 - SEAL_LOST_BY_THRUST * max(jaw[1], 0.0)
         strength *= float((1.0 - activation * muscles.opens_lips).prod())
         activity = float((activation * muscles.reaches_lips).max(initial=np.abs(jaw).max()))
         return Grip.of(strength, activity)
@@ -251,7 +253,8 @@ def _turning_share(surface: Surface, landmarks: Array | None) -> Array:
     if landmarks is None:
         return np.ones((surface.vertex_count, 1))
     below = landmarks[8, 1] - surface.positions[:, 1]
-    return smoothstep((NECK_FOOT - below) / (NECK_FOOT - NECK_TOP))[:, None]
+    share: Array = np.clip(1.0 - below / NECK, 0.0, 1.0)[:, None]
+    return share
 
 
 def _closed_weight(surface: Surface, landmarks: Array, weight: Array, lips: LipPairs) -> Array:

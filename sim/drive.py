@@ -6,7 +6,8 @@ a control for both. They add up. The pull is a power of the activation:
     pull = activation ^ drive_power
 
 because a muscle that contracts by half is also only half as stiff, so that the skin would go less
-than half way; with the power, half an activation gives half the motion.
+than half way; with the power, half an activation gives half the motion. One power
+does not suit every muscle: the muscle's own `drive` multiplies it.
 
 Source: own; the power was fitted to the motion of skin at half activations.
 """
@@ -25,10 +26,11 @@ class MuscleDrive:
 
     def __init__(self, rig: Rig, names: tuple[str, ...], controls: Controls) -> None:
         self._controls = controls
-        self._power = rig.tissue.drive_power
         halved = {muscle.name for muscle in rig.muscles if muscle.halves}
         self._own = np.array([controls.index(name) for name in names], dtype=np.int64)
         wholes = [name.removesuffix("_left").removesuffix("_right") for name in names]
+        drive = {muscle.name: muscle.drive for muscle in rig.muscles}
+        self._power = rig.tissue.drive_power * np.array([drive[w] for w in wholes], np.float64)
         self._has_whole = np.array([whole in halved for whole in wholes], dtype=np.bool_)
         self._whole = np.array(
             [controls.index(w if w in halved else n) for w, n in zip(wholes, names, strict=True)],

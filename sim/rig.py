@@ -148,6 +148,7 @@ class Muscle:
     pair: bool = field(default=True, metadata=BOOLEAN)  # one on each side, or one in the middle
     halves: bool = field(default=False, metadata=BOOLEAN)  # a pair with a control for both, too
     crosses: bool = field(default=False, metadata=BOOLEAN)  # a pair, each also on the other side
+    drive: float = _number(0.5, 2.0, default=1.0)  # x drive_power of the tissue
     tone: bool = field(default=True, metadata=BOOLEAN)  # holds the skin when relaxed, too
     bone: str = _choice(BONES, default="cranium")  # where the origin is fixed
     gate: str = _choice(GATES, default="none")  # which lip it may move
