@@ -170,6 +170,19 @@ def place_middles(
 
 
 @kernel
+def place_quarter_normals(vertices: Floats, a: int, b: int, near_a: int) -> None:
+    """Write the normals of both quarter points of an edge from a to b; the middle has its own."""
+    centre, near_b = np.uint32(near_a + 1), np.uint32(near_a + 2)
+    x, y, z = vertices[centre, 3], vertices[centre, 4], vertices[centre, 5]
+    vertices[near_a, 3], vertices[near_a, 4], vertices[near_a, 5] = unit(
+        vertices[a, 3] + x, vertices[a, 4] + y, vertices[a, 5] + z
+    )
+    vertices[near_b, 3], vertices[near_b, 4], vertices[near_b, 5] = unit(
+        vertices[b, 3] + x, vertices[b, 4] + y, vertices[b, 5] + z
+    )
+
+
+@kernel
 def place_quarters(
     points: Floats,
     edge_points: Unsigned,
@@ -195,20 +208,31 @@ def place_quarters(
             wing_r, wing_s = edge_wings[e, 2], edge_wings[e, 3]
             grown_p, grown_q = growth_once[wing_p], growth_once[wing_q]
             grown_r, grown_s = growth_once[wing_r], growth_once[wing_s]
-            for i in range(3):
-                at_a, at_b = points[a, i], points[b, i]
-                at_c, at_d = points[c, i], points[d, i]
-                p = mix(HALF * (at_a + at_c), middles[wing_p, i], grown_p)
-                q = mix(HALF * (at_b + at_c), middles[wing_q, i], grown_q)
-                r = mix(HALF * (at_a + at_d), middles[wing_r, i], grown_r)
-                s = mix(HALF * (at_b + at_d), middles[wing_s, i], grown_s)
-                m, moved_a, moved_b = middles[e, i], vertices[a, i], vertices[b, i]
-                ring = (moved_a + moved_b) + ((p + r) + (q + s))
-                beside_a = EDGE_END * (moved_a + m) + EDGE_WING * (p + r)
-                beside_b = EDGE_END * (moved_b + m) + EDGE_WING * (q + s)
-                vertices[near_a, i] = mix(HALF * (moved_a + m), beside_a, growth)
-                vertices[centre, i] = mix(m, MIDDLE_OWN * m + MIDDLE_RING * ring, growth)
-                vertices[near_b, i] = mix(HALF * (moved_b + m), beside_b, growth)
+            if min(growth, grown_p, grown_q, grown_r, grown_s) == ONE:
+                # All of it has grown: the same without mixing, in half the time.
+                for i in range(3):
+                    m, moved_a, moved_b = middles[e, i], vertices[a, i], vertices[b, i]
+                    wings_a = middles[wing_p, i] + middles[wing_r, i]
+                    wings_b = middles[wing_q, i] + middles[wing_s, i]
+                    ring = (moved_a + moved_b) + (wings_a + wings_b)
+                    vertices[near_a, i] = EDGE_END * (moved_a + m) + EDGE_WING * wings_a
+                    vertices[centre, i] = MIDDLE_OWN * m + MIDDLE_RING * ring
+                    vertices[near_b, i] = EDGE_END * (moved_b + m) + EDGE_WING * wings_b
+            else:
+                for i in range(3):
+                    at_a, at_b = points[a, i], points[b, i]
+                    at_c, at_d = points[c, i], points[d, i]
+                    p = mix(HALF * (at_a + at_c), middles[wing_p, i], grown_p)
+                    q = mix(HALF * (at_b + at_c), middles[wing_q, i], grown_q)
+                    r = mix(HALF * (at_a + at_d), middles[wing_r, i], grown_r)
+                    s = mix(HALF * (at_b + at_d), middles[wing_s, i], grown_s)
+                    m, moved_a, moved_b = middles[e, i], vertices[a, i], vertices[b, i]
+                    ring = (moved_a + moved_b) + ((p + r) + (q + s))
+                    beside_a = EDGE_END * (moved_a + m) + EDGE_WING * (p + r)
+                    beside_b = EDGE_END * (moved_b + m) + EDGE_WING * (q + s)
+                    vertices[near_a, i] = mix(HALF * (moved_a + m), beside_a, growth)
+                    vertices[centre, i] = mix(m, MIDDLE_OWN * m + MIDDLE_RING * ring, growth)
+                    vertices[near_b, i] = mix(HALF * (moved_b + m), beside_b, growth)
         else:
             for i in range(3):
                 m, moved_a, moved_b = middles[e, i], vertices[a, i], vertices[b, i]
@@ -216,13 +240,7 @@ def place_quarters(
                 vertices[near_a, i] = BORDER_EDGE_END * (moved_a + m)
                 vertices[centre, i] = mix(m, moved, growth)
                 vertices[near_b, i] = BORDER_EDGE_END * (moved_b + m)
-        x, y, z = vertices[centre, 3], vertices[centre, 4], vertices[centre, 5]
-        vertices[near_a, 3], vertices[near_a, 4], vertices[near_a, 5] = unit(
-            vertices[a, 3] + x, vertices[a, 4] + y, vertices[a, 5] + z
-        )
-        vertices[near_b, 3], vertices[near_b, 4], vertices[near_b, 5] = unit(
-            vertices[b, 3] + x, vertices[b, 4] + y, vertices[b, 5] + z
-        )
+        place_quarter_normals(vertices, a, b, near_a)
 
 
 @kernel
