@@ -103,7 +103,7 @@ class Anatomy:
             return Grip(0.0, 0.0)
         strength *= 1.0 - SEAL_LOST_BY_THRUST * max(jaw[1], 0.0)
         strength *= float((1.0 - activation * muscles.opens_lips).prod())
-        activity = float((activation * muscles.reaches_lips).max(initial=np.abs(jaw).max()))
+        activity = float((activation * muscles.reaches_lips).max(initial=max(map(abs, jaw))))
         return Grip.of(strength, activity)
 
 

@@ -41,7 +41,7 @@ class MuscleDrive:
         """Activation 0..1 of each muscle, shape (M,): its own control plus that of both halves."""
         reached = self._controls.activation
         whole = np.where(self._has_whole, reached[self._whole], 0.0)
-        activation: Array = np.clip(reached[self._own] + whole, 0.0, 1.0)
+        activation: Array = np.minimum(np.maximum(reached[self._own] + whole, 0.0), 1.0)
         return activation
 
     def pull(self, activation: Array) -> Array:

@@ -251,9 +251,10 @@ class Simulation:
         state.hold[:] = anatomy.passive_hold
         state.pull[:] = 0.0
         muscles.add(self._drive.pull(activation), self._mandible, weight, state.hold, state.pull)
-        drawn = self._pulled_to - state.carried[self._pulled]
-        state.hold[self._pulled] += self._pulled_by
-        state.pull[self._pulled] += self._pulled_by[:, None] * drawn
+        if len(self._pulled):
+            drawn = self._pulled_to - state.carried[self._pulled]
+            state.hold[self._pulled] += self._pulled_by
+            state.pull[self._pulled] += self._pulled_by[:, None] * drawn
         self._grip = anatomy.grip(activation, jaw, closed)
 
     def _advance(self, tick: float) -> None:

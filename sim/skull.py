@@ -89,9 +89,9 @@ class Skull:
         if pitch == yaw == roll == 0.0:
             return REST
         head = self.head
-        turn = rotation(UP, np.radians(head.yaw_deg) * yaw)
-        turn = turn @ rotation(LATERAL, -np.radians(head.pitch_deg) * pitch)
-        turn = turn @ rotation(FORWARD, -np.radians(head.roll_deg) * roll)
+        turn = rotation(UP, math.radians(head.yaw_deg) * yaw)
+        turn = turn @ rotation(LATERAL, -math.radians(head.pitch_deg) * pitch)
+        turn = turn @ rotation(FORWARD, -math.radians(head.roll_deg) * roll)
         return Pose.about(
             (self.condyles[0] + self.condyles[1]) / 2.0 + head.joint, turn, np.zeros(3)
         )
@@ -99,8 +99,8 @@ class Skull:
     def mandible_pose(self, opening: float, forward: float, sideways: float) -> Pose:
         """The mandible for jaw_open (0..1), jaw_forward and jaw_sideways (-1..1)."""
         right, left = self.condyles
-        turn = rotation(left - right, np.radians(self.jaw.opening_deg) * opening)
-        yaw = rotation(UP, np.radians(self.jaw.sideways_deg) * sideways)
+        turn = rotation(left - right, math.radians(self.jaw.opening_deg) * opening)
+        yaw = rotation(UP, math.radians(self.jaw.sideways_deg) * sideways)
         jaw = self.jaw
         ways = zip(jaw.opening_glide, jaw.forward_glide, jaw.sideways_glide, strict=True)
         glide = np.array([opening * o + forward * f + sideways * s for o, f, s in ways])
@@ -108,7 +108,7 @@ class Skull:
 
     def eye_pose(self, eyeball: Eyeball, horizontal: float, vertical: float) -> Pose:
         """An eyeball looking to the subject's left (+1) and up (+1)."""
-        most = np.radians(self.eyes.gaze_deg)
+        most = math.radians(self.eyes.gaze_deg)
         yaw = rotation(UP, most * horizontal)
         pitch = rotation(LATERAL, -most * vertical)
         return Pose.about(eyeball.centre, yaw @ pitch, np.zeros(3))

@@ -81,8 +81,9 @@ def carry(rest, normals, weight, turn, shift, state):  # type: ignore[no-untyped
             n = turn[k, 0] * nx + turn[k, 1] * ny + turn[k, 2] * nz
             carried_normals[i, k] = normals[i, k] + w * (n - normals[i, k])
             length += carried_normals[i, k] ** 2
+        inverse = 1.0 / np.sqrt(length)
         for k in range(3):
-            carried_normals[i, k] /= np.sqrt(length)
+            carried_normals[i, k] *= inverse
 
 
 def tissue_energy(state: State, springs: TissueSprings) -> float:
