@@ -15,13 +15,13 @@ import click
 
 from . import __version__
 from .commands import bench_quality, bench_refine, reproduce
-from .errors import UserError, told_in_one_line
+from .errors import OneLineGroup, UserError, told_in_one_line
 from .parameters import FiniteRange, Size
 
 Command = Callable[..., Any]
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=OneLineGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="risorius")
 def main() -> None:
     """Physics-based facial animation with dynamically refined triangle meshes."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import click
 
@@ -27,3 +28,34 @@ def told_in_one_line() -> Iterator[None]:
     except KeyboardInterrupt:
         click.echo("risorius: stopped", err=True)
         sys.exit(130)
+
+
+class OneLineGroup(click.Group):
+    """A command whose mistakes of usage are told in one line, as all others are."""
+
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        **extra: Any,
+    ) -> Any:
+        """Run the command; the exit code is 2 for what the user can mend, 130 for Ctrl-C."""
+        try:
+            code = super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
+        except click.exceptions.NoArgsIsHelpError as error:  # its message is the help
+            click.echo(error.format_message(), err=True)
+            sys.exit(2)
+        except click.ClickException as error:
+            line = " ".join(error.format_message().split())
+            context = getattr(error, "ctx", None)
+            where = f"; see {context.command_path} --help" if context else ""
+            click.echo(f"risorius: {line.rstrip('.')}{where}", err=True)
+            sys.exit(2)
+        except click.Abort:
+            click.echo("risorius: stopped", err=True)
+            sys.exit(130)
+        if standalone_mode:
+            sys.exit(code if isinstance(code, int) else 0)
+        return code

@@ -133,6 +133,8 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["capture", "SMILE", "-o", "x.mp4", "--option", "threshold_once=nan"], "not a finite"),
         (["capture", "SMILE", "--sheet", "x.txt"], "pictures are written as .png"),
         (["replay", "no.toml"], "no.toml: no such script"),
+        (["--wrong"], "No such option '--wrong'"),
+        (["bench", "motion", "--reference", "nowhere"], "Directory 'nowhere' does not exist"),
     ],
 )
 def test_mistakes_are_one_line(
@@ -144,6 +146,8 @@ def test_mistakes_are_one_line(
     assert result.exit_code == 2
     assert message.replace("'behind'; ", "'behind': ") in result.output
     assert "Traceback" not in result.output
+    told = [line for line in result.output.splitlines() if not line.startswith("Compiling")]
+    assert len(told) == 1 and told[0].startswith("risorius: ")
     assert list(smile.parent.iterdir()) == [smile]
 
 
