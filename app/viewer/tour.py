@@ -20,7 +20,7 @@ from .touch import Pull
 from .window import Viewer
 
 FOLDER = Path("docs/pictures")
-SIZE = (1200, 720)
+SIZE = (1160, 700)
 KEPT_BITS = 0xFE  # of a colour: the last one is the noise against banding, and costs a fifth more
 MOST_FRAMES = 400
 
