@@ -32,6 +32,7 @@ class Picture:
     refiner_name: str
     refiner: refine.Refiner
     stream: render.Stream
+    takes_view: bool  # whether the refiner has a use for where the eye is
     mesh: refine.RefinedMesh | None = None  # what was refined last
 
     @classmethod
@@ -43,14 +44,15 @@ class Picture:
         stream = renderer.lend_stream(
             refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
         )
-        return cls(name, refiner, stream)
+        takes_view = "view" in inspect.signature(refiner.refine).parameters
+        return cls(name, refiner, stream, takes_view)
 
     def refine(
         self, positions: npt.NDArray[np.float64], camera: render.OrbitCamera, viewport: Viewport
     ) -> None:
         """Fill the lent buffers with refined triangles, for whoever looks through the viewport."""
         seen = {}
-        if "view" in inspect.signature(self.refiner.refine).parameters:  # some have no use for it
+        if self.takes_view:
             focal = camera.focal(viewport[2] / viewport[3], viewport[3])
             seen["view"] = refine.View(camera.eye, focal)
         self.mesh = self.refiner.refine(positions, out=self.stream, **seen)
