@@ -107,15 +107,17 @@ class Script:
         """Raise UserError if the script names what the scene does not have."""
         for name in (*self.poses, *self.tracks):
             if name not in allowed:
-                raise UserError(f"{self.source}: unknown name '{name}'{suggestion(name, allowed)}")
+                hint = suggestion(name, allowed, self.scene)
+                raise UserError(f"{self.source}: unknown name '{name}'; {hint}")
 
 
-def suggestion(name: str, allowed: Iterable[str]) -> str:
+def suggestion(name: str, allowed: Iterable[str], scene: str) -> str:
     """The end of an error text: the names that were probably meant, or where to find all."""
     near = difflib.get_close_matches(name, list(allowed), n=3)
     if near:
-        return f"; did you mean {' or '.join(near)}?"
-    return "; `risorius controls` lists every control"
+        return f"did you mean {' or '.join(near)}?"
+    option = "" if scene == "face" else f" --scene {scene}"
+    return f"`risorius controls{option}` lists every control"
 
 
 def load_script(path: Path) -> Script:

@@ -112,7 +112,10 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["capture", "SMILE", "-o", "x.mp4", "--camera", "1,2,0"], "zoom above 0"),
         (["capture", "SMILE", "-o", "x.mp4", "--compare", "--refiner", "none"], "other than none"),
         (["capture", "SMILE", "-o", "x.mp4", "--size", "big"], "'big' is no size"),
-        (["capture", "SMILE", "-o", "x.mp4", "--scene", "plane"], "unknown name 'joy'"),
+        (
+            ["capture", "SMILE", "-o", "x.mp4", "--scene", "plane"],
+            "unknown name 'joy'; `risorius controls --scene plane` lists every control",
+        ),
         (["capture", "SMILE", "-o", "x.mp4", "--shading", "toon"], "'toon' is not one of"),
         (["capture", "SMILE", "-o", "x.mp4", "--time", "1"], "it goes with -o PICTURE.png"),
         (
