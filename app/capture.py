@@ -165,9 +165,9 @@ def take_picture(
 
 
 def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
-    """The scene that a script is written for; UserError if it names what the scene has not."""
+    """The scene that a script is written for; UserError if it asks for what that has not."""
     scene = build_scene(script.scene, head)
-    script.check_names(scene.limits)
+    script.check(scene.limits)
     return scene
 
 

@@ -224,6 +224,8 @@ def test_a_pose_needs_no_script(tmp_path: Path) -> None:
     [
         (("--set", "AU12=x"), "--set AU12=x: 'x' is no number"),
         (("--set", "AU12="), "--set AU12=: '' is no number"),
+        (("--set", "joy=7"), "--set: joy is 7; it must be from 0 to 1"),
+        (("--scene", "plane", "--set", "phase=-1"), "--set: phase is -1; it must be from 0 to 100"),
         (("--set", "AU121=1"), "--set: unknown name 'AU121'; did you mean AU"),
         (("--head", "no.obj"), "--head HEAD.obj and --landmarks LANDMARKS.json go together"),
         (("--head", "no.obj", "--landmarks", "no.json"), "no.obj: no such mesh file"),
