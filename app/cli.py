@@ -131,7 +131,7 @@ def capture(
             size=size,
             frames_per_second=fps,
             refiner=known_refiner(refiner),
-            refiner_options=options_in_words(settings_of_refiner),
+            refiner_options=options_in_words(refiner, settings_of_refiner),
             compare=compare,
             captions=captions,
             camera=camera or performance.camera,
@@ -316,7 +316,7 @@ def open_viewer(
         from .viewer import Viewer
         from .viewer.settings import look_of, settings_path
 
-        options = options_in_words(settings_of_refiner)
+        options = options_in_words(refiner, settings_of_refiner)
         chosen = look_of(known_refiner(refiner), options, **look)
         path = settings_path()
         with Viewer(performance, size, chosen, head=brought, settings_path=path) as viewer:

@@ -131,6 +131,14 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
             ["capture", "SMILE", "-o", "x.mp4", "--refiner", "loop", "--option", "scheme=cubic"],
             "unknown option scheme; it takes levels",
         ),
+        (
+            ["capture", "SMILE", "-o", "x.mp4", "--refiner", "none", "--option", "scheme=detail"],
+            "--option scheme=detail: --refiner none draws the mesh as it is and has no options",
+        ),
+        (
+            ["view", "--refiner", "none", "--option", "scheme=detail"],
+            "--option scheme=detail: --refiner none draws the mesh as it is and has no options",
+        ),
         (["capture", "SMILE", "-o", "x.mp4", "--fps", "nan"], "nan is not a finite number"),
         (["capture", "SMILE", "-o", "x.png", "--time", "nan"], "nan is not a finite number"),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "threshold_once=nan"], "not a finite"),
