@@ -42,19 +42,18 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None)
     from bench.refine import SIZES as ALL_SIZES
     from bench.refine import run
 
-    from .outputs import refuse_folder, written_aside
+    from .outputs import check_file, save_text
     from .refine_report import refine_json, refine_text
 
     with told_in_one_line():
         if json_file is not None:
-            refuse_folder(json_file)
+            check_file(json_file)
         report = run(
             sizes=sizes or ALL_SIZES, seconds=seconds, starts=not sizes, progress=_progress
         )
         click.echo(refine_text(report))
         if json_file is not None:
-            with written_aside(json_file) as part:
-                part.write_text(refine_json(report), encoding="utf-8")
+            save_text(json_file, refine_json(report))
             click.echo(f"{json_file}: written", err=True)
 
 

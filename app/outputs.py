@@ -16,6 +16,7 @@ from PIL import Image
 
 from .errors import UserError
 
+ASIDE = ".risorius-"  # what the name of a folder begins with in which something is being written
 FILM_SUFFIXES = (".mp4", ".mov", ".mkv")
 Frame = npt.NDArray[np.uint8]  # (H, W, 3), top row first
 FrameSink = Callable[[Frame], None]  # takes the frames of a film one after the other
@@ -26,41 +27,65 @@ def written_aside(target: Path) -> Iterator[Path]:
     """Yield a path beside `target`, renamed to it if the block ends without an error.
 
     A file takes the place of a file, a folder that of a folder; UserError where they would mix.
+    A link stays one: what it points to is written.
     """
+    whole = Path(os.path.realpath(target))
+    with cannot_be_written(target):
+        whole.parent.mkdir(parents=True, exist_ok=True)
+        aside = Path(tempfile.mkdtemp(prefix=ASIDE, dir=whole.parent))
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        aside = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
-    except OSError as error:
-        raise UserError(f"{target}: cannot be written: {error}") from None
-    try:
-        part = aside / target.name
+        part = aside / whole.name
         yield part
-        if target.is_dir() != part.is_dir() and target.exists():
+        if whole.is_dir() != part.is_dir() and whole.exists():
             raise UserError(f"{target}: is there already, and of another kind; choose another name")
-        if target.is_dir():  # a folder is not replaced in place: its old content leaves last
-            os.replace(target, aside / "previous")
-        os.replace(part, target)
+        with cannot_be_written(target):
+            if whole.is_dir():  # a folder is not replaced in place: its old content leaves last
+                os.replace(whole, aside / "previous")
+            os.replace(part, whole)
     finally:
         shutil.rmtree(aside, ignore_errors=True)
 
 
-def refuse_folder(target: Path) -> None:
-    """Raise UserError, before any work is done, where a file is to be and a folder is."""
-    if target.is_dir():
-        raise UserError(f"{target}: is a folder; choose another name for the file")
+@contextlib.contextmanager
+def cannot_be_written(target: Path) -> Iterator[None]:
+    """Turn what the system says against writing `target` into a UserError that names it."""
+    try:
+        yield
+    except OSError as error:
+        raise UserError(f"{target}: cannot be written: {error.strerror or error}") from None
+
+
+def check_file(target: Path) -> None:
+    """Raise UserError, before any work is done, where no file of this name can be written."""
+    whole = Path(os.path.realpath(target))
+    with cannot_be_written(target):
+        if whole.is_dir():
+            raise UserError(f"{target}: is a folder; choose another name for the file")
+        if whole.exists() and not whole.is_file():
+            raise UserError(f"{target}: is a device, not a file; choose another name")
+        folder = next(parent for parent in whole.parents if parent.exists())
+        with tempfile.TemporaryDirectory(prefix=ASIDE, dir=folder) as aside:
+            (Path(aside) / whole.name).touch()
 
 
 def check_picture(target: Path) -> None:
     """Raise UserError, before any work is done, where no picture can be written."""
     if target.suffix.lower() != ".png":
         raise UserError(f"{target}: pictures are written as .png; choose a name that ends so")
-    refuse_folder(target)
+    check_file(target)
+
+
+def save_text(target: Path, text: str) -> None:
+    """Write a text file, UTF-8; UserError where it cannot be written."""
+    check_file(target)
+    with written_aside(target) as part, cannot_be_written(target):
+        part.write_text(text, encoding="utf-8")
 
 
 def save_png(target: Path, frame: Frame) -> None:
-    """Write one picture; UserError for another suffix and for a folder."""
+    """Write one picture; UserError for another suffix, and where it cannot be written."""
     check_picture(target)
-    with written_aside(target) as part:
+    with written_aside(target) as part, cannot_be_written(target):
         Image.fromarray(frame).save(part, format="PNG")
 
 
@@ -75,7 +100,7 @@ def film(target: Path, size: tuple[int, int], frames_per_second: float) -> Itera
             f"a film needs an even width and height, and --size is {size[0]}x{size[1]}; "
             f"take {size[0] + size[0] % 2}x{size[1] + size[1] % 2}, or write frames to a folder"
         )
-    refuse_folder(target)
+    check_file(target)
     with written_aside(target) as part:
         writer = imageio_ffmpeg.write_frames(
             str(part),
@@ -107,7 +132,8 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
         def add(frame: Frame) -> None:
             nonlocal count
             picture = part / f"frame_{count:05d}.png"
-            Image.fromarray(frame).save(picture, compress_level=3)
+            with cannot_be_written(target):
+                Image.fromarray(frame).save(picture, compress_level=3)
             count += 1
 
         yield add

@@ -75,3 +75,13 @@ def test_a_place_that_cannot_be_written(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("x")
     with pytest.raises(UserError, match="cannot be written"):
         outputs.save_png(tmp_path / "file" / "picture.png", GREY)
+
+
+def test_a_link_stays_a_link(tmp_path: Path) -> None:
+    """What it points to is written, in its own folder."""
+    (tmp_path / "disk").mkdir()
+    link, real = tmp_path / "link.png", tmp_path / "disk" / "real.png"
+    link.symlink_to(real)
+    outputs.save_png(link, GREY)
+    assert link.is_symlink() and real.is_file() and not real.is_symlink()
+    assert list((tmp_path / "disk").iterdir()) == [real]
