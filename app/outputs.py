@@ -9,12 +9,12 @@ import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import imageio_ffmpeg
 import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
 from .errors import UserError
+from .ffmpeg import Encoder
 
 ASIDE = ".risorius-"  # what the name of a folder begins with in which something is being written
 FILM_SUFFIXES = (".mp4", ".mov", ".mkv")
@@ -91,7 +91,7 @@ def save_png(target: Path, frame: Frame) -> None:
 
 @contextlib.contextmanager
 def film(target: Path, size: tuple[int, int], frames_per_second: float) -> Iterator[FrameSink]:
-    """An H.264 film through ffmpeg: 4:2:0 as every player wants it, at a quality without blocks.
+    """An H.264 film through ffmpeg.
 
     Raises UserError where a film of this size cannot be written.
     """
@@ -102,20 +102,12 @@ def film(target: Path, size: tuple[int, int], frames_per_second: float) -> Itera
         )
     check_file(target)
     with written_aside(target) as part:
-        writer = imageio_ffmpeg.write_frames(
-            str(part),
-            size,
-            fps=frames_per_second,
-            codec="libx264",
-            quality=None,
-            macro_block_size=1,
-            output_params=["-crf", "16", "-preset", "veryfast", "-movflags", "+faststart"],
-        )
-        writer.send(None)
+        encoder = Encoder(target, part, size, frames_per_second)
         try:
-            yield lambda frame: writer.send(np.ascontiguousarray(frame))
+            yield encoder.add
+            encoder.finish()
         finally:
-            writer.close()
+            encoder.stop()
 
 
 @contextlib.contextmanager

@@ -85,3 +85,32 @@ def test_a_link_stays_a_link(tmp_path: Path) -> None:
     outputs.save_png(link, GREY)
     assert link.is_symlink() and real.is_file() and not real.is_symlink()
     assert list((tmp_path / "disk").iterdir()) == [real]
+
+
+@pytest.mark.parametrize(
+    ("program", "message"),
+    [
+        (None, r"no film without ffmpeg: .*/ffmpeg: No such file or directory"),
+        ("exit 3", r"film.mp4: cannot be written: ffmpeg: it ended with code 3"),
+        (
+            "cat >/dev/null; echo '[mp4 @ 0x55] No space left on device' >&2; exit 1",
+            r"film.mp4: cannot be written: ffmpeg: No space left on device",
+        ),
+    ],
+)
+def test_a_film_that_ffmpeg_does_not_finish(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str | None, message: str
+) -> None:
+    """No ffmpeg, one that gives up, one that fails at the end: told, and the old film stays."""
+    fake, target = tmp_path / "ffmpeg", tmp_path / "films" / "film.mp4"
+    if program is not None:
+        fake.write_text(f"#!/bin/sh\n{program}\n")
+        fake.chmod(0o755)
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(fake))
+    target.parent.mkdir()
+    target.write_bytes(b"mine")
+    with pytest.raises(UserError, match=message), outputs.film(target, (96, 64), 25.0) as add:
+        for _ in range(20):
+            add(GREY)
+    assert target.read_bytes() == b"mine"
+    assert list(target.parent.iterdir()) == [target]
