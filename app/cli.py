@@ -92,7 +92,7 @@ def head_options(command: Command) -> Command:
     help="When a .png is taken [s]: else in the first named pose, or at the end.",
 )
 @click.option("--samples", type=click.IntRange(0, 16), default=4, show_default=True)
-@click.option("--overwrite", is_flag=True, help="Replace a folder that is not empty.")
+@click.option("--overwrite", is_flag=True, help="Replace the frames in a folder.")
 @click.option("--quiet", is_flag=True, help="No progress bar.")
 @head_options
 @drawing_options

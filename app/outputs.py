@@ -1,9 +1,10 @@
-"""Files that are whole or not there: an output is written aside and renamed when complete."""
+"""Files that are whole or not there: an output is written aside and moved when complete."""
 
 from __future__ import annotations
 
 import contextlib
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
@@ -18,6 +19,7 @@ from .ffmpeg import Encoder
 
 ASIDE = ".risorius-"  # what the name of a folder begins with in which something is being written
 FILM_SUFFIXES = (".mp4", ".mov", ".mkv")
+FRAME_NAME = re.compile(r"frame_\d{5,}\.png")
 Frame = npt.NDArray[np.uint8]  # (H, W, 3), top row first
 FrameSink = Callable[[Frame], None]  # takes the frames of a film one after the other
 
@@ -26,8 +28,7 @@ FrameSink = Callable[[Frame], None]  # takes the frames of a film one after the 
 def written_aside(target: Path) -> Iterator[Path]:
     """Yield a path beside `target`, renamed to it if the block ends without an error.
 
-    A file takes the place of a file, a folder that of a folder; UserError where they would mix.
-    A link stays one: what it points to is written.
+    A link stays one: what it points to is written. UserError where that cannot be.
     """
     whole = Path(os.path.realpath(target))
     with cannot_be_written(target):
@@ -36,11 +37,7 @@ def written_aside(target: Path) -> Iterator[Path]:
     try:
         part = aside / whole.name
         yield part
-        if whole.is_dir() != part.is_dir() and whole.exists():
-            raise UserError(f"{target}: is there already, and of another kind; choose another name")
         with cannot_be_written(target):
-            if whole.is_dir():  # a folder is not replaced in place: its old content leaves last
-                os.replace(whole, aside / "previous")
             os.replace(part, whole)
     finally:
         shutil.rmtree(aside, ignore_errors=True)
@@ -112,20 +109,36 @@ def film(target: Path, size: tuple[int, int], frames_per_second: float) -> Itera
 
 @contextlib.contextmanager
 def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
-    """Numbered PNG files in a folder. Raises UserError if it holds something already."""
-    if target.exists() and (not target.is_dir() or any(target.iterdir())) and not overwrite:
-        raise UserError(
-            f"{target}: is there and not empty; name another folder, or add --overwrite"
-        )
-    with written_aside(target) as part:
-        part.mkdir()
-        count = 0
+    """Numbered PNG files in a folder. Raises UserError if it holds something already.
 
-        def add(frame: Frame) -> None:
-            nonlocal count
-            picture = part / f"frame_{count:05d}.png"
-            with cannot_be_written(target):
-                Image.fromarray(frame).save(picture, compress_level=3)
-            count += 1
+    overwrite: frames of an earlier film give way to these; whatever else is there stays.
+    """
+    is_new = not target.exists()
+    with cannot_be_written(target):
+        if not is_new and any(target.iterdir()) and not overwrite:
+            raise UserError(
+                f"{target}: is there and not empty; name another folder, or add --overwrite"
+            )
+        target.mkdir(parents=True, exist_ok=True)
+        aside = Path(tempfile.mkdtemp(prefix=ASIDE, dir=target))
+    count = 0
 
+    def add(frame: Frame) -> None:
+        nonlocal count
+        with cannot_be_written(target):
+            Image.fromarray(frame).save(aside / f"frame_{count:05d}.png", compress_level=3)
+        count += 1
+
+    try:
         yield add
+        with cannot_be_written(target):
+            for old in target.iterdir():
+                if FRAME_NAME.fullmatch(old.name):
+                    old.unlink()
+            for frame in aside.iterdir():
+                os.replace(frame, target / frame.name)
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)
+        if is_new:
+            with contextlib.suppress(OSError):  # it has its frames
+                target.rmdir()

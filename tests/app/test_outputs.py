@@ -51,7 +51,7 @@ def test_a_broken_film_leaves_the_old_one(tmp_path: Path) -> None:
 
 
 def test_frames_in_a_folder(tmp_path: Path) -> None:
-    """Numbered pictures; a folder that is not empty is only replaced when asked."""
+    """Numbered pictures; among other things only when asked, and then only frames give way."""
     target = tmp_path / "frames"
     with outputs.folder(target, overwrite=False) as add:
         add(GREY)
@@ -63,11 +63,27 @@ def test_frames_in_a_folder(tmp_path: Path) -> None:
         outputs.folder(target, overwrite=False),
     ):
         pass
-    assert (target / "notes.txt").exists()
     with outputs.folder(target, overwrite=True) as add:
         add(GREY)
-    assert [item.name for item in target.iterdir()] == ["frame_00000.png"]
+    assert sorted(item.name for item in target.iterdir()) == ["frame_00000.png", "notes.txt"]
     assert list(tmp_path.iterdir()) == [target]
+
+
+def test_broken_frames_leave_the_folder_as_it_was(tmp_path: Path) -> None:
+    """If the program fails in the middle, old frames stay, and a new folder goes."""
+    for name in ("old", "new"):
+        if name == "old":
+            with outputs.folder(tmp_path / name, overwrite=False) as add:
+                add(GREY)
+        with (
+            pytest.raises(RuntimeError, match="in the middle"),
+            outputs.folder(tmp_path / name, overwrite=True) as add,
+        ):
+            add(GREY)
+            add(GREY)
+            raise RuntimeError("in the middle")
+    left = sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*"))
+    assert left == ["old", "old/frame_00000.png"]
 
 
 def test_a_place_that_cannot_be_written(tmp_path: Path) -> None:
