@@ -122,10 +122,11 @@ def capture(
     Without SCRIPT the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
     """
     from . import capture as capturing
-    from .choices import head_for, known_refiner, script_for, style_of
+    from .choices import check_apart, head_for, known_refiner, script_for, style_of
     from .refining import options_in_words
 
     with told_in_one_line():
+        check_apart((output, sheet), (script, head, landmarks))
         performance = script_for(script, scene, settings)
         options = capturing.CaptureOptions(
             size=size,
@@ -141,24 +142,15 @@ def capture(
         )
         if compare and refiner == "none":
             raise UserError("--compare sets the mesh as it is beside a --refiner other than none")
-        picture = output if output is not None and output.suffix.lower() == ".png" else None
-        if picture is None and still_time is not None:
-            raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
-        most = 0
-        if picture is not None:
-            most = capturing.take_picture(
-                performance, options, picture, time=still_time, progress=not quiet
-            )
-        if picture is None or sheet is not None:
-            film_most = capturing.capture(
-                performance,
-                options,
-                output=output if picture is None else None,
-                sheet=sheet,
-                overwrite=overwrite,
-                progress=not quiet,
-            )
-            most = max(most, film_most)
+        most = capturing.write(
+            performance,
+            options,
+            output=output,
+            sheet=sheet,
+            time=still_time,
+            overwrite=overwrite,
+            progress=not quiet,
+        )
         written = " and ".join(str(path) for path in (output, sheet) if path)
         click.echo(f"{written}: {most} triangles at most")
 

@@ -66,3 +66,21 @@ def test_a_place_that_cannot_be_written(command: str, tmp_path: Path) -> None:
         assert line.startswith(f"risorius: {target}: ") and words in line
     assert Path("file").read_text() == "mine"
     assert len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.parametrize(
+    ("outputs", "message"),
+    [
+        (("-o", "smile.png"), "smile.png: is read and would be written"),
+        (("--sheet", "./link.png"), "link.png: is read and would be written"),
+        (("-o", "x.png", "--sheet", "../{folder}/x.png"), "is to be two outputs at once"),
+    ],
+)
+def test_outputs_are_apart(outputs: tuple[str, ...], message: str, tmp_path: Path) -> None:
+    """No output takes the place of an input, or of another output."""
+    script = Path("smile.png")
+    script.write_text("[[pose]]\ntime = 1\nname = 'joy'\njoy = 1\n")
+    Path("link.png").symlink_to(script)
+    named = [word.format(folder=tmp_path.name) for word in outputs]
+    assert message in told(risorius("capture", "smile.png", *named))
+    assert script.read_text().startswith("[[pose]]")
