@@ -155,7 +155,7 @@ def parse_script(text: str, *, source: str) -> Script:
     """Turn the TOML text of a script into a Script; `source` names it in error texts."""
     try:
         document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # numbers too long, lists too deep, too
         raise UserError(f"{source}: not valid TOML: {error}") from None
     reader = _Reader(source)
     reader.only(document, TOP_LEVEL_KEYS, where="top level")

@@ -112,6 +112,8 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["capture", "SMILE", "-o", "x.mp4", "--camera", "1,2,0"], "zoom above 0"),
         (["capture", "SMILE", "-o", "x.mp4", "--compare", "--refiner", "none"], "other than none"),
         (["capture", "SMILE", "-o", "x.mp4", "--size", "big"], "'big' is no size"),
+        (["capture", "SMILE", "-o", "x.mp4", "--size", "²x²"], "'²x²' is no size"),
+        (["view", "--size", "100000x100000"], "each 16 to 8192"),
         (
             ["capture", "SMILE", "-o", "x.mp4", "--scene", "plane"],
             "unknown name 'joy'; `risorius controls --scene plane` lists every control",

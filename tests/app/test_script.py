@@ -60,6 +60,8 @@ def test_easings_stay_between_the_keys(fraction: float, name: str) -> None:
     ("text", "message"),
     [
         ("pose = = 3", r"bad.toml: not valid TOML: .*line 1"),
+        ("a = " + 5000 * "[", r"bad.toml: not valid TOML"),
+        ("a = " + 5000 * "9", r"bad.toml: not valid TOML"),
         ("", r"bad.toml: no \[\[pose\]\] and no \[tracks\]"),
         ("durration = 1\n[[pose]]\ntime=1", r"unknown key 'durration'; allowed are title"),
         ("[[pose]]\njoy=1", r"pose 1: 'time' is missing"),
