@@ -5,6 +5,7 @@ What needs OpenGL or compiled code is imported inside the commands, so that --he
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from collections.abc import Callable
@@ -26,7 +27,12 @@ Command = Callable[..., Any]
 def main() -> None:
     """Physics-based facial animation with dynamically refined triangle meshes."""
     # Told to stop, clean up as after Ctrl-C: half-written outputs are removed on the way out.
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    for name in ("SIGTERM", "SIGHUP"):  # the latter where a terminal is closed; Windows has none
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, lambda received, _: sys.exit(128 + received))
+    if sys.stderr is None:  # closed by whoever started us; progress bars ask it what it is
+        sys.stderr = open(os.devnull, "w")
 
 
 def drawing_options(command: Command) -> Command:
@@ -258,9 +264,10 @@ def bench_motion(reference: Path) -> None:
     from .benchmarks import motion_table
 
     with told_in_one_line():
-        if not (reference / "face.npz").is_file():
-            raise UserError(f"{reference}: no face.npz in it; it must be {REFERENCE_FILES}")
-        click.echo(motion_table(reference))
+        try:
+            click.echo(motion_table(reference))
+        except ValueError as error:
+            raise UserError(f"--reference: {error}") from None
 
 
 @bench.command("soak")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .errors import UserError, told_in_one_line
+from .parameters import FiniteRange
 
 if TYPE_CHECKING:
     from .outputs import Frame
@@ -31,7 +32,7 @@ Command = Callable[..., Any]
 )
 @click.option(
     "--seconds",
-    type=click.FloatRange(0.05, 600.0),
+    type=FiniteRange(0.05, 600.0),
     default=7.0,
     show_default=True,
     help="How long each mesh is timed, at least five rounds.",

@@ -145,6 +145,7 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["capture", "SMILE", "-o", "x.png", "--time", "nan"], "nan is not a finite number"),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "threshold_once=nan"], "not a finite"),
         (["capture", "SMILE", "--sheet", "x.txt"], "pictures are written as .png"),
+        (["bench", "refine", "--seconds", "nan"], "nan is not a finite number"),
         (["replay", "no.toml"], "no.toml: no such script"),
         (["--wrong"], "No such option '--wrong'"),
         (["bench", "motion", "--reference", "nowhere"], "Directory 'nowhere' does not exist"),
