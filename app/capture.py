@@ -103,6 +103,33 @@ class Capture:
             yield index / rate
 
 
+def write(
+    script: Script,
+    options: CaptureOptions,
+    *,
+    output: Path | None = None,
+    sheet: Path | None = None,
+    time: float | None = None,
+    overwrite: bool = False,
+    progress: bool = True,
+) -> int:
+    """Write `output`, a film, frames or the picture of one time [s], and the contact sheet.
+
+    Returns the largest number of triangles of a frame. Raises UserError on what cannot be.
+    """
+    is_picture = output is not None and output.suffix.lower() == ".png"
+    if time is not None and not is_picture:
+        raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
+    if output is None or not is_picture:
+        return capture(
+            script, options, output=output, sheet=sheet, overwrite=overwrite, progress=progress
+        )
+    if sheet is None:
+        return take_picture(script, options, output, time=time, progress=progress)
+    most = capture(script, options, sheet=sheet, progress=progress)
+    return max(most, take_picture(script, options, output, time=time, progress=progress))
+
+
 def capture(
     script: Script,
     options: CaptureOptions,
@@ -165,9 +192,9 @@ def take_picture(
 
 
 def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
-    """The scene that a script is written for; UserError if it names what the scene has not."""
+    """The scene that a script is written for; UserError if it asks for what that has not."""
     scene = build_scene(script.scene, head)
-    script.check_names(scene.limits)
+    script.check(scene.limits)
     return scene
 
 

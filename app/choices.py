@@ -42,6 +42,20 @@ def head_for(head: Path | None, landmarks: Path | None) -> FittedHead | None:
     return fit_head(head, landmarks)
 
 
+def check_apart(outputs: Sequence[Path | None], inputs: Sequence[Path | None]) -> None:
+    """UserError where two outputs are one file, or one would take the place of an input."""
+    written: set[Path] = set()
+    read = {path.resolve() for path in inputs if path is not None}
+    for path in outputs:
+        if path is None:
+            continue
+        if path.resolve() in read:
+            raise UserError(f"{path}: is read and would be written; choose another name")
+        if path.resolve() in written:
+            raise UserError(f"{path}: is to be two outputs at once; choose another name for one")
+        written.add(path.resolve())
+
+
 def held_pose(settings: Sequence[str]) -> Script:
     """The script that `--set NAME=VALUE ...` stands for: one pose, held. A bare NAME is at 1."""
     poses = {}

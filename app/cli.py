@@ -5,6 +5,7 @@ What needs OpenGL or compiled code is imported inside the commands, so that --he
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from collections.abc import Callable
@@ -26,7 +27,12 @@ Command = Callable[..., Any]
 def main() -> None:
     """Physics-based facial animation with dynamically refined triangle meshes."""
     # Told to stop, clean up as after Ctrl-C: half-written outputs are removed on the way out.
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    for name in ("SIGTERM", "SIGHUP"):  # the latter where a terminal is closed; Windows has none
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, lambda received, _: sys.exit(128 + received))
+    if sys.stderr is None:  # closed by whoever started us; progress bars ask it what it is
+        sys.stderr = open(os.devnull, "w")
 
 
 def drawing_options(command: Command) -> Command:
@@ -92,7 +98,7 @@ def head_options(command: Command) -> Command:
     help="When a .png is taken [s]: else in the first named pose, or at the end.",
 )
 @click.option("--samples", type=click.IntRange(0, 16), default=4, show_default=True)
-@click.option("--overwrite", is_flag=True, help="Replace a folder that is not empty.")
+@click.option("--overwrite", is_flag=True, help="Replace the frames in a folder.")
 @click.option("--quiet", is_flag=True, help="No progress bar.")
 @head_options
 @drawing_options
@@ -122,16 +128,17 @@ def capture(
     Without SCRIPT the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
     """
     from . import capture as capturing
-    from .choices import head_for, known_refiner, script_for, style_of
+    from .choices import check_apart, head_for, known_refiner, script_for, style_of
     from .refining import options_in_words
 
     with told_in_one_line():
+        check_apart((output, sheet), (script, head, landmarks))
         performance = script_for(script, scene, settings)
         options = capturing.CaptureOptions(
             size=size,
             frames_per_second=fps,
             refiner=known_refiner(refiner),
-            refiner_options=options_in_words(settings_of_refiner),
+            refiner_options=options_in_words(refiner, settings_of_refiner),
             compare=compare,
             captions=captions,
             camera=camera or performance.camera,
@@ -141,24 +148,15 @@ def capture(
         )
         if compare and refiner == "none":
             raise UserError("--compare sets the mesh as it is beside a --refiner other than none")
-        picture = output if output is not None and output.suffix.lower() == ".png" else None
-        if picture is None and still_time is not None:
-            raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
-        most = 0
-        if picture is not None:
-            most = capturing.take_picture(
-                performance, options, picture, time=still_time, progress=not quiet
-            )
-        if picture is None or sheet is not None:
-            film_most = capturing.capture(
-                performance,
-                options,
-                output=output if picture is None else None,
-                sheet=sheet,
-                overwrite=overwrite,
-                progress=not quiet,
-            )
-            most = max(most, film_most)
+        most = capturing.write(
+            performance,
+            options,
+            output=output,
+            sheet=sheet,
+            time=still_time,
+            overwrite=overwrite,
+            progress=not quiet,
+        )
         written = " and ".join(str(path) for path in (output, sheet) if path)
         click.echo(f"{written}: {most} triangles at most")
 
@@ -266,9 +264,10 @@ def bench_motion(reference: Path) -> None:
     from .benchmarks import motion_table
 
     with told_in_one_line():
-        if not (reference / "face.npz").is_file():
-            raise UserError(f"{reference}: no face.npz in it; it must be {REFERENCE_FILES}")
-        click.echo(motion_table(reference))
+        try:
+            click.echo(motion_table(reference))
+        except ValueError as error:
+            raise UserError(f"--reference: {error}") from None
 
 
 @bench.command("soak")
@@ -316,7 +315,7 @@ def open_viewer(
         from .viewer import Viewer
         from .viewer.settings import look_of, settings_path
 
-        options = options_in_words(settings_of_refiner)
+        options = options_in_words(refiner, settings_of_refiner)
         chosen = look_of(known_refiner(refiner), options, **look)
         path = settings_path()
         with Viewer(performance, size, chosen, head=brought, settings_path=path) as viewer:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .errors import UserError, told_in_one_line
+from .parameters import FiniteRange
 
 if TYPE_CHECKING:
     from .outputs import Frame
@@ -31,7 +32,7 @@ Command = Callable[..., Any]
 )
 @click.option(
     "--seconds",
-    type=click.FloatRange(0.05, 600.0),
+    type=FiniteRange(0.05, 600.0),
     default=7.0,
     show_default=True,
     help="How long each mesh is timed, at least five rounds.",
@@ -42,19 +43,18 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None)
     from bench.refine import SIZES as ALL_SIZES
     from bench.refine import run
 
-    from .outputs import refuse_folder, written_aside
+    from .outputs import check_file, save_text
     from .refine_report import refine_json, refine_text
 
     with told_in_one_line():
         if json_file is not None:
-            refuse_folder(json_file)
+            check_file(json_file)
         report = run(
             sizes=sizes or ALL_SIZES, seconds=seconds, starts=not sizes, progress=_progress
         )
         click.echo(refine_text(report))
         if json_file is not None:
-            with written_aside(json_file) as part:
-                part.write_text(refine_json(report), encoding="utf-8")
+            save_text(json_file, refine_json(report))
             click.echo(f"{json_file}: written", err=True)
 
 

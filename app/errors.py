@@ -22,6 +22,11 @@ def told_in_one_line() -> Iterator[None]:
 
     try:
         yield
+    except BrokenPipeError:  # nobody reads on: click ends the program without a word
+        raise
+    except MemoryError:
+        click.echo("risorius: there is not enough memory for this; take a smaller size", err=True)
+        sys.exit(2)
     except (UserError, render.GLError, assets.AssetError, OSError) as error:
         click.echo(f"risorius: {error}", err=True)
         sys.exit(2)

@@ -1,22 +1,25 @@
-"""Files that are whole or not there: an output is written aside and renamed when complete."""
+"""Files that are whole or not there: an output is written aside and moved when complete."""
 
 from __future__ import annotations
 
 import contextlib
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import imageio_ffmpeg
 import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
 from .errors import UserError
+from .ffmpeg import Encoder
 
+ASIDE = ".risorius-"  # what the name of a folder begins with in which something is being written
 FILM_SUFFIXES = (".mp4", ".mov", ".mkv")
+FRAME_NAME = re.compile(r"frame_\d{5,}\.png")
 Frame = npt.NDArray[np.uint8]  # (H, W, 3), top row first
 FrameSink = Callable[[Frame], None]  # takes the frames of a film one after the other
 
@@ -25,48 +28,67 @@ FrameSink = Callable[[Frame], None]  # takes the frames of a film one after the 
 def written_aside(target: Path) -> Iterator[Path]:
     """Yield a path beside `target`, renamed to it if the block ends without an error.
 
-    A file takes the place of a file, a folder that of a folder; UserError where they would mix.
+    A link stays one: what it points to is written. UserError where that cannot be.
     """
+    whole = Path(os.path.realpath(target))
+    with cannot_be_written(target):
+        whole.parent.mkdir(parents=True, exist_ok=True)
+        aside = Path(tempfile.mkdtemp(prefix=ASIDE, dir=whole.parent))
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        aside = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
-    except OSError as error:
-        raise UserError(f"{target}: cannot be written: {error}") from None
-    try:
-        part = aside / target.name
+        part = aside / whole.name
         yield part
-        if target.is_dir() != part.is_dir() and target.exists():
-            raise UserError(f"{target}: is there already, and of another kind; choose another name")
-        if target.is_dir():  # a folder is not replaced in place: its old content leaves last
-            os.replace(target, aside / "previous")
-        os.replace(part, target)
+        with cannot_be_written(target):
+            os.replace(part, whole)
     finally:
         shutil.rmtree(aside, ignore_errors=True)
 
 
-def refuse_folder(target: Path) -> None:
-    """Raise UserError, before any work is done, where a file is to be and a folder is."""
-    if target.is_dir():
-        raise UserError(f"{target}: is a folder; choose another name for the file")
+@contextlib.contextmanager
+def cannot_be_written(target: Path) -> Iterator[None]:
+    """Turn what the system says against writing `target` into a UserError that names it."""
+    try:
+        yield
+    except OSError as error:
+        raise UserError(f"{target}: cannot be written: {error.strerror or error}") from None
+
+
+def check_file(target: Path) -> None:
+    """Raise UserError, before any work is done, where no file of this name can be written."""
+    whole = Path(os.path.realpath(target))
+    with cannot_be_written(target):
+        if whole.is_dir():
+            raise UserError(f"{target}: is a folder; choose another name for the file")
+        if whole.exists() and not whole.is_file():
+            raise UserError(f"{target}: is a device, not a file; choose another name")
+        folder = next(parent for parent in whole.parents if parent.exists())
+        with tempfile.TemporaryDirectory(prefix=ASIDE, dir=folder) as aside:
+            (Path(aside) / whole.name).touch()
 
 
 def check_picture(target: Path) -> None:
     """Raise UserError, before any work is done, where no picture can be written."""
     if target.suffix.lower() != ".png":
         raise UserError(f"{target}: pictures are written as .png; choose a name that ends so")
-    refuse_folder(target)
+    check_file(target)
+
+
+def save_text(target: Path, text: str) -> None:
+    """Write a text file, UTF-8; UserError where it cannot be written."""
+    check_file(target)
+    with written_aside(target) as part, cannot_be_written(target):
+        part.write_text(text, encoding="utf-8")
 
 
 def save_png(target: Path, frame: Frame) -> None:
-    """Write one picture; UserError for another suffix and for a folder."""
+    """Write one picture; UserError for another suffix, and where it cannot be written."""
     check_picture(target)
-    with written_aside(target) as part:
+    with written_aside(target) as part, cannot_be_written(target):
         Image.fromarray(frame).save(part, format="PNG")
 
 
 @contextlib.contextmanager
 def film(target: Path, size: tuple[int, int], frames_per_second: float) -> Iterator[FrameSink]:
-    """An H.264 film through ffmpeg: 4:2:0 as every player wants it, at a quality without blocks.
+    """An H.264 film through ffmpeg.
 
     Raises UserError where a film of this size cannot be written.
     """
@@ -75,39 +97,48 @@ def film(target: Path, size: tuple[int, int], frames_per_second: float) -> Itera
             f"a film needs an even width and height, and --size is {size[0]}x{size[1]}; "
             f"take {size[0] + size[0] % 2}x{size[1] + size[1] % 2}, or write frames to a folder"
         )
-    refuse_folder(target)
+    check_file(target)
     with written_aside(target) as part:
-        writer = imageio_ffmpeg.write_frames(
-            str(part),
-            size,
-            fps=frames_per_second,
-            codec="libx264",
-            quality=None,
-            macro_block_size=1,
-            output_params=["-crf", "16", "-preset", "veryfast", "-movflags", "+faststart"],
-        )
-        writer.send(None)
+        encoder = Encoder(target, part, size, frames_per_second)
         try:
-            yield lambda frame: writer.send(np.ascontiguousarray(frame))
+            yield encoder.add
+            encoder.finish()
         finally:
-            writer.close()
+            encoder.stop()
 
 
 @contextlib.contextmanager
 def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
-    """Numbered PNG files in a folder. Raises UserError if it holds something already."""
-    if target.exists() and (not target.is_dir() or any(target.iterdir())) and not overwrite:
-        raise UserError(
-            f"{target}: is there and not empty; name another folder, or add --overwrite"
-        )
-    with written_aside(target) as part:
-        part.mkdir()
-        count = 0
+    """Numbered PNG files in a folder. Raises UserError if it holds something already.
 
-        def add(frame: Frame) -> None:
-            nonlocal count
-            picture = part / f"frame_{count:05d}.png"
-            Image.fromarray(frame).save(picture, compress_level=3)
-            count += 1
+    overwrite: frames of an earlier film give way to these; whatever else is there stays.
+    """
+    is_new = not target.exists()
+    with cannot_be_written(target):
+        if not is_new and any(target.iterdir()) and not overwrite:
+            raise UserError(
+                f"{target}: is there and not empty; name another folder, or add --overwrite"
+            )
+        target.mkdir(parents=True, exist_ok=True)
+        aside = Path(tempfile.mkdtemp(prefix=ASIDE, dir=target))
+    count = 0
 
+    def add(frame: Frame) -> None:
+        nonlocal count
+        with cannot_be_written(target):
+            Image.fromarray(frame).save(aside / f"frame_{count:05d}.png", compress_level=3)
+        count += 1
+
+    try:
         yield add
+        with cannot_be_written(target):
+            for old in target.iterdir():
+                if FRAME_NAME.fullmatch(old.name):
+                    old.unlink()
+            for frame in aside.iterdir():
+                os.replace(frame, target / frame.name)
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)
+        if is_new:
+            with contextlib.suppress(OSError):  # it has its frames
+                target.rmdir()

@@ -23,6 +23,7 @@ GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
 SPLIT_EDGES = replace(FLAT, wireframe=True, colour_by=render.ColourBy.SPLITS)
 
 WAVE_PHASES = (0.0, 0.33, 0.66)  # moments of the wave in Fig. 9
+WAVE_VIEW = "28,-30,0.68"  # from here no corner shows its underside, which no light reaches
 MOUTH_POSES = ("surprise", "joy", "disgust")  # in Fig. 10
 MOUTH_ZOOM = 5.4
 SETTLED = 1.5  # [s] after which the face stands still
@@ -31,7 +32,7 @@ SETTLED = 1.5  # [s] after which the face stands still
 def figure_9(size: tuple[int, int] = (380, 230)) -> Frame:
     """The plane under a strong sine, flat and Gouraud shaded, as it is and refined (Fig. 9)."""
     scene = PlaneScene()
-    camera = camera_for(scene, "24,-40,0.68")
+    camera = camera_for(scene, WAVE_VIEW)
     rows = []
     with Easel(size) as easel:
         for style, shading in ((FLAT, "flat"), (GOURAUD, "Gouraud")):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 import click
@@ -19,9 +20,9 @@ class Size(click.ParamType[tuple[int, int]]):
         """Turn the text into two numbers, or fail with what is allowed."""
         if isinstance(value, tuple):
             return value
-        width, separator, height = str(value).lower().partition("x")
-        if separator and width.isdigit() and height.isdigit():
-            size = (int(width), int(height))
+        written = re.fullmatch("([0-9]{1,6})x([0-9]{1,6})", str(value).lower())
+        if written:
+            size = (int(written[1]), int(written[2]))
             if all(16 <= side <= 8192 for side in size):
                 return size
         self.fail(f"'{value}' is no size; write width x height, each 16 to 8192, as in 1280x720")

@@ -62,8 +62,8 @@ def _check(name: str, offered: Mapping[str, Any], options: Mapping[str, Any]) ->
     """UserError for an option that the refiner does not offer, or of another kind."""
     for option, value in options.items():
         if option not in offered:
-            takes = ", ".join(offered) or "none"
-            raise UserError(f"refiner {name}: unknown option {option}; it takes {takes}")
+            takes = f"it takes {', '.join(offered)}" if offered else "it has no options"
+            raise UserError(f"refiner {name}: unknown option {option}; {takes}")
         default = offered[option]
         if default is None or isinstance(default, bool):
             is_right, wanted = value is None or isinstance(value, bool), "on or off"
@@ -89,8 +89,15 @@ def finer_mesh(scene: Scene) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.in
     return finer.vertices, finer.faces
 
 
-def options_in_words(settings: Sequence[str]) -> dict[str, Any] | None:
-    """What `--option NAME=VALUE ...` says: numbers, on and off, or words; None for nothing."""
+def options_in_words(name: str, settings: Sequence[str]) -> dict[str, Any] | None:
+    """What `--option NAME=VALUE ...` tells the refiner `name`; None for nothing.
+
+    Numbers, on and off, or words. Raises UserError where the mesh is drawn as it is.
+    """
+    if name == "none" and settings:
+        raise UserError(
+            f"--option {settings[0]}: --refiner none draws the mesh as it is and has no options"
+        )
     options: dict[str, Any] = {}
     for setting in settings:
         name, equals, text = setting.partition("=")

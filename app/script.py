@@ -33,13 +33,15 @@ from __future__ import annotations
 import bisect
 import difflib
 import tomllib
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from .easing import EASINGS
 from .errors import UserError
+
+Limits = Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
 
 LARGEST = 86_400.0  # of any number in a script; as a time [s] it is a day
 TOP_LEVEL_KEYS = ("title", "scene", "camera", "duration", "pose", "tracks")
@@ -103,19 +105,39 @@ class Script:
             values[name] = values.get(name, 0.0) + channel.value(time)
         return values
 
-    def check_names(self, allowed: Collection[str]) -> None:
-        """Raise UserError if the script names what the scene does not have."""
+    def check(self, limits: Limits) -> None:
+        """Raise UserError if the script names what the scene does not have, or asks too much.
+
+        What tracks add to poses may be negative, and is cut off with them; no single key may be
+        further from 0 than can have an effect.
+        """
         for name in (*self.poses, *self.tracks):
-            if name not in allowed:
-                raise UserError(f"{self.source}: unknown name '{name}'{suggestion(name, allowed)}")
+            if name not in limits:
+                hint = suggestion(name, limits, self.scene)
+                raise UserError(f"{self.source}: unknown name '{name}'; {hint}")
+        for name, channel in self.poses.items():
+            self._check_values(name, channel, *limits[name])
+        for name, channel in self.tracks.items():
+            low, high = limits[name]
+            self._check_values(f"track '{name}'", channel, low - high, high - low)
+
+    def _check_values(self, what: str, channel: Channel, low: float, high: float) -> None:
+        for key in channel.keys:
+            if not low <= key.value <= high:
+                when = f" at {key.time:g} s" if len(channel.keys) > 1 else ""
+                raise UserError(
+                    f"{self.source}: {what} is {key.value:g}{when}; "
+                    f"it must be from {low:g} to {high:g}"
+                )
 
 
-def suggestion(name: str, allowed: Iterable[str]) -> str:
+def suggestion(name: str, allowed: Iterable[str], scene: str) -> str:
     """The end of an error text: the names that were probably meant, or where to find all."""
     near = difflib.get_close_matches(name, list(allowed), n=3)
     if near:
-        return f"; did you mean {' or '.join(near)}?"
-    return "; `risorius controls` lists every control"
+        return f"did you mean {' or '.join(near)}?"
+    option = "" if scene == "face" else f" --scene {scene}"
+    return f"`risorius controls{option}` lists every control"
 
 
 def load_script(path: Path) -> Script:
@@ -133,7 +155,7 @@ def parse_script(text: str, *, source: str) -> Script:
     """Turn the TOML text of a script into a Script; `source` names it in error texts."""
     try:
         document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # numbers too long, lists too deep, too
         raise UserError(f"{source}: not valid TOML: {error}") from None
     reader = _Reader(source)
     reader.only(document, TOP_LEVEL_KEYS, where="top level")

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from .outputs import refuse_folder, written_aside
+from .outputs import save_text
 from .script import Channel, Key, Script
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
@@ -19,9 +19,7 @@ POSE_SECONDS = 1.0  # duration of a script that is one pose
 
 def save_script(target: Path, script: Script) -> None:
     """Write a script file, whole or not at all; UserError where it cannot be written."""
-    refuse_folder(target)
-    with written_aside(target) as part:
-        part.write_text(script_text(script), encoding="utf-8")
+    save_text(target, script_text(script))
 
 
 def script_text(script: Script) -> str:

@@ -29,7 +29,7 @@ TITLES = {"Action units": "action_units", "Expressions": "expressions", "Visemes
 CELL = (150, 168)  # [pixels] of one view: a sheet stays below 1.5 MB
 VIEWS = ("0,0,1.85", "-34,3,1.85")  # front and three-quarter
 FAR_VIEWS = ("0,0,1.1", "-34,3,1.1")  # of a head that turns
-COLUMNS = 4
+COLUMNS = (4, 5, 3)  # from the best to the worst, where all leave as few cells of a row empty
 SETTLED = 1.5  # [s] after which a pose stands still
 SEEN_BITS = 0xFE  # of a colour; the last bit is noise that would cost a quarter of the bytes
 
@@ -80,6 +80,11 @@ def rows_of(names: Sequence[str]) -> list[str]:
     ]
 
 
+def columns_for(count: int) -> int:
+    """How many columns leave the fewest cells of the last row empty."""
+    return min(count, min(COLUMNS, key=lambda columns: -count % columns))
+
+
 def cells(studio: Studio, names: Sequence[str]) -> Iterator[tuple[str, Frame]]:
     """A labelled portrait of each control at full value."""
     for name in names:
@@ -113,7 +118,7 @@ def main(arguments: Sequence[str]) -> None:
         for file, names in groups.items():
             portraits = list(cells(studio, names))
             sheet = contact_sheet(
-                portraits, columns=min(COLUMNS, len(portraits)), cell_width=len(VIEWS) * size[0]
+                portraits, columns=columns_for(len(portraits)), cell_width=len(VIEWS) * size[0]
             )
             save(given.folder / f"{file}.png", sheet)
 

@@ -37,15 +37,14 @@ def tension_map(size: tuple[int, int] = SIZE, poses: Sequence[str] = POSES) -> F
     camera = camera_for(scene, "-18,2,1.45")
     style = render.Style(shadows=False, background=render.WHITE)
     cells = []
-    for pose in poses:
-        scene.reset()
-        scene.pose({pose: 1.0})
-        scene.step(SETTLED)
-        found = tension.measure(scene.positions)
-        mesh = static.refine(scene.positions)
-        # A surface for each: parts alone, without a mesh, are hidden by the depths of the last one.
-        with render.open_offscreen(size, samples=4) as surface:
-            renderer = render.Renderer(surface)
+    with render.open_offscreen(size, samples=4) as surface:
+        renderer = render.Renderer(surface)
+        for pose in poses:
+            scene.reset()
+            scene.pose({pose: 1.0})
+            scene.step(SETTLED)
+            found = tension.measure(scene.positions)
+            mesh = static.refine(scene.positions)
             surface.begin()
             renderer.draw_background(style)
             renderer.draw_parts([_coloured(pose, mesh, found)], {"skin": np.eye(4)}, camera, style)

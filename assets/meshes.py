@@ -12,6 +12,10 @@ import numpy.typing as npt
 
 from .model import AssetError
 
+FARTHEST = (
+    1e9  # of a coordinate, in any unit: far beyond all meshes, and its cube is still a number
+)
+
 
 @dataclass(frozen=True)
 class Mesh:
@@ -48,7 +52,15 @@ def read_mesh(path: str | Path) -> Mesh:
     if mesh is None or not len(mesh.faces):
         raise AssetError(f"{path}: holds no triangles")
     vertices = np.array(mesh.vertices, np.float64)
-    if not np.isfinite(vertices).all():
-        where = int(np.argmin(np.isfinite(vertices).all(axis=1)))
-        raise AssetError(f"{path}: vertex {where} (counted from 0) is not a finite number")
+    if vertices.shape[1] != 3:
+        raise AssetError(
+            f"{path}: its vertices have {vertices.shape[1]} coordinates; they must have 3"
+        )
+    is_near = (np.abs(vertices) <= FARTHEST).all(axis=1)  # not so where a number is none
+    if not is_near.all():
+        where = int(np.argmin(is_near))
+        raise AssetError(
+            f"{path}: vertex {where} (counted from 0) is at {vertices[where].tolist()}; it must "
+            f"be finite numbers up to {FARTHEST:g}"
+        )
     return Mesh(vertices, np.array(mesh.faces, np.int32))

@@ -30,6 +30,7 @@ import numpy.typing as npt
 import sim
 from assets.fitting import fit
 from assets.meshes import Mesh
+from bench.subjects import DENSE, read_arrays
 from sim.landmarks import FaceFrame, Side
 from sim.rig import LinearMuscle, RingMuscle
 
@@ -61,26 +62,50 @@ class Row:
 def run(directory: str | Path) -> list[Row]:
     """Score every shape of the reference in `directory` that shapes.toml knows.
 
-    Raises ValueError if the reference holds none of them.
+    Raises ValueError, naming the file, if it is broken or holds none of them.
     """
-    with np.load(Path(directory) / "face.npz") as reference:
-        fields = {name: reference[name] for name in reference.files}
+    fields = read_arrays(Path(directory) / DENSE, NOT_SHAPES)
     with SHAPES.open("rb") as file:
         shapes = tomllib.load(file)
     mesh = Mesh(fields["vertices"].astype(np.float64), fields["triangles"].astype(np.int32))
-    head = fit(mesh, fields["landmarks68"].astype(np.int32))
+    landmarks = fields["landmarks68"].astype(np.int32)
+    if not _is_sound(mesh, landmarks):
+        raise ValueError(
+            f"{directory}: in {DENSE}, vertices must be finite, (V, 3), triangles (F, 3) and "
+            "landmarks68 (68,) numbers of them"
+        )
+    head = fit(mesh, landmarks)
     simulation = sim.create(head)
     ruler = _Ruler(
         head.vertices, head.landmarks, _vertex_areas(head.vertices, head.faces), head.rig
     )
     to_head = head.to_millimetres.vectors
-    rows = [
-        ruler.row(simulation, name, values, base, to_head(fields[name][head.kept]))
-        for name, values, base in _known(shapes, fields, simulation)
-    ]
+    rows = []
+    for name, values, base in _known(shapes, fields, simulation):
+        if fields[name].shape != mesh.vertices.shape or not np.isfinite(fields[name]).all():
+            raise ValueError(
+                f"{directory}: {name} in {DENSE} must be finite displacements of all vertices"
+            )
+        if fields[name].any():
+            scanned = to_head(fields[name][head.kept])
+            rows.append(ruler.row(simulation, name, values, base, scanned))
     if not rows:
         raise ValueError(f"{directory}: face.npz holds none of the shapes in {SHAPES.name}")
     return rows
+
+
+def _is_sound(mesh: Mesh, landmarks: npt.NDArray[np.int32]) -> bool:
+    """Whether vertices, triangles and landmarks have their shapes and name vertices there are."""
+    return (
+        mesh.vertices.ndim == mesh.faces.ndim == 2
+        and mesh.vertices.shape[1] == mesh.faces.shape[1] == 3
+        and landmarks.shape == (68,)
+        and bool(np.isfinite(mesh.vertices).all())
+        and all(
+            bool(((numbers >= 0) & (numbers < len(mesh.vertices))).all())
+            for numbers in (mesh.faces, landmarks)
+        )
+    )
 
 
 def unknown_fields(directory: str | Path) -> list[str]:

@@ -9,10 +9,12 @@ vertices those that the head has.
 
 from __future__ import annotations
 
+import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -55,8 +57,8 @@ def scanned(folder: str | Path, *, apart: bool = False) -> Subject:
     Fields that end in _L and _R are two halves of one expression, and are added unless `apart`.
     Raises ValueError, naming the file, if something is missing in it.
     """
-    dense = _arrays(Path(folder) / DENSE, ("vertices", "triangles"))
-    coarse = _arrays(Path(folder) / COARSE, ("triangles", "fine_triangle", "barycentric"))
+    dense = read_arrays(Path(folder) / DENSE, ("vertices", "triangles"))
+    coarse = read_arrays(Path(folder) / COARSE, ("triangles", "fine_triangle", "barycentric"))
     rest = MILLIMETRES * dense["vertices"].astype(np.float64)
     corners = dense["triangles"][coarse["fine_triangle"]]
     weights = coarse["barycentric"].astype(np.float64)
@@ -120,13 +122,19 @@ def built_in(level: int) -> Subject:
     )
 
 
-def _arrays(path: Path, needed: tuple[str, ...]) -> dict[str, npt.NDArray[np.generic]]:
-    """All arrays of a file; ValueError where it or one of `needed` is missing."""
+def read_arrays(path: Path, needed: tuple[str, ...]) -> dict[str, npt.NDArray[Any]]:
+    """All arrays of a file; ValueError where it is broken or one of `needed` is missing."""
     if not path.is_file():
         raise ValueError(f"{path}: is not there; a reference folder has {DENSE} and {COARSE}")
-    with np.load(path) as file:
-        arrays = {name: file[name] for name in file.files}
+    try:
+        with np.load(path) as file:
+            arrays = {name: file[name] for name in file.files}
+    except (ValueError, AttributeError, EOFError, zipfile.BadZipFile):
+        raise ValueError(f"{path}: is broken, or no file of arrays (numpy's .npz)") from None
     missing = [name for name in needed if name not in arrays]
     if missing:
         raise ValueError(f"{path}: has no array {missing[0]!r}; it has {sorted(arrays)}")
+    strange = [name for name, array in arrays.items() if array.dtype.kind not in "iuf"]
+    if strange:
+        raise ValueError(f"{path}: array {strange[0]!r} holds no numbers")
     return arrays

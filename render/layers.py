@@ -67,14 +67,15 @@ class Layers:
 
     def use_layer(self, viewport: Rectangle, touched: Rectangle) -> None:
         """Direct drawing to the layer, within the part `touched` of the viewport."""
+        self._wipe()
         self._layer.use()
-        if self._is_worn:
-            self._gl.scissor = None
-            self._layer.depth_mask = True
-            self._layer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
-            self._is_worn = False
         self._gl.viewport, self._gl.scissor = viewport, touched
         self._touched = _apart(self._touched, touched)
+
+    def use_depth(self, unit: int) -> None:
+        """Bind the depth of what was drawn on the layer so far to a texture unit."""
+        self._wipe()
+        self.depth.use(unit)
 
     def flush(self) -> None:
         """Average the layer onto the frame where it was touched."""
@@ -93,6 +94,16 @@ class Layers:
         gl.enable_only(moderngl.DEPTH_TEST)
         gl.scissor = None
         self._is_worn = True
+
+    def _wipe(self) -> None:
+        """Empty the layer, if all that is on it was averaged onto the frame."""
+        if not self._is_worn:
+            return
+        self._layer.use()
+        self._gl.scissor = None
+        self._layer.depth_mask = True
+        self._layer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+        self._is_worn = False
 
     def read(self) -> bytes:
         """The frame, bottom row first, three bytes per pixel."""

@@ -53,10 +53,10 @@ class DepthReader:
         width = -(-(pixels[0] + pixels[2]) // BLOCK) - left
         height = -(-(pixels[1] + pixels[3]) // BLOCK) - bottom
         self._blocks = left, bottom, width, height
+        self.layers.use_depth(_UNIT)
         self._target.use()
         gl.viewport, gl.scissor = (0, 0, *self._size), self._blocks
         gl.disable(moderngl.DEPTH_TEST)
-        self.layers.depth.use(_UNIT)
         self._triangle.render(moderngl.TRIANGLES, vertices=3)
         gl.enable(moderngl.DEPTH_TEST)
         gl.scissor = None

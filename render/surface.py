@@ -156,9 +156,14 @@ def open_offscreen(
     gl, can_leave = _offscreen_context()
     try:
         surface = OffscreenSurface(gl, size, samples, can_leave=can_leave)
-    except Exception:
+    except Exception as error:
         _leave(gl, can_leave=can_leave)
         gl.release()
+        if isinstance(error, moderngl.Error):
+            raise GLError(
+                f"a frame of {size[0]} x {size[1]} pixels with {samples} samples each cannot be "
+                f"had ({error}). Cure: ask for a smaller frame, or for fewer samples"
+            ) from None
         raise
     surface.pixel_scale = pixel_scale
     Surface._current = surface

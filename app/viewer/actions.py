@@ -46,6 +46,7 @@ def expression_actions(viewer: Viewer) -> list[Action]:
     """Keys 1 to 9 show the first expressions of the scene."""
 
     def show(number: int, name: str) -> Action:
+        """The expression `name`, on the key of its number."""
         return Action(
             "Expression",
             name.replace("_", " "),

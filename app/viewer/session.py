@@ -38,7 +38,7 @@ class Session:
     """The controls of a scene and the script that may move them."""
 
     def __init__(self, scene: Scene, script: Script) -> None:
-        script.check_names(scene.limits)
+        script.check(scene.limits)
         self.scene = scene
         self.limits = scene.limits
         simulation = getattr(scene, "simulation", None)
@@ -244,7 +244,7 @@ class Session:
                 f"{path}: is for the scene '{script.scene}', and this window shows "
                 f"'{self.script.scene}': `risorius view --scene {script.scene} --script {path}`"
             )
-        script.check_names(self.limits)
+        script.check(self.limits)
         self.is_playing = False
         if is_pose(script):
             self.values = self._all(script.at(0.0))

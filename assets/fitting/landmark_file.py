@@ -40,7 +40,7 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray]:
         document = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise AssetError(f"{path}: no such landmark file") from None
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise AssetError(f"{path}: not readable as JSON: {error}") from None
     found = _list_in(document)
     if found is None:
@@ -61,7 +61,9 @@ def _list_in(document: Any) -> list[Any] | None:
     """The list of landmarks: the document itself, or the longest list in it."""
     if isinstance(document, list):
         return document
-    lists = [v for v in document.values() if isinstance(v, list)] if document else []
+    if not isinstance(document, dict):
+        return None
+    lists = [entry for entry in document.values() if isinstance(entry, list)]
     return max(lists, key=len, default=None)
 
 

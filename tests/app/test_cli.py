@@ -112,7 +112,12 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["capture", "SMILE", "-o", "x.mp4", "--camera", "1,2,0"], "zoom above 0"),
         (["capture", "SMILE", "-o", "x.mp4", "--compare", "--refiner", "none"], "other than none"),
         (["capture", "SMILE", "-o", "x.mp4", "--size", "big"], "'big' is no size"),
-        (["capture", "SMILE", "-o", "x.mp4", "--scene", "plane"], "unknown name 'joy'"),
+        (["capture", "SMILE", "-o", "x.mp4", "--size", "²x²"], "'²x²' is no size"),
+        (["view", "--size", "100000x100000"], "each 16 to 8192"),
+        (
+            ["capture", "SMILE", "-o", "x.mp4", "--scene", "plane"],
+            "unknown name 'joy'; `risorius controls --scene plane` lists every control",
+        ),
         (["capture", "SMILE", "-o", "x.mp4", "--shading", "toon"], "'toon' is not one of"),
         (["capture", "SMILE", "-o", "x.mp4", "--time", "1"], "it goes with -o PICTURE.png"),
         (
@@ -128,10 +133,19 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
             ["capture", "SMILE", "-o", "x.mp4", "--refiner", "loop", "--option", "scheme=cubic"],
             "unknown option scheme; it takes levels",
         ),
+        (
+            ["capture", "SMILE", "-o", "x.mp4", "--refiner", "none", "--option", "scheme=detail"],
+            "--option scheme=detail: --refiner none draws the mesh as it is and has no options",
+        ),
+        (
+            ["view", "--refiner", "none", "--option", "scheme=detail"],
+            "--option scheme=detail: --refiner none draws the mesh as it is and has no options",
+        ),
         (["capture", "SMILE", "-o", "x.mp4", "--fps", "nan"], "nan is not a finite number"),
         (["capture", "SMILE", "-o", "x.png", "--time", "nan"], "nan is not a finite number"),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "threshold_once=nan"], "not a finite"),
         (["capture", "SMILE", "--sheet", "x.txt"], "pictures are written as .png"),
+        (["bench", "refine", "--seconds", "nan"], "nan is not a finite number"),
         (["replay", "no.toml"], "no.toml: no such script"),
         (["--wrong"], "No such option '--wrong'"),
         (["bench", "motion", "--reference", "nowhere"], "Directory 'nowhere' does not exist"),
@@ -221,6 +235,8 @@ def test_a_pose_needs_no_script(tmp_path: Path) -> None:
     [
         (("--set", "AU12=x"), "--set AU12=x: 'x' is no number"),
         (("--set", "AU12="), "--set AU12=: '' is no number"),
+        (("--set", "joy=7"), "--set: joy is 7; it must be from 0 to 1"),
+        (("--scene", "plane", "--set", "phase=-1"), "--set: phase is -1; it must be from 0 to 100"),
         (("--set", "AU121=1"), "--set: unknown name 'AU121'; did you mean AU"),
         (("--head", "no.obj"), "--head HEAD.obj and --landmarks LANDMARKS.json go together"),
         (("--head", "no.obj", "--landmarks", "no.json"), "no.obj: no such mesh file"),

@@ -51,7 +51,7 @@ def test_a_broken_film_leaves_the_old_one(tmp_path: Path) -> None:
 
 
 def test_frames_in_a_folder(tmp_path: Path) -> None:
-    """Numbered pictures; a folder that is not empty is only replaced when asked."""
+    """Numbered pictures; among other things only when asked, and then only frames give way."""
     target = tmp_path / "frames"
     with outputs.folder(target, overwrite=False) as add:
         add(GREY)
@@ -63,11 +63,27 @@ def test_frames_in_a_folder(tmp_path: Path) -> None:
         outputs.folder(target, overwrite=False),
     ):
         pass
-    assert (target / "notes.txt").exists()
     with outputs.folder(target, overwrite=True) as add:
         add(GREY)
-    assert [item.name for item in target.iterdir()] == ["frame_00000.png"]
+    assert sorted(item.name for item in target.iterdir()) == ["frame_00000.png", "notes.txt"]
     assert list(tmp_path.iterdir()) == [target]
+
+
+def test_broken_frames_leave_the_folder_as_it_was(tmp_path: Path) -> None:
+    """If the program fails in the middle, old frames stay, and a new folder goes."""
+    for name in ("old", "new"):
+        if name == "old":
+            with outputs.folder(tmp_path / name, overwrite=False) as add:
+                add(GREY)
+        with (
+            pytest.raises(RuntimeError, match="in the middle"),
+            outputs.folder(tmp_path / name, overwrite=True) as add,
+        ):
+            add(GREY)
+            add(GREY)
+            raise RuntimeError("in the middle")
+    left = sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*"))
+    assert left == ["old", "old/frame_00000.png"]
 
 
 def test_a_place_that_cannot_be_written(tmp_path: Path) -> None:
@@ -75,3 +91,42 @@ def test_a_place_that_cannot_be_written(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("x")
     with pytest.raises(UserError, match="cannot be written"):
         outputs.save_png(tmp_path / "file" / "picture.png", GREY)
+
+
+def test_a_link_stays_a_link(tmp_path: Path) -> None:
+    """What it points to is written, in its own folder."""
+    (tmp_path / "disk").mkdir()
+    link, real = tmp_path / "link.png", tmp_path / "disk" / "real.png"
+    link.symlink_to(real)
+    outputs.save_png(link, GREY)
+    assert link.is_symlink() and real.is_file() and not real.is_symlink()
+    assert list((tmp_path / "disk").iterdir()) == [real]
+
+
+@pytest.mark.parametrize(
+    ("program", "message"),
+    [
+        (None, r"no film without ffmpeg: .*/ffmpeg: No such file or directory"),
+        ("exit 3", r"film.mp4: cannot be written: ffmpeg: it ended with code 3"),
+        (
+            "cat >/dev/null; echo '[mp4 @ 0x55] No space left on device' >&2; exit 1",
+            r"film.mp4: cannot be written: ffmpeg: No space left on device",
+        ),
+    ],
+)
+def test_a_film_that_ffmpeg_does_not_finish(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str | None, message: str
+) -> None:
+    """No ffmpeg, one that gives up, one that fails at the end: told, and the old film stays."""
+    fake, target = tmp_path / "ffmpeg", tmp_path / "films" / "film.mp4"
+    if program is not None:
+        fake.write_text(f"#!/bin/sh\n{program}\n")
+        fake.chmod(0o755)
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(fake))
+    target.parent.mkdir()
+    target.write_bytes(b"mine")
+    with pytest.raises(UserError, match=message), outputs.film(target, (96, 64), 25.0) as add:
+        for _ in range(20):
+            add(GREY)
+    assert target.read_bytes() == b"mine"
+    assert list(target.parent.iterdir()) == [target]

@@ -35,6 +35,12 @@ def test_paper_figures() -> None:
     assert np.abs(left - right).max() > 20  # refinement shows
 
 
+def test_no_corner_of_the_plane_is_a_speck() -> None:
+    """In the flat static row of Fig. 9 nothing is as dark as an underside, which has no light."""
+    static = paper_figures.figure_9((380, 230))[28:250]
+    assert 90 < static.min() < 200
+
+
 def test_film_strip() -> None:
     """Red lines are in the row without memory, and none in the row with it."""
     drawn = strip.coherence_strip((120, 96)).astype(int)

@@ -60,6 +60,8 @@ def test_easings_stay_between_the_keys(fraction: float, name: str) -> None:
     ("text", "message"),
     [
         ("pose = = 3", r"bad.toml: not valid TOML: .*line 1"),
+        ("a = " + 5000 * "[", r"bad.toml: not valid TOML"),
+        ("a = " + 5000 * "9", r"bad.toml: not valid TOML"),
         ("", r"bad.toml: no \[\[pose\]\] and no \[tracks\]"),
         ("durration = 1\n[[pose]]\ntime=1", r"unknown key 'durration'; allowed are title"),
         ("[[pose]]\njoy=1", r"pose 1: 'time' is missing"),
@@ -93,7 +95,34 @@ def test_unknown_names_get_a_suggestion() -> None:
     """A name that the scene does not have is told with the nearest ones."""
     script = parse_script(HELLO, source="hello.toml")
     with pytest.raises(UserError, match=r"hello.toml: unknown name 'joy'; did you mean joyful"):
-        script.check_names({"joyful", "jaw_open", "blink"})
+        script.check(dict.fromkeys(("joyful", "jaw_open", "blink"), (0.0, 1.0)))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[[pose]]\ntime=1\njoy=7", r"bad.toml: joy is 7; it must be from 0 to 1$"),
+        ("[[pose]]\ntime=1\n[[pose]]\ntime=2.5\njoy=-1", r"joy is -1 at 2.5 s; it must"),
+        ("[[pose]]\ntime=1\njaw=-1.1", r"jaw is -1.1; it must be from -1 to 1"),
+        (
+            "[tracks]\njoy=[{time=1,value=-1},{time=2,value=1.5}]",
+            r"track 'joy' is 1.5 at 2 s; it must be from -1 to 1",
+        ),
+    ],
+)
+def test_values_out_of_limits_are_named(text: str, message: str) -> None:
+    """Too much, or too little, is told with the control, the moment and its limits."""
+    script = parse_script(text, source="bad.toml")
+    with pytest.raises(UserError, match=message):
+        script.check({"joy": (0.0, 1.0), "jaw": (-1.0, 1.0)})
+
+
+def test_tracks_may_take_away() -> None:
+    """What a track adds to the poses may be negative, and the sum may be too much."""
+    text = "[[pose]]\ntime=0\njoy=0.8\n[tracks]\njoy=[{time=0,value=-0.5},{time=1,value=1}]"
+    script = parse_script(text, source="more.toml")
+    script.check({"joy": (0.0, 1.0)})
+    assert script.at(1.0)["joy"] == pytest.approx(1.8)
 
 
 def test_missing_and_unreadable_files(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from PIL import Image
 
 from app import sheet
 from app.errors import UserError
+from app.scenes import FaceScene
 
 MOST_PICTURE = 1_500_000  # bytes, at full size
 
@@ -32,6 +33,22 @@ def test_one_tile_for_both_sides() -> None:
     """Sides of a pair get no tile of their own; a name that only has sides does."""
     names = ("AU1", "AU1_left", "AU1_right", "AU30_left", "AU30_right")
     assert sheet.rows_of(names) == ["AU1", "AU30_left", "AU30_right"]
+
+
+@pytest.mark.parametrize(
+    ("count", "columns"), [(1, 1), (2, 2), (5, 5), (12, 4), (15, 5), (45, 5), (7, 4), (11, 4)]
+)
+def test_columns_leave_few_cells_empty(count: int, columns: int) -> None:
+    """Four columns, unless another number fills the last row better; never an empty column."""
+    assert sheet.columns_for(count) == columns
+
+
+def test_every_sheet_is_full() -> None:
+    """No tile of the built-in head's sheets stands alone in the last row."""
+    groups = FaceScene().groups
+    for title in sheet.TITLES:
+        count = len(sheet.rows_of(groups[title]))
+        assert count % sheet.columns_for(count) == 0, title
 
 
 def test_pictures_of_the_page_are_small() -> None:

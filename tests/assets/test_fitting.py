@@ -148,6 +148,8 @@ def _numbers(other: Stranger, **places: int) -> list[int]:
     [
         ("{", "stranger.json: not readable as JSON"),
         ("{}", "stranger.json: holds no list"),
+        ("68", "stranger.json: holds no list"),
+        ("[" * 100_000, "stranger.json: not readable as JSON"),
         ("[1, 2, 3]", "stranger.json: 3 landmarks; it must be the 68 iBug points"),
         (json.dumps([0] * 67 + [10**7]), r"landmark 67 is vertex 10000000; .* has vertices 0 to"),
         (json.dumps([-1] * 68), "landmark 0 is vertex -1"),

@@ -56,7 +56,9 @@ def test_polygons_become_triangles(tmp_path: Path) -> None:
         ("mesh.doc", "hello", r"cannot read '\.doc' files; among those it can are glb, obj"),
         ("points.obj", "v 0 0 0\nv 1 1 1\n", "holds no triangles"),
         ("mesh.ply", "ply\nformat nonsense\n", "broken or not what its name says"),
-        ("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "vertex 1 .* not a finite number"),
+        ("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", r"vertex 1 .* at \[nan, 0"),
+        ("far.obj", "v 0 0 0\nv 1e300 0 0\nv 0 1 0\nf 1 2 3\n", "must be finite numbers up to 1e"),
+        ("flat.obj", "v 0 0\nv 1 0\nv 0 1\nf 1 2 3\n", "vertices have 2 coordinates"),
     ],
 )
 def test_mistakes_are_told(tmp_path: Path, name: str, content: str | None, message: str) -> None:

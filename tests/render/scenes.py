@@ -10,9 +10,13 @@ import numpy.typing as npt
 import render
 
 Floats = npt.NDArray[np.float32]
+Frame = npt.NDArray[np.int32]  # a picture that can be subtracted from another, (H, W, 3)
 
 PLAIN = render.Style(background=render.WHITE, shadows=False)
 """Skin before pure white, so that what is not white is drawn."""
+
+STILL = {"cranium": np.eye(4), "eye_left": np.eye(4)}
+"""Bones at rest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +96,7 @@ def picture(
     *,
     camera: render.OrbitCamera | None = None,
     values: npt.NDArray[np.uint8] | None = None,
-) -> npt.NDArray[np.int32]:
+) -> Frame:
     """Draw the shape over the style's background on a fresh frame, shape (H, W, 3), int32."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape)
@@ -103,7 +107,14 @@ def picture(
     return surface.read().astype(np.int32)
 
 
-def drawn(frame: npt.NDArray[np.int32]) -> npt.NDArray[np.bool_]:
+def at(frame: Frame, x: float, y: float) -> npt.NDArray[np.int32]:
+    """The pixel that shows the point (x, y, 0) of `facing`'s view."""
+    height, width, _ = frame.shape
+    scale = 0.5 * height / (250.0 * np.tan(np.radians(12.5)))
+    return np.asarray(frame[int(0.5 * height - y * scale), int(0.5 * width + x * scale)])
+
+
+def drawn(frame: Frame) -> npt.NDArray[np.bool_]:
     """Which pixels are not the white background, shape (H, W)."""
     return np.asarray((frame < 250).any(axis=2))
 

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import moderngl
 import pytest
 
 import render
@@ -63,6 +64,17 @@ def test_broken_egl_is_one_line(
 
 
 @on_linux
+def test_a_frame_that_does_not_fit_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where memory for a frame is refused, the text says what to ask for instead."""
+
+    def refused(*_: object) -> None:
+        raise moderngl.Error("the framebuffer is not complete (INCOMPLETE_ATTACHMENT)")
+
+    monkeypatch.setattr("render.surface.Layers", refused)
+    with pytest.raises(render.GLError, match=r"64 x 48 pixels .* Cure: ask for a smaller frame"):
+        render.open_offscreen((64, 48))
+
+
 def test_no_screen_is_one_line_without_warnings() -> None:
     """Without a screen a window fails with a GLError; GLFW's Python warnings stay away."""
     output = run_python(

@@ -63,6 +63,28 @@ def test_not_one_pixel_changes(
             assert (pictures[0] == pictures[1]).all()
 
 
+@pytest.mark.parametrize("samples", [0, 4])
+def test_depths_of_an_earlier_picture_hide_nothing(
+    monkeypatch: pytest.MonkeyPatch, samples: int
+) -> None:
+    """Parts alone look the same in every frame, whatever was drawn in the one before."""
+    with render.open_offscreen((150, 110), samples=samples) as surface:
+        monkeypatch.setattr(type(surface), "is_software", True)
+        renderer = render.Renderer(surface)
+        wall, ball = lent(renderer, square(40.0, z=25.0)), Ball()
+        pictures = []
+        for is_walled in (False, True, False):
+            surface.begin()
+            renderer.draw_background(PLAIN)
+            if is_walled:
+                renderer.draw_mesh(wall, facing(), PLAIN)
+            renderer.draw_parts([ball], {"cranium": np.eye(4)}, facing(), PLAIN)
+            surface.end()
+            pictures.append(surface.read())
+        assert (pictures[0] != pictures[1]).any()
+        assert (pictures[0] == pictures[2]).all()
+
+
 def test_hidden_faces_are_left_out(
     surface: render.Surface, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,0 +1,58 @@
+"""Polylines over the scene."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import render
+
+from .scenes import PLAIN, at, drawn, facing, lent, square
+
+
+def test_lines_before_and_behind(surface: render.Surface) -> None:
+    """A line in front has its full colour, one behind shines through, and 0 hides it."""
+    renderer = render.Renderer(surface)
+    wall = lent(renderer, square())
+    over = np.array([(-40, 20, 5), (0, 20, 5), (40, 20, 5)], np.float64)
+    under = over - (0, 40, 10)
+    frames = []
+    for hidden_opacity in (0.5, 0.0):
+        surface.begin()
+        renderer.draw_background(PLAIN)
+        renderer.draw_mesh(wall, facing(), PLAIN)
+        renderer.draw_lines(
+            [over, under],
+            np.array([(0, 0.8, 0), (0, 0, 0.9)]),
+            facing(),
+            width=4.0,
+            hidden_opacity=hidden_opacity,
+        )
+        surface.end()
+        frames.append(surface.read().astype(np.int32))
+    skin = at(frames[0], 0.0, 0.0)
+    for frame in frames:
+        assert at(frame, 10.0, 20.4) == pytest.approx((0, 204, 0), abs=3)
+    assert at(frames[0], 10.0, -20.0) == pytest.approx(skin * 0.5 + np.array((0, 0, 115)), abs=6)
+    assert at(frames[1], 10.0, -20.0) == pytest.approx(skin, abs=3)
+
+
+def test_lines_are_not_joined(surface: render.Surface) -> None:
+    """Nothing is drawn from the end of one line to the start of the next; empty lines are fine."""
+    renderer = render.Renderer(surface)
+    left = np.array([(-40.0, -10, 0), (-40, 10, 0)])
+    right = np.array([(40.0, -10, 0), (40, 10, 0)])
+    surface.begin()
+    renderer.draw_background(PLAIN)
+    renderer.draw_lines([], (1, 0, 0), facing())
+    renderer.draw_lines([np.zeros((0, 3)), left, np.zeros((1, 3)), right], (1, 0, 0), facing())
+    surface.end()
+    columns = np.nonzero(drawn(surface.read().astype(np.int32)).any(axis=0))[0]
+    assert len(columns) > 2 and not ((columns > 20) & (columns < 76)).any()
+
+
+def test_line_colours_must_fit(surface: render.Surface) -> None:
+    """One colour, or one per line."""
+    line = np.zeros((3, 3))
+    with pytest.raises(ValueError, match=r"colour has shape \(2, 3\); it must be \(3,\), or one"):
+        render.Renderer(surface).draw_lines([line], np.zeros((2, 3)), facing())

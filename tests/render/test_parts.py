@@ -1,0 +1,88 @@
+"""Rigid parts: where bones put them, how they shine, what hides them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import render
+
+from .scenes import PLAIN, STILL, Ball, Shape, at, drawn, facing, lent, sphere, square
+
+
+def test_parts_move_with_their_bones(surface: render.Surface) -> None:
+    """A part is drawn where the column-vector matrix of its bone puts it."""
+    renderer = render.Renderer(surface)
+    ball = Ball(bone="eye_left")
+    places = []
+    for x in (-25.0, 25.0):
+        moved = np.eye(4)
+        moved[:3, 3] = (x, 0.0, 0.0)
+        surface.begin()
+        renderer.draw_background(PLAIN)
+        renderer.draw_parts([ball], {"eye_left": moved}, facing(), PLAIN)
+        surface.end()
+        frame = surface.read().astype(np.int32)
+        assert at(frame, x, 0.0)[2] > at(frame, x, 0.0)[0] + 30
+        places.append(np.nonzero(drawn(frame))[1].mean())
+    assert places[0] == pytest.approx(47.5 - 21.5, abs=1.5)
+    assert places[1] == pytest.approx(47.5 + 21.5, abs=1.5)
+
+
+def test_wet_parts_have_a_crisp_highlight(surface: render.Surface) -> None:
+    """Shine makes a few pixels nearly white, and leaves the others as they are."""
+    renderer = render.Renderer(surface)
+    frames = []
+    for shine in (0.0, 1.0):
+        surface.begin()
+        renderer.draw_background(render.Style(background=render.DARK))
+        renderer.draw_parts([Ball(shine=shine, colour=(0.1, 0.1, 0.1))], STILL, facing(25.0), PLAIN)
+        surface.end()
+        frames.append(surface.read().astype(int).sum(axis=2))
+    dull, wet = frames
+    assert dull.max() < 400 and wet.max() > 600
+    assert ((wet - dull) > 150).mean() < 0.03
+
+
+def test_parts_and_mesh_hide_each_other(surface: render.Surface) -> None:
+    """Depth decides, whichever is drawn first."""
+    renderer = render.Renderer(surface)
+    wall = lent(renderer, square(z=10.0))
+    ball = Ball()
+    surface.begin()
+    renderer.draw_background(PLAIN)
+    renderer.draw_mesh(wall, facing(), PLAIN)
+    renderer.draw_parts([ball], STILL, facing(), PLAIN)
+    surface.end()
+    frame = surface.read().astype(np.int32)
+    assert at(frame, 0.0, 0.0)[2] > at(frame, 0.0, 0.0)[0]  # the ball's front comes through
+    assert at(frame, 19.0, 0.0)[0] > at(frame, 19.0, 0.0)[2]  # its rim is behind the wall
+
+
+def test_parts_have_one_side(surface: render.Surface) -> None:
+    """Of a part, only the side from which its triangles run counter-clockwise is drawn."""
+    ball = Ball()
+    behind = ball.vertices[ball.faces].mean(axis=1)[:, 2] < 0.0
+    bowl = ball.shape.triangles[behind]
+    renderer = render.Renderer(surface)
+    shown = []
+    for triangles, normals in ((bowl, ball.normals), (bowl[:, ::-1], -ball.normals)):
+        part = Ball(shape=Shape(ball.vertices, normals, triangles))
+        surface.begin()
+        renderer.draw_background(PLAIN)
+        renderer.draw_parts([part], STILL, facing(), PLAIN)
+        surface.end()
+        shown.append(at(surface.read().astype(np.int32), 0.0, 0.0))
+    assert shown[0].min() >= 254
+    assert 60 < shown[1][2] < 250 and shown[1][2] > 2 * shown[1][0]
+
+
+def test_part_errors(surface: render.Surface) -> None:
+    """Unknown bones and misshapen parts are refused by name."""
+    renderer = render.Renderer(surface)
+    with pytest.raises(ValueError, match="part 'ball' moves with bone 'tail'; transforms has only"):
+        renderer.draw_parts([Ball(bone="tail")], STILL, facing(), PLAIN)
+    shape = sphere(0)
+    broken = Ball(shape=Shape(shape.positions, shape.normals[:4], shape.triangles))
+    with pytest.raises(ValueError, match=r"part 'ball': vertices \(6, 3\), normals \(4, 3\)"):
+        renderer.draw_parts([broken], STILL, facing(), PLAIN)

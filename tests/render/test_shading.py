@@ -1,0 +1,83 @@
+"""Shading: flat, Gouraud, per pixel; what light does to skin, front and back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+import render
+
+from .scenes import PLAIN, Shape, at, drawn, picture, sphere, square
+
+FLAT = replace(PLAIN, shading=render.Shading.FLAT)
+GOURAUD = replace(PLAIN, shading=render.Shading.GOURAUD)
+
+
+def test_three_shadings_differ(surface: render.Surface) -> None:
+    """Flat, Gouraud and per-pixel lighting are three pictures of the same silhouette."""
+    frames = [picture(surface, sphere(1), style) for style in (FLAT, GOURAUD, PLAIN)]
+    for first in range(3):
+        for second in range(first):
+            difference = np.abs(frames[first] - frames[second])
+            assert difference.mean() > 0.5
+            assert (drawn(frames[first]) == drawn(frames[second])).mean() > 0.99
+
+
+def test_flat_facets_have_one_colour(surface: render.Surface) -> None:
+    """Flat shading gives a tilted triangle the same colour everywhere; Gouraud does not."""
+    shape = square(bulge=1.0)
+    tilted = Shape(shape.positions.copy(), shape.normals, shape.triangles[:1])
+    tilted.positions[:, 2] = (0.0, 25.0, 5.0, 0.0)
+    spread = {}
+    for name, style in (("flat", FLAT), ("gouraud", GOURAUD)):
+        frame = picture(surface, tilted, style)
+        inner = frame[60:72, 56:72].reshape(-1, 3)
+        spread[name] = int(np.ptp(inner, axis=0).max())
+    assert spread["flat"] <= 1 < spread["gouraud"]
+
+
+def test_flat_shading_ignores_vertex_normals(surface: render.Surface) -> None:
+    """The geometric normal of the drawn triangle decides."""
+    frames = [picture(surface, square(bulge=bulge), FLAT) for bulge in (0.0, 2.0)]
+    assert (frames[0] == frames[1]).all()
+
+
+def test_only_pixel_shading_lights_the_middle_of_a_facet(surface: render.Surface) -> None:
+    """Between four corners that turn away, Gouraud stays as dark as they are."""
+    shape = square(bulge=3.0)
+    middle = {
+        name: int(at(picture(surface, shape, style), 3.0, -1.0).sum())
+        for name, style in (("gouraud", GOURAUD), ("pixel", PLAIN))
+    }
+    assert middle["pixel"] > middle["gouraud"] + 20
+
+
+def test_light_comes_from_the_upper_left(surface: render.Surface) -> None:
+    """The sphere is brightest up left of its middle, and its dark side is not black."""
+    frame = picture(surface, sphere(4), replace(PLAIN, albedo=render.CLAY)).sum(axis=2)
+    upper_left, lower_right = frame[32, 32], frame[64, 64]
+    assert upper_left > 1.5 * lower_right
+    assert lower_right > 3 * 30
+
+
+def test_terminator_of_skin_is_warm(surface: render.Surface) -> None:
+    """Where light fades out, skin is redder than its albedo; clay is not."""
+    shares = {}
+    for name, albedo in (("skin", render.SKIN), ("clay", render.CLAY)):
+        style = replace(PLAIN, albedo=albedo, background=render.DARK)
+        frame = picture(surface, sphere(4), style).astype(float)
+        share = frame[:, :, 0] / frame.sum(axis=2)
+        shares[name] = share[60, 60] - share[36, 36]
+    assert shares["skin"] > shares["clay"] + 0.01
+
+
+def test_inner_side_is_dark_flesh(surface: render.Surface) -> None:
+    """Seen from behind, a surface is much darker, and red."""
+    shape = square()
+    turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
+    for style in (FLAT, GOURAUD, PLAIN):
+        front = at(picture(surface, shape, style), 5.0, 5.0)
+        behind = at(picture(surface, turned, style), 5.0, 5.0)
+        assert behind.sum() < 0.4 * front.sum()
+        assert behind[0] > 1.5 * behind[1] and behind[0] > 20

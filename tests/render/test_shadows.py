@@ -1,0 +1,75 @@
+"""The shadow of the key light."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import render
+
+from .scenes import PLAIN, Frame, Shape, at, facing, joined, picture, sphere, square
+
+
+def test_shadow_of_the_key_light(surface: render.Surface) -> None:
+    """A small square before a wall darkens the wall to its lower right, and nowhere else."""
+    blocker = square(12.0, z=30.0)
+    thick = Shape(blocker.positions - (0, 0, 4), -blocker.normals, blocker.triangles[:, ::-1])
+    shape = joined(square(), joined(blocker, thick))
+    without = picture(surface, shape, replace(PLAIN, albedo=render.CLAY))
+    within = picture(surface, shape, replace(PLAIN, albedo=render.CLAY, shadows=True))
+    # The key stands at (-0.53, 0.63, 0.57): 28 mm before the wall are 26 mm right and 31 mm down.
+    assert at(within, 26.0, -31.0).sum() < 0.8 * at(without, 26.0, -31.0).sum()
+    assert at(within, 26.0, -31.0).min() > 40
+    assert (at(within, -30.0, 30.0) == at(without, -30.0, 30.0)).all()
+    assert (at(within, 0.0, 0.0) == at(without, 0.0, 0.0)).all()
+
+
+def wall_in_shadow(style: render.Style) -> tuple[Frame, Frame]:
+    """A wall with the shadow of a square, and without: the row 25 mm below the middle, x >= 0."""
+    blocker = square(20.0, z=30.0)
+    rows = []
+    with render.open_offscreen((480, 480)) as surface:
+        for shadows in (True, False):
+            drawn_style = replace(style, shadows=shadows)
+            frame = picture(surface, joined(square(), blocker), drawn_style)
+            half_height = 250.0 * np.tan(np.radians(12.5))
+            row = int(240.0 * (1.0 + 25.0 / half_height))
+            right = int(240.0 * (1.0 + 49.0 / half_height))
+            rows.append(frame[row, 240:right])
+    return rows[0], rows[1]
+
+
+def test_shadows_have_soft_edges() -> None:
+    """From shadow to light the wall brightens steadily; on a head that takes 2 to 6 mm."""
+    within, without = wall_in_shadow(replace(PLAIN, albedo=render.CLAY, subsurface=0.0))
+    lightness = within.sum(axis=1) / without.sum(axis=1)
+    darkest = int(lightness.argmin())
+    edge = lightness[darkest:]
+    assert edge[-1] > 0.99 and edge[0] < 0.75
+    assert (np.diff(edge) > -0.01).all() and np.diff(edge).max() < 0.1
+    share = (edge - edge[0]) / (edge[-1] - edge[0])
+    pixel = 2.0 * 250.0 * np.tan(np.radians(12.5)) / 480.0
+    on_a_head = pixel / facing().scene_radius * 150.0  # [mm]
+    assert 2.0 < np.count_nonzero((share > 0.02) & (share < 0.98)) * on_a_head < 6.0
+
+
+def test_shadow_on_skin_is_warm() -> None:
+    """In the shadow skin is redder than in the light, and never grey or green."""
+    within, without = wall_in_shadow(PLAIN)
+    darkest = int(within.sum(axis=1).argmin())
+    shadow, light = within[darkest].astype(float), without[darkest].astype(float)
+    assert shadow[0] > 1.2 * shadow[1] > 1.2 * shadow[2]
+    assert shadow[0] / shadow.sum() > light[0] / light.sum() + 0.01
+
+
+@pytest.mark.parametrize("shading", render.Shading)
+def test_convex_things_do_not_shadow_themselves(
+    surface: render.Surface, shading: render.Shading
+) -> None:
+    """On a coarse sphere shadows change next to nothing: no stripes along the terminator."""
+    style = replace(PLAIN, shading=shading)
+    without = picture(surface, sphere(2), style)
+    within = picture(surface, sphere(2), replace(style, shadows=True))
+    assert np.abs(within - without).max() < 25 and np.abs(within - without).mean() < 0.7
