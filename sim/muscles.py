@@ -27,7 +27,8 @@ RING_POINTS = 25  # corners of the line drawn for a sphincter
 BULGE_SPREAD = 0.3  # of the fibre's length (fitted)
 GATE_ENDS = -0.6  # of the lip side field: beyond it a gated muscle leaves the other lip alone
 GATE_FULL = 1.0  # where it has its full hold; in between it fades, or corners get square
-FLARE_HEIGHT = 5.0  # mm from the mouth line where the flare is three quarters of its full size
+MOUTH_ROUND = 1.08  # half widths of the mouth at which flare and parting end
+FLARE_HEIGHT = 3.0  # mm from the mouth line where the flare is three quarters of its full size
 MIDLINE_FADE = 20.0  # mm across the midline over which a paired muscle yields to its twin
 FACE_DEPTH = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
 
@@ -168,13 +169,33 @@ def hang_on_ring(
     weight *= x[:, 2] > landmarks[[36, 45], 2].mean() - FACE_DEPTH
     weight *= _gate(muscle, side, places)
     pull = np.array(muscle.contraction) * (centre - x)
+    if muscle.opening > 0.0:
+        pull[:, :2] = _round_mouth(muscle, x, landmarks) - x[:, :2]
     pull += np.array(muscle.push) * (side.sign, 1.0, 1.0)
     seam = landmarks[[62, 66], 1].mean()
-    across = np.exp(-((d[:, 0] / lateral) ** 2))
+    # On an ellipse through the mouth's corners, or an open mouth has straight edges.
+    corner = MOUTH_ROUND * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
+    across = np.sqrt(np.maximum(1.0 - (x[:, 0] / corner) ** 2, 0.0))
     pull[:, 1] += muscle.flare * np.tanh((x[:, 1] - seam) / FLARE_HEIGHT) * across
     pull += muscle.bulge * places.normals
     arc = attach(points, x, width=1.0, beyond=1.0).arc
     return Hold(weight, arc, weight[:, None] * pull)
+
+
+def _round_mouth(muscle: RingMuscle, x: Array, landmarks: Array) -> Array:
+    """Where lips lie, seen from the front, around a circular opening, shape (n, 2) [mm].
+
+    What lies at a share u of the way from the middle to the corner goes to radius (sin(u 90 deg),
+    sqrt(1 - u^2)): a little fuller than a circle beside the middle, as corners lag behind. The lip
+    keeps its height.
+    """
+    seam = landmarks[[62, 66], 1].mean()
+    across = np.clip(x[:, 0] / abs(landmarks[54, 0]), -1.0, 1.0)
+    height = x[:, 1] - seam
+    side = {"upper_lip": 1.0, "lower_lip": -1.0}.get(muscle.gate, np.sign(height))
+    radius = muscle.opening + np.maximum(height * side, 0.0)
+    up = seam + side * radius * np.sqrt(1.0 - across**2)
+    return np.stack([radius * np.sin(across * np.pi / 2.0), up], axis=1)
 
 
 def _middle(muscle: RingMuscle, landmarks: Array, side: Side) -> Array:

@@ -36,7 +36,7 @@ from .surface import Surface
 Indices = npt.NDArray[np.int32]
 Unsigned = npt.NDArray[np.uint32]  # saves the kernels a test per access
 
-LEAST_WEIGHT = 1e-2  # attachments below it are dropped
+LEAST_STIFFNESS = 0.4  # per area, in units of the rig: attachments below it are dropped
 LEAST_CARRIED = 0.05  # likewise those by which one muscle carries the skin on another
 
 
@@ -140,7 +140,7 @@ def prepare_pull(
     for at in placed:
         k = at.muscle.stiffness * strength
         holds.append((k * at.weight, k[:, None] * at.steady))
-    unit = strength * max((at.muscle.stiffness for at in placed), default=1.0)
+    least = LEAST_STIFFNESS * strength
     return MusclePull(
         names=tuple(at.name for at in placed),
         passive=np.array([rig.tissue.passive * at.muscle.tone for at in placed], dtype=np.float64),
@@ -148,12 +148,12 @@ def prepare_pull(
         reaches_lips=np.array(
             [min(float(at.weight[lips].max(initial=0.0)), 1.0) for at in placed], dtype=np.float64
         ),
-        holds=_attachments(holds, unit, np.zeros((0, 3))),
+        holds=_attachments(holds, least, np.zeros((0, 3))),
         bundle=bundle,
-        pulls=_attachments(_pulls(placed, order, strength), unit, np.zeros(0)),
+        pulls=_attachments(_pulls(placed, order, strength), least, np.zeros(0)),
         table=np.zeros((len(bundle.muscle), SAMPLES, 3)),
         riding=riding,
-        carries=_attachments(_carries(placed, order, strength, riding), unit, np.zeros(0)),
+        carries=_attachments(_carries(placed, order, strength, riding), least, np.zeros(0)),
         ride=np.zeros(bundle.points.shape),
         rides=np.zeros(len(bundle.muscle), dtype=np.bool_),
         steady=np.zeros((surface.vertex_count, 3)),
@@ -231,9 +231,9 @@ def _carries(
     return parts
 
 
-def _attachments(parts: list[tuple[Array, Array]], unit: Array, empty: Array) -> Attachments:
+def _attachments(parts: list[tuple[Array, Array]], least: Array, empty: Array) -> Attachments:
     """Lay the vertices that matter of each part (weight, value) end to end."""
-    on = [np.flatnonzero(weight > LEAST_WEIGHT * unit) for weight, _ in parts]
+    on = [np.flatnonzero(weight > least) for weight, _ in parts]
     nothing = np.zeros(0, dtype=np.int64)
     return Attachments(
         rows=np.cumsum([0, *(len(rows) for rows in on)]).astype(np.uint32),

@@ -186,6 +186,7 @@ class RingMuscle(Muscle):
     push: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, 0.0, 0.0))
     bulge: float = _number(0.0, 40.0, default=0.0)  # mm outward along the skin's normal
     flare: float = _number(-30.0, 30.0, default=0.0)  # mm up for the upper, down for the lower lip
+    opening: float = _number(0.0, 30.0, default=0.0)  # mm, of the round mouth drawn to; 0: centre
     arc_deg: tuple[float, float, float] = _vector(3, -360.0, 360.0, default=(0.0, 180.0, 1.0))
 
 
