@@ -124,7 +124,7 @@ def build_anatomy(head: Any) -> Anatomy:
     placed = place_muscles(rig, surface, known, side)
     seal = rig.tissue.lip_seal * rig.tissue.stiffness_scale
     lips = pair_lips(surface, known, side, seal)
-    muscles = prepare_pull(placed, rig, surface, skull.mandible_weight, lips.members)
+    muscles = prepare_pull(placed, rig, surface, skull.mandible_weight, lips.members, known, side)
     controls = _controls(rig, skull, lips, landmarks is not None)
     lids = None
     if landmarks is not None and skull.eyeballs:

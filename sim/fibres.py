@@ -4,11 +4,13 @@ A fibre is FIBRE_POINTS points p_0 (origin) .. p_n (insertion). Its skin is atta
 t in 0..1. Contracted by c, the point at t moves to where t (1 - c) was: skin slides along the
 fibre's own arc towards the origin. A muscle whose origin is no bone (frontalis: the scalp) stays
 still at t = f instead, and both ends slide to it: t moves to f + (t - f)(1 - c). All fibres share
-one table of displacements at SAMPLES places along them, filled again each tick; the skin reads it
-by linear interpolation.
+one table of displacements at SAMPLES places along them, filled again each tick; the skin, and what
+lies on the fibre, read it by linear interpolation.
 
                       t = 0                t (1 - c)   t                 t = 1
     origin on bone      o-------.-------.----*<--------o-------.-----------o  insertion in the skin
+
+Before a fibre contracts, its points follow the bones and the muscles that it lies on (riding.py).
 
 Source: Kähler et al. 2001, section 4 (piecewise linear fibres, contraction q_i along the
 polyline, u_i = max(c t_i, 0.01)).
@@ -17,11 +19,11 @@ polyline, u_i = max(c t_i, 0.01)).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numba
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
 
 from .landmarks import Array, Side
 from .rig import Fibre, LinearMuscle
@@ -33,16 +35,29 @@ WRAP_NEIGHBOURS = 10  # vertices that say where the skin is (chosen)
 LEAST_ARC = 0.01  # Kähler's 0.01: the insertion never reaches the origin
 
 
-@dataclass(frozen=True)
-class FibreBundle:
-    """All fibres of a face, in muscle order."""
+class FibreBundle(NamedTuple):
+    """All lines of a face: the fibres of linear muscles, and one along each sphincter.
+
+    A line comes after all that it lies on.
+    """
 
     muscle: npt.NDArray[np.int32]  # (B,) number of its muscle
     points: Array  # (B, FIBRE_POINTS, 3) mm at rest
     mandible: Array  # (B, FIBRE_POINTS) share of the mandible's motion
-    contraction: Array  # (B,) share of the length lost at full activation
+    contraction: Array  # (B,) share of the length lost at full activation; 0 along a sphincter
     fixed_at: Array  # (B,) place along the fibre that stays still
-    gain: Array  # (B,)
+
+
+class Riding(NamedTuple):
+    """Which points of a line lie on which lines; line b has rows[b] up to rows[b + 1]."""
+
+    rows: npt.NDArray[np.uint32]  # (B + 1,)
+    point: npt.NDArray[np.uint32]  # (n,) of the line that is carried
+    line: npt.NDArray[np.uint32]  # (n,) that carries it
+    sample: Array  # (n,) where along it, in samples
+    place: Array  # (n,) the same, in points
+    share: Array  # (n,) of its displacement
+    steady: Array  # (n, 3) mm of displacement at full activation that is linear in it
 
 
 def build_fibre(
@@ -52,21 +67,33 @@ def build_fibre(
     along = np.linspace(0.0, 1.0, FIBRE_POINTS)[:, None]
     origin, insertion = fibre.origin.on(landmarks, side), fibre.insertion.on(landmarks, side)
     points = origin * (1.0 - along) + insertion * along
-    if muscle.wrap == 0.0 or surface.vertex_count < WRAP_NEIGHBOURS:
+    return points if muscle.wrap == 0.0 else bent_to_skin(points, surface, muscle.wrap)
+
+
+def bent_to_skin(points: Array, surface: Surface, share: float) -> Array:
+    """Points (n, 3) of a line moved by a share of the way to the skin near them."""
+    if surface.vertex_count < WRAP_NEIGHBOURS:
         return points
-    distance, vertices = cKDTree(surface.positions).query(points, k=WRAP_NEIGHBOURS)
-    # The furthest neighbour gets no weight, so a tie for its place cannot bend a midline fibre.
-    weight = (1.0 - (distance / np.maximum(distance[:, -1:], 1e-9)) ** 2) ** 2 + 1e-12
-    weight /= weight.sum(axis=1, keepdims=True)
-    skin = (surface.positions[vertices] * weight[:, :, None]).sum(axis=1)
-    normal = (surface.normals[vertices] * weight[:, :, None]).sum(axis=1)
+    skin = over_skin(points, surface, surface.positions)
+    normal = over_skin(points, surface, surface.normals)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
     correction = ((skin - points) * normal).sum(axis=1, keepdims=True) * normal
     for _ in range(2):  # single vertices must not put kinks into a fibre
         inner = 0.25 * correction[:-2] + 0.5 * correction[1:-1] + 0.25 * correction[2:]
         correction[1:-1] = inner
-    bent: Array = points + muscle.wrap * correction
+    bent: Array = points + share * correction
     return bent
+
+
+def over_skin(points: Array, surface: Surface, field: Array) -> Array:
+    """A field of the skin, shape (V, ...), at points (n, 3) near it: a mean of the nearest."""
+    count = min(WRAP_NEIGHBOURS, surface.vertex_count)
+    distance, vertices = surface.tree.query(points, k=range(1, count + 1))
+    # The furthest neighbour gets no weight, so a tie for its place cannot bend a midline fibre.
+    weight = (1.0 - (distance / np.maximum(distance[:, -1:], 1e-9)) ** 2) ** 2 + 1e-12
+    weight /= weight.sum(axis=1, keepdims=True)
+    mean: Array = np.einsum("nk,nk...->n...", weight, field[vertices])
+    return mean
 
 
 @dataclass(frozen=True)
@@ -103,47 +130,103 @@ CUT = 2.2  # widths at which the Gaussian (0.8 %) is cut to zero
 
 
 @numba.njit(cache=True)
-def contract_fibres(  # type: ignore[no-untyped-def]
-    points, mandible, contraction, fixed_at, gain, activation, turn, shift, table
+def move_lines(  # type: ignore[no-untyped-def]
+    bundle, riding, activation, turn, shift, ride, rides, table
 ):
-    """Fill `table` (B, SAMPLES, 3) with the displacement [mm] of the skin along each active fibre.
+    """Move all lines for one tick, each after those it lies on, and contract the active ones.
 
-    The fibre's points first move with the bones (`turn`, `shift` of the mandible by their share),
-    so a fibre stays fixed to its bone while the jaw is open.
+    activation: of each muscle, (M,); turn, shift: of the mandible. Fills `ride` (B, FIBRE_POINTS,
+    3) with the displacement [mm] of points by the muscles beneath, `rides` (B,) with whether there
+    is one, and `table` (B, SAMPLES, 3) with that along each active fibre.
     """
-    samples = table.shape[1]
-    count = points.shape[1]
-    moved = np.empty((count, 3))
+    muscle, contraction, rows = bundle.muscle, bundle.contraction, riding.rows
+    moved = np.empty(bundle.points.shape[1:])
+    for b in range(len(muscle)):
+        first, last = rows[b], rows[b + 1]
+        rides[b] = False
+        for row in range(first, last):
+            c = riding.line[row]
+            if activation[muscle[c]] > 0.0 or rides[c]:
+                rides[b] = True
+                break
+        if rides[b]:
+            be_carried(bundle, riding, first, last, activation, turn, ride, rides, table, b)
+        a = activation[muscle[b]]
+        if a > 0.0 and contraction[b] > 0.0:
+            follow(bundle.points[b], bundle.mandible[b], turn, shift, moved)
+            if rides[b]:
+                moved += ride[b]
+            contract(moved, contraction[b] * a, bundle.fixed_at[b], table[b])
+
+
+@numba.njit(cache=True)
+def be_carried(  # type: ignore[no-untyped-def]
+    bundle, riding, first, last, activation, turn, ride, rides, table, b
+):
+    """Fill `ride[b]` with what the lines beneath, in rows `first` to `last`, carry line b by."""
+    muscle, contraction, mandible = bundle.muscle, bundle.contraction, bundle.mandible[b]
+    point, line, steady = riding.point, riding.line, riding.steady
+    sample, place, share = riding.sample, riding.place, riding.share
+    own = ride[b]
+    own[:] = 0.0
+    for row in range(first, last):
+        c, p = line[row], point[row]
+        a = activation[muscle[c]]
+        if a > 0.0:
+            sx, sy, sz = a * steady[row, 0], a * steady[row, 1], a * steady[row, 2]
+            w = mandible[p]
+            own[p, 0] += sx + w * (turn[0, 0] * sx + turn[0, 1] * sy + turn[0, 2] * sz - sx)
+            own[p, 1] += sy + w * (turn[1, 0] * sx + turn[1, 1] * sy + turn[1, 2] * sz - sy)
+            own[p, 2] += sz + w * (turn[2, 0] * sx + turn[2, 1] * sy + turn[2, 2] * sz - sz)
+            if contraction[c] > 0.0:
+                s = min(np.uint32(sample[row]), table.shape[1] - 2)
+                far = share[row] * (sample[row] - s)
+                near = share[row] - far
+                for k in range(3):
+                    own[p, k] += near * table[c, s, k] + far * table[c, s + 1, k]
+        if rides[c]:
+            s = min(np.uint32(place[row]), ride.shape[1] - 2)
+            far = share[row] * (place[row] - s)
+            near = share[row] - far
+            for k in range(3):
+                own[p, k] += near * ride[c, s, k] + far * ride[c, s + 1, k]
+
+
+@numba.njit(cache=True)
+def follow(points, mandible, turn, shift, moved):  # type: ignore[no-untyped-def]
+    """Carry the points of a line by its bones."""
+    for p in range(len(points)):
+        x, y, z = points[p, 0], points[p, 1], points[p, 2]
+        for k in range(3):
+            to = turn[k, 0] * x + turn[k, 1] * y + turn[k, 2] * z + shift[k]
+            moved[p, k] = points[p, k] + mandible[p] * (to - points[p, k])
+
+
+@numba.njit(cache=True)
+def contract(moved, lost, fixed_at, table):  # type: ignore[no-untyped-def]
+    """Fill `table` (SAMPLES, 3) with displacements along a fibre that loses a share of itself."""
+    samples, count = len(table), len(moved)
     arc = np.empty(count)
-    for b in range(points.shape[0]):
-        if activation[b] <= 0.0:
-            continue
-        for p in range(count):
-            x, y, z = points[b, p, 0], points[b, p, 1], points[b, p, 2]
-            w = mandible[b, p]
-            for k in range(3):
-                to = turn[k, 0] * x + turn[k, 1] * y + turn[k, 2] * z + shift[k]
-                moved[p, k] = points[b, p, k] + w * (to - points[b, p, k])
-        arc[0] = 0.0
-        for p in range(1, count):
-            dx = moved[p, 0] - moved[p - 1, 0]
-            dy = moved[p, 1] - moved[p - 1, 1]
-            dz = moved[p, 2] - moved[p - 1, 2]
-            arc[p] = arc[p - 1] + np.sqrt(dx * dx + dy * dy + dz * dz)
-        kept = max(1.0 - contraction[b] * activation[b], LEAST_ARC)
-        fixed = fixed_at[b] * arc[count - 1]
-        # `there` and `here` only grow, so both find their segment by walking on.
-        near, far = 1, 1
-        for s in range(samples):
-            here = arc[count - 1] * s / (samples - 1)
-            there = fixed + kept * (here - fixed)
-            while near < count - 1 and arc[near] < there:
-                near += 1
-            while far < count - 1 and arc[far] < here:
-                far += 1
-            u = (there - arc[near - 1]) / max(arc[near] - arc[near - 1], 1e-12)
-            t = (here - arc[far - 1]) / max(arc[far] - arc[far - 1], 1e-12)
-            for k in range(3):
-                to = moved[near - 1, k] + u * (moved[near, k] - moved[near - 1, k])
-                at = moved[far - 1, k] + t * (moved[far, k] - moved[far - 1, k])
-                table[b, s, k] = gain[b] * (to - at)
+    arc[0] = 0.0
+    for p in range(1, count):
+        dx = moved[p, 0] - moved[p - 1, 0]
+        dy = moved[p, 1] - moved[p - 1, 1]
+        dz = moved[p, 2] - moved[p - 1, 2]
+        arc[p] = arc[p - 1] + np.sqrt(dx * dx + dy * dy + dz * dz)
+    kept = max(1.0 - lost, LEAST_ARC)
+    fixed = fixed_at * arc[count - 1]
+    # `there` and `here` only grow, so both find their segment by walking on.
+    near, far = 1, 1
+    for s in range(samples):
+        here = arc[count - 1] * s / (samples - 1)
+        there = fixed + kept * (here - fixed)
+        while near < count - 1 and arc[near] < there:
+            near += 1
+        while far < count - 1 and arc[far] < here:
+            far += 1
+        u = (there - arc[near - 1]) / max(arc[near] - arc[near - 1], 1e-12)
+        t = (here - arc[far - 1]) / max(arc[far] - arc[far - 1], 1e-12)
+        for k in range(3):
+            to = moved[near - 1, k] + u * (moved[near, k] - moved[near - 1, k])
+            at = moved[far - 1, k] + t * (moved[far, k] - moved[far - 1, k])
+            table[s, k] = to - at

@@ -2,7 +2,8 @@
 
 Linear muscles attach the skin around each of their fibres (fibres.py). Sphincters draw skin on an
 elliptic ring to a centre, q = p* + (1 - c a)(p - p*); a centre in front of the lips makes them
-protrude, and upper and lower half are separate muscles. Both bulge the skin as they contract.
+protrude, and upper and lower half are separate muscles. Both bulge the skin as they contract. What
+lies on a muscle instead of the skin is attached to it in the same way (riding.py).
 
 Source: Kähler et al. 2001, section 4: linear muscles, sphincters, bulging.
 Differs from it: skin hangs on fibre points by smooth weights instead of on the nearest ellipsoid,
@@ -12,11 +13,12 @@ and bulge acts along the skin normal. Weights were fitted to scanned expressions
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from .fibres import attach, build_fibre
+from .fibres import FIBRE_POINTS, attach, bent_to_skin, build_fibre
 from .landmarks import Array, Side, smoothstep
 from .rig import Fibre, LinearMuscle, Muscle, Rig, RingMuscle
 from .surface import Surface
@@ -25,19 +27,35 @@ RING_POINTS = 25  # corners of the line drawn for a sphincter
 BULGE_SPREAD = 0.3  # of the fibre's length (fitted)
 GATE_ENDS = -0.6  # of the lip side field: beyond it a gated muscle leaves the other lip alone
 GATE_FULL = 1.0  # where it has its full hold; in between it fades, or corners get square
-FLARE_HEIGHT = 5.0  # mm from the mouth line where the flare is three quarters of its full size
+MOUTH_ROUND = 1.08  # half widths of the mouth at which flare and parting end
+FLARE_HEIGHT = 3.0  # mm from the mouth line where the flare is three quarters of its full size
 MIDLINE_FADE = 20.0  # mm across the midline over which a paired muscle yields to its twin
 FACE_DEPTH = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
 
 
-@dataclass(frozen=True)
-class PlacedFibre:
-    """One fibre in a face and its attachment to the skin, per vertex."""
+class Places(NamedTuple):
+    """Points that may hang on a muscle: the skin, or control points of a muscle above it."""
 
-    fibre: Fibre
+    positions: Array  # (n, 3) mm
+    normals: Array  # (n, 3) of the skin there
+    lip_side: Array  # (n,) of openings.lip_side
+
+
+class Hold(NamedTuple):
+    """How places hang on one line of a muscle."""
+
+    weight: Array  # (n,)
+    arc: Array  # (n,) place along the line, 0..1
+    steady: Array  # (n, 3) mm x weight of displacement at full activation that is linear in it
+
+
+@dataclass(frozen=True)
+class Line:
+    """A fibre in a face, or the line along a sphincter."""
+
     points: Array  # (FIBRE_POINTS, 3) mm
-    weight: Array  # (V,)
-    arc: Array  # (V,) place along the fibre, 0..1
+    fibre: Fibre | None  # None: a sphincter
+    skin: Hold  # how the skin hangs on it
 
 
 @dataclass(frozen=True)
@@ -45,26 +63,45 @@ class Placed:
     """One muscle on one side of a face and its attachment to the skin, per vertex."""
 
     name: str  # of its control
-    muscle: Muscle
-    weight: Array  # (V,) strongest attachment
-    steady: Array  # (V, 3) mm x weight of displacement at full activation that is linear in it
-    fibres: tuple[PlacedFibre, ...] = ()
+    muscle: LinearMuscle | RingMuscle
+    side: Side
+    lines: tuple[Line, ...]
     ring: npt.NDArray[np.int32] | None = None  # skin vertices along a sphincter
+
+    @property
+    def weight(self) -> Array:
+        """Strongest attachment of each vertex, shape (V,)."""
+        strongest: Array = np.max([line.skin.weight for line in self.lines], axis=0)
+        return strongest
+
+    @property
+    def steady(self) -> Array:
+        """Displacement at full activation that is linear in it [mm x weight], shape (V, 3)."""
+        total: Array = np.sum([line.skin.steady for line in self.lines], axis=0)
+        return total
 
 
 def place_muscles(
     rig: Rig, surface: Surface, landmarks: Array, lip_side: Array
 ) -> tuple[Placed, ...]:
     """Lay all linear and ring muscles of a rig into a face, in rig order, left before right."""
+    skin = Places(surface.positions, surface.normals, lip_side)
     placed = []
     for muscle in rig.muscles:
-        lip = _lip_gate(muscle, lip_side)
         for name, side in sides_of(muscle):
-            gate = lip * _side_gate(muscle, surface.positions[:, 0], side)
             if isinstance(muscle, LinearMuscle):
-                placed.append(_place_linear(name, muscle, surface, landmarks, gate, side))
+                lines = []
+                for fibre in muscle.fibres:
+                    points = build_fibre(fibre, muscle, surface, landmarks, side)
+                    lines.append(
+                        Line(points, fibre, hang_on_fibre(muscle, fibre, points, side, skin))
+                    )
+                placed.append(Placed(name, muscle, side, tuple(lines)))
             elif isinstance(muscle, RingMuscle):
-                placed.append(_place_ring(name, muscle, surface, landmarks, gate, side))
+                points = _ring_line(muscle, surface, landmarks, side)
+                hold = hang_on_ring(muscle, points, landmarks, side, skin)
+                ring = _ring_vertices(muscle, surface.positions, landmarks, hold.weight, side)
+                placed.append(Placed(name, muscle, side, (Line(points, None, hold),), ring))
     return tuple(placed)
 
 
@@ -75,55 +112,52 @@ def sides_of(muscle: Muscle) -> tuple[tuple[str, Side], ...]:
     return ((f"{muscle.name}_left", Side.LEFT), (f"{muscle.name}_right", Side.RIGHT))
 
 
-def _side_gate(muscle: Muscle, lateral: Array, side: Side) -> Array:
-    """1 on a paired muscle's own side, fading to 0 across the midline; twins add up to 1."""
-    if not muscle.pair or muscle.crosses:
-        return np.ones_like(lateral)
-    gate: Array = np.clip(0.5 + side.sign * lateral / (2.0 * MIDLINE_FADE), 0.0, 1.0)
+def hang_on(placed: Placed, line: Line, landmarks: Array, places: Places) -> Hold:
+    """Hang places on one line of a muscle in a face."""
+    muscle, side = placed.muscle, placed.side
+    if isinstance(muscle, RingMuscle):
+        return hang_on_ring(muscle, line.points, landmarks, side, places)
+    assert line.fibre is not None
+    return hang_on_fibre(muscle, line.fibre, line.points, side, places)
+
+
+def _gate(muscle: Muscle, side: Side, places: Places) -> Array:
+    """1 where a muscle of one side may act, 0 where it must leave the skin alone, shape (n,)."""
+    gate = np.ones(len(places.positions))
+    if muscle.pair and not muscle.crosses:  # fades to 0 across the midline; twins add up to 1
+        lateral = side.sign * places.positions[:, 0]
+        gate = np.clip(0.5 + lateral / (2.0 * MIDLINE_FADE), 0.0, 1.0)
+    if muscle.gate != "none":  # fades to 0 on the other lip
+        towards = places.lip_side if muscle.gate == "upper_lip" else -places.lip_side
+        gate = gate * smoothstep((towards - GATE_ENDS) / (GATE_FULL - GATE_ENDS))
     return gate
 
 
-def _lip_gate(muscle: Muscle, lip_side: Array) -> Array:
-    """1 where a muscle may act, fading to 0 on the lip it must leave alone, shape (V,)."""
-    if muscle.gate == "none":
-        return np.ones_like(lip_side)
-    towards = lip_side if muscle.gate == "upper_lip" else -lip_side
-    return smoothstep((towards - GATE_ENDS) / (GATE_FULL - GATE_ENDS))
+def hang_on_fibre(
+    muscle: LinearMuscle, fibre: Fibre, points: Array, side: Side, places: Places
+) -> Hold:
+    """Hang places on a fibre of a linear muscle; the skin slides, converges and bulges."""
+    factor = fibre.width_factor
+    at = attach(
+        points, places.positions, width=muscle.width * factor, beyond=muscle.beyond * factor
+    )
+    weight = fibre.weight * at.weight * _gate(muscle, side, places)
+    drawn = fibre.gain * fibre.convergence * muscle.contraction * at.arc
+    bulge = muscle.bulge * np.exp(-(((at.arc - muscle.bulge_at) / BULGE_SPREAD) ** 2))
+    bulge += fibre.lift
+    steady = (weight * drawn)[:, None] * (at.foot - places.positions)
+    steady += (weight * bulge)[:, None] * places.normals
+    return Hold(weight, at.arc, steady)
 
 
-def _place_linear(
-    name: str, muscle: LinearMuscle, surface: Surface, landmarks: Array, gate: Array, side: Side
-) -> Placed:
-    """Lay a linear muscle into a face and attach the skin around it."""
-    fibres = []
-    strongest = np.zeros(surface.vertex_count)
-    steady = np.zeros((surface.vertex_count, 3))
-    for fibre in muscle.fibres:
-        points = build_fibre(fibre, muscle, surface, landmarks, side)
-        factor = fibre.width_factor
-        skin = attach(
-            points, surface.positions, width=muscle.width * factor, beyond=muscle.beyond * factor
-        )
-        weight = fibre.weight * skin.weight * gate
-        drawn = fibre.gain * fibre.convergence * muscle.contraction * skin.arc
-        bulge = muscle.bulge * np.exp(-(((skin.arc - muscle.bulge_at) / BULGE_SPREAD) ** 2))
-        bulge += fibre.lift
-        steady += (weight * drawn)[:, None] * (skin.foot - surface.positions)
-        steady += (weight * bulge)[:, None] * surface.normals
-        strongest = np.maximum(strongest, weight)
-        fibres.append(PlacedFibre(fibre, points, weight, skin.arc))
-    return Placed(name, muscle, strongest, steady, fibres=tuple(fibres))
-
-
-def _place_ring(
-    name: str, muscle: RingMuscle, surface: Surface, landmarks: Array, gate: Array, side: Side
-) -> Placed:
-    """Lay a sphincter into a face: an elliptic ring around `shape`, drawn to `centre`."""
-    x = surface.positions
+def hang_on_ring(
+    muscle: RingMuscle, points: Array, landmarks: Array, side: Side, places: Places
+) -> Hold:
+    """Hang places on a sphincter: an elliptic ring around `shape`, drawn to `centre`."""
+    x = places.positions
     centre = muscle.centre.on(landmarks, side)
-    middle = (muscle.shape or muscle.centre).on(landmarks, side)
     lateral, up, down = muscle.radii
-    d = x - middle
+    d = x - _middle(muscle, landmarks, side)
     rho = np.hypot(d[:, 0] / lateral, np.where(d[:, 1] > 0.0, d[:, 1] / up, d[:, 1] / down))
     outside, inside = muscle.edge
     weight = np.exp(-0.5 * (np.maximum(rho - 1.0, 0.0) / outside) ** 2)
@@ -133,26 +167,64 @@ def _place_ring(
     off = np.abs((angle - at + 180.0) % 360.0 - 180.0)
     weight *= smoothstep(1.0 - (off - half) / max(fade, 1e-3))
     weight *= x[:, 2] > landmarks[[36, 45], 2].mean() - FACE_DEPTH
-    weight *= gate
+    weight *= _gate(muscle, side, places)
     pull = np.array(muscle.contraction) * (centre - x)
+    if muscle.opening > 0.0:
+        pull[:, :2] = _round_mouth(muscle, x, landmarks) - x[:, :2]
     pull += np.array(muscle.push) * (side.sign, 1.0, 1.0)
     seam = landmarks[[62, 66], 1].mean()
-    across = np.exp(-((d[:, 0] / lateral) ** 2))
+    # On an ellipse through the mouth's corners, or an open mouth has straight edges.
+    corner = MOUTH_ROUND * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
+    across = np.sqrt(np.maximum(1.0 - (x[:, 0] / corner) ** 2, 0.0))
     pull[:, 1] += muscle.flare * np.tanh((x[:, 1] - seam) / FLARE_HEIGHT) * across
-    ring = _ring_vertices(muscle, x, middle, weight, side)
-    pull += muscle.bulge * surface.normals
-    return Placed(name, muscle, weight, weight[:, None] * pull, ring=ring)
+    pull += muscle.bulge * places.normals
+    arc = attach(points, x, width=1.0, beyond=1.0).arc
+    return Hold(weight, arc, weight[:, None] * pull)
+
+
+def _round_mouth(muscle: RingMuscle, x: Array, landmarks: Array) -> Array:
+    """Where lips lie, seen from the front, around a circular opening, shape (n, 2) [mm].
+
+    What lies at a share u of the way from the middle to the corner goes to radius (sin(u 90 deg),
+    sqrt(1 - u^2)): a little fuller than a circle beside the middle, as corners lag behind. The lip
+    keeps its height.
+    """
+    seam = landmarks[[62, 66], 1].mean()
+    across = np.clip(x[:, 0] / abs(landmarks[54, 0]), -1.0, 1.0)
+    height = x[:, 1] - seam
+    side = {"upper_lip": 1.0, "lower_lip": -1.0}.get(muscle.gate, np.sign(height))
+    radius = muscle.opening + np.maximum(height * side, 0.0)
+    up = seam + side * radius * np.sqrt(1.0 - across**2)
+    return np.stack([radius * np.sin(across * np.pi / 2.0), up], axis=1)
+
+
+def _middle(muscle: RingMuscle, landmarks: Array, side: Side) -> Array:
+    """Middle of a sphincter's ellipse."""
+    return (muscle.shape or muscle.centre).on(landmarks, side)
+
+
+def _outline(muscle: RingMuscle, side: Side, half_deg: float, count: int) -> Array:
+    """Points of a sphincter's ellipse about its middle, `half_deg` to both sides, (count, 3)."""
+    lateral, up, down = muscle.radii
+    around = np.radians(muscle.arc_deg[0] + np.linspace(-half_deg, half_deg, count))
+    height = np.where(np.sin(around) > 0.0, up, down)
+    across = lateral * np.cos(around) * side.sign
+    return np.stack([across, height * np.sin(around), np.zeros(count)], axis=1)
+
+
+def _ring_line(muscle: RingMuscle, surface: Surface, landmarks: Array, side: Side) -> Array:
+    """The line along a sphincter as far as it reaches, on the skin, shape (FIBRE_POINTS, 3)."""
+    _, half, fade = muscle.arc_deg
+    outline = _outline(muscle, side, min(half + fade, 180.0), FIBRE_POINTS)
+    return bent_to_skin(_middle(muscle, landmarks, side) + outline, surface, 1.0)
 
 
 def _ring_vertices(
-    muscle: RingMuscle, x: Array, middle: Array, weight: Array, side: Side
+    muscle: RingMuscle, x: Array, landmarks: Array, weight: Array, side: Side
 ) -> npt.NDArray[np.int32]:
     """Skin vertices nearest to the ellipse of a sphincter, in order, for drawing it."""
-    at, half, _ = muscle.arc_deg
-    lateral, up, down = muscle.radii
-    around = np.radians(at + np.linspace(-half, half, RING_POINTS))
-    height = np.where(np.sin(around) > 0.0, up, down)
-    outline = np.stack([lateral * np.cos(around) * side.sign, height * np.sin(around)], axis=1)
+    outline = _outline(muscle, side, muscle.arc_deg[1], RING_POINTS)[:, :2]
+    middle = _middle(muscle, landmarks, side)
     attached = np.flatnonzero(weight >= 0.1 * weight.max())
     off = (x[attached, None, :2] - middle[:2] - outline) ** 2
     ring = attached[off.sum(axis=2).argmin(axis=0)].astype(np.int32)

@@ -7,8 +7,10 @@ and its far end is displaced:
     force = k A (p + (1 - p) a) [ w (r - x) + a d + sum_f w_f u_f(a) ]
 
 r is the vertex at rest carried by the bones, u_f the pull of fibre f at the vertex (fibres.py), d
-what is linear in a (rings, bulge, convergence to the fibre line). A tick sums this into one
-stiffness and one pull per vertex, so substeps cost the same for one muscle and for fifty.
+what is linear in a (rings, bulge, convergence to the fibre line). Where a muscle lies on others, r
+is also carried by them: by the mean of what carries its fibres, w_f their weights (riding.py). A
+tick sums this into one stiffness and one pull per vertex, so substeps cost the same for one muscle
+and for fifty.
 
 Source: Kähler et al. 2001, section 4; the passive share is our own, fitted to half activations.
 """
@@ -17,14 +19,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numba
 import numpy as np
 import numpy.typing as npt
 
-from .fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, FibreBundle, contract_fibres
+from .fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, FibreBundle, Riding, move_lines, over_skin
 from .landmarks import Array
-from .muscles import Placed
+from .muscles import Line, Placed
+from .riding import from_below, lay_on_each_other, points_along
 from .rig import LinearMuscle, Rig
 from .skull import Pose
 from .surface import Surface
@@ -32,17 +36,17 @@ from .surface import Surface
 Indices = npt.NDArray[np.int32]
 Unsigned = npt.NDArray[np.uint32]  # saves the kernels a test per access
 
-LEAST_WEIGHT = 1e-2  # attachments below it are dropped
+LEAST_STIFFNESS = 0.4  # per area, in units of the rig: attachments below it are dropped
+LEAST_CARRIED = 0.05  # likewise those by which one muscle carries the skin on another
 
 
-@dataclass(frozen=True)
-class Attachments:
-    """Vertices attached to muscles or fibres; owner m has rows[m] up to rows[m + 1]."""
+class Attachments(NamedTuple):
+    """Vertices attached to muscles or lines; owner m has rows[m] up to rows[m + 1]."""
 
     rows: Unsigned  # (owners + 1,)
     vertex: Unsigned  # (n,)
     weight: Array  # (n,) k w A
-    value: Array  # (n, 3) steady displacement x k A, or (n,) place along the fibre in samples
+    value: Array  # (n, 3) steady displacement x k A, or (n,) place along the line
 
 
 @dataclass(frozen=True)
@@ -55,8 +59,12 @@ class MusclePull:
     reaches_lips: Array  # (M,) greatest attachment to the edge of a lip, 0..1
     holds: Attachments  # by muscle
     bundle: FibreBundle
-    pulls: Attachments  # by fibre
+    pulls: Attachments  # by line, places in samples
     table: Array  # (B, SAMPLES, 3) displacement along each fibre, rewritten each tick
+    riding: Riding
+    carries: Attachments  # by line, places in points
+    ride: Array  # (B, FIBRE_POINTS, 3) displacement by the muscles beneath, rewritten each tick
+    rides: npt.NDArray[np.bool_]  # (B,) whether there is one
     steady: Array  # (V, 3) work space
     rings: tuple[tuple[int, Indices], ...]  # muscle, skin vertices along its ring
 
@@ -75,23 +83,35 @@ class MusclePull:
 
         activation: of each muscle, shape (M,); weight: mandible's share of each vertex, shape (V,).
         """
-        bundle, holds, pulls = self.bundle, self.holds, self.pulls
-        contract_fibres(
-            bundle.points, bundle.mandible, bundle.contraction, bundle.fixed_at, bundle.gain,
-            activation[bundle.muscle], mandible.rotation, mandible.shift, self.table,
+        self._move(activation, mandible)
+        gather_holds(
+            activation, self.passive, self.holds, mandible.rotation, weight, self.steady, hold,
+            force,
         )  # fmt: skip
-        gather(
-            activation, self.passive, holds.rows, holds.vertex, holds.weight, holds.value,
-            bundle.muscle, pulls.rows, pulls.vertex, pulls.weight, pulls.value, self.table,
-            mandible.rotation, weight, self.steady, hold, force,
+        gather_lines(
+            activation, self.passive, self.bundle.muscle, self.pulls, self.table, self.carries,
+            self.ride, self.rides, force,
+        )  # fmt: skip
+
+    def _move(self, activation: Array, mandible: Pose) -> None:
+        """Bring `table`, `ride` and `rides` up to date."""
+        move_lines(
+            self.bundle, self.riding, activation, mandible.rotation, mandible.shift, self.ride,
+            self.rides, self.table,
         )  # fmt: skip
 
     def lines(self, activation: Array, mandible: Pose, x: Array) -> dict[str, list[Array]]:
         """Polylines [mm] to draw: contracted fibres of linear muscles, skin rows of rings."""
         lines: dict[str, list[Array]] = {name: [] for name in self.names}
+        self._move(activation, mandible)
+        rings = dict(self.rings)
         for b, muscle in enumerate(self.bundle.muscle):
+            if muscle in rings:
+                continue
             points = self.bundle.points[b]
             moved = points + self.bundle.mandible[b][:, None] * mandible.displacements(points)
+            if self.rides[b]:
+                moved += self.ride[b]
             arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))])
             kept = max(1.0 - self.bundle.contraction[b] * activation[muscle], LEAST_ARC)
             fixed = self.bundle.fixed_at[b] * arc[-1]
@@ -108,16 +128,19 @@ def prepare_pull(
     surface: Surface,
     mandible_weight: Array,
     lips: Indices,
+    landmarks: Array,
+    lip_side: Array,
 ) -> MusclePull:
     """Turn placed muscles into the flat arrays of the kernels; `lips`: vertices that can touch."""
     strength = rig.tissue.stiffness_scale * surface.areas
-    bundle = _bundle(placed, surface, mandible_weight)
-    holds, pulls = [], []
+    order = from_below(placed)
+    riding = lay_on_each_other(placed, order, surface, landmarks, lip_side)
+    bundle = _bundle(placed, order, surface, mandible_weight)
+    holds = []
     for at in placed:
         k = at.muscle.stiffness * strength
         holds.append((k * at.weight, k[:, None] * at.steady))
-        pulls += [(k * fibre.weight, fibre.arc * (SAMPLES - 1)) for fibre in at.fibres]
-    unit = strength * max((at.muscle.stiffness for at in placed), default=1.0)
+    least = LEAST_STIFFNESS * strength
     return MusclePull(
         names=tuple(at.name for at in placed),
         passive=np.array([rig.tissue.passive * at.muscle.tone for at in placed], dtype=np.float64),
@@ -125,39 +148,92 @@ def prepare_pull(
         reaches_lips=np.array(
             [min(float(at.weight[lips].max(initial=0.0)), 1.0) for at in placed], dtype=np.float64
         ),
-        holds=_attachments(holds, unit, np.zeros((0, 3))),
+        holds=_attachments(holds, least, np.zeros((0, 3))),
         bundle=bundle,
-        pulls=_attachments(pulls, unit, np.zeros(0)),
+        pulls=_attachments(_pulls(placed, order, strength), least, np.zeros(0)),
         table=np.zeros((len(bundle.muscle), SAMPLES, 3)),
+        riding=riding,
+        carries=_attachments(_carries(placed, order, strength, riding), least, np.zeros(0)),
+        ride=np.zeros(bundle.points.shape),
+        rides=np.zeros(len(bundle.muscle), dtype=np.bool_),
         steady=np.zeros((surface.vertex_count, 3)),
         rings=tuple((n, at.ring) for n, at in enumerate(placed) if at.ring is not None),
     )
 
 
-def _bundle(placed: Sequence[Placed], surface: Surface, mandible_weight: Array) -> FibreBundle:
-    """All fibres in muscle order; origins on their bone, insertions carried like the skin there."""
-    fibres = [(n, at.muscle, fibre) for n, at in enumerate(placed) for fibre in at.fibres]
+def _bundle(
+    placed: Sequence[Placed], order: Sequence[int], surface: Surface, mandible_weight: Array
+) -> FibreBundle:
+    """All lines, muscle by muscle in `order`.
+
+    Origins are on their bone; insertions and sphincters are carried like the skin there.
+    """
+    lines = [(n, placed[n].muscle, line) for n in order for line in placed[n].lines]
     carried, contraction, fixed_at = [], [], []
-    for _, muscle, fibre in fibres:
-        start = 1.0 if muscle.bone == "mandible" else 0.0
-        end = mandible_weight[surface.nearest(fibre.points[-1:])[0]]
-        carried.append(np.linspace(start, end, FIBRE_POINTS))
-        assert isinstance(muscle, LinearMuscle)
-        contraction.append(muscle.contraction)
-        fixed_at.append(muscle.fixed_at)
+    for _, muscle, line in lines:
+        if isinstance(muscle, LinearMuscle):
+            start = 1.0 if muscle.bone == "mandible" else 0.0
+            end = mandible_weight[surface.nearest(line.points[-1:])[0]]
+            carried.append(np.linspace(start, end, FIBRE_POINTS))
+        else:
+            carried.append(over_skin(line.points, surface, mandible_weight))
+        contraction.append(muscle.contraction if isinstance(muscle, LinearMuscle) else 0.0)
+        fixed_at.append(muscle.fixed_at if isinstance(muscle, LinearMuscle) else 0.0)
     return FibreBundle(
-        muscle=np.array([n for n, _, _ in fibres], dtype=np.int32),
-        points=np.array([fibre.points for _, _, fibre in fibres]).reshape(-1, FIBRE_POINTS, 3),
+        muscle=np.array([n for n, _, _ in lines], dtype=np.int32),
+        points=np.array([line.points for _, _, line in lines]).reshape(-1, FIBRE_POINTS, 3),
         mandible=np.array(carried).reshape(-1, FIBRE_POINTS),
         contraction=np.array(contraction, dtype=np.float64),
         fixed_at=np.array(fixed_at, dtype=np.float64),
-        gain=np.array([fibre.fibre.gain for _, _, fibre in fibres], dtype=np.float64),
     )
 
 
-def _attachments(parts: list[tuple[Array, Array]], unit: Array, empty: Array) -> Attachments:
+def _gain(line: Line) -> float:
+    """What a line pulls by; a sphincter pulls on no line."""
+    return 0.0 if line.fibre is None else line.fibre.gain
+
+
+Part = tuple[Array, Array]  # weight k w A and value of each vertex of the skin
+
+
+def _pulls(placed: Sequence[Placed], order: Sequence[int], strength: Array) -> list[Part]:
+    """How skin hangs on each line that pulls, gain included, places in samples."""
+    return [
+        (
+            placed[n].muscle.stiffness * strength * line.skin.weight * _gain(line),
+            line.skin.arc * (SAMPLES - 1),
+        )
+        for n in order
+        for line in placed[n].lines
+    ]
+
+
+def _carries(
+    placed: Sequence[Placed], order: Sequence[int], strength: Array, riding: Riding
+) -> list[Part]:
+    """How skin hangs on each line where it lies on others, places in points.
+
+    A vertex is carried by the line of a muscle that it hangs on most.
+    """
+    lies = np.zeros((len(riding.rows) - 1, FIBRE_POINTS), dtype=np.bool_)
+    lies[np.repeat(np.arange(len(lies)), np.diff(riding.rows)), riding.point] = True
+    parts: list[Part] = []
+    for n in order:
+        k = placed[n].muscle.stiffness * strength
+        weights = np.stack([line.skin.weight for line in placed[n].lines])
+        hangs_on = weights.argmax(axis=0)
+        for f, line in enumerate(placed[n].lines):
+            place = points_along(line, line.skin.arc)
+            before = np.minimum(place.astype(np.int64), FIBRE_POINTS - 2)
+            lies_there = lies[len(parts), before] | lies[len(parts), before + 1]
+            on = lies_there & (hangs_on == f) & (weights[f] > LEAST_CARRIED)
+            parts.append((k * weights[f] * on, place))
+    return parts
+
+
+def _attachments(parts: list[tuple[Array, Array]], least: Array, empty: Array) -> Attachments:
     """Lay the vertices that matter of each part (weight, value) end to end."""
-    on = [np.flatnonzero(weight > LEAST_WEIGHT * unit) for weight, _ in parts]
+    on = [np.flatnonzero(weight > least) for weight, _ in parts]
     nothing = np.zeros(0, dtype=np.int64)
     return Attachments(
         rows=np.cumsum([0, *(len(rows) for rows in on)]).astype(np.uint32),
@@ -170,12 +246,13 @@ def _attachments(parts: list[tuple[Array, Array]], unit: Array, empty: Array) ->
 
 
 @numba.njit(cache=True, fastmath={"contract"})
-def gather(  # type: ignore[no-untyped-def]
-    activation, passive, hold_rows, hold_vertex, hold_weight, hold_steady,
-    fibre_muscle, pull_rows, pull_vertex, pull_weight, pull_sample, table, turn, mandible,
-    steady, hold, force,
-):  # fmt: skip
-    """Sum the active muscles into one stiffness and one force per vertex; `steady`: work space."""
+def gather_holds(  # type: ignore[no-untyped-def]
+    activation, passive, holds, turn, mandible, steady, hold, force
+):
+    """Sum what is linear in the activation into one stiffness and one force per vertex.
+
+    `steady`: work space.
+    """
     steady[:] = 0.0
     for m in range(len(activation)):
         a = activation[m]
@@ -183,29 +260,42 @@ def gather(  # type: ignore[no-untyped-def]
             continue
         grip = (1.0 - passive[m]) * a
         scale = (passive[m] + grip) * a
-        for row in range(hold_rows[m], hold_rows[m + 1]):
-            i = hold_vertex[row]
-            hold[i] += grip * hold_weight[row]
+        for row in range(holds.rows[m], holds.rows[m + 1]):
+            i = holds.vertex[row]
+            hold[i] += grip * holds.weight[row]
             for k in range(3):
-                steady[i, k] += scale * hold_steady[row, k]
+                steady[i, k] += scale * holds.value[row, k]
     # Displacements that belong to the mandible turn with it: once per vertex, not per attachment.
     for i in range(len(steady)):
         sx, sy, sz = steady[i, 0], steady[i, 1], steady[i, 2]
         for k in range(3):
             turned = turn[k, 0] * sx + turn[k, 1] * sy + turn[k, 2] * sz
             force[i, k] += steady[i, k] + mandible[i] * (turned - steady[i, k])
-    last = table.shape[1] - 2
-    for b in range(len(fibre_muscle)):
-        m = fibre_muscle[b]
-        a = activation[m]
-        if a <= 0.0:
-            continue
-        scale = passive[m] + (1.0 - passive[m]) * a
-        for row in range(pull_rows[b], pull_rows[b + 1]):
-            i = pull_vertex[row]
-            s = min(np.uint32(pull_sample[row]), last)
-            strength = scale * pull_weight[row]
-            far = strength * (pull_sample[row] - s)
-            near = strength - far
-            for k in range(3):
-                force[i, k] += near * table[b, s, k] + far * table[b, s + 1, k]
+
+
+@numba.njit(cache=True)
+def gather_lines(  # type: ignore[no-untyped-def]
+    activation, passive, muscle, pulls, table, carries, ride, rides, force
+):
+    """Add the pull of all lines that contract, and of all that others carry, to `force` (V, 3)."""
+    for b in range(len(muscle)):
+        a = max(activation[muscle[b]], 0.0)
+        scale = passive[muscle[b]] + (1.0 - passive[muscle[b]]) * a
+        if a > 0.0:
+            add_pull(pulls, b, scale, table[b], force)
+        if rides[b]:
+            add_pull(carries, b, scale, ride[b], force)
+
+
+@numba.njit(cache=True, fastmath={"contract"})
+def add_pull(attached, b, scale, along, force):  # type: ignore[no-untyped-def]
+    """Add the displacement `along` a line, between two of its rows, times each attachment."""
+    last = along.shape[0] - 2
+    for row in range(attached.rows[b], attached.rows[b + 1]):
+        i = attached.vertex[row]
+        s = min(np.uint32(attached.value[row]), last)
+        strength = scale * attached.weight[row]
+        far = strength * (attached.value[row] - s)
+        near = strength - far
+        for k in range(3):
+            force[i, k] += near * along[s, k] + far * along[s + 1, k]

@@ -57,7 +57,7 @@ def _choice(allowed: tuple[str, ...], *, default: str | None = None) -> Any:
 
 
 TEXT, BOOLEAN, POINT = {"rule": "text"}, {"rule": "boolean"}, {"rule": "point"}
-SEEDS, FIBRES = {"rule": "seeds"}, {"rule": "fibres"}
+SEEDS, FIBRES, NAMES = {"rule": "seeds"}, {"rule": "fibres"}, {"rule": "names"}
 
 
 @dataclass(frozen=True)
@@ -153,6 +153,7 @@ class Muscle:
     bone: str = _choice(BONES, default="cranium")  # where the origin is fixed
     gate: str = _choice(GATES, default="none")  # which lip it may move
     opens_lips: float = _number(0.0, 1.0, default=0.0)  # how far it breaks the lip seal
+    lies_on: tuple[str, ...] = field(default=(), metadata=NAMES)  # muscles that carry it
 
 
 @dataclass(frozen=True)
@@ -185,6 +186,7 @@ class RingMuscle(Muscle):
     push: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, 0.0, 0.0))
     bulge: float = _number(0.0, 40.0, default=0.0)  # mm outward along the skin's normal
     flare: float = _number(-30.0, 30.0, default=0.0)  # mm up for the upper, down for the lower lip
+    opening: float = _number(0.0, 30.0, default=0.0)  # mm, of the round mouth drawn to; 0: centre
     arc_deg: tuple[float, float, float] = _vector(3, -360.0, 360.0, default=(0.0, 180.0, 1.0))
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields
 from typing import Any, TypeVar, cast
 
@@ -54,6 +54,7 @@ def read_rig(document: Mapping[str, Any]) -> Rig:
         if name.endswith(("_left", "_right")):
             raise ValueError(f"{where}: the side is added by itself, leave '_left'/'_right' away")
         muscles.append(_read_muscle(name, table, where))
+    _check_stack({muscle.name: muscle for muscle in muscles})
     return Rig(
         tissue=_read(Tissue, _table(document, "tissue", "rig"), "rig, tissue"),
         jaw=_read(Jaw, _table(document, "jaw", "rig"), "rig, jaw"),
@@ -75,6 +76,32 @@ def _read_muscle(name: str, table: Any, where: str) -> Muscle:
     if isinstance(muscle, LinearMuscle) and not muscle.fibres:
         raise ValueError(f"{where}: a linear muscle needs at least one [[muscle.{name}.fibre]]")
     return muscle
+
+
+def _check_stack(muscles: Mapping[str, Muscle]) -> None:
+    """Refuse a muscle on one that is not there, on or under a lid, or at last on itself."""
+    for muscle in muscles.values():
+        where = f"rig, muscle '{muscle.name}', key 'lies_on'"
+        if muscle.lies_on and isinstance(muscle, LidMuscle):
+            raise ValueError(f"{where}: a lid lies on the eyeball; leave the key away")
+        for name in muscle.lies_on:
+            if name not in muscles:
+                raise ValueError(f"{where}: there is no muscle '{name}'{_hint(name, muscles)}")
+            if isinstance(muscles[name], LidMuscle):
+                raise ValueError(f"{where}: '{name}' is a lid, which carries nothing; take it out")
+        _refuse_circle(muscles, (muscle.name,))
+
+
+def _refuse_circle(muscles: Mapping[str, Muscle], way: tuple[str, ...]) -> None:
+    """Go down from the last muscle of a way and refuse to meet its first one again."""
+    for name in muscles[way[-1]].lies_on:
+        if name == way[0]:
+            circle = " on ".join((*way, name))
+            raise ValueError(
+                f"rig, muscle '{name}', key 'lies_on': {circle} is a circle; take one out"
+            )
+        if name in muscles and name not in way:
+            _refuse_circle(muscles, (*way, name))
 
 
 def _read(record: type[Record], table: Mapping[str, Any], where: str, **given: Any) -> Record:
@@ -108,6 +135,10 @@ def _value(value: Any, rule: Field[Any], where: str) -> Any:
             if not isinstance(value, wanted):
                 raise ValueError(f"{where}: was {value!r}, must be a {meta['rule']}")
             return value
+        case "names":
+            if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
+                raise ValueError(f"{where}: was {value!r}, must be a list of muscle names")
+            return tuple(value)
         case "seeds":
             return _read_mix(value, where, low=-2.0, high=2.0)
         case "fibres":
@@ -177,6 +208,11 @@ def _known_keys(table: Mapping[str, Any], known: tuple[str, ...], where: str) ->
     """Refuse a key nobody reads, and offer the nearest one that is."""
     for key in table:
         if key not in known:
-            near = difflib.get_close_matches(key, known, n=1)
-            hint = f"; did you mean '{near[0]}'?" if near else ""
+            hint = _hint(key, known)
             raise ValueError(f"{where}: unknown key '{key}'{hint} Allowed: {', '.join(known)}")
+
+
+def _hint(name: str, known: Iterable[str]) -> str:
+    """The nearest known name, as a question."""
+    near = difflib.get_close_matches(name, list(known), n=1)
+    return f"; did you mean '{near[0]}'?" if near else ""

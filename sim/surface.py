@@ -11,12 +11,14 @@ per vertex and one spring per edge.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse import csgraph
 from scipy.sparse import linalg as sparse_linalg
+from scipy.spatial import cKDTree
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
@@ -45,6 +47,11 @@ class Surface:
     def vertex_count(self) -> int:
         """Number of vertices."""
         return len(self.positions)
+
+    @cached_property
+    def tree(self) -> cKDTree:
+        """For finding the vertices near a point."""
+        return cKDTree(self.positions)
 
     def nearest(self, points: Array) -> Indices:
         """Number of the vertex nearest to each point (n, 3)."""

@@ -183,6 +183,36 @@ def test_closed_lips_stay_closed(simulation: sim.Simulation, head: Head, name: s
     assert lip_slit(simulation.positions, head.faces, corners, yaw=0.0, pitch=0.0) < 0.5
 
 
+def test_a_funnelled_mouth_is_round(simulation: sim.Simulation, head: Head) -> None:
+    """AU22 brings both lips forward; the lower one's outline is nearer to an ellipse than a V."""
+    moved = settle(simulation, {"AU22": 1.0})[head.landmarks]
+    assert min(moved[51, 2], moved[57, 2]) > 8.0
+    lips = simulation.positions[head.landmarks]
+    assert lips[54, 0] < head.vertices[head.landmarks[54], 0] - 4.0
+    across = lips[56, 0] / lips[54, 0]
+    straight, curved = 1.0 - across, np.sqrt(1.0 - across**2)
+    low = (lips[54, 1] - lips[56, 1]) / (lips[54, 1] - lips[57, 1])
+    assert low > (straight + curved) / 2.0
+
+
+def test_units_that_look_alike_differ(simulation: sim.Simulation, head: Head) -> None:
+    """AU9 pulls the nose up and the brows down over closed lips, AU10 parts the lips alone; AU23
+    narrows the mouth, AU24 flattens the lips."""
+    face = {
+        name: settle(simulation, {name: 1.0})[head.landmarks]
+        for name in ("AU9", "AU10", "AU23", "AU24")
+    }
+
+    def parted(name: str) -> float:
+        return float(face[name][62, 1] - face[name][66, 1])
+
+    assert parted("AU9") < 1.0 < 4.0 < parted("AU10")
+    assert face["AU9"][22, 1] < -2.0 < -0.5 < face["AU10"][22, 1]
+    assert face["AU9"][35, 1] > face["AU10"][35, 1] + 1.0
+    assert face["AU23"][54, 0] < -1.0 < -0.1 < face["AU24"][54, 0]
+    assert face["AU24"][51, 1] < face["AU23"][51, 1] - 1.0
+
+
 @pytest.mark.parametrize("name", ["AU43", "AU45", "blink", "yawn"])
 def test_shut_eyes_are_shut(simulation: sim.Simulation, head: Head, name: str) -> None:
     """No eyeball is seen through closed lids, whatever else the face does."""

@@ -123,6 +123,17 @@ PULLER = ("muscle", "puller")
             _set(*PULLER, "fibre", 0, "insertion", value={"landmark": "lip"}),
             r"landmark 'lip', allowed are 0 to 67",
         ),
+        (_set(*PULLER, "lies_on", value="closer"), r"must be a list of muscle names"),
+        (
+            _set(*PULLER, "lies_on", value=["closser"]),
+            r"'puller', key 'lies_on': there is no muscle 'closser'; did you mean 'closer'\?",
+        ),
+        (_set(*PULLER, "lies_on", value=["puller"]), r"puller on puller is a circle"),
+        (_set(*PULLER, "lies_on", value=["lifter"]), r"'lifter' is a lid, which carries nothing"),
+        (
+            _set("muscle", "lifter", "lies_on", value=["puller"]),
+            r"'lifter', key 'lies_on': a lid lies on the eyeball",
+        ),
         (_set("muscle", "closer", "radii", value=[0, 1, 1]), r"'closer', key 'radii'\[0\]: was 0"),
         (_set("muscle", "lifter", "lid", value="up"), r"'lid': was 'up', allowed are upper_close"),
         (_set("muscle", "Big Muscle", value={}), r"'Big Muscle': a muscle name is lower case"),
@@ -134,6 +145,18 @@ def test_each_mistake_is_named(change: Callable[[dict[str, Any]], None], message
     document = copy.deepcopy(_document())
     change(document)
     with pytest.raises(ValueError, match=message):
+        read_rig(document)
+
+
+def test_circles_of_muscles_are_named() -> None:
+    """Muscles that lie on each other in a circle are refused, all of them named."""
+    document = copy.deepcopy(_document())
+    text = {"action": "moves", "group": "Group", "kind": "ring"}
+    document["muscle"]["other"] = {**text, "lies_on": ["puller"]}
+    document["muscle"]["closer"]["lies_on"] = ["other"]
+    assert read_rig(document).muscles[1].lies_on == ("other",)
+    document["muscle"]["puller"]["lies_on"] = ["closer"]
+    with pytest.raises(ValueError, match="puller on closer on other on puller is a circle"):
         read_rig(document)
 
 

@@ -11,7 +11,7 @@ import pytest
 import sim
 from assets.model import Head
 from sim.contact import Grip, watch_eyeballs
-from sim.fibres import LEAST_ARC, SAMPLES, contract_fibres
+from sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
 from sim.integrator import substeps_in
 from sim.lids import turn_lids
 from sim.substep import SEAL_AXES, edge_forces, hold_lips, tissue_forces
@@ -136,26 +136,23 @@ def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
     bundle = muscles.bundle
     activation = np.linspace(0.0, 1.0, len(bundle.muscle))
     table = np.zeros_like(muscles.table)
-    contract_fibres(
-        bundle.points, bundle.mandible, bundle.contraction, bundle.fixed_at, bundle.gain,
-        activation, mandible.rotation, mandible.shift, table,
-    )  # fmt: skip
     assert bundle.fixed_at.max() > 0.0
     t = np.linspace(0.0, 1.0, SAMPLES)
     for b in range(1, len(bundle.muscle)):
         points = bundle.points[b]
         moved = points + bundle.mandible[b][:, None] * mandible.displacements(points)
+        contract(moved, bundle.contraction[b] * activation[b], bundle.fixed_at[b], table[b])
         arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))]
         kept = max(1.0 - bundle.contraction[b] * activation[b], LEAST_ARC)
         there = bundle.fixed_at[b] + kept * (t - bundle.fixed_at[b])
         for k in range(3):
             to = np.interp(there * arc[-1], arc, moved[:, k])
             at = np.interp(t * arc[-1], arc, moved[:, k])
-            assert np.allclose(table[b, :, k], bundle.gain[b] * (to - at), atol=1e-9)
+            assert np.allclose(table[b, :, k], to - at, atol=1e-9)
 
 
 def test_muscle_pull(stirred: sim.Simulation) -> None:
-    """Hold and pull of all muscles, summed muscle by muscle and fibre by fibre."""
+    """Hold and pull of all muscles, summed muscle by muscle and line by line."""
     anatomy, mandible = stirred._anatomy, stirred._mandible
     muscles, weight = anatomy.muscles, anatomy.skull.mandible_weight
     activation = np.linspace(-0.1, 1.0, len(muscles.names))
@@ -171,13 +168,19 @@ def test_muscle_pull(stirred: sim.Simulation) -> None:
     turned = steady + weight[i, None] * (steady @ mandible.rotation.T - steady)
     expected = np.zeros_like(force)
     np.add.at(expected, i, (tight * a)[owner, None] * turned)
-    fibre = np.repeat(np.arange(len(muscles.table)), np.diff(muscles.pulls.rows))
-    s = np.minimum(muscles.pulls.value.astype(int), SAMPLES - 2)
-    t = (muscles.pulls.value - s)[:, None]
-    along = (1.0 - t) * muscles.table[fibre, s] + t * muscles.table[fibre, s + 1]
-    on = muscles.bundle.muscle[fibre]
-    strength = np.where(a[on] > 0.0, tight[on], 0.0) * muscles.pulls.weight
-    np.add.at(expected, muscles.pulls.vertex, strength[:, None] * along)
+    of_line = muscles.bundle.muscle
+    pulled = np.where(a[of_line] > 0.0, tight[of_line], 0.0)
+    ridden = np.where(muscles.rides, tight[of_line], 0.0)
+    assert ridden.any()
+    for attached, table, scale, last in (
+        (muscles.pulls, muscles.table, pulled, SAMPLES - 2),
+        (muscles.carries, muscles.ride, ridden, FIBRE_POINTS - 2),
+    ):
+        line = np.repeat(np.arange(len(table)), np.diff(attached.rows))
+        s = np.minimum(attached.value.astype(int), last)
+        t = (attached.value - s)[:, None]
+        along = (1.0 - t) * table[line, s] + t * table[line, s + 1]
+        np.add.at(expected, attached.vertex, (scale[line] * attached.weight)[:, None] * along)
     assert np.allclose(hold, expected_hold, rtol=1e-9)
     assert np.allclose(force, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
