@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import platform
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 
+import bench.gaps
 import bench.motion
 import bench.simulate
 import bench.soak
@@ -86,6 +89,38 @@ def tearing_table(mixtures: int) -> str:
         value = float(getattr(worst, part))
         lines.append(f"{title:10} {f'{value:.4g}{unit}':>9}  {worst.name if value > 0.0 else '-'}")
     return "\n".join(lines)
+
+
+def gaps_table(poses: Sequence[bench.gaps.Pose]) -> str:
+    """What stays open in poses that ought to be shut; the text to print."""
+
+    def millimetres(value: float | None) -> str:
+        return f"{'-' if value is None else f'{value:.2f}':>6}"
+
+    lines = [
+        f"{len(poses)} poses of the built-in head, as simulated and as refined, the worse:",
+        "lips  widest slit between lips that nothing opens, from five sides [mm]",
+        "lids  widest opening of an eye that is shut, from the front [mm]",
+        "sunk  how deep skin lies in an eyeball, deeper than at rest [mm]",
+        "",
+        f"{'pose':14} {'lips':>6} {'lids':>6} {'sunk':>6}",
+    ]
+    for pose in poses:
+        values = (millimetres(value) for value in (pose.lips, pose.lids, pose.sunk))
+        lines.append(f"{pose.name:14} {' '.join(values)}")
+    lines += ["", "worst      mm  asked"]
+    for title, most in (("lips", bench.gaps.LIPS_MOST), ("lids", bench.gaps.LIDS_MOST)):
+        value, pose = bench.gaps.worst(poses, title)
+        verdict = "met" if value < most else "MISSED"
+        lines.append(f"{title:6} {value:6.2f}  {most} {verdict:6}  {pose.name}")
+    value, pose = bench.gaps.worst(poses, "sunk")
+    lines.append(f"{'sunk':6} {value:6.2f}              {pose.name}")
+    return "\n".join(lines)
+
+
+def gaps_json(poses: Sequence[bench.gaps.Pose]) -> str:
+    """The same figures for programs."""
+    return json.dumps([asdict(pose) for pose in poses], indent=1) + "\n"
 
 
 def processor() -> str:

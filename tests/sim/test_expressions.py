@@ -8,12 +8,12 @@ import pytest
 import refine
 import sim
 from assets.model import Head
+from bench.sight import lid_gaps, shown_meshes
 from sim.contact import PRESSED_OVERLAP
 from tests.sim.poses import (
     FRAME,
     both_sides,
     inverted_triangles,
-    lid_gaps,
     lip_gap,
     moved_landmarks,
     settle,
@@ -175,15 +175,16 @@ def test_blink_closes_the_eyes(simulation: sim.Simulation, head: Head, other: fl
         "orbicularis_oculi_palpebral_lower": other,
     }
     settle(simulation, both_sides(simulation, values))
-    drawn = refine.create("kahler", head.faces, head.vertices).refine(simulation.positions)
-    smoothed = drawn.positions.astype(np.float64)[drawn.triangles]
-    for gap in lid_gaps(simulation, head) + lid_gaps(simulation, head, corners=smoothed):
-        assert gap < 0.3
+    refiner = refine.create("kahler", head.faces, head.vertices)
+    landmarks = simulation.positions[head.landmarks]
+    for name, mesh in shown_meshes(simulation, refiner).items():
+        assert max(lid_gaps(*mesh, landmarks).values()) < 0.3, name
 
 
 def test_eyes_are_open_at_rest(simulation: sim.Simulation, head: Head) -> None:
     """The measure used for a blink sees an open eye."""
-    assert min(lid_gaps(simulation, head)) > 7.0
+    landmarks = simulation.positions[head.landmarks]
+    assert min(lid_gaps(simulation.positions, head.faces, landmarks).values()) > 7.0
 
 
 @pytest.mark.parametrize("gaze", [-1.0, 0.0, 1.0])
