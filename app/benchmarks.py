@@ -33,7 +33,7 @@ def simulate_table(rounds: int, sizes: Sequence[int] = bench.simulate.SIZES) -> 
 
 def motion_table(reference: Path) -> str:
     """Score simulated against scanned skin motion; the text to print."""
-    rows = bench.motion.run(reference)
+    rows, left_out = bench.motion.run(reference)
     lines = [
         "Simulated against scanned displacement, area weighted: cosine 1 and magnitude 1 are equal",
         "fields, residual is the squared difference over the squared scan, half is the share of",
@@ -48,9 +48,9 @@ def motion_table(reference: Path) -> str:
             f"{row.shape:20} {row.cosine:7.3f} {row.magnitude:9.2f} {row.residual:8.3f} "
             f"{row.half:5.2f} {row.blob:6.3f} {row.waters:6.3f}"
         )
-    unknown = bench.motion.unknown_fields(reference)
-    if unknown:
-        lines += ["", f"no controls known for: {', '.join(unknown)} (bench/shapes.toml)"]
+    if left_out:
+        names = ", ".join(left_out)
+        lines += ["", f"left out, no skin moves or bench/shapes.toml does not know it: {names}"]
     return "\n".join(lines)
 
 
