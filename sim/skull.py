@@ -7,7 +7,7 @@ beside the muscles: no spring moves a bone.
 
 Source: Kähler et al. 2001, section 3 (skull and rotating jaw under the skin).
 Differs from it: the condyles also glide (a real jaw opens by turning and sliding), and the jaw
-moves forward and sideways.
+moves forward and sideways, to a side by turning about the condyle of that side.
 """
 
 from __future__ import annotations
@@ -166,10 +166,14 @@ def move_mandible(condyles, ways, angles, values):  # type: ignore[no-untyped-de
     angles: of full opening and of full sideways motion [rad].
     """
     right, left = condyles[0], condyles[1]
-    turn = rotation(left - right, angles[0] * values[0])
-    turn = times(rotation(UP, angles[1] * values[2]), turn)
+    opened = rotation(left - right, angles[0] * values[0])
     pivot = (right + left) / 2.0
-    shift = pivot - turned(turn, pivot)
+    shift = pivot - turned(opened, pivot)
+    # To the left the left condyle stays where it is and turns, the right one comes forward.
+    aside = rotation(UP, angles[1] * values[2])
+    pivot = left if values[2] > 0.0 else right
+    turn = times(aside, opened)
+    shift = pivot + turned(aside, shift - pivot)
     for k in range(3):
         shift[k] += values[0] * ways[0][k] + values[1] * ways[1][k] + values[2] * ways[2][k]
     return turn, shift
