@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import platform
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 
+import bench.gaps
 import bench.motion
 import bench.simulate
 import bench.soak
@@ -30,7 +33,7 @@ def simulate_table(rounds: int, sizes: Sequence[int] = bench.simulate.SIZES) -> 
 
 def motion_table(reference: Path) -> str:
     """Score simulated against scanned skin motion; the text to print."""
-    rows = bench.motion.run(reference)
+    rows, left_out = bench.motion.run(reference)
     lines = [
         "Simulated against scanned displacement, area weighted: cosine 1 and magnitude 1 are equal",
         "fields, residual is the squared difference over the squared scan, half is the share of",
@@ -45,9 +48,9 @@ def motion_table(reference: Path) -> str:
             f"{row.shape:20} {row.cosine:7.3f} {row.magnitude:9.2f} {row.residual:8.3f} "
             f"{row.half:5.2f} {row.blob:6.3f} {row.waters:6.3f}"
         )
-    unknown = bench.motion.unknown_fields(reference)
-    if unknown:
-        lines += ["", f"no controls known for: {', '.join(unknown)} (bench/shapes.toml)"]
+    if left_out:
+        names = ", ".join(left_out)
+        lines += ["", f"left out, no skin moves or bench/shapes.toml does not know it: {names}"]
     return "\n".join(lines)
 
 
@@ -86,6 +89,38 @@ def tearing_table(mixtures: int) -> str:
         value = float(getattr(worst, part))
         lines.append(f"{title:10} {f'{value:.4g}{unit}':>9}  {worst.name if value > 0.0 else '-'}")
     return "\n".join(lines)
+
+
+def gaps_table(poses: Sequence[bench.gaps.Pose]) -> str:
+    """What stays open in poses that ought to be shut; the text to print."""
+
+    def millimetres(value: float | None) -> str:
+        return f"{'-' if value is None else f'{value:.2f}':>6}"
+
+    lines = [
+        f"{len(poses)} poses of the built-in head, as simulated and as refined, the worse:",
+        "lips  widest slit between lips that nothing opens, from five sides [mm]",
+        "lids  widest opening of an eye that is shut, from the front [mm]",
+        "sunk  how deep skin lies in an eyeball, deeper than at rest [mm]",
+        "",
+        f"{'pose':14} {'lips':>6} {'lids':>6} {'sunk':>6}",
+    ]
+    for pose in poses:
+        values = (millimetres(value) for value in (pose.lips, pose.lids, pose.sunk))
+        lines.append(f"{pose.name:14} {' '.join(values)}")
+    lines += ["", "worst      mm  asked"]
+    for title, most in (("lips", bench.gaps.LIPS_MOST), ("lids", bench.gaps.LIDS_MOST)):
+        value, pose = bench.gaps.worst(poses, title)
+        verdict = "met" if value < most else "MISSED"
+        lines.append(f"{title:6} {value:6.2f}  {most} {verdict:6}  {pose.name}")
+    value, pose = bench.gaps.worst(poses, "sunk")
+    lines.append(f"{'sunk':6} {value:6.2f}              {pose.name}")
+    return "\n".join(lines)
+
+
+def gaps_json(poses: Sequence[bench.gaps.Pose]) -> str:
+    """The same figures for programs."""
+    return json.dumps([asdict(pose) for pose in poses], indent=1) + "\n"
 
 
 def processor() -> str:

@@ -282,6 +282,25 @@ def bench_soak(minutes: float) -> None:
         click.echo(soak_table(minutes))
 
 
+@bench.command("gaps")
+@click.option("--json", "json_file", type=click.Path(path_type=Path), help="Figures for programs.")
+def bench_gaps(json_file: Path | None) -> None:
+    """Look through lips and lids that ought to be shut, in every action unit."""
+    from bench import gaps
+
+    from .benchmarks import gaps_json, gaps_table
+    from .outputs import check_file, save_text
+
+    with told_in_one_line():
+        if json_file is not None:
+            check_file(json_file)
+        poses = gaps.run()
+        click.echo(gaps_table(poses))
+        if json_file is not None:
+            save_text(json_file, gaps_json(poses))
+            click.echo(f"{json_file}: written", err=True)
+
+
 @bench.command("tearing")
 @click.option("--mixtures", type=click.IntRange(0, 100_000), default=500, show_default=True)
 def bench_tearing(mixtures: int) -> None:

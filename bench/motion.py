@@ -1,10 +1,10 @@
 """How well the muscles move skin: simulated against scanned displacement, shape by shape.
 
 Takes a folder with a neutral face and displacement fields under ARKit-like names as `face.npz`
-(ICT-FaceKit's layout: `vertices`, `triangles`, `landmarks68`, then one (V, 3) field per shape,
-`_L` and `_R` for one-sided ones), fits the rig to that head as to anybody's, by its 68 landmarks
-(assets/fitting), and compares the fields, weighted by area. shapes.toml says which controls make a
-shape.
+(ICT-FaceKit's layout: `vertices`, `triangles`, `landmarks68`, then one (V, 3) field per shape;
+one-sided ones end in `_L` and `_R`, or `Left` and `Right`; capitals do not matter), fits the rig to
+that head as to anybody's, by its 68 landmarks (assets/fitting), and compares the fields, weighted
+by area. shapes.toml says which controls make a shape.
 
     cosine      1 = same directions and proportions          magnitude   |simulated| / |scanned|
     residual    |simulated - scanned|^2 / |scanned|^2        half        share of the motion that
@@ -40,6 +40,8 @@ SHAPES = Path(__file__).parent / "shapes.toml"
 FRAME = 1.0 / 60.0
 SETTLE = 60  # frames until a pose is still
 NOT_SHAPES = ("vertices", "triangles", "landmarks68")
+SIDES = {"left": ("_left", "_l", "left"), "right": ("_right", "_r", "right")}  # endings of names
+SEAM = 10.0  # mm beside the midline over which a one-sided shape fades, where we have but one whole
 BLOB_WIDTHS = (6.0, 9.0, 13.0, 18.0, 25.0, 35.0, 50.0)  # mm
 CONES = (25.0, 40.0, 60.0, 85.0)  # degrees about the fibre
 RANGES = (1.2, 1.5, 2.0)  # of the fibre's length, from its origin
@@ -59,14 +61,23 @@ class Row:
     waters: float  # cosine of the best geometric muscle
 
 
-def run(directory: str | Path) -> list[Row]:
+@dataclass(frozen=True)
+class Shape:
+    """A field of the reference and the controls that make the same shape."""
+
+    name: str  # of the field
+    values: dict[str, float]  # full strength
+    base: dict[str, float]  # the pose from which it is measured
+    cut: Side | None  # the side of a one-sided field for which there is no one-sided control
+
+
+def run(directory: str | Path) -> tuple[list[Row], list[str]]:
     """Score every shape of the reference in `directory` that shapes.toml knows.
 
-    Raises ValueError, naming the file, if it is broken or holds none of them.
+    Returns the scores, and the names of fields that have none: unknown ones, and those in which
+    no skin moves. Raises ValueError, naming the file, if it is broken or no shape is left.
     """
     fields = read_arrays(Path(directory) / DENSE, NOT_SHAPES)
-    with SHAPES.open("rb") as file:
-        shapes = tomllib.load(file)
     mesh = Mesh(fields["vertices"].astype(np.float64), fields["triangles"].astype(np.int32))
     landmarks = fields["landmarks68"].astype(np.int32)
     if not _is_sound(mesh, landmarks):
@@ -76,22 +87,29 @@ def run(directory: str | Path) -> list[Row]:
         )
     head = fit(mesh, landmarks)
     simulation = sim.create(head)
-    ruler = _Ruler(
-        head.vertices, head.landmarks, _vertex_areas(head.vertices, head.faces), head.rig
-    )
-    to_head = head.to_millimetres.vectors
-    rows = []
-    for name, values, base in _known(shapes, fields, simulation):
+    areas = _vertex_areas(head.vertices, head.faces)
+    ruler = _Ruler(head.vertices, head.landmarks, areas, head.rig)
+    shapes = _read_shapes()
+    rows, left_out = [], []
+    for name in fields:
+        if name in NOT_SHAPES:
+            continue
+        shape = _known(name, shapes, simulation)
+        if shape is None:
+            left_out.append(name)
+            continue
         if fields[name].shape != mesh.vertices.shape or not np.isfinite(fields[name]).all():
             raise ValueError(
                 f"{directory}: {name} in {DENSE} must be finite displacements of all vertices"
             )
-        if fields[name].any():
-            scanned = to_head(fields[name][head.kept])
-            rows.append(ruler.row(simulation, name, values, base, scanned))
+        scanned = head.to_millimetres.vectors(fields[name][head.kept])
+        if scanned.any():
+            rows.append(ruler.row(simulation, shape, scanned))
+        else:
+            left_out.append(name)
     if not rows:
         raise ValueError(f"{directory}: face.npz holds none of the shapes in {SHAPES.name}")
-    return rows
+    return rows, left_out
 
 
 def _is_sound(mesh: Mesh, landmarks: npt.NDArray[np.int32]) -> bool:
@@ -108,39 +126,33 @@ def _is_sound(mesh: Mesh, landmarks: npt.NDArray[np.int32]) -> bool:
     )
 
 
-def unknown_fields(directory: str | Path) -> list[str]:
-    """Names in the reference that shapes.toml does not know."""
-    with np.load(Path(directory) / "face.npz") as reference:
-        names = [name for name in reference.files if name not in NOT_SHAPES]
-    with SHAPES.open("rb") as file:
-        shapes = tomllib.load(file)
-    return [name for name in names if _without_side(name)[0] not in shapes]
-
-
 def mean_row(rows: list[Row]) -> Row:
     """The mean of each column."""
     columns = ("cosine", "magnitude", "residual", "half", "blob", "waters")
     return Row("mean", *(float(np.nanmean([getattr(r, c) for r in rows])) for c in columns))
 
 
-def _without_side(name: str) -> tuple[str, str | None]:
-    """Shape and side ("left", "right" or None) of a field's name."""
-    for ending, side in (("_L", "left"), ("_R", "right")):
-        if name.endswith(ending):
-            return name.removesuffix(ending), side
-    return name, None
+def _read_shapes() -> dict[str, Any]:
+    """The table of shapes, by name in small letters."""
+    with SHAPES.open("rb") as file:
+        return {name.lower(): table for name, table in tomllib.load(file).items()}
 
 
-def _known(
-    shapes: Mapping[str, Any], fields: Mapping[str, Any], simulation: sim.Simulation
-) -> Iterator[tuple[str, dict[str, float], dict[str, float]]]:
-    """Name, control values and values of the pose it starts from, of each shape in the file."""
-    for name in fields:
-        shape, side = _without_side(name)
-        if name not in NOT_SHAPES and shape in shapes:
-            table = shapes[shape]
-            base = _controls(table.get("over", {}), side, simulation)
-            yield name, {**base, **_controls(table["controls"], side, simulation)}, base
+def _known(name: str, shapes: Mapping[str, Any], simulation: sim.Simulation) -> Shape | None:
+    """The shape that a field's name means, None where the table has none."""
+    whole, side = name.lower(), None
+    if whole not in shapes:  # "jawLeft" is a shape, "browDownLeft" is one half of a shape
+        endings = [(ending, key) for key, every in SIDES.items() for ending in every]
+        found = [(e, key) for e, key in endings if whole.endswith(e)]
+        if found:
+            whole, side = whole.removesuffix(found[0][0]), found[0][1]
+    if whole not in shapes:
+        return None
+    table = shapes[whole]
+    base = _controls(table.get("over", {}), side, simulation)
+    values = {**base, **_controls(table["controls"], side, simulation)}
+    is_whole = any(not control.endswith(("_left", "_right")) for control in values)
+    return Shape(name, values, base, Side(side) if side and is_whole else None)
 
 
 def _controls(
@@ -177,30 +189,32 @@ class _Ruler:
         self._areas = areas
         self._muscles = {muscle.name: muscle for muscle in sim.read_rig(rig).muscles}
 
-    def row(
-        self,
-        simulation: sim.Simulation,
-        name: str,
-        values: dict[str, float],
-        base: dict[str, float],
-        scanned: Array,
-    ) -> Row:
+    def row(self, simulation: sim.Simulation, shape: Shape, scanned: Array) -> Row:
         """Pose one shape, fully and by half, and score it."""
+        values, base = shape.values, shape.base
         start = _posed(simulation, base) if base else np.zeros_like(scanned)
-        full = _posed(simulation, values) - start
+        kept = self._half_of_the_face(shape.cut)
+        full = kept * (_posed(simulation, values) - start)
         # A pose that is not there at the start comes in by half, what is there already stays.
         half = {c: base.get(c, 0.0) + (v - base.get(c, 0.0)) / 2.0 for c, v in values.items()}
-        part = _posed(simulation, half) - start
+        part = kept * (_posed(simulation, half) - start)
         own, true = self._product(full, full), self._product(scanned, scanned)
         return Row(
-            name,
+            shape.name,
             self._cosine(full, scanned),
             float(np.sqrt(own / true)),
             self._product(full - scanned, full - scanned) / true,
-            self._product(part, full) / own,
+            self._product(part, full) / own if own > 0.0 else float("nan"),
             max(self._cosine(blob, scanned) for blob in self._blobs(scanned)),
             self._waters(values, scanned),
         )
+
+    def _half_of_the_face(self, side: Side | None) -> Array:
+        """1 on a side of the face, 0 on the other, shape (V, 1); 1 everywhere without a side."""
+        if side is None:
+            return np.ones((len(self._x), 1))
+        share: Array = np.clip((side.sign * self._x[:, :1] / SEAM + 1.0) / 2.0, 0.0, 1.0)
+        return share
 
     def _product(self, a: Array, b: Array) -> float:
         return float((self._areas[:, None] * a * b).sum())

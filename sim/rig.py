@@ -89,8 +89,8 @@ class Jaw:
     opening_deg: float = _number(0.0, 45.0, default=22.0)  # hinge angle at jaw_open = 1
     opening_glide: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, -4.0, 0.0))
     forward_glide: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, -2.0, 8.0))
-    sideways_glide: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(8.0, 0.0, 0.0))
-    sideways_deg: float = _number(0.0, 20.0, default=3.0)  # yaw at jaw_sideways = 1
+    sideways_glide: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(1.0, 0.0, 0.0))
+    sideways_deg: float = _number(0.0, 20.0, default=6.5)  # yaw about the condyle of that side
     condyle: tuple[float, float, float] = _vector(3, -100.0, 100.0, default=(0.0, -20.0, -20.0))
     softness: float = _number(0.0, 1000.0, default=60.0)  # mm2, smooths the mandible weight
     seeds: tuple[tuple[int, float], ...] = field(default=(), metadata=SEEDS)

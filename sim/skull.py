@@ -7,7 +7,7 @@ beside the muscles: no spring moves a bone.
 
 Source: Kähler et al. 2001, section 3 (skull and rotating jaw under the skin).
 Differs from it: the condyles also glide (a real jaw opens by turning and sliding), and the jaw
-moves forward and sideways.
+moves forward and sideways, to a side by turning about the condyle of that side.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numba
 import numpy as np
 
 from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Array, FaceFrame, Side, select
@@ -27,7 +28,7 @@ NECK_BELOW_CHIN = 30.0  # mm below the chin landmark the skin no longer belongs 
 BEHIND_EARS = 20.0  # mm behind the ear landmarks likewise
 HEAD_CONTROLS = ("head_pitch", "head_yaw", "head_roll")
 HEAD_RATE = 12.0  # rad/s: a nod takes some third of a second
-LATERAL, UP, FORWARD = np.eye(3)
+LATERAL, UP, FORWARD = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 SEED_HOLD = 3.0  # seeds are advice, not nails: a soft hold gives a smooth border
 
 
@@ -39,9 +40,9 @@ class Pose:
     shift: Array  # (3,)
 
     @classmethod
-    def about(cls, pivot: Array, rotation: Array, glide: Array) -> Pose:
-        """Turn about `pivot`, then move by `glide`."""
-        return cls(rotation, pivot + glide - rotation @ pivot)
+    def about(cls, pivot: Array, rotation: Array) -> Pose:
+        """Turn about `pivot`."""
+        return cls(rotation, pivot - rotation @ pivot)
 
     def displacements(self, points: Array) -> Array:
         """How far points (..., 3) move."""
@@ -54,10 +55,7 @@ class Pose:
 
     def matrix(self, frame: FaceFrame) -> Array:
         """The motion in head coordinates as a (4, 4) matrix for column vectors."""
-        turn = frame.axes.T @ self.rotation @ frame.axes
-        result = np.eye(4)
-        result[:3, :3] = turn
-        result[:3, 3] = frame.to_head(self.shift) - turn @ frame.origin
+        result: Array = in_head(self.rotation, self.shift, frame.axes, frame.origin, frame.scale)
         return result
 
 
@@ -89,48 +87,109 @@ class Skull:
         if pitch == yaw == roll == 0.0:
             return REST
         head = self.head
-        turn = rotation(UP, math.radians(head.yaw_deg) * yaw)
-        turn = turn @ rotation(LATERAL, -math.radians(head.pitch_deg) * pitch)
-        turn = turn @ rotation(FORWARD, -math.radians(head.roll_deg) * roll)
-        return Pose.about(
-            (self.condyles[0] + self.condyles[1]) / 2.0 + head.joint, turn, np.zeros(3)
+        angles = (
+            math.radians(head.yaw_deg) * yaw,
+            -math.radians(head.pitch_deg) * pitch,
+            -math.radians(head.roll_deg) * roll,
         )
+        return Pose(*turn_head(self.condyles, head.joint, angles))
 
     def mandible_pose(self, opening: float, forward: float, sideways: float) -> Pose:
         """The mandible for jaw_open (0..1), jaw_forward and jaw_sideways (-1..1)."""
-        right, left = self.condyles
-        turn = rotation(left - right, math.radians(self.jaw.opening_deg) * opening)
-        yaw = rotation(UP, math.radians(self.jaw.sideways_deg) * sideways)
         jaw = self.jaw
-        ways = zip(jaw.opening_glide, jaw.forward_glide, jaw.sideways_glide, strict=True)
-        glide = np.array([opening * o + forward * f + sideways * s for o, f, s in ways])
-        return Pose.about((right + left) / 2.0, yaw @ turn, glide)
+        ways = jaw.opening_glide, jaw.forward_glide, jaw.sideways_glide
+        angles = math.radians(jaw.opening_deg), math.radians(jaw.sideways_deg)
+        return Pose(*move_mandible(self.condyles, ways, angles, (opening, forward, sideways)))
 
     def eye_pose(self, eyeball: Eyeball, horizontal: float, vertical: float) -> Pose:
         """An eyeball looking to the subject's left (+1) and up (+1)."""
         most = math.radians(self.eyes.gaze_deg)
         yaw = rotation(UP, most * horizontal)
         pitch = rotation(LATERAL, -most * vertical)
-        return Pose.about(eyeball.centre, yaw @ pitch, np.zeros(3))
+        return Pose.about(eyeball.centre, yaw @ pitch)
 
 
-def rotation(axis: Array, angle: float) -> Array:
-    """Rotation matrix by `angle` [rad] about `axis` (Rodrigues).
+# In every tick the mandible and the head are placed anew: numpy takes ten times as long for so few
+# numbers as these kernels do.
 
-    In plain numbers: numpy takes five times as long for so few, and it is needed in every tick.
-    """
-    x, y, z = axis.tolist()
-    length = math.sqrt(x * x + y * y + z * z)
-    x, y, z = x / length, y / length, z / length
+
+@numba.njit(cache=True)
+def rotation(axis, angle):  # type: ignore[no-untyped-def]
+    """Rotation matrix (3, 3) by `angle` [rad] about `axis` (Rodrigues)."""
+    length = math.sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2])
+    x, y, z = axis[0] / length, axis[1] / length, axis[2] / length
     c, s = math.cos(angle), math.sin(angle)
     d = 1.0 - c
-    return np.array(
-        [
-            [c + d * x * x, d * x * y - s * z, d * x * z + s * y],
-            [d * x * y + s * z, c + d * y * y, d * y * z - s * x],
-            [d * x * z - s * y, d * y * z + s * x, c + d * z * z],
-        ]
-    )
+    turn = np.empty((3, 3))
+    turn[0, 0], turn[0, 1], turn[0, 2] = c + d * x * x, d * x * y - s * z, d * x * z + s * y
+    turn[1, 0], turn[1, 1], turn[1, 2] = d * x * y + s * z, c + d * y * y, d * y * z - s * x
+    turn[2, 0], turn[2, 1], turn[2, 2] = d * x * z - s * y, d * y * z + s * x, c + d * z * z
+    return turn
+
+
+@numba.njit(cache=True)
+def times(a, b):  # type: ignore[no-untyped-def]
+    """Product of two matrices (3, 3)."""
+    product = np.zeros((3, 3))
+    for i in range(3):
+        for k in range(3):
+            for n in range(3):
+                product[i, n] += a[i, k] * b[k, n]
+    return product
+
+
+@numba.njit(cache=True)
+def turned(turn, point):  # type: ignore[no-untyped-def]
+    """A point (3,) turned."""
+    to = np.zeros(3)
+    for i in range(3):
+        for k in range(3):
+            to[i] += turn[i, k] * point[k]
+    return to
+
+
+@numba.njit(cache=True)
+def turn_head(condyles, joint, angles):  # type: ignore[no-untyped-def]
+    """Rotation and shift of the head; `joint`: off the middle of the condyles; see head_pose."""
+    turn = times(rotation(UP, angles[0]), rotation(LATERAL, angles[1]))
+    turn = times(turn, rotation(FORWARD, angles[2]))
+    pivot = (condyles[0] + condyles[1]) / 2.0
+    for k in range(3):
+        pivot[k] += joint[k]
+    return turn, pivot - turned(turn, pivot)
+
+
+@numba.njit(cache=True)
+def move_mandible(condyles, ways, angles, values):  # type: ignore[no-untyped-def]
+    """Rotation and shift of the mandible; `ways`: glides [mm] of its `values`; see mandible_pose.
+
+    angles: of full opening and of full sideways motion [rad].
+    """
+    right, left = condyles[0], condyles[1]
+    opened = rotation(left - right, angles[0] * values[0])
+    pivot = (right + left) / 2.0
+    shift = pivot - turned(opened, pivot)
+    # To the left the left condyle stays where it is and turns, the right one comes forward.
+    aside = rotation(UP, angles[1] * values[2])
+    pivot = left if values[2] > 0.0 else right
+    turn = times(aside, opened)
+    shift = pivot + turned(aside, shift - pivot)
+    for k in range(3):
+        shift[k] += values[0] * ways[0][k] + values[1] * ways[1][k] + values[2] * ways[2][k]
+    return turn, shift
+
+
+@numba.njit(cache=True)
+def in_head(turn, shift, axes, origin, scale):  # type: ignore[no-untyped-def]
+    """A motion of the standard frame in head coordinates, as a (4, 4) matrix."""
+    there = times(times(axes.T, turn), axes)
+    to = origin + scale * turned(axes.T, shift) - turned(there, origin)
+    matrix = np.eye(4)
+    for i in range(3):
+        matrix[i, 3] = to[i]
+        for k in range(3):
+            matrix[i, k] = there[i, k]
+    return matrix
 
 
 def eyeballs_from_landmarks(landmarks: Array) -> tuple[Eyeball, ...]:

@@ -29,6 +29,7 @@ class EdgeSprings(NamedTuple):
     """All edges of the skin as springs."""
 
     edges: npt.NDArray[np.uint32]  # (E, 2); unsigned saves the kernel a test per access
+    rows: npt.NDArray[np.uint32]  # (V + 1,) edges that begin at vertex i: rows[i] up to rows[i + 1]
     rest_length: Array  # (E,) mm
     stiffness: Array  # (E,) of the membrane
     shear: Array  # (E,)
@@ -47,9 +48,10 @@ class EdgeSprings(NamedTuple):
         for knot in knots:
             squared = ((middle - knot) ** 2).sum(axis=1)
             stiffness = stiffness * (1.0 + tissue.modiolus * np.exp(-squared / MODIOLUS**2))
+        rows = np.searchsorted(surface.edges[:, 0], np.arange(surface.vertex_count + 1))
         return cls(
-            surface.edges.astype(np.uint32), surface.lengths, stiffness, tissue.shear * stiffness,
-            tissue.stiffening, tissue.stiffening_strain,
+            surface.edges.astype(np.uint32), rows.astype(np.uint32), surface.lengths, stiffness,
+            tissue.shear * stiffness, tissue.stiffening, tissue.stiffening_strain,
         )  # fmt: skip
 
     def row_bound(self, vertex_count: int) -> Array:

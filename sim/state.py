@@ -17,7 +17,7 @@ from .surface import Surface
 
 
 class State(NamedTuple):
-    """Positions and velocities, where the springs pull to, and work space; all per vertex."""
+    """Positions and velocities, where the springs pull to, and work space; per vertex, or edge."""
 
     x: Array  # (V, 3) positions
     v: Array  # (V, 3) velocities
@@ -32,6 +32,7 @@ class State(NamedTuple):
     kept: Array  # (V,) share of the velocity that damping leaves in a substep
     gain: Array  # (V,) velocity gained per force in a substep
     move: Array  # (V, 3) work space of lip contact and seal
+    tension: Array  # (E,) of each edge spring, per its length
 
     @classmethod
     def at_rest(cls, surface: Surface) -> State:
@@ -49,4 +50,5 @@ class State(NamedTuple):
             kept=np.zeros(scalar),
             gain=np.zeros(scalar),
             move=np.zeros(vector),
+            tension=np.zeros(len(surface.edges)),
         )

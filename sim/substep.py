@@ -72,9 +72,14 @@ def tissue_forces(state, springs):  # type: ignore[no-untyped-def]
 
 @numba.njit(cache=True, fastmath={"contract"})
 def edge_forces(state, springs):  # type: ignore[no-untyped-def]
-    """Add the pull of all edges to `state.force`; `state.offset` must be up to date."""
-    x, offset, force = state.x, state.offset, state.force
-    edges, rest_length = springs.edges, springs.rest_length
+    """Add the pull of all edges to `state.force`; `state.offset` must be up to date.
+
+    In three passes: the roots and quotients of the second are taken several at a time by the
+    processor as long as nothing is scattered between them, and the third loads one end of each
+    edge once for all edges that begin there.
+    """
+    x, offset, force, tension = state.x, state.offset, state.force, state.tension
+    edges, rows, rest_length = springs.edges, springs.rows, springs.rest_length
     stiffness, shear = springs.stiffness, springs.shear
     strain_limit, extra = springs.strain_limit, springs.stiffening - 1.0
     for e in range(len(edges)):
@@ -82,20 +87,30 @@ def edge_forces(state, springs):  # type: ignore[no-untyped-def]
         dx = x[j, 0] - x[i, 0]
         dy = x[j, 1] - x[i, 1]
         dz = x[j, 2] - x[i, 2]
-        length = max(np.sqrt(dx * dx + dy * dy + dz * dz), SHORTEST)
+        tension[e] = dx * dx + dy * dy + dz * dz
+    for e in range(len(edges)):
+        length = max(np.sqrt(tension[e]), SHORTEST)
         extension = length - rest_length[e]
         beyond = max(extension - strain_limit * rest_length[e], 0.0)
-        tension = stiffness[e] * (extension + extra * beyond) / length
-        s = shear[e]
-        fx = tension * dx + s * (offset[j, 0] - offset[i, 0])
-        fy = tension * dy + s * (offset[j, 1] - offset[i, 1])
-        fz = tension * dz + s * (offset[j, 2] - offset[i, 2])
-        force[i, 0] += fx
-        force[i, 1] += fy
-        force[i, 2] += fz
-        force[j, 0] -= fx
-        force[j, 1] -= fy
-        force[j, 2] -= fz
+        tension[e] = stiffness[e] * (extension + extra * beyond) / length
+    for i in range(len(x)):
+        ax, ay, az = x[i, 0], x[i, 1], x[i, 2]
+        bx, by, bz = offset[i, 0], offset[i, 1], offset[i, 2]
+        sx, sy, sz = 0.0, 0.0, 0.0
+        for e in range(rows[i], rows[i + 1]):
+            j, t, s = edges[e, 1], tension[e], shear[e]
+            fx = t * (x[j, 0] - ax) + s * (offset[j, 0] - bx)
+            fy = t * (x[j, 1] - ay) + s * (offset[j, 1] - by)
+            fz = t * (x[j, 2] - az) + s * (offset[j, 2] - bz)
+            sx += fx
+            sy += fy
+            sz += fz
+            force[j, 0] -= fx
+            force[j, 1] -= fy
+            force[j, 2] -= fz
+        force[i, 0] += sx
+        force[i, 1] += sy
+        force[i, 2] += sz
 
 
 @numba.njit(cache=True)

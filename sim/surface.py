@@ -36,7 +36,7 @@ class Surface:
 
     positions: Array  # (V, 3) mm
     faces: Indices  # (F, 3)
-    edges: Indices  # (E, 2)
+    edges: Indices  # (E, 2), sorted, the lower vertex first
     lengths: Array  # (E,) mm
     edge_stiffness: Array  # (E,) sum of adjacent triangle areas / length2, dimensionless
     areas: Array  # (V,) mm2

@@ -8,12 +8,12 @@ import pytest
 import refine
 import sim
 from assets.model import Head
+from bench.sight import lid_gaps, shown_meshes
 from sim.contact import PRESSED_OVERLAP
 from tests.sim.poses import (
     FRAME,
     both_sides,
     inverted_triangles,
-    lid_gaps,
     lip_gap,
     moved_landmarks,
     settle,
@@ -175,15 +175,16 @@ def test_blink_closes_the_eyes(simulation: sim.Simulation, head: Head, other: fl
         "orbicularis_oculi_palpebral_lower": other,
     }
     settle(simulation, both_sides(simulation, values))
-    drawn = refine.create("kahler", head.faces, head.vertices).refine(simulation.positions)
-    smoothed = drawn.positions.astype(np.float64)[drawn.triangles]
-    for gap in lid_gaps(simulation, head) + lid_gaps(simulation, head, corners=smoothed):
-        assert gap < 0.3
+    refiner = refine.create("kahler", head.faces, head.vertices)
+    landmarks = simulation.positions[head.landmarks]
+    for name, mesh in shown_meshes(simulation, refiner).items():
+        assert max(lid_gaps(*mesh, landmarks).values()) < 0.3, name
 
 
 def test_eyes_are_open_at_rest(simulation: sim.Simulation, head: Head) -> None:
     """The measure used for a blink sees an open eye."""
-    assert min(lid_gaps(simulation, head)) > 7.0
+    landmarks = simulation.positions[head.landmarks]
+    assert min(lid_gaps(simulation.positions, head.faces, landmarks).values()) > 7.0
 
 
 @pytest.mark.parametrize("gaze", [-1.0, 0.0, 1.0])
@@ -210,9 +211,16 @@ def test_jaw_opens_the_mouth(simulation: sim.Simulation, head: Head) -> None:
 
 
 def test_jaw_slides(simulation: sim.Simulation, head: Head) -> None:
-    """The chin follows the jaw forward and to the subject's left."""
+    """The chin follows the jaw forward and to a side, where the condyle of that side stays."""
     assert moved_landmarks(head, settle(simulation, {"jaw_forward": 1.0}), 8)[2] > 4.0
-    assert moved_landmarks(head, settle(simulation, {"jaw_sideways": 1.0}), 8)[0] > 4.0
+    for side, sign in enumerate((-1.0, 1.0)):
+        chin = moved_landmarks(head, settle(simulation, {"jaw_sideways": sign}), 8)
+        assert 8.0 < sign * chin[0] < 11.0
+        assert 3.0 < chin[2] < 7.0
+        matrix = simulation.bone_transforms()["mandible"]
+        condyles = head.jaw_axis @ matrix[:3, :3].T + matrix[:3, 3] - head.jaw_axis
+        assert np.linalg.norm(condyles[side]) < 1.5  # right, left
+        assert 9.0 < condyles[1 - side, 2] < 13.0
 
 
 def test_bones_carry_the_skin(simulation: sim.Simulation, head: Head) -> None:

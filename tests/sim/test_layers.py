@@ -12,7 +12,7 @@ import sim
 from assets.model import Head
 from sim.controls import Control, Controls
 from sim.layers import read_layers
-from tests.sim.poses import FRAME, inverted_triangles, lid_gaps, lip_slit, settle
+from tests.sim.poses import FRAME, inverted_triangles, settle
 
 LOWEST = ("puller_left", "puller_right", "middle", "slide")
 ACTION_UNITS = (
@@ -25,11 +25,6 @@ EXPRESSIONS = (
     "mouth_open", "blink",
 )  # fmt: skip
 HEAD_UNITS = ("AU51", "AU52", "AU53", "AU54", "AU55", "AU56")
-CLOSED = (
-    *(f"AU{n}" for n in (1, 2, 4, 5, 6, 7, 11, 12, 13, 14, 15, 17, 18, 20, 21, 23, 24, 28, 29)),
-    "AU30_left", "AU30_right", "AU34", "AU38", "AU43", "AU64", "viseme_PP", "sadness", "anger",
-    "contempt", "wink", "kiss",
-)  # fmt: skip
 VISEMES = "sil PP FF TH DD kk CH SS nn RR aa E ih oh ou".split()
 
 
@@ -175,14 +170,6 @@ def test_rows_keep_the_mesh_sound(simulation: sim.Simulation, head: Head, title:
         assert inverted_triangles(head.faces, head.vertices, simulation.positions) <= 6, name
 
 
-@pytest.mark.parametrize("name", CLOSED)
-def test_closed_lips_stay_closed(simulation: sim.Simulation, head: Head, name: str) -> None:
-    """No unit parts the lips but those that are there for it."""
-    settle(simulation, {name: 1.0}, frames=45)
-    corners = simulation.positions[head.landmarks[[48, 54]]]
-    assert lip_slit(simulation.positions, head.faces, corners, yaw=0.0, pitch=0.0) < 0.5
-
-
 def test_a_funnelled_mouth_is_round(simulation: sim.Simulation, head: Head) -> None:
     """AU22 brings both lips forward; the lower one's outline is nearer to an ellipse than a V."""
     moved = settle(simulation, {"AU22": 1.0})[head.landmarks]
@@ -211,13 +198,6 @@ def test_units_that_look_alike_differ(simulation: sim.Simulation, head: Head) ->
     assert face["AU9"][35, 1] > face["AU10"][35, 1] + 1.0
     assert face["AU23"][54, 0] < -1.0 < -0.1 < face["AU24"][54, 0]
     assert face["AU24"][51, 1] < face["AU23"][51, 1] - 1.0
-
-
-@pytest.mark.parametrize("name", ["AU43", "AU45", "blink", "yawn"])
-def test_shut_eyes_are_shut(simulation: sim.Simulation, head: Head, name: str) -> None:
-    """No eyeball is seen through closed lids, whatever else the face does."""
-    settle(simulation, {name: 1.0}, frames=45)
-    assert max(lid_gaps(simulation, head)) < (0.3 if name != "yawn" else 0.7)
 
 
 @pytest.mark.parametrize("sound", [sound for sound in VISEMES if sound != "sil"])

@@ -14,9 +14,9 @@ import pytest
 import refine
 import sim
 from assets.model import Head
-from tests.sim.poses import both_sides, lip_slit, settle
+from bench.sight import shown_meshes, widest_slit
+from tests.sim.poses import both_sides, settle
 
-VIEWS = ((0.0, 0.0), (30.0, 0.0), (-30.0, 0.0), (0.0, 8.0), (0.0, -8.0))
 SHUT = 0.3  # mm: less than a pixel of a full-screen close-up
 UNMOVED = 0.01  # mm: lips that no muscle reaches need no look
 SHUT_EXPRESSIONS = ("kiss", "sadness", "anger", "contempt", "wink", "blink")
@@ -40,15 +40,10 @@ def slits(simulation: sim.Simulation, head: Head, refiner: refine.Refiner) -> Sl
     """Measures the widest slit between the lips from any side: of the mesh, and refined."""
 
     def measure() -> dict[str, float]:
-        corners = simulation.positions[head.landmarks[[60, 64]]]
-        drawn = refiner.refine(simulation.positions)
-        meshes = {
-            "static": (simulation.positions, head.faces),
-            "refined": (drawn.positions.astype(np.float64), drawn.triangles),
-        }
+        landmarks = simulation.positions[head.landmarks]
         return {
-            name: max(lip_slit(*mesh, corners, yaw=yaw, pitch=pitch) for yaw, pitch in VIEWS)
-            for name, mesh in meshes.items()
+            name: widest_slit(*mesh, landmarks)
+            for name, mesh in shown_meshes(simulation, refiner).items()
         }
 
     return measure

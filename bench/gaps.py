@@ -1,0 +1,84 @@
+"""Do closed lips stay closed, do lids close, and do they rest on the eyeball instead of in it?
+
+Every action unit at full strength, the left, the right and both sides where it has sides, and the
+expressions in which the mouth or an eye is shut, settled on the built-in head. Of each are told
+the widest slit between the lips, where nothing opens them, from the front and from four oblique
+views; the widest opening between the lids of each eye that it shuts; and how deep any skin sits in
+an eyeball. All of the mesh and of what refinement makes of it, whichever is worse (sight.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import assets
+import refine
+import sim
+
+from .sight import lid_gaps, shown_meshes, sunk_in_eyeballs, widest_slit
+
+FRAME = 1.0 / 60.0
+SETTLE = 45  # frames until a pose is still
+UNITS = "Action units"
+# FACS: these part the lips themselves. All others leave the mouth as it is.
+LIP_PARTING = ("AU9", "AU10", "AU16", "AU22", "AU25", "AU26", "AU27")
+MOUTH_SHUT = ("sadness", "anger", "contempt", "wink", "kiss", "blink", "viseme_sil", "viseme_PP")
+EYES_SHUT = ("yawn",)  # beside those above
+SHUT = 0.99  # of the muscle that closes a lid
+CLOSER = "orbicularis_oculi_palpebral_upper"
+LIPS_MOST, LIDS_MOST = 0.5, 0.3  # mm: what may stay open
+
+
+@dataclass(frozen=True)
+class Pose:
+    """What stays open in one pose; None where nothing ought to be shut."""
+
+    name: str
+    lips: float | None  # mm, widest slit
+    lids: float | None  # mm, widest opening of an eye that is shut
+    sunk: float  # mm that skin is deeper in an eyeball than at rest
+
+
+def run() -> list[Pose]:
+    """Measure every pose."""
+    head = assets.load("head")
+    simulation = sim.create(head)
+    refiner = refine.create("kahler", head.faces, head.vertices)
+    poses = []
+    for name, is_shut in _rows(simulation):
+        simulation.reset()
+        simulation.set(name, 1.0)
+        for _ in range(SETTLE):
+            simulation.step(FRAME)
+        landmarks = simulation.positions[head.landmarks]
+        shut = [side for side in ("right", "left") if simulation.sums[f"{CLOSER}_{side}"] >= SHUT]
+        lips, lids = [], []
+        for positions, triangles in shown_meshes(simulation, refiner).values():
+            if is_shut:
+                lips.append(widest_slit(positions, triangles, landmarks))
+            if shut:
+                gaps = lid_gaps(positions, triangles, landmarks)
+                lids += [gaps[side] for side in shut]
+        sunk = sunk_in_eyeballs(
+            simulation.positions, simulation.rest_positions, simulation.faces, head.eyes
+        )
+        poses.append(Pose(name, max(lips, default=None), max(lids, default=None), sunk))
+    return poses
+
+
+def worst(poses: Sequence[Pose], part: str) -> tuple[float, Pose]:
+    """The greatest value of `part` ("lips", "lids" or "sunk") [mm] and the pose that has it."""
+    found = [(value, pose) for pose in poses if (value := getattr(pose, part)) is not None]
+    return max(found, key=lambda pair: pair[0])
+
+
+def _rows(simulation: sim.Simulation) -> Iterator[tuple[str, bool]]:
+    """Name of each row to look at, and whether its mouth is shut."""
+    for name in simulation.layers[UNITS]:
+        simulation.pose({name: 1.0})
+        sums = simulation.sums
+        if any(value != 0.0 for control, value in sums.items() if not control.startswith("head_")):
+            yield name, name.removesuffix("_left").removesuffix("_right") not in LIP_PARTING
+    for name in MOUTH_SHUT + EYES_SHUT:
+        yield name, name in MOUTH_SHUT

@@ -1,0 +1,52 @@
+"""Closed lips and lids stay closed, and what measures it sees what is open."""
+
+from __future__ import annotations
+
+import pytest
+
+import assets
+from app.benchmarks import gaps_json, gaps_table
+from bench.gaps import LIDS_MOST, LIPS_MOST, Pose, run, worst
+from bench.sight import sunk_in_eyeballs
+
+
+@pytest.fixture(scope="module")
+def poses() -> dict[str, Pose]:
+    """Every pose, measured once."""
+    return {pose.name: pose for pose in run()}
+
+
+def test_closed_lips_stay_closed(poses: dict[str, Pose]) -> None:
+    """No unit parts the lips but those that are there for it, on either side or on both."""
+    slits = {name: pose.lips for name, pose in poses.items() if pose.lips is not None}
+    assert len(slits) > 70
+    assert {"AU12", "AU12_left", "AU17", "AU28", "AU29", "kiss"} < set(slits)
+    assert {name: slit for name, slit in slits.items() if slit >= LIPS_MOST} == {}
+
+
+def test_shut_eyes_are_shut(poses: dict[str, Pose]) -> None:
+    """No eyeball is seen through closed lids, whatever else the face does, nor cut by them."""
+    gaps = {name: pose.lids for name, pose in poses.items() if pose.lids is not None}
+    assert {"AU43", "AU43_left", "AU45_right", "AU46_left", "blink", "wink", "yawn"} <= set(gaps)
+    assert {name: gap for name, gap in gaps.items() if gap >= LIDS_MOST} == {}
+    assert max(pose.sunk for pose in poses.values()) < 0.3
+
+
+def test_the_worst_is_named(poses: dict[str, Pose]) -> None:
+    """The table and the file for programs hold every pose; one that fails is called so."""
+    wide = Pose("wide", LIPS_MOST, None, 0.0)
+    assert worst([*poses.values(), wide], "lips") == (LIPS_MOST, wide)
+    table = gaps_table([*poses.values(), wide])
+    assert "MISSED  wide" in table
+    assert "MISSED" not in gaps_table([*poses.values()])
+    assert '"name": "wide"' in gaps_json([wide])
+    assert '"lids": null' in gaps_json([wide])
+
+
+def test_skin_in_an_eyeball_is_found() -> None:
+    """A face pushed back by 2 mm sits as deep in the eyeballs as its lids were near to them."""
+    head = assets.load("head")
+    rest, eyes = head.vertices, head.eyes
+    assert sunk_in_eyeballs(rest, rest, head.faces, eyes) == 0.0
+    pushed = sunk_in_eyeballs(rest - (0.0, 0.0, 2.0), rest, head.faces, eyes)
+    assert 1.0 < pushed <= 2.0
