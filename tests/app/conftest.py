@@ -22,7 +22,6 @@ def viewer() -> Iterator[Viewer]:
     """One window for all tests of a file."""
     script = replace(script_for(None, "face"), duration=0.5)
     with Viewer(script, SIZE) as opened:
-        opened.files = Files(is_native=False)
         io = imgui.get_io()  # slower than people, for a machine that is busy [s]
         io.mouse_single_click_delay, io.mouse_double_click_time = 1.5, 1.0
         settle(opened)
@@ -39,6 +38,6 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     viewer.session = type(viewer.session)(viewer.scene, script)
     viewer.scene.reset()
     viewer.look, viewer.face_panel.search = Look(), ""
-    viewer.messages.text = ""
+    viewer.files, viewer.messages.text = Files(is_native=False), ""
     viewer.wanted_tab = "Face"
     xdotool(viewer, "key", "f")

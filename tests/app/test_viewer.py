@@ -219,7 +219,7 @@ def test_recording_survives_a_file(viewer: Viewer, tmp_path: Path) -> None:
     xdotool(viewer, "key", "ctrl+o")
     write(viewer, path.name)
     click(viewer, "path confirmed")
-    assert viewer.session.script.source == path.name
+    assert viewer.session.script.source == str(path)
     xdotool(viewer, "key", "space")
     assert until(viewer, lambda: not viewer.session.is_playing)
     assert np.abs(viewer.scene.positions - wanted).max() < 0.05

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -9,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from app.viewer import Viewer
+from app.viewer.files import UNSEEN, Files
 
-from .driving import NEEDS_A_SCREEN, nose, settle, until
+from .driving import NEEDS_A_SCREEN, click, nose, settle, until, write, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -58,3 +60,63 @@ def test_a_bad_file_dropped_is_told_and_survived(viewer: Viewer, tmp_path: Path)
     bad.write_text(POSE)
     drop(viewer, bad)
     assert viewer.session.values["jaw_open"] == 0.5
+
+
+def test_the_chooser_walks_through_folders(viewer: Viewer, tmp_path: Path) -> None:
+    """Without native dialogs: into a folder, up again, and a script opened by a double click."""
+    (tmp_path / "takes").mkdir()
+    (tmp_path / "takes" / "smile.toml").write_text(SCRIPT)
+    (tmp_path / "picture.png").write_bytes(b"")
+    xdotool(viewer, "key", "ctrl+o")
+    assert "file picture.png" not in viewer.gui.places
+    click(viewer, "folder takes")
+    assert until(viewer, lambda: "file smile.toml" in viewer.gui.places, 3.0)
+    click(viewer, "folder Up")
+    assert until(viewer, lambda: "folder takes" in viewer.gui.places, 3.0)
+    click(viewer, "folder takes")
+    click(viewer, "file smile.toml", times=2)
+    assert viewer.session.script.duration == 2.0 and not viewer.files.is_waiting
+    xdotool(viewer, "key", "ctrl+o")
+    assert "file smile.toml" in viewer.gui.places  # begins where it was last
+    xdotool(viewer, "key", "Escape")
+    assert not viewer.files.is_waiting
+
+
+def test_the_chooser_replaces_nothing_unasked(viewer: Viewer, tmp_path: Path) -> None:
+    """A name that is taken needs a second word; a folder that is missing is told."""
+    taken = tmp_path / "pose.toml"
+    taken.write_text("precious")
+    viewer.session.set("jaw_open", 0.4)
+    xdotool(viewer, "key", "ctrl+shift+s")
+    xdotool(viewer, "key", "Return")
+    assert viewer.files.is_waiting and taken.read_text() == "precious"
+    xdotool(viewer, "key", "Return")
+    assert not viewer.files.is_waiting and "jaw_open = 0.4" in taken.read_text()
+    viewer.session.set("jaw_open", 0.5)
+    xdotool(viewer, "key", "ctrl+shift+s")
+    xdotool(viewer, "key", "ctrl+a")
+    write(viewer, "/proc/none/pose")
+    xdotool(viewer, "key", "Return")
+    assert viewer.messages.is_error and "/proc/none/pose.toml" in viewer.messages.text
+    assert "the pose" in viewer.session.unsaved
+
+
+@pytest.mark.parametrize("comes_up", [True, False])
+def test_native_dialogs_are_used_where_they_work(
+    viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, comes_up: bool
+) -> None:
+    """The system's dialog gives the file; one that ends at once makes way for the chooser."""
+    script, dialog = tmp_path / "smile.toml", tmp_path / "zenity"
+    script.write_text(SCRIPT)
+    answer = f"sleep {2.0 * UNSEEN}; echo {script}" if comes_up else "exit 1"
+    dialog.write_text(f"#!/bin/sh\n{answer}\n")
+    dialog.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    monkeypatch.delenv("XDG_SESSION_DESKTOP", raising=False)  # by which kdialog may be preferred
+    viewer.files = Files()
+    xdotool(viewer, "key", "ctrl+o")
+    assert viewer.files.is_waiting
+    if not comes_up:
+        click(viewer, "file smile.toml", times=2)
+    assert until(viewer, lambda: viewer.session.script.duration == 2.0)
+    assert not viewer.files.is_waiting
