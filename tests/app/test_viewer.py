@@ -252,7 +252,7 @@ def test_unsaved_work_is_asked_for(viewer: Viewer) -> None:
     click(viewer, "question: Back")
     assert not viewer.question.is_open and viewer.session.values["jaw_open"] == 0.5
     xdotool(viewer, "key", "ctrl+q")
-    click(viewer, "question: Go on without saving")
+    click(viewer, "question: Close without saving")
     assert viewer.surface.should_close
     viewer.surface.should_close = viewer.is_leaving = False
 

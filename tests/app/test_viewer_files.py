@@ -120,3 +120,48 @@ def test_native_dialogs_are_used_where_they_work(
         click(viewer, "file smile.toml", times=2)
     assert until(viewer, lambda: viewer.session.script.duration == 2.0)
     assert not viewer.files.is_waiting
+
+
+def test_closing_while_recording_saves_it_first(viewer: Viewer, tmp_path: Path) -> None:
+    """Save, in answer to the question, keeps the recording in a file and then closes."""
+    xdotool(viewer, "key", "ctrl+r")
+    viewer.session.set("jaw_open", 0.6)
+    assert until(viewer, lambda: viewer.session.recorded_seconds > 0.3)
+    viewer.surface.should_close = False
+    xdotool(viewer, "key", "ctrl+q")
+    assert "the recording" in viewer.session.unsaved and not viewer.surface.should_close
+    click(viewer, "question: Save recording ...")
+    xdotool(viewer, "key", "Return")
+    assert "jaw_open" in (tmp_path / "script.toml").read_text()
+    assert viewer.surface.should_close
+    viewer.surface.should_close = viewer.is_leaving = False
+
+
+def test_a_file_opened_while_recording(viewer: Viewer, tmp_path: Path) -> None:
+    """A pose becomes part of the recording; a script asks first, a bad file ends nothing."""
+    script, pose, bad = (tmp_path / name for name in ("smile.toml", "pose.toml", "bad.toml"))
+    script.write_text(SCRIPT)
+    pose.write_text(POSE)
+    bad.write_text("nonsense")
+    xdotool(viewer, "key", "ctrl+r")
+    drop(viewer, pose)
+    assert until(viewer, lambda: viewer.session.recorded_seconds > 0.3)
+    drop(viewer, bad)
+    assert viewer.messages.is_error and viewer.session.is_recording
+    drop(viewer, script)
+    assert viewer.question.is_open and viewer.session.is_recording
+    xdotool(viewer, "key", "Escape")
+    assert not viewer.question.is_open and viewer.session.is_recording
+    drop(viewer, script)
+    click(viewer, "question: Open without saving")
+    assert viewer.session.script.duration == 2.0 and not viewer.session.is_recording
+
+
+def test_what_cannot_be_written_is_told(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """F12 and F10 in a folder that takes no files show an error, and the window goes on."""
+    monkeypatch.chdir("/proc")
+    for key in ("F12", "F10"):
+        viewer.messages.text = ""
+        xdotool(viewer, "key", key)
+        assert until(viewer, lambda: "cannot be written" in viewer.messages.text, 3.0), key
+        assert viewer.film is None

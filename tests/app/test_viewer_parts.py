@@ -83,7 +83,7 @@ def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path
     assert not session.unsaved
     session.neutral()
     run(session)
-    session.load(tmp_path / "take.toml")
+    session.take(session.read(tmp_path / "take.toml"))
     session.toggle_playing()
     while session.is_playing:
         session.advance(STEP)
@@ -130,6 +130,19 @@ def test_undo_and_redo(session: Session) -> None:
     assert session.values["jaw_open"] == 0.6
     session.neutral()
     assert not session.can_redo
+
+
+def test_undo_brings_back_a_pose_that_a_script_moved_away(session: Session) -> None:
+    """A pose made by hand, then the script played: one step back is the pose."""
+    session.set("jaw_open", 0.6)
+    session.note()
+    session.toggle_playing()
+    run(session, 70)
+    assert session.values["jaw_open"] != 0.6
+    session.undo()
+    assert session.values["jaw_open"] == 0.6 and not session.is_playing
+    session.undo()
+    assert not any(session.values.values())
 
 
 def test_history_ends_somewhere() -> None:

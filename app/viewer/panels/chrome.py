@@ -97,50 +97,63 @@ class Question:
 
     def __init__(self) -> None:
         self._then: Callable[[], None] | None = None
-        self._is_new = False
+        self._doing = ""
 
     @property
     def is_open(self) -> bool:
         """Whether an answer is awaited."""
         return self._then is not None
 
-    def ask(self, then: Callable[[], None]) -> None:
-        """Go on with `then` when the user agrees that the work is lost, or has saved it."""
-        self._then, self._is_new = then, True
+    def before(self, viewer: Viewer, doing: str, then: Callable[[], None]) -> None:
+        """Go on with `then` at once, or when what is unsaved was saved or given up.
+
+        doing: the word for it, as "Close".
+        """
+        if viewer.session.unsaved:
+            self._then, self._doing = then, doing
+        else:
+            then()
 
     def draw(self, viewer: Viewer) -> None:
         """Draw the question, if there is one."""
-        then = self._then
+        then, doing = self._then, self._doing
         if then is None:
             return
-        if self._is_new:
+        if not imgui.is_popup_open(QUESTION):
             imgui.open_popup(QUESTION)
-            self._is_new = False
         is_open, _ = imgui.begin_popup_modal(QUESTION, None, imgui.WindowFlags_.always_auto_resize)
         if not is_open:
             return
         imgui.text(f"Not saved: {viewer.session.unsaved or 'nothing any more'}.")
-        choices = {
-            "Save script ...": (lambda: commands.save_script(viewer))
-            if viewer.session.script_is_unsaved
-            else None,
-            "Save pose ...": (lambda: commands.save_pose(viewer))
-            if viewer.session.pose_is_unsaved
-            else None,
-            "Go on without saving": then,
-            "Back": lambda: None,
-        }
-        for label, run in choices.items():
-            if run is None:
+        again = partial(self.before, viewer, doing, then)  # there may be more to save
+        session = viewer.session
+        choices: tuple[tuple[str, bool, Callable[[], None]], ...] = (
+            ("Save recording ...", session.is_recording, partial(_save_recording, viewer, again)),
+            (
+                "Save script ...",
+                session.script_is_unsaved and not session.is_recording,
+                partial(commands.save_script, viewer, again),
+            ),
+            ("Save pose ...", session.has_unsaved_pose, partial(commands.save_pose, viewer, again)),
+            (f"{doing} without saving", True, then),
+            ("Back", True, lambda: None),
+        )
+        for label, is_offered, run in choices:
+            if not is_offered:
                 continue
             is_clicked = imgui.button(label)
             viewer.gui.remember(f"question: {label}")
             imgui.same_line()
-            if is_clicked:
+            if is_clicked or (label == "Back" and imgui.is_key_pressed(imgui.Key.escape)):
                 self._then = None
                 imgui.close_current_popup()
                 run()
         imgui.end_popup()
+
+
+def _save_recording(viewer: Viewer, then: Callable[[], None]) -> None:
+    commands.toggle_recording(viewer)
+    commands.save_script(viewer, then)
 
 
 def draw_help(viewer: Viewer, actions: Sequence[Action]) -> bool:
