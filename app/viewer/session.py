@@ -188,6 +188,13 @@ class Session:
         self._follow_script()
         self.pose_is_unsaved = False
 
+    def seek_key(self, direction: int) -> None:
+        """Pause at the next time at which the script has a key, or with -1 at the one before."""
+        times = key_times(self.script)
+        beyond = [time for time in times if (time - self.time) * direction > 1e-6]
+        self.is_playing = False
+        self.seek((min if direction > 0 else max)(beyond, default=self.time))
+
     def advance(self, seconds: float) -> None:
         """Let time pass: the script moves the controls, the scene follows them."""
         if self.is_playing:
@@ -286,6 +293,12 @@ class Session:
     def has_unsaved_pose(self) -> bool:
         """Whether there is a pose made by hand that no file has."""
         return self.pose_is_unsaved and any(self.values.values())
+
+
+def key_times(script: Script) -> list[float]:
+    """The times at which a script has keys, in order [s]."""
+    channels = (*script.poses.values(), *script.tracks.values())
+    return sorted({key.time for channel in channels for key in channel.keys})
 
 
 def _highest_first(

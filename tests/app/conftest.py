@@ -38,6 +38,7 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     viewer.session = type(viewer.session)(viewer.scene, script)
     viewer.scene.reset()
     viewer.look, viewer.face_panel.search = Look(), ""
+    viewer.settings.folds.clear()
     viewer.files, viewer.messages.text = Files(is_native=False), ""
     viewer.wanted_tab = "Face"
     xdotool(viewer, "key", "f")

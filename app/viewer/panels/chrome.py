@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 MESSAGE_SECONDS = 6.0
 QUESTION = "Unsaved work"
+# Menus by column of the sheet of keys; a name that is no menu stands for the mouse.
+HELP_COLUMNS = (("File", "Edit", "Time"), ("View", "Help"), ("Expression", "Mouse"))
 
 
 def draw_menus(viewer: Viewer, actions: Sequence[Action]) -> float:
@@ -34,7 +36,9 @@ def draw_menus(viewer: Viewer, actions: Sequence[Action]) -> float:
             if action.menu != title:
                 continue
             is_on = action.is_on is not None and action.is_on(viewer)
-            is_clicked, _ = imgui.menu_item(action.label, action.key, is_on, action.can_run(viewer))
+            is_clicked, _ = imgui.menu_item(
+                action.label, action.shown_key, is_on, action.can_run(viewer)
+            )
             viewer.gui.remember(f"menu {title}: {action.label}")
             if is_clicked:
                 viewer.attempt(partial(action.run, viewer))
@@ -157,28 +161,38 @@ def _save_recording(viewer: Viewer, then: Callable[[], None]) -> None:
 
 
 def draw_help(viewer: Viewer, actions: Sequence[Action]) -> bool:
-    """The sheet of keys and mouse; whether it stays open."""
+    """The sheet of keys and mouse, scrolled where the window is small; whether it stays open."""
     display = imgui.get_io().display_size
     imgui.set_next_window_pos(
         imgui.ImVec2(0.5 * display.x, 0.5 * display.y), 0, imgui.ImVec2(0.5, 0.5)
     )
+    imgui.set_next_window_size_constraints(imgui.ImVec2(0.0, 0.0), display)
     flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_collapse
+    flags |= imgui.WindowFlags_.horizontal_scrollbar
     _, stays = imgui.begin("Keys and mouse (F1)", True, flags)
-    if imgui.begin_table("keys", 4, imgui.TableFlags_.sizing_fixed_fit):
-        lines = [(action.key, action.label) for action in actions if action.key]
-        rows = (len(lines) + 1) // 2
-        for index in range(rows):
-            imgui.table_next_row()
-            for key, label in lines[index : index + 1] + lines[index + rows : index + rows + 1]:
-                imgui.table_next_column()
-                imgui.text_colored(colour(viewer.gui.theme.accent), key)
-                imgui.table_next_column()
-                imgui.text(f"{label}    ")
-        imgui.end_table()
-    imgui.separator()
-    for gesture, meaning in MOUSE:
-        imgui.text_colored(colour(viewer.gui.theme.accent), gesture)
-        imgui.same_line(em(12))
-        imgui.text(meaning)
+    keys = [(action.menu, action.shown_key, action.label) for action in actions if action.key]
+    lines = {menu: [line[1:] for line in keys if line[0] == menu] for menu, _, _ in keys}
+    for index, menus in enumerate(HELP_COLUMNS):
+        if index:
+            imgui.same_line(0.0, em(1.5))
+        imgui.begin_group()
+        for menu in menus:
+            imgui.text_colored(colour(viewer.gui.theme.muted), menu)
+            _draw_lines(viewer, menu, lines.get(menu, MOUSE))
+        imgui.end_group()
+    place, size = imgui.get_window_pos(), imgui.get_window_size()
+    viewer.gui.places["help"] = (place.x, place.y, place.x + size.x, place.y + size.y)
     imgui.end()
-    return bool(stays)
+    return bool(stays) and not imgui.is_key_pressed(imgui.Key.escape)
+
+
+def _draw_lines(viewer: Viewer, name: str, lines: Sequence[tuple[str, str]]) -> None:
+    """What to press in one column, what it does in another."""
+    flags = imgui.TableFlags_.sizing_fixed_fit | imgui.TableFlags_.no_host_extend_x
+    if imgui.begin_table(name, 2, flags):
+        for key, meaning in lines:
+            imgui.table_next_column()
+            imgui.text_colored(colour(viewer.gui.theme.accent), key)
+            imgui.table_next_column()
+            imgui.text(meaning)
+        imgui.end_table()

@@ -1,4 +1,4 @@
-"""Words that fit: cut to the room there is, and a hint in full where the mouse rests."""
+"""Words that fit: cut or wrapped to the room there is; a hint in full where the mouse is."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ from ..gui import em
 def shortened(text: str, room: float, *, keeps_end: bool = False) -> str:
     """The text, or as much of its beginning (or end) as fits into the room [window units]."""
     cut = text
-    while len(cut) > 1 and imgui.calc_text_size(cut).x > room:
-        cut = f"..{cut.lstrip('.')[1:]}" if keeps_end else f"{cut.rstrip('.')[:-1]}.."
-    return cut
+    for lost in range(1, len(text) + 1):
+        if imgui.calc_text_size(cut).x <= room:
+            return cut
+        cut = f"..{text[lost:]}" if keeps_end else f"{text[:-lost]}.."
+    return ""
 
 
 def hint(text: str) -> None:
@@ -23,3 +25,11 @@ def hint(text: str) -> None:
         imgui.text_unformatted(text)
         imgui.pop_text_wrap_pos()
         imgui.end_tooltip()
+
+
+def stay_in_line(width: float) -> None:
+    """Go on beside the item drawn last, if the next one has room there."""
+    spacing = imgui.get_style().item_spacing.x
+    right = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
+    if imgui.get_item_rect_max().x + spacing + width <= right:
+        imgui.same_line()
