@@ -2,6 +2,14 @@
 
 from __future__ import annotations
 
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
 import pytest
 
 from app.choices import script_for
@@ -93,3 +101,44 @@ def test_any_size_can_be_drawn(viewer: Viewer) -> None:
         settle(viewer)
     assert until(viewer, lambda: viewer.is_idle)
     assert viewer.surface.read().shape == (SIZE[1], SIZE[0], 3)
+
+
+def test_a_dense_screen_has_everything_twice_as_large(viewer: Viewer) -> None:
+    """At a content scale of 2 words, sliders and lines are doubled, and the mouse still hits."""
+    left, top, right, bottom = viewer.gui.places["Neutral"]
+    result = subprocess.run(
+        [sys.executable, "-m", "tests.app.dense_window"],
+        capture_output=True, text=True, timeout=120, check=False, cwd=Path(__file__).parents[2],
+    )  # fmt: skip
+    assert result.returncode == 0, result.stderr
+    found = json.loads(result.stdout)
+    # Letters are as wide as whole pixels allow, which at twice the size is not quite twice as much.
+    assert found["button"] == pytest.approx([2.0 * (right - left), 2.0 * (bottom - top)], abs=6.0)
+    assert found["line"] == 2.0
+    assert found["frame"] == found["window"] == [1200, 800]
+    assert found["slid"] > 0.3
+    assert found["pulled"] > 4.0
+
+
+def test_a_window_that_was_stopped_goes_on_calmly(tmp_path: Path) -> None:
+    """The whole program halted for three seconds while a script plays: it ends as if it had not."""
+    script = tmp_path / "short.toml"
+    script.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.5\njoy = 1.0\njaw_open = 1.0\n")
+    program = subprocess.Popen(
+        [sys.executable, "-m", "app", "replay", str(script), "--once", "--size", "400x300"],
+        stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2],
+        env={**os.environ, "XDG_CONFIG_HOME": str(tmp_path)},
+    )  # fmt: skip
+    try:
+        subprocess.run(
+            ["xdotool", "search", "--sync", "--onlyvisible", "--name", "Risorius: short"],
+            check=True, capture_output=True, timeout=60,
+        )  # fmt: skip
+        program.send_signal(signal.SIGSTOP)
+        time.sleep(3.0)
+        assert program.poll() is None
+        program.send_signal(signal.SIGCONT)
+        assert program.wait(60.0) == 0
+        assert program.stderr is not None and program.stderr.read() == ""
+    finally:
+        program.kill()
