@@ -117,6 +117,8 @@ class Viewer:
         on_drop(self.surface.handle, self.drop)
         if complaint:
             self.messages.say(complaint, error=True)
+        for _ in range(2):  # panels and tabs find their places before the first picture
+            self._draw_gui(0.0)
 
     def __enter__(self) -> Viewer:
         return self
@@ -161,18 +163,21 @@ class Viewer:
         left, bottom, width, _ = self.viewport
         self.surface.fill((0, 0, left, self.surface.size[1]), self.gui.theme.panel)
         self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
-        with self.gui.frame():
-            self.gui.dress(self.settings.theme, self.settings.zoom)
-            self._draw_panels(elapsed)
-            if not self._is_asking:
-                run_pressed(self, self.actions)
-                self.touch.follow()
+        self._draw_gui(elapsed)
         self.surface.end()
         if is_moving:
             self.quality.note(time.perf_counter() - now)
         if self.film is not None:  # on a fast machine a film is made in real time
             time.sleep(max(1.0 / FRAMES_PER_SECOND - (time.perf_counter() - now), 0.0))
         self._awake = max(self._awake - 1, 0)
+
+    def _draw_gui(self, elapsed: float) -> None:
+        with self.gui.frame():
+            self.gui.dress(self.settings.theme, self.settings.zoom)
+            self._draw_panels(elapsed)
+            if not self._is_asking:
+                run_pressed(self, self.actions)
+                self.touch.follow()
 
     @property
     def is_idle(self) -> bool:

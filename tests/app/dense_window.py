@@ -28,9 +28,11 @@ def main() -> None:
     screen.sync()
     try:
         with Viewer(script_for(None, "face"), SIZE) as viewer:
+            first = viewer.viewport[0]
             viewer.files = Files(is_native=False)
             settle(viewer)
-            print(json.dumps(_findings(viewer)))
+            is_settled = viewer.viewport[0] == first
+            print(json.dumps({**_findings(viewer), "is_settled": is_settled}))
     finally:
         root.delete_property(resources)
         screen.sync()

@@ -115,6 +115,7 @@ def test_a_dense_screen_has_everything_twice_as_large(viewer: Viewer) -> None:
     # Letters are as wide as whole pixels allow, which at twice the size is not quite twice as much.
     assert found["button"] == pytest.approx([2.0 * (right - left), 2.0 * (bottom - top)], abs=6.0)
     assert found["line"] == 2.0
+    assert found["is_settled"]  # the first picture is where all others are
     assert found["frame"] == found["window"] == [1200, 800]
     assert found["slid"] > 0.3
     assert found["pulled"] > 4.0
