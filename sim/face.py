@@ -126,6 +126,11 @@ class Simulation:
         return self._rest
 
     @property
+    def mandible_weight(self) -> npt.NDArray[np.float64]:
+        """How far each vertex goes with the mandible, 0 to 1, shape (V,); given or guessed."""
+        return self._anatomy.skull.mandible_weight
+
+    @property
     def faces(self) -> npt.NDArray[np.int32]:
         """Triangles, shape (F, 3); they never change."""
         return self._anatomy.surface.faces

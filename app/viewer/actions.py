@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 _MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Shift": imgui.Key.mod_shift, "Alt": imgui.Key.mod_alt}
 
+_KEY_NAMES = {"Left": "left_arrow", "Right": "right_arrow"}
+
 
 @dataclass(frozen=True)
 class Action:
@@ -29,12 +31,17 @@ class Action:
     can_run: Callable[[Viewer], bool] = lambda viewer: True
 
     @property
+    def shown_key(self) -> str:
+        """The key as people know it."""
+        return self.key.replace("Equal", "=").replace("Minus", "-")
+
+    @property
     def chord(self) -> int:
         """The key as imgui counts it; 0 for none."""
         if not self.key:
             return 0
         *modifiers, last = self.key.split("+")
-        name = {"Space": "space", "Esc": "escape"}.get(last, last.lower())
+        name = _KEY_NAMES.get(last, last.lower())
         key: Any = getattr(imgui.Key, f"_{name}" if name.isdigit() else name)
         chord = int(key)
         for modifier in modifiers:
@@ -42,7 +49,12 @@ class Action:
         return chord
 
 
-def expression_actions(viewer: Viewer) -> list[Action]:
+def actions_of(viewer: Viewer) -> tuple[Action, ...]:
+    """All that menus and keys do for a window, in the order of its menus."""
+    return (*_FILE, *_EDIT, *_TIME, *_VIEW, *_expressions(viewer), *_HELP)
+
+
+def _expressions(viewer: Viewer) -> list[Action]:
     """Keys 1 to 9 show the first expressions of the scene."""
 
     def show(number: int, name: str) -> Action:
@@ -112,6 +124,9 @@ _TIME = (
     Action("Time", "Play", "Space", commands.toggle_playing, lambda v: v.session.is_playing),
     Action("Time", "Record", "Ctrl+R", commands.toggle_recording, lambda v: v.session.is_recording),
     Action("Time", "Loop", "L", commands.toggle_looping, lambda v: v.session.is_looping),
+    Action("Time", "To the start", "Home", lambda v: v.session.seek(0.0)),
+    Action("Time", "To the key before", "Left", lambda v: v.session.seek_key(-1)),
+    Action("Time", "To the next key", "Right", lambda v: v.session.seek_key(1)),
 )
 _VIEW = (
     _flag("Refine", "R", "is_refined"),
@@ -134,15 +149,16 @@ _VIEW = (
     Action("View", "Smaller words", "Ctrl+Minus", lambda v: commands.enlarge(v, 1.0 / 1.1)),
 )
 _HELP = (Action("Help", "Keys and mouse", "F1", commands.toggle_help, lambda v: v.is_help_open),)
-ACTIONS = (*_FILE, *_EDIT, *_TIME, *_VIEW, *_HELP)
 
 MOUSE = (
-    ("left on the skin", "pull it; a click shows its muscle"),
-    ("left beside it, or right", "orbit"),
+    ("left on the skin", "pull; click: its muscle"),
+    ("left beside, or right", "orbit"),
     ("middle, or Shift", "pan"),
     ("wheel", "zoom"),
-    ("double click a slider", "type a number; right click: back to 0"),
-    ("drop a file", "open a script or a pose"),
+    ("double click a slider", "type a number"),
+    ("right click a slider", "back to 0"),
+    ("drag a panel's edge", "make it wider"),
+    ("drop a file", "open a script or pose"),
 )
 
 

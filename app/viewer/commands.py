@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ import render
 
 from .. import outputs
 from ..cameras import whole_scene
+from ..script_writer import is_pose
 from .settings import save_settings
 from .take import Film, free_name
 
@@ -30,35 +32,43 @@ def open_file(viewer: Viewer) -> None:
 
 def load(viewer: Viewer, path: Path) -> None:
     """Show the script or pose of a file, unless work would be lost: then ask first."""
+    script = viewer.session.read(path)
 
-    def go_on() -> None:
-        viewer.session.load(path)
+    def take() -> None:
+        viewer.session.take(script)
         viewer.messages.say(f"{path.name}: opened")
 
-    if viewer.session.unsaved:
-        viewer.question.ask(go_on)
+    if is_pose(script) and not viewer.session.has_unsaved_pose:
+        take()  # whatever else is unsaved stays
     else:
-        go_on()
+        viewer.question.before(viewer, "Open", take)
 
 
-def save_script(viewer: Viewer) -> None:
-    """Ask for a name and write the script."""
+def _nothing() -> None:
+    """After saving, nothing else."""
+
+
+def save_script(viewer: Viewer, then: Callable[[], None] = _nothing) -> None:
+    """Ask for a name, write the script, and go on with `then`."""
     source = Path(viewer.session.script.source)
-    proposed = str(source) if source.suffix == ".toml" and "assets" not in source.parts else ""
+    is_own = source.suffix == ".toml" and "assets" not in source.parts
 
     def write(path: Path) -> None:
         viewer.session.save_script(path)
         viewer.messages.say(f"{path}: script written")
+        then()
 
-    viewer.files.ask("Save script", write, saving=True, proposed=proposed or "script.toml")
+    proposed = str(source) if is_own else "script.toml"
+    viewer.files.ask("Save script", write, saving=True, proposed=proposed)
 
 
-def save_pose(viewer: Viewer) -> None:
-    """Ask for a name and write the pose."""
+def save_pose(viewer: Viewer, then: Callable[[], None] = _nothing) -> None:
+    """Ask for a name, write the pose, and go on with `then`."""
 
     def write(path: Path) -> None:
         viewer.session.save_pose(path)
         viewer.messages.say(f"{path}: pose written")
+        then()
 
     viewer.files.ask("Save pose", write, saving=True, proposed="pose.toml")
 
@@ -88,10 +98,10 @@ def close_politely(viewer: Viewer) -> None:
         viewer.is_leaving = True
         viewer.surface.should_close = True
 
-    if viewer.session.unsaved and not viewer.is_leaving:
-        viewer.question.ask(close)
-    else:
+    if viewer.is_leaving:
         close()
+    else:
+        viewer.question.before(viewer, "Close", close)
 
 
 # Face and time

@@ -1,21 +1,23 @@
-"""Which file: the system's own dialog where there is one, else a line to type in the window."""
+"""Which file: the system's own dialog where there is one, else a chooser in the window."""
 
 from __future__ import annotations
 
 import shutil
 import sys
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from imgui_bundle import imgui
 from imgui_bundle import portable_file_dialogs as dialogs
 
-from .gui import Gui, em
+from .gui import Gui
+from .panels.chooser import SUFFIX, Chooser
 
 LINUX_HELPERS = ("zenity", "kdialog", "matedialog", "qarma")  # one of which draws native dialogs
-FILTERS = ["Scripts and poses", "*.toml", "All files", "*"]
+FILTERS = ["Scripts and poses", f"*{SUFFIX}", "All files", "*"]
+UNSEEN = 0.5  # [s] a dialog that has ended so soon without an answer never came up
 
 
 @dataclass
@@ -24,9 +26,11 @@ class Request:
 
     title: str
     is_saving: bool
-    proposed: str
+    proposed: Path  # where to begin; for saving with a name
     then: Callable[[Path], None]
     dialog: Any = None  # the native one
+    began: float = 0.0  # [s] when it came up
+    chooser: Chooser | None = None  # in its place
 
 
 class Files:
@@ -35,8 +39,7 @@ class Files:
     def __init__(self, *, is_native: bool | None = None) -> None:
         self._is_native = has_native_dialogs() if is_native is None else is_native
         self._request: Request | None = None
-        self._text = ""
-        self._is_new = False
+        self._folder: Path | None = None  # where the last file was
 
     @property
     def is_waiting(self) -> bool:
@@ -47,58 +50,54 @@ class Files:
         self, title: str, then: Callable[[Path], None], *, saving: bool, proposed: str = ""
     ) -> None:
         """Ask for a file; `then` is called with it in a later frame, or never."""
-        self._request = Request(title, saving, proposed, then)
-        self._text, self._is_new = proposed, True
+        proposed_path = (self._folder or Path.cwd()) / proposed
+        request = Request(title, saving, proposed_path, then)
         if self._is_native:
             kind = dialogs.save_file if saving else dialogs.open_file
-            self._request.dialog = kind(title, proposed, FILTERS)
+            request.dialog = kind(title, str(proposed_path), FILTERS)
+            request.began = time.monotonic()
+        else:
+            _open_chooser(request, proposed_path)
+        self._request = request
 
     def draw(self, gui: Gui) -> None:
-        """Look whether there is an answer, or draw the line in which to type one."""
-        if self._request is None:
+        """Look whether there is an answer, or draw the chooser."""
+        request = self._request
+        if request is None:
             return
-        if self._request.dialog is None:
-            self._draw_line(gui, self._request)
-        elif self._request.dialog.ready(0):
-            result = self._request.dialog.result()
-            path = result if isinstance(result, str) else next(iter(result), "")
-            self._answer(path)
+        if request.chooser is not None:
+            answer = request.chooser.draw(gui)
+            if answer is not None:
+                self._answer(request, answer)
+        elif request.dialog.ready(0):
+            result = request.dialog.result()
+            self._hear(request, result if isinstance(result, str) else next(iter(result), ""))
 
-    def _answer(self, path: str) -> None:
-        request, self._request = self._request, None
-        if request is None or not path.strip():
+    def _hear(self, request: Request, path: str) -> None:
+        """Take the native dialog's answer, or go on in the window where there was no dialog."""
+        if not path and time.monotonic() - request.began < UNSEEN:
+            self._is_native = False
+            _open_chooser(request, request.proposed)
             return
-        target = Path(path.strip().strip("'\"")).expanduser()
-        if request.is_saving and not target.suffix:
-            target = target.with_suffix(".toml")
-        request.then(target)
+        target = Path(path)
+        if path and request.is_saving and not target.suffix:
+            target = target.with_suffix(SUFFIX)
+            if target.exists():  # the dialog has asked about the name without its end
+                _open_chooser(request, target)
+                return
+        self._answer(request, target if path else "")
 
-    def _draw_line(self, gui: Gui, request: Request) -> None:
-        if self._is_new:
-            imgui.open_popup(request.title)
-        imgui.set_next_window_size(imgui.ImVec2(em(32), 0.0))
-        is_open, _ = imgui.begin_popup_modal(
-            request.title, None, imgui.WindowFlags_.always_auto_resize
-        )
-        if not is_open:
-            return
-        if self._is_new:
-            imgui.set_keyboard_focus_here()
-            self._is_new = False
-        imgui.set_next_item_width(-1.0)
-        is_entered, self._text = imgui.input_text(
-            "##path", self._text, imgui.InputTextFlags_.enter_returns_true
-        )
-        gui.remember("path")
-        is_confirmed = imgui.button("Save" if request.is_saving else "Open")
-        gui.remember("path confirmed")
-        imgui.same_line()
-        is_cancelled = imgui.button("Cancel") or imgui.is_key_pressed(imgui.Key.escape)
-        gui.remember("path cancelled")
-        if is_entered or is_confirmed or is_cancelled:
-            imgui.close_current_popup()
-            self._answer("" if is_cancelled else self._text)
-        imgui.end_popup()
+    def _answer(self, request: Request, answer: Path | str) -> None:
+        self._request = None
+        if isinstance(answer, Path):
+            self._folder = answer.parent
+            request.then(answer)
+
+
+def _open_chooser(request: Request, target: Path) -> None:
+    """Ask inside the window."""
+    folder, name = (target.parent, target.name) if request.is_saving else (target, "")
+    request.chooser = Chooser(request.title, folder, name, is_saving=request.is_saving)
 
 
 def has_native_dialogs() -> bool:

@@ -164,10 +164,10 @@ def colour(rgb: tuple[float, float, float], opacity: float = 1.0) -> Any:
 def _dress(style: Any, theme: Theme) -> None:
     """Quiet panels: the face is what is looked at."""
     fresh = imgui.Style()
-    for name in ("window_padding", "frame_padding", "item_inner_spacing", "scrollbar_size",
-                 "grab_min_size", "indent_spacing", "tab_rounding", "popup_rounding",
-                 "cell_padding", "separator_text_padding"):  # fmt: skip
-        setattr(style, name, getattr(fresh, name))
+    for name in dir(fresh):  # every size anew, or scaling would add up
+        size = getattr(fresh, name)
+        if isinstance(size, (float, imgui.ImVec2)) and not name.startswith("font"):
+            setattr(style, name, size)
     (imgui.style_colors_dark if theme.is_dark else imgui.style_colors_light)(style)
     style.window_rounding = 0.0
     style.frame_rounding = style.grab_rounding = 3.0
@@ -187,4 +187,6 @@ def _dress(style: Any, theme: Theme) -> None:
             style.set_color_(index, colour(value))
     for index in (which.button_hovered, which.button_active):
         style.set_color_(index, colour(theme.accent, 0.55))
+    for index in (which.resize_grip, which.resize_grip_hovered, which.resize_grip_active):
+        style.set_color_(index, colour(theme.panel, 0.0))  # an edge tells it, too
     style.set_color_(which.modal_window_dim_bg, colour((0.0, 0.0, 0.0), 0.3))

@@ -67,7 +67,7 @@ def skull_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.OrbitCa
     fixed, turned = (
         bone @ bones[name][:3, :3].T + bones[name][:3, 3] for name in ("cranium", "mandible")
     )
-    weight = head.mandible_weight[:, None]
+    weight = scene.simulation.mandible_weight[:, None]
     bone = fixed + weight * (turned - fixed)
     share = weight[edges].mean(axis=1)
     colours = BONE + (share > 0.5) * (MANDIBLE - BONE)
@@ -93,7 +93,7 @@ OVERLAYS: dict[str, OverlayMaker] = {
     "skull": skull_lines,
     "landmarks": landmark_lines,
 }
-_NEEDS = {"muscles": "simulation", "skull": "head.mandible_weight", "landmarks": "head.landmarks"}
+_NEEDS = {"muscles": "simulation", "skull": "head.bone_depth", "landmarks": "head.landmarks"}
 
 
 def overlays_of(scene: Scene) -> tuple[str, ...]:

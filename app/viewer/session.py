@@ -139,7 +139,7 @@ class Session:
     @property
     def can_undo(self) -> bool:
         """Whether there is something to undo."""
-        return self._history.can_undo
+        return self._history.can_undo or self._document() != self._history.present
 
     @property
     def can_redo(self) -> bool:
@@ -147,8 +147,9 @@ class Session:
         return self._history.can_redo
 
     def undo(self) -> None:
-        """Back to before the last change."""
-        self._restore(self._history.undo())
+        """Back to before the last change, or to it, if the script has moved the controls since."""
+        is_elsewhere = self._document() != self._history.present
+        self._restore(self._history.present if is_elsewhere else self._history.undo())
 
     def redo(self) -> None:
         """Forward again."""
@@ -186,6 +187,13 @@ class Session:
         self.time = min(max(time, 0.0), self.script.duration)
         self._follow_script()
         self.pose_is_unsaved = False
+
+    def seek_key(self, direction: int) -> None:
+        """Pause at the next time at which the script has a key, or with -1 at the one before."""
+        times = key_times(self.script)
+        beyond = [time for time in times if (time - self.time) * direction > 1e-6]
+        self.is_playing = False
+        self.seek((min if direction > 0 else max)(beyond, default=self.time))
 
     def advance(self, seconds: float) -> None:
         """Let time pass: the script moves the controls, the scene follows them."""
@@ -236,8 +244,8 @@ class Session:
 
     # Files
 
-    def load(self, path: Path) -> None:
-        """Take a script to play, or a pose to show, from a file; UserError says what is wrong."""
+    def read(self, path: Path) -> Script:
+        """The script or pose in a file, if it is for this scene; UserError says what is wrong."""
         script = load_script(path)
         if script.scene != self.script.scene:
             raise UserError(
@@ -245,10 +253,15 @@ class Session:
                 f"'{self.script.scene}': `risorius view --scene {script.scene} --script {path}`"
             )
         script.check(self.limits)
+        return script
+
+    def take(self, script: Script) -> None:
+        """A pose to show, which a recording takes in, or a script to play, which ends it."""
         self.is_playing = False
         if is_pose(script):
             self.values = self._all(script.at(0.0))
         else:
+            self._recorder, self._held = None, {}
             self.script, self.script_is_unsaved = script, False
             self.seek(0.0)
         self.pose_is_unsaved = False
@@ -269,15 +282,23 @@ class Session:
     @property
     def unsaved(self) -> str:
         """What would be lost by closing, in words; "" for nothing."""
-        lost = [
-            what
-            for what, is_lost in (
-                ("the pose", self.pose_is_unsaved and any(self.values.values())),
-                ("the recorded script", self.script_is_unsaved),
-            )
-            if is_lost
-        ]
-        return " and ".join(lost) + (", and the recording" if self.is_recording else "")
+        lost = {
+            "the pose": self.has_unsaved_pose,
+            "the recorded script": self.script_is_unsaved,
+            "the recording": self.is_recording,
+        }
+        return " and ".join(what for what, is_lost in lost.items() if is_lost)
+
+    @property
+    def has_unsaved_pose(self) -> bool:
+        """Whether there is a pose made by hand that no file has."""
+        return self.pose_is_unsaved and any(self.values.values())
+
+
+def key_times(script: Script) -> list[float]:
+    """The times at which a script has keys, in order [s]."""
+    channels = (*script.poses.values(), *script.tracks.values())
+    return sorted({key.time for channel in channels for key in channel.keys})
 
 
 def _highest_first(

@@ -44,6 +44,8 @@ class Settings:
     zoom: float = 1.0  # of all words and sliders
     is_linked: bool = True  # sliders of both sides
     tab: str = "Face"
+    panel_width: float = 22.5  # [letters' heights]
+    folds: dict[str, bool] = field(default_factory=dict)  # which headings are open, by title
     cameras: dict[str, list[float]] = field(default_factory=dict)  # by scene
     look: Look = field(default_factory=Look)
 
@@ -88,6 +90,7 @@ def load_settings(path: Path) -> tuple[Settings, str]:
         look = _like(Look(), stored.pop("look", {}))
         settings = _like(Settings(), stored)
         settings.look = look
+        settings.folds = {title: bool(is_open) for title, is_open in settings.folds.items()}
         if settings.size is not None:
             width, height = settings.size
             settings.size = int(width), int(height)

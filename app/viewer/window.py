@@ -27,7 +27,7 @@ from ..pipeline import Viewport
 from ..scenes import build_scene
 from ..script import Script
 from . import commands
-from .actions import ACTIONS, expression_actions, run_pressed
+from .actions import actions_of, run_pressed
 from .clock import STEP, Clock
 from .files import Files
 from .gui import THEMES, Gui, em, on_drop, poll_events, wait_for_event
@@ -43,7 +43,8 @@ from .stage import SceneView, Stage, checked
 from .take import FRAMES_PER_SECOND, Film
 from .touch import Touch
 
-PANEL_WIDTH = 22.5  # [em]
+PANEL_WIDTHS = 12.0, 60.0  # [em] between which the left panel may be drawn wider
+PANEL_SHARE = 0.45  # of the window, at most
 STILL = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
 CALM = 0.15  # [s] without change before physics rests and the scene is drawn in full
 IDLE_WAIT = 2.0  # [s] between two frames while nothing happens
@@ -98,7 +99,7 @@ class Viewer:
         self.files, self.messages, self.question = Files(), Messages(), Question()
         self.face_panel, self.mechanism_panel = FacePanel(self), MechanismPanel(self)
         self.timeline = Timeline(self)
-        self.actions = (*ACTIONS, *expression_actions(self))
+        self.actions = actions_of(self)
         self.film: Film | None = None
         self.is_help_open = self.is_leaving = False
         self.frames_per_second = 0.0
@@ -116,6 +117,8 @@ class Viewer:
         on_drop(self.surface.handle, self.drop)
         if complaint:
             self.messages.say(complaint, error=True)
+        for _ in range(2):  # panels and tabs find their places before the first picture
+            self._draw_gui(0.0)
 
     def __enter__(self) -> Viewer:
         return self
@@ -160,18 +163,21 @@ class Viewer:
         left, bottom, width, _ = self.viewport
         self.surface.fill((0, 0, left, self.surface.size[1]), self.gui.theme.panel)
         self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
-        with self.gui.frame():
-            self.gui.dress(self.settings.theme, self.settings.zoom)
-            self._draw_panels(elapsed)
-            if not self._is_asking:
-                run_pressed(self, self.actions)
-                self.touch.follow()
+        self._draw_gui(elapsed)
         self.surface.end()
         if is_moving:
             self.quality.note(time.perf_counter() - now)
         if self.film is not None:  # on a fast machine a film is made in real time
             time.sleep(max(1.0 / FRAMES_PER_SECOND - (time.perf_counter() - now), 0.0))
         self._awake = max(self._awake - 1, 0)
+
+    def _draw_gui(self, elapsed: float) -> None:
+        with self.gui.frame():
+            self.gui.dress(self.settings.theme, self.settings.zoom)
+            self._draw_panels(elapsed)
+            if not self._is_asking:
+                run_pressed(self, self.actions)
+                self.touch.follow()
 
     @property
     def is_idle(self) -> bool:
@@ -275,8 +281,10 @@ class Viewer:
     def _draw_panels(self, elapsed: float) -> None:
         display = imgui.get_io().display_size
         top = draw_menus(self, self.actions)
-        left, strip = round(em(PANEL_WIDTH)), round(self.timeline.height())
-        with _fixed("Controls", 0.0, top, left, display.y - top):
+        left, strip = self._panel_width(display.x), round(self.timeline.height())
+        with _fixed("Controls", 0.0, top, left, display.y - top, may_resize=True):
+            if round(imgui.get_window_width()) != left:  # its edge is being dragged
+                self.settings.panel_width = imgui.get_window_width() / em()
             self._draw_tabs()
         with _fixed("Time", left, display.y - strip, display.x - left, strip):
             self.timeline.draw()
@@ -293,6 +301,12 @@ class Viewer:
         self.attempt(lambda: self.question.draw(self))
         if self.is_help_open:
             self.is_help_open = draw_help(self, self.actions)
+
+    def _panel_width(self, window_width: float) -> int:
+        """Of the left panel [window units]: as it was dragged, as far as there is room."""
+        least, most = PANEL_WIDTHS
+        wanted = min(max(self.settings.panel_width, least), most)
+        return round(min(em(wanted), PANEL_SHARE * window_width))
 
     def _draw_tabs(self) -> None:
         self.face_panel.pointed = ()
@@ -333,11 +347,15 @@ class Viewer:
 
 
 @contextlib.contextmanager
-def _fixed(name: str, left: float, top: float, width: float, height: float) -> Iterator[None]:
-    """A panel that stays where it is."""
+def _fixed(
+    name: str, left: float, top: float, width: float, height: float, *, may_resize: bool = False
+) -> Iterator[None]:
+    """A panel that stays where it is; its edges may be dragged if it may be resized."""
     imgui.set_next_window_pos(imgui.ImVec2(left, top))
     imgui.set_next_window_size(imgui.ImVec2(max(width, 1.0), max(height, 1.0)))
-    flags = imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move
+    flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_scrollbar
+    flags |= imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_move
+    flags |= 0 if may_resize else imgui.WindowFlags_.no_resize
     flags |= imgui.WindowFlags_.no_background  # which the surface was filled with
     imgui.begin(name, None, flags | imgui.WindowFlags_.no_bring_to_front_on_focus)
     try:

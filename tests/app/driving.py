@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import subprocess
 import time
 from collections.abc import Callable
 
 import numpy as np
+import pytest
 
 from app.viewer import Viewer
+
+NEEDS_A_SCREEN = [
+    pytest.mark.window,
+    pytest.mark.skipif(
+        not os.environ.get("DISPLAY") or shutil.which("xdotool") is None,
+        reason="needs a display and xdotool; `make test` brings both",
+    ),
+]
+SIZE = (900, 600)  # of the window that tests share
 
 
 def settle(viewer: Viewer, frames: int = 4) -> None:

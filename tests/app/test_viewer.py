@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from copy import deepcopy
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from imgui_bundle import imgui
 from PIL import Image
 
-from app.choices import script_for
 from app.viewer import Viewer
 from app.viewer.clock import MOST_STEPS
-from app.viewer.files import Files
-from app.viewer.settings import Look, load_settings
+from app.viewer.settings import load_settings
 from app.viewer.window import FULL
 
 from .driving import (
+    NEEDS_A_SCREEN,
+    SIZE,
     clear_search,
     click,
     drag,
@@ -39,42 +35,7 @@ from .driving import (
     xdotool,
 )
 
-pytestmark = [
-    pytest.mark.window,
-    pytest.mark.skipif(
-        not os.environ.get("DISPLAY") or shutil.which("xdotool") is None,
-        reason="needs a display and xdotool; `make test` brings both",
-    ),
-]
-
-SIZE = (900, 600)
-
-
-@pytest.fixture(scope="module")
-def viewer() -> Iterator[Viewer]:
-    """One window for all tests of this file."""
-    script = replace(script_for(None, "face"), duration=0.5)
-    with Viewer(script, SIZE) as opened:
-        opened.files = Files(is_native=False)
-        io = imgui.get_io()  # slower than people, for a machine that is busy [s]
-        io.mouse_single_click_delay, io.mouse_double_click_time = 1.5, 1.0
-        settle(opened)
-        yield opened
-
-
-@pytest.fixture(autouse=True)
-def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each test starts from the neutral face with refinement on, in a folder of its own."""
-    monkeypatch.chdir(tmp_path)
-    xdotool(viewer, "mousemove", 2, 2)
-    xdotool(viewer, "key", "Escape")
-    script = replace(script_for(None, "face"), duration=0.5)
-    viewer.session = type(viewer.session)(viewer.scene, script)
-    viewer.scene.reset()
-    viewer.look, viewer.face_panel.search = Look(), ""
-    viewer.messages.text = ""
-    viewer.wanted_tab = "Face"
-    xdotool(viewer, "key", "f")
+pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
 
 def test_a_slider_moves_the_skin_and_undo_moves_it_back(viewer: Viewer) -> None:
@@ -258,7 +219,7 @@ def test_recording_survives_a_file(viewer: Viewer, tmp_path: Path) -> None:
     xdotool(viewer, "key", "ctrl+o")
     write(viewer, path.name)
     click(viewer, "path confirmed")
-    assert viewer.session.script.source == path.name
+    assert viewer.session.script.source == str(path)
     xdotool(viewer, "key", "space")
     assert until(viewer, lambda: not viewer.session.is_playing)
     assert np.abs(viewer.scene.positions - wanted).max() < 0.05
@@ -291,7 +252,7 @@ def test_unsaved_work_is_asked_for(viewer: Viewer) -> None:
     click(viewer, "question: Back")
     assert not viewer.question.is_open and viewer.session.values["jaw_open"] == 0.5
     xdotool(viewer, "key", "ctrl+q")
-    click(viewer, "question: Go on without saving")
+    click(viewer, "question: Close without saving")
     assert viewer.surface.should_close
     viewer.surface.should_close = viewer.is_leaving = False
 

@@ -16,12 +16,15 @@ from app.script_writer import is_pose, pose_script, save_script, script_text
 from app.viewer import picking
 from app.viewer.clock import MOST_STEPS, STEP, Clock
 from app.viewer.history import History
+from app.viewer.overlays import OVERLAYS, overlays_of
 from app.viewer.quality import FULL, LEVELS, PATIENCE, Quality
 from app.viewer.recorder import TOLERANCE, Recorder
 from app.viewer.rows import found, mirrored, rows_of
 from app.viewer.session import Session
 from app.viewer.settings import Look, Settings, load_settings, save_settings
 from app.viewer.tour import STOPS
+from assets.fitting import fit_head
+from tests.heads import stranger
 
 import render  # isort: skip - after the viewer, see app/viewer/gui.py
 
@@ -83,7 +86,7 @@ def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path
     assert not session.unsaved
     session.neutral()
     run(session)
-    session.load(tmp_path / "take.toml")
+    session.take(session.read(tmp_path / "take.toml"))
     session.toggle_playing()
     while session.is_playing:
         session.advance(STEP)
@@ -130,6 +133,19 @@ def test_undo_and_redo(session: Session) -> None:
     assert session.values["jaw_open"] == 0.6
     session.neutral()
     assert not session.can_redo
+
+
+def test_undo_brings_back_a_pose_that_a_script_moved_away(session: Session) -> None:
+    """A pose made by hand, then the script played: one step back is the pose."""
+    session.set("jaw_open", 0.6)
+    session.note()
+    session.toggle_playing()
+    run(session, 70)
+    assert session.values["jaw_open"] != 0.6
+    session.undo()
+    assert session.values["jaw_open"] == 0.6 and not session.is_playing
+    session.undo()
+    assert not any(session.values.values())
 
 
 def test_history_ends_somewhere() -> None:
@@ -266,3 +282,16 @@ def test_the_page_shows_every_picture_of_the_tour() -> None:
         picture = Path("docs/pictures") / f"{name}.png"
         assert f"pictures/{name}.png" in page
         assert 10_000 < picture.stat().st_size < 400_000
+
+
+def test_a_head_that_somebody_brings_has_every_overlay(tmp_path: Path) -> None:
+    """The skull of a fitted head lies under its skin, and the mandible goes down with the jaw."""
+    fitted = FaceScene(fit_head(*stranger().write(tmp_path)))
+    assert overlays_of(fitted) == ("muscles", "springs", "skull", "landmarks")
+    edges, camera = fitted.faces[:, :2], render.OrbitCamera.framing(fitted.rest_positions)
+    rest = np.array(OVERLAYS["skull"](fitted, edges, camera).polylines)
+    assert np.isfinite(rest).all()
+    fitted.pose({"jaw_open": 1.0})
+    fitted.step(1.0)
+    lower = np.array(OVERLAYS["skull"](fitted, edges, camera).polylines)[..., 1] - rest[..., 1]
+    assert lower.min() < -15.0 and abs(np.median(lower)) < 1.0

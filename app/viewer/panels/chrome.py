@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 MESSAGE_SECONDS = 6.0
 QUESTION = "Unsaved work"
+# Menus by column of the sheet of keys; a name that is no menu stands for the mouse.
+HELP_COLUMNS = (("File", "Edit", "Time"), ("View", "Help"), ("Expression", "Mouse"))
 
 
 def draw_menus(viewer: Viewer, actions: Sequence[Action]) -> float:
@@ -34,7 +36,9 @@ def draw_menus(viewer: Viewer, actions: Sequence[Action]) -> float:
             if action.menu != title:
                 continue
             is_on = action.is_on is not None and action.is_on(viewer)
-            is_clicked, _ = imgui.menu_item(action.label, action.key, is_on, action.can_run(viewer))
+            is_clicked, _ = imgui.menu_item(
+                action.label, action.shown_key, is_on, action.can_run(viewer)
+            )
             viewer.gui.remember(f"menu {title}: {action.label}")
             if is_clicked:
                 viewer.attempt(partial(action.run, viewer))
@@ -97,75 +101,98 @@ class Question:
 
     def __init__(self) -> None:
         self._then: Callable[[], None] | None = None
-        self._is_new = False
+        self._doing = ""
 
     @property
     def is_open(self) -> bool:
         """Whether an answer is awaited."""
         return self._then is not None
 
-    def ask(self, then: Callable[[], None]) -> None:
-        """Go on with `then` when the user agrees that the work is lost, or has saved it."""
-        self._then, self._is_new = then, True
+    def before(self, viewer: Viewer, doing: str, then: Callable[[], None]) -> None:
+        """Go on with `then` at once, or when what is unsaved was saved or given up.
+
+        doing: the word for it, as "Close".
+        """
+        if viewer.session.unsaved:
+            self._then, self._doing = then, doing
+        else:
+            then()
 
     def draw(self, viewer: Viewer) -> None:
         """Draw the question, if there is one."""
-        then = self._then
+        then, doing = self._then, self._doing
         if then is None:
             return
-        if self._is_new:
+        if not imgui.is_popup_open(QUESTION):
             imgui.open_popup(QUESTION)
-            self._is_new = False
         is_open, _ = imgui.begin_popup_modal(QUESTION, None, imgui.WindowFlags_.always_auto_resize)
         if not is_open:
             return
         imgui.text(f"Not saved: {viewer.session.unsaved or 'nothing any more'}.")
-        choices = {
-            "Save script ...": (lambda: commands.save_script(viewer))
-            if viewer.session.script_is_unsaved
-            else None,
-            "Save pose ...": (lambda: commands.save_pose(viewer))
-            if viewer.session.pose_is_unsaved
-            else None,
-            "Go on without saving": then,
-            "Back": lambda: None,
-        }
-        for label, run in choices.items():
-            if run is None:
+        again = partial(self.before, viewer, doing, then)  # there may be more to save
+        session = viewer.session
+        choices: tuple[tuple[str, bool, Callable[[], None]], ...] = (
+            ("Save recording ...", session.is_recording, partial(_save_recording, viewer, again)),
+            (
+                "Save script ...",
+                session.script_is_unsaved and not session.is_recording,
+                partial(commands.save_script, viewer, again),
+            ),
+            ("Save pose ...", session.has_unsaved_pose, partial(commands.save_pose, viewer, again)),
+            (f"{doing} without saving", True, then),
+            ("Back", True, lambda: None),
+        )
+        for label, is_offered, run in choices:
+            if not is_offered:
                 continue
             is_clicked = imgui.button(label)
             viewer.gui.remember(f"question: {label}")
             imgui.same_line()
-            if is_clicked:
+            if is_clicked or (label == "Back" and imgui.is_key_pressed(imgui.Key.escape)):
                 self._then = None
                 imgui.close_current_popup()
                 run()
         imgui.end_popup()
 
 
+def _save_recording(viewer: Viewer, then: Callable[[], None]) -> None:
+    commands.toggle_recording(viewer)
+    commands.save_script(viewer, then)
+
+
 def draw_help(viewer: Viewer, actions: Sequence[Action]) -> bool:
-    """The sheet of keys and mouse; whether it stays open."""
+    """The sheet of keys and mouse, scrolled where the window is small; whether it stays open."""
     display = imgui.get_io().display_size
     imgui.set_next_window_pos(
         imgui.ImVec2(0.5 * display.x, 0.5 * display.y), 0, imgui.ImVec2(0.5, 0.5)
     )
+    imgui.set_next_window_size_constraints(imgui.ImVec2(0.0, 0.0), display)
     flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_collapse
+    flags |= imgui.WindowFlags_.horizontal_scrollbar
     _, stays = imgui.begin("Keys and mouse (F1)", True, flags)
-    if imgui.begin_table("keys", 4, imgui.TableFlags_.sizing_fixed_fit):
-        lines = [(action.key, action.label) for action in actions if action.key]
-        rows = (len(lines) + 1) // 2
-        for index in range(rows):
-            imgui.table_next_row()
-            for key, label in lines[index : index + 1] + lines[index + rows : index + rows + 1]:
-                imgui.table_next_column()
-                imgui.text_colored(colour(viewer.gui.theme.accent), key)
-                imgui.table_next_column()
-                imgui.text(f"{label}    ")
-        imgui.end_table()
-    imgui.separator()
-    for gesture, meaning in MOUSE:
-        imgui.text_colored(colour(viewer.gui.theme.accent), gesture)
-        imgui.same_line(em(12))
-        imgui.text(meaning)
+    keys = [(action.menu, action.shown_key, action.label) for action in actions if action.key]
+    lines = {menu: [line[1:] for line in keys if line[0] == menu] for menu, _, _ in keys}
+    for index, menus in enumerate(HELP_COLUMNS):
+        if index:
+            imgui.same_line(0.0, em(1.5))
+        imgui.begin_group()
+        for menu in menus:
+            imgui.text_colored(colour(viewer.gui.theme.muted), menu)
+            _draw_lines(viewer, menu, lines.get(menu, MOUSE))
+        imgui.end_group()
+    place, size = imgui.get_window_pos(), imgui.get_window_size()
+    viewer.gui.places["help"] = (place.x, place.y, place.x + size.x, place.y + size.y)
     imgui.end()
-    return bool(stays)
+    return bool(stays) and not imgui.is_key_pressed(imgui.Key.escape)
+
+
+def _draw_lines(viewer: Viewer, name: str, lines: Sequence[tuple[str, str]]) -> None:
+    """What to press in one column, what it does in another."""
+    flags = imgui.TableFlags_.sizing_fixed_fit | imgui.TableFlags_.no_host_extend_x
+    if imgui.begin_table(name, 2, flags):
+        for key, meaning in lines:
+            imgui.table_next_column()
+            imgui.text_colored(colour(viewer.gui.theme.accent), key)
+            imgui.table_next_column()
+            imgui.text(meaning)
+        imgui.end_table()

@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from .. import commands
-from ..gui import colour, em
+from ..gui import colour
 from ..rows import Row, found, readable, rows_of
+from .folds import fold
 from .sliders import Sliders
+from .words import hint, shortened, stay_in_line
 
 if TYPE_CHECKING:
     from ..window import Viewer
 
-LABEL_WIDTH = 10.2  # [em]
+LABEL_SHARE = 0.46  # of a row
 FLASH = 90  # frames for which a selected slider is marked
-FIRST_OPEN = "Expressions"
 
 
 class FacePanel:
@@ -48,17 +49,21 @@ class FacePanel:
 
     def _draw_buttons(self) -> None:
         viewer, session, gui = self._viewer, self._viewer.session, self._viewer.gui
-        for label, run in (
-            ("Neutral", session.neutral),
-            ("Mirror", session.mirror),
-            ("Random", lambda: commands.randomise(viewer)),
+        for label, meaning, run in (
+            ("Neutral", "relax all (N)", session.neutral),
+            ("Mirror", "exchange left and right (M)", session.mirror),
+            ("Random", "a face by chance (X)", lambda: commands.randomise(viewer)),
         ):
+            if label != "Neutral":
+                stay_in_line(_button_width(label))
             if imgui.button(label):
                 run()
             gui.remember(label)
-            imgui.same_line()
+            hint(meaning)
+        stay_in_line(imgui.get_frame_height() + imgui.calc_text_size("  Link sides").x)
         is_clicked, is_linked = imgui.checkbox("Link sides", viewer.settings.is_linked)
         gui.remember("Link sides")
+        hint("left and right move together")
         if is_clicked:
             viewer.settings.is_linked = is_linked
         imgui.set_next_item_width(-1.0)
@@ -75,15 +80,11 @@ class FacePanel:
             rows = found(rows, self.search, group=title, actions=actions)
             if not rows:
                 return
-            imgui.set_next_item_open(True)
         elif self._selected in names:
-            imgui.set_next_item_open(True)
+            viewer.settings.folds[title] = True
         active = sum(1 for name in names if session.values[name])
         label = f"{title}  ({active})" if active else title
-        flags = imgui.TreeNodeFlags_.default_open if title == FIRST_OPEN else 0
-        is_open = imgui.collapsing_header(f"{label}###{title}", flags)
-        viewer.gui.remember(title)
-        if is_open:
+        if fold(viewer, title, label, must_open=bool(self.search)):
             if names and all(name in viewer.scene.expressions for name in names):
                 self._draw_expression_buttons(names)
             for row in rows:
@@ -92,13 +93,10 @@ class FacePanel:
     def _draw_expression_buttons(self, names: Sequence[str]) -> None:
         """A button for each: the whole expression at once."""
         session = self._viewer.session
-        spacing = imgui.get_style().item_spacing.x
-        right = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
         for number, name in enumerate(names, start=1):
             label = f"{number} {readable(name)}" if number <= 9 else readable(name)
-            width = imgui.calc_text_size(label).x + 2.0 * imgui.get_style().frame_padding.x
-            if number > 1 and imgui.get_item_rect_max().x + spacing + width < right:
-                imgui.same_line()
+            if number > 1:
+                stay_in_line(_button_width(label))
             is_shown = session.shown == name
             if is_shown:
                 imgui.push_style_color(
@@ -120,13 +118,13 @@ class FacePanel:
             imgui.set_scroll_here_y(0.4)
         is_marked = any(values) or (self._flash and is_selected)
         imgui.align_text_to_frame_padding()
-        theme = viewer.gui.theme
-        imgui.text_colored(colour(theme.accent if is_marked else theme.muted), self._title(row))
+        theme, spacing = viewer.gui.theme, imgui.get_style().item_spacing.x
+        label_width = LABEL_SHARE * imgui.get_content_region_avail().x
+        ink = colour(theme.accent if is_marked else theme.muted)
+        imgui.text_colored(ink, shortened(self._title(row), label_width - spacing))
         is_pointed = imgui.is_item_hovered()
-        if is_pointed:
-            self._explain(row)
-        imgui.same_line(em(LABEL_WIDTH))
-        spacing = imgui.get_style().item_spacing.x
+        hint(self._explanation(row))
+        imgui.same_line(label_width)
         room = imgui.get_content_region_avail().x - (len(shown) - 1) * spacing
         for index, name in enumerate(shown):
             if index:
@@ -148,14 +146,15 @@ class FacePanel:
         """The name, and where that is a code (an action unit's) what it does."""
         scene, name = self._viewer.scene, row.names[0]
         is_code = name not in self._viewer.session.muscles and name not in scene.expressions
-        title = f"{row.label} {scene.actions.get(name, '')}" if is_code else row.label
-        room, cut = em(LABEL_WIDTH - 0.4), title
-        while len(cut) > 1 and imgui.calc_text_size(cut).x > room:
-            cut = f"{cut.rstrip('.')[:-1]}.."
-        return cut
+        return f"{row.label} {scene.actions.get(name, '')}".rstrip() if is_code else row.label
 
-    def _explain(self, row: Row) -> None:
-        """What the control does, where the scene says it in words."""
+    def _explanation(self, row: Row) -> str:
+        """The name in full, what it does where the scene says it, and whose slider is whose."""
         action = self._viewer.scene.actions.get(row.names[0], "")
-        sides = ": right, left" if len(row.names) > 1 else ""
-        imgui.set_tooltip(action or f"{row.label}{sides}")
+        sides = "right | left" if len(row.names) > 1 else ""
+        return "\n".join(line for line in (row.label, action, sides) if line)
+
+
+def _button_width(label: str) -> float:
+    """Of a button that reads so [window units]."""
+    return float(imgui.calc_text_size(label).x + 2.0 * imgui.get_style().frame_padding.x)

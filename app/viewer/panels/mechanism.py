@@ -18,7 +18,9 @@ from ..colours import COLOURS
 from ..gui import colour, em
 from ..overlays import overlays_of
 from ..stage import COMPARISONS, SKINS, STAGES
+from .folds import fold
 from .sliders import Sliders
+from .words import hint
 
 if TYPE_CHECKING:
     from ..window import Viewer
@@ -28,6 +30,29 @@ CHOICES: dict[str, Sequence[str]] = {
     "scheme": choices.NAMES,
     "criterion": ("normal", *criteria.CRITERIA),
 }
+# What the mouse is told that rests on a label or on what it is the label of.
+HINTS = {
+    "Refine": "draw the refined mesh, or the simulated one as it is (R)",
+    "Refiner": "any that is registered",
+    "Compare": "the simulated mesh beside the refined one: wipe (D), side by side (Shift+D)",
+    "threshold once": "an edge splits once where the normals at its ends have turned apart by more "
+    "than this since rest (drop of their dot product)",
+    "threshold twice": "the same for splitting twice",
+    "criterion": "by what it is decided which edges split",
+    "scheme": "where the new points go",
+    "blend": "new points grow out of the edge, and nothing pops",
+    "coherent": "an edge keeps its split a little longer, and nothing flickers",
+    "levels": "how often all triangles are split",
+    "Shading": "S goes through them",
+    "Colours": "of the simulated mesh's triangles, whatever they are refined to (C: splits)",
+    "Skin": "T switches the texture",
+    "Wireframe": "the edges of all triangles that are drawn (W)",
+    "Muscles": "their fibres, redder the more they contract (U)",
+    "Springs": "the skin's: stretched red, compressed blue",
+    "Skull": "the bone under the skin; the mandible moves with the jaw",
+    "Landmarks": "the 68 points that the muscles are placed by",
+}
+LABEL_SHARE = 0.45  # of a row
 HIGHEST = 0.25  # of a slider for a number that is no whole one, as far as it is not more already
 
 
@@ -49,7 +74,8 @@ class MechanismPanel:
 
     def _draw_refinement(self) -> None:
         viewer, look = self._viewer, self._viewer.look
-        imgui.separator_text("Refinement")
+        if not fold(viewer, "Refinement"):
+            return
         self._check("Refine", look.is_refined, lambda: commands.toggle(viewer, "is_refined"))
         names = [name for name in refine.available() if name != "none"]
         self._choose("Refiner", "refiner", names)
@@ -88,8 +114,11 @@ class MechanismPanel:
             most = max(HIGHEST, 2.0 * default)
             imgui.align_text_to_frame_padding()
             imgui.text(label)
-            imgui.same_line(em(10.2))
-            slid = self._sliders.draw(name, float(value), (0.0, most), width=-1.0, neutral=default)
+            hint(HINTS.get(label, ""))
+            imgui.same_line(_label_width())
+            slid = self._sliders.draw(
+                name, float(value), (0.0, most), width=-1.0, neutral=default, digits=3
+            )
             if slid.is_changed:
                 stored[name] = slid.value
                 _keep_in_order(stored, name, slid.value, scenes)
@@ -105,7 +134,8 @@ class MechanismPanel:
 
     def _draw_look(self) -> None:
         viewer, look = self._viewer, self._viewer.look
-        imgui.separator_text("Look")
+        if not fold(viewer, "Look"):
+            return
         self._choose("Shading", "shading", [shading.value for shading in render.Shading])
         self._choose("Colours", "colours", tuple(COLOURS))
         if COLOURS[look.colours].legend:
@@ -116,10 +146,11 @@ class MechanismPanel:
     def _draw_overlays(self) -> None:
         viewer = self._viewer
         names = overlays_of(viewer.scene)
-        imgui.separator_text("Overlays")
+        if not fold(viewer, "Overlays"):
+            return
         for index, name in enumerate(names):
             if index % 2:
-                imgui.same_line(em(10.2))
+                imgui.same_line(_label_width())
             is_on = name in viewer.look.overlays
             self._check(
                 name.capitalize(), is_on, lambda name=name: commands.toggle_overlay(viewer, name)
@@ -127,9 +158,14 @@ class MechanismPanel:
 
     def _draw_times(self) -> None:
         """A scrolling plot for each stage of the paper's Figure 1, and the median of a second."""
-        stage = self._viewer.stage
-        imgui.separator_text(f"Milliseconds, {self._viewer.frames_per_second:.0f} frames a second")
-        for name in STAGES:
+        stage, rate = self._viewer.stage, self._viewer.frames_per_second
+        if not fold(self._viewer, "Milliseconds", f"Milliseconds, {rate:.0f} frames a second"):
+            return
+        spacing = imgui.get_style().item_spacing.x
+        width = 0.5 * (imgui.get_content_region_avail().x - spacing)
+        for index, name in enumerate(STAGES):
+            if index % 2:
+                imgui.same_line()
             times = np.array(stage.times[name], np.float32)
             recent = times[-60:][times[-60:] > 0.0]
             median = float(np.median(recent)) if len(recent) else 0.0
@@ -139,13 +175,14 @@ class MechanismPanel:
                 overlay_text=f"{name}  {median:.2f}",
                 scale_min=0.0,
                 scale_max=max(float(times.max()), 0.1) * 1.3,
-                graph_size=imgui.ImVec2(imgui.get_content_region_avail().x, em(1.9)),
+                graph_size=imgui.ImVec2(width, em(2.2)),
             )
         self._viewer.gui.remember("plot")
 
     def _check(self, label: str, is_on: bool, switch: Any) -> None:
         is_clicked, _ = imgui.checkbox(label, is_on)
         self._viewer.gui.remember(label)
+        hint(HINTS.get(label, ""))
         if is_clicked:
             switch()
 
@@ -174,7 +211,8 @@ class MechanismPanel:
     ) -> None:
         imgui.align_text_to_frame_padding()
         imgui.text(label)
-        imgui.same_line(em(10.2))
+        hint(HINTS.get(label, ""))
+        imgui.same_line(_label_width())
         imgui.set_next_item_width(-1.0)
         is_open = imgui.begin_combo(f"##{label}", present)
         self._viewer.gui.remember(label)
@@ -186,6 +224,11 @@ class MechanismPanel:
             if is_clicked:
                 take(choice)
         imgui.end_combo()
+
+
+def _label_width() -> float:
+    """Where the second column begins, from the left edge of the panel."""
+    return float(LABEL_SHARE * imgui.get_window_width())
 
 
 def _put(stored: dict[str, Any], name: str, value: Any) -> None:

@@ -34,13 +34,14 @@ class Sliders:
         *,
         width: float,
         neutral: float = 0.0,
+        digits: int = 2,
     ) -> Slid:
         """Draw the slider `name`; a double or Ctrl click types a number, a right click resets."""
         imgui.set_next_item_width(width)
         if self._typed == name:
             return self._draw_line(name, value, limits)
         low, high = limits
-        changed, now = imgui.slider_float(f"##{name}", value, low, high, "%.2f")
+        changed, now = imgui.slider_float(f"##{name}", value, low, high, f"%.{digits}f")
         self._gui.remember(name)
         is_done = imgui.is_item_deactivated_after_edit()
         is_hovered = imgui.is_item_hovered()

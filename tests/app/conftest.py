@@ -1,0 +1,44 @@
+"""The window that the tests of a file share, and how each of them finds it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from imgui_bundle import imgui
+
+from app.choices import script_for
+from app.viewer import Viewer
+from app.viewer.files import Files
+from app.viewer.settings import Look
+
+from .driving import SIZE, settle, xdotool
+
+
+@pytest.fixture(scope="module")
+def viewer() -> Iterator[Viewer]:
+    """One window for all tests of a file."""
+    script = replace(script_for(None, "face"), duration=0.5)
+    with Viewer(script, SIZE) as opened:
+        io = imgui.get_io()  # slower than people, for a machine that is busy [s]
+        io.mouse_single_click_delay, io.mouse_double_click_time = 1.5, 1.0
+        settle(opened)
+        yield opened
+
+
+@pytest.fixture
+def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Start from the neutral face with refinement on, in a folder of the test's own."""
+    monkeypatch.chdir(tmp_path)
+    xdotool(viewer, "mousemove", 2, 2)
+    xdotool(viewer, "key", "Escape")
+    script = replace(script_for(None, "face"), duration=0.5)
+    viewer.session = type(viewer.session)(viewer.scene, script)
+    viewer.scene.reset()
+    viewer.look, viewer.face_panel.search = Look(), ""
+    viewer.settings.folds.clear()
+    viewer.files, viewer.messages.text = Files(is_native=False), ""
+    viewer.wanted_tab = "Face"
+    xdotool(viewer, "key", "f")

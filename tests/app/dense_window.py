@@ -1,0 +1,64 @@
+"""Opens the window on a screen of twice the density and prints what a test wants to know.
+
+A program of its own, because GLFW asks for the density once, when it starts.
+"""
+
+from __future__ import annotations
+
+import json
+
+from Xlib import Xatom, display
+
+from app.choices import script_for
+from app.viewer import Viewer
+from app.viewer.files import Files
+
+from .driving import click, drag, middle, moved, nose, settle, show_controls, until, xdotool
+
+DOTS_PER_INCH = 192
+SIZE = (1200, 800)
+
+
+def main() -> None:
+    """Tell X that its screen is dense, look at the window, and tell X that it is not."""
+    screen = display.Display()
+    root, resources = screen.screen().root, screen.intern_atom("RESOURCE_MANAGER")
+    root.change_property(resources, Xatom.STRING, 8, f"Xft.dpi:\t{DOTS_PER_INCH}\n".encode())
+    screen.flush()
+    screen.sync()
+    try:
+        with Viewer(script_for(None, "face"), SIZE) as viewer:
+            first = viewer.viewport[0]
+            viewer.files = Files(is_native=False)
+            settle(viewer)
+            is_settled = viewer.viewport[0] == first
+            print(json.dumps({**_findings(viewer), "is_settled": is_settled}))
+    finally:
+        root.delete_property(resources)
+        screen.sync()
+
+
+def _findings(viewer: Viewer) -> dict[str, object]:
+    left, top, right, bottom = viewer.gui.places["Neutral"]
+    show_controls(viewer, "jaw open")
+    drag(viewer, middle(viewer, "jaw_open"), (40, 0))
+    xdotool(viewer, "mouseup", 1)
+    slid = viewer.session.values["jaw_open"]
+    click(viewer, "Neutral")
+    until(viewer, lambda: moved(viewer) < 0.5)
+    drag(viewer, nose(viewer), (50, 40))
+    until(viewer, lambda: moved(viewer) > 4.0, 5.0)
+    pulled = moved(viewer)
+    xdotool(viewer, "mouseup", 1)
+    return {
+        "button": (right - left, bottom - top),
+        "line": viewer.surface.pixel_scale,
+        "frame": viewer.surface.size,
+        "window": viewer.surface.window_size,
+        "slid": slid,
+        "pulled": pulled,
+    }
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,167 @@
+"""Files that come into the window and leave it, driven as a desktop would."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from app.viewer import Viewer
+from app.viewer.files import UNSEEN, Files
+
+from .driving import NEEDS_A_SCREEN, click, nose, settle, until, write, xdotool
+
+pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
+
+SCRIPT = "duration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
+POSE = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
+
+
+def drop(viewer: Viewer, *paths: Path) -> None:
+    """Let another program drop files onto the face; the window must have taken them."""
+    command = [sys.executable, "-m", "tests.app.dropping", "Risorius", *map(str, nose(viewer))]
+    source = subprocess.Popen(
+        [*command, *map(str, paths)], stderr=subprocess.PIPE, text=True,
+        cwd=Path(__file__).parents[2],
+    )  # fmt: skip
+    assert until(viewer, lambda: source.poll() is not None, 20.0)
+    assert source.returncode == 0, source.communicate()[1]
+    settle(viewer)
+
+
+def test_files_can_be_dropped_onto_the_window(viewer: Viewer, tmp_path: Path) -> None:
+    """A script, then a pose with an awkward name, from another program, by the X protocol."""
+    script, pose = tmp_path / "smile.toml", tmp_path / "schöner & 50% größer.toml"
+    script.write_text(SCRIPT)
+    pose.write_text(POSE)
+    drop(viewer, script)
+    assert viewer.session.script.duration == 2.0
+    assert "smile.toml" in viewer.messages.text and not viewer.messages.is_error
+    drop(viewer, pose)
+    assert viewer.session.values["jaw_open"] == 0.5
+    assert viewer.session.script.duration == 2.0
+
+
+def test_a_bad_file_dropped_is_told_and_survived(viewer: Viewer, tmp_path: Path) -> None:
+    """Nonsense shows one line in the window, which goes on; the script that was there stays."""
+    before, bad = viewer.session.script, tmp_path / "bad.toml"
+    bad.write_text(POSE.replace("jaw_open", "no_such_muscle"))
+    drop(viewer, bad)
+    assert viewer.messages.is_error and "no_such_muscle" in viewer.messages.text
+    assert "\n" not in viewer.messages.text and "message" in viewer.gui.places
+    bad.write_bytes(bytes(range(256)))
+    drop(viewer, bad)
+    assert "cannot be read" in viewer.messages.text
+    drop(viewer, tmp_path)
+    assert viewer.messages.is_error and viewer.session.script is before
+    bad.write_text(POSE)
+    drop(viewer, bad)
+    assert viewer.session.values["jaw_open"] == 0.5
+
+
+def test_the_chooser_walks_through_folders(viewer: Viewer, tmp_path: Path) -> None:
+    """Without native dialogs: into a folder, up again, and a script opened by a double click."""
+    (tmp_path / "takes").mkdir()
+    (tmp_path / "takes" / "smile.toml").write_text(SCRIPT)
+    (tmp_path / "picture.png").write_bytes(b"")
+    xdotool(viewer, "key", "ctrl+o")
+    assert "file picture.png" not in viewer.gui.places
+    click(viewer, "folder takes")
+    assert until(viewer, lambda: "file smile.toml" in viewer.gui.places, 3.0)
+    click(viewer, "folder Up")
+    assert until(viewer, lambda: "folder takes" in viewer.gui.places, 3.0)
+    click(viewer, "folder takes")
+    click(viewer, "file smile.toml", times=2)
+    assert viewer.session.script.duration == 2.0 and not viewer.files.is_waiting
+    xdotool(viewer, "key", "ctrl+o")
+    assert "file smile.toml" in viewer.gui.places  # begins where it was last
+    xdotool(viewer, "key", "Escape")
+    assert not viewer.files.is_waiting
+
+
+def test_the_chooser_replaces_nothing_unasked(viewer: Viewer, tmp_path: Path) -> None:
+    """A name that is taken needs a second word; a folder that is missing is told."""
+    taken = tmp_path / "pose.toml"
+    taken.write_text("precious")
+    viewer.session.set("jaw_open", 0.4)
+    xdotool(viewer, "key", "ctrl+shift+s")
+    xdotool(viewer, "key", "Return")
+    assert viewer.files.is_waiting and taken.read_text() == "precious"
+    xdotool(viewer, "key", "Return")
+    assert not viewer.files.is_waiting and "jaw_open = 0.4" in taken.read_text()
+    viewer.session.set("jaw_open", 0.5)
+    xdotool(viewer, "key", "ctrl+shift+s")
+    xdotool(viewer, "key", "ctrl+a")
+    write(viewer, "/proc/none/pose")
+    xdotool(viewer, "key", "Return")
+    assert viewer.messages.is_error and "/proc/none/pose.toml" in viewer.messages.text
+    assert "the pose" in viewer.session.unsaved
+
+
+@pytest.mark.parametrize("comes_up", [True, False])
+def test_native_dialogs_are_used_where_they_work(
+    viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, comes_up: bool
+) -> None:
+    """The system's dialog gives the file; one that ends at once makes way for the chooser."""
+    script, dialog = tmp_path / "smile.toml", tmp_path / "zenity"
+    script.write_text(SCRIPT)
+    answer = f"sleep {2.0 * UNSEEN}; echo {script}" if comes_up else "exit 1"
+    dialog.write_text(f"#!/bin/sh\n{answer}\n")
+    dialog.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    monkeypatch.delenv("XDG_SESSION_DESKTOP", raising=False)  # by which kdialog may be preferred
+    viewer.files = Files()
+    xdotool(viewer, "key", "ctrl+o")
+    assert viewer.files.is_waiting
+    if not comes_up:
+        click(viewer, "file smile.toml", times=2)
+    assert until(viewer, lambda: viewer.session.script.duration == 2.0)
+    assert not viewer.files.is_waiting
+
+
+def test_closing_while_recording_saves_it_first(viewer: Viewer, tmp_path: Path) -> None:
+    """Save, in answer to the question, keeps the recording in a file and then closes."""
+    xdotool(viewer, "key", "ctrl+r")
+    viewer.session.set("jaw_open", 0.6)
+    assert until(viewer, lambda: viewer.session.recorded_seconds > 0.3)
+    viewer.surface.should_close = False
+    xdotool(viewer, "key", "ctrl+q")
+    assert "the recording" in viewer.session.unsaved and not viewer.surface.should_close
+    click(viewer, "question: Save recording ...")
+    xdotool(viewer, "key", "Return")
+    assert "jaw_open" in (tmp_path / "script.toml").read_text()
+    assert viewer.surface.should_close
+    viewer.surface.should_close = viewer.is_leaving = False
+
+
+def test_a_file_opened_while_recording(viewer: Viewer, tmp_path: Path) -> None:
+    """A pose becomes part of the recording; a script asks first, a bad file ends nothing."""
+    script, pose, bad = (tmp_path / name for name in ("smile.toml", "pose.toml", "bad.toml"))
+    script.write_text(SCRIPT)
+    pose.write_text(POSE)
+    bad.write_text("nonsense")
+    xdotool(viewer, "key", "ctrl+r")
+    drop(viewer, pose)
+    assert until(viewer, lambda: viewer.session.recorded_seconds > 0.3)
+    drop(viewer, bad)
+    assert viewer.messages.is_error and viewer.session.is_recording
+    drop(viewer, script)
+    assert viewer.question.is_open and viewer.session.is_recording
+    xdotool(viewer, "key", "Escape")
+    assert not viewer.question.is_open and viewer.session.is_recording
+    drop(viewer, script)
+    click(viewer, "question: Open without saving")
+    assert viewer.session.script.duration == 2.0 and not viewer.session.is_recording
+
+
+def test_what_cannot_be_written_is_told(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """F12 and F10 in a folder that takes no files show an error, and the window goes on."""
+    monkeypatch.chdir("/proc")
+    for key in ("F12", "F10"):
+        viewer.messages.text = ""
+        xdotool(viewer, "key", key)
+        assert until(viewer, lambda: "cannot be written" in viewer.messages.text, 3.0), key
+        assert viewer.film is None

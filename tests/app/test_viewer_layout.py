@@ -1,0 +1,145 @@
+"""What does not show in one picture: folded headings, small windows, dense screens, stalls."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from app.choices import script_for
+from app.viewer import Viewer
+from app.viewer.session import key_times
+
+from .driving import (
+    NEEDS_A_SCREEN,
+    SIZE,
+    clear_search,
+    click,
+    drag,
+    moved,
+    on_screen,
+    settle,
+    show_controls,
+    until,
+    xdotool,
+)
+
+pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
+
+
+def test_headings_stay_folded(viewer: Viewer) -> None:
+    """A heading that was folded is folded the next time; one that is searched only meanwhile."""
+    click(viewer, "Expressions")
+    assert "joy" not in viewer.gui.places
+    click(viewer, "Jaw")
+    assert viewer.settings.folds == {"Expressions": False, "Jaw": True}
+    show_controls(viewer, "joy")
+    assert "joy" in viewer.gui.places
+    clear_search(viewer)
+    settle(viewer)
+    assert "joy" not in viewer.gui.places and "jaw_open" in viewer.gui.places
+
+
+def test_the_panel_can_be_made_wider(viewer: Viewer) -> None:
+    """Its edge follows the mouse, as far as the picture keeps more than half of the window."""
+    left, top, _, height = viewer.picture_area
+    drag(viewer, on_screen(viewer, left - 1, top + 0.5 * height), (-90, 0))
+    xdotool(viewer, "mouseup", 1)
+    assert viewer.picture_area[0] == pytest.approx(left - 90, abs=3)
+    viewer.settings.panel_width = 22.5
+    drag(viewer, on_screen(viewer, viewer.picture_area[0] - 1, top + 0.5 * height), (5, 0))
+    xdotool(viewer, "mouseup", 1)
+
+
+@pytest.mark.parametrize("zoom", [1.0, 2.0, 3.0])
+def test_everything_stays_inside_its_panel(viewer: Viewer, zoom: float) -> None:
+    """However large the words are, no button is cut off and nothing hides the picture."""
+    try:
+        viewer.settings.zoom = zoom
+        xdotool(viewer, "key", "F1")
+        left, _, width, height = viewer.picture_area
+        assert width > 0.5 * SIZE[0] and height > 0.4 * SIZE[1]
+        for name in ("Random", "Link sides", "search", "show joy", "show blink"):
+            assert viewer.gui.places[name][2] <= left, name
+        for name in ("play", "record", "loop", "speed", "time"):
+            assert viewer.gui.places[name][0] >= left, name
+            assert viewer.gui.places[name][2] <= SIZE[0], name
+        x, y, right, bottom = viewer.gui.places["help"]
+        assert min(x, y) >= 0.0 and right <= SIZE[0] and bottom <= SIZE[1]
+    finally:
+        viewer.settings.zoom, viewer.is_help_open = 1.0, False
+        settle(viewer)
+
+
+def test_keys_go_from_key_to_key(viewer: Viewer) -> None:
+    """Right goes to the script's next key, Left back, Home to the start."""
+    viewer.session.take(script_for(None, "face"))
+    times = key_times(viewer.session.script)
+    for key, place in (("Right", 1), ("Right", 2), ("Left", 1), ("Home", 0)):
+        xdotool(viewer, "key", key)
+        assert viewer.session.time == pytest.approx(times[place]), key
+
+
+def test_any_size_can_be_drawn(viewer: Viewer) -> None:
+    """Made tiny, flat, and large again while the face moves: it goes on, and nothing explodes."""
+    import glfw
+
+    xdotool(viewer, "key", "1")
+    try:
+        for size in ((1, 1), (40, 30), (700, 20), (20, 500), SIZE):
+            glfw.set_window_size(viewer.surface.handle, *size)
+            settle(viewer, 6)
+            assert moved(viewer) < 60.0
+    finally:
+        glfw.set_window_size(viewer.surface.handle, *SIZE)
+        settle(viewer)
+    assert until(viewer, lambda: viewer.is_idle)
+    assert viewer.surface.read().shape == (SIZE[1], SIZE[0], 3)
+
+
+def test_a_dense_screen_has_everything_twice_as_large(viewer: Viewer) -> None:
+    """At a content scale of 2 words, sliders and lines are doubled, and the mouse still hits."""
+    left, top, right, bottom = viewer.gui.places["Neutral"]
+    result = subprocess.run(
+        [sys.executable, "-m", "tests.app.dense_window"],
+        capture_output=True, text=True, timeout=120, check=False, cwd=Path(__file__).parents[2],
+    )  # fmt: skip
+    assert result.returncode == 0, result.stderr
+    found = json.loads(result.stdout)
+    # Letters are as wide as whole pixels allow, which at twice the size is not quite twice as much.
+    assert found["button"] == pytest.approx([2.0 * (right - left), 2.0 * (bottom - top)], abs=6.0)
+    assert found["line"] == 2.0
+    assert found["is_settled"]  # the first picture is where all others are
+    assert found["frame"] == found["window"] == [1200, 800]
+    assert found["slid"] > 0.3
+    assert found["pulled"] > 4.0
+
+
+def test_a_window_that_was_stopped_goes_on_calmly(tmp_path: Path) -> None:
+    """The whole program halted for three seconds while a script plays: it ends as if it had not."""
+    script = tmp_path / "short.toml"
+    script.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.5\njoy = 1.0\njaw_open = 1.0\n")
+    program = subprocess.Popen(
+        [sys.executable, "-m", "app", "replay", str(script), "--once", "--size", "400x300"],
+        stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2],
+        env={**os.environ, "XDG_CONFIG_HOME": str(tmp_path)},
+    )  # fmt: skip
+    try:
+        subprocess.run(
+            ["xdotool", "search", "--sync", "--onlyvisible", "--name", "Risorius: short"],
+            check=True, capture_output=True, timeout=60,
+        )  # fmt: skip
+        program.send_signal(signal.SIGSTOP)
+        time.sleep(3.0)
+        assert program.poll() is None
+        program.send_signal(signal.SIGCONT)
+        assert program.wait(60.0) == 0
+        assert program.stderr is not None and program.stderr.read() == ""
+    finally:
+        program.kill()
