@@ -311,6 +311,19 @@ def bench_tearing(mixtures: int) -> None:
         click.echo(tearing_table(mixtures))
 
 
+@bench.command("window")
+@click.option("--size", type=Size(), default=(1280, 720), show_default="1280x720")
+@click.option(
+    "--seconds", type=FiniteRange(0.3, 600.0), default=5.0, show_default=True, help="Of each case."
+)
+def bench_window(size: tuple[int, int], seconds: float) -> None:
+    """Time the window while a smile plays, and while nothing happens; needs a screen."""
+    with told_in_one_line():
+        from .window_report import window_table
+
+        click.echo(window_table(seconds, size))
+
+
 def open_viewer(
     script: Path | None,
     scene: str | None,

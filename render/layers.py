@@ -32,6 +32,7 @@ class Layers:
         self.samples = samples
         self._gl = gl
         self.frame_number = 0  # counts the frames since the layers were made
+        self.is_empty = False  # nothing was drawn since `start`
         self._touched: list[Rectangle] = []  # apart from each other
         self._is_worn = False
         self.colour = gl.texture(size, 4)
@@ -57,6 +58,7 @@ class Layers:
         self.use_frame((0, 0, *self.size))
         self._gl.scissor = None
         self.frame.clear(0.0, 0.0, 0.0, 1.0, depth=1.0)
+        self.is_empty = True
 
     def use_frame(self, viewport: Rectangle) -> None:
         """Direct drawing to the frame, over all that was drawn so far in the viewport."""
@@ -69,6 +71,7 @@ class Layers:
         """Direct drawing to the layer, within the part `touched` of the viewport."""
         self._wipe()
         self._layer.use()
+        self.is_empty = False
         self._gl.viewport, self._gl.scissor = viewport, touched
         self._touched = _apart(self._touched, touched)
 

@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .layers import Layers, hull
+from .layers import Layers, Rectangle, hull
 from .occlusion import DepthReader, ProjectedFaces
 from .sight import Sight, box_corners
 from .style import linear
@@ -59,6 +59,15 @@ class PartBuffers:
         self._indices = gl.buffer(self._faces.tobytes(), dynamic=True)
         self.face_count = len(self._faces)
         self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
+        self._projection: tuple[object, ProjectedFaces] | None = None
+
+    def projected(self, matrix: npt.NDArray[np.float64], view: Rectangle) -> ProjectedFaces:
+        """Its faces as the camera sees them, as computed last where part and camera stood still."""
+        key = matrix.tobytes(), view
+        if self._projection is None or self._projection[0] != key:
+            faces = ProjectedFaces(self.part.vertices, self.face_corners, matrix, view)
+            self._projection = key, faces
+        return self._projection[1]
 
     def choose(self, is_seen: npt.NDArray[np.bool_]) -> int:
         """Draw only the faces that are seen, shape (m,), from now on; return their number."""
@@ -121,12 +130,7 @@ class PartStore:
             self._depths = DepthReader(self._gl, layers)
         self._depths.look(functools.reduce(hull, touched))
         projected = [
-            ProjectedFaces(
-                buffers.part.vertices,
-                buffers.face_corners,
-                model @ sight.world_to_clip,
-                sight.viewport,
-            )
+            buffers.projected(model @ sight.world_to_clip, sight.viewport)
             for (buffers, _), model in zip(placed, models, strict=True)
         ]
         depths = self._depths.read()

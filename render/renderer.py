@@ -139,7 +139,16 @@ class Renderer:
                 write_uniform(program, "split_palette", _PALETTE)
             else:
                 write_uniform(program, "ramp", _RAMPS[style.colour_by])
-        stream.draw(program)
+        if self.surface.is_software:
+            # What turns away is mostly hidden: drawn last, it is not shaded at all there.
+            self._gl.enable(moderngl.CULL_FACE)
+            for culled in ("back", "front"):
+                self._gl.cull_face = culled
+                stream.draw(program)
+            self._gl.cull_face = "back"
+            self._gl.disable(moderngl.CULL_FACE)
+        else:
+            stream.draw(program)
 
     def draw_parts(
         self,

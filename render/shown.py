@@ -42,26 +42,40 @@ class Shown:
         self._program["picture"] = _UNIT
         self._triangle = gl.vertex_array(self._program, [])
 
-    def lay(self, layers: Layers, area: Rectangle | None) -> None:
-        """Take the scene's pixels, in all of the window or one area; the frame stays bound."""
-        gl = self._gl
+    def lay(
+        self, layers: Layers, area: Rectangle | None, target: moderngl.Framebuffer | None = None
+    ) -> None:
+        """Lay the scene into all of this frame, or of another `target` of its size, or an area.
+
+        The target stays bound.
+        """
+        gl, target = self._gl, target or self.frame
         layers.flush()
-        gl.scissor = area
+        target.use()
+        gl.viewport, gl.scissor = (0, 0, *self.size), area  # of what is bound
         if layers.size == self.size:
-            gl.copy_framebuffer(self.frame, layers.frame)
-        self.frame.use()
-        gl.viewport = 0, 0, *self.size
-        if layers.size != self.size:
+            gl.copy_framebuffer(target, layers.frame)
+        else:
             gl.disable(moderngl.DEPTH_TEST)
             layers.colour.use(_UNIT)
             self._triangle.render(moderngl.TRIANGLES, vertices=3)
             gl.enable(moderngl.DEPTH_TEST)
         gl.scissor = None
 
-    def copy_to(self, target: moderngl.Framebuffer) -> None:
-        """Copy everything to a framebuffer of the same size."""
-        self._gl.scissor = None  # it would cut the copy
-        self._gl.copy_framebuffer(target, self.frame)
+    def copy_to(self, target: moderngl.Framebuffer, around: Rectangle = (0, 0, 0, 0)) -> None:
+        """Copy everything, but for an area, to a framebuffer of the same size."""
+        width, height = self.size
+        left, bottom, right, top = *around[:2], around[0] + around[2], around[1] + around[3]
+        for rectangle in (
+            (0, 0, left, height),
+            (right, 0, width - right, height),
+            (left, 0, right - left, bottom),
+            (left, top, right - left, height - top),
+        ):
+            if rectangle[2] > 0 and rectangle[3] > 0:
+                self._gl.scissor = rectangle  # it cuts the copy
+                self._gl.copy_framebuffer(target, self.frame)
+        self._gl.scissor = None
 
     def read(self) -> bytes:
         """The pixels, bottom row first, three bytes each."""

@@ -5,7 +5,7 @@ imported before, and a server without a screen never needs it.
 """
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from types import ModuleType, TracebackType
 from typing import Any
 
@@ -23,6 +23,7 @@ class WindowSurface(Surface):
 
     handle: the GLFW window, for input and GUI libraries. detail: settable, for the next frames.
     area: the part in which the scene is seen, where panels hide the rest; None: all. Settable.
+    rules: plain rectangles over the scene, such as a line between two halves. Settable.
     """
 
     def __init__(self, glfw: ModuleType, handle: Any, gl: moderngl.Context, samples: int) -> None:
@@ -32,8 +33,10 @@ class WindowSurface(Surface):
         super().__init__(gl, size, samples)
         self.detail = Detail(self.samples)
         self.area: Rectangle | None = None
+        self.rules: Sequence[tuple[Rectangle, Colour]] = ()
         self._shown = Shown(gl, size)
-        self._is_resolved = False
+        self._is_resolved = False  # in this frame: panels may have been drawn
+        self._is_laid = False  # what `_shown` has of the scene is what is seen
         self.pixel_scale = max(glfw.get_window_content_scale(handle))
 
     @property
@@ -83,23 +86,40 @@ class WindowSurface(Surface):
         """End the scene: panels lie on top. Again: forget the panels, keep the scene."""
         self.make_current()
         self._shown.lay(self.layers, self.area)
-        self._is_resolved = True
+        self._rule(self._shown.frame)
+        self._is_resolved = self._is_laid = True
 
     def fill(self, area: Rectangle, colour: Colour) -> None:
-        """Paint a part of the resolved frame in one colour, behind a panel: cheaper than a quad."""
+        """Paint a part of the resolved frame in one colour: cheaper than a quad."""
         self._shown.frame.clear(*colour, viewport=area)
 
     def end(self) -> None:
-        """Finish the frame and show it."""
-        if not self._is_resolved:
-            self.resolve()
+        """Finish the frame and show it: as resolved, else the scene amid the panels as they were.
+
+        The latter spares a copy of the scene, and drawing panels that have not changed.
+        """
         self.make_current()
-        self._shown.copy_to(self.gl.screen)
+        if self._is_resolved:
+            self._shown.copy_to(self.gl.screen)
+        else:
+            self._shown.lay(self.layers, self.area, self.gl.screen)
+            self._rule(self.gl.screen)
+            if self.area is not None:
+                self._shown.copy_to(self.gl.screen, around=self.area)
+            self._is_laid = False
         self._glfw.swap_buffers(self.handle)
+        self._is_resolved = False
+
+    def _rule(self, target: moderngl.Framebuffer) -> None:
+        for rectangle, colour in self.rules:
+            target.clear(*colour, viewport=rectangle)
 
     def read(self) -> Frame:
         """Return the frame as it is seen, with the panels; see `Surface.read`."""
         self.make_current()
+        if not self._is_laid:
+            self._shown.lay(self.layers, self.area)
+            self._rule(self._shown.frame)
         return picture_of(self._shown.read(), self.size)
 
     def _bind(self) -> None:

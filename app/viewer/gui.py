@@ -106,9 +106,28 @@ class Gui:
             max(glfw.get_window_content_scale(self._window)) / max(pixels_per_unit, 1.0), 1.0
         )
 
+    @property
+    def has_events(self) -> bool:
+        """Whether the user did something since the last frame."""
+        return imgui.get_current_context().input_events_queue.size() > 0
+
+    def covers(self, area: tuple[float, float, float, float]) -> bool:
+        """Whether a window of the last frame reaches into an area (left, top, width, height)."""
+        left, top, width, height = area
+        for window in imgui.get_current_context().windows:
+            if window.active and not window.hidden:
+                seen = window.outer_rect_clipped
+                is_across = seen.min.x < left + width - 1.0 and seen.max.x > left + 1.0
+                if is_across and seen.min.y < top + height - 1.0 and seen.max.y > top + 1.0:
+                    return True
+        return False
+
     @contextlib.contextmanager
-    def frame(self) -> Iterator[None]:
-        """Everything drawn with imgui in this block appears over what was drawn before."""
+    def frame(self, *, is_seen: bool = True) -> Iterator[None]:
+        """Everything drawn with imgui in this block appears over what was drawn before.
+
+        is_seen: False only answers the user; nothing is drawn.
+        """
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
         imgui.new_frame()
@@ -117,7 +136,8 @@ class Gui:
             yield
         finally:
             imgui.render()
-            imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
+            if is_seen:
+                imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
 
     def remember(self, name: str) -> None:
         """Keep where the item drawn last is."""

@@ -138,7 +138,7 @@ class Stage:
                         width=lines.width,
                         hidden_opacity=lines.hidden_opacity,
                     )
-            self.surface.resolve()
+            self.surface.layers.flush()
             self.surface.gl.finish()
 
     def _draw(

@@ -72,6 +72,11 @@ class Touch:
         """Whether the skin is being dragged."""
         return self.pull is not None and bool(self.pull.offset.any())
 
+    @property
+    def is_dragging(self) -> bool:
+        """Whether the mouse holds on to something in the picture."""
+        return bool(self._doing)
+
     def follow(self) -> None:
         """Carry out what the mouse did since the last frame."""
         io = imgui.get_io()

@@ -2,7 +2,8 @@
 
 Physics goes in steps of its own, apart from frames (clock.py). The scene is drawn only when
 something in it has changed, with less detail while it moves if the machine is slow (quality.py);
-panels are drawn over it anew each time. A window in which nothing happens waits for events.
+panels are drawn around it less often then (kept.py). A window in which nothing happens waits for
+events.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ from .actions import actions_of, run_pressed
 from .clock import STEP, Clock
 from .files import Files
 from .gui import THEMES, Gui, em, on_drop, poll_events, wait_for_event
+from .kept import KeptPanels
 from .overlays import overlays_of
 from .panels.chrome import Messages, Question, draw_help, draw_menus
 from .panels.face import FacePanel
@@ -50,6 +52,7 @@ CALM = 0.15  # [s] without change before physics rests and the scene is drawn in
 IDLE_WAIT = 2.0  # [s] between two frames while nothing happens
 WATCHFUL_WAIT = 0.1  # [s] the same while a file dialog is open, or words are typed
 FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
+WHITE = (1.0, 1.0, 1.0)
 SMOOTHING = 0.9  # of the shown frame rate, from frame to frame
 
 
@@ -96,6 +99,7 @@ class Viewer:
         self.camera = commands.remembered_camera(self) or whole_scene(self.scene, script.camera)
         self.quality = Quality(is_software=self.surface.is_software)
         self.touch = Touch(self)
+        self.kept = KeptPanels()
         self.files, self.messages, self.question = Files(), Messages(), Question()
         self.face_panel, self.mechanism_panel = FacePanel(self), MechanismPanel(self)
         self.timeline = Timeline(self)
@@ -118,7 +122,7 @@ class Viewer:
         if complaint:
             self.messages.say(complaint, error=True)
         for _ in range(2):  # panels and tabs find their places before the first picture
-            self._draw_gui(0.0)
+            self._draw_gui(is_seen=False)
 
     def __enter__(self) -> Viewer:
         return self
@@ -147,11 +151,18 @@ class Viewer:
             if self.is_idle:
                 self._wait()
 
+    def rest(self) -> None:
+        """Wait until something happens, or it is time to look around; then show a frame."""
+        self._wait()
+        self.frame()
+
     # One turn of the loop
 
     def frame(self) -> None:
         """Input, time, picture, panels."""
         poll_events()
+        if self.gui.has_events:
+            self._awake = FRAMES_AFTER_EVENT
         now = time.perf_counter()
         elapsed, self._last = now - self._last, now
         if elapsed > 0.0:
@@ -160,10 +171,7 @@ class Viewer:
             self.frames_per_second = 1.0 / (SMOOTHING * shown + (1.0 - SMOOTHING) * elapsed)
         self._let_time_pass(elapsed if self.film is None else 1.0 / FRAMES_PER_SECOND)
         is_moving = self._draw_scene(elapsed)
-        left, bottom, width, _ = self.viewport
-        self.surface.fill((0, 0, left, self.surface.size[1]), self.gui.theme.panel)
-        self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
-        self._draw_gui(elapsed)
+        self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
         if is_moving:
             self.quality.note(time.perf_counter() - now)
@@ -171,10 +179,11 @@ class Viewer:
             time.sleep(max(1.0 / FRAMES_PER_SECOND - (time.perf_counter() - now), 0.0))
         self._awake = max(self._awake - 1, 0)
 
-    def _draw_gui(self, elapsed: float) -> None:
-        with self.gui.frame():
+    def _draw_gui(self, *, is_seen: bool) -> None:
+        """Panels, and what the user does to them and to the face; is_seen: see Gui.frame."""
+        with self.gui.frame(is_seen=is_seen):
             self.gui.dress(self.settings.theme, self.settings.zoom)
-            self._draw_panels(elapsed)
+            self._draw_panels(imgui.get_io().delta_time)
             if not self._is_asking:
                 run_pressed(self, self.actions)
                 self.touch.follow()
@@ -237,6 +246,7 @@ class Viewer:
     def _draw_scene(self, elapsed: float) -> bool:
         """Draw the scene if it has changed, or is not drawn in full yet; whether it changed."""
         self.surface.area = self.viewport
+        self.surface.rules = self._divider()
         shown = self._shown()
         drawn, detail = self._drawn
         has_changed = shown != drawn or self._has_stepped or self.surface.is_resized
@@ -247,8 +257,6 @@ class Viewer:
             self._paint(self.quality.detail, shown)
         elif detail != FULL and self._calm_for > CALM:
             self._paint(FULL, shown)
-        else:
-            self.surface.resolve()
         return has_changed
 
     def _paint(self, detail: render.Detail, shown: object) -> None:
@@ -261,6 +269,17 @@ class Viewer:
             frame = self.stage.photograph(*self.scene_view)
             self.attempt(lambda: film.add(frame), otherwise=lambda: commands.toggle_film(self))
         self._drawn = shown, detail
+
+    def _divider(self) -> list[tuple[Viewport, render.Colour]]:
+        """The line between the two halves of a comparison, and what to drag it by."""
+        if self.look.compare == "off":
+            return []
+        left, bottom, width, height = self.viewport
+        unit = max(round(em(0.13) * width / max(self.picture_area[2], 1.0)), 2)
+        x, y = left + round(self.look.divider * width), bottom + height // 2
+        line = (x - unit // 2, bottom, unit, height)
+        grip = (x - unit // 2 - unit, y - 10 * unit, 3 * unit, 20 * unit)
+        return [(line, WHITE), (grip, self.gui.theme.accent)]
 
     @property
     def scene_view(self) -> SceneView:
@@ -278,6 +297,24 @@ class Viewer:
         x, y = round(left * across), round((display.y - top - high) * along)
         return max(x, 0), max(y, 0), max(round(wide * across), 1), max(round(high * along), 1)
 
+    def _show_panels(self, elapsed: float, *, is_moving: bool) -> None:
+        """Answer the user, and draw the panels around the scene where their picture is not kept."""
+        size, is_answering = self.surface.size, self._awake > 0 or imgui.is_any_item_active()
+        self.kept.age(elapsed)
+        # What is dragged in the scene moves no slider.
+        is_touched = is_answering and not self.touch.is_dragging
+        is_seen = self.kept.are_due(size, is_moving=is_moving, is_touched=is_touched)
+        if not (is_seen or is_answering):
+            return
+        if is_seen:
+            self.surface.resolve()
+            left, bottom, width, _ = self.viewport
+            self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
+            self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
+        self._draw_gui(is_seen=is_seen)
+        if is_seen:
+            self.kept.note_drawn(size, is_over_scene=self.gui.covers(self.picture_area))
+
     def _draw_panels(self, elapsed: float) -> None:
         display = imgui.get_io().display_size
         top = draw_menus(self, self.actions)
@@ -290,12 +327,6 @@ class Viewer:
             self.timeline.draw()
         width, height = max(display.x - left, 1.0), max(display.y - top - strip, 1.0)
         self.picture_area = (left, top, width, height)
-        if self.look.compare != "off":
-            x = left + self.look.divider * width
-            ink = imgui.get_color_u32(imgui.ImVec4(1.0, 1.0, 1.0, 0.9))
-            lines = imgui.get_background_draw_list()
-            lines.add_line(imgui.ImVec2(x, top), imgui.ImVec2(x, top + height), ink, 2.0)
-            lines.add_circle_filled(imgui.ImVec2(x, top + 0.5 * height), em(0.45), ink)
         self.messages.draw(self, elapsed)
         self.attempt(lambda: self.files.draw(self.gui))
         self.attempt(lambda: self.question.draw(self))
