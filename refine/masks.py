@@ -46,6 +46,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .kernels import kernel
+from .native import native
 
 Floats = npt.NDArray[np.float32]
 Unsigned = npt.NDArray[np.uint32]
@@ -85,7 +86,7 @@ def mix(from_: np.float32, to: np.float32, growth: np.float32) -> np.float32:
     return (ONE - growth) * from_ + growth * to
 
 
-@kernel
+@native
 def grow_vertices(
     edge_points: Unsigned,
     growth_once: Floats,
@@ -102,7 +103,7 @@ def grow_vertices(
         vertex_growth[b] = max(vertex_growth[b], growth)
 
 
-@kernel
+@native
 def place_vertices(
     points: Floats,
     normals: Floats,
@@ -132,7 +133,7 @@ def place_vertices(
         vertices[v, 3], vertices[v, 4], vertices[v, 5] = normals[v, 0], normals[v, 1], normals[v, 2]
 
 
-@kernel
+@native
 def place_middles(
     points: Floats,
     normals: Floats,
@@ -169,7 +170,7 @@ def place_middles(
         )
 
 
-@kernel
+@native
 def place_quarter_normals(vertices: Floats, a: int, b: int, near_a: int) -> None:
     """Write the normals of both quarter points of an edge from a to b; the middle has its own."""
     centre, near_b = np.uint32(near_a + 1), np.uint32(near_a + 2)
@@ -182,12 +183,19 @@ def place_quarter_normals(vertices: Floats, a: int, b: int, near_a: int) -> None
     )
 
 
-@kernel
+@native
+def grown(e: np.uint32, splits: npt.NDArray[np.uint8], growth_once: Floats) -> np.float32:
+    """How far the middle of an edge has grown, 0 where it has none."""
+    return np.float32(growth_once[e] if splits[e] > 0 else ZERO)
+
+
+@native
 def place_quarters(
     points: Floats,
     edge_points: Unsigned,
     edge_wings: Unsigned,
     is_interior: npt.NDArray[np.bool_],
+    splits: npt.NDArray[np.uint8],
     growth_once: Floats,
     growth_twice: Floats,
     first_points: Unsigned,
@@ -206,8 +214,10 @@ def place_quarters(
         if is_interior[e]:
             wing_p, wing_q = edge_wings[e, 0], edge_wings[e, 1]
             wing_r, wing_s = edge_wings[e, 2], edge_wings[e, 3]
-            grown_p, grown_q = growth_once[wing_p], growth_once[wing_q]
-            grown_r, grown_s = growth_once[wing_r], growth_once[wing_s]
+            grown_p = grown(wing_p, splits, growth_once)
+            grown_q = grown(wing_q, splits, growth_once)
+            grown_r = grown(wing_r, splits, growth_once)
+            grown_s = grown(wing_s, splits, growth_once)
             if min(growth, grown_p, grown_q, grown_r, grown_s) == ONE:
                 # All of it has grown: the same without mixing, in half the time.
                 for i in range(3):
@@ -243,7 +253,7 @@ def place_quarters(
         place_quarter_normals(vertices, a, b, near_a)
 
 
-@kernel
+@native
 def place_points(
     points: Floats,
     normals: Floats,
@@ -274,6 +284,6 @@ def place_points(
         once_count, middles, vertices,
     )  # fmt: skip
     place_quarters(
-        points, edge_points, edge_wings, is_interior, growth_once, growth_twice, first_points,
-        split_twice, twice_count, middles, vertices,
+        points, edge_points, edge_wings, is_interior, splits, growth_once, growth_twice,
+        first_points, split_twice, twice_count, middles, vertices,
     )  # fmt: skip

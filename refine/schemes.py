@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from .connectivity import Connectivity
 from .masks import place_points
+from .native import Call
 from .rings import vertex_rings
 
 Floats = npt.NDArray[np.float32]
@@ -38,7 +39,10 @@ class Frame:
     splits: npt.NDArray[np.uint8]
     """Splits of every rim, edges first."""
     growth_once: Floats
-    """How far the middle point of an edge has grown, 0 to 1 (blend.py), shape (E,)."""
+    """How far the middle point of an edge has grown, 0 to 1 (blend.py), shape (E,).
+
+    All ones without blending, and then without a meaning where no point is.
+    """
     growth_twice: Floats
     """How far its quarter points have."""
     first_points: Unsigned
@@ -96,11 +100,21 @@ class LoopScheme:
         self._rings = vertex_rings(connectivity)
         self._vertex_growth = np.zeros(connectivity.vertex_count, dtype=np.float32)
         self._middles = np.zeros((len(connectivity.edges), 3), dtype=np.float32)
+        self._bound_to: Frame | None = None
 
     def place(self, frame: Frame) -> None:
         """Write moved vertices, first level, second level."""
+        if frame is not self._bound_to:
+            self._place_points, self._bound_to = self._bind_to(frame), frame
+        place_points = self._place_points
+        for place, argument in ((14, frame.once_count), (16, frame.twice_count), (19, frame.rows)):
+            place_points.put(place, argument)
+        place_points()
+
+    def _bind_to(self, frame: Frame) -> Call:
+        """Bind the compiled passes to the arrays of a frame, which stay, and to others that go."""
         mesh, rings = self._connectivity, self._rings
-        place_points(
+        return place_points.bind(
             frame.points,
             frame.normals,
             mesh.edge_points,

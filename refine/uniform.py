@@ -22,8 +22,8 @@ import numpy.typing as npt
 from .arguments import AttributeLike
 from .binding import BoundRefiner
 from .connectivity import Connectivity, connect
-from .criterion import vertex_normals
 from .masks import place_middles, place_vertices
+from .native import Call
 from .output import GEOMETRY_COLUMNS, copy_wedges
 from .plugin import Origins, Stream, View
 from .rings import Rings, vertex_rings
@@ -48,11 +48,21 @@ class Level:
         self._all_edges = np.arange(edge_count, dtype=np.uint32)
         self._first_points = self._all_edges + np.uint32(vertex_count)
         self._middles = np.zeros((edge_count, 3), dtype=np.float32)
+        self._place_vertices: Call | None = None
+        self._place_middles: Call | None = None
 
     def subdivide(self, rows: Floats) -> None:
         """Write the moved vertices, then one point per edge, into the first V + E `rows`."""
+        if self._place_vertices is None or self._place_middles is None:
+            self._place_vertices, self._place_middles = self._bind_to(rows)
+        self._place_vertices.put(7, rows)
+        self._place_vertices()
+        self._place_middles.put(10, rows)
+        self._place_middles()
+
+    def _bind_to(self, rows: Floats) -> tuple[Call, Call]:
         rings = self._rings
-        place_vertices(
+        return place_vertices.bind(
             self.points,
             self.normals,
             self._all_move,
@@ -61,8 +71,7 @@ class Level:
             rings.starts,
             rings.vertices,
             rows,
-        )
-        place_middles(
+        ), place_middles.bind(
             self.points,
             self.normals,
             self._connectivity.edge_points,
@@ -128,7 +137,7 @@ class Loop(BoundRefiner):
     def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
         vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
-        vertex_normals(self._positions, self.connectivity.faces, self._normals)
+        self._find_normals()
         for level, finer in pairwise(self._levels):
             level.subdivide(self._rows)
             np.copyto(finer.points, self._rows[:, :3])

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import refine
-from refine.criterion import ROUNDING, vertex_normals
+from refine.criterion import ROUNDING
+from refine.normals import bind_normals, with_room
 from tests import meshes
 from tests.refine.cases import Forced
 from tests.refine.plain_twin import edge_dots, edge_name
@@ -122,7 +123,7 @@ def test_normals_are_weighted_by_area() -> None:
     mesh = meshes.with_debris()
     positions = meshes.wrinkled(mesh, 7)
     normals = np.zeros(positions.shape, dtype=np.float32)
-    vertex_normals(positions, mesh.faces.astype(np.uint32), normals)
+    bind_normals(with_room(positions), mesh.faces.astype(np.uint32), normals)()
     expected = plain_normals(
         [tuple(p) for p in positions], [tuple(int(v) for v in face) for face in mesh.faces]
     )
