@@ -34,7 +34,16 @@ from .criterion import (
     NormalDrop,
 )
 from .detail import FinerMesh
-from .output import CENTRE, copy_rims, copy_wedges, look_up_triangles, number_points
+from .output import (
+    CENTRE,
+    SOURCE,
+    TABLE_ROWS,
+    TRIANGLES,
+    copy_rims,
+    copy_wedges,
+    look_up_triangles,
+    number_points,
+)
 from .patterns import (
     CONFIGURATIONS,
     FANS,
@@ -92,6 +101,7 @@ class Kahler(BoundRefiner):
         if hasattr(self._criterion, "use"):
             self._criterion.use(self._scheme)
         self._looks = hasattr(self._criterion, "look")
+        self._is_foreign = not isinstance(self._criterion, NormalDrop)
         self._blend = blend
         self._patterns = _patterns_of(blend, coherent, len(mesh.faces))
         if blend and not isinstance(self._criterion, Measured):
@@ -134,7 +144,6 @@ class Kahler(BoundRefiner):
     def _bind_passes(self) -> None:
         """Bind the compiled passes of a frame to their arguments."""
         mesh, frame, patterns = self.connectivity, self._frame, self._patterns
-        self._counts = np.zeros(4, dtype=np.int64)
         self._number_points = number_points.bind(
             self._rim_splits,
             mesh.rim_edges,
@@ -145,14 +154,14 @@ class Kahler(BoundRefiner):
             frame.split_once,
             frame.split_twice,
             self._configurations,
-            self._counts,
+            frame.counts,
         )
         self._look_up_triangles = look_up_triangles.bind(
             mesh.corners,
             mesh.triangle_rims,
             self._rim_splits,
             frame.first_points,
-            0,
+            frame.counts,
             self._configurations,
             patterns.counts,
             patterns.subtriangles,
@@ -189,9 +198,8 @@ class Kahler(BoundRefiner):
         self._find_normals()
         self._mark(view)
         self._number_points()
-        vertex_count, frame.once_count, frame.twice_count, triangle_count = self._counts.tolist()
+        vertex_count, _, _, triangle_count = frame.counts.tolist()
         rows = patterns.rows(self._triangle_configurations)
-        frame.first_centre = vertex_count
         if frame.centre_triangles is not None:
             frame.centre_count, triangle_count = number_centres(
                 rows, patterns.counts, patterns.subtriangles, CENTRE, frame.centre_triangles
@@ -200,8 +208,9 @@ class Kahler(BoundRefiner):
         frame.rows, triangles, source = self._reserve(stream, vertex_count, triangle_count)
         self._place()
         look_up = self._look_up_triangles
-        for place, argument in ((4, frame.first_centre), (5, rows), (9, triangles), (10, source)):
-            look_up.put(place, argument)
+        look_up.put(TABLE_ROWS, rows)
+        look_up.put(TRIANGLES, triangles)
+        look_up.put(SOURCE, source)
         look_up()
         return vertex_count, triangle_count
 
@@ -215,7 +224,7 @@ class Kahler(BoundRefiner):
             grow(self._need, self._edge_splits, frame.growth_once, frame.growth_twice)
             return
         criterion.mark(self._positions, self._normals, self._edge_splits)
-        if not isinstance(criterion, NormalDrop):
+        if self._is_foreign:
             self._check_splits()
 
     def _place(self) -> None:

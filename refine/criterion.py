@@ -89,8 +89,25 @@ class Thresholds:
                 "0 <= threshold_once <= threshold_twice (inf switches a level off), "
                 f"got {once!r} and {twice!r}"
             )
-        self.once = np.float32(max(float(once), least))
-        self.twice = np.float32(max(float(twice), least))
+        self.limits = np.array([max(float(once), least), max(float(twice), least)], np.float32)
+
+    @property
+    def once(self) -> np.float32:
+        """Above this an edge is split; may be set at any time."""
+        return np.float32(self.limits[0])
+
+    @once.setter
+    def once(self, limit: float) -> None:
+        self.limits[0] = limit
+
+    @property
+    def twice(self) -> np.float32:
+        """Above this an edge is split twice; may be set at any time."""
+        return np.float32(self.limits[1])
+
+    @twice.setter
+    def twice(self, limit: float) -> None:
+        self.limits[1] = limit
 
     @property
     def width(self) -> np.float32:
@@ -114,9 +131,6 @@ class NormalDrop:
         self.thresholds = Thresholds(
             threshold_once, threshold_twice, "drops of a dot product", least=ROUNDING
         )
-        self._limits = np.zeros(2, dtype=np.float32)
-        self._marking: Call | None = None
-        self._measuring: Call | None = None
 
     def bind(
         self,
@@ -128,6 +142,8 @@ class NormalDrop:
         self._edges = connectivity.edges.view(np.uint32)
         self._rest_dots = np.empty(len(self._edges), dtype=np.float32)
         edge_dots(rest_normals, self._edges, self._rest_dots)
+        self._marked: tuple[Floats | None, Small | None] = (None, None)
+        self._measuring: Call | None = None
         # No direction to compare with at rest (all triangles around are slivers): never split.
         undefined = np.empty(len(rest_positions), dtype=np.bool_)
         sums = np.zeros((len(rest_positions), 4))
@@ -137,11 +153,12 @@ class NormalDrop:
 
     def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write the number of splits of every edge into `splits`, shape (E,)."""
-        self._limits[0], self._limits[1] = self.thresholds.once, self.thresholds.twice
-        self._marking = mark_drops.again(
-            self._marking, normals, self._edges, self._rest_dots, self._limits, splits
-        )
-        self._marking()
+        if self._marked[0] is not normals or self._marked[1] is not splits:
+            self._marked = normals, splits
+            self._mark_drops = mark_drops.bind(
+                normals, self._edges, self._rest_dots, self.thresholds.limits, splits
+            )
+        self._mark_drops()
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""

@@ -269,14 +269,17 @@ def place_points(
     growth_twice: Floats,
     first_points: Unsigned,
     split_once: Unsigned,
-    once_count: int,
     split_twice: Unsigned,
-    twice_count: int,
+    counts: npt.NDArray[np.int64],
     vertex_growth: Floats,
     middles: Floats,
     vertices: Floats,
 ) -> None:
-    """Write moved vertices, first level, second level: all passes in one call of compiled code."""
+    """Write moved vertices, first level, second level: all passes in one call of compiled code.
+
+    `counts`: of edges split once and twice at 1 and 2 (schemes.Frame).
+    """
+    once_count, twice_count = counts[1], counts[2]
     grow_vertices(edge_points, growth_once, split_once, once_count, vertex_growth)
     place_vertices(points, normals, vertex_growth, own, ring, ring_starts, ring_vertices, vertices)
     place_middles(
@@ -287,3 +290,7 @@ def place_points(
         points, edge_points, edge_wings, is_interior, splits, growth_once, growth_twice,
         first_points, split_twice, twice_count, middles, vertices,
     )  # fmt: skip
+
+
+ROWS = 18
+"""Place of the output, which may be another in every frame, among the arguments of that."""

@@ -17,6 +17,7 @@ allocates nor raises.
 """
 
 import ctypes
+import functools
 import operator
 from collections.abc import Callable
 from typing import Any, cast
@@ -30,22 +31,27 @@ LARGEST_CONSTANT = 6
 """Lengths up to this are part of the code: 2, 3, 4 columns of what there is, 6 of output rows."""
 
 
-class Call:
-    """A kernel with its arguments; calling it runs the machine code."""
+class Call(functools.partial[int]):
+    """A kernel with its arguments; calling it runs the machine code.
 
-    def __init__(self, function: Callable[[int], int], arguments: tuple[object, ...]) -> None:
-        self._function = function
-        self._arguments = list(arguments)  # kept alive, since the code has only their addresses
+    It returns what the kernel returns, 0 for nothing.
+    """
+
+    def __new__(cls, function: Callable[[int], int], arguments: tuple[object, ...]) -> "Call":
+        """Write the list of `arguments`, and let nothing but C stand between a call and it."""
         sizes = [1 + a.ndim if isinstance(a, np.ndarray) else 1 for a in arguments]
-        self._places = [sum(sizes[:k]) for k in range(len(sizes))]
-        self._list = (ctypes.c_int64 * max(1, sum(sizes)))()
-        self._address = ctypes.addressof(self._list)
+        places = (ctypes.c_int64 * max(1, sum(sizes)))()
+        call = super().__new__(cls, function, ctypes.addressof(places))
+        call._list = places
+        call._places = [sum(sizes[:k]) for k in range(len(sizes))]
+        call._arguments = list(arguments)  # kept alive, since the code has only their addresses
         for k, argument in enumerate(arguments):
-            self._write(k, argument)
+            call._write(k, argument)
+        return call
 
-    def __call__(self) -> int:
-        """Run the kernel and return what it returns, 0 for nothing."""
-        return self._function(self._address)
+    _list: "ctypes.Array[ctypes.c_int64]"
+    _places: list[int]
+    _arguments: list[object]
 
     def has(self, arguments: tuple[object, ...]) -> bool:
         """Whether these objects, not others that are equal, are the arguments."""

@@ -166,7 +166,7 @@ def look_up_triangles(
     triangle_rims: Unsigned,
     rim_splits: Small,
     first_points: Unsigned,
-    first_centre: int,
+    counts: npt.NDArray[np.int64],
     rows: Short,
     subtriangle_counts: Small,
     subtriangles: Small,
@@ -178,9 +178,9 @@ def look_up_triangles(
 
     A rim keeps its points in the direction of the edge; a triangle that runs against it reads the
     quarter points in reverse. Centres are numbered in the order of the triangles that have one.
-    `points`: scratch, shape (13,).
+    `counts`: the row of the first of them at 0 (schemes.Frame); `points`: scratch, shape (13,).
     """
-    points[CENTRE] = first_centre
+    points[CENTRE] = counts[0]
     one, two = np.uint32(1), np.uint32(2)  # unsigned, or every index is tested for being negative
     count = np.uint32(0)
     for t in range(corners.shape[0]):
@@ -207,3 +207,7 @@ def look_up_triangles(
             count = np.uint32(count + one)
         points[CENTRE] += subtriangles[row, 0, 0] == CENTRE
     return int(count)
+
+
+TABLE_ROWS, TRIANGLES, SOURCE = 5, 9, 10
+"""Places of what may be another array in every frame, among the arguments of that."""

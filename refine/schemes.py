@@ -11,14 +11,14 @@ split and where in the output their points go:
     detail      cubic, plus what a finer mesh at rest has in addition (detail.py)
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from .connectivity import Connectivity
-from .masks import place_points
+from .masks import ROWS, place_points
 from .native import Call
 from .rings import vertex_rings
 
@@ -53,13 +53,27 @@ class Frame:
     """The edges that are split twice; the first `twice_count` count."""
     rows: Floats
     """The output: x y z, nx ny nz, attributes; row v is vertex v."""
-    once_count: int = 0
-    twice_count: int = 0
+    counts: npt.NDArray[np.int64] = field(default_factory=lambda: np.zeros(4, dtype=np.int64))
+    """Numbers of output rows without centres, of edges that are split, of those split twice, and of
+    subtriangles, shape (4,)."""
     centre_triangles: Unsigned | None = None
     """The triangles with a point in the middle, only with blending; `centre_count` of them."""
     centre_count: int = 0
-    first_centre: int = 0
-    """Output row of the first of these points."""
+
+    @property
+    def first_centre(self) -> int:
+        """Output row of the first of these points."""
+        return int(self.counts[0])
+
+    @property
+    def once_count(self) -> int:
+        """How many edges are split."""
+        return int(self.counts[1])
+
+    @property
+    def twice_count(self) -> int:
+        """How many edges are split twice."""
+        return int(self.counts[2])
 
 
 class Scheme(Protocol):
@@ -107,8 +121,7 @@ class LoopScheme:
         if frame is not self._bound_to:
             self._place_points, self._bound_to = self._bind_to(frame), frame
         place_points = self._place_points
-        for place, argument in ((14, frame.once_count), (16, frame.twice_count), (19, frame.rows)):
-            place_points.put(place, argument)
+        place_points.put(ROWS, frame.rows)
         place_points()
 
     def _bind_to(self, frame: Frame) -> Call:
@@ -129,9 +142,8 @@ class LoopScheme:
             frame.growth_twice,
             frame.first_points,
             frame.split_once,
-            frame.once_count,
             frame.split_twice,
-            frame.twice_count,
+            frame.counts,
             self._vertex_growth,
             self._middles,
             frame.rows,
