@@ -24,7 +24,8 @@ from .arguments import (
     not_finite,
 )
 from .connectivity import Connectivity, connect
-from .normals import bind_normals, with_room
+from .native import with_room
+from .normals import bind_normals
 from .output import GEOMETRY_COLUMNS, place_attributes
 from .plugin import Origins, RefinedMesh, Stream, View
 
@@ -74,8 +75,8 @@ class BoundRefiner(ABC):
         self.connectivity: Connectivity = connect(triangles, len(positions), corners)
         self._rest_positions = positions
         self._positions = with_room(positions)
-        self._points = positions.astype(np.float32)
-        self._normals = np.zeros((len(positions), 3), dtype=np.float32)
+        self._points = with_room(positions.astype(np.float32))
+        self._normals = with_room(np.zeros((len(positions), 3), dtype=np.float32))
         self._take_in = bind_take_in(self._positions, self._points)
         self._find_normals = bind_normals(self._positions, self.connectivity.faces, self._normals)
         self._own_stream: OwnStream | None = None

@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .kernels import kernel
-from .normals import bind_normals, with_room
+from .native import with_room
+from .normals import bind_normals
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]

@@ -20,12 +20,15 @@ import ctypes
 import functools
 import operator
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
+import numpy.typing as npt
 
 from .kernels import Arguments, Compiled, Result
 from .machine_code import load
+
+Rows = TypeVar("Rows", bound=npt.NDArray[Any])
 
 LARGEST_CONSTANT = 6
 """Lengths up to this are part of the code: 2, 3, 4 columns of what there is, 6 of output rows."""
@@ -99,6 +102,21 @@ class Native(Compiled[Arguments, Result]):
 def native(function: Callable[Arguments, Result]) -> Native[Arguments, Result]:
     """Compile `function` for the types of the arguments that it is bound to."""
     return Native(function)
+
+
+def with_room(rows: Rows) -> Rows:
+    """Copy rows of three numbers into memory that goes on for one number behind the last.
+
+    For kernels that read each row with the number behind it: four at once.
+    """
+    copy = np.zeros(rows.size + 1, dtype=rows.dtype)[:-1].reshape(rows.shape)
+    copy[:] = rows
+    return cast(Rows, copy)
+
+
+def has_room(rows: npt.NDArray[Any]) -> bool:
+    """Whether rows were made by `with_room`."""
+    return isinstance(rows.base, np.ndarray) and rows.base.size > rows.size
 
 
 def _type_of(argument: object) -> str:

@@ -10,7 +10,7 @@ origin loses nothing. Normals at rest and in a frame come from the same code: se
 import numpy as np
 import numpy.typing as npt
 
-from .native import Call, native
+from .native import Call, has_room, native
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
@@ -22,19 +22,12 @@ TINY = np.finfo(np.float32).tiny
 """Squared length below which a vector is left as it is instead of being normalised."""
 
 
-def with_room(positions: npt.NDArray[np.floating]) -> Doubles:
-    """Copy positions, shape (V, 3), into memory that goes on for one number behind them."""
-    copy = np.zeros(positions.size + 1)[:-1].reshape(positions.shape)
-    copy[:] = positions
-    return copy
-
-
 def bind_normals(positions: Doubles, faces: Unsigned, normals: Floats) -> Call:
     """Return a call that writes the unit normals of `positions` into `normals`, both (V, 3).
 
     `positions` are made by `with_room`; `faces`: vertices of each triangle, shape (F, 3).
     """
-    assert isinstance(positions.base, np.ndarray) and positions.base.size > positions.size
+    assert has_room(positions)
     return vertex_normals.bind(positions, faces, np.empty((len(positions), 4), np.float32), normals)
 
 

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from .connectivity import Connectivity
 from .masks import ROWS, place_points
-from .native import Call
+from .native import Call, has_room
 from .rings import vertex_rings
 
 Floats = npt.NDArray[np.float32]
@@ -113,7 +113,7 @@ class LoopScheme:
         self._connectivity = connectivity
         self._rings = vertex_rings(connectivity)
         self._vertex_growth = np.zeros(connectivity.vertex_count, dtype=np.float32)
-        self._middles = np.zeros((len(connectivity.edges), 3), dtype=np.float32)
+        self._middles = np.zeros((len(connectivity.edges), 4), dtype=np.float32)
         self._bound_to: Frame | None = None
 
     def place(self, frame: Frame) -> None:
@@ -126,6 +126,7 @@ class LoopScheme:
 
     def _bind_to(self, frame: Frame) -> Call:
         """Bind the compiled passes to the arrays of a frame, which stay, and to others that go."""
+        assert has_room(frame.points) and has_room(frame.normals)
         mesh, rings = self._connectivity, self._rings
         return place_points.bind(
             frame.points,
@@ -135,8 +136,9 @@ class LoopScheme:
             mesh.is_interior,
             rings.own,
             rings.ring,
+            rings.near,
             rings.starts,
-            rings.vertices,
+            rings.others,
             frame.splits,
             frame.growth_once,
             frame.growth_twice,

@@ -23,7 +23,7 @@ from .arguments import AttributeLike
 from .binding import BoundRefiner
 from .connectivity import Connectivity, connect
 from .masks import place_middles, place_vertices
-from .native import Call
+from .native import Call, has_room, with_room
 from .output import GEOMETRY_COLUMNS, copy_wedges
 from .plugin import Origins, Stream, View
 from .rings import Rings, vertex_rings
@@ -47,7 +47,7 @@ class Level:
         self._all_once = np.ones(edge_count, dtype=np.uint8)
         self._all_edges = np.arange(edge_count, dtype=np.uint32)
         self._first_points = self._all_edges + np.uint32(vertex_count)
-        self._middles = np.zeros((edge_count, 3), dtype=np.float32)
+        self._middles = np.zeros((edge_count, 4), dtype=np.float32)
         self._place_vertices: Call | None = None
         self._place_middles: Call | None = None
 
@@ -55,21 +55,23 @@ class Level:
         """Write the moved vertices, then one point per edge, into the first V + E `rows`."""
         if self._place_vertices is None or self._place_middles is None:
             self._place_vertices, self._place_middles = self._bind_to(rows)
-        self._place_vertices.put(7, rows)
+        self._place_vertices.put(8, rows)
         self._place_vertices()
         self._place_middles.put(10, rows)
         self._place_middles()
 
     def _bind_to(self, rows: Floats) -> tuple[Call, Call]:
         rings = self._rings
+        assert has_room(self.points) and has_room(self.normals)
         return place_vertices.bind(
             self.points,
             self.normals,
             self._all_move,
             rings.own,
             rings.ring,
+            rings.near,
             rings.starts,
-            rings.vertices,
+            rings.others,
             rows,
         ), place_middles.bind(
             self.points,
@@ -112,8 +114,8 @@ class Loop(BoundRefiner):
         self._levels = [Level(finest.connectivity, self._points, self._normals)]
         for _ in range(levels - 1):
             finest = finest.subdivided()
-            points = np.zeros((finest.connectivity.vertex_count, 3), dtype=np.float32)
-            self._levels.append(Level(finest.connectivity, points, np.zeros_like(points)))
+            rest = np.zeros((finest.connectivity.vertex_count, 3), dtype=np.float32)
+            self._levels.append(Level(finest.connectivity, with_room(rest), with_room(rest)))
         self._rows = np.zeros((len(self._levels[-1].points), GEOMETRY_COLUMNS), np.float32)
         self._finest = finest.subdivided()
         self._triangles = self._finest.connectivity.corners

@@ -7,7 +7,8 @@ import pytest
 
 import refine
 from refine.criterion import ROUNDING
-from refine.normals import bind_normals, with_room
+from refine.native import with_room
+from refine.normals import bind_normals
 from tests import meshes
 from tests.refine.cases import Forced
 from tests.refine.plain_twin import edge_dots, edge_name
