@@ -78,8 +78,8 @@ def _plain_arrays(matrix: scipy.sparse.csr_matrix) -> tuple[Unsigned, Unsigned, 
 def _loop_rules(mesh: refine.Connectivity) -> scipy.sparse.csr_matrix:
     """Rows: vertices by Warren's weights, then edge points by Loop's; shape (V + E, V)."""
     rings = vertex_rings(mesh)
-    every = np.arange(mesh.vertex_count)
-    further = np.repeat(every, np.diff(rings.starts.astype(np.int64)))
+    every, starts = np.arange(mesh.vertex_count), rings.starts.astype(np.int64)
+    further = np.repeat(every, starts[1:] - starts[:-1])
     centres = np.concatenate([np.repeat(every, rings.near.shape[1]), further])
     around = np.concatenate([rings.near.ravel(), rings.others]).astype(np.int64)
     ring = scipy.sparse.csr_matrix(

@@ -36,9 +36,6 @@ from .criterion import (
 from .detail import FinerMesh
 from .output import (
     CENTRE,
-    SOURCE,
-    TABLE_ROWS,
-    TRIANGLES,
     copy_rims,
     copy_wedges,
     look_up_triangles,
@@ -208,9 +205,9 @@ class Kahler(BoundRefiner):
         frame.rows, triangles, source = self._reserve(stream, vertex_count, triangle_count)
         self._place()
         look_up = self._look_up_triangles
-        look_up.put(TABLE_ROWS, rows)
-        look_up.put(TRIANGLES, triangles)
-        look_up.put(SOURCE, source)
+        look_up.put("rows", rows)
+        look_up.put("triangles", triangles)
+        look_up.put("source", source)
         look_up()
         return vertex_count, triangle_count
 

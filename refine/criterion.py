@@ -158,6 +158,7 @@ class NormalDrop:
             self._mark_drops = mark_drops.bind(
                 normals, self._edges, self._rest_dots, self.thresholds.limits, splits
             )
+        self._mark_drops.put("limits", self.thresholds.limits)  # they may be others by now
         self._mark_drops()
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:

@@ -317,7 +317,3 @@ def place_points(
         points, edge_points, edge_wings, is_interior, splits, growth_once, growth_twice,
         first_points, split_twice, twice_count, middles, vertices,
     )  # fmt: skip
-
-
-ROWS = 19
-"""Place of the output, which may be another in every frame, among the arguments of that."""

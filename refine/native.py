@@ -40,12 +40,18 @@ class Call(functools.partial[int]):
     It returns what the kernel returns, 0 for nothing.
     """
 
-    def __new__(cls, function: Callable[[int], int], arguments: tuple[object, ...]) -> "Call":
-        """Write the list of `arguments`, and let nothing but C stand between a call and it."""
+    def __new__(
+        cls, function: Callable[[int], int], names: tuple[str, ...], arguments: tuple[object, ...]
+    ) -> "Call":
+        """Write the list of `arguments`, and let nothing but C stand between a call and it.
+
+        `names`: those that the arguments have in the kernel.
+        """
         sizes = [1 + a.ndim if isinstance(a, np.ndarray) else 1 for a in arguments]
         places = (ctypes.c_int64 * max(1, sum(sizes)))()
         call = super().__new__(cls, function, ctypes.addressof(places))
         call._list = places
+        call._numbers = {name: k for k, name in enumerate(names)}
         call._places = [sum(sizes[:k]) for k in range(len(sizes))]
         call._arguments = list(arguments)  # kept alive, since the code has only their addresses
         for k, argument in enumerate(arguments):
@@ -53,6 +59,7 @@ class Call(functools.partial[int]):
         return call
 
     _list: "ctypes.Array[ctypes.c_int64]"
+    _numbers: dict[str, int]
     _places: list[int]
     _arguments: list[object]
 
@@ -60,8 +67,9 @@ class Call(functools.partial[int]):
         """Whether these objects, not others that are equal, are the arguments."""
         return all(map(operator.is_, self._arguments, arguments))
 
-    def put(self, k: int, argument: object) -> None:
-        """Replace argument `k`, by one of the same type and the same number of columns."""
+    def put(self, name: str, argument: object) -> None:
+        """Replace an argument by one of the same type and the same number of columns."""
+        k = self._numbers[name]
         if argument is not self._arguments[k]:
             self._arguments[k] = argument
             self._write(k, argument)
@@ -86,7 +94,9 @@ class Native(Compiled[Arguments, Result]):
     def bind(self, *arguments: Arguments.args, **keywords: Arguments.kwargs) -> Call:
         """Return the kernel with these arguments, which are not copied, to be run at any time."""
         assert not keywords, "arguments are bound by position"
-        return Call(load(self, ", ".join(map(_type_of, arguments))), arguments)
+        code = self.py_func.__code__
+        names = code.co_varnames[: code.co_argcount]
+        return Call(load(self, ", ".join(map(_type_of, arguments))), names, arguments)
 
     def again(
         self, before: Call | None, *arguments: Arguments.args, **keywords: Arguments.kwargs

@@ -207,7 +207,3 @@ def look_up_triangles(
             count = np.uint32(count + one)
         points[CENTRE] += subtriangles[row, 0, 0] == CENTRE
     return int(count)
-
-
-TABLE_ROWS, TRIANGLES, SOURCE = 5, 9, 10
-"""Places of what may be another array in every frame, among the arguments of that."""

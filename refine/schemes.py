@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .connectivity import Connectivity
-from .masks import ROWS, place_points
+from .masks import place_points
 from .native import Call, has_room
 from .rings import vertex_rings
 
@@ -121,7 +121,7 @@ class LoopScheme:
         if frame is not self._bound_to:
             self._place_points, self._bound_to = self._bind_to(frame), frame
         place_points = self._place_points
-        place_points.put(ROWS, frame.rows)
+        place_points.put("vertices", frame.rows)
         place_points()
 
     def _bind_to(self, frame: Frame) -> Call:

@@ -55,9 +55,9 @@ class Level:
         """Write the moved vertices, then one point per edge, into the first V + E `rows`."""
         if self._place_vertices is None or self._place_middles is None:
             self._place_vertices, self._place_middles = self._bind_to(rows)
-        self._place_vertices.put(8, rows)
+        self._place_vertices.put("vertices", rows)
         self._place_vertices()
-        self._place_middles.put(10, rows)
+        self._place_middles.put("vertices", rows)
         self._place_middles()
 
     def _bind_to(self, rows: Floats) -> tuple[Call, Call]:

@@ -132,6 +132,22 @@ def test_normals_are_weighted_by_area() -> None:
     assert normals[15].tolist() == [0, 0, 0]
 
 
+def test_thresholds_between_frames() -> None:
+    """Thresholds that are set, or replaced as a whole, count from the next frame on."""
+    mesh = meshes.irregular(3)
+    deformed = meshes.wrinkled(mesh, 4)
+    criterion = refine.NormalDrop(0.02, 0.08)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
+    refiner.refine(deformed)
+    assert set(refiner.splits.tolist()) == {0, 1, 2}
+    criterion.thresholds.twice = np.float32(np.inf)
+    refiner.refine(deformed)
+    assert set(refiner.splits.tolist()) == {0, 1}
+    criterion.thresholds = refine.NormalDrop(3.0, 3.0).thresholds
+    refiner.refine(deformed)
+    assert not refiner.splits.any()
+
+
 @pytest.mark.parametrize("thresholds", [(-0.1, 0.2), (0.3, 0.2), (float("nan"), 1.0)])
 def test_bad_thresholds(thresholds: tuple[float, float]) -> None:
     """Thresholds out of order are refused with the rule they break."""

@@ -79,8 +79,10 @@ def test_bound_arguments(columns: int) -> None:
     flags[:] = False
     assert call() == 10
     longer = np.ones((5, columns), dtype=np.float32), np.ones(5, dtype=bool), np.zeros((5, columns))
-    for k, argument in enumerate([*longer[:2], longer[2].astype(np.float32), -1]):
-        call.put(k, argument)
+    call.put("rows", longer[0])
+    call.put("flags", longer[1])
+    call.put("scaled", longer[2].astype(np.float32))
+    call.put("add", -1)
     assert call() == 4
 
 
