@@ -47,8 +47,7 @@ def refine_text(report: Report) -> str:
             "",
             "From numpy's import to the first refined frame: "
             f"{report.starts.first:.1f} s when kernels compile, once; then "
-            f"{report.starts.later:.2f} s (best {report.starts.best_later:.2f} s), of which "
-            f"numba's own import takes {report.starts.numba:.2f} s.",
+            f"{report.starts.later:.2f} s (best {report.starts.best_later:.2f} s).",
         ]
     lines += ["", *report.missing] if report.missing else []
     lines += ["", "Targets, by medians:", *_targets(report)]

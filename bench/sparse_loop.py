@@ -78,11 +78,12 @@ def _plain_arrays(matrix: scipy.sparse.csr_matrix) -> tuple[Unsigned, Unsigned, 
 def _loop_rules(mesh: refine.Connectivity) -> scipy.sparse.csr_matrix:
     """Rows: vertices by Warren's weights, then edge points by Loop's; shape (V + E, V)."""
     rings = vertex_rings(mesh)
-    starts = rings.starts.astype(np.int64)
-    vertex = np.repeat(np.arange(mesh.vertex_count), starts[1:] - starts[:-1])
+    every, starts = np.arange(mesh.vertex_count), rings.starts.astype(np.int64)
+    further = np.repeat(every, starts[1:] - starts[:-1])
+    centres = np.concatenate([np.repeat(every, rings.near.shape[1]), further])
+    around = np.concatenate([rings.near.ravel(), rings.others]).astype(np.int64)
     ring = scipy.sparse.csr_matrix(
-        (rings.ring[vertex], (vertex, rings.vertices.astype(np.int64))),
-        shape=(mesh.vertex_count, mesh.vertex_count),
+        (rings.ring[centres], (centres, around)), shape=(mesh.vertex_count, mesh.vertex_count)
     )
     edge_count = len(mesh.edges)
     weights = np.where(
@@ -94,7 +95,9 @@ def _loop_rules(mesh: refine.Connectivity) -> scipy.sparse.csr_matrix:
         shape=(edge_count, mesh.vertex_count),
     )
     edges.eliminate_zeros()
-    return scipy.sparse.vstack([scipy.sparse.diags(rings.own) + ring, edges]).tocsr()
+    vertices = scipy.sparse.diags(rings.own) + ring
+    vertices.eliminate_zeros()
+    return scipy.sparse.vstack([vertices, edges]).tocsr()
 
 
 def _midpoint_rules(mesh: refine.Connectivity) -> scipy.sparse.csr_matrix:

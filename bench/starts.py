@@ -22,13 +22,11 @@ PROGRAM = """
 import time
 import numpy
 start = time.perf_counter()
-import numba
-numba_is_there = time.perf_counter() - start
 import refine
 faces = numpy.array([[0, 1, 2], [2, 1, 3]])
 rest = numpy.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
 refine.create("kahler", faces, rest).refine(rest + rest[:, :1] * rest[:, 1:2])
-print(time.perf_counter() - start, numba_is_there)
+print(time.perf_counter() - start)
 """
 PEAK_PROGRAM = """
 import sys
@@ -60,16 +58,14 @@ class Starts:
     later: float
     """Kernels loaded from disk: median of five."""
     best_later: float
-    numba: float
-    """Of a later one, the import of numba alone: median of five."""
 
 
 def measure_starts() -> Starts:
     """Start interpreters with an empty cache of their own: once to fill it, then again."""
     with tempfile.TemporaryDirectory() as cache:
-        first, _ = _start(cache)
-        later, numba = zip(*(_start(cache) for _ in range(REPEATS)), strict=True)
-    return Starts(first, float(np.median(later)), min(later), float(np.median(numba)))
+        first = _start(cache)
+        later = [_start(cache) for _ in range(REPEATS)]
+    return Starts(first, float(np.median(later)), min(later))
 
 
 def measure_peak(load: Load, once: float, twice: float) -> float | None:
@@ -85,9 +81,8 @@ def measure_peak(load: Load, once: float, twice: float) -> float | None:
         return 1.024e-3 * float(_run(PEAK_PROGRAM, folder, str(once), str(twice)))
 
 
-def _start(cache: str) -> tuple[float, float]:
-    total, numba = map(float, _run(PROGRAM, cache=cache).split())
-    return total, numba
+def _start(cache: str) -> float:
+    return float(_run(PROGRAM, cache=cache))
 
 
 def _run(program: str, *arguments: str, cache: str | None = None) -> str:

@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from .arguments import AttributeLike
 from .binding import BoundRefiner
-from .blend import grow, grow_fully, number_centres, place_centres
+from .blend import grow, number_centres, place_centres
 from .choices import scheme_of
 from .coherence_pass import Coherent
 from .criteria import criterion_of
@@ -32,10 +32,15 @@ from .criterion import (
     Criterion,
     Measured,
     NormalDrop,
-    vertex_normals,
 )
 from .detail import FinerMesh
-from .output import CENTRE, copy_rims, copy_wedges, look_up_triangles, number_points
+from .output import (
+    CENTRE,
+    copy_rims,
+    copy_wedges,
+    look_up_triangles,
+    number_points,
+)
 from .patterns import (
     CONFIGURATIONS,
     FANS,
@@ -93,6 +98,7 @@ class Kahler(BoundRefiner):
         if hasattr(self._criterion, "use"):
             self._criterion.use(self._scheme)
         self._looks = hasattr(self._criterion, "look")
+        self._is_foreign = not isinstance(self._criterion, NormalDrop)
         self._blend = blend
         self._patterns = _patterns_of(blend, coherent, len(mesh.faces))
         if blend and not isinstance(self._criterion, Measured):
@@ -101,7 +107,7 @@ class Kahler(BoundRefiner):
                 "has no method measure(positions, normals, need)"
             )
         self._make_buffers()
-        vertex_normals(self._rest_positions, mesh.faces, self._normals)
+        self._find_normals()
         self._criterion.bind(mesh, self._rest_positions, self._normals)
         self._scheme.bind(mesh, self._rest_positions, self._normals)
 
@@ -114,14 +120,15 @@ class Kahler(BoundRefiner):
         self._splits = self._edge_splits.view()
         self._splits.flags.writeable = False
         self._configurations = np.zeros(len(mesh.faces) + 1, dtype=np.uint16)
+        self._triangle_configurations = self._configurations[:-1]
         self._need = np.zeros(edge_count if self._blend else 0, dtype=np.float32)
         self._frame = Frame(
             positions=self._positions,
             points=self._points,
             normals=self._normals,
             splits=self._rim_splits,
-            growth_once=np.zeros(edge_count, dtype=np.float32),
-            growth_twice=np.zeros(edge_count, dtype=np.float32),
+            growth_once=np.ones(edge_count, dtype=np.float32),
+            growth_twice=np.ones(edge_count, dtype=np.float32),
             first_points=np.zeros(rim_count + 1, dtype=np.uint32),
             split_once=np.zeros(edge_count + 1, dtype=np.uint32),
             split_twice=np.zeros(edge_count + 1, dtype=np.uint32),
@@ -129,6 +136,36 @@ class Kahler(BoundRefiner):
         )
         if self._blend:
             self._frame.centre_triangles = np.zeros(len(mesh.faces) + 1, dtype=np.uint32)
+        self._bind_passes()
+
+    def _bind_passes(self) -> None:
+        """Bind the compiled passes of a frame to their arguments."""
+        mesh, frame, patterns = self.connectivity, self._frame, self._patterns
+        self._number_points = number_points.bind(
+            self._rim_splits,
+            mesh.rim_edges,
+            mesh.edge_sides,
+            mesh.more_sides,
+            len(mesh.wedge_vertices),
+            frame.first_points,
+            frame.split_once,
+            frame.split_twice,
+            self._configurations,
+            frame.counts,
+        )
+        self._look_up_triangles = look_up_triangles.bind(
+            mesh.corners,
+            mesh.triangle_rims,
+            self._rim_splits,
+            frame.first_points,
+            frame.counts,
+            self._configurations,
+            patterns.counts,
+            patterns.subtriangles,
+            np.zeros(CENTRE + 1, dtype=np.uint32),
+            np.zeros((0, 3), dtype=np.uint32),
+            np.zeros(0, dtype=np.int32),
+        )
 
     @property
     def history(self) -> Coherent | None:
@@ -154,22 +191,12 @@ class Kahler(BoundRefiner):
         return most * len(self.connectivity.faces)
 
     def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
-        mesh, frame, patterns = self.connectivity, self._frame, self._patterns
-        vertex_normals(self._positions, mesh.faces, self._normals)
+        frame, patterns = self._frame, self._patterns
+        self._find_normals()
         self._mark(view)
-        vertex_count, frame.once_count, frame.twice_count, triangle_count = number_points(
-            self._rim_splits,
-            mesh.rim_edges,
-            mesh.edge_sides,
-            mesh.more_sides,
-            len(mesh.wedge_vertices),
-            frame.first_points,
-            frame.split_once,
-            frame.split_twice,
-            self._configurations,
-        )
-        rows = patterns.rows(self._configurations[:-1])
-        frame.first_centre = vertex_count
+        self._number_points()
+        vertex_count, _, _, triangle_count = frame.counts.tolist()
+        rows = patterns.rows(self._triangle_configurations)
         if frame.centre_triangles is not None:
             frame.centre_count, triangle_count = number_centres(
                 rows, patterns.counts, patterns.subtriangles, CENTRE, frame.centre_triangles
@@ -177,18 +204,11 @@ class Kahler(BoundRefiner):
             vertex_count += frame.centre_count
         frame.rows, triangles, source = self._reserve(stream, vertex_count, triangle_count)
         self._place()
-        look_up_triangles(
-            mesh.corners,
-            mesh.triangle_rims,
-            self._rim_splits,
-            frame.first_points,
-            frame.first_centre,
-            rows,
-            patterns.counts,
-            patterns.subtriangles,
-            triangles,
-            source,
-        )
+        look_up = self._look_up_triangles
+        look_up.put("rows", rows)
+        look_up.put("triangles", triangles)
+        look_up.put("source", source)
+        look_up()
         return vertex_count, triangle_count
 
     def _mark(self, view: View | None) -> None:
@@ -201,9 +221,8 @@ class Kahler(BoundRefiner):
             grow(self._need, self._edge_splits, frame.growth_once, frame.growth_twice)
             return
         criterion.mark(self._positions, self._normals, self._edge_splits)
-        if not isinstance(criterion, NormalDrop):
+        if self._is_foreign:
             self._check_splits()
-        grow_fully(self._edge_splits, frame.growth_once, frame.growth_twice)
 
     def _place(self) -> None:
         """Write all rows: points by the scheme, copies along seams, attributes, centres."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .kernels import kernel
+from .native import Call, native
 
 AttributeLike = npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]
 """Values of each vertex, shape (V, k), or values (A, k) and the row of each corner (F, 3)."""
@@ -168,24 +168,28 @@ def _checked_values(
     return np.array(array, dtype=np.float32), rows
 
 
-def take_in(positions: npt.NDArray[np.float64], points: npt.NDArray[np.float32]) -> None:
-    """Write positions, shape (V, 3), as single precision into `points`.
+def bind_take_in(positions: npt.NDArray[np.float64], points: npt.NDArray[np.float32]) -> Call:
+    """Return a call that writes positions, shape (V, 3), as single precision into `points`.
 
-    Raises ValueError if they are not numbers: what moves the mesh has blown up.
+    It returns 0 if they are not numbers: what moves the mesh has blown up.
     """
-    if not round_finite(positions.reshape(-1), points.reshape(-1)):
-        bad = np.flatnonzero(~np.isfinite(positions).all(axis=1))
-        raise ValueError(
-            f"positions must be finite, but vertex {bad[0]} is {positions[bad[0]]} "
-            f"({len(bad)} such vertices in all); what moves the mesh has blown up"
-        )
+    return round_finite.bind(positions.reshape(-1), points.reshape(-1))
 
 
-@kernel
-def round_finite(numbers: npt.NDArray[np.float64], rounded: npt.NDArray[np.float32]) -> bool:
-    """Write numbers as single precision; return whether there is no NaN and no infinity."""
+def not_finite(positions: npt.NDArray[np.float64]) -> str:
+    """Say which of the positions of a frame are not numbers."""
+    bad = np.flatnonzero(~np.isfinite(positions).all(axis=1))
+    return (
+        f"positions must be finite, but vertex {bad[0]} is {positions[bad[0]]} "
+        f"({len(bad)} such vertices in all); what moves the mesh has blown up"
+    )
+
+
+@native
+def round_finite(numbers: npt.NDArray[np.float64], rounded: npt.NDArray[np.float32]) -> int:
+    """Write numbers as single precision; return 1 if there is no NaN and no infinity, else 0."""
     finite = 0  # counted, not left early: so the loop takes several at a time
-    for k in range(len(numbers)):
+    for k in range(numbers.shape[0]):
         rounded[k] = numbers[k]
         finite += abs(numbers[k]) < np.inf
-    return finite == len(numbers)
+    return int(finite == numbers.shape[0])

@@ -16,13 +16,16 @@ import numpy.typing as npt
 
 from .arguments import (
     AttributeLike,
+    bind_take_in,
     check_lent,
     checked_corner_values,
     checked_indices,
     checked_positions,
-    take_in,
+    not_finite,
 )
 from .connectivity import Connectivity, connect
+from .native import with_room
+from .normals import bind_normals
 from .output import GEOMETRY_COLUMNS, place_attributes
 from .plugin import Origins, RefinedMesh, Stream, View
 
@@ -71,9 +74,11 @@ class BoundRefiner(ABC):
         corners = None if self._values is None else self._values.corners
         self.connectivity: Connectivity = connect(triangles, len(positions), corners)
         self._rest_positions = positions
-        self._positions = positions.copy()
-        self._points = positions.astype(np.float32)
-        self._normals = np.zeros((len(positions), 3), dtype=np.float32)
+        self._positions = with_room(positions)
+        self._points = with_room(positions.astype(np.float32))
+        self._normals = with_room(np.zeros((len(positions), 3), dtype=np.float32))
+        self._take_in = bind_take_in(self._positions, self._points)
+        self._find_normals = bind_normals(self._positions, self.connectivity.faces, self._normals)
         self._own_stream: OwnStream | None = None
         self._accepted: tuple[object, object, object] = (None, None, None)
 
@@ -141,7 +146,8 @@ class BoundRefiner(ABC):
                 f"was bound, got {positions.dtype} of shape {positions.shape}"
             )
         np.copyto(self._positions, positions)
-        take_in(self._positions, self._points)
+        if not self._take_in():
+            raise ValueError(not_finite(self._positions))
         stream = self._lend_own_stream() if out is None else out
         if not hasattr(stream, "reserve"):
             self._accept(stream, self.vertex_capacity, self.triangle_capacity)

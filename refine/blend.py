@@ -60,14 +60,6 @@ def grow(need: Floats, splits: Small, growth_once: Floats, growth_twice: Floats)
 
 
 @kernel
-def grow_fully(splits: Small, growth_once: Floats, growth_twice: Floats) -> None:
-    """Without blending: a point that is there has grown."""
-    for e in range(growth_once.shape[0]):
-        growth_once[e] = splits[e] > 0
-        growth_twice[e] = splits[e] > 1
-
-
-@kernel
 def number_centres(
     rows: Short, counts: Small, subtriangles: Small, centre: int, centre_triangles: Unsigned
 ) -> tuple[int, int]:

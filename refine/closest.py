@@ -11,8 +11,9 @@ After Ericson 2005, "Real-time collision detection", section 5.1.5, for one tria
 import numpy as np
 import numpy.typing as npt
 
-from .criterion import vertex_normals
 from .kernels import kernel
+from .native import with_room
+from .normals import bind_normals
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
@@ -34,7 +35,7 @@ class Surface:
         self.positions = positions
         self.faces = faces
         self.normals = np.zeros(positions.shape, dtype=np.float32)
-        vertex_normals(positions, faces, self.normals)
+        bind_normals(with_room(positions), faces, self.normals)()
         used = np.unique(faces)
         order = np.argsort(faces.ravel(), kind="stable")
         counts = np.bincount(faces.ravel(), minlength=len(positions))

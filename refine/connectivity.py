@@ -32,7 +32,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .kernels import kernel
+from .native import native
 
 Indices = npt.NDArray[np.int32]
 Unsigned = npt.NDArray[np.uint32]
@@ -96,7 +96,9 @@ def connect(
     edges = np.empty((half_edge_count, 2), dtype=np.int32)
     sides = np.full((half_edge_count, 2), 4 * len(corners), dtype=np.uint32)
     side_counts = np.zeros(half_edge_count, dtype=np.int32)
-    edge_count = find_edges(corners, vertex_count, edge_of, edges, sides, side_counts)
+    heads = np.full(2 * vertex_count, -1, dtype=np.int32)
+    following = np.empty(half_edge_count, dtype=np.int32)
+    edge_count = find_edges(corners, edge_of, edges, sides, side_counts, heads, following)
     edges, sides = edges[:edge_count].copy(), sides[:edge_count].copy()
     edge_points = np.empty((edge_count, 4), dtype=np.uint32)
     edge_wings = np.empty((edge_count, 4), dtype=np.uint32)
@@ -129,22 +131,22 @@ def connect(
     )
 
 
-@kernel
+@native
 def find_edges(
     faces: Unsigned,
-    vertex_count: int,
     edge_of: Indices,
     edges: Indices,
     sides: Unsigned,
     side_counts: Indices,
+    heads: Indices,
+    following: Indices,
 ) -> int:
     """Number the edges in the order of their first use, and return how many there are.
 
     The order keeps neighbours in the mesh near each other in memory. Edges are found again in
     lists that are chained by the sum of their end points: short ones, however large a valence is.
+    `heads`: -1 for every sum; `following`: scratch, as long as `edge_of`.
     """
-    heads = np.full(2 * vertex_count, -1, np.int32)
-    following = np.empty(len(edge_of), np.int32)
     count = 0
     for t in range(faces.shape[0]):
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
@@ -172,7 +174,7 @@ def find_edges(
     return count
 
 
-@kernel
+@native
 def look_around(
     faces: Unsigned,
     edge_of: Indices,

@@ -7,12 +7,9 @@ its triangles were made for.
     drop = rest dot product - current dot product;  one split above `threshold_once`,
                                                     two splits above `threshold_twice`
 
-Vertex normals are weighted by area: the cross products of the incident triangles, summed and
-normalised. (The paper does not say; this needs no weights and lets large triangles decide.)
-
 Rounding. Rest and current values come from the same kernel, so an undeformed mesh drops by exactly
-0. Edge vectors are taken in double precision before the rest is done in single, so a mesh far from
-the origin loses nothing. What a rigid motion leaves is rounding, and drops up to `ROUNDING` never
+0. Edge vectors are taken in double precision (normals.py), so a mesh far from the origin loses
+nothing. What a rigid motion leaves is rounding, and drops up to `ROUNDING` never
 split an edge. Measured on two heads of 2030 triangles in millimetres: 8e-7 for float64 positions
 wherever they are; float32 positions lose bits before they arrive here, 8e-6 around the origin, 9e-5
 one metre away, still far below the default thresholds.
@@ -25,6 +22,7 @@ import numpy.typing as npt
 
 from .connectivity import Connectivity
 from .kernels import kernel
+from .native import Call, native
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
@@ -44,9 +42,6 @@ NARROWEST = 1e-6
 """Least distance of two thresholds; where they are equal there is nothing to blend over."""
 UNDEFINED_NORMAL = 1e-6
 """A normal shorter than this fraction of the lengths that made it is rounding, not a direction."""
-
-TINY = np.finfo(np.float32).tiny
-"""Squared length below which a vector is left as it is instead of being normalised."""
 
 
 class Criterion(Protocol):
@@ -94,8 +89,25 @@ class Thresholds:
                 "0 <= threshold_once <= threshold_twice (inf switches a level off), "
                 f"got {once!r} and {twice!r}"
             )
-        self.once = np.float32(max(float(once), least))
-        self.twice = np.float32(max(float(twice), least))
+        self.limits = np.array([max(float(once), least), max(float(twice), least)], np.float32)
+
+    @property
+    def once(self) -> np.float32:
+        """Above this an edge is split; may be set at any time."""
+        return np.float32(self.limits[0])
+
+    @once.setter
+    def once(self, limit: float) -> None:
+        self.limits[0] = limit
+
+    @property
+    def twice(self) -> np.float32:
+        """Above this an edge is split twice; may be set at any time."""
+        return np.float32(self.limits[1])
+
+    @twice.setter
+    def twice(self, limit: float) -> None:
+        self.limits[1] = limit
 
     @property
     def width(self) -> np.float32:
@@ -130,68 +142,35 @@ class NormalDrop:
         self._edges = connectivity.edges.view(np.uint32)
         self._rest_dots = np.empty(len(self._edges), dtype=np.float32)
         edge_dots(rest_normals, self._edges, self._rest_dots)
+        self._marked: tuple[Floats | None, Small | None] = (None, None)
+        self._measuring: Call | None = None
         # No direction to compare with at rest (all triangles around are slivers): never split.
         undefined = np.empty(len(rest_positions), dtype=np.bool_)
-        find_undefined_normals(connectivity.faces, rest_positions, UNDEFINED_NORMAL, undefined)
+        sums = np.zeros((len(rest_positions), 4))
+        find_undefined_normals(connectivity.faces, rest_positions, sums, undefined)
         if undefined.any():
             self._rest_dots[undefined[self._edges].any(axis=1)] = -np.inf
 
     def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write the number of splits of every edge into `splits`, shape (E,)."""
-        limits = self.thresholds
-        mark_drops(normals, self._edges, self._rest_dots, limits.once, limits.twice, splits)
+        if self._marked[0] is not normals or self._marked[1] is not splits:
+            self._marked = normals, splits
+            self._mark_drops = mark_drops.bind(
+                normals, self._edges, self._rest_dots, self.thresholds.limits, splits
+            )
+        self._mark_drops.put("limits", self.thresholds.limits)  # they may be others by now
+        self._mark_drops()
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
         limits = self.thresholds
-        edge_dots(normals, self._edges, need)
+        self._measuring = edge_dots.again(self._measuring, normals, self._edges, need)
+        self._measuring()
         needs_of_drops(need, self._rest_dots, limits.once, limits.width, limits.most)
 
 
-@kernel
-def vertex_normals(
-    positions: npt.NDArray[np.float64],
-    faces: npt.NDArray[np.uint32],
-    normals: npt.NDArray[np.float32],
-) -> None:
-    """Write the area-weighted unit normal of every vertex into `normals`, shape (V, 3).
-
-    Zero where a vertex has no triangle with an area.
-    """
-    # Flat: the compiler then knows how far apart the numbers are, and takes several at a time.
-    flat = normals.reshape(-1)
-    for k in range(len(flat)):
-        flat[k] = np.float32(0.0)
-    for t in range(faces.shape[0]):
-        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        ux = np.float32(positions[b, 0] - positions[a, 0])
-        uy = np.float32(positions[b, 1] - positions[a, 1])
-        uz = np.float32(positions[b, 2] - positions[a, 2])
-        vx = np.float32(positions[c, 0] - positions[a, 0])
-        vy = np.float32(positions[c, 1] - positions[a, 1])
-        vz = np.float32(positions[c, 2] - positions[a, 2])
-        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        normals[a, 0] += x
-        normals[a, 1] += y
-        normals[a, 2] += z
-        normals[b, 0] += x
-        normals[b, 1] += y
-        normals[b, 2] += z
-        normals[c, 0] += x
-        normals[c, 1] += y
-        normals[c, 2] += z
-    for v in range(normals.shape[0]):
-        x, y, z = flat[3 * v], flat[3 * v + 1], flat[3 * v + 2]
-        scale = np.float32(1.0) / np.sqrt(max(x * x + y * y + z * z, TINY))
-        flat[3 * v], flat[3 * v + 1], flat[3 * v + 2] = x * scale, y * scale, z * scale
-
-
-@kernel
-def edge_dots(
-    normals: npt.NDArray[np.float32],
-    edges: npt.NDArray[np.uint32],
-    dots: npt.NDArray[np.float32],
-) -> None:
+@native
+def edge_dots(normals: Floats, edges: npt.NDArray[np.uint32], dots: Floats) -> None:
     """Write the dot product of the normals at both ends of every edge into `dots`, shape (E,)."""
     for e in range(edges.shape[0]):
         a, b = edges[e, 0], edges[e, 1]
@@ -202,16 +181,19 @@ def edge_dots(
         )
 
 
-@kernel
+@native
 def mark_drops(
-    normals: npt.NDArray[np.float32],
+    normals: Floats,
     edges: npt.NDArray[np.uint32],
-    rest_dots: npt.NDArray[np.float32],
-    once: np.float32,
-    twice: np.float32,
-    splits: npt.NDArray[np.uint8],
+    rest_dots: Floats,
+    limits: Floats,
+    splits: Small,
 ) -> None:
-    """Write 0, 1 or 2 into `splits`, shape (E,), by the drop of the dot product (as above)."""
+    """Write 0, 1 or 2 into `splits`, shape (E,), by the drop of the dot product (as above).
+
+    `limits`: the two thresholds, shape (2,).
+    """
+    once, twice = limits[0], limits[1]
     for e in range(edges.shape[0]):
         a, b = edges[e, 0], edges[e, 1]
         drop = rest_dots[e] - (
@@ -231,15 +213,17 @@ def needs_of_drops(
         need[e] = min((rest_dots[e] - need[e] - once) / width, most)
 
 
-@kernel
+@native
 def find_undefined_normals(
     faces: npt.NDArray[np.uint32],
     positions: Doubles,
-    limit: float,
+    sums: Doubles,
     undefined: npt.NDArray[np.bool_],
 ) -> None:
-    """Flag the vertices, shape (V,), whose normal is nothing but rounding."""
-    sums = np.zeros((positions.shape[0], 4))
+    """Flag the vertices, shape (V,), whose normal is nothing but rounding.
+
+    `sums`: zeros, shape (V, 4).
+    """
     for t in range(faces.shape[0]):
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
         ux, vx = positions[b, 0] - positions[a, 0], positions[c, 0] - positions[a, 0]
@@ -254,4 +238,4 @@ def find_undefined_normals(
             sums[v, 3] += size
     for v in range(positions.shape[0]):
         length = np.sqrt(sums[v, 0] ** 2 + sums[v, 1] ** 2 + sums[v, 2] ** 2)
-        undefined[v] = length <= limit * sums[v, 3]
+        undefined[v] = length <= UNDEFINED_NORMAL * sums[v, 3]

@@ -88,7 +88,7 @@ class CurveScheme:
                 split_once=every_edge,
                 split_twice=every_edge,
                 rows=none,
-                once_count=edge_count,
+                counts=np.array([0, edge_count, 0, 0]),
             )
         self._bulge(frame, self._bulges)
         return self._bulges

@@ -38,18 +38,28 @@ each edge, and 1 always unless the frame is blended (blend.py). A mix with growt
 of its two sides to the last bit, so the same code serves both.
 
 Normals of new points are interpolated between their two neighbours on the edge and normalised
-(section 4.4, first paragraph). Whole passes and not one function per point: numba pays for every
-array argument of a call, and a call per element made such loops five times slower (measured).
+(section 4.4, first paragraph).
+
+Positions are handled four numbers at a time, three and the one behind: the compiler makes one
+instruction of what would be three, as long as everything is read before anything is written, and
+the fourth number is used to the end. So a row of the output gets its position first and then, over
+the fourth number, its normal (half the time on an edge that is split twice).
 """
 
 import numpy as np
 import numpy.typing as npt
 
 from .kernels import kernel
+from .native import native
 
 Floats = npt.NDArray[np.float32]
 Unsigned = npt.NDArray[np.uint32]
 
+Four = tuple[np.float32, np.float32, np.float32, np.float32]
+"""A position and one number more, of no meaning: three numbers take three steps, four take one."""
+
+NEAR = 8
+"""Neighbours that every vertex has in its table (rings.py)."""
 EDGE_END = np.float32(3 / 8)
 """First and second level, interior: end points of the edge or half-edge (Fig. 3, Fig. 4 left)."""
 EDGE_WING = np.float32(1 / 8)
@@ -79,13 +89,45 @@ def unit(x: np.float32, y: np.float32, z: np.float32) -> tuple[np.float32, np.fl
     return x * scale, y * scale, z * scale
 
 
-@kernel
-def mix(from_: np.float32, to: np.float32, growth: np.float32) -> np.float32:
+@native
+def four(rows: Floats, k: int | np.uint32) -> Four:
+    """Position k and the number behind it, whatever that is: four are read as one."""
+    return rows[k, 0], rows[k, 1], rows[k, 2], rows[k, 3]
+
+
+@native
+def plus(p: Four, q: Four) -> Four:
+    """Sum."""
+    return p[0] + q[0], p[1] + q[1], p[2] + q[2], p[3] + q[3]
+
+
+@native
+def times(weight: np.float32, p: Four) -> Four:
+    """Multiple."""
+    return weight * p[0], weight * p[1], weight * p[2], weight * p[3]
+
+
+@native
+def mix(from_: Four, to: Four, growth: np.float32) -> Four:
     """One side at growth 0, the other at growth 1, to the last bit."""
-    return (ONE - growth) * from_ + growth * to
+    return plus(times(ONE - growth, from_), times(growth, to))
 
 
-@kernel
+@native
+def write(rows: Floats, k: int | np.uint32, p: Four) -> None:
+    """Write a position and the number behind it, over which a normal goes in rows of the output."""
+    rows[k, 0], rows[k, 1], rows[k, 2], rows[k, 3] = p
+
+
+@native
+def write_normal(
+    vertices: Floats, row: int | np.uint32, x: np.float32, y: np.float32, z: np.float32
+) -> None:
+    """Write a normal, after its position."""
+    vertices[row, 3], vertices[row, 4], vertices[row, 5] = x, y, z
+
+
+@native
 def grow_vertices(
     edge_points: Unsigned,
     growth_once: Floats,
@@ -94,45 +136,46 @@ def grow_vertices(
     vertex_growth: Floats,
 ) -> None:
     """A vertex moves as much as the most grown edge at it: 0 where none is split."""
-    vertex_growth[:] = ZERO
+    for v in range(vertex_growth.shape[0]):
+        vertex_growth[v] = ZERO
     for k in range(once_count):
         e = split_once[k]
         a, b, growth = edge_points[e, 0], edge_points[e, 1], growth_once[e]
-        vertex_growth[a] = max(vertex_growth[a], growth)
-        vertex_growth[b] = max(vertex_growth[b], growth)
+        if growth == ONE:  # there is no more: nothing has to be read, and nothing waits for it
+            vertex_growth[a] = vertex_growth[b] = ONE
+        else:
+            vertex_growth[a] = max(vertex_growth[a], growth)
+            vertex_growth[b] = max(vertex_growth[b], growth)
 
 
-@kernel
+@native
 def place_vertices(
     points: Floats,
     normals: Floats,
     vertex_growth: Floats,
     own: Floats,
     ring: Floats,
-    ring_starts: Unsigned,
-    ring_vertices: Unsigned,
+    near: Unsigned,
+    starts: Unsigned,
+    others: Unsigned,
     vertices: Floats,
 ) -> None:
     """Write the original vertices, those at split edges moved by the vertex rule (Fig. 3)."""
     for v in range(points.shape[0]):
-        x = points[v, 0]
-        y = points[v, 1]
-        z = points[v, 2]
+        point = four(points, v)
         if vertex_growth[v] > ZERO:
-            sum_x = sum_y = sum_z = ZERO
-            for k in range(ring_starts[v], ring_starts[v + 1]):
-                neighbour = ring_vertices[k]
-                sum_x += points[neighbour, 0]
-                sum_y += points[neighbour, 1]
-                sum_z += points[neighbour, 2]
-            x = mix(x, own[v] * x + ring[v] * sum_x, vertex_growth[v])
-            y = mix(y, own[v] * y + ring[v] * sum_y, vertex_growth[v])
-            z = mix(z, own[v] * z + ring[v] * sum_z, vertex_growth[v])
-        vertices[v, 0], vertices[v, 1], vertices[v, 2] = x, y, z
-        vertices[v, 3], vertices[v, 4], vertices[v, 5] = normals[v, 0], normals[v, 1], normals[v, 2]
+            total = four(points, near[v, 0])
+            for k in range(1, NEAR):
+                total = plus(total, four(points, near[v, k]))
+            for k in range(starts[v], starts[v + 1]):
+                total = plus(total, four(points, others[k]))
+            moved = plus(times(own[v], point), times(ring[v], total))
+            point = mix(point, moved, vertex_growth[v])
+        write(vertices, v, point)
+        write_normal(vertices, v, normals[v, 0], normals[v, 1], normals[v, 2])
 
 
-@kernel
+@native
 def place_middles(
     points: Floats,
     normals: Floats,
@@ -152,42 +195,43 @@ def place_middles(
         a, b, c, d = edge_points[e, 0], edge_points[e, 1], edge_points[e, 2], edge_points[e, 3]
         row = np.uint32(first_points[e] + (splits[e] >> 1))
         end, wing = (EDGE_END, EDGE_WING) if is_interior[e] else (BORDER_EDGE_END, ZERO)
-        growth = growth_once[e]
-        for i in range(3):
-            ends = points[a, i] + points[b, i]
-            wings = points[c, i] + points[d, i]
-            middle = end * ends + wing * wings
-            middles[e, i] = vertices[row, i] = middle
-        if growth < ONE:
-            for i in range(3):
-                straight = HALF * (vertices[a, i] + vertices[b, i])
-                vertices[row, i] = mix(straight, middles[e, i], growth)
-        vertices[row, 3], vertices[row, 4], vertices[row, 5] = unit(
-            normals[a, 0] + normals[b, 0],
-            normals[a, 1] + normals[b, 1],
-            normals[a, 2] + normals[b, 2],
-        )
+        ends, wings = plus(four(points, a), four(points, b)), plus(four(points, c), four(points, d))
+        middle = plus(times(end, ends), times(wing, wings))
+        write(middles, e, middle)
+        if growth_once[e] < ONE:
+            straight = times(HALF, plus(four(vertices, a), four(vertices, b)))
+            middle = mix(straight, middle, growth_once[e])
+        write(vertices, row, middle)
+        normal = plus(four(normals, a), four(normals, b))
+        x, y, z = unit(normal[0], normal[1], normal[2])
+        write_normal(vertices, row, x, y, z)
 
 
-@kernel
-def place_quarter_normals(vertices: Floats, a: int, b: int, near_a: int) -> None:
-    """Write the normals of both quarter points of an edge from a to b; the middle has its own."""
-    centre, near_b = np.uint32(near_a + 1), np.uint32(near_a + 2)
-    x, y, z = vertices[centre, 3], vertices[centre, 4], vertices[centre, 5]
-    vertices[near_a, 3], vertices[near_a, 4], vertices[near_a, 5] = unit(
-        vertices[a, 3] + x, vertices[a, 4] + y, vertices[a, 5] + z
-    )
-    vertices[near_b, 3], vertices[near_b, 4], vertices[near_b, 5] = unit(
-        vertices[b, 3] + x, vertices[b, 4] + y, vertices[b, 5] + z
-    )
+@native
+def grown(e: np.uint32, splits: npt.NDArray[np.uint8], growth_once: Floats) -> np.float32:
+    """How far the middle of an edge has grown, 0 where it has none."""
+    return np.float32(growth_once[e] if splits[e] > 0 else ZERO)
 
 
-@kernel
+@native
+def wing(
+    straight: Four,
+    e: np.uint32,
+    splits: npt.NDArray[np.uint8],
+    growth_once: Floats,
+    middles: Floats,
+) -> Four:
+    """The first-level point of a neighbour edge, its middle where it has none."""
+    return mix(straight, four(middles, e), grown(e, splits, growth_once))
+
+
+@native
 def place_quarters(
     points: Floats,
     edge_points: Unsigned,
     edge_wings: Unsigned,
     is_interior: npt.NDArray[np.bool_],
+    splits: npt.NDArray[np.uint8],
     growth_once: Floats,
     growth_twice: Floats,
     first_points: Unsigned,
@@ -199,51 +243,41 @@ def place_quarters(
     """Write the quarter points of every edge that is split twice, and move its middle (Fig. 4)."""
     for k in range(twice_count):
         e = split_twice[k]
-        a, b, c, d = edge_points[e, 0], edge_points[e, 1], edge_points[e, 2], edge_points[e, 3]
-        near_a = first_points[e]
+        near_a, growth = first_points[e], growth_twice[e]
         centre, near_b = np.uint32(near_a + 1), np.uint32(near_a + 2)
-        growth = growth_twice[e]
+        a, b = edge_points[e, 0], edge_points[e, 1]
+        m, moved_a, moved_b = four(middles, e), four(vertices, a), four(vertices, b)
+        ends_a, ends_b = plus(moved_a, m), plus(moved_b, m)
         if is_interior[e]:
+            at_a, at_b = four(points, a), four(points, b)
+            at_c, at_d = four(points, edge_points[e, 2]), four(points, edge_points[e, 3])
             wing_p, wing_q = edge_wings[e, 0], edge_wings[e, 1]
             wing_r, wing_s = edge_wings[e, 2], edge_wings[e, 3]
-            grown_p, grown_q = growth_once[wing_p], growth_once[wing_q]
-            grown_r, grown_s = growth_once[wing_r], growth_once[wing_s]
-            if min(growth, grown_p, grown_q, grown_r, grown_s) == ONE:
-                # All of it has grown: the same without mixing, in half the time.
-                for i in range(3):
-                    m, moved_a, moved_b = middles[e, i], vertices[a, i], vertices[b, i]
-                    wings_a = middles[wing_p, i] + middles[wing_r, i]
-                    wings_b = middles[wing_q, i] + middles[wing_s, i]
-                    ring = (moved_a + moved_b) + (wings_a + wings_b)
-                    vertices[near_a, i] = EDGE_END * (moved_a + m) + EDGE_WING * wings_a
-                    vertices[centre, i] = MIDDLE_OWN * m + MIDDLE_RING * ring
-                    vertices[near_b, i] = EDGE_END * (moved_b + m) + EDGE_WING * wings_b
-            else:
-                for i in range(3):
-                    at_a, at_b = points[a, i], points[b, i]
-                    at_c, at_d = points[c, i], points[d, i]
-                    p = mix(HALF * (at_a + at_c), middles[wing_p, i], grown_p)
-                    q = mix(HALF * (at_b + at_c), middles[wing_q, i], grown_q)
-                    r = mix(HALF * (at_a + at_d), middles[wing_r, i], grown_r)
-                    s = mix(HALF * (at_b + at_d), middles[wing_s, i], grown_s)
-                    m, moved_a, moved_b = middles[e, i], vertices[a, i], vertices[b, i]
-                    ring = (moved_a + moved_b) + ((p + r) + (q + s))
-                    beside_a = EDGE_END * (moved_a + m) + EDGE_WING * (p + r)
-                    beside_b = EDGE_END * (moved_b + m) + EDGE_WING * (q + s)
-                    vertices[near_a, i] = mix(HALF * (moved_a + m), beside_a, growth)
-                    vertices[centre, i] = mix(m, MIDDLE_OWN * m + MIDDLE_RING * ring, growth)
-                    vertices[near_b, i] = mix(HALF * (moved_b + m), beside_b, growth)
+            p = wing(times(HALF, plus(at_a, at_c)), wing_p, splits, growth_once, middles)
+            q = wing(times(HALF, plus(at_b, at_c)), wing_q, splits, growth_once, middles)
+            r = wing(times(HALF, plus(at_a, at_d)), wing_r, splits, growth_once, middles)
+            s = wing(times(HALF, plus(at_b, at_d)), wing_s, splits, growth_once, middles)
+            wings_a, wings_b = plus(p, r), plus(q, s)
+            ring = plus(plus(moved_a, moved_b), plus(wings_a, wings_b))
+            beside_a = plus(times(EDGE_END, ends_a), times(EDGE_WING, wings_a))
+            beside_b = plus(times(EDGE_END, ends_b), times(EDGE_WING, wings_b))
+            middle = plus(times(MIDDLE_OWN, m), times(MIDDLE_RING, ring))
         else:
-            for i in range(3):
-                m, moved_a, moved_b = middles[e, i], vertices[a, i], vertices[b, i]
-                moved = BORDER_MIDDLE_OWN * m + BORDER_MIDDLE_RING * (moved_a + moved_b)
-                vertices[near_a, i] = BORDER_EDGE_END * (moved_a + m)
-                vertices[centre, i] = mix(m, moved, growth)
-                vertices[near_b, i] = BORDER_EDGE_END * (moved_b + m)
-        place_quarter_normals(vertices, a, b, near_a)
+            beside_a, beside_b = times(BORDER_EDGE_END, ends_a), times(BORDER_EDGE_END, ends_b)
+            ends = plus(moved_a, moved_b)
+            middle = plus(times(BORDER_MIDDLE_OWN, m), times(BORDER_MIDDLE_RING, ends))
+        x, y, z = vertices[centre, 3], vertices[centre, 4], vertices[centre, 5]
+        write(vertices, near_a, mix(times(HALF, ends_a), beside_a, growth))
+        write(vertices, centre, mix(m, middle, growth))
+        write(vertices, near_b, mix(times(HALF, ends_b), beside_b, growth))
+        x_a, y_a, z_a = unit(vertices[a, 3] + x, vertices[a, 4] + y, vertices[a, 5] + z)
+        x_b, y_b, z_b = unit(vertices[b, 3] + x, vertices[b, 4] + y, vertices[b, 5] + z)
+        write_normal(vertices, near_a, x_a, y_a, z_a)
+        write_normal(vertices, centre, x, y, z)
+        write_normal(vertices, near_b, x_b, y_b, z_b)
 
 
-@kernel
+@native
 def place_points(
     points: Floats,
     normals: Floats,
@@ -252,28 +286,34 @@ def place_points(
     is_interior: npt.NDArray[np.bool_],
     own: Floats,
     ring: Floats,
-    ring_starts: Unsigned,
-    ring_vertices: Unsigned,
+    near: Unsigned,
+    starts: Unsigned,
+    others: Unsigned,
     splits: npt.NDArray[np.uint8],
     growth_once: Floats,
     growth_twice: Floats,
     first_points: Unsigned,
     split_once: Unsigned,
-    once_count: int,
     split_twice: Unsigned,
-    twice_count: int,
+    counts: npt.NDArray[np.int64],
     vertex_growth: Floats,
     middles: Floats,
     vertices: Floats,
 ) -> None:
-    """Write moved vertices, first level, second level: all passes in one call of compiled code."""
+    """Write moved vertices, first level, second level: all passes in one call of compiled code.
+
+    `counts`: of edges split once and twice at 1 and 2 (schemes.Frame).
+    """
+    once_count, twice_count = counts[1], counts[2]
     grow_vertices(edge_points, growth_once, split_once, once_count, vertex_growth)
-    place_vertices(points, normals, vertex_growth, own, ring, ring_starts, ring_vertices, vertices)
+    place_vertices(
+        points, normals, vertex_growth, own, ring, near, starts, others, vertices
+    )  # fmt: skip
     place_middles(
         points, normals, edge_points, is_interior, splits, growth_once, first_points, split_once,
         once_count, middles, vertices,
     )  # fmt: skip
     place_quarters(
-        points, edge_points, edge_wings, is_interior, growth_once, growth_twice, first_points,
-        split_twice, twice_count, middles, vertices,
+        points, edge_points, edge_wings, is_interior, splits, growth_once, growth_twice,
+        first_points, split_twice, twice_count, middles, vertices,
     )  # fmt: skip

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .kernels import kernel
+from .native import native
 
 Floats = npt.NDArray[np.float32]
 Unsigned = npt.NDArray[np.uint32]
@@ -41,7 +42,7 @@ def points_on(split: int) -> int:
     return split + (split >> 1)
 
 
-@kernel
+@native
 def number_points(
     rim_splits: Small,
     rim_edges: Unsigned,
@@ -52,13 +53,14 @@ def number_points(
     split_once: Unsigned,
     split_twice: Unsigned,
     configurations: Short,
-) -> tuple[int, int, int, int]:
+    counts: npt.NDArray[np.int64],
+) -> None:
     """List the split edges, give new points their rows, and triangles their configuration.
 
     `split_once` gets every split edge, `split_twice` those split twice. The entries of
     `first_points` for edges that are not split have no meaning. `configurations` has one entry
-    more than triangles, for the sides that border edges do not have.
-    Returns the numbers of rows, of split edges, of edges split twice, and of subtriangles.
+    more than triangles, for the sides that border edges do not have. `counts` gets the numbers of
+    rows, of split edges, of edges split twice, and of subtriangles.
     """
     edge_count = edge_sides.shape[0]
     once_count = twice_count = np.uint32(0)
@@ -89,7 +91,7 @@ def number_points(
         rim_splits[r] = rim_splits[rim_edges[r]]
         first_points[r] = row
         row += points_on(rim_splits[r])
-    return row, int(once_count), int(twice_count), triangle_count
+    counts[0], counts[1], counts[2], counts[3] = row, once_count, twice_count, triangle_count
 
 
 @kernel
@@ -158,16 +160,17 @@ def place_attributes(
                 vertices[row + 2, column] = QUARTER * at_a + THREE_QUARTERS * at_b
 
 
-@kernel
+@native
 def look_up_triangles(
     corners: Unsigned,
     triangle_rims: Unsigned,
     rim_splits: Small,
     first_points: Unsigned,
-    first_centre: int,
+    counts: npt.NDArray[np.int64],
     rows: Short,
     subtriangle_counts: Small,
     subtriangles: Small,
+    points: Unsigned,
     triangles: Unsigned,
     source: npt.NDArray[np.int32],
 ) -> int:
@@ -175,9 +178,9 @@ def look_up_triangles(
 
     A rim keeps its points in the direction of the edge; a triangle that runs against it reads the
     quarter points in reverse. Centres are numbered in the order of the triangles that have one.
+    `counts`: the row of the first of them at 0 (schemes.Frame); `points`: scratch, shape (13,).
     """
-    points = np.empty(CENTRE + 1, np.uint32)
-    points[CENTRE] = first_centre
+    points[CENTRE] = counts[0]
     one, two = np.uint32(1), np.uint32(2)  # unsigned, or every index is tested for being negative
     count = np.uint32(0)
     for t in range(corners.shape[0]):

@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from .arguments import AttributeLike
 from .binding import BoundRefiner
-from .criterion import vertex_normals
 from .output import copy_wedges, place_unmoved
 from .plugin import Origins, Stream, View
 
@@ -58,7 +57,7 @@ class PassThrough(BoundRefiner):
         connectivity = self.connectivity
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
         vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
-        vertex_normals(self._positions, connectivity.faces, self._normals)
+        self._find_normals()
         place_unmoved(self._points, self._normals, vertices)
         if self._values is not None:
             copy_wedges(connectivity.vertex_count, connectivity.wedge_vertices, vertices)

@@ -13,12 +13,14 @@ New refiners join by name, with `register` or with an entry point in group `riso
 
 import inspect
 from collections.abc import Callable, Mapping
-from importlib.metadata import EntryPoint, entry_points
 from types import MappingProxyType
-from typing import Any, NamedTuple, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 ENTRY_POINT_GROUP = "risorius.refiners"
 
@@ -184,7 +186,9 @@ def _find(name: str) -> Factory:
     return factory
 
 
-def _entry_points() -> dict[str, EntryPoint]:
+def _entry_points() -> "dict[str, EntryPoint]":
+    from importlib.metadata import entry_points  # takes as long to import as all of this package
+
     return {point.name: point for point in entry_points(group=ENTRY_POINT_GROUP)}
 
 

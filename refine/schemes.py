@@ -11,7 +11,7 @@ split and where in the output their points go:
     detail      cubic, plus what a finer mesh at rest has in addition (detail.py)
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from .connectivity import Connectivity
 from .masks import place_points
+from .native import Call, has_room
 from .rings import vertex_rings
 
 Floats = npt.NDArray[np.float32]
@@ -38,7 +39,10 @@ class Frame:
     splits: npt.NDArray[np.uint8]
     """Splits of every rim, edges first."""
     growth_once: Floats
-    """How far the middle point of an edge has grown, 0 to 1 (blend.py), shape (E,)."""
+    """How far the middle point of an edge has grown, 0 to 1 (blend.py), shape (E,).
+
+    All ones without blending, and then without a meaning where no point is.
+    """
     growth_twice: Floats
     """How far its quarter points have."""
     first_points: Unsigned
@@ -49,13 +53,27 @@ class Frame:
     """The edges that are split twice; the first `twice_count` count."""
     rows: Floats
     """The output: x y z, nx ny nz, attributes; row v is vertex v."""
-    once_count: int = 0
-    twice_count: int = 0
+    counts: npt.NDArray[np.int64] = field(default_factory=lambda: np.zeros(4, dtype=np.int64))
+    """Numbers of output rows without centres, of edges that are split, of those split twice, and of
+    subtriangles, shape (4,)."""
     centre_triangles: Unsigned | None = None
     """The triangles with a point in the middle, only with blending; `centre_count` of them."""
     centre_count: int = 0
-    first_centre: int = 0
-    """Output row of the first of these points."""
+
+    @property
+    def first_centre(self) -> int:
+        """Output row of the first of these points."""
+        return int(self.counts[0])
+
+    @property
+    def once_count(self) -> int:
+        """How many edges are split."""
+        return int(self.counts[1])
+
+    @property
+    def twice_count(self) -> int:
+        """How many edges are split twice."""
+        return int(self.counts[2])
 
 
 class Scheme(Protocol):
@@ -95,12 +113,22 @@ class LoopScheme:
         self._connectivity = connectivity
         self._rings = vertex_rings(connectivity)
         self._vertex_growth = np.zeros(connectivity.vertex_count, dtype=np.float32)
-        self._middles = np.zeros((len(connectivity.edges), 3), dtype=np.float32)
+        self._middles = np.zeros((len(connectivity.edges), 4), dtype=np.float32)
+        self._bound_to: Frame | None = None
 
     def place(self, frame: Frame) -> None:
         """Write moved vertices, first level, second level."""
+        if frame is not self._bound_to:
+            self._place_points, self._bound_to = self._bind_to(frame), frame
+        place_points = self._place_points
+        place_points.put("vertices", frame.rows)
+        place_points()
+
+    def _bind_to(self, frame: Frame) -> Call:
+        """Bind the compiled passes to the arrays of a frame, which stay, and to others that go."""
+        assert has_room(frame.points) and has_room(frame.normals)
         mesh, rings = self._connectivity, self._rings
-        place_points(
+        return place_points.bind(
             frame.points,
             frame.normals,
             mesh.edge_points,
@@ -108,16 +136,16 @@ class LoopScheme:
             mesh.is_interior,
             rings.own,
             rings.ring,
+            rings.near,
             rings.starts,
-            rings.vertices,
+            rings.others,
             frame.splits,
             frame.growth_once,
             frame.growth_twice,
             frame.first_points,
             frame.split_once,
-            frame.once_count,
             frame.split_twice,
-            frame.twice_count,
+            frame.counts,
             self._vertex_growth,
             self._middles,
             frame.rows,

@@ -22,8 +22,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .criterion import vertex_normals
 from .kernels import kernel
+from .native import with_room
+from .normals import bind_normals
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
@@ -92,8 +93,9 @@ class Tension:
             np.add.at(totals, self._faces[:, k], weights)
         self._weights = weights.astype(np.float32)
         self._shares = (1.0 / np.where(totals > 0.0, totals, np.inf)).astype(np.float32)
-        self._positions = rest
+        self._positions = with_room(rest)
         self._normals = np.zeros((len(rest), 3), dtype=np.float32)
+        self._find_normals = bind_normals(self._positions, self._faces, self._normals)
         self._sums = np.zeros((len(rest), 6), dtype=np.float32)
         self._stretch = np.zeros(len(rest), dtype=np.float32)
         self._compression = np.zeros(len(rest), dtype=np.float32)
@@ -111,7 +113,7 @@ class Tension:
                 f"positions, got {positions.dtype} of shape {positions.shape}"
             )
         np.copyto(self._positions, positions)
-        vertex_normals(self._positions, self._faces, self._normals)
+        self._find_normals()
         sum_tensors(
             self._positions, self._faces, self._inverses, self._weights, self._normals, self._sums
         )

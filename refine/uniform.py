@@ -22,8 +22,8 @@ import numpy.typing as npt
 from .arguments import AttributeLike
 from .binding import BoundRefiner
 from .connectivity import Connectivity, connect
-from .criterion import vertex_normals
 from .masks import place_middles, place_vertices
+from .native import Call, has_room, with_room
 from .output import GEOMETRY_COLUMNS, copy_wedges
 from .plugin import Origins, Stream, View
 from .rings import Rings, vertex_rings
@@ -47,22 +47,33 @@ class Level:
         self._all_once = np.ones(edge_count, dtype=np.uint8)
         self._all_edges = np.arange(edge_count, dtype=np.uint32)
         self._first_points = self._all_edges + np.uint32(vertex_count)
-        self._middles = np.zeros((edge_count, 3), dtype=np.float32)
+        self._middles = np.zeros((edge_count, 4), dtype=np.float32)
+        self._place_vertices: Call | None = None
+        self._place_middles: Call | None = None
 
     def subdivide(self, rows: Floats) -> None:
         """Write the moved vertices, then one point per edge, into the first V + E `rows`."""
+        if self._place_vertices is None or self._place_middles is None:
+            self._place_vertices, self._place_middles = self._bind_to(rows)
+        self._place_vertices.put("vertices", rows)
+        self._place_vertices()
+        self._place_middles.put("vertices", rows)
+        self._place_middles()
+
+    def _bind_to(self, rows: Floats) -> tuple[Call, Call]:
         rings = self._rings
-        place_vertices(
+        assert has_room(self.points) and has_room(self.normals)
+        return place_vertices.bind(
             self.points,
             self.normals,
             self._all_move,
             rings.own,
             rings.ring,
+            rings.near,
             rings.starts,
-            rings.vertices,
+            rings.others,
             rows,
-        )
-        place_middles(
+        ), place_middles.bind(
             self.points,
             self.normals,
             self._connectivity.edge_points,
@@ -103,8 +114,8 @@ class Loop(BoundRefiner):
         self._levels = [Level(finest.connectivity, self._points, self._normals)]
         for _ in range(levels - 1):
             finest = finest.subdivided()
-            points = np.zeros((finest.connectivity.vertex_count, 3), dtype=np.float32)
-            self._levels.append(Level(finest.connectivity, points, np.zeros_like(points)))
+            rest = np.zeros((finest.connectivity.vertex_count, 3), dtype=np.float32)
+            self._levels.append(Level(finest.connectivity, with_room(rest), with_room(rest)))
         self._rows = np.zeros((len(self._levels[-1].points), GEOMETRY_COLUMNS), np.float32)
         self._finest = finest.subdivided()
         self._triangles = self._finest.connectivity.corners
@@ -128,7 +139,7 @@ class Loop(BoundRefiner):
     def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
         vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
-        vertex_normals(self._positions, self.connectivity.faces, self._normals)
+        self._find_normals()
         for level, finer in pairwise(self._levels):
             level.subdivide(self._rows)
             np.copyto(finer.points, self._rows[:, :3])

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import refine
-from refine.criterion import ROUNDING, vertex_normals
+from refine.criterion import ROUNDING
+from refine.native import with_room
+from refine.normals import bind_normals
 from tests import meshes
 from tests.refine.cases import Forced
 from tests.refine.plain_twin import edge_dots, edge_name
@@ -122,12 +124,28 @@ def test_normals_are_weighted_by_area() -> None:
     mesh = meshes.with_debris()
     positions = meshes.wrinkled(mesh, 7)
     normals = np.zeros(positions.shape, dtype=np.float32)
-    vertex_normals(positions, mesh.faces.astype(np.uint32), normals)
+    bind_normals(with_room(positions), mesh.faces.astype(np.uint32), normals)()
     expected = plain_normals(
         [tuple(p) for p in positions], [tuple(int(v) for v in face) for face in mesh.faces]
     )
     np.testing.assert_allclose(normals, np.array(expected), rtol=0, atol=1e-6)
     assert normals[15].tolist() == [0, 0, 0]
+
+
+def test_thresholds_between_frames() -> None:
+    """Thresholds that are set, or replaced as a whole, count from the next frame on."""
+    mesh = meshes.irregular(3)
+    deformed = meshes.wrinkled(mesh, 4)
+    criterion = refine.NormalDrop(0.02, 0.08)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
+    refiner.refine(deformed)
+    assert set(refiner.splits.tolist()) == {0, 1, 2}
+    criterion.thresholds.twice = np.float32(np.inf)
+    refiner.refine(deformed)
+    assert set(refiner.splits.tolist()) == {0, 1}
+    criterion.thresholds = refine.NormalDrop(3.0, 3.0).thresholds
+    refiner.refine(deformed)
+    assert not refiner.splits.any()
 
 
 @pytest.mark.parametrize("thresholds", [(-0.1, 0.2), (0.3, 0.2), (float("nan"), 1.0)])

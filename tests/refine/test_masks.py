@@ -6,9 +6,17 @@ import numpy as np
 import pytest
 
 import refine
-from refine.rings import vertex_rings, warren_weight
+from refine.rings import Rings, vertex_rings, warren_weight
 from tests import meshes
 from tests.refine.cases import Forced
+
+
+def weights_around(rings: Rings, v: int) -> dict[int, float]:
+    """Weight of every vertex in the rule of vertex v, its own included."""
+    weights = {v: float(rings.own[v])}
+    for u in [*rings.near[v], *rings.others[rings.starts[v] : rings.starts[v + 1]]]:
+        weights[int(u)] = weights.get(int(u), 0.0) + float(rings.ring[v])
+    return weights
 
 
 def test_warren_weights() -> None:
@@ -19,19 +27,26 @@ def test_warren_weights() -> None:
 def test_tetrahedron() -> None:
     """Every corner moves to 7/16 of itself plus 3/16 of the other three."""
     rings = vertex_rings(refine.connect(meshes.tetrahedron().faces, 4))
-    assert rings.own.tolist() == [7 / 16] * 4
-    assert rings.ring.tolist() == [3 / 16] * 4
-    assert np.diff(rings.starts).tolist() == [3] * 4
+    for v in range(4):
+        assert weights_around(rings, v) == {u: 7 / 16 if u == v else 3 / 16 for u in range(4)}
+
+
+@pytest.mark.parametrize("valence", [8, 9, 16])
+def test_large_rings(valence: int) -> None:
+    """Vertices that have no place in the table of a ring count as much as those that have."""
+    rings = vertex_rings(refine.connect(meshes.fan(valence).faces, valence + 1))
+    around = weights_around(rings, 0)
+    assert around.pop(0) == pytest.approx(5 / 8)
+    assert around == pytest.approx({v: 3 / 8 / valence for v in range(1, valence + 1)})
+    assert len(rings.others) == valence - 8
 
 
 def test_hexagon() -> None:
     """The centre of a hexagon keeps 5/8, its border vertices 3/4 along the border."""
     mesh = meshes.fan(6)
     rings = vertex_rings(refine.connect(mesh.faces, 7))
-    assert rings.own.tolist() == [0.625] + [0.75] * 6
-    assert rings.ring.tolist() == [0.0625] + [0.125] * 6
-    ring = rings.vertices[rings.starts[1] : rings.starts[2]]
-    assert sorted(ring.tolist()) == [2, 6]
+    assert weights_around(rings, 0) == {0: 5 / 8} | {v: 1 / 16 for v in range(1, 7)}
+    assert weights_around(rings, 1) == {1: 3 / 4, 2: 1 / 8, 6: 1 / 8}
 
 
 @pytest.mark.parametrize(("name", "vertex"), [("bow_tie", 0), ("with_debris", 15)])
@@ -39,8 +54,7 @@ def test_vertices_that_stay(name: str, vertex: int) -> None:
     """A vertex where two borders meet, or without triangles, never moves."""
     mesh = meshes.NAMED[name]()
     rings = vertex_rings(refine.connect(mesh.faces, len(mesh.vertices)))
-    assert rings.own[vertex] == 1.0
-    assert rings.ring[vertex] == 0.0
+    assert weights_around(rings, vertex) == {vertex: 1.0}
 
 
 def test_first_level_by_hand() -> None:

@@ -1,0 +1,65 @@
+"""Vertex normals: what bends, and what light falls on.
+
+Weighted by area: the cross products of the incident triangles, summed and normalised. (Kähler,
+Haber, Seidel 2003, do not say; this needs no weights and lets large triangles decide.)
+
+Edge vectors are taken in double precision before the rest is done in single, so a mesh far from the
+origin loses nothing. Normals at rest and in a frame come from the same code: see criterion.py.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from .native import Call, has_room, native
+
+Floats = npt.NDArray[np.float32]
+Doubles = npt.NDArray[np.float64]
+Unsigned = npt.NDArray[np.uint32]
+
+ZERO = np.float32(0.0)
+ONE = np.float32(1.0)
+TINY = np.finfo(np.float32).tiny
+"""Squared length below which a vector is left as it is instead of being normalised."""
+
+
+def bind_normals(positions: Doubles, faces: Unsigned, normals: Floats) -> Call:
+    """Return a call that writes the unit normals of `positions` into `normals`, both (V, 3).
+
+    `positions` are made by `with_room`; `faces`: vertices of each triangle, shape (F, 3).
+    """
+    assert has_room(positions)
+    return vertex_normals.bind(positions, faces, np.empty((len(positions), 4), np.float32), normals)
+
+
+@native
+def vertex_normals(positions: Doubles, faces: Unsigned, sums: Floats, normals: Floats) -> None:
+    """Write the area-weighted unit normal of every vertex into `normals`, shape (V, 3).
+
+    Zero where a vertex has no triangle with an area. `sums`: scratch, shape (V, 4).
+
+    Four numbers side by side are one instruction, three are many: so a position is read with the
+    number behind it, the x of the next one, and what becomes of that in the fourth column of the
+    sums is of no interest.
+    """
+    for v in range(sums.shape[0]):
+        sums[v, 0] = sums[v, 1] = sums[v, 2] = sums[v, 3] = ZERO
+    for t in range(faces.shape[0]):
+        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        ux = np.float32(positions[b, 0] - positions[a, 0])
+        uy = np.float32(positions[b, 1] - positions[a, 1])
+        uz = np.float32(positions[b, 2] - positions[a, 2])
+        uw = np.float32(positions[b, 3] - positions[a, 3])
+        vx = np.float32(positions[c, 0] - positions[a, 0])
+        vy = np.float32(positions[c, 1] - positions[a, 1])
+        vz = np.float32(positions[c, 2] - positions[a, 2])
+        vw = np.float32(positions[c, 3] - positions[a, 3])
+        x, y, z, w = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx, uw * vw - uw * vw
+        for corner in (a, b, c):
+            sums[corner, 0] += x
+            sums[corner, 1] += y
+            sums[corner, 2] += z
+            sums[corner, 3] += w
+    for v in range(sums.shape[0]):
+        x, y, z = sums[v, 0], sums[v, 1], sums[v, 2]
+        scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
+        normals[v, 0], normals[v, 1], normals[v, 2] = x * scale, y * scale, z * scale
