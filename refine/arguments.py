@@ -168,15 +168,20 @@ def _checked_values(
     return np.array(array, dtype=np.float32), rows
 
 
-def take_in(positions: npt.NDArray[np.float64], points: npt.NDArray[np.float32]) -> None:
+def take_in(
+    positions: npt.NDArray[np.float64],
+    points: npt.NDArray[np.float32],
+    given: npt.NDArray[np.floating],
+) -> None:
     """Write positions, shape (V, 3), as single precision into `points`.
 
+    `given`: the same in the order of the caller, for the error.
     Raises ValueError if they are not numbers: what moves the mesh has blown up.
     """
     if not round_finite(positions.reshape(-1), points.reshape(-1)):
-        bad = np.flatnonzero(~np.isfinite(positions).all(axis=1))
+        bad = np.flatnonzero(~np.isfinite(given).all(axis=1))
         raise ValueError(
-            f"positions must be finite, but vertex {bad[0]} is {positions[bad[0]]} "
+            f"positions must be finite, but vertex {bad[0]} is {given[bad[0]]} "
             f"({len(bad)} such vertices in all); what moves the mesh has blown up"
         )
 
