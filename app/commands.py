@@ -17,7 +17,7 @@ from .errors import UserError, told_in_one_line
 if TYPE_CHECKING:
     from .outputs import Frame
 
-SIZES = ("face", "2k", "20k", "200k", "1M", "1M shuffled")
+SIZES = ("face", "2k", "20k", "200k", "200k shuffled", "1M", "1M shuffled")
 Command = Callable[..., Any]
 
 
