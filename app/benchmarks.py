@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import bench.motion
 import bench.simulate
 import bench.soak
+import bench.strips
 import bench.tearing
 
 
@@ -85,6 +86,26 @@ def tearing_table(mixtures: int) -> str:
         worst = max(poses, key=lambda pose: float(getattr(pose, part)))
         value = float(getattr(worst, part))
         lines.append(f"{title:10} {f'{value:.4g}{unit}':>9}  {worst.name if value > 0.0 else '-'}")
+    return "\n".join(lines)
+
+
+def strips_table(sizes: Sequence[str], rounds: int, progress: Callable[[str], object]) -> str:
+    """Draw refined meshes in several orders; the text to print."""
+    device, rows = bench.strips.run(sizes=sizes, rounds=rounds, progress=progress)
+    width, height = bench.strips.FRAME
+    lines = [
+        f"One frame is refined, put into an order and drawn at {width}x{height} by {device};",
+        f"medians of {rounds} interleaved rounds; one core of {processor()}.",
+        "Misses: vertices transformed per triangle by a cache of the last 16 or 32.",
+        "",
+        f"{'mesh':14} {'order':20} {'triangles':>9} {'16':>5} {'32':>5} {'index MB':>8} "
+        f"{'refine, order ms':>16} {'draw ms':>8}",
+    ]
+    for row in rows:
+        lines.append(
+            f"{row.mesh:14} {row.order:20} {row.triangles:9d} {row.misses[0]:5.2f} "
+            f"{row.misses[1]:5.2f} {row.megabytes:8.2f} {row.making:16.2f} {row.drawing:8.2f}"
+        )
     return "\n".join(lines)
 
 

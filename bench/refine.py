@@ -141,19 +141,26 @@ def run(
     report = Report()
     for size in sizes:
         progress(size)
+        load = load_of(size)
         if size == "face":
-            load = face_load()
             cases = _face_cases(load, report)
         else:
-            count, is_shuffled = SHEETS[size.partition(" ")[0]], size in SHUFFLED
-            frame_count = 4 if count < LARGE else 2
-            load = sheet(size, count, frame_count=frame_count, shuffled=is_shuffled)
-            cases = _sheet_cases(load, report, SHARES if not is_shuffled else {10: SHARES[10]})
+            shares = SHARES if size not in SHUFFLED else {10: SHARES[10]}
+            cases = _sheet_cases(load, report, shares)
         report.rows += _timed(load, cases, seconds)
     if starts:
         progress("starts")
         report.starts = measure_starts()
     return report
+
+
+def load_of(size: str) -> Load:
+    """The mesh of a size and the frames that it goes through."""
+    if size == "face":
+        return face_load()
+    count = SHEETS[size.partition(" ")[0]]
+    frame_count = 4 if count < LARGE else 2
+    return sheet(size, count, frame_count=frame_count, shuffled=size in SHUFFLED)
 
 
 def face_load() -> Load:
@@ -197,7 +204,7 @@ def _face_cases(load: Load, report: Report) -> list[_Case]:
 def _sheet_cases(
     load: Load, report: Report, shares: Mapping[int, tuple[float, float]]
 ) -> list[_Case]:
-    thresholds = _thresholds(load, shares)
+    thresholds = thresholds_of(load, shares)
     cases = []
     for share, (once, twice) in thresholds.items():
         options = {"threshold_once": once, "threshold_twice": twice}
@@ -254,7 +261,7 @@ def _copy_of(refiner: refine.Refiner, load: Load, method: str) -> _Case:
     return _Case(method, False, float(np.mean(counts)), run_all)
 
 
-def _thresholds(
+def thresholds_of(
     load: Load, shares: Mapping[int, tuple[float, float]]
 ) -> dict[int, tuple[float, float]]:
     """Thresholds that split so many per cent of the edges, by the drops of all frames."""
