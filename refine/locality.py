@@ -116,6 +116,8 @@ def better_order(faces: Wide, positions: Doubles) -> Order | None:
 
     `positions`: of the vertices at rest, shape (V, 3).
     """
+    if len(positions) * ROW <= CACHE_LINES * LINE:
+        return None  # the cache holds all of it; this spares small meshes to load a kernel
     if count_fetched_anew(faces, len(positions), CACHE_LINES) <= MOST_FETCHED_ANEW * len(faces):
         return None
     along = np.argsort(places_on_curve(positions), kind="stable")

@@ -28,19 +28,19 @@ OPTIONS: dict[str, dict[str, object]] = {
 @pytest.fixture
 def every_mesh_is_careless(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small meshes, too, are renumbered."""
+    monkeypatch.setattr(locality, "CACHE_LINES", 1)
     monkeypatch.setattr(locality, "MOST_FETCHED_ANEW", -1.0)
 
 
 def create(mesh: meshes.Mesh, *, renumbered: bool, **options: object) -> refine.Refiner:
     """A refiner that is or is not renumbered, whatever the mesh is like."""
-    least = locality.MOST_FETCHED_ANEW
-    locality.MOST_FETCHED_ANEW = -1.0 if renumbered else np.inf
-    try:
+    with pytest.MonkeyPatch.context() as patch:
+        if renumbered:
+            patch.setattr(locality, "CACHE_LINES", 1)
+            patch.setattr(locality, "MOST_FETCHED_ANEW", -1.0)
         refiner = refine.create(
             "kahler", mesh.faces, mesh.vertices, uv=mesh.uv, face_uv=mesh.face_uv, **options
         )
-    finally:
-        locality.MOST_FETCHED_ANEW = least
     assert isinstance(refiner, refine.Kahler)
     assert (refiner._order is not None) == renumbered
     return refiner
@@ -256,6 +256,7 @@ def test_nothing_is_allocated(number: type[np.floating]) -> None:
     mesh = meshes.irregular(3, 40, 40)
     frames = [meshes.wrinkled(mesh, seed).astype(number) for seed in range(3)]
     strided = [np.repeat(frame, 2, axis=0)[::2] for frame in frames]
+    frames[0].flags.writeable = False
     refiner = refine.create("kahler", mesh.faces, mesh.vertices)
     expected = [refiner.refine(frame).positions.tobytes() for frame in frames]
     assert [refiner.refine(frame).positions.tobytes() for frame in strided] == expected
