@@ -72,12 +72,15 @@ class BoundRefiner(ABC):
         positions = checked_positions(rest_positions)
         triangles = checked_indices("faces", faces, len(positions), "rest_positions")
         self._values = checked_corner_values(uv, face_uv, attributes, triangles, len(positions))
-        self._order: Order | None = better_order(triangles, positions) if may_renumber else None
-        if self._order is not None:
-            triangles, positions = self._order.numbered(triangles), positions[self._order.vertices]
+        renumbered = better_order(triangles, positions) if may_renumber else None
+        walked: npt.NDArray[np.integer] = triangles
+        self._order: Order | None = None
+        if renumbered is not None:
+            self._order, walked = renumbered
+            positions = positions[self._order.vertices]
             self._values = self._order.sorted_values(self._values)
         corners = None if self._values is None else self._values.corners
-        self.connectivity: Connectivity = connect(triangles, len(positions), corners)
+        self.connectivity: Connectivity = connect(walked, len(positions), corners)
         """Of the mesh as it is walked; all arrays of a frame are in its order."""
         self._output_corners = self.connectivity.corners
         if self._order is not None:

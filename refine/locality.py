@@ -61,21 +61,15 @@ class Order:
     """Where in `moves` each cycle begins, and the end, shape (C + 1,)."""
     _converted: Doubles | None = field(default=None, init=False)
 
-    def numbered(self, faces: Wide) -> Wide:
-        """Triangles, shape (F, 3), in the new order and with the new numbers of vertices."""
-        number = np.empty(len(self.vertices), dtype=np.int64)
-        number[self.vertices] = np.arange(len(number))
-        return number[faces[self.faces]]
-
     def sorted_values(self, given: CornerValues | None) -> CornerValues | None:
         """Values of corners for the renumbered mesh, they too in the order of their first use."""
         if given is None:
             return None
         if given.corners is None:
             return replace(given, values=given.values[self.vertices])
-        corners = given.corners[self.faces]
+        corners = given.corners[self.faces].astype(np.uint32)
         rows = number_by_use(corners.reshape(-1), len(given.values))
-        return replace(given, values=given.values[rows], corners=corners)
+        return replace(given, values=given.values[rows], corners=corners.astype(np.int64))
 
     def named_edges(self, edges: Indices) -> Indices:
         """End points of edges, shape (E, 2), by the caller's numbers; read only."""
@@ -111,21 +105,22 @@ class Order:
         rename(source, self.faces)
 
 
-def better_order(faces: Wide, positions: Doubles) -> Order | None:
-    """Return an order for triangles, shape (F, 3), or None where that of the caller will do.
+def better_order(faces: Wide, positions: Doubles) -> tuple[Order, Unsigned] | None:
+    """Return an order for triangles, shape (F, 3), and these renumbered.
 
-    `positions`: of the vertices at rest, shape (V, 3).
+    None where the order of the caller will do. `positions`: of the vertices at rest, shape (V, 3).
     """
     if len(positions) * ROW <= CACHE_LINES * LINE:
         return None  # the cache holds all of it; this spares small meshes to load a kernel
     if count_fetched_anew(faces, len(positions), CACHE_LINES) <= MOST_FETCHED_ANEW * len(faces):
         return None
     along = np.argsort(places_on_curve(positions), kind="stable")
-    number = np.empty(len(along), dtype=np.int64)
-    number[along] = np.arange(len(along))
-    walked = sorted_by_lowest(number[faces], len(positions))
-    vertices = number_by_use(faces[walked].reshape(-1), len(positions))
-    return Order(vertices, walked, *list_cycles(vertices))
+    place = np.empty(len(along), dtype=np.uint32)
+    place[along] = np.arange(len(along), dtype=np.uint32)
+    walked = sorted_by_lowest(faces, place)
+    renumbered = faces[walked].astype(np.uint32)
+    vertices = number_by_use(renumbered.reshape(-1), len(positions))
+    return Order(vertices, walked, *list_cycles(vertices)), renumbered
 
 
 def places_on_curve(positions: Doubles) -> Wide:
@@ -170,23 +165,24 @@ def interleave_cells(positions: Doubles, low: Doubles, scale: float, cells: Wide
 
 
 @kernel
-def sorted_by_lowest(faces: Wide, vertex_count: int) -> Unsigned:
-    """Sort triangles by the lowest of their vertices, by counting; shape (F,)."""
-    starts = np.zeros(vertex_count + 1, np.int64)
+def sorted_by_lowest(faces: Wide, place: Unsigned) -> Unsigned:
+    """Sort triangles by the lowest `place`, shape (V,), of their vertices; shape (F,)."""
+    starts = np.zeros(len(place) + 1, np.int64)
+    lowest = np.empty(faces.shape[0], np.uint32)
     for t in range(faces.shape[0]):
-        starts[min(faces[t, 0], faces[t, 1], faces[t, 2]) + 1] += 1
-    for v in range(vertex_count):
+        lowest[t] = min(place[faces[t, 0]], place[faces[t, 1]], place[faces[t, 2]])
+        starts[lowest[t] + 1] += 1
+    for v in range(len(place)):
         starts[v + 1] += starts[v]
     walked = np.empty(faces.shape[0], np.uint32)
     for t in range(faces.shape[0]):
-        lowest = min(faces[t, 0], faces[t, 1], faces[t, 2])
-        walked[starts[lowest]] = t
-        starts[lowest] += 1
+        walked[starts[lowest[t]]] = t
+        starts[lowest[t]] += 1
     return walked
 
 
 @kernel
-def number_by_use(used: Wide, count: int) -> Unsigned:
+def number_by_use(used: Unsigned, count: int) -> Unsigned:
     """Number 0 .. `count` - 1 anew in the order of their first use, those never used last.
 
     The numbers in `used` are replaced by the new ones. Returns the old one of each, (count,).

@@ -216,12 +216,13 @@ def test_which_meshes_are_renumbered() -> None:
     ordered, shuffled = sheet("", 60_000), sheet("", 60_000, shuffled=True)
     small = sheet("", 20_000, shuffled=True)
     for load, is_renumbered in ((ordered, False), (shuffled, True), (small, False)):
-        order = locality.better_order(load.faces.astype(np.int64), load.rest)
-        assert (order is not None) == is_renumbered
-    order = locality.better_order(shuffled.faces.astype(np.int64), shuffled.rest)
-    assert order is not None
-    faces = order.numbered(shuffled.faces.astype(np.int64))
-    assert locality.better_order(faces, shuffled.rest[order.vertices]) is None
+        found = locality.better_order(load.faces.astype(np.int64), load.rest)
+        assert (found is not None) == is_renumbered
+    found = locality.better_order(shuffled.faces.astype(np.int64), shuffled.rest)
+    assert found is not None
+    order, faces = found
+    assert (order.vertices[faces] == shuffled.faces[order.faces]).all()
+    assert locality.better_order(faces.astype(np.int64), shuffled.rest[order.vertices]) is None
 
 
 def test_own_corners_are_no_disorder() -> None:
