@@ -15,7 +15,7 @@ from typing import Any
 import click
 
 from . import __version__
-from .commands import bench_quality, bench_refine, reproduce
+from .commands import bench_quality, bench_refine, bench_strips, reproduce
 from .errors import OneLineGroup, UserError, told_in_one_line
 from .parameters import FiniteRange, Size
 
@@ -239,6 +239,7 @@ def bench() -> None:
 
 bench.add_command(bench_refine)
 bench.add_command(bench_quality)
+bench.add_command(bench_strips)
 main.add_command(reproduce)
 
 

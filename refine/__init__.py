@@ -18,8 +18,8 @@ turns, `attributes` what rides along.
 
 Read in this order: plugin.py (the border), adaptive.py (a frame), criterion.py and criteria.py
 (which edges), schemes.py (where points go: masks.py, cubic.py, butterfly.py, detail.py), blend.py,
-patterns.py and coherence.py (the tables), output.py (rows and triangles). docs/refinement.md tells
-it all with pictures.
+patterns.py and coherence.py (the tables), output.py (rows and triangles), locality.py (large
+meshes). docs/refinement.md tells it all with pictures.
 """
 
 from .adaptive import Kahler

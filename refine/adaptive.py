@@ -23,7 +23,7 @@ import numpy.typing as npt
 from .arguments import AttributeLike
 from .binding import BoundRefiner
 from .blend import grow, number_centres, place_centres
-from .choices import scheme_of
+from .choices import may_renumber, scheme_of
 from .coherence_pass import Coherent
 from .criteria import criterion_of
 from .criterion import (
@@ -88,10 +88,17 @@ class Kahler(BoundRefiner):
         costs nothing in faithfulness: True for the schemes that interpolate, False for the paper's.
         `coherent`: whether triangulations continue those of the frame before (section 4.4).
         """
-        super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv, attributes=attributes)
-        mesh = self.connectivity
         self._scheme = scheme_of(scheme, detail)
         self._criterion = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))
+        super().__init__(
+            faces,
+            rest_positions,
+            uv=uv,
+            face_uv=face_uv,
+            attributes=attributes,
+            may_renumber=may_renumber(self._scheme, self._criterion),
+        )
+        mesh = self.connectivity
         if blend is None:
             blend = self._scheme.interpolates and not coherent
             blend = blend and isinstance(self._criterion, Measured)
@@ -154,7 +161,7 @@ class Kahler(BoundRefiner):
             frame.counts,
         )
         self._look_up_triangles = look_up_triangles.bind(
-            mesh.corners,
+            self._output_corners,
             mesh.triangle_rims,
             self._rim_splits,
             frame.first_points,
@@ -169,7 +176,7 @@ class Kahler(BoundRefiner):
 
     @property
     def history(self) -> Coherent | None:
-        """What triangles remember of their splits; None unless `coherent`."""
+        """What triangles remember of their splits, as they are walked; None unless `coherent`."""
         return self._patterns if isinstance(self._patterns, Coherent) else None
 
     @property
@@ -266,15 +273,15 @@ class Kahler(BoundRefiner):
         block_starts = np.cumsum(point_counts) - point_counts
         within = np.arange(point_counts.sum()) - np.repeat(block_starts, point_counts)
         place = np.where(np.repeat(point_counts, point_counts) == 1, 2, within + 1)
-        ends = np.repeat(mesh.edges[mesh.rim_edges], point_counts, axis=0)
-        wedges = mesh.wedge_vertices.astype(np.int32)
+        ends = np.repeat(self.edges[mesh.rim_edges], point_counts, axis=0)
+        wedges = self._wedge_names()
         vertices = [np.stack([wedges] * 3, axis=1), np.column_stack([ends, ends[:, 0]])]
         weights = [np.zeros((len(wedges), 3)), np.zeros((len(ends), 3))]
         weights[0][:, 0] = 1.0
         weights[1][:, 0], weights[1][:, 1] = (4 - place) / 4.0, place / 4.0
         if frame.centre_triangles is not None:
-            centres = mesh.faces[frame.centre_triangles[: frame.centre_count]]
-            vertices.append(centres.astype(np.int32))
+            centres = frame.centre_triangles[: frame.centre_count]
+            vertices.append(wedges[self._output_corners[centres]])
             weights.append(np.full((frame.centre_count, 3), 1.0 / 3.0))
         return Origins(
             np.concatenate(vertices).astype(np.int32), np.concatenate(weights).astype(np.float32)

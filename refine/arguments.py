@@ -176,7 +176,7 @@ def bind_take_in(positions: npt.NDArray[np.float64], points: npt.NDArray[np.floa
     return round_finite.bind(positions.reshape(-1), points.reshape(-1))
 
 
-def not_finite(positions: npt.NDArray[np.float64]) -> str:
+def not_finite(positions: npt.NDArray[np.floating]) -> str:
     """Say which of the positions of a frame are not numbers."""
     bad = np.flatnonzero(~np.isfinite(positions).all(axis=1))
     return (

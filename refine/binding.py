@@ -9,6 +9,7 @@ Source: the plug-in of Kähler, Haber, Seidel 2003, Fig. 1.
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
@@ -24,6 +25,7 @@ from .arguments import (
     not_finite,
 )
 from .connectivity import Connectivity, connect
+from .locality import Order, better_order
 from .native import with_room
 from .normals import bind_normals
 from .output import GEOMETRY_COLUMNS, place_attributes
@@ -67,12 +69,25 @@ class BoundRefiner(ABC):
         uv: npt.ArrayLike | None = None,
         face_uv: npt.ArrayLike | None = None,
         attributes: Mapping[str, AttributeLike] | None = None,
+        may_renumber: bool = False,
     ) -> None:
+        """Check and connect; `may_renumber`: whether a mesh may be put into a better order."""
         positions = checked_positions(rest_positions)
         triangles = checked_indices("faces", faces, len(positions), "rest_positions")
         self._values = checked_corner_values(uv, face_uv, attributes, triangles, len(positions))
+        renumbered = better_order(triangles, positions) if may_renumber else None
+        walked: npt.NDArray[np.integer] = triangles
+        self._order: Order | None = None
+        if renumbered is not None:
+            self._order, walked = renumbered
+            positions = positions[self._order.vertices]
+            self._values = self._order.sorted_values(self._values)
         corners = None if self._values is None else self._values.corners
-        self.connectivity: Connectivity = connect(triangles, len(positions), corners)
+        self.connectivity: Connectivity = connect(walked, len(positions), corners)
+        """Of the mesh as it is walked; all arrays of a frame are in its order."""
+        self._output_corners = self.connectivity.corners
+        if self._order is not None:
+            self._output_corners = self._order.named(self._output_corners)
         self._rest_positions = positions
         self._positions = with_room(positions)
         self._points = with_room(positions.astype(np.float32))
@@ -108,15 +123,17 @@ class BoundRefiner(ABC):
         Returns the numbers of vertices and triangles.
         """
 
-    @property
+    @cached_property
     def edges(self) -> npt.NDArray[np.int32]:
         """End points of each edge, shape (E, 2)."""
-        return self.connectivity.edges
+        edges = self.connectivity.edges
+        return edges if self._order is None else self._order.named_edges(edges)
 
-    @property
+    @cached_property
     def triangle_edges(self) -> npt.NDArray[np.int32]:
         """Edges of each triangle, shape (F, 3); -1 for a triangle that names a vertex twice."""
-        return self.connectivity.triangle_edges
+        triangle_edges = self.connectivity.triangle_edges
+        return triangle_edges if self._order is None else self._order.given_faces(triangle_edges)
 
     @property
     def vertex_columns(self) -> int:
@@ -145,13 +162,18 @@ class BoundRefiner(ABC):
                 f"positions must be floats of shape {self._positions.shape} like the mesh that "
                 f"was bound, got {positions.dtype} of shape {positions.shape}"
             )
-        np.copyto(self._positions, positions)
+        if self._order is None:
+            np.copyto(self._positions, positions)
+        else:
+            self._order.gather(positions, self._positions)
         if not self._take_in():
-            raise ValueError(not_finite(self._positions))
+            raise ValueError(not_finite(positions))
         stream = self._lend_own_stream() if out is None else out
         if not hasattr(stream, "reserve"):
             self._accept(stream, self.vertex_capacity, self.triangle_capacity)
         vertex_count, triangle_count = self._fill(stream, view)
+        if self._order is not None:
+            self._order.give_back(stream.vertices, stream.source[:triangle_count])
         vertices = stream.vertices[:vertex_count]
         return RefinedMesh(
             vertices[:, 0:3],
@@ -160,6 +182,15 @@ class BoundRefiner(ABC):
             stream.source[:triangle_count],
             *self._attributes_in(vertices),
         )
+
+    def _wedge_names(self) -> npt.NDArray[np.int32]:
+        """The caller's vertex of every wedge row of the output, shape (W,)."""
+        wedges = self.connectivity.wedge_vertices.astype(np.int32)
+        if self._order is not None:
+            # Rows of vertices have been brought into his order, copies along seams have not.
+            count = self.connectivity.vertex_count
+            wedges[count:] = self._order.vertices[wedges[count:]]
+        return wedges
 
     def _reserve(self, stream: Stream, vertex_count: int, triangle_count: int) -> Rows:
         """Let the stream grow if it can, and return its arrays, checked."""

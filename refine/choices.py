@@ -1,6 +1,8 @@
-"""Schemes by name."""
+"""Schemes by name, and what is known of those that are built in."""
 
 from .butterfly import ButterflyScheme
+from .criteria import CRITERIA, Maximum
+from .criterion import Criterion, NormalDrop
 from .cubic import CubicScheme
 from .detail import DetailScheme, FinerMesh
 from .schemes import LoopScheme, Scheme
@@ -29,3 +31,14 @@ def scheme_of(chosen: str | Scheme, detail: FinerMesh | None) -> Scheme:
         "cubic": CubicScheme(),
     }
     return built_in[chosen]
+
+
+def may_renumber(scheme: Scheme, criterion: Criterion) -> bool:
+    """Whether scheme and criterion are built in, and so go by nothing but what they are handed.
+
+    One of somebody else may know vertices and edges by the numbers that the caller gave them.
+    """
+    if isinstance(criterion, Maximum):
+        return all(may_renumber(scheme, one) for one in criterion.criteria)
+    schemes = (LoopScheme, ButterflyScheme, CubicScheme, DetailScheme)
+    return type(scheme) in schemes and type(criterion) in (NormalDrop, *CRITERIA.values())

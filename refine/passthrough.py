@@ -29,7 +29,9 @@ class PassThrough(BoundRefiner):
         attributes: Mapping[str, AttributeLike] | None = None,
     ) -> None:
         """Bind to a mesh (see `plugin.create`); there are no options."""
-        super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv, attributes=attributes)
+        super().__init__(
+            faces, rest_positions, uv=uv, face_uv=face_uv, attributes=attributes, may_renumber=True
+        )
         self._splits = np.zeros(len(self.connectivity.edges), dtype=np.uint8)
         self._splits.flags.writeable = False
         self._source = np.arange(len(self.connectivity.faces), dtype=np.int32)
@@ -62,13 +64,13 @@ class PassThrough(BoundRefiner):
         if self._values is not None:
             copy_wedges(connectivity.vertex_count, connectivity.wedge_vertices, vertices)
             self._place_attributes(connectivity, self._rim_splits, self._first_points, vertices)
-        triangles[:triangle_count] = connectivity.corners
+        triangles[:triangle_count] = self._output_corners
         source[:triangle_count] = self._source
         return vertex_count, triangle_count
 
     def origins(self) -> Origins:
         """Say for every output vertex which input vertex it is."""
-        wedges = self.connectivity.wedge_vertices.astype(np.int32)
+        wedges = self._wedge_names()
         weights = np.zeros((len(wedges), 3), dtype=np.float32)
         weights[:, 0] = 1.0
         return Origins(np.stack([wedges] * 3, axis=1), weights)
