@@ -7,6 +7,11 @@ pass puts them there, as far as they have grown (blend.py), with their normals.
               n           n              n at a =  (3 a + b) / 4        +  bulge
             a---------------b            grown   =  mix of (a + m) / 2 and n
 
+The normal at m is the mean of those at a and b, turned until it stands upright on the curve there:
+an S that ends as it began has the same normals at both ends and another one in between (Vlachos et
+al. 2001, "Curved PN triangles", have quadratic normals for the same reason). At n it is the mean of
+its neighbours'.
+
 Kähler, Haber, Seidel 2003, section 4.2 asks for rules that are cheap, local, close to the input
 mesh, and correct at borders; these are all, and leave every vertex where the simulation has it.
 """
@@ -30,6 +35,9 @@ THREE_QUARTERS = np.float32(0.75)
 ONE = np.float32(1.0)
 TINY = np.finfo(np.float32).tiny
 
+UPRIGHT = np.float32(0.95)
+"""How much of its slope along the curve a normal in the middle of an edge loses. Chosen: all but a
+rest, so that one that lies along the edge keeps a direction."""
 NEAR_START, MIDDLE, NEAR_END = 0, 1, 2
 """Points of an edge in an array of bulges, shape (E, 3, 3): edge, point, x y z."""
 
@@ -113,6 +121,25 @@ def unit(x: np.float32, y: np.float32, z: np.float32) -> tuple[np.float32, np.fl
 
 
 @kernel
+def stand_upright(
+    vertices: Floats, a: int, b: int, row: int, has_quarters: bool, share: np.float32
+) -> None:
+    """Write the normal of the middle of an edge: the mean, less a share of its slope."""
+    start, end = (row - 1, row + 1) if has_quarters else (a, b)
+    along = slope = ZERO
+    for i in range(3):
+        d = vertices[end, i] - vertices[start, i]
+        along += d * d
+        slope += d * (vertices[a, 3 + i] + vertices[b, 3 + i])
+    slope *= share / max(along, TINY)
+    vertices[row, 3], vertices[row, 4], vertices[row, 5] = unit(
+        vertices[a, 3] + vertices[b, 3] - slope * (vertices[end, 0] - vertices[start, 0]),
+        vertices[a, 4] + vertices[b, 4] - slope * (vertices[end, 1] - vertices[start, 1]),
+        vertices[a, 5] + vertices[b, 5] - slope * (vertices[end, 2] - vertices[start, 2]),
+    )
+
+
+@kernel
 def place_on_curves(
     edge_points: Unsigned,
     splits: npt.NDArray[np.uint8],
@@ -132,24 +159,22 @@ def place_on_curves(
         for i in range(3):
             straight = HALF * (vertices[a, i] + vertices[b, i])
             vertices[row, i] = straight + growth * bulges[e, MIDDLE, i]
-        vertices[row, 3], vertices[row, 4], vertices[row, 5] = unit(
-            vertices[a, 3] + vertices[b, 3],
-            vertices[a, 4] + vertices[b, 4],
-            vertices[a, 5] + vertices[b, 5],
-        )
-        if splits[e] < 2:
-            continue
-        for end in range(2):
-            near, far = (a, b) if end == 0 else (b, a)
-            point = np.uint32(row - 1 + 2 * end)
+        if splits[e] == 2:
             growth = growth_twice[e]
-            for i in range(3):
-                chord = HALF * (vertices[near, i] + vertices[row, i])
-                straight = THREE_QUARTERS * vertices[near, i] + QUARTER * vertices[far, i]
-                on_curve = straight + bulges[e, NEAR_START + 2 * end, i]
-                vertices[point, i] = (ONE - growth) * chord + growth * on_curve
-            vertices[point, 3], vertices[point, 4], vertices[point, 5] = unit(
-                vertices[near, 3] + vertices[row, 3],
-                vertices[near, 4] + vertices[row, 4],
-                vertices[near, 5] + vertices[row, 5],
-            )
+            for end in range(2):
+                near, far = (a, b) if end == 0 else (b, a)
+                point = np.uint32(row - 1 + 2 * end)
+                for i in range(3):
+                    chord = HALF * (vertices[near, i] + vertices[row, i])
+                    straight = THREE_QUARTERS * vertices[near, i] + QUARTER * vertices[far, i]
+                    on_curve = straight + bulges[e, NEAR_START + 2 * end, i]
+                    vertices[point, i] = (ONE - growth) * chord + growth * on_curve
+        stand_upright(vertices, a, b, row, splits[e] == 2, UPRIGHT * growth_once[e])
+        if splits[e] == 2:
+            for end in range(2):
+                near, point = a if end == 0 else b, row - 1 + 2 * end
+                vertices[point, 3], vertices[point, 4], vertices[point, 5] = unit(
+                    vertices[near, 3] + vertices[row, 3],
+                    vertices[near, 4] + vertices[row, 4],
+                    vertices[near, 5] + vertices[row, 5],
+                )

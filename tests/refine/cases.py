@@ -84,7 +84,8 @@ def assert_equals_twin(
     np.testing.assert_allclose(mesh.positions, expected, rtol=0, atol=5e-7 * scale)
     if not normals_cancel:
         normals = np.array([twin.normals[name] for name in names])
-        np.testing.assert_allclose(mesh.normals, normals, rtol=0, atol=4e-6)
+        # Upright on differences of float32 positions, on edges down to 0.07 long.
+        np.testing.assert_allclose(mesh.normals, normals, rtol=0, atol=8e-6)
     triangles = [
         (int(source), plain_twin.starting_at_least([names[v] for v in corners]))
         for source, corners in zip(mesh.source, mesh.triangles, strict=True)

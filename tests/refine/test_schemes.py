@@ -11,7 +11,7 @@ import refine
 from tests import meshes
 from tests.refine import plain_schemes
 from tests.refine.cases import Needed, as_lists, assert_equals_twin, soups
-from tests.refine.plain_twin import Curve, Twin, edge_name
+from tests.refine.plain_twin import Rules, Twin, edge_name
 from tests.refine.plain_twin import refine as refine_plainly
 
 SCHEMES = ("loop", "butterfly", "cubic")
@@ -53,17 +53,17 @@ def twin_of(mesh: meshes.Mesh, deformed: np.ndarray, scheme: str, blend: bool, n
     """The same frame by the plain implementations."""
     points, faces = as_lists(deformed, mesh.faces)
     rest, _ = as_lists(mesh.vertices, mesh.faces)
-    curve: Curve | None = None
+    rules: Rules | None = None
     if scheme == "cubic":
-        curve = plain_schemes.cubic(rest, points, faces)
+        rules = plain_schemes.cubic(rest, points, faces)
     if scheme == "butterfly":
-        curve = plain_schemes.butterfly(points, faces)
+        rules = plain_schemes.butterfly(points, faces)
     growth = needed.growth(edges)
     splits = {
         edge_name(int(a), int(b)): int(n > 0) + int(n > 1)
         for (a, b), n in zip(edges, needed.need, strict=True)
     }
-    return refine_plainly(points, faces, splits, growth=growth if blend else None, curve=curve)
+    return refine_plainly(points, faces, splits, growth=growth if blend else None, rules=rules)
 
 
 def random_needs(mesh: meshes.Mesh, seed: int) -> np.ndarray:
