@@ -46,6 +46,11 @@ class CurveScheme:
     """A scheme whose original vertices stay and whose edges are curves; fill in `_bulge`."""
 
     interpolates = True
+    turns: Floats | None = None
+    """How much there is to see in the normals of every edge, shape (E,), if a scheme knows that.
+
+    The turn [rad] from the mean of the normals at both ends to the one in the middle, times the
+    root of the edge's length in mean edge lengths: a longer edge shows more of it."""
 
     def bind(
         self,
@@ -122,7 +127,12 @@ def unit(x: np.float32, y: np.float32, z: np.float32) -> tuple[np.float32, np.fl
 
 @kernel
 def stand_upright(
-    vertices: Floats, a: int, b: int, row: int, has_quarters: bool, share: np.float32
+    vertices: Floats,
+    a: np.uint32,
+    b: np.uint32,
+    row: np.uint32,
+    has_quarters: bool,
+    share: np.float32,
 ) -> None:
     """Write the normal of the middle of an edge: the mean, less a share of its slope."""
     start, end = (row - 1, row + 1) if has_quarters else (a, b)

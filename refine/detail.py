@@ -14,8 +14,8 @@ mesh, both at rest. What is missing is stored in a frame of directions that move
         t x n
 
 In a frame the same directions are found in the deformed mesh and the detail is added to the cubic.
-Vertices stay where they are (they lie on the finer mesh if they are taken from it); those at split
-edges get their normals from it, in a frame of their normal and one of their edges.
+Vertices stay where they are (they lie on the finer mesh if they are taken from it). All of them show
+its normals, fitted (fit.py) and stored in a frame of their own normal and one of their edges.
 """
 
 import numpy as np
@@ -25,10 +25,9 @@ from .arguments import checked_indices, checked_positions
 from .closest import Surface
 from .connectivity import Connectivity
 from .cubic import CubicScheme
-from .fit import fitted
+from .fit import fitted, fitted_normals
 from .kernels import kernel
 from .local_frames import edge_axes, triangle_axes, vertex_axes
-from .masks import grow_vertices
 from .schemes import Frame
 
 Floats = npt.NDArray[np.float32]
@@ -68,14 +67,16 @@ class DetailScheme(CubicScheme):
         assert self._surface is not None, "a scheme is bound once"
         edge_count = len(connectivity.edges)
         self._axes = np.zeros((edge_count, 3, 3), dtype=np.float32)
+        self._centre_axes = np.zeros((len(connectivity.faces), 3, 3), dtype=np.float32)
+        self._vertex_axes = np.zeros((len(rest_normals), 3, 3), dtype=np.float32)
         self._shown = np.zeros_like(rest_normals)
-        self._vertex_growth = np.zeros(len(rest_normals), dtype=np.float32)
+        self._towards = np.arange(connectivity.vertex_count, dtype=np.uint32)
+        self._towards[connectivity.edges[:, 0]] = connectivity.edges[:, 1]
+        self._towards[connectivity.edges[:, 1]] = connectivity.edges[:, 0]
         everything = np.arange(edge_count, dtype=np.uint32)
         self._bulge_cubic(rest_positions, everything, edge_count, self._bulges)
-        edge_axes(
-            rest_positions, rest_normals, connectivity.edge_points, everything, edge_count,
-            self._axes,
-        )  # fmt: skip
+        # All directions follow the normals that the cubic has, now as in every frame.
+        rest_normals = self._normals.copy()
         points, normals = _points_on(self._bulges, connectivity, rest_positions, rest_normals)
         places, _ = _closest(self._surface, points, normals)
         centres, centre_normals = _centres_of(places, connectivity, rest_positions, rest_normals)
@@ -83,36 +84,51 @@ class DetailScheme(CubicScheme):
         places, centre_places = fitted(
             self._surface, connectivity, rest_positions, places, centre_places
         )
-        _, looks = _closest(self._surface, places, normals)
-        axes = self._axes[:, None]
-        self._offsets, self._looks = _along(axes, places - points), _along(axes, looks)
-        self._bind_vertices(rest_positions, rest_normals)
         centres, _ = _centres_of(places, connectivity, rest_positions, rest_normals)
-        _, looks = _closest(self._surface, centre_places, centre_normals)
-        face_count = len(connectivity.faces)
-        self._centre_axes = np.zeros((face_count, 3, 3), dtype=np.float32)
-        everything = np.arange(face_count, dtype=np.uint32)
-        triangle_axes(
-            rest_positions, rest_normals, connectivity.faces, everything, face_count,
-            self._centre_axes,
-        )  # fmt: skip
-        self._centre_offsets = _along(self._centre_axes, centre_places - centres)
-        self._centre_looks = _along(self._centre_axes, looks)
+        looks = self._rest_looks(rest_positions, rest_normals, places, normals, centre_places,
+                                 centre_normals)  # fmt: skip
+        self._remember(
+            rest_positions, rest_normals, places - points, centre_places - centres, looks
+        )
         self._surface = None
 
-    def _bind_vertices(self, rest_positions: Doubles, rest_normals: Floats) -> None:
-        """Store the finer normal of every vertex, in a frame of its normal and an edge."""
-        mesh, surface = self._connectivity, self._surface
-        assert surface is not None
-        self._towards = np.arange(mesh.vertex_count, dtype=np.uint32)
-        self._towards[mesh.edges[:, 0]] = mesh.edges[:, 1]
-        self._towards[mesh.edges[:, 1]] = mesh.edges[:, 0]
-        axes = self._vertex_axes = np.zeros((mesh.vertex_count, 3, 3), dtype=np.float32)
-        everywhere = np.ones(mesh.vertex_count, dtype=np.float32)
-        vertex_axes(rest_positions, rest_normals, everywhere, self._towards, axes)
-        _, looks = _closest(surface, rest_positions, rest_normals.astype(np.float64))
+    def _rest_looks(
+        self, rest_positions: Doubles, rest_normals: Floats, places: Doubles, normals: Doubles,
+        centre_places: Doubles, centre_normals: Doubles,
+    ) -> Doubles:  # fmt: skip
+        """Normals of the finer mesh for vertices, points of edges and centres, in one list."""
+        assert self._surface is not None
+        where = np.concatenate([rest_positions, places.reshape(-1, 3), centre_places])
+        up = np.concatenate([rest_normals, normals.reshape(-1, 3), centre_normals])
+        _, looks = _closest(self._surface, where, up)
+        return fitted_normals(self._surface, self._connectivity, where, looks)
+
+    def _remember(
+        self, rest_positions: Doubles, rest_normals: Floats, offsets: Doubles,
+        centre_offsets: Doubles, looks: Doubles,
+    ) -> None:  # fmt: skip
+        """Store offsets and normals along the directions of edges, triangles and vertices."""
+        mesh, vertex_count, edge_count = self._connectivity, len(rest_positions), len(offsets)
+        edges = np.arange(edge_count, dtype=np.uint32)
+        edge_axes(rest_positions, rest_normals, mesh.edge_points, edges, edge_count, self._axes)
+        self._offsets = _along(self._axes[:, None], offsets)
+        point_looks = looks[vertex_count : vertex_count + 3 * edge_count].reshape(-1, 3, 3)
+        self._looks = _along(self._axes[:, None], point_looks)
+        triangles = np.arange(len(mesh.faces), dtype=np.uint32)
+        triangle_axes(
+            rest_positions, rest_normals, mesh.faces, triangles, len(triangles), self._centre_axes
+        )
+        self._centre_offsets = _along(self._centre_axes, centre_offsets)
+        self._centre_looks = _along(self._centre_axes, looks[vertex_count + 3 * edge_count :])
+        vertex_axes(rest_positions, rest_normals, self._towards, self._vertex_axes)
         # A vertex without a normal has no frame: nothing to show there.
-        self._vertex_looks = _along(axes, looks)
+        self._vertex_looks = _along(self._vertex_axes, looks[:vertex_count])
+        mean = looks[mesh.edges].sum(axis=1)
+        mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-12)
+        cosine = np.clip((mean * point_looks[:, 1]).sum(axis=1), -1.0, 1.0)
+        lengths = np.linalg.norm(np.diff(rest_positions[mesh.edges], axis=1)[:, 0], axis=1)
+        share = np.sqrt(lengths / lengths.mean()) if edge_count else lengths
+        self.turns = (np.arccos(cosine) * share).astype(np.float32)
 
     def place(self, frame: Frame) -> None:
         """Write vertices and points, then the normals of the finer mesh at points."""
@@ -131,23 +147,17 @@ class DetailScheme(CubicScheme):
         )
 
     def _vertex_normals(self, frame: Frame) -> Floats:
-        grow_vertices(
-            self._connectivity.edge_points,
-            frame.growth_once,
-            frame.split_once,
-            frame.once_count,
-            self._vertex_growth,
-        )
-        growth, axes = self._vertex_growth, self._vertex_axes
-        vertex_axes(frame.positions, frame.normals, growth, self._towards, axes)
-        show_vertices(frame.normals, growth, self._vertex_looks, axes, self._shown)
+        axes = self._vertex_axes
+        normals = super()._vertex_normals(frame)
+        vertex_axes(frame.positions, normals, self._towards, axes)
+        show_vertices(normals, self._vertex_looks, axes, self._shown)
         return self._shown
 
     def _bulge(self, frame: Frame, bulges: Floats) -> None:
         super()._bulge(frame, bulges)
         edge_axes(
             frame.positions,
-            frame.normals,
+            self._normals,
             self._connectivity.edge_points,
             frame.split_once,
             frame.once_count,
@@ -161,7 +171,7 @@ class DetailScheme(CubicScheme):
         mesh = self._connectivity
         triangle_axes(
             frame.positions,
-            frame.normals,
+            self._normals,
             mesh.faces,
             frame.centre_triangles,
             frame.centre_count,
@@ -248,15 +258,12 @@ def turn(normal: Floats, look: Floats, axes: Floats, growth: np.float32) -> None
 
 
 @kernel
-def show_vertices(
-    normals: Floats, vertex_growth: Floats, looks: Floats, axes: Floats, shown: Floats
-) -> None:
-    """Write the finer normal of every vertex at a split edge, turned with its surroundings."""
+def show_vertices(normals: Floats, looks: Floats, axes: Floats, shown: Floats) -> None:
+    """Write the finer normal of every vertex, turned with its surroundings."""
     for v in range(normals.shape[0]):
         for i in range(3):
             shown[v, i] = normals[v, i]
-        if vertex_growth[v] > ZERO:
-            turn(shown[v], looks[v], axes[v], vertex_growth[v])
+        turn(shown[v], looks[v], axes[v], ONE)
 
 
 @kernel

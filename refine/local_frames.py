@@ -14,7 +14,6 @@ Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
 Unsigned = npt.NDArray[np.uint32]
 
-ZERO = np.float32(0.0)
 ONE = np.float32(1.0)
 TINY = np.finfo(np.float32).tiny
 
@@ -66,13 +65,9 @@ def edge_axes(
 
 
 @kernel
-def vertex_axes(
-    positions: Doubles, normals: Floats, vertex_growth: Floats, towards: Unsigned, axes: Floats
-) -> None:
-    """Write the directions of the vertices that have grown: up, towards a neighbour, across."""
+def vertex_axes(positions: Doubles, normals: Floats, towards: Unsigned, axes: Floats) -> None:
+    """Write the directions of all vertices: up, towards a neighbour, across."""
     for v in range(positions.shape[0]):
-        if vertex_growth[v] == ZERO:
-            continue
         u = towards[v]
         write_axes(
             normals[v, 0],

@@ -84,10 +84,11 @@ def test_nothing_pops(scheme: str) -> None:
     assert turn < 0.3  # smaller steps turn it less: 0.08 with 1600 steps
 
 
-@pytest.mark.parametrize("criterion", ["curvature", ["normal", "curvature"]])
-def test_nothing_pops_by_other_criteria(criterion: object) -> None:
+@pytest.mark.parametrize("scheme", ["cubic", "detail"])
+@pytest.mark.parametrize("criterion", ["curvature", "bulge", ["normal", "curvature"]])
+def test_nothing_pops_by_other_criteria(criterion: object, scheme: str) -> None:
     """The same for the other criteria and their maximum."""
-    assert jumps("cubic", True, criterion)[0] < BOUND
+    assert jumps(scheme, True, criterion)[0] < BOUND
 
 
 def test_without_blending_it_pops() -> None:
