@@ -5,17 +5,20 @@ one could do even better than smoothing: detail information can be stored locall
 generated split vertices on the surface, as has been exercised in multiresolution editing."
 
 At binding, the points that all edges would get from the scheme `cubic` are compared with the finer
-mesh, both at rest. What is missing is stored in a frame of directions that moves with the edge:
+mesh, both at rest. What is missing is stored along directions that move with the surface:
 
-          n = (n_a + n_b) normal to it                stored:  how the finer surface lies beside
-          |                                                    the point, and its normal, along
-    a-----o------> t = b - a                                   t, n and t x n
-         /
-        t x n
+          n                                     stored:  how the finer surface lies beside the
+          |                                              point, and its normal, along n, t and n x t
+    a-----o------> t = b - a
+         /                                      n:  upright on the edge in its middle, half way from
+        n x t                                       there to the normal of the end at its quarters
 
 In a frame the same directions are found in the deformed mesh and the detail is added to the cubic.
-Vertices stay where they are (they lie on the finer mesh if they are taken from it). All of them show
-its normals, fitted (fit.py) and stored in a frame of their own normal and one of their edges.
+A quarter has to turn with the vertex near it: with one direction n for all of an edge, the normals
+around a vertex turned less than its own where the mesh was folded, and stars stood there.
+
+Vertices stay where they are (they lie on the finer mesh if they are taken from it). All of them
+show its normals, fitted (fit.py) and stored along their own normal and one of their edges.
 """
 
 import numpy as np
@@ -66,7 +69,7 @@ class DetailScheme(CubicScheme):
         super().bind(connectivity, rest_positions, rest_normals)
         assert self._surface is not None, "a scheme is bound once"
         edge_count = len(connectivity.edges)
-        self._axes = np.zeros((edge_count, 3, 3), dtype=np.float32)
+        self._axes = np.zeros((edge_count, 3, 3, 3), dtype=np.float32)
         self._centre_axes = np.zeros((len(connectivity.faces), 3, 3), dtype=np.float32)
         self._vertex_axes = np.zeros((len(rest_normals), 3, 3), dtype=np.float32)
         self._shown = np.zeros_like(rest_normals)
@@ -111,9 +114,9 @@ class DetailScheme(CubicScheme):
         mesh, vertex_count, edge_count = self._connectivity, len(rest_positions), len(offsets)
         edges = np.arange(edge_count, dtype=np.uint32)
         edge_axes(rest_positions, rest_normals, mesh.edge_points, edges, edge_count, self._axes)
-        self._offsets = _along(self._axes[:, None], offsets)
+        self._offsets = _along(self._axes, offsets)
         point_looks = looks[vertex_count : vertex_count + 3 * edge_count].reshape(-1, 3, 3)
-        self._looks = _along(self._axes[:, None], point_looks)
+        self._looks = _along(self._axes, point_looks)
         triangles = np.arange(len(mesh.faces), dtype=np.uint32)
         triangle_axes(
             rest_positions, rest_normals, mesh.faces, triangles, len(triangles), self._centre_axes
@@ -236,9 +239,9 @@ def add_offsets(
         for point in range(3):
             for i in range(3):
                 bulges[e, point, i] += (
-                    offsets[e, point, 0] * axes[e, 0, i]
-                    + offsets[e, point, 1] * axes[e, 1, i]
-                    + offsets[e, point, 2] * axes[e, 2, i]
+                    offsets[e, point, 0] * axes[e, point, 0, i]
+                    + offsets[e, point, 1] * axes[e, point, 1, i]
+                    + offsets[e, point, 2] * axes[e, point, 2, i]
                 )
 
 
@@ -283,7 +286,7 @@ def show_points(
     for k in range(once_count):
         e = split_once[k]
         row = first_points[e] + (splits[e] >> 1)
-        turn(vertices[row, 3:6], looks[e, 1], axes[e], growth_once[e])
+        turn(vertices[row, 3:6], looks[e, 1], axes[e, 1], growth_once[e])
         if splits[e] < 2:
             continue
         for end in range(2):
@@ -291,7 +294,7 @@ def show_points(
             vertex, point = edge_points[e, end], row - 1 + 2 * end
             for i in range(3, 6):
                 vertices[point, i] = HALF * (vertices[vertex, i] + vertices[row, i])
-            turn(vertices[point, 3:6], looks[e, 2 * end], axes[e], growth_twice[e])
+            turn(vertices[point, 3:6], looks[e, 2 * end], axes[e, 2 * end], growth_twice[e])
 
 
 @kernel

@@ -16,17 +16,8 @@ from tests.refine.plain_twin import refine as refine_plainly
 
 SCHEMES = ("loop", "butterfly", "cubic")
 EVERY_SCHEME = (*SCHEMES, "detail")
-VALENCES = {f"fan of {n}": lambda n=n: _cone(n) for n in (3, 4, 5, 7, 60, 90)}
+VALENCES = {f"fan of {n}": lambda n=n: meshes.double_cone(n) for n in (3, 4, 5, 7, 60, 90)}
 MESHES = {**meshes.NAMED, **VALENCES, "irregular": lambda: meshes.irregular(3, 6, 5, 1)}
-
-
-def _cone(valence: int) -> meshes.Mesh:
-    """A closed double cone: two tips with many neighbours, and a ring of valence four."""
-    fan = meshes.fan(valence)
-    vertices = np.concatenate([fan.vertices, [[0.1, 0.0, -0.7]]])
-    vertices[0, 2] = 0.6
-    below = np.where(fan.faces == 0, len(vertices) - 1, fan.faces)[:, ::-1]
-    return meshes.Mesh(vertices, np.concatenate([fan.faces, below]).astype(np.int32))
 
 
 def bound(
