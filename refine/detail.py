@@ -113,7 +113,10 @@ class DetailScheme(CubicScheme):
         """Store offsets and normals along the directions of edges, triangles and vertices."""
         mesh, vertex_count, edge_count = self._connectivity, len(rest_positions), len(offsets)
         edges = np.arange(edge_count, dtype=np.uint32)
-        edge_axes(rest_positions, rest_normals, mesh.edge_points, edges, edge_count, self._axes)
+        twice = np.full(edge_count, 2, dtype=np.uint8)
+        edge_axes(
+            rest_positions, rest_normals, mesh.edge_points, twice, edges, edge_count, self._axes
+        )
         self._offsets = _along(self._axes, offsets)
         point_looks = looks[vertex_count : vertex_count + 3 * edge_count].reshape(-1, 3, 3)
         self._looks = _along(self._axes, point_looks)
@@ -162,11 +165,14 @@ class DetailScheme(CubicScheme):
             frame.positions,
             self._normals,
             self._connectivity.edge_points,
+            frame.splits,
             frame.split_once,
             frame.once_count,
             self._axes,
         )
-        add_offsets(self._offsets, self._axes, frame.split_once, frame.once_count, bulges)
+        add_offsets(
+            self._offsets, self._axes, frame.splits, frame.split_once, frame.once_count, bulges
+        )
 
     def place_centres(self, frame: Frame) -> None:
         """Move the points in the middle of triangles as far as the edges around have grown."""
@@ -231,12 +237,17 @@ def _along(axes: Floats, vectors: Doubles) -> Floats:
 
 @kernel
 def add_offsets(
-    offsets: Floats, axes: Floats, split_once: Unsigned, once_count: int, bulges: Floats
+    offsets: Floats,
+    axes: Floats,
+    splits: npt.NDArray[np.uint8],
+    split_once: Unsigned,
+    once_count: int,
+    bulges: Floats,
 ) -> None:
     """Add the stored offsets of the split edges to their bulges."""
     for k in range(once_count):
         e = split_once[k]
-        for point in range(3):
+        for point in range(3) if splits[e] == 2 else range(1, 2):
             for i in range(3):
                 bulges[e, point, i] += (
                     offsets[e, point, 0] * axes[e, point, 0, i]

@@ -64,14 +64,16 @@ def edge_axes(
     positions: Doubles,
     normals: Floats,
     edge_points: Unsigned,
+    splits: npt.NDArray[np.uint8],
     listed: Unsigned,
     count: int,
     axes: Floats,
 ) -> None:
-    """Write the directions of the three points of the listed edges: up, along the edge, across.
+    """Write the directions of the points of the listed edges: up, along the edge, across.
 
-    Up is upright on the edge in the middle, and half way from there to the normal at the end at the
-    quarters: a point near a vertex turns with it, not with the edge.
+    Edges that are split once have a middle only. Up is upright on the edge there, and half way from
+    there to the normal at the end at the quarters: a point near a vertex turns with it, not with
+    the edge.
     """
     for k in range(count):
         e = listed[k]
@@ -80,6 +82,8 @@ def edge_axes(
         for point in range(3):
             x, y, z = u, v, w
             if point != 1:
+                if splits[e] < 2:
+                    continue
                 near = a if point == 0 else b
                 x, y, z = u + normals[near, 0], v + normals[near, 1], w + normals[near, 2]
             write_axes(
