@@ -9,8 +9,9 @@ pass puts them there, as far as they have grown (blend.py), with their normals.
 
 The normal at m is the mean of those at a and b, turned until it stands upright on the curve there:
 an S that ends as it began has the same normals at both ends and another one in between (Vlachos et
-al. 2001, "Curved PN triangles", have quadratic normals for the same reason). At n it is the mean of
-its neighbours'.
+al. 2001, "Curved PN triangles", have quadratic normals for the same reason). It does so as far as
+the edges of both triangles have grown: beside a triangle that has no such normals a single one is
+seen as a scar. At n the normal is the mean of its neighbours'.
 
 Kähler, Haber, Seidel 2003, section 4.2 asks for rules that are cheap, local, close to the input
 mesh, and correct at borders; these are all, and leave every vertex where the simulation has it.
@@ -69,6 +70,8 @@ class CurveScheme:
         place_unmoved(frame.points, self._vertex_normals(frame), frame.rows)
         place_on_curves(
             self._connectivity.edge_points,
+            self._connectivity.edge_wings,
+            self._connectivity.is_interior,
             frame.splits,
             frame.growth_once,
             frame.growth_twice,
@@ -152,6 +155,8 @@ def stand_upright(
 @kernel
 def place_on_curves(
     edge_points: Unsigned,
+    edge_wings: Unsigned,
+    is_interior: npt.NDArray[np.bool_],
     splits: npt.NDArray[np.uint8],
     growth_once: Floats,
     growth_twice: Floats,
@@ -179,7 +184,11 @@ def place_on_curves(
                     straight = THREE_QUARTERS * vertices[near, i] + QUARTER * vertices[far, i]
                     on_curve = straight + bulges[e, NEAR_START + 2 * end, i]
                     vertices[point, i] = (ONE - growth) * chord + growth * on_curve
-        stand_upright(vertices, a, b, row, splits[e] == 2, UPRIGHT * growth_once[e])
+        share = growth_once[e]
+        if is_interior[e]:
+            for i in range(4):
+                share = min(share, growth_once[edge_wings[e, i]])
+        stand_upright(vertices, a, b, row, splits[e] == 2, UPRIGHT * share)
         if splits[e] == 2:
             for end in range(2):
                 near, point = a if end == 0 else b, row - 1 + 2 * end

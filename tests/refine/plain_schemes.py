@@ -54,7 +54,8 @@ class CurveRules:
     centre_fullness: float = 1.0
 
     def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
-        """Points on the curves; normals upright on them, 95 per cent of the way."""
+        """Points on the curves; normals upright on them by 95 per cent, where all has grown."""
+        around = Surroundings(self.faces)
         points: AtPoints = {}
         normals: AtPoints = {}
         for (a, b), (once, twice) in grown.items():
@@ -72,7 +73,13 @@ class CurveRules:
                 mix((1, stop), (-1, start)),
                 mix((1, self.normals[a]), (1, self.normals[b])),
             )
-            slope = 0.95 * once * dot(mean, along) / max(dot(along, along), 1e-38)
+            wings = [
+                edge_name(end, c)
+                for end in (a, b)
+                for c in (around.opposite[a, b] if (a, b) in around.inner else [])
+            ]
+            share = min([once, *(grown.get(wing, (0.0, 0.0))[0] for wing in wings)])
+            slope = 0.95 * share * dot(mean, along) / max(dot(along, along), 1e-38)
             middle = unit(mix((1, mean), (-slope, along)))
             ends = {1: self.normals[a], 2: middle, 3: self.normals[b]}
             normals[a, b] = {q: unit(mix((1, n), (1, middle))) for q, n in ends.items()}
