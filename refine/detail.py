@@ -17,6 +17,9 @@ In a frame the same directions are found in the deformed mesh and the detail is 
 A quarter has to turn with the vertex near it: with one direction n for all of an edge, the normals
 around a vertex turned less than its own where the mesh was folded, and stars stood there.
 
+The normal of a point turns to that of the finer mesh as far as the edges around have grown, in the
+mean: where what is refined ends, a fold would otherwise end as a crease.
+
 Vertices stay where they are (they lie on the finer mesh if they are taken from it). All of them
 show its normals, fitted (fit.py) and stored along their own normal and one of their edges.
 """
@@ -41,6 +44,7 @@ FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 """Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
 
 ZERO = np.float32(0.0)
+QUARTER = np.float32(0.25)
 HALF = np.float32(0.5)
 ONE = np.float32(1.0)
 TINY = np.finfo(np.float32).tiny
@@ -141,6 +145,8 @@ class DetailScheme(CubicScheme):
         super().place(frame)
         show_points(
             self._connectivity.edge_points,
+            self._connectivity.edge_wings,
+            self._connectivity.is_interior,
             self._looks,
             self._axes,
             frame.splits,
@@ -283,6 +289,8 @@ def show_vertices(normals: Floats, looks: Floats, axes: Floats, shown: Floats) -
 @kernel
 def show_points(
     edge_points: Unsigned,
+    edge_wings: Unsigned,
+    is_interior: npt.NDArray[np.bool_],
     looks: Floats,
     axes: Floats,
     splits: npt.NDArray[np.uint8],
@@ -297,7 +305,13 @@ def show_points(
     for k in range(once_count):
         e = split_once[k]
         row = first_points[e] + (splits[e] >> 1)
-        turn(vertices[row, 3:6], looks[e, 1], axes[e, 1], growth_once[e])
+        share = growth_once[e]
+        if is_interior[e]:
+            around = ZERO
+            for i in range(4):
+                around += QUARTER * growth_once[edge_wings[e, i]]
+            share = min(share, around)
+        turn(vertices[row, 3:6], looks[e, 1], axes[e, 1], share)
         if splits[e] < 2:
             continue
         for end in range(2):
@@ -305,7 +319,12 @@ def show_points(
             vertex, point = edge_points[e, end], row - 1 + 2 * end
             for i in range(3, 6):
                 vertices[point, i] = HALF * (vertices[vertex, i] + vertices[row, i])
-            turn(vertices[point, 3:6], looks[e, 2 * end], axes[e, 2 * end], growth_twice[e])
+            turn(
+                vertices[point, 3:6],
+                looks[e, 2 * end],
+                axes[e, 2 * end],
+                min(share, growth_twice[e]),
+            )
 
 
 @kernel

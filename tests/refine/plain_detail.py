@@ -16,6 +16,7 @@ from tests.refine.plain_twin import (
     Growth,
     Name,
     Placed,
+    Surroundings,
     Vector,
     edge_name,
     mix,
@@ -90,7 +91,7 @@ class DetailRules:
             towards[b] = a
         self.rest = Form(cubic(rest, rest, faces), towards)
         self.now = Form(cubic(rest, positions, faces), towards)
-        self.faces, self.seen = faces, seen
+        self.faces, self.seen, self.around = faces, seen, Surroundings(faces)
         names: list[Name] = [("vertex", v) for v in range(len(rest))]
         self.shown = [self._look(name) for name in names]
 
@@ -109,17 +110,26 @@ class DetailRules:
         return mix((1, now), (1, carried(missing, *self._frames(name))))
 
     def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
-        """Points on these curves, and normals that turn to those seen as the points grow."""
+        """Points on these curves, and normals that turn to those seen as all around grows."""
         rules = CurveRules(self.now.cubic.positions, self.faces, self.curve, self.shown)
         place = rules.placed(count, grown)
         for (a, b), (once, twice) in grown.items():
             normals = place.point_normals[a, b]
-            middle = turned(normals[2], self._look(("edge", a, b, 2)), once)
+            share = min(once, self._around(grown, a, b))
+            middle = turned(normals[2], self._look(("edge", a, b, 2)), share)
             normals[2] = middle
             for quarters, end in ((1, a), (3, b)):
                 between = mix((0.5, self.shown[end]), (0.5, middle))
-                normals[quarters] = turned(between, self._look(("edge", a, b, quarters)), twice)
+                look = self._look(("edge", a, b, quarters))
+                normals[quarters] = turned(between, look, min(share, twice))
         return place
+
+    def _around(self, grown: Growth, a: int, b: int) -> float:
+        """How far the other edges of the triangles on both sides have grown, in the mean."""
+        if (a, b) not in self.around.inner:
+            return 1.0
+        wings = [edge_name(end, c) for end in (a, b) for c in self.around.opposite[a, b]]
+        return sum(grown.get(wing, (0.0, 0.0))[0] for wing in wings) / 4
 
     def centre(
         self, source: int, point: Vector, normal: Vector, grown: float
