@@ -78,7 +78,7 @@ def rules_table(scores: Sequence[Score]) -> str:
     coarse = average[COARSE, "", 1.0]
     lines = [
         f"{'mean over expressions':26} {'x triangles':>11} {'mm':>7} {'better':>8} {'degrees':>8} "
-        f"{'better':>8}"
+        f"{'better':>8} {'median':>7} {'better':>8}"
     ]
     for (method, rule, budget), found in average.items():
         words = (
@@ -89,7 +89,8 @@ def rules_table(scores: Sequence[Score]) -> str:
         lines.append(
             f"{words:26} {found.triangles / coarse.triangles:11.2f} {found.distance:7.3f} "
             f"{100.0 * (1.0 - found.distance / coarse.distance):6.1f} % {found.angle:8.2f} "
-            f"{100.0 * (1.0 - found.angle / coarse.angle):6.1f} %"
+            f"{100.0 * (1.0 - found.angle / coarse.angle):6.1f} % {found.median_angle:7.2f} "
+            f"{100.0 * (1.0 - found.median_angle / coarse.median_angle):6.1f} %"
         )
     return "\n".join(lines)
 
@@ -115,6 +116,8 @@ def targets_text(scores: Sequence[Score]) -> str:
         extra = ""
         if scheme == "detail" and ideal in average:
             extra = f"; with its points on the truth {better(ideal, what):.1f} %"
+        if what == "angle":
+            extra = f", median {better(best, 'median_angle'):.1f} %{extra}"
         lines.append(
             f"  {'met   ' if better(best, what) >= asked else 'MISSED'}  {scheme}: "
             f"{'normals ' if what == 'angle' else ''}{asked} % better; found "

@@ -9,7 +9,8 @@ edges. To achieve this, appropriate splitting criteria have to be developed").
     silhouette  how far the surface turns along     (1 - n_a . n_b) x facing; facing is 1 where the
                 an edge that is seen from aside     line of sight grazes the edge, 0 a BAND away
     screen      length of an edge as it is seen     L x focal / distance from the eye, in pixels
-    bulge       how far the scheme moves a middle   for schemes with curved edges (curves.py)
+    bulge       how far the scheme moves a middle   for schemes with curved edges (curves.py);
+                and turns its normal, if it knows   `detail` does
 
 Each has two thresholds, above which an edge is split once and twice, and says how much an edge
 needs a split, so that all of them can be blended (blend.py) and any of them combined.
@@ -21,6 +22,7 @@ from typing import cast
 import numpy as np
 import numpy.typing as npt
 
+from .blend import RAMP
 from .connectivity import Connectivity
 from .criterion import Criterion, Measured, NormalDrop, Thresholds
 from .curves import CurveScheme
@@ -34,6 +36,11 @@ Unsigned = npt.NDArray[np.uint32]
 
 BAND = 0.3
 """Cosine between normal and line of sight at which an edge is no silhouette: 17 degrees aside."""
+
+HASTE = 0.25
+"""Share of the first threshold of `bulge` in which a blended point grows. Chosen: a point that is
+half grown costs as much as a whole one; and one that moves by 6 times the change of its bulge, and
+no farther than that threshold, does not pop."""
 
 
 class _Measuring:
@@ -150,9 +157,14 @@ class Bulge(_Measuring):
     For the schemes that interpolate. What is coarse at rest counts as well, unlike in the paper.
     """
 
-    def __init__(self, once: float = 0.03, twice: float = 0.15) -> None:
-        """`once`, `twice`: distances in mean edge lengths of the mesh at rest."""
+    def __init__(self, once: float = 0.03, twice: float = 0.15, *, turning: float = 0.25) -> None:
+        """`once`, `twice`: distances in mean edge lengths of the mesh at rest.
+
+        `turning`: the distance that a normal counts that a split would turn by a radian, for the
+        scheme `detail`; 0 looks at distances only.
+        """
         super().__init__(once, twice, "distances in mean edge lengths")
+        self.turning = turning
 
     def use(self, scheme: object) -> None:
         """Take the scheme of the refiner; raises ValueError for one without curves."""
@@ -172,9 +184,12 @@ class Bulge(_Measuring):
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
-        limits = self.thresholds
+        limits, turns = self.thresholds, self._scheme.turns
         bulge_sizes(self._scheme.all_bulges(positions, normals), need)
+        if turns is not None and self.turning > 0.0:
+            count_turns(need, turns, np.float32(self.turning) * self._unit)
         scale_needs(need, limits.once * self._unit, limits.width * self._unit, limits.most)
+        hasten(need, np.float32(HASTE) * limits.once / limits.width, RAMP)
 
 
 class Maximum:
@@ -265,6 +280,28 @@ def bulge_sizes(bulges: Floats, sizes: Floats) -> None:
     for e in range(sizes.shape[0]):
         x, y, z = bulges[e, 1, 0], bulges[e, 1, 1], bulges[e, 1, 2]
         sizes[e] = np.sqrt(x * x + y * y + z * z)
+
+
+@kernel
+def count_turns(sizes: Floats, turns: Floats, scale: np.float32) -> None:
+    """Raise the sizes of edges, shape (E,), to what the turns of their normals count."""
+    for e in range(sizes.shape[0]):
+        sizes[e] = max(sizes[e], scale * turns[e])
+
+
+@kernel
+def hasten(need: Floats, soon: np.float32, ramp: np.float32) -> None:
+    """Stretch the needs, shape (E,), so that `soon` becomes `ramp`, where points have grown."""
+    if soon >= ramp:
+        return
+    for e in range(need.shape[0]):
+        if need[e] <= np.float32(0.0) or need[e] >= np.float32(1.0):
+            continue
+        if need[e] < soon:
+            need[e] *= ramp / soon
+        else:
+            rest = (np.float32(1.0) - need[e]) / (np.float32(1.0) - soon)
+            need[e] = np.float32(1.0) - (np.float32(1.0) - ramp) * rest
 
 
 @kernel

@@ -8,9 +8,10 @@ d = b - a, and heights h_a = d . n_a, h_b = d . n_b over these planes:
     near a      (3 a + b) / 4     -  (9 h_a n_a - 3 h_b n_b) / 64
     near b      (a + 3 b) / 4     -  (3 h_a n_a - 9 h_b n_b) / 64
 
-Differs from PN triangles: the normals are weighted by the angle of a triangle at rest instead of
-its area, so that slivers and long thin neighbours do not bend an edge; an edge on a border is cubic
-in the border curve itself, because a surface's normal says nothing about where it ends.
+Differs from PN triangles: the normals are weighted by the geometric mean of a triangle's angle and
+its area at rest. Angle alone is truest on smooth surfaces, area alone where decimation has left
+folds of small triangles; between them both lose little. An edge on a border is cubic in the border
+curve itself, because a surface's normal says nothing about where it ends.
 """
 
 import numpy as np
@@ -25,9 +26,11 @@ Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
 Unsigned = npt.NDArray[np.uint32]
 
-FULLNESS = np.float32(1.15)
+FULLNESS = np.float32(1.2)
 """How much more than the cubic an inner edge bulges. Triangles between curves are flat, so the best
-fit stands out a little; measured on scanned expressions, flat between 1.1 and 1.3."""
+fit stands out a little; measured on ellipsoids, a torus and heads, flat between 1.1 and 1.25."""
+CENTRE_FULLNESS = np.float32(1.15)
+"""How much farther the middle of a triangle stands out, which the largest flat triangles meet."""
 EIGHTH = np.float32(1 / 8)
 """Share of the end tangents in the middle of a cubic."""
 NEAR, FAR = np.float32(9 / 64), np.float32(3 / 64)
@@ -37,6 +40,7 @@ SLIVER = 1e-9
 MIDDLE, NEAR_START, NEAR_END = 1, 0, 2
 """Points of an edge in an array of bulges (curves.py)."""
 ZERO = np.float32(0.0)
+THIRD = np.float32(1 / 3)
 ONE = np.float32(1.0)
 TINY = np.finfo(np.float32).tiny
 
@@ -57,6 +61,26 @@ class CubicScheme(CurveScheme):
         self._normals = np.zeros_like(rest_normals)
         self._beyond = np.zeros((len(connectivity.edges), 2), dtype=np.uint32)
         follow_borders(connectivity.edges, connectivity.is_interior, rest_normals, self._beyond)
+
+    def _vertex_normals(self, frame: Frame) -> Floats:
+        if frame.once_count == 0:
+            weighted_normals(
+                frame.positions, self._connectivity.faces, self._weights, self._normals
+            )
+        return self._normals
+
+    def place_centres(self, frame: Frame) -> None:
+        """Raise the points in the middle of triangles as far as the edges around have grown."""
+        assert frame.centre_triangles is not None
+        raise_centres(
+            self._connectivity.faces,
+            self._connectivity.triangle_edges,
+            frame.growth_once,
+            frame.centre_triangles,
+            frame.centre_count,
+            frame.first_centre,
+            frame.rows,
+        )
 
     def _bulge(self, frame: Frame, bulges: Floats) -> None:
         if frame.once_count > 0:
@@ -81,7 +105,7 @@ class CubicScheme(CurveScheme):
 
 @kernel
 def weigh_corners(positions: Doubles, faces: Unsigned, weights: Floats) -> None:
-    """Write angle / |cross product| of every corner, shape (F, 3); 0 in triangles without area."""
+    """Write sqrt(angle / |cross product|) of every corner, shape (F, 3); 0 without an area."""
     for t in range(faces.shape[0]):
         for i in range(3):
             a, b, c = faces[t, i], faces[t, (i + 1) % 3], faces[t, (i + 2) % 3]
@@ -91,7 +115,9 @@ def weigh_corners(positions: Doubles, faces: Unsigned, weights: Floats) -> None:
             x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
             cross, dot = np.sqrt(x * x + y * y + z * z), ux * vx + uy * vy + uz * vz
             size = np.sqrt((ux * ux + uy * uy + uz * uz) * (vx * vx + vy * vy + vz * vz))
-            weights[t, i] = np.arctan2(cross, dot) / cross if cross > SLIVER * size else 0.0
+            weights[t, i] = (
+                np.sqrt(np.arctan2(cross, dot) / cross) if cross > SLIVER * size else 0.0
+            )
 
 
 @kernel
@@ -121,7 +147,7 @@ def follow_borders(
 
 @kernel
 def weighted_normals(positions: Doubles, faces: Unsigned, weights: Floats, normals: Floats) -> None:
-    """Write unit vertex normals, each corner weighted by its angle at rest, shape (V, 3)."""
+    """Write unit vertex normals, each corner weighted as at rest, shape (V, 3)."""
     normals[:] = ZERO
     for t in range(faces.shape[0]):
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
@@ -187,3 +213,25 @@ def bulge_cubic(
             bulges[e, MIDDLE, i] = EIGHTH * (turn_a - turn_b)
             bulges[e, NEAR_START, i] = NEAR * turn_a - FAR * turn_b
             bulges[e, NEAR_END, i] = FAR * turn_a - NEAR * turn_b
+
+
+@kernel
+def raise_centres(
+    faces: Unsigned,
+    triangle_edges: npt.NDArray[np.int32],
+    growth_once: Floats,
+    centre_triangles: Unsigned,
+    centre_count: int,
+    first_centre: int,
+    vertices: Floats,
+) -> None:
+    """Move the points in the middle of triangles farther out of the plane of the corners."""
+    for k in range(centre_count):
+        t, row = centre_triangles[k], first_centre + k
+        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        growth = ONE
+        for i in range(3):
+            growth = min(growth, growth_once[triangle_edges[t, i]])
+        for i in range(3):
+            flat = THIRD * (vertices[a, i] + vertices[b, i] + vertices[c, i])
+            vertices[row, i] += (CENTRE_FULLNESS - ONE) * growth * (vertices[row, i] - flat)

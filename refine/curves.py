@@ -7,6 +7,12 @@ pass puts them there, as far as they have grown (blend.py), with their normals.
               n           n              n at a =  (3 a + b) / 4        +  bulge
             a---------------b            grown   =  mix of (a + m) / 2 and n
 
+The normal at m is the mean of those at a and b, turned until it stands upright on the curve there:
+an S that ends as it began has the same normals at both ends and another one in between (Vlachos et
+al. 2001, "Curved PN triangles", have quadratic normals for the same reason). It does so as far as
+the edges of both triangles have grown: beside a triangle that has no such normals a single one is
+seen as a scar. At n the normal is the mean of its neighbours'.
+
 Kähler, Haber, Seidel 2003, section 4.2 asks for rules that are cheap, local, close to the input
 mesh, and correct at borders; these are all, and leave every vertex where the simulation has it.
 """
@@ -30,6 +36,9 @@ THREE_QUARTERS = np.float32(0.75)
 ONE = np.float32(1.0)
 TINY = np.finfo(np.float32).tiny
 
+UPRIGHT = np.float32(0.95)
+"""How much of its slope along the curve a normal in the middle of an edge loses. Chosen: all but a
+rest, so that one that lies along the edge keeps a direction."""
 NEAR_START, MIDDLE, NEAR_END = 0, 1, 2
 """Points of an edge in an array of bulges, shape (E, 3, 3): edge, point, x y z."""
 
@@ -38,6 +47,11 @@ class CurveScheme:
     """A scheme whose original vertices stay and whose edges are curves; fill in `_bulge`."""
 
     interpolates = True
+    turns: Floats | None = None
+    """How much there is to see in the normals of every edge, shape (E,), if a scheme knows that.
+
+    The turn [rad] from the mean of the normals at both ends to the one in the middle, times the
+    root of the edge's length in mean edge lengths: a longer edge shows more of it."""
 
     def bind(
         self,
@@ -56,6 +70,8 @@ class CurveScheme:
         place_unmoved(frame.points, self._vertex_normals(frame), frame.rows)
         place_on_curves(
             self._connectivity.edge_points,
+            self._connectivity.edge_wings,
+            self._connectivity.is_interior,
             frame.splits,
             frame.growth_once,
             frame.growth_twice,
@@ -113,8 +129,34 @@ def unit(x: np.float32, y: np.float32, z: np.float32) -> tuple[np.float32, np.fl
 
 
 @kernel
+def stand_upright(
+    vertices: Floats,
+    a: np.uint32,
+    b: np.uint32,
+    row: np.uint32,
+    has_quarters: bool,
+    share: np.float32,
+) -> None:
+    """Write the normal of the middle of an edge: the mean, less a share of its slope."""
+    start, end = (row - 1, row + 1) if has_quarters else (a, b)
+    along = slope = ZERO
+    for i in range(3):
+        d = vertices[end, i] - vertices[start, i]
+        along += d * d
+        slope += d * (vertices[a, 3 + i] + vertices[b, 3 + i])
+    slope *= share / max(along, TINY)
+    vertices[row, 3], vertices[row, 4], vertices[row, 5] = unit(
+        vertices[a, 3] + vertices[b, 3] - slope * (vertices[end, 0] - vertices[start, 0]),
+        vertices[a, 4] + vertices[b, 4] - slope * (vertices[end, 1] - vertices[start, 1]),
+        vertices[a, 5] + vertices[b, 5] - slope * (vertices[end, 2] - vertices[start, 2]),
+    )
+
+
+@kernel
 def place_on_curves(
     edge_points: Unsigned,
+    edge_wings: Unsigned,
+    is_interior: npt.NDArray[np.bool_],
     splits: npt.NDArray[np.uint8],
     growth_once: Floats,
     growth_twice: Floats,
@@ -132,24 +174,26 @@ def place_on_curves(
         for i in range(3):
             straight = HALF * (vertices[a, i] + vertices[b, i])
             vertices[row, i] = straight + growth * bulges[e, MIDDLE, i]
-        vertices[row, 3], vertices[row, 4], vertices[row, 5] = unit(
-            vertices[a, 3] + vertices[b, 3],
-            vertices[a, 4] + vertices[b, 4],
-            vertices[a, 5] + vertices[b, 5],
-        )
-        if splits[e] < 2:
-            continue
-        for end in range(2):
-            near, far = (a, b) if end == 0 else (b, a)
-            point = np.uint32(row - 1 + 2 * end)
+        if splits[e] == 2:
             growth = growth_twice[e]
-            for i in range(3):
-                chord = HALF * (vertices[near, i] + vertices[row, i])
-                straight = THREE_QUARTERS * vertices[near, i] + QUARTER * vertices[far, i]
-                on_curve = straight + bulges[e, NEAR_START + 2 * end, i]
-                vertices[point, i] = (ONE - growth) * chord + growth * on_curve
-            vertices[point, 3], vertices[point, 4], vertices[point, 5] = unit(
-                vertices[near, 3] + vertices[row, 3],
-                vertices[near, 4] + vertices[row, 4],
-                vertices[near, 5] + vertices[row, 5],
-            )
+            for end in range(2):
+                near, far = (a, b) if end == 0 else (b, a)
+                point = np.uint32(row - 1 + 2 * end)
+                for i in range(3):
+                    chord = HALF * (vertices[near, i] + vertices[row, i])
+                    straight = THREE_QUARTERS * vertices[near, i] + QUARTER * vertices[far, i]
+                    on_curve = straight + bulges[e, NEAR_START + 2 * end, i]
+                    vertices[point, i] = (ONE - growth) * chord + growth * on_curve
+        share = growth_once[e]
+        if is_interior[e]:
+            for i in range(4):
+                share = min(share, growth_once[edge_wings[e, i]])
+        stand_upright(vertices, a, b, row, splits[e] == 2, UPRIGHT * share)
+        if splits[e] == 2:
+            for end in range(2):
+                near, point = a if end == 0 else b, row - 1 + 2 * end
+                vertices[point, 3], vertices[point, 4], vertices[point, 5] = unit(
+                    vertices[near, 3] + vertices[row, 3],
+                    vertices[near, 4] + vertices[row, 4],
+                    vertices[near, 5] + vertices[row, 5],
+                )

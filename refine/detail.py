@@ -5,17 +5,23 @@ one could do even better than smoothing: detail information can be stored locall
 generated split vertices on the surface, as has been exercised in multiresolution editing."
 
 At binding, the points that all edges would get from the scheme `cubic` are compared with the finer
-mesh, both at rest. What is missing is stored in a frame of directions that moves with the edge:
+mesh, both at rest. What is missing is stored along directions that move with the surface:
 
-          n = (n_a + n_b) normal to it                stored:  how the finer surface lies beside
-          |                                                    the point, and its normal, along
-    a-----o------> t = b - a                                   t, n and t x n
-         /
-        t x n
+          n                                     stored:  how the finer surface lies beside the
+          |                                              point, and its normal, along n, t and n x t
+    a-----o------> t = b - a
+         /                                      n:  upright on the edge in its middle, half way from
+        n x t                                       there to the normal of the end at its quarters
 
 In a frame the same directions are found in the deformed mesh and the detail is added to the cubic.
-Vertices stay where they are (they lie on the finer mesh if they are taken from it); those at split
-edges get their normals from it, in a frame of their normal and one of their edges.
+A quarter has to turn with the vertex near it: with one direction n for all of an edge, the normals
+around a vertex turned less than its own where the mesh was folded, and stars stood there.
+
+The normal of a point turns to that of the finer mesh as far as the edges around have grown, in the
+mean: where what is refined ends, a fold would otherwise end as a crease.
+
+Vertices stay where they are (they lie on the finer mesh if they are taken from it). All of them
+show its normals, fitted (fit.py) and stored along their own normal and one of their edges.
 """
 
 import numpy as np
@@ -25,10 +31,9 @@ from .arguments import checked_indices, checked_positions
 from .closest import Surface
 from .connectivity import Connectivity
 from .cubic import CubicScheme
-from .fit import fitted
+from .fit import fitted, fitted_normals
 from .kernels import kernel
 from .local_frames import edge_axes, triangle_axes, vertex_axes
-from .masks import grow_vertices
 from .schemes import Frame
 
 Floats = npt.NDArray[np.float32]
@@ -39,6 +44,7 @@ FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 """Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
 
 ZERO = np.float32(0.0)
+QUARTER = np.float32(0.25)
 HALF = np.float32(0.5)
 ONE = np.float32(1.0)
 TINY = np.finfo(np.float32).tiny
@@ -67,15 +73,17 @@ class DetailScheme(CubicScheme):
         super().bind(connectivity, rest_positions, rest_normals)
         assert self._surface is not None, "a scheme is bound once"
         edge_count = len(connectivity.edges)
-        self._axes = np.zeros((edge_count, 3, 3), dtype=np.float32)
+        self._axes = np.zeros((edge_count, 3, 3, 3), dtype=np.float32)
+        self._centre_axes = np.zeros((len(connectivity.faces), 3, 3), dtype=np.float32)
+        self._vertex_axes = np.zeros((len(rest_normals), 3, 3), dtype=np.float32)
         self._shown = np.zeros_like(rest_normals)
-        self._vertex_growth = np.zeros(len(rest_normals), dtype=np.float32)
+        self._towards = np.arange(connectivity.vertex_count, dtype=np.uint32)
+        self._towards[connectivity.edges[:, 0]] = connectivity.edges[:, 1]
+        self._towards[connectivity.edges[:, 1]] = connectivity.edges[:, 0]
         everything = np.arange(edge_count, dtype=np.uint32)
         self._bulge_cubic(rest_positions, everything, edge_count, self._bulges)
-        edge_axes(
-            rest_positions, rest_normals, connectivity.edge_points, everything, edge_count,
-            self._axes,
-        )  # fmt: skip
+        # All directions follow the normals that the cubic has, now as in every frame.
+        rest_normals = self._normals.copy()
         points, normals = _points_on(self._bulges, connectivity, rest_positions, rest_normals)
         places, _ = _closest(self._surface, points, normals)
         centres, centre_normals = _centres_of(places, connectivity, rest_positions, rest_normals)
@@ -83,42 +91,62 @@ class DetailScheme(CubicScheme):
         places, centre_places = fitted(
             self._surface, connectivity, rest_positions, places, centre_places
         )
-        _, looks = _closest(self._surface, places, normals)
-        axes = self._axes[:, None]
-        self._offsets, self._looks = _along(axes, places - points), _along(axes, looks)
-        self._bind_vertices(rest_positions, rest_normals)
         centres, _ = _centres_of(places, connectivity, rest_positions, rest_normals)
-        _, looks = _closest(self._surface, centre_places, centre_normals)
-        face_count = len(connectivity.faces)
-        self._centre_axes = np.zeros((face_count, 3, 3), dtype=np.float32)
-        everything = np.arange(face_count, dtype=np.uint32)
-        triangle_axes(
-            rest_positions, rest_normals, connectivity.faces, everything, face_count,
-            self._centre_axes,
-        )  # fmt: skip
-        self._centre_offsets = _along(self._centre_axes, centre_places - centres)
-        self._centre_looks = _along(self._centre_axes, looks)
+        looks = self._rest_looks(rest_positions, rest_normals, places, normals, centre_places,
+                                 centre_normals)  # fmt: skip
+        self._remember(
+            rest_positions, rest_normals, places - points, centre_places - centres, looks
+        )
         self._surface = None
 
-    def _bind_vertices(self, rest_positions: Doubles, rest_normals: Floats) -> None:
-        """Store the finer normal of every vertex, in a frame of its normal and an edge."""
-        mesh, surface = self._connectivity, self._surface
-        assert surface is not None
-        self._towards = np.arange(mesh.vertex_count, dtype=np.uint32)
-        self._towards[mesh.edges[:, 0]] = mesh.edges[:, 1]
-        self._towards[mesh.edges[:, 1]] = mesh.edges[:, 0]
-        axes = self._vertex_axes = np.zeros((mesh.vertex_count, 3, 3), dtype=np.float32)
-        everywhere = np.ones(mesh.vertex_count, dtype=np.float32)
-        vertex_axes(rest_positions, rest_normals, everywhere, self._towards, axes)
-        _, looks = _closest(surface, rest_positions, rest_normals.astype(np.float64))
+    def _rest_looks(
+        self, rest_positions: Doubles, rest_normals: Floats, places: Doubles, normals: Doubles,
+        centre_places: Doubles, centre_normals: Doubles,
+    ) -> Doubles:  # fmt: skip
+        """Normals of the finer mesh for vertices, points of edges and centres, in one list."""
+        assert self._surface is not None
+        where = np.concatenate([rest_positions, places.reshape(-1, 3), centre_places])
+        up = np.concatenate([rest_normals, normals.reshape(-1, 3), centre_normals])
+        _, looks = _closest(self._surface, where, up)
+        return fitted_normals(self._surface, self._connectivity, where, looks)
+
+    def _remember(
+        self, rest_positions: Doubles, rest_normals: Floats, offsets: Doubles,
+        centre_offsets: Doubles, looks: Doubles,
+    ) -> None:  # fmt: skip
+        """Store offsets and normals along the directions of edges, triangles and vertices."""
+        mesh, vertex_count, edge_count = self._connectivity, len(rest_positions), len(offsets)
+        edges = np.arange(edge_count, dtype=np.uint32)
+        twice = np.full(edge_count, 2, dtype=np.uint8)
+        edge_axes(
+            rest_positions, rest_normals, mesh.edge_points, twice, edges, edge_count, self._axes
+        )
+        self._offsets = _along(self._axes, offsets)
+        point_looks = looks[vertex_count : vertex_count + 3 * edge_count].reshape(-1, 3, 3)
+        self._looks = _along(self._axes, point_looks)
+        triangles = np.arange(len(mesh.faces), dtype=np.uint32)
+        triangle_axes(
+            rest_positions, rest_normals, mesh.faces, triangles, len(triangles), self._centre_axes
+        )
+        self._centre_offsets = _along(self._centre_axes, centre_offsets)
+        self._centre_looks = _along(self._centre_axes, looks[vertex_count + 3 * edge_count :])
+        vertex_axes(rest_positions, rest_normals, self._towards, self._vertex_axes)
         # A vertex without a normal has no frame: nothing to show there.
-        self._vertex_looks = _along(axes, looks)
+        self._vertex_looks = _along(self._vertex_axes, looks[:vertex_count])
+        mean = looks[mesh.edges].sum(axis=1)
+        mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-12)
+        cosine = np.clip((mean * point_looks[:, 1]).sum(axis=1), -1.0, 1.0)
+        lengths = np.linalg.norm(np.diff(rest_positions[mesh.edges], axis=1)[:, 0], axis=1)
+        share = np.sqrt(lengths / lengths.mean()) if edge_count else lengths
+        self.turns = (np.arccos(cosine) * share).astype(np.float32)
 
     def place(self, frame: Frame) -> None:
         """Write vertices and points, then the normals of the finer mesh at points."""
         super().place(frame)
         show_points(
             self._connectivity.edge_points,
+            self._connectivity.edge_wings,
+            self._connectivity.is_interior,
             self._looks,
             self._axes,
             frame.splits,
@@ -131,29 +159,26 @@ class DetailScheme(CubicScheme):
         )
 
     def _vertex_normals(self, frame: Frame) -> Floats:
-        grow_vertices(
-            self._connectivity.edge_points,
-            frame.growth_once,
-            frame.split_once,
-            frame.once_count,
-            self._vertex_growth,
-        )
-        growth, axes = self._vertex_growth, self._vertex_axes
-        vertex_axes(frame.positions, frame.normals, growth, self._towards, axes)
-        show_vertices(frame.normals, growth, self._vertex_looks, axes, self._shown)
+        axes = self._vertex_axes
+        normals = super()._vertex_normals(frame)
+        vertex_axes(frame.positions, normals, self._towards, axes)
+        show_vertices(normals, self._vertex_looks, axes, self._shown)
         return self._shown
 
     def _bulge(self, frame: Frame, bulges: Floats) -> None:
         super()._bulge(frame, bulges)
         edge_axes(
             frame.positions,
-            frame.normals,
+            self._normals,
             self._connectivity.edge_points,
+            frame.splits,
             frame.split_once,
             frame.once_count,
             self._axes,
         )
-        add_offsets(self._offsets, self._axes, frame.split_once, frame.once_count, bulges)
+        add_offsets(
+            self._offsets, self._axes, frame.splits, frame.split_once, frame.once_count, bulges
+        )
 
     def place_centres(self, frame: Frame) -> None:
         """Move the points in the middle of triangles as far as the edges around have grown."""
@@ -161,7 +186,7 @@ class DetailScheme(CubicScheme):
         mesh = self._connectivity
         triangle_axes(
             frame.positions,
-            frame.normals,
+            self._normals,
             mesh.faces,
             frame.centre_triangles,
             frame.centre_count,
@@ -218,17 +243,22 @@ def _along(axes: Floats, vectors: Doubles) -> Floats:
 
 @kernel
 def add_offsets(
-    offsets: Floats, axes: Floats, split_once: Unsigned, once_count: int, bulges: Floats
+    offsets: Floats,
+    axes: Floats,
+    splits: npt.NDArray[np.uint8],
+    split_once: Unsigned,
+    once_count: int,
+    bulges: Floats,
 ) -> None:
     """Add the stored offsets of the split edges to their bulges."""
     for k in range(once_count):
         e = split_once[k]
-        for point in range(3):
+        for point in range(3) if splits[e] == 2 else range(1, 2):
             for i in range(3):
                 bulges[e, point, i] += (
-                    offsets[e, point, 0] * axes[e, 0, i]
-                    + offsets[e, point, 1] * axes[e, 1, i]
-                    + offsets[e, point, 2] * axes[e, 2, i]
+                    offsets[e, point, 0] * axes[e, point, 0, i]
+                    + offsets[e, point, 1] * axes[e, point, 1, i]
+                    + offsets[e, point, 2] * axes[e, point, 2, i]
                 )
 
 
@@ -248,20 +278,19 @@ def turn(normal: Floats, look: Floats, axes: Floats, growth: np.float32) -> None
 
 
 @kernel
-def show_vertices(
-    normals: Floats, vertex_growth: Floats, looks: Floats, axes: Floats, shown: Floats
-) -> None:
-    """Write the finer normal of every vertex at a split edge, turned with its surroundings."""
+def show_vertices(normals: Floats, looks: Floats, axes: Floats, shown: Floats) -> None:
+    """Write the finer normal of every vertex, turned with its surroundings."""
     for v in range(normals.shape[0]):
         for i in range(3):
             shown[v, i] = normals[v, i]
-        if vertex_growth[v] > ZERO:
-            turn(shown[v], looks[v], axes[v], vertex_growth[v])
+        turn(shown[v], looks[v], axes[v], ONE)
 
 
 @kernel
 def show_points(
     edge_points: Unsigned,
+    edge_wings: Unsigned,
+    is_interior: npt.NDArray[np.bool_],
     looks: Floats,
     axes: Floats,
     splits: npt.NDArray[np.uint8],
@@ -276,7 +305,13 @@ def show_points(
     for k in range(once_count):
         e = split_once[k]
         row = first_points[e] + (splits[e] >> 1)
-        turn(vertices[row, 3:6], looks[e, 1], axes[e], growth_once[e])
+        share = growth_once[e]
+        if is_interior[e]:
+            around = ZERO
+            for i in range(4):
+                around += QUARTER * growth_once[edge_wings[e, i]]
+            share = min(share, around)
+        turn(vertices[row, 3:6], looks[e, 1], axes[e, 1], share)
         if splits[e] < 2:
             continue
         for end in range(2):
@@ -284,7 +319,12 @@ def show_points(
             vertex, point = edge_points[e, end], row - 1 + 2 * end
             for i in range(3, 6):
                 vertices[point, i] = HALF * (vertices[vertex, i] + vertices[row, i])
-            turn(vertices[point, 3:6], looks[e, 2 * end], axes[e], growth_twice[e])
+            turn(
+                vertices[point, 3:6],
+                looks[e, 2 * end],
+                axes[e, 2 * end],
+                min(share, growth_twice[e]),
+            )
 
 
 @kernel

@@ -48,6 +48,15 @@ def fan(valence: int = 6) -> Mesh:
     return _mesh(np.concatenate([np.zeros((1, 3)), ring]), faces)
 
 
+def double_cone(valence: int) -> Mesh:
+    """A closed double cone: two tips with many neighbours, and a ring of valence four."""
+    disk = fan(valence)
+    vertices = np.concatenate([disk.vertices, [[0.1, 0.0, -0.7]]])
+    vertices[0, 2] = 0.6
+    below = np.where(disk.faces == 0, len(vertices) - 1, disk.faces)[:, ::-1]
+    return Mesh(vertices, np.concatenate([disk.faces, below]).astype(np.int32))
+
+
 def tetrahedron() -> Mesh:
     """The smallest closed surface: every vertex has valence three."""
     vertices = [(1, 1, 1), (-1, -1, 1), (-1, 1, -1), (1, -1, -1)]

@@ -128,6 +128,29 @@ def test_built_in_head() -> None:
     assert np.abs(joy.coarse - head.vertices).max() > 5.0
 
 
+def test_targets_on_the_built_in_head() -> None:
+    """Schemes that interpolate come nearer in every expression, by as much as was aimed at."""
+    scores = quality.run(
+        subjects.built_in(1),
+        schemes=("cubic", "detail"),
+        budgets=quality.BUDGETS,
+        expressions=("joy", "blink"),
+    )
+    coarse = {s.expression: s.distance for s in scores if s.method == quality.COARSE}
+    for score in scores:
+        if score.method in ("cubic", "detail"):
+            assert score.distance < coarse[score.expression], score
+    average = quality.means(scores)
+    before = average[quality.COARSE, "", 1.0]
+    assert average["cubic", "bulge", 1.6].distance < 0.9 * before.distance
+    assert average["cubic", "", quality.EVERYWHERE].distance < 0.65 * before.distance
+    assert average["detail", "bulge", 2.0].distance < 0.6 * before.distance
+    assert average["detail", "bulge, grown", 2.0].distance < 0.6 * before.distance
+    assert average["detail", "", quality.EVERYWHERE].distance < 0.25 * before.distance
+    assert average["detail", "bulge", 2.0].median_angle < 0.7 * before.median_angle
+    assert average["detail", "", quality.EVERYWHERE].angle < 0.7 * before.angle
+
+
 @pytest.mark.parametrize("missing", ["folder", "array", "motion"])
 def test_no_reference(tmp_path: Path, missing: str) -> None:
     """What is missing in a folder of scans is named."""

@@ -1,24 +1,30 @@
 """The interpolating schemes once more, in plain Python, from the text of their papers.
 
-Each returns a function from an edge (low, high) and a number of quarters to a point.
+Each is a function from an edge (low, high) and a number of quarters to a point, in `CurveRules`.
 """
 
 from __future__ import annotations
 
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass
 
 from tests.refine.plain_twin import (
-    Curve,
+    AtPoints,
     EdgeName,
+    Growth,
+    Placed,
     Surroundings,
     Vector,
     edge_name,
     is_proper,
     mix,
     unit,
+    vertex_normals,
 )
 
+Curve = Callable[[EdgeName, int], Vector]
 Face = tuple[int, int, int]
 
 
@@ -37,9 +43,59 @@ def length(v: Vector) -> float:
     return math.sqrt(dot(v, v))
 
 
-def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> Curve:
-    """Cubic edges with normals weighted by the angles at rest, 1.15 times as full."""
-    around = Surroundings(faces)
+@dataclass
+class CurveRules:
+    """A scheme whose vertices stay and whose split edges go to curves as far as they have grown."""
+
+    positions: list[Vector]
+    faces: list[Face]
+    curve: Curve
+    normals: list[Vector]
+    centre_fullness: float = 1.0
+
+    def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
+        """Points on the curves; normals upright on them by 95 per cent, where all has grown."""
+        around = Surroundings(self.faces)
+        points: AtPoints = {}
+        normals: AtPoints = {}
+        for (a, b), (once, twice) in grown.items():
+            straight = mix((0.5, self.positions[a]), (0.5, self.positions[b]))
+            m = mix((1 - once, straight), (once, self.curve((a, b), 2)))
+            points[a, b] = {2: m}
+            for quarters, end in ((1, a), (3, b)):
+                chord = mix((0.5, self.positions[end]), (0.5, m))
+                full = self.curve((a, b), quarters)
+                points[a, b][quarters] = mix((1 - twice, chord), (twice, full))
+            start, stop = self.positions[a], self.positions[b]
+            if count[a, b] == 2:
+                start, stop = points[a, b][1], points[a, b][3]
+            along, mean = (
+                mix((1, stop), (-1, start)),
+                mix((1, self.normals[a]), (1, self.normals[b])),
+            )
+            wings = [
+                edge_name(end, c)
+                for end in (a, b)
+                for c in (around.opposite[a, b] if (a, b) in around.inner else [])
+            ]
+            share = min([once, *(grown.get(wing, (0.0, 0.0))[0] for wing in wings)])
+            slope = 0.95 * share * dot(mean, along) / max(dot(along, along), 1e-38)
+            middle = unit(mix((1, mean), (-slope, along)))
+            ends = {1: self.normals[a], 2: middle, 3: self.normals[b]}
+            normals[a, b] = {q: unit(mix((1, n), (1, middle))) for q, n in ends.items()}
+        return Placed(self.positions, points, self.normals, normals)
+
+    def centre(
+        self, source: int, point: Vector, normal: Vector, grown: float
+    ) -> tuple[Vector, Vector]:
+        """Raised out of the plane of the corners."""
+        flat = mix(*((1 / 3, self.positions[v]) for v in self.faces[source]))
+        share = (self.centre_fullness - 1) * grown
+        return mix((1 + share, point), (-share, flat)), normal
+
+
+def cubic_normals(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> list[Vector]:
+    """Normals weighted by the geometric mean of angle and area at rest."""
     sums: list[Vector] = [(0.0, 0.0, 0.0)] * len(positions)
     for face in faces:
         for i in range(3):
@@ -48,14 +104,19 @@ def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> Cur
             area = length(cross(u, v))
             if area > 1e-9 * length(u) * length(v):
                 now = [mix((1, positions[k]), (-1, positions[a])) for k in (b, c)]
-                weight = math.atan2(area, dot(u, v)) / area
+                weight = math.sqrt(math.atan2(area, dot(u, v)) / area)
                 sums[a] = mix((1, sums[a]), (weight, cross(*now)))
-    normals = [unit(total) for total in sums]
+    return [unit(total) for total in sums]
+
+
+def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> CurveRules:
+    """Cubic edges, 1.2 times as full."""
+    around, normals = Surroundings(faces), cubic_normals(rest, positions, faces)
 
     def tangents(a: int, b: int) -> tuple[Vector, Vector]:
         d = mix((1, positions[b]), (-1, positions[a]))
         if (a, b) in around.inner:
-            along = [mix((1, d), (-1.15 * dot(d, normals[v]), normals[v])) for v in (a, b)]
+            along = [mix((1, d), (-1.2 * dot(d, normals[v]), normals[v])) for v in (a, b)]
             return along[0], along[1]
         ends = []
         for here, there in ((a, b), (b, a)):
@@ -76,7 +137,7 @@ def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> Cur
         a, b = positions[edge[0]], positions[edge[1]]
         return mix(*zip(hermite, (a, at_a, at_b, b), strict=True))
 
-    return curve
+    return CurveRules(positions, faces, curve, normals, 1.15)
 
 
 def ring_weights(n: int) -> list[float]:
@@ -97,7 +158,7 @@ def from_ring(centre: Vector, points: list[Vector]) -> Vector:
     return mix((1 - sum(parts), centre), *zip(parts, points, strict=True))
 
 
-def butterfly(positions: list[Vector], faces: list[Face]) -> Curve:
+def butterfly(positions: list[Vector], faces: list[Face]) -> CurveRules:
     """Modified butterfly subdivision, two levels."""
     around = Surroundings(faces)
     following: dict[int, dict[int, int]] = defaultdict(dict)
@@ -149,4 +210,4 @@ def butterfly(positions: list[Vector], faces: list[Face]) -> Curve:
         from_near = from_ring(positions[near], [middle(near, u) for u in around_near])
         return mix((0.5, from_near), (0.5, from_middle)) if len(around_near) == 6 else from_near
 
-    return curve
+    return CurveRules(positions, faces, curve, vertex_normals(positions, faces))

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Protocol
 
 Vector = tuple[float, float, float]
 Name = tuple[str | int, ...]
@@ -132,7 +132,52 @@ def first_level_point(edge: EdgeName, positions: list[Vector], around: Surroundi
 
 
 Growth = dict[EdgeName, tuple[float, float]]
-Curve = Callable[[EdgeName, int], Vector]
+AtPoints = dict[EdgeName, dict[int, Vector]]
+
+
+@dataclass
+class Placed:
+    """Positions and normals of vertices, and of the points of split edges by quarters."""
+
+    vertices: list[Vector]
+    points: AtPoints
+    normals: list[Vector]
+    point_normals: AtPoints
+
+
+class Rules(Protocol):
+    """A smoothing scheme, in plain words."""
+
+    def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
+        """All points and normals, for these splits."""
+
+    def centre(
+        self, source: int, point: Vector, normal: Vector, grown: float
+    ) -> tuple[Vector, Vector]:
+        """The middle of a triangle whose edges have grown at least so far."""
+
+
+class PaperRules:
+    """The paper's scheme; normals of new points are interpolated along the edge."""
+
+    def __init__(self, positions: list[Vector], faces: list[tuple[int, int, int]]) -> None:
+        self.positions, self.faces = positions, faces
+
+    def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
+        """Section 4.2."""
+        normals, at_points = vertex_normals(self.positions, self.faces), {}
+        for a, b in grown:
+            middle = unit(mix((1, normals[a]), (1, normals[b])))
+            beside = {1: normals[a], 2: middle, 3: normals[b]}
+            at_points[a, b] = {q: unit(mix((1, n), (1, middle))) for q, n in beside.items()}
+        moved, points = _smoothed(self.positions, self.faces, count, grown)
+        return Placed(moved, points, normals, at_points)
+
+    def centre(
+        self, source: int, point: Vector, normal: Vector, grown: float
+    ) -> tuple[Vector, Vector]:
+        """As it comes."""
+        return point, normal
 
 
 def refine(
@@ -141,60 +186,40 @@ def refine(
     splits: dict[EdgeName, int],
     *,
     growth: Growth | None = None,
-    curve: Curve | None = None,
+    rules: Rules | None = None,
 ) -> Twin:
     """Split each edge as often as `splits` says, 0 where it says nothing.
 
     `growth`: how far the points of an edge have grown on both levels, for blending, which also
-    makes fans of the triangles; `curve`: the full point of an edge at a number of quarters, for the
-    schemes whose vertices stay.
+    makes fans of the triangles; `rules`: the scheme, by default the paper's.
     """
     twin, count = Twin(), Counter(splits)
     grown = {e: (1.0, 1.0) if growth is None else growth[e] for e in count if count[e]}
-    normals = vertex_normals(positions, faces)
-    place = _curved(positions, curve, grown) if curve else _smoothed(positions, faces, count, grown)
+    rules = rules or PaperRules(positions, faces)
+    place = rules.placed(count, grown)
     for v in range(len(positions)):
-        twin.positions["vertex", v], twin.normals["vertex", v] = place.vertices[v], normals[v]
+        twin.positions["vertex", v], twin.normals["vertex", v] = place.vertices[v], place.normals[v]
     for (a, b), points in place.points.items():
-        between = unit(mix((1, normals[a]), (1, normals[b])))
-        for quarters, point in points.items() if count[a, b] == 2 else [(2, points[2])]:
-            beside = {1: normals[a], 2: between, 3: normals[b]}[quarters]
-            twin.positions["edge", a, b, quarters] = point
-            twin.normals["edge", a, b, quarters] = unit(mix((1, beside), (1, between)))
+        for quarters in (1, 2, 3) if count[a, b] == 2 else (2,):
+            twin.positions["edge", a, b, quarters] = points[quarters]
+            twin.normals["edge", a, b, quarters] = place.point_normals[a, b][quarters]
     for source, face in enumerate(faces):
-        split_edges = sum(count[edge_name(face[i], face[(i + 1) % 3])] for i in range(3))
-        if growth is not None and is_proper(face) and split_edges > 1:
-            twin.triangles += [(source, corners) for corners in _fan(twin, face, count, grown)]
+        edges = [edge_name(face[i], face[(i + 1) % 3]) for i in range(3)]
+        if growth is not None and is_proper(face) and sum(count[e] for e in edges) > 1:
+            fan, centre = _fan(twin, face, count, grown)
+            least = min(grown.get(e, (0.0, 0.0))[0] for e in edges)
+            before = twin.positions[centre], twin.normals[centre]
+            twin.positions[centre], twin.normals[centre] = rules.centre(source, *before, least)
+            twin.triangles += [(source, corners) for corners in fan]
         else:
             twin.triangles += [(source, corners) for corners in _subtriangles(face, count)]
     return twin
 
 
-@dataclass
-class Placed:
-    """Positions of vertices, and of the points of split edges by quarters."""
-
-    vertices: list[Vector]
-    points: dict[EdgeName, dict[int, Vector]]
-
-
-def _curved(positions: list[Vector], curve: Curve, grown: Growth) -> Placed:
-    """Vertices stay; points go to the curve as far as they have grown."""
-    points: dict[EdgeName, dict[int, Vector]] = {}
-    for (a, b), (once, twice) in grown.items():
-        straight = mix((0.5, positions[a]), (0.5, positions[b]))
-        m = mix((1 - once, straight), (once, curve((a, b), 2)))
-        points[a, b] = {2: m}
-        for quarters, end in ((1, a), (3, b)):
-            chord = mix((0.5, positions[end]), (0.5, m))
-            points[a, b][quarters] = mix((1 - twice, chord), (twice, curve((a, b), quarters)))
-    return Placed(positions, points)
-
-
 def _smoothed(
     positions: list[Vector], faces: list[tuple[int, int, int]], count: Counter[EdgeName],
     grown: Growth,
-) -> Placed:  # fmt: skip
+) -> tuple[list[Vector], AtPoints]:  # fmt: skip
     """The paper's rules, with growth."""
     around = Surroundings(faces)
     moved = []
@@ -234,13 +259,13 @@ def _smoothed(
             centre = mix((3 / 4, m), (1 / 8, moved[a]), (1 / 8, moved[b]))
             middle = mix((1 - twice, m), (twice, centre))
             points[edge] = {1: chords[a], 2: middle, 3: chords[b]}
-    return Placed(moved, points)
+    return moved, points
 
 
 def _fan(
     twin: Twin, face: tuple[int, int, int], count: Counter[EdgeName], grown: Growth
-) -> list[tuple[Name, Name, Name]]:
-    """Subtriangles around the middle of a triangle; adds that point to the twin."""
+) -> tuple[list[tuple[Name, Name, Name]], Name]:
+    """Subtriangles around the middle of a triangle, and that point, which is added to the twin."""
     outline: list[Name] = []
     centre: Name = ("centre", *sorted(face))
     edges = [edge_name(face[i], face[(i + 1) % 3]) for i in range(3)]
@@ -263,7 +288,8 @@ def _fan(
             places = places[::-1]
         outline += [("edge", *edge, quarters) for quarters in places]
     following = outline[1:] + outline[:1]
-    return [starting_at_least([centre, p, q]) for p, q in zip(outline, following, strict=True)]
+    parts = zip(outline, following, strict=True)
+    return [starting_at_least([centre, p, q]) for p, q in parts], centre
 
 
 def starting_at_least(corners: list[Name]) -> tuple[Name, Name, Name]:

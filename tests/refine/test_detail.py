@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import refine
 from refine.closest import Surface
 from tests import meshes
-from tests.refine.cases import Needed
+from tests.refine import plain_twin
+from tests.refine.cases import Needed, as_lists, assert_equals_twin, point_names
+from tests.refine.plain_detail import DetailRules
 
 
 def bumpy(columns: int, rows: int) -> meshes.Mesh:
@@ -95,6 +99,27 @@ def test_shows_finer_normals() -> None:
     assert np.median((expected * mesh.normals).sum(axis=1)) > 0.999
 
 
+def test_no_stars_in_folds() -> None:
+    """A finer mesh that adds nothing leaves the normals of a folded sheet as smooth as the cubic.
+
+    Between a vertex and the quarter points around it they turn by a part of the fold; with one
+    direction for a whole edge they turned by half of it there and stood still from there on.
+    """
+    flat = meshes.open_grid(8, 6)
+    x = flat.vertices[:, 0] - 4.0
+    folded = np.stack([x, flat.vertices[:, 1], np.sqrt(x * x + 0.2)], axis=1)
+    edge_count = len(refine.connect(flat.faces, len(folded)).edges)
+    shown = {}
+    for scheme, detail in (("cubic", {}), ("detail", {"detail": (flat.vertices, flat.faces)})):
+        refiner = refine.create(
+            "kahler", flat.faces, flat.vertices, scheme=scheme,
+            criterion=Needed(np.full(edge_count, 9.0)), **detail,
+        )  # fmt: skip
+        shown[scheme] = refiner.refine(folded).normals.copy()
+    cosines = (shown["cubic"] * shown["detail"]).sum(axis=1)
+    assert np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0))).max() < 5.0
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_turns_with_the_mesh(seed: int) -> None:
     """A rigid motion of the mesh moves everything along: points, middles and normals."""
@@ -103,3 +128,57 @@ def test_turns_with_the_mesh(seed: int) -> None:
     moved = refined("detail", COARSE.vertices @ turn.T + [1.0, 2.0, 3.0])
     np.testing.assert_allclose(moved.positions, still.positions @ turn.T + [1, 2, 3], atol=2e-5)
     np.testing.assert_allclose(moved.normals, still.normals @ turn.T, atol=2e-4)
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    mesh=st.one_of(
+        st.builds(meshes.irregular, st.integers(0, 99), st.just(5), st.just(4), st.integers(0, 2)),
+        st.builds(meshes.double_cone, st.integers(3, 60)),
+        st.sampled_from([meshes.octahedron(), meshes.tube(6, 2)]),
+    ),
+    seed=st.integers(0, 2**16),
+    blend=st.booleans(),
+)
+def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, blend: bool) -> None:
+    """What is seen at rest moves as the plain twin says, for any splits and any growth."""
+    generator = np.random.default_rng(seed)
+    lift = 0.05 * generator.standard_normal(mesh.vertices.shape)
+    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+
+    def refiner_of(need: np.ndarray, blend: bool) -> refine.Refiner:
+        return refine.create(
+            "kahler", mesh.faces, mesh.vertices, scheme="detail", blend=blend,
+            detail=(mesh.vertices + lift, mesh.faces), criterion=Needed(need),
+        )  # fmt: skip
+
+    everything = refiner_of(np.full(edge_count, 2.0), True)
+    still = everything.refine(mesh.vertices)
+    rows = np.concatenate([still.positions, still.normals], axis=1).astype(float).tolist()
+    seen = {
+        name: ((x, y, z), (u, v, w))
+        for name, (x, y, z, u, v, w) in zip(point_names(everything.origins()), rows, strict=True)
+    }
+    need = generator.uniform(-0.7, 2.0, edge_count)
+    deformed = meshes.wrinkled(mesh, seed, 0.1)
+    refiner = refiner_of(need, blend)
+    refined = refiner.refine(deformed)
+    refine.check(refiner, refined, deformed)
+
+    rest, faces = as_lists(mesh.vertices, mesh.faces)
+    points, _ = as_lists(deformed, mesh.faces)
+    edges = [(int(a), int(b)) for a, b in refiner.edges]
+    needed = Needed(need)
+    splits = {
+        plain_twin.edge_name(*edge): int(n > 0) + int(n > 1)
+        for edge, n in zip(edges, needed.need, strict=True)
+    }
+    twin = plain_twin.refine(
+        points,
+        faces,
+        splits,
+        growth=needed.growth(refiner.edges) if blend else None,
+        rules=DetailRules(rest, points, faces, edges, seen),
+    )
+    # Short edges make long levers: directions are single precision, twice over.
+    assert_equals_twin(refiner, refined, twin, tolerance=(2e-5, 2e-4))

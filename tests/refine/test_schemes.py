@@ -11,22 +11,13 @@ import refine
 from tests import meshes
 from tests.refine import plain_schemes
 from tests.refine.cases import Needed, as_lists, assert_equals_twin, soups
-from tests.refine.plain_twin import Curve, Twin, edge_name
+from tests.refine.plain_twin import Rules, Twin, edge_name
 from tests.refine.plain_twin import refine as refine_plainly
 
 SCHEMES = ("loop", "butterfly", "cubic")
 EVERY_SCHEME = (*SCHEMES, "detail")
-VALENCES = {f"fan of {n}": lambda n=n: _cone(n) for n in (3, 4, 5, 7, 60, 90)}
+VALENCES = {f"fan of {n}": lambda n=n: meshes.double_cone(n) for n in (3, 4, 5, 7, 60, 90)}
 MESHES = {**meshes.NAMED, **VALENCES, "irregular": lambda: meshes.irregular(3, 6, 5, 1)}
-
-
-def _cone(valence: int) -> meshes.Mesh:
-    """A closed double cone: two tips with many neighbours, and a ring of valence four."""
-    fan = meshes.fan(valence)
-    vertices = np.concatenate([fan.vertices, [[0.1, 0.0, -0.7]]])
-    vertices[0, 2] = 0.6
-    below = np.where(fan.faces == 0, len(vertices) - 1, fan.faces)[:, ::-1]
-    return meshes.Mesh(vertices, np.concatenate([fan.faces, below]).astype(np.int32))
 
 
 def bound(
@@ -53,17 +44,17 @@ def twin_of(mesh: meshes.Mesh, deformed: np.ndarray, scheme: str, blend: bool, n
     """The same frame by the plain implementations."""
     points, faces = as_lists(deformed, mesh.faces)
     rest, _ = as_lists(mesh.vertices, mesh.faces)
-    curve: Curve | None = None
+    rules: Rules | None = None
     if scheme == "cubic":
-        curve = plain_schemes.cubic(rest, points, faces)
+        rules = plain_schemes.cubic(rest, points, faces)
     if scheme == "butterfly":
-        curve = plain_schemes.butterfly(points, faces)
+        rules = plain_schemes.butterfly(points, faces)
     growth = needed.growth(edges)
     splits = {
         edge_name(int(a), int(b)): int(n > 0) + int(n > 1)
         for (a, b), n in zip(edges, needed.need, strict=True)
     }
-    return refine_plainly(points, faces, splits, growth=growth if blend else None, curve=curve)
+    return refine_plainly(points, faces, splits, growth=growth if blend else None, rules=rules)
 
 
 def random_needs(mesh: meshes.Mesh, seed: int) -> np.ndarray:

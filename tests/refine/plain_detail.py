@@ -1,0 +1,154 @@
+"""The scheme `detail` once more, in plain Python: what is seen at rest moves with the surface.
+
+What the finer mesh adds is taken from the refiner itself, at rest and with everything split, by the
+names of its points; how it moves is worked out here. That it is like the finer mesh is another
+test's business (test_detail.py).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+from tests.refine.plain_schemes import CurveRules, Face, cross, cubic, dot
+from tests.refine.plain_twin import (
+    EdgeName,
+    Growth,
+    Name,
+    Placed,
+    Surroundings,
+    Vector,
+    edge_name,
+    mix,
+    unit,
+)
+
+Axes = tuple[Vector, Vector, Vector]
+Seen = dict[Name, tuple[Vector, Vector]]
+"""Position and normal of every point."""
+
+
+def axes_of(up: Vector, towards: Vector) -> Axes:
+    """Three orthogonal directions: up, as far as possible towards, across."""
+    up = unit(up)
+    towards = unit(mix((1, towards), (-dot(towards, up), up)))
+    return up, towards, cross(up, towards)
+
+
+def carried(vector: Vector, rest: Axes, now: Axes) -> Vector:
+    """The vector that lies along the axes now as it lay along those at rest."""
+    return mix(*((dot(vector, before), after) for before, after in zip(rest, now, strict=True)))
+
+
+@dataclass
+class Form:
+    """The mesh in one shape: its cubic edges, and the directions of all its points."""
+
+    cubic: CurveRules
+    towards: list[int]
+
+    def upright(self, a: int, b: int) -> Vector:
+        """The mean normal of an edge, made normal to it."""
+        chord = mix((1, self.cubic.positions[b]), (-1, self.cubic.positions[a]))
+        mean = mix((1, self.cubic.normals[a]), (1, self.cubic.normals[b]))
+        return unit(mix((1, mean), (-dot(mean, chord) / dot(chord, chord), chord)))
+
+    def axes(self, name: Name) -> Axes:
+        """Directions of a vertex, of a point of an edge, or of the middle of a face (a, b, c)."""
+        points, normals = self.cubic.positions, self.cubic.normals
+        if name[0] == "vertex":
+            v = int(name[1])
+            return axes_of(normals[v], mix((1, points[self.towards[v]]), (-1, points[v])))
+        if name[0] == "edge":
+            _, a, b, quarters = (part if isinstance(part, int) else 0 for part in name)
+            up = self.upright(a, b)
+            if quarters != 2:
+                up = mix((1, up), (1, normals[a if quarters == 1 else b]))
+            return axes_of(up, mix((1, points[b]), (-1, points[a])))
+        corners = [int(v) for v in name[1:]]
+        pairs = [(corners[i], corners[(i + 1) % 3]) for i in range(3)]
+        ups = [(4.0, self.upright(a, b)) for a, b in pairs]
+        up = mix(*ups, *((-1.0, normals[v]) for v in corners))
+        return axes_of(up, mix((1, points[corners[1]]), (-1, points[corners[0]])))
+
+
+class DetailRules:
+    """What was seen at rest, in a deformed mesh."""
+
+    def __init__(
+        self,
+        rest: list[Vector],
+        positions: list[Vector],
+        faces: list[Face],
+        edges: list[tuple[int, int]],
+        seen: Seen,
+    ) -> None:
+        """`edges`: as the refiner has them; `seen`: at rest, with everything split and blended."""
+        towards = list(range(len(rest)))
+        for a, b in edges:
+            towards[a] = b
+        for a, b in edges:
+            towards[b] = a
+        self.rest = Form(cubic(rest, rest, faces), towards)
+        self.now = Form(cubic(rest, positions, faces), towards)
+        self.faces, self.seen, self.around = faces, seen, Surroundings(faces)
+        names: list[Name] = [("vertex", v) for v in range(len(rest))]
+        self.shown = [self._look(name) for name in names]
+
+    def _frames(self, name: Name) -> tuple[Axes, Axes]:
+        return self.rest.axes(name), self.now.axes(name)
+
+    def _look(self, name: Name, known_as: Name | None = None) -> Vector:
+        return carried(self.seen[known_as or name][1], *self._frames(name))
+
+    def curve(self, edge: EdgeName, quarters: int) -> Vector:
+        """The cubic, and what was missing in it at rest."""
+        name: Name = ("edge", *edge, quarters)
+        before = self.rest.cubic.curve(edge, quarters)
+        missing = mix((1, self.seen[name][0]), (-1, before))
+        now = self.now.cubic.curve(edge, quarters)
+        return mix((1, now), (1, carried(missing, *self._frames(name))))
+
+    def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
+        """Points on these curves, and normals that turn to those seen as all around grows."""
+        rules = CurveRules(self.now.cubic.positions, self.faces, self.curve, self.shown)
+        place = rules.placed(count, grown)
+        for (a, b), (once, twice) in grown.items():
+            normals = place.point_normals[a, b]
+            share = min(once, self._around(grown, a, b))
+            middle = turned(normals[2], self._look(("edge", a, b, 2)), share)
+            normals[2] = middle
+            for quarters, end in ((1, a), (3, b)):
+                between = mix((0.5, self.shown[end]), (0.5, middle))
+                look = self._look(("edge", a, b, quarters))
+                normals[quarters] = turned(between, look, min(share, twice))
+        return place
+
+    def _around(self, grown: Growth, a: int, b: int) -> float:
+        """How far the other edges of the triangles on both sides have grown, in the mean."""
+        if (a, b) not in self.around.inner:
+            return 1.0
+        wings = [edge_name(end, c) for end in (a, b) for c in self.around.opposite[a, b]]
+        return sum(grown.get(wing, (0.0, 0.0))[0] for wing in wings) / 4
+
+    def centre(
+        self, source: int, point: Vector, normal: Vector, grown: float
+    ) -> tuple[Vector, Vector]:
+        """Moved and turned as far as all edges around have grown."""
+        face = self.faces[source]
+        name: Name = ("face", *face)
+        known_as: Name = ("centre", *sorted(face))
+        before = mix(*((1 / 3, self.rest.cubic.positions[v]) for v in face))
+        for i in range(3):
+            edge = edge_name(face[i], face[(i + 1) % 3])
+            straight = mix(*((0.5, self.rest.cubic.positions[v]) for v in edge))
+            bulge = mix((1, self.seen["edge", *edge, 2][0]), (-1, straight))
+            before = mix((1, before), (4 / 9, bulge))
+        missing = mix((1, self.seen[known_as][0]), (-1, before))
+        moved = mix((1, point), (grown, carried(missing, *self._frames(name))))
+        return moved, turned(normal, self._look(name, known_as), grown)
+
+
+def turned(normal: Vector, look: Vector, share: float) -> Vector:
+    """A share of the way from one normal to another."""
+    return unit(mix((1 - share, normal), (share, look)))
