@@ -187,7 +187,8 @@ def place_on_curves(
         share = growth_once[e]
         if is_interior[e]:
             for i in range(4):
-                share = min(share, growth_once[edge_wings[e, i]])
+                wing = edge_wings[e, i]
+                share = min(share, growth_once[wing] if splits[wing] > 0 else ZERO)
         stand_upright(vertices, a, b, row, splits[e] == 2, UPRIGHT * share)
         if splits[e] == 2:
             for end in range(2):

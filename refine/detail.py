@@ -78,8 +78,12 @@ class DetailScheme(CubicScheme):
         self._vertex_axes = np.zeros((len(rest_normals), 3, 3), dtype=np.float32)
         self._shown = np.zeros_like(rest_normals)
         self._towards = np.arange(connectivity.vertex_count, dtype=np.uint32)
-        self._towards[connectivity.edges[:, 0]] = connectivity.edges[:, 1]
-        self._towards[connectivity.edges[:, 1]] = connectivity.edges[:, 0]
+        # The longest edge of a vertex, written last: no matter of the order of edges.
+        both_ways = np.concatenate([connectivity.edges, connectivity.edges[:, ::-1]])
+        along = rest_positions[both_ways[:, 1]] - rest_positions[both_ways[:, 0]]
+        squared = along[:, 0] ** 2 + along[:, 1] ** 2 + along[:, 2] ** 2
+        start, end = both_ways[np.argsort(squared, kind="stable")].T
+        self._towards[start] = end
         everything = np.arange(edge_count, dtype=np.uint32)
         self._bulge_cubic(rest_positions, everything, edge_count, self._bulges)
         # All directions follow the normals that the cubic has, now as in every frame.
@@ -309,7 +313,8 @@ def show_points(
         if is_interior[e]:
             around = ZERO
             for i in range(4):
-                around += QUARTER * growth_once[edge_wings[e, i]]
+                wing = edge_wings[e, i]
+                around += QUARTER * growth_once[wing] if splits[wing] > 0 else ZERO
             share = min(share, around)
         turn(vertices[row, 3:6], looks[e, 1], axes[e, 1], share)
         if splits[e] < 2:

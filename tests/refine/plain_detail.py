@@ -35,6 +35,12 @@ def axes_of(up: Vector, towards: Vector) -> Axes:
     return up, towards, cross(up, towards)
 
 
+def squared(vector: Vector) -> float:
+    """Squared length."""
+    x, y, z = vector
+    return x * x + y * y + z * z
+
+
 def carried(vector: Vector, rest: Axes, now: Axes) -> Vector:
     """The vector that lies along the axes now as it lay along those at rest."""
     return mix(*((dot(vector, before), after) for before, after in zip(rest, now, strict=True)))
@@ -85,10 +91,11 @@ class DetailRules:
     ) -> None:
         """`edges`: as the refiner has them; `seen`: at rest, with everything split and blended."""
         towards = list(range(len(rest)))
-        for a, b in edges:
-            towards[a] = b
-        for a, b in edges:
-            towards[b] = a
+        both_ways = [*edges, *((b, a) for a, b in edges)]
+        for a, b in sorted(
+            both_ways, key=lambda ab: squared(mix((1, rest[ab[1]]), (-1, rest[ab[0]])))
+        ):
+            towards[a] = b  # the longest edge comes last
         self.rest = Form(cubic(rest, rest, faces), towards)
         self.now = Form(cubic(rest, positions, faces), towards)
         self.faces, self.seen, self.around = faces, seen, Surroundings(faces)

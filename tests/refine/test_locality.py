@@ -68,8 +68,8 @@ def test_renumbered_is_the_same(name: str, seed: int, columns: int, holes: int) 
     options = dict(OPTIONS[name])
     if name == "detail":
         options["detail"] = (mesh.vertices + 0.01, mesh.faces)
-    # Normals of detail turn with the last edge of a vertex, and which is last is a matter of order.
-    looseness = 0.02 if name == "detail" else 2e-5
+    # What detail stores was fitted, in sums of another order.
+    looseness = 5e-4 if name == "detail" else 2e-5
     ours, plain = (create(mesh, renumbered=is_so, **options) for is_so in (True, False))
     for step in range(3):
         deformed = meshes.wrinkled(mesh, seed, 0.1 + 0.1 * step)
