@@ -91,10 +91,10 @@ class Stage:
         left, bottom, width, height = viewport
         refined = Shot(self.refined, viewport, viewport, look.refiner)
         static = Shot(self.static, viewport, viewport, "static")
-        if look.compare == "off":
+        if look.compare == "off" or width < 2:  # less than a pixel for each
             return [refined if look.is_refined else static]
         share = min(max(look.divider, LEAST_SHARE), 1.0 - LEAST_SHARE)
-        middle = round(share * width)
+        middle = min(max(round(share * width), 1), width - 1)
         first = (left, bottom, middle, height)
         second = (left + middle, bottom, width - middle, height)
         if look.compare == "wipe":

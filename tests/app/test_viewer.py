@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from copy import deepcopy
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -162,6 +163,16 @@ def test_pointing_at_a_slider_shows_its_fibres(viewer: Viewer) -> None:
     changed = np.abs(viewer.surface.read_scene()[:, left:].astype(int) - before).max(axis=2)
     assert (changed > 40).sum() > 30
     clear_search(viewer)
+
+
+def test_a_comparison_has_two_parts_or_one(viewer: Viewer) -> None:
+    """In however narrow a picture neither part is empty; a single pixel is not divided."""
+    look = replace(viewer.look, divider=0.02)
+    for compare in ("wipe", "side by side"):
+        look = replace(look, compare=compare)
+        shots = viewer.stage.shots(look, (3, 0, 2, 50))
+        assert [shot.clip for shot in shots] == [(3, 0, 1, 50), (4, 0, 1, 50)]
+        assert len(viewer.stage.shots(look, (3, 0, 1, 50))) == 1
 
 
 def test_the_divider_can_be_dragged(viewer: Viewer) -> None:
