@@ -150,6 +150,8 @@ def capture(
         raise UserError(f"{script.source}: no pose has a name, so there is nothing for a sheet")
     if sheet:
         outputs.check_picture(sheet)
+    if output is not None and output.suffix.lower() in outputs.FILM_SUFFIXES:
+        outputs.check_file(output)
     poses: list[tuple[str, Frame]] = []
     with contextlib.ExitStack() as stack:
         recording = stack.enter_context(Capture(scene_of(script, options.head), options))

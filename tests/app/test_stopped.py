@@ -42,7 +42,9 @@ def test_nothing_half_written_is_left(
     os.killpg(process.pid, number)
     _, told = process.communicate(timeout=60)
     assert process.returncode == code
-    assert told.strip() == words
+    # The first start on a machine also says that it compiles.
+    lines = [line for line in told.splitlines() if not line.startswith(b"Compiling")]
+    assert lines == ([words] if words else [])
     assert list(tmp_path.iterdir()) == []
 
 
