@@ -20,6 +20,7 @@ from .outputs import Frame
 from .pipeline import Pipeline, side_by_side, texture_of
 from .scenes import Scene, build_scene
 from .script import Script
+from .stopping import cleaned_up_if_stopped
 
 SETTLING = 1.0  # [s] after which the face rests in a pose
 
@@ -96,11 +97,12 @@ class Capture:
         rate = self.options.frames_per_second
         last = round((script.duration if until is None else until) * rate)
         bar = tqdm(range(last + 1), unit="frame", disable=not progress or None, leave=False)
-        for index in bar:
-            self.scene.pose(script.at(index / rate))
-            if index:
-                self.pipeline.step(1.0 / rate)
-            yield index / rate
+        with cleaned_up_if_stopped(bar.close):
+            for index in bar:
+                self.scene.pose(script.at(index / rate))
+                if index:
+                    self.pipeline.step(1.0 / rate)
+                yield index / rate
 
 
 def write(

@@ -6,7 +6,6 @@ What needs OpenGL or compiled code is imported inside the commands, so that --he
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -26,11 +25,6 @@ Command = Callable[..., Any]
 @click.version_option(__version__, prog_name="risorius")
 def main() -> None:
     """Physics-based facial animation with dynamically refined triangle meshes."""
-    # Told to stop, clean up as after Ctrl-C: half-written outputs are removed on the way out.
-    for name in ("SIGTERM", "SIGHUP"):  # the latter where a terminal is closed; Windows has none
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
-            signal.signal(number, lambda received, _: sys.exit(128 + received))
     if sys.stderr is None:  # closed by whoever started us; progress bars ask it what it is
         sys.stderr = open(os.devnull, "w")
 

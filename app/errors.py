@@ -30,9 +30,6 @@ def told_in_one_line() -> Iterator[None]:
     except (UserError, render.GLError, assets.AssetError, OSError) as error:
         click.echo(f"risorius: {error}", err=True)
         sys.exit(2)
-    except KeyboardInterrupt:
-        click.echo("risorius: stopped", err=True)
-        sys.exit(130)
 
 
 class OneLineGroup(click.Group):
@@ -46,7 +43,7 @@ class OneLineGroup(click.Group):
         standalone_mode: bool = True,
         **extra: Any,
     ) -> Any:
-        """Run the command; the exit code is 2 for what the user can mend, 130 for Ctrl-C."""
+        """Run the command; the exit code is 2 for what the user can mend."""
         try:
             code = super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
         except click.exceptions.NoArgsIsHelpError as error:  # its message is the help
@@ -58,9 +55,6 @@ class OneLineGroup(click.Group):
             where = f"; see {context.command_path} --help" if context else ""
             click.echo(f"risorius: {line.rstrip('.')}{where}", err=True)
             sys.exit(2)
-        except click.Abort:
-            click.echo("risorius: stopped", err=True)
-            sys.exit(130)
         if standalone_mode:
             sys.exit(code if isinstance(code, int) else 0)
         return code

@@ -5,8 +5,8 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import secrets
 import shutil
-import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from PIL import Image
 
 from .errors import UserError
 from .ffmpeg import Encoder
+from .stopping import cleaned_up_if_stopped
 
 ASIDE = ".risorius-"  # what the name of a folder begins with in which something is being written
 FILM_SUFFIXES = (".mp4", ".mov", ".mkv")
@@ -33,14 +34,28 @@ def written_aside(target: Path) -> Iterator[Path]:
     whole = Path(os.path.realpath(target))
     with cannot_be_written(target):
         whole.parent.mkdir(parents=True, exist_ok=True)
-        aside = Path(tempfile.mkdtemp(prefix=ASIDE, dir=whole.parent))
-    try:
+    with _folder_aside(target, whole.parent) as aside:
         part = aside / whole.name
         yield part
         with cannot_be_written(target):
             os.replace(part, whole)
-    finally:
+
+
+@contextlib.contextmanager
+def _folder_aside(target: Path, parent: Path) -> Iterator[Path]:
+    """A folder in `parent` that is gone after the block, however it ends."""
+    aside = parent / f"{ASIDE}{secrets.token_hex(6)}"
+
+    def remove() -> None:
         shutil.rmtree(aside, ignore_errors=True)
+
+    with cleaned_up_if_stopped(remove):
+        try:
+            with cannot_be_written(target):
+                aside.mkdir(mode=0o700)
+            yield aside
+        finally:
+            remove()
 
 
 @contextlib.contextmanager
@@ -61,8 +76,8 @@ def check_file(target: Path) -> None:
         if whole.exists() and not whole.is_file():
             raise UserError(f"{target}: is a device, not a file; choose another name")
         folder = next(parent for parent in whole.parents if parent.exists())
-        with tempfile.TemporaryDirectory(prefix=ASIDE, dir=folder) as aside:
-            (Path(aside) / whole.name).touch()
+        with _folder_aside(target, folder) as aside:
+            (aside / whole.name).touch()
 
 
 def check_picture(target: Path) -> None:
@@ -100,11 +115,12 @@ def film(target: Path, size: tuple[int, int], frames_per_second: float) -> Itera
     check_file(target)
     with written_aside(target) as part:
         encoder = Encoder(target, part, size, frames_per_second)
-        try:
-            yield encoder.add
-            encoder.finish()
-        finally:
-            encoder.stop()
+        with cleaned_up_if_stopped(encoder.stop):
+            try:
+                yield encoder.add
+                encoder.finish()
+            finally:
+                encoder.stop()
 
 
 @contextlib.contextmanager
@@ -119,26 +135,41 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
             raise UserError(
                 f"{target}: is there and not empty; name another folder, or add --overwrite"
             )
-        target.mkdir(parents=True, exist_ok=True)
-        aside = Path(tempfile.mkdtemp(prefix=ASIDE, dir=target))
+    if not is_new:
+        with _frames(target) as add:
+            yield add
+        return
+
+    def give_up() -> None:
+        with contextlib.suppress(OSError):  # it has its frames
+            target.rmdir()
+
+    with cleaned_up_if_stopped(give_up):
+        try:
+            with cannot_be_written(target):
+                target.mkdir(parents=True)
+            with _frames(target) as add:
+                yield add
+        finally:
+            give_up()
+
+
+@contextlib.contextmanager
+def _frames(target: Path) -> Iterator[FrameSink]:
+    """Numbered PNG files that come into the folder `target` all at once."""
     count = 0
+    with _folder_aside(target, target) as aside:
 
-    def add(frame: Frame) -> None:
-        nonlocal count
-        with cannot_be_written(target):
-            Image.fromarray(frame).save(aside / f"frame_{count:05d}.png", compress_level=3)
-        count += 1
+        def add(frame: Frame) -> None:
+            nonlocal count
+            with cannot_be_written(target):
+                Image.fromarray(frame).save(aside / f"frame_{count:05d}.png", compress_level=3)
+            count += 1
 
-    try:
         yield add
         with cannot_be_written(target):
             for old in target.iterdir():
                 if FRAME_NAME.fullmatch(old.name):
                     old.unlink()
-            for frame in aside.iterdir():
-                os.replace(frame, target / frame.name)
-    finally:
-        shutil.rmtree(aside, ignore_errors=True)
-        if is_new:
-            with contextlib.suppress(OSError):  # it has its frames
-                target.rmdir()
+            for new in aside.iterdir():
+                os.replace(new, target / new.name)

@@ -4,11 +4,7 @@
 and defines. Everything is GLSL 330, so that OpenGL 3.3 core (and macOS's 4.1) can run it.
 """
 
-import contextlib
 import re
-import signal
-import threading
-from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -50,32 +46,14 @@ def compile_program(
     def stage(stage_name: str) -> str:
         return f"#version 330 core\n#define {stage_name}_STAGE\n{switches}#line 1\n{body}"
 
-    with _uninterrupted():
-        try:
-            return gl.program(
-                vertex_shader=stage("VERTEX"),
-                geometry_shader=stage("GEOMETRY") if has_geometry_stage else None,
-                fragment_shader=stage("FRAGMENT"),
-            )
-        except Exception as error:
-            raise _compile_error(name, defines, str(error)) from None
-
-
-@contextlib.contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Let Ctrl-C wait: moderngl calls Python while it compiles, and crashes if that is left."""
-    before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
-        yield
-        return
-    interrupts: list[Any] = []
-    signal.signal(signal.SIGINT, lambda *received: interrupts.append(received))
     try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-    if interrupts:
-        before(*interrupts[0])
+        return gl.program(
+            vertex_shader=stage("VERTEX"),
+            geometry_shader=stage("GEOMETRY") if has_geometry_stage else None,
+            fragment_shader=stage("FRAGMENT"),
+        )
+    except Exception as error:
+        raise _compile_error(name, defines, str(error)) from None
 
 
 def write_uniform(program: moderngl.Program, name: str, values: npt.NDArray[Any]) -> None:

@@ -27,6 +27,7 @@ from ..errors import UserError
 from ..pipeline import Viewport
 from ..scenes import build_scene
 from ..script import Script
+from ..stopping import cleaned_up_if_stopped
 from . import commands
 from .actions import actions_of, run_pressed
 from .clock import STEP, Clock
@@ -139,17 +140,18 @@ class Viewer:
         if playing:
             self.session.toggle_playing()
         self._last = time.perf_counter()
-        while True:
-            self.frame()
-            if self.surface.should_close:
-                self.surface.should_close = False
-                commands.close_politely(self)
+        with cleaned_up_if_stopped(lambda: commands.remember(self)):
+            while True:
+                self.frame()
                 if self.surface.should_close:
+                    self.surface.should_close = False
+                    commands.close_politely(self)
+                    if self.surface.should_close:
+                        break
+                if once and playing and not self.session.is_playing:
                     break
-            if once and playing and not self.session.is_playing:
-                break
-            if self.is_idle:
-                self._wait()
+                if self.is_idle:
+                    self._wait()
 
     def rest(self) -> None:
         """Wait until something happens, or it is time to look around; then show a frame."""

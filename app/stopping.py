@@ -1,0 +1,47 @@
+"""Ctrl-C, a closed terminal, `kill`: what is half written is removed, and the process ends there.
+
+The handlers raise nothing. An exception at a moment nobody chose is lost where C code calls Python
+and drops its errors, so that the signal has no effect, and it crashes moderngl while it compiles.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+
+_cleanups: list[Callable[[], object]] = []
+
+
+@contextlib.contextmanager
+def cleaned_up_if_stopped(clean_up: Callable[[], object]) -> Iterator[None]:
+    """Call `clean_up` if a signal ends the process inside this block; otherwise do nothing."""
+    _cleanups.append(clean_up)
+    try:
+        yield
+    finally:
+        _cleanups.remove(clean_up)
+
+
+def listen() -> None:
+    """Let signals end this process as described above; those that are ignored stay ignored."""
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):  # Windows has not the last
+        number = getattr(signal, name, None)
+        usual = (signal.SIG_DFL, signal.default_int_handler)
+        if number is not None and signal.getsignal(number) in usual:
+            signal.signal(number, _stop)
+
+
+def _stop(number: int, _: object) -> None:
+    signal.signal(number, signal.SIG_DFL)  # once more: at once
+    for clean_up in reversed(_cleanups):
+        with contextlib.suppress(Exception):  # the others have their turn
+            clean_up()
+    with contextlib.suppress(Exception):  # streams may be closed
+        if number == signal.SIGINT:
+            print("risorius: stopped", file=sys.stderr)
+        sys.stderr.flush()
+        sys.stdout.flush()
+    os._exit(128 + number)
