@@ -34,6 +34,8 @@ def test_nothing_half_written_is_left(
             [*COMMAND, *SLOW, "-o", str(target), "--quiet"],
             stderr=subprocess.PIPE,
             start_new_session=True,
+            # Tests that run behind an `&` or `nohup` have the signals ignored, and pass that on.
+            preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),
         )
         while process.poll() is None and not any(tmp_path.glob(pattern)):
             time.sleep(0.01)
