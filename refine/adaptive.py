@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .arguments import AttributeLike
-from .binding import BoundRefiner
+from .binding import BoundRefiner, Rows
 from .blend import grow, number_centres, place_centres
 from .choices import may_renumber, scheme_of
 from .coherence_pass import Coherent
@@ -34,6 +34,7 @@ from .criterion import (
     NormalDrop,
 )
 from .detail import FinerMesh
+from .native import Turns
 from .output import (
     CENTRE,
     copy_rims,
@@ -51,7 +52,7 @@ from .patterns import (
     Patterns,
 )
 from .plugin import Origins, Stream, View
-from .schemes import Frame, Scheme
+from .schemes import Frame, LoopScheme, Scheme
 
 Floats = npt.NDArray[np.float32]
 Small = npt.NDArray[np.uint8]
@@ -117,6 +118,7 @@ class Kahler(BoundRefiner):
         self._find_normals()
         self._criterion.bind(mesh, self._rest_positions, self._normals)
         self._scheme.bind(mesh, self._rest_positions, self._normals)
+        self._bind_passes()
 
     def _make_buffers(self) -> None:
         mesh = self.connectivity
@@ -143,10 +145,13 @@ class Kahler(BoundRefiner):
         )
         if self._blend:
             self._frame.centre_triangles = np.zeros(len(mesh.faces) + 1, dtype=np.uint32)
-        self._bind_passes()
 
     def _bind_passes(self) -> None:
-        """Bind the compiled passes of a frame to their arguments."""
+        """Bind the compiled passes of a frame to their arguments, and join what can be joined.
+
+        The paper's criterion and scheme make two calls of compiled code of a frame: one before it
+        is known how much room it needs, and one behind.
+        """
         mesh, frame, patterns = self.connectivity, self._frame, self._patterns
         self._number_points = number_points.bind(
             self._rim_splits,
@@ -173,6 +178,18 @@ class Kahler(BoundRefiner):
             np.zeros((0, 3), dtype=np.uint32),
             np.zeros(0, dtype=np.int32),
         )
+        self._draws = [self._look_up_triangles]
+        self._is_marked = type(self._criterion) is NormalDrop and not self._blend
+        if self._is_marked:
+            marking = cast(NormalDrop, self._criterion).marking(self._normals, self._edge_splits)
+            self._begin = Turns(self._take_in, self._find_normals, marking, self._number_points)
+        self._is_placed = (
+            type(self._scheme) is LoopScheme and self._values is None and not self._blend
+        )
+        if self._is_placed:
+            self._draws.insert(0, cast(LoopScheme, self._scheme).placing(frame))
+        self._draw = Turns(*self._draws)
+        self._drawn_to: Rows | None = None
 
     @property
     def history(self) -> Coherent | None:
@@ -199,9 +216,9 @@ class Kahler(BoundRefiner):
 
     def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         frame, patterns = self._frame, self._patterns
-        self._find_normals()
-        self._mark(view)
-        self._number_points()
+        if not self._is_marked:
+            self._mark(view)
+            self._number_points()
         vertex_count, _, _, triangle_count = frame.counts.tolist()
         rows = patterns.rows(self._triangle_configurations)
         if frame.centre_triangles is not None:
@@ -209,14 +226,23 @@ class Kahler(BoundRefiner):
                 rows, patterns.counts, patterns.subtriangles, CENTRE, frame.centre_triangles
             )
             vertex_count += frame.centre_count
-        frame.rows, triangles, source = self._reserve(stream, vertex_count, triangle_count)
-        self._place()
-        look_up = self._look_up_triangles
-        look_up.put("rows", rows)
-        look_up.put("triangles", triangles)
-        look_up.put("source", source)
-        look_up()
+        lent = self._reserve(stream, vertex_count, triangle_count)
+        if lent is not self._drawn_to:
+            self._draw_to(lent)
+        self._look_up_triangles.put("rows", rows)
+        if not self._is_placed:
+            self._place()
+        self._draw()
         return vertex_count, triangle_count
+
+    def _draw_to(self, lent: Rows) -> None:
+        """Hand other rows of the output to the passes that write them."""
+        self._drawn_to = lent
+        self._frame.rows, triangles, source = lent
+        self._look_up_triangles.put("triangles", triangles)
+        self._look_up_triangles.put("source", source)
+        if self._is_placed:
+            self._draws[0].put("vertices", self._frame.rows)
 
     def _mark(self, view: View | None) -> None:
         """Decide on the splits of every edge, and how far their points have grown."""

@@ -171,7 +171,7 @@ def _checked_values(
 def bind_take_in(positions: npt.NDArray[np.float64], points: npt.NDArray[np.float32]) -> Call:
     """Return a call that writes positions, shape (V, 3), as single precision into `points`.
 
-    It returns 0 if they are not numbers: what moves the mesh has blown up.
+    It returns how many are not numbers, 0 unless what moves the mesh has blown up.
     """
     return round_finite.bind(positions.reshape(-1), points.reshape(-1))
 
@@ -187,9 +187,9 @@ def not_finite(positions: npt.NDArray[np.floating]) -> str:
 
 @native
 def round_finite(numbers: npt.NDArray[np.float64], rounded: npt.NDArray[np.float32]) -> int:
-    """Write numbers as single precision; return 1 if there is no NaN and no infinity, else 0."""
+    """Write numbers as single precision; return how many are NaN or infinite."""
     finite = 0  # counted, not left early: so the loop takes several at a time
     for k in range(numbers.shape[0]):
         rounded[k] = numbers[k]
         finite += abs(numbers[k]) < np.inf
-    return int(finite == numbers.shape[0])
+    return int(numbers.shape[0] - finite)

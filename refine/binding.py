@@ -26,7 +26,7 @@ from .arguments import (
 )
 from .connectivity import Connectivity, connect
 from .locality import Order, better_order
-from .native import with_room
+from .native import Turns, with_room
 from .normals import bind_normals
 from .output import GEOMETRY_COLUMNS, place_attributes
 from .plugin import Origins, RefinedMesh, Stream, View
@@ -94,8 +94,11 @@ class BoundRefiner(ABC):
         self._normals = with_room(np.zeros((len(positions), 3), dtype=np.float32))
         self._take_in = bind_take_in(self._positions, self._points)
         self._find_normals = bind_normals(self._positions, self.connectivity.faces, self._normals)
+        self._begin = Turns(self._take_in, self._find_normals)
+        """What every frame begins with; other than 0 if positions are not numbers."""
         self._own_stream: OwnStream | None = None
-        self._accepted: tuple[object, object, object] = (None, None, None)
+        self._accepted: Rows = _NO_ROWS
+        self._geometry: tuple[Floats, Floats]
 
     @property
     @abstractmethod
@@ -119,6 +122,8 @@ class BoundRefiner(ABC):
     @abstractmethod
     def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         """Write the frame for `self._positions` into the rows that `self._reserve` gives.
+
+        `self._begin` has been run: normals are there.
 
         Returns the numbers of vertices and triangles.
         """
@@ -166,21 +171,25 @@ class BoundRefiner(ABC):
             np.copyto(self._positions, positions)
         else:
             self._order.gather(positions, self._positions)
-        if not self._take_in():
+        if self._begin():
             raise ValueError(not_finite(positions))
         stream = self._lend_own_stream() if out is None else out
         if not hasattr(stream, "reserve"):
             self._accept(stream, self.vertex_capacity, self.triangle_capacity)
         vertex_count, triangle_count = self._fill(stream, view)
+        vertices, triangles, source = self._accepted
         if self._order is not None:
-            self._order.give_back(stream.vertices, stream.source[:triangle_count])
-        vertices = stream.vertices[:vertex_count]
+            self._order.give_back(vertices, source[:triangle_count])
+        uv, attributes = None, _NO_ATTRIBUTES
+        if self._values is not None:
+            uv, attributes = self._attributes_in(vertices[:vertex_count])
         return RefinedMesh(
-            vertices[:, 0:3],
-            vertices[:, 3:6],
-            stream.triangles[:triangle_count],
-            stream.source[:triangle_count],
-            *self._attributes_in(vertices),
+            self._geometry[0][:vertex_count],
+            self._geometry[1][:vertex_count],
+            triangles[:triangle_count],
+            source[:triangle_count],
+            uv,
+            attributes,
         )
 
     def _wedge_names(self) -> npt.NDArray[np.int32]:
@@ -193,11 +202,14 @@ class BoundRefiner(ABC):
         return wedges
 
     def _reserve(self, stream: Stream, vertex_count: int, triangle_count: int) -> Rows:
-        """Let the stream grow if it can, and return its arrays, checked."""
+        """Let the stream grow if it can, and return its arrays, checked.
+
+        The same tuple as long as they are the same arrays.
+        """
         if hasattr(stream, "reserve"):
             stream.reserve(vertex_count, triangle_count)
             self._accept(stream, vertex_count, triangle_count)
-        return stream.vertices, stream.triangles, stream.source
+        return self._accepted
 
     def _accept(self, stream: Stream, vertex_count: int, triangle_count: int) -> None:
         """Raise ValueError unless the arrays can take this much; seen ones need no second look."""
@@ -210,6 +222,7 @@ class BoundRefiner(ABC):
         check_lent("triangles", triangles, np.uint32, (triangle_count, 3))
         check_lent("source", source, np.int32, (triangle_count,))
         self._accepted = (vertices, triangles, source)
+        self._geometry = vertices[:, 0:3], vertices[:, 3:6]
 
     def _lend_own_stream(self) -> OwnStream:
         if self._own_stream is None:
@@ -220,8 +233,7 @@ class BoundRefiner(ABC):
 
     def _attributes_in(self, vertices: Floats) -> tuple[Floats | None, Mapping[str, Floats]]:
         """Views of texture coordinates and attributes in the rows of a frame."""
-        if self._values is None:
-            return None, _NO_ATTRIBUTES
+        assert self._values is not None
         values = vertices[:, GEOMETRY_COLUMNS:]
         uv = values[:, :2] if self._values.has_uv else None
         return uv, {name: values[:, columns] for name, columns in self._values.columns.items()}
@@ -240,6 +252,9 @@ class BoundRefiner(ABC):
             )
 
 
+_NO_ROWS: Rows = (
+    np.zeros((0, GEOMETRY_COLUMNS), np.float32), np.zeros((0, 3), np.uint32), np.zeros(0, np.int32)
+)  # fmt: skip
 _NO_ATTRIBUTES: Mapping[str, Floats] = MappingProxyType({})
 
 

@@ -40,6 +40,8 @@ ROUNDING = 1e-5
 """Drops up to this size are rounding (measured, see above)."""
 NARROWEST = 1e-6
 """Least distance of two thresholds; where they are equal there is nothing to blend over."""
+BLOCK = 512
+"""Edges whose drops are compared at a time; so many stay in the first cache."""
 UNDEFINED_NORMAL = 1e-6
 """A normal shorter than this fraction of the lengths that made it is rounding, not a direction."""
 
@@ -128,9 +130,22 @@ class NormalDrop:
     def __init__(
         self, threshold_once: float = THRESHOLD_ONCE, threshold_twice: float = THRESHOLD_TWICE
     ) -> None:
+        self._marking: Call | None = None
+        self._measuring: Call | None = None
         self.thresholds = Thresholds(
             threshold_once, threshold_twice, "drops of a dot product", least=ROUNDING
         )
+
+    @property
+    def thresholds(self) -> Thresholds:
+        """Drops above which an edge is split once and twice; may be replaced at any time."""
+        return self._thresholds
+
+    @thresholds.setter
+    def thresholds(self, thresholds: Thresholds) -> None:
+        self._thresholds = thresholds
+        if self._marking is not None:
+            self._marking.put("limits", thresholds.limits)
 
     def bind(
         self,
@@ -141,9 +156,9 @@ class NormalDrop:
         """Store the dot product of every edge of the undeformed mesh."""
         self._edges = connectivity.edges.view(np.uint32)
         self._rest_dots = np.empty(len(self._edges), dtype=np.float32)
+        self._drops = np.empty(BLOCK, dtype=np.float32)
         edge_dots(rest_normals, self._edges, self._rest_dots)
-        self._marked: tuple[Floats | None, Small | None] = (None, None)
-        self._measuring: Call | None = None
+        self._marking = self._measuring = None
         # No direction to compare with at rest (all triangles around are slivers): never split.
         undefined = np.empty(len(rest_positions), dtype=np.bool_)
         sums = np.zeros((len(rest_positions), 4))
@@ -153,13 +168,20 @@ class NormalDrop:
 
     def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write the number of splits of every edge into `splits`, shape (E,)."""
-        if self._marked[0] is not normals or self._marked[1] is not splits:
-            self._marked = normals, splits
-            self._mark_drops = mark_drops.bind(
-                normals, self._edges, self._rest_dots, self.thresholds.limits, splits
-            )
-        self._mark_drops.put("limits", self.thresholds.limits)  # they may be others by now
-        self._mark_drops()
+        self.marking(normals, splits)()
+
+    def marking(self, normals: Floats, splits: Small) -> Call:
+        """Return the call that marks edges by these `normals`, whatever they are by then."""
+        self._marking = mark_drops.again(
+            self._marking,
+            normals,
+            self._edges,
+            self._rest_dots,
+            self.thresholds.limits,
+            self._drops,
+            splits,
+        )
+        return self._marking
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
@@ -187,21 +209,28 @@ def mark_drops(
     edges: npt.NDArray[np.uint32],
     rest_dots: Floats,
     limits: Floats,
+    drops: Floats,
     splits: Small,
 ) -> None:
     """Write 0, 1 or 2 into `splits`, shape (E,), by the drop of the dot product (as above).
 
-    `limits`: the two thresholds, shape (2,).
+    `limits`: the two thresholds, shape (2,). `drops`: scratch, shape (BLOCK,): drops are compared
+    some at a time, because comparing eight is one instruction.
     """
     once, twice = limits[0], limits[1]
-    for e in range(edges.shape[0]):
-        a, b = edges[e, 0], edges[e, 1]
-        drop = rest_dots[e] - (
-            normals[a, 0] * normals[b, 0]
-            + normals[a, 1] * normals[b, 1]
-            + normals[a, 2] * normals[b, 2]
-        )
-        splits[e] = np.uint8(drop > once) + np.uint8(drop > twice)
+    for first in range(0, edges.shape[0], BLOCK):
+        count = min(BLOCK, edges.shape[0] - first)
+        for k in range(count):
+            e = np.uint64(first + k)
+            a, b = edges[e, 0], edges[e, 1]
+            drops[k] = rest_dots[e] - (
+                normals[a, 0] * normals[b, 0]
+                + normals[a, 1] * normals[b, 1]
+                + normals[a, 2] * normals[b, 2]
+            )
+        for k in range(count):
+            e = np.uint64(first + k)
+            splits[e] = np.uint8(drops[k] > once) + np.uint8(drops[k] > twice)
 
 
 @kernel

@@ -37,12 +37,28 @@ def load(kernel: Compiled[Any, Any], types: str) -> Callable[[int], int]:
     """
     name = f"{kernel.py_func.__module__}.{kernel.py_func.__name__}"
     symbol = f"{name}.{hashlib.sha256(types.encode()).hexdigest()[:12]}"
-    made_for = f"{_processor()} {_llvm().llvm_version_info} {types} {_sources(kernel)}"
+    return _function(symbol, f"{types} {_sources(kernel)}", lambda: _compile(kernel, types, symbol))
+
+
+@functools.cache
+def load_turns() -> Callable[[int], int]:
+    """Return a function that runs others in turn, until one returns something else than 0.
+
+    It takes the address of a list: for each the addresses of the function and of its own list, and
+    0 at the end; it returns what the last one that ran did.
+    """
+    symbol = f"{__name__}.turns"
+    return _function(symbol, _digest(__file__), lambda: _compile_turns(symbol))
+
+
+def _function(symbol: str, made_of: str, compiled: Callable[[], bytes]) -> Callable[[int], int]:
+    """The function of this name, from its file if that is still valid, else from `compiled`."""
+    made_for = f"{_processor()} {_llvm().llvm_version_info} {made_of}"
     valid_for = hashlib.sha256(made_for.encode()).digest()
     code = _read(symbol, valid_for)
     if code is None:
         say_compiling()
-        code = _compile(kernel, types, symbol)
+        code = compiled()
         _keep(symbol, valid_for, code)
     engine = _engine()
     engine.add_object_file(_llvm().object_file.ObjectFileRef.from_data(code))
@@ -164,6 +180,35 @@ def _compile(kernel: Compiled[Any, Any], types: str, symbol: str) -> bytes:
             f"{symbol} allocates or raises: it calls {function.name}"
         )
     return bytes(machine.emit_object(module))
+
+
+def _compile_turns(symbol: str) -> bytes:
+    """Machine code of `load_turns`, written for LLVM by hand: numba has no calls of addresses."""
+    ir: Any = import_module("llvmlite.ir")
+    number = ir.IntType(64)
+    signature = ir.FunctionType(number, [number])
+    run = ir.Function(ir.Module(), signature, symbol)
+    first, test, turn, done = (run.append_basic_block() for _ in range(4))
+    ir.IRBuilder(first).branch(test)
+    code = ir.IRBuilder(test)
+    at, last = code.phi(number), code.phi(number)
+    function = code.load(code.inttoptr(at, number.as_pointer()))
+    is_over = code.or_(
+        code.icmp_unsigned("==", function, number(0)), code.icmp_unsigned("!=", last, number(0))
+    )
+    code.cbranch(is_over, done, turn)
+    code = ir.IRBuilder(turn)
+    own_list = code.load(code.inttoptr(code.add(at, number(8)), number.as_pointer()))
+    result = code.call(code.inttoptr(function, signature.as_pointer()), [own_list])
+    for value, before, after in (
+        (at, run.args[0], code.add(at, number(16))),
+        (last, number(0), result),
+    ):
+        value.add_incoming(before, first)
+        value.add_incoming(after, turn)
+    code.branch(test)
+    ir.IRBuilder(done).ret(last)
+    return bytes(_machine().emit_object(_llvm().parse_assembly(str(run.module))))
 
 
 def _entry(kernel: Compiled[Any, Any], types: str) -> Any:

@@ -26,7 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .kernels import Arguments, Compiled, Result
-from .machine_code import load
+from .machine_code import load, load_turns
 
 Rows = TypeVar("Rows", bound=npt.NDArray[Any])
 
@@ -63,6 +63,13 @@ class Call(functools.partial[int]):
     _places: list[int]
     _arguments: list[object]
 
+    @property
+    def addresses(self) -> tuple[int, int]:
+        """Of the machine code, and of the list that it takes."""
+        code = ctypes.cast(cast(Any, self.func), ctypes.c_void_p).value
+        assert code is not None
+        return code, self.args[0]
+
     def has(self, arguments: tuple[object, ...]) -> bool:
         """Whether these objects, not others that are equal, are the arguments."""
         return all(map(operator.is_, self._arguments, arguments))
@@ -82,6 +89,24 @@ class Call(functools.partial[int]):
         self._list[place] = argument.ctypes.data
         for i, length in enumerate(argument.shape):
             self._list[place + 1 + i] = length
+
+
+class Turns(functools.partial[int]):
+    """Bound kernels that run in turn, as one call from Python: what lies between costs nothing.
+
+    It stops behind a kernel that returns something else than 0, and returns that, else 0.
+    """
+
+    def __new__(cls, *calls: Call) -> "Turns":
+        """Put `calls` in a row; what is `put` into them later counts here, too."""
+        addresses = [address for call in calls for address in call.addresses]
+        places = (ctypes.c_int64 * (len(addresses) + 1))(*addresses)
+        turns = super().__new__(cls, load_turns(), ctypes.addressof(places))
+        turns._list, turns._calls = places, calls  # kept alive
+        return turns
+
+    _list: "ctypes.Array[ctypes.c_int64]"
+    _calls: tuple[Call, ...]
 
 
 class Native(Compiled[Arguments, Result]):

@@ -66,16 +66,16 @@ def number_points(
     once_count = twice_count = np.uint32(0)
     # Written always and counted when split: no branch that a processor could guess wrong.
     for e in range(edge_count):
-        split = rim_splits[e]
-        split_once[once_count] = split_twice[twice_count] = e
-        once_count = np.uint32(once_count + (split > 0))
-        twice_count = np.uint32(twice_count + (split > 1))
+        split_once[once_count] = e
+        once_count = np.uint32(once_count + (rim_splits[e] > 0))
     configurations[:] = 0
     none = np.uint32(4 * (configurations.shape[0] - 1))
     row, triangle_count = wedge_count, configurations.shape[0] - 1
     for k in range(once_count):
         e = split_once[k]
         split = rim_splits[e]
+        split_twice[twice_count] = e
+        twice_count = np.uint32(twice_count + (split > 1))
         points = points_on(split)
         first_points[e] = row
         row += points

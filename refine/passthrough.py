@@ -59,7 +59,6 @@ class PassThrough(BoundRefiner):
         connectivity = self.connectivity
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
         vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
-        self._find_normals()
         place_unmoved(self._points, self._normals, vertices)
         if self._values is not None:
             copy_wedges(connectivity.vertex_count, connectivity.wedge_vertices, vertices)

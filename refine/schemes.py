@@ -114,18 +114,18 @@ class LoopScheme:
         self._rings = vertex_rings(connectivity)
         self._vertex_growth = np.zeros(connectivity.vertex_count, dtype=np.float32)
         self._middles = np.zeros((len(connectivity.edges), 4), dtype=np.float32)
+        self._placing: Call | None = None
         self._bound_to: Frame | None = None
 
     def place(self, frame: Frame) -> None:
         """Write moved vertices, first level, second level."""
-        if frame is not self._bound_to:
-            self._place_points, self._bound_to = self._bind_to(frame), frame
-        place_points = self._place_points
-        place_points.put("vertices", frame.rows)
-        place_points()
+        if self._placing is None or frame is not self._bound_to:
+            self._placing, self._bound_to = self.placing(frame), frame
+        self._placing.put("vertices", frame.rows)
+        self._placing()
 
-    def _bind_to(self, frame: Frame) -> Call:
-        """Bind the compiled passes to the arrays of a frame, which stay, and to others that go."""
+    def placing(self, frame: Frame) -> Call:
+        """Return the call that places points in the arrays of a frame; `vertices` are its rows."""
         assert has_room(frame.points) and has_room(frame.normals)
         mesh, rings = self._connectivity, self._rings
         return place_points.bind(

@@ -139,7 +139,6 @@ class Loop(BoundRefiner):
     def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
         vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
-        self._find_normals()
         for level, finer in pairwise(self._levels):
             level.subdivide(self._rows)
             np.copyto(finer.points, self._rows[:, :3])
