@@ -220,16 +220,17 @@ class Kahler(BoundRefiner):
             self._mark(view)
             self._number_points()
         vertex_count, _, _, triangle_count = frame.counts.tolist()
-        rows = patterns.rows(self._triangle_configurations)
-        if frame.centre_triangles is not None:
-            frame.centre_count, triangle_count = number_centres(
-                rows, patterns.counts, patterns.subtriangles, CENTRE, frame.centre_triangles
-            )
-            vertex_count += frame.centre_count
+        if patterns is not CONFIGURATIONS:
+            rows = patterns.rows(self._triangle_configurations)
+            self._look_up_triangles.put("rows", rows)
+            if frame.centre_triangles is not None:
+                frame.centre_count, triangle_count = number_centres(
+                    rows, patterns.counts, patterns.subtriangles, CENTRE, frame.centre_triangles
+                )
+                vertex_count += frame.centre_count
         lent = self._reserve(stream, vertex_count, triangle_count)
         if lent is not self._drawn_to:
             self._draw_to(lent)
-        self._look_up_triangles.put("rows", rows)
         if not self._is_placed:
             self._place()
         self._draw()

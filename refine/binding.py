@@ -96,6 +96,7 @@ class BoundRefiner(ABC):
         self._find_normals = bind_normals(self._positions, self.connectivity.faces, self._normals)
         self._begin = Turns(self._take_in, self._find_normals)
         """What every frame begins with; other than 0 if positions are not numbers."""
+        self._shape = self._positions.shape
         self._own_stream: OwnStream | None = None
         self._accepted: Rows = _NO_ROWS
         self._geometry: tuple[Floats, Floats]
@@ -162,20 +163,20 @@ class BoundRefiner(ABC):
         positions are not finite.
         """
         positions = np.asarray(positions)
-        if positions.shape != self._positions.shape or positions.dtype.kind != "f":
+        if positions.shape != self._shape or positions.dtype.kind != "f":
             raise ValueError(
-                f"positions must be floats of shape {self._positions.shape} like the mesh that "
-                f"was bound, got {positions.dtype} of shape {positions.shape}"
+                f"positions must be floats of shape {self._shape} like the mesh that was bound, "
+                f"got {positions.dtype} of shape {positions.shape}"
             )
+        stream = self._lend_own_stream() if out is None else out
+        if out is not None and not hasattr(out, "reserve"):
+            self._accept(out, self.vertex_capacity, self.triangle_capacity)
         if self._order is None:
             np.copyto(self._positions, positions)
         else:
             self._order.gather(positions, self._positions)
         if self._begin():
             raise ValueError(not_finite(positions))
-        stream = self._lend_own_stream() if out is None else out
-        if not hasattr(stream, "reserve"):
-            self._accept(stream, self.vertex_capacity, self.triangle_capacity)
         vertex_count, triangle_count = self._fill(stream, view)
         vertices, triangles, source = self._accepted
         if self._order is not None:
