@@ -194,9 +194,12 @@ def place_middles(
         e = split_once[k]
         a, b, c, d = edge_points[e, 0], edge_points[e, 1], edge_points[e, 2], edge_points[e, 3]
         row = np.uint32(first_points[e] + (splits[e] >> 1))
-        end, wing = (EDGE_END, EDGE_WING) if is_interior[e] else (BORDER_EDGE_END, ZERO)
-        ends, wings = plus(four(points, a), four(points, b)), plus(four(points, c), four(points, d))
-        middle = plus(times(end, ends), times(wing, wings))
+        ends = plus(four(points, a), four(points, b))
+        if is_interior[e]:
+            wings = plus(four(points, c), four(points, d))
+            middle = plus(times(EDGE_END, ends), times(EDGE_WING, wings))
+        else:
+            middle = times(BORDER_EDGE_END, ends)
         write(middles, e, middle)
         if growth_once[e] < ONE:
             straight = times(HALF, plus(four(vertices, a), four(vertices, b)))
