@@ -213,7 +213,8 @@ def place_middles(
 @native
 def grown(e: np.uint32, splits: npt.NDArray[np.uint8], growth_once: Floats) -> np.float32:
     """How far the middle of an edge has grown, 0 where it has none."""
-    return np.float32(growth_once[e] if splits[e] > 0 else ZERO)
+    is_split = np.uint32(splits[e] + 1) >> np.uint32(1)  # 0, 1, 1: a test would be a branch
+    return np.float32(growth_once[e] * np.float32(is_split))
 
 
 @native
