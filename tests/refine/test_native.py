@@ -14,7 +14,7 @@ import pytest
 
 from refine import machine_code, on_compile
 from refine.kernels import kernel
-from refine.native import native
+from refine.native import Turns, native
 
 HALF = np.float32(0.5)
 START = """
@@ -93,6 +93,25 @@ def test_again() -> None:
     assert scale_rows.again(call, *arguments) is call
     assert scale_rows.again(call, arguments[0].copy(), *arguments[1:]) is not call
     assert scale_rows.again(None, *arguments)() == 3
+
+
+def test_turns() -> None:
+    """Calls in turn run one after the other, up to one that returns something else than 0."""
+    rows, flags, scaled = some_rows(3)
+    first = scale_rows.bind(rows, flags, scaled, -2)
+    second = scale_rows.bind(scaled, flags, rows, 5)
+    turns = Turns(first, second)
+    assert turns() == 7
+    assert rows[0, 1] == scaled[0, 1] / 2 == 0.25
+    first.put("add", 1)
+    rows[2, 1] = 8.0
+    assert turns() == 3
+    assert scaled[2, 1] == 4.0
+    assert rows[2, 1] == 8.0
+    first.put("add", -2)
+    second.put("add", -2)
+    assert turns() == 0
+    assert Turns()() == 0
 
 
 def test_only_whole_arrays() -> None:
