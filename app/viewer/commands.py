@@ -48,18 +48,46 @@ def _nothing() -> None:
     """After saving, nothing else."""
 
 
+def new_script(viewer: Viewer) -> None:
+    """Begin with an empty script, unless work would be lost: then ask first."""
+
+    def begin() -> None:
+        viewer.session.begin_script()
+        viewer.messages.say("a new script; K makes the face as it is a key")
+
+    viewer.question.before(viewer, "Begin", begin)
+
+
 def save_script(viewer: Viewer, then: Callable[[], None] = _nothing) -> None:
+    """Write the script to its own file, or ask for one, and go on with `then`."""
+    file = viewer.session.file
+    if file.path is None:
+        save_script_as(viewer, then)
+    elif file.is_foreign:
+        name = file.path.name
+        viewer.messages.say(f"{name}: another program has changed it; replace it, or choose a name")
+        save_script_as(viewer, then)
+    else:
+        _write_script(viewer, file.path, then)
+
+
+def save_script_as(viewer: Viewer, then: Callable[[], None] = _nothing) -> None:
     """Ask for a name, write the script, and go on with `then`."""
-    source = Path(viewer.session.script.source)
-    is_own = source.suffix == ".toml" and "assets" not in source.parts
+    path = viewer.session.file.path
+    viewer.files.ask(
+        "Save script",
+        lambda chosen: _write_script(viewer, chosen, then),
+        saving=True,
+        proposed=str(path.absolute()) if path is not None else "script.toml",
+    )
 
-    def write(path: Path) -> None:
-        viewer.session.save_script(path)
-        viewer.messages.say(f"{path}: script written")
-        then()
 
-    proposed = str(source) if is_own else "script.toml"
-    viewer.files.ask("Save script", write, saving=True, proposed=proposed)
+def _write_script(viewer: Viewer, path: Path, then: Callable[[], None]) -> None:
+    viewer.session.save_script(path)
+    apart = viewer.session.has_unsaved_pose
+    rest = "; the pose is not part of it: K makes it a key" if apart else ""
+    viewer.messages.say(f"{path}: script written{rest}")
+    then()
 
 
 def save_pose(viewer: Viewer, then: Callable[[], None] = _nothing) -> None:

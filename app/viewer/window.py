@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
@@ -32,13 +32,14 @@ from . import commands
 from .actions import actions_of, run_pressed
 from .clock import STEP, Clock
 from .files import Files
-from .gui import THEMES, Gui, em, on_drop, poll_events, wait_for_event
+from .gui import THEMES, Gui, em, fixed_panel, on_drop, poll_events, wait_for_event
 from .kept import KeptPanels
 from .overlays import overlays_of
 from .panels.chrome import Messages, Question, draw_help, draw_menus
 from .panels.face import FacePanel
 from .panels.mechanism import MechanismPanel
 from .panels.timeline import Timeline
+from .placement import Placement
 from .quality import FULL, Quality
 from .session import Session
 from .settings import Look, Settings, load_settings
@@ -90,7 +91,7 @@ class Viewer:
         known = overlays_of(self.scene)
         self.look = checked(look or self.settings.look, refine.available(), known)
         with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
-            title = f"Risorius: {script.title}"
+            title = f"Risorius: {self.session.name}"
             self.surface = render.open_window(size or self.settings.size or (1280, 800), title)
             stack.callback(self.surface.close)
             self.gui = Gui(self.surface.handle)
@@ -98,6 +99,7 @@ class Viewer:
             self.stage = Stage(self.surface, self.scene, self.look)
             self._resources = stack.pop_all()
         self.camera = commands.remembered_camera(self) or whole_scene(self.scene, script.camera)
+        self.placement = Placement(self.surface.handle)
         self.quality = Quality(is_software=self.surface.is_software)
         self.touch = Touch(self)
         self.kept = KeptPanels()
@@ -171,6 +173,8 @@ class Viewer:
             # The mean of times, not of rates: a few quick frames must not outweigh the slow ones.
             shown = 1.0 / self.frames_per_second if self.frames_per_second else elapsed
             self.frames_per_second = 1.0 / (SMOOTHING * shown + (1.0 - SMOOTHING) * elapsed)
+        mark = " *" if self.session.unsaved else ""
+        self.placement.call(f"Risorius: {self.session.name}{mark}")
         self._let_time_pass(elapsed if self.film is None else 1.0 / FRAMES_PER_SECOND)
         is_moving = self._draw_scene(elapsed)
         self._show_panels(elapsed, is_moving=is_moving)
@@ -321,11 +325,11 @@ class Viewer:
         display = imgui.get_io().display_size
         top = draw_menus(self, self.actions)
         left, strip = self._panel_width(display.x), round(self.timeline.height())
-        with _fixed("Controls", 0.0, top, left, display.y - top, may_resize=True):
+        with fixed_panel("Controls", (0.0, top), (left, display.y - top), resizes=True):
             if round(imgui.get_window_width()) != left:  # its edge is being dragged
                 self.settings.panel_width = imgui.get_window_width() / em()
             self._draw_tabs()
-        with _fixed("Time", left, display.y - strip, display.x - left, strip):
+        with fixed_panel("Time", (left, display.y - strip), (display.x - left, strip)):
             self.timeline.draw()
         width, height = max(display.x - left, 1.0), max(display.y - top - strip, 1.0)
         self.picture_area = (left, top, width, height)
@@ -377,21 +381,3 @@ class Viewer:
     @property
     def _is_asking(self) -> bool:
         return self.files.is_waiting or self.question.is_open
-
-
-@contextlib.contextmanager
-def _fixed(
-    name: str, left: float, top: float, width: float, height: float, *, may_resize: bool = False
-) -> Iterator[None]:
-    """A panel that stays where it is; its edges may be dragged if it may be resized."""
-    imgui.set_next_window_pos(imgui.ImVec2(left, top))
-    imgui.set_next_window_size(imgui.ImVec2(max(width, 1.0), max(height, 1.0)))
-    flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_scrollbar
-    flags |= imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_move
-    flags |= 0 if may_resize else imgui.WindowFlags_.no_resize
-    flags |= imgui.WindowFlags_.no_background  # which the surface was filled with
-    imgui.begin(name, None, flags | imgui.WindowFlags_.no_bring_to_front_on_focus)
-    try:
-        yield
-    finally:
-        imgui.end()

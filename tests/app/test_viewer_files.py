@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from importlib import resources
 from pathlib import Path
 
 import pytest
 
+from app.script import load_script
 from app.viewer import Viewer
 from app.viewer.files import UNSEEN, Files
 
@@ -16,6 +18,7 @@ from .driving import NEEDS_A_SCREEN, click, nose, settle, until, write, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
+EXAMPLE = "scripts/speech.toml"
 SCRIPT = "duration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
 POSE = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
 
@@ -87,13 +90,13 @@ def test_the_chooser_replaces_nothing_unasked(viewer: Viewer, tmp_path: Path) ->
     taken = tmp_path / "pose.toml"
     taken.write_text("precious")
     viewer.session.set("jaw_open", 0.4)
-    xdotool(viewer, "key", "ctrl+shift+s")
+    xdotool(viewer, "key", "ctrl+p")
     xdotool(viewer, "key", "Return")
     assert viewer.files.is_waiting and taken.read_text() == "precious"
     xdotool(viewer, "key", "Return")
     assert not viewer.files.is_waiting and "jaw_open = 0.4" in taken.read_text()
     viewer.session.set("jaw_open", 0.5)
-    xdotool(viewer, "key", "ctrl+shift+s")
+    xdotool(viewer, "key", "ctrl+p")
     xdotool(viewer, "key", "ctrl+a")
     write(viewer, "/proc/none/pose")
     xdotool(viewer, "key", "Return")
@@ -165,3 +168,59 @@ def test_what_cannot_be_written_is_told(viewer: Viewer, monkeypatch: pytest.Monk
         xdotool(viewer, "key", key)
         assert until(viewer, lambda: "cannot be written" in viewer.messages.text, 3.0), key
         assert viewer.film is None
+
+
+def title_of(viewer: Viewer) -> str:
+    """What the desktop shows above the window."""
+    settle(viewer)
+    command = ["xdotool", "search", "--onlyvisible", "--name", "^Risorius: "]
+    window = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()[-1]
+    name = ["xdotool", "getwindowname", window]
+    return subprocess.run(name, check=True, capture_output=True, text=True).stdout.strip()
+
+
+def test_saving_goes_to_the_known_file(viewer: Viewer, tmp_path: Path) -> None:
+    """A script that was opened is saved without a question; the title tells its name and state."""
+    script = tmp_path / "smile.toml"
+    script.write_text(f"# mine\n{SCRIPT}")
+    drop(viewer, script)
+    assert title_of(viewer) == "Risorius: smile.toml"
+    viewer.session.seek(1.0)
+    xdotool(viewer, "key", "k")
+    assert title_of(viewer) == "Risorius: smile.toml *"
+    xdotool(viewer, "key", "ctrl+s")
+    assert not viewer.files.is_waiting and title_of(viewer) == "Risorius: smile.toml"
+    assert script.read_text().startswith("# mine\n") and len(load_script(script).poses) == 3
+    xdotool(viewer, "key", "ctrl+shift+s")
+    assert viewer.files.is_waiting
+    xdotool(viewer, "key", "ctrl+a")
+    write(viewer, "other")
+    xdotool(viewer, "key", "Return")
+    assert title_of(viewer) == "Risorius: other.toml"
+    xdotool(viewer, "key", "Delete")
+    xdotool(viewer, "key", "ctrl+s")
+    assert len(load_script(tmp_path / "other.toml").poses) == 2
+    assert len(load_script(script).poses) == 3
+
+
+def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> None:
+    """New scripts and the program's own ask for a name; a file changed elsewhere is not lost."""
+    taken = tmp_path / "script.toml"
+    taken.write_text("precious")
+    xdotool(viewer, "key", "ctrl+n", "k", "ctrl+s")
+    assert viewer.files.is_waiting
+    xdotool(viewer, "key", "Return")
+    assert viewer.files.is_waiting and taken.read_text() == "precious"
+    xdotool(viewer, "key", "Escape")
+    viewer.session.take(viewer.session.read(Path(str(resources.files("assets"))) / EXAMPLE))
+    xdotool(viewer, "key", "ctrl+s")
+    assert viewer.files.is_waiting
+    xdotool(viewer, "key", "Escape")
+    script = tmp_path / "smile.toml"
+    script.write_text(SCRIPT)
+    drop(viewer, script)
+    script.write_text(SCRIPT.replace("joy", "anger"))
+    xdotool(viewer, "key", "k", "ctrl+s")
+    assert viewer.files.is_waiting and "another program" in viewer.messages.text
+    assert "anger" in script.read_text()
+    xdotool(viewer, "key", "Escape")

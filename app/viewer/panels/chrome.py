@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from .. import commands
-from ..actions import MOUSE, Action
+from ..actions import MOUSE, TIMELINE, Action
 from ..gui import colour, em
 
 if TYPE_CHECKING:
@@ -18,8 +18,13 @@ if TYPE_CHECKING:
 
 MESSAGE_SECONDS = 6.0
 QUESTION = "Unsaved work"
-# Menus by column of the sheet of keys; a name that is no menu stands for the mouse.
-HELP_COLUMNS = (("File", "Edit", "Time"), ("View", "Help"), ("Expression", "Mouse"))
+# Menus by column of the sheet of keys, and what the mouse does.
+HELP_COLUMNS = (
+    ("File", "Edit", "Time"),
+    ("Keys", "Expression", "Help"),
+    ("View",),
+    ("Mouse", "Timeline"),
+)
 
 
 def draw_menus(viewer: Viewer, actions: Sequence[Action]) -> float:
@@ -32,22 +37,27 @@ def draw_menus(viewer: Viewer, actions: Sequence[Action]) -> float:
         viewer.gui.remember(f"menu {title}")
         if not is_open:
             continue
-        for action in actions:
-            if action.menu != title:
-                continue
-            is_on = action.is_on is not None and action.is_on(viewer)
-            is_clicked, _ = imgui.menu_item(
-                action.label, action.shown_key, is_on, action.can_run(viewer)
-            )
-            viewer.gui.remember(f"menu {title}: {action.label}")
-            if is_clicked:
-                viewer.attempt(partial(action.run, viewer))
+        draw_actions(viewer, actions, title)
         imgui.end_menu()
     unsaved = viewer.session.unsaved
     if unsaved:
         imgui.text_colored(colour(viewer.gui.theme.muted), f"   unsaved: {unsaved}")
     imgui.end_main_menu_bar()
     return height
+
+
+def draw_actions(viewer: Viewer, actions: Sequence[Action], menu: str) -> None:
+    """What a menu offers, inside it."""
+    for action in actions:
+        if action.menu != menu:
+            continue
+        is_on = action.is_on is not None and action.is_on(viewer)
+        is_clicked, _ = imgui.menu_item(
+            action.label, action.shown_key, is_on, action.can_run(viewer)
+        )
+        viewer.gui.remember(f"menu {menu}: {action.label}")
+        if is_clicked:
+            viewer.attempt(partial(action.run, viewer))
 
 
 @dataclass
@@ -134,7 +144,7 @@ class Question:
         choices: tuple[tuple[str, bool, Callable[[], None]], ...] = (
             ("Save recording ...", session.is_recording, partial(_save_recording, viewer, again)),
             (
-                "Save script ...",
+                "Save script" if session.file.path else "Save script ...",
                 session.script_is_unsaved and not session.is_recording,
                 partial(commands.save_script, viewer, again),
             ),
@@ -172,13 +182,14 @@ def draw_help(viewer: Viewer, actions: Sequence[Action]) -> bool:
     _, stays = imgui.begin("Keys and mouse (F1)", True, flags)
     keys = [(action.menu, action.shown_key, action.label) for action in actions if action.key]
     lines = {menu: [line[1:] for line in keys if line[0] == menu] for menu, _, _ in keys}
+    lines |= {"Mouse": list(MOUSE), "Timeline": list(TIMELINE)}
     for index, menus in enumerate(HELP_COLUMNS):
         if index:
             imgui.same_line(0.0, em(1.5))
         imgui.begin_group()
         for menu in menus:
             imgui.text_colored(colour(viewer.gui.theme.muted), menu)
-            _draw_lines(viewer, menu, lines.get(menu, MOUSE))
+            _draw_lines(viewer, menu, lines.get(menu, []))
         imgui.end_group()
     place, size = imgui.get_window_pos(), imgui.get_window_size()
     viewer.gui.places["help"] = (place.x, place.y, place.x + size.x, place.y + size.y)
