@@ -30,6 +30,7 @@ class Action:
     run: Callable[[Viewer], None]
     is_on: Callable[[Viewer], bool] | None = None
     can_run: Callable[[Viewer], bool] = lambda viewer: True
+    other_key: str = ""
 
     @property
     def shown_key(self) -> str:
@@ -37,17 +38,20 @@ class Action:
         return self.key.replace("Equal", "=").replace("Minus", "-")
 
     @property
-    def chord(self) -> int:
-        """The key as imgui counts it; 0 for none."""
-        if not self.key:
-            return 0
-        *modifiers, last = self.key.split("+")
-        name = _KEY_NAMES.get(last, last.lower())
-        key: Any = getattr(imgui.Key, f"_{name}" if name.isdigit() else name)
-        chord = int(key)
-        for modifier in modifiers:
-            chord |= int(_MODIFIERS[modifier])
-        return chord
+    def keys(self) -> tuple[str, ...]:
+        """All keys that do it."""
+        return tuple(key for key in (self.key, self.other_key) if key)
+
+
+def _chord(key: str) -> int:
+    """A key as imgui counts it."""
+    *modifiers, last = key.split("+")
+    name = _KEY_NAMES.get(last, last.lower())
+    code: Any = getattr(imgui.Key, f"_{name}" if name.isdigit() else name)
+    chord = int(code)
+    for modifier in modifiers:
+        chord |= int(_MODIFIERS[modifier])
+    return chord
 
 
 def actions_of(viewer: Viewer) -> tuple[Action, ...]:
@@ -182,6 +186,15 @@ _VIEW = (
         lambda v: "muscles" in v.look.overlays,
     ),
     Action("View", "Frame the face", "F", commands.frame_face),
+    Action("View", "Hide panels", "Tab", commands.toggle_panels, lambda v: v.is_bare),
+    Action(
+        "View",
+        "Full screen",
+        "F11",
+        commands.toggle_full,
+        lambda v: v.placement.is_full,
+        other_key="Alt+Enter",
+    ),
     Action("View", "Dark theme", "F2", commands.toggle_theme, _is_dark),
     Action("View", "Larger words", "Ctrl+Equal", lambda v: commands.enlarge(v, 1.1)),
     Action("View", "Smaller words", "Ctrl+Minus", lambda v: commands.enlarge(v, 1.0 / 1.1)),
@@ -216,10 +229,10 @@ WRITING = ("Ctrl+A", "Ctrl+Z", "Ctrl+Shift+Z")
 
 def run_pressed(viewer: Viewer, actions: tuple[Action, ...]) -> None:
     """Carry out the actions whose keys were pressed in this frame."""
-    io = imgui.get_io()
+    is_writing = imgui.get_io().want_text_input
     for action in actions:
-        is_writing = "Ctrl" not in action.key or action.key in WRITING
-        is_typing = io.want_text_input and is_writing
-        if action.chord and not is_typing and imgui.is_key_chord_pressed(action.chord):
-            if action.can_run(viewer):
-                viewer.attempt(partial(action.run, viewer))
+        for key in action.keys:
+            is_for_text = is_writing and ("Ctrl" not in key or key in WRITING)
+            if not is_for_text and imgui.is_key_chord_pressed(_chord(key)):
+                if action.can_run(viewer):
+                    viewer.attempt(partial(action.run, viewer))

@@ -206,6 +206,20 @@ def enlarge(viewer: Viewer, factor: float) -> None:
     viewer.settings.zoom = min(max(viewer.settings.zoom * factor, least), most)
 
 
+def toggle_full(viewer: Viewer) -> None:
+    """Fill the screen, or go back."""
+    viewer.placement.toggle_full()
+    if viewer.placement.is_full:
+        viewer.messages.say("F11 leaves the full screen")
+
+
+def toggle_panels(viewer: Viewer) -> None:
+    """Hide all but the picture, or show it again."""
+    viewer.is_bare = not viewer.is_bare
+    if viewer.is_bare:
+        viewer.messages.say("Tab brings the panels back")
+
+
 def toggle_help(viewer: Viewer) -> None:
     """Show the sheet of keys or hide it."""
     viewer.is_help_open = not viewer.is_help_open
@@ -222,7 +236,7 @@ def remember(viewer: Viewer) -> None:
     place = [camera.yaw, camera.pitch, camera.distance, *camera.target.tolist()]
     settings.cameras[viewer.scene.name] = [float(number) for number in place]
     settings.look = viewer.look
-    settings.size = viewer.surface.window_size
+    settings.size = viewer.placement.size
     save_settings(viewer.settings_path, settings)
 
 

@@ -32,14 +32,15 @@ from . import commands
 from .actions import actions_of, run_pressed
 from .clock import STEP, Clock
 from .files import Files
-from .gui import THEMES, Gui, em, fixed_panel, on_drop, poll_events, wait_for_event
+from .gui import THEMES, Gui, em, on_drop, poll_events, wait_for_event
 from .kept import KeptPanels
 from .overlays import overlays_of
-from .panels.chrome import Messages, Question, draw_help, draw_menus
+from .panels import layout
+from .panels.chrome import Messages, Question, draw_help
 from .panels.face import FacePanel
 from .panels.mechanism import MechanismPanel
 from .panels.timeline import Timeline
-from .placement import Placement
+from .placement import Placement, first_size
 from .quality import FULL, Quality
 from .session import Session
 from .settings import Look, Settings, load_settings
@@ -47,8 +48,6 @@ from .stage import SceneView, Stage, checked
 from .take import FRAMES_PER_SECOND, Film
 from .touch import Touch
 
-PANEL_WIDTHS = 12.0, 60.0  # [em] between which the left panel may be drawn wider
-PANEL_SHARE = 0.45  # of the window, at most
 STILL = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
 CALM = 0.15  # [s] without change before physics rests and the scene is drawn in full
 IDLE_WAIT = 2.0  # [s] between two frames while nothing happens
@@ -65,6 +64,8 @@ class Viewer:
     look: Look
     settings: Settings
     is_help_open: bool
+    is_bare: bool  # without panels
+    placement: Placement
     film: Film | None
 
     def __init__(
@@ -92,7 +93,7 @@ class Viewer:
         self.look = checked(look or self.settings.look, refine.available(), known)
         with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
             title = f"Risorius: {self.session.name}"
-            self.surface = render.open_window(size or self.settings.size or (1280, 800), title)
+            self.surface = render.open_window(size or first_size(self.settings.size), title)
             stack.callback(self.surface.close)
             self.gui = Gui(self.surface.handle)
             stack.callback(self.gui.close)
@@ -108,7 +109,7 @@ class Viewer:
         self.timeline = Timeline(self)
         self.actions = actions_of(self)
         self.film: Film | None = None
-        self.is_help_open = self.is_leaving = False
+        self.is_help_open = self.is_leaving = self.is_bare = False
         self.frames_per_second = 0.0
         self.picture_area = (0.0, 0.0, 1.0, 1.0)  # left, top, width, height [window units]
         self._clock = Clock()
@@ -144,12 +145,16 @@ class Viewer:
         self._last = time.perf_counter()
         with cleaned_up_if_stopped(lambda: commands.remember(self)):
             while True:
-                self.frame()
+                if self.placement.is_minimised:  # time stands still, and nothing is drawn
+                    self._wait()
+                else:
+                    self.frame()
                 if self.surface.should_close:
                     self.surface.should_close = False
                     commands.close_politely(self)
                     if self.surface.should_close:
                         break
+                    self.placement.bring_back()  # to be asked
                 if once and playing and not self.session.is_playing:
                     break
                 if self.is_idle:
@@ -315,50 +320,20 @@ class Viewer:
         if is_seen:
             self.surface.resolve()
             left, bottom, width, _ = self.viewport
-            self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
-            self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
+            if not self.is_bare:
+                self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
+                self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
         self._draw_gui(is_seen=is_seen)
         if is_seen:
             self.kept.note_drawn(size, is_over_scene=self.gui.covers(self.picture_area))
 
     def _draw_panels(self, elapsed: float) -> None:
-        display = imgui.get_io().display_size
-        top = draw_menus(self, self.actions)
-        left, strip = self._panel_width(display.x), round(self.timeline.height())
-        with fixed_panel("Controls", (0.0, top), (left, display.y - top), resizes=True):
-            if round(imgui.get_window_width()) != left:  # its edge is being dragged
-                self.settings.panel_width = imgui.get_window_width() / em()
-            self._draw_tabs()
-        with fixed_panel("Time", (left, display.y - strip), (display.x - left, strip)):
-            self.timeline.draw()
-        width, height = max(display.x - left, 1.0), max(display.y - top - strip, 1.0)
-        self.picture_area = (left, top, width, height)
+        layout.draw(self)
         self.messages.draw(self, elapsed)
         self.attempt(lambda: self.files.draw(self.gui))
         self.attempt(lambda: self.question.draw(self))
         if self.is_help_open:
             self.is_help_open = draw_help(self, self.actions)
-
-    def _panel_width(self, window_width: float) -> int:
-        """Of the left panel [window units]: as it was dragged, as far as there is room."""
-        least, most = PANEL_WIDTHS
-        wanted = min(max(self.settings.panel_width, least), most)
-        return round(min(em(wanted), PANEL_SHARE * window_width))
-
-    def _draw_tabs(self) -> None:
-        self.face_panel.pointed = ()
-        if not imgui.begin_tab_bar("tabs"):
-            return
-        for title, panel in (("Face", self.face_panel), ("Mechanism", self.mechanism_panel)):
-            flags = imgui.TabItemFlags_.set_selected if self.wanted_tab == title else 0
-            is_open, _ = imgui.begin_tab_item(title, None, flags)
-            self.gui.remember(f"tab {title}")
-            if is_open:
-                if self.wanted_tab in ("", title):
-                    self.settings.tab, self.wanted_tab = title, ""
-                panel.draw()
-                imgui.end_tab_item()
-        imgui.end_tab_bar()
 
     # What actions and panels share
 

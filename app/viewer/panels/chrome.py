@@ -25,6 +25,12 @@ HELP_COLUMNS = (
     ("View",),
     ("Mouse", "Timeline"),
 )
+HELP_COLUMNS_NARROW = (
+    ("File", "Edit", "Time", "Help"),
+    ("Keys", "View"),
+    ("Mouse", "Timeline", "Expression"),
+)
+HELP_WIDTH = 63.0  # [em] that the wide ones take
 
 
 def draw_menus(viewer: Viewer, actions: Sequence[Action]) -> float:
@@ -180,10 +186,14 @@ def draw_help(viewer: Viewer, actions: Sequence[Action]) -> bool:
     flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_collapse
     flags |= imgui.WindowFlags_.horizontal_scrollbar
     _, stays = imgui.begin("Keys and mouse (F1)", True, flags)
-    keys = [(action.menu, action.shown_key, action.label) for action in actions if action.key]
-    lines = {menu: [line[1:] for line in keys if line[0] == menu] for menu, _, _ in keys}
+    with_keys = [action for action in actions if action.key]
+    lines: dict[str, list[tuple[str, str]]] = {action.menu: [] for action in with_keys}
+    for action in with_keys:
+        key = ", ".join(filter(None, (action.shown_key, action.other_key)))
+        lines[action.menu].append((key, action.label))
     lines |= {"Mouse": list(MOUSE), "Timeline": list(TIMELINE)}
-    for index, menus in enumerate(HELP_COLUMNS):
+    is_wide = display.x > em(HELP_WIDTH)
+    for index, menus in enumerate(HELP_COLUMNS if is_wide else HELP_COLUMNS_NARROW):
         if index:
             imgui.same_line(0.0, em(1.5))
         imgui.begin_group()
