@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from imgui_bundle import imgui
 
 from ..easing import EASINGS
-from . import commands, key_commands
+from . import commands, dropped, key_commands
 
 if TYPE_CHECKING:
     from .window import Viewer
@@ -130,6 +130,7 @@ def _easing(name: str) -> Action:
 _FILE = (
     Action("File", "New script", "Ctrl+N", commands.new_script),
     Action("File", "Open script or pose ...", "Ctrl+O", commands.open_file),
+    Action("File", "Open head ...", "Ctrl+H", dropped.ask_head),
     Action("File", "Save script", "Ctrl+S", commands.save_script),
     Action("File", "Save script as ...", "Ctrl+Shift+S", commands.save_script_as),
     Action("File", "Save pose ...", "Ctrl+P", commands.save_pose),
@@ -209,7 +210,7 @@ MOUSE = (
     ("double click a slider", "type a number"),
     ("right click a slider", "back to 0"),
     ("drag a panel's edge", "make it wider"),
-    ("drop a file", "open a script or pose"),
+    ("drop files", "script, pose, a head"),
 )
 TIMELINE = (
     ("click a key", "select it, go there"),

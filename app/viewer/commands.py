@@ -30,13 +30,16 @@ def open_file(viewer: Viewer) -> None:
     viewer.files.ask("Open script or pose", lambda path: load(viewer, path), saving=False)
 
 
-def load(viewer: Viewer, path: Path) -> None:
-    """Show the script or pose of a file, unless work would be lost: then ask first."""
+def load(viewer: Viewer, path: Path, remark: str = "") -> None:
+    """Show the script or pose of a file, unless work would be lost: then ask first.
+
+    remark: what else there is to say when it is opened.
+    """
     script = viewer.session.read(path)
 
     def take() -> None:
         viewer.session.take(script)
-        viewer.messages.say(f"{path.name}: opened")
+        viewer.messages.say(f"{path.name}: opened{remark}")
 
     if is_pose(script) and not viewer.session.has_unsaved_pose:
         take()  # whatever else is unsaved stays

@@ -41,14 +41,12 @@ class Document:
 class Session:
     """The controls of a scene and the script that may move them."""
 
+    is_playing: bool
+    is_looping: bool
+
     def __init__(self, scene: Scene, script: Script) -> None:
         script.check(scene.limits)
-        self.scene = scene
-        self.limits = scene.limits
-        simulation = getattr(scene, "simulation", None)
-        # The lowest controls, to which all others add up; all where a scene does not tell.
-        self.muscles = frozenset(simulation.controls if simulation is not None else self.limits)
-        self.groups = _highest_first(scene.groups, self.muscles, scene.expressions)
+        self._enter(scene)
         self.values = dict.fromkeys(self.limits, 0.0)
         self.script = script
         self.file = ScriptFile.of(script)
@@ -59,9 +57,28 @@ class Session:
         self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
         self.is_following = False  # the controls are where the script has them
         self._recorder: Recorder | None = None
-        self._moved_by: dict[str, frozenset[str]] = {}
         self._held: dict[str, float] = {}  # by hand while a recording plays the script
         self._history = History(self._document())
+
+    def _enter(self, scene: Scene) -> None:
+        self.scene = scene
+        self.limits = scene.limits
+        simulation = getattr(scene, "simulation", None)
+        # The lowest controls, to which all others add up; all where a scene does not tell.
+        self.muscles = frozenset(simulation.controls if simulation is not None else self.limits)
+        self.groups = _highest_first(scene.groups, self.muscles, scene.expressions)
+        self._moved_by: dict[str, frozenset[str]] = {}
+
+    def move_to(self, scene: Scene) -> None:
+        """Go on with another scene that has the same controls; UserError if it has not.
+
+        Script, pose, what can be undone and what is unsaved: all of it stays.
+        """
+        if scene.name != self.scene.name or not scene.limits.keys() >= self.limits.keys():
+            raise UserError(f"this window shows a {self.scene.name}, which has other controls")
+        self.script.check(scene.limits)
+        self._enter(scene)
+        self.values = self._all(self.values)
 
     # Controls by hand
 

@@ -25,12 +25,13 @@ from assets.fitting import FittedHead
 from ..cameras import whole_scene
 from ..errors import UserError
 from ..pipeline import Viewport
-from ..scenes import build_scene
+from ..scenes import Scene, build_scene
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped
 from . import commands
 from .actions import actions_of, run_pressed
 from .clock import STEP, Clock
+from .dropped import Dropped, open_dropped
 from .files import Files
 from .gui import THEMES, Gui, em, on_drop, poll_events, wait_for_event
 from .kept import KeptPanels
@@ -119,6 +120,7 @@ class Viewer:
         self._drawn: tuple[object, render.Detail] = (None, FULL)  # what the scene's pixels show
         self._posed: dict[str, float] = {}  # the values at the last step of physics
         self._has_stepped = False
+        self._to_fit: Dropped | None = None  # a head, in the next frame
         self._still_for = 0.0  # [s] that no vertex has moved
         self._calm_for = 0.0  # [s] that the picture has not changed
         self._awake = FRAMES_AFTER_EVENT
@@ -184,6 +186,7 @@ class Viewer:
         is_moving = self._draw_scene(elapsed)
         self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
+        self._fit_dropped()
         if is_moving:
             self.quality.note(time.perf_counter() - now)
         if self.film is not None:  # on a fast machine a film is made in real time
@@ -348,10 +351,32 @@ class Viewer:
             otherwise()
 
     def drop(self, paths: Sequence[str]) -> None:
-        """Open a file that was dropped onto the window."""
+        """Open files that were dropped onto the window."""
         self._awake = FRAMES_AFTER_EVENT
-        if paths:
-            self.attempt(lambda: commands.load(self, Path(paths[0])))
+        dropped = Dropped.of([Path(path) for path in paths])
+        if dropped.brings_head:  # which takes a while: first say so
+            self._to_fit = dropped
+            self.messages.say("fitting the muscles to this head ...")
+        else:
+            self.attempt(lambda: open_dropped(self, dropped))
+
+    def _fit_dropped(self) -> None:
+        """Open what has been announced."""
+        dropped, self._to_fit = self._to_fit, None
+        if dropped is not None:
+            self.messages.text = ""
+            self.attempt(lambda: open_dropped(self, dropped))
+            self._last = time.perf_counter()
+
+    def move_to(self, scene: Scene) -> None:
+        """Show another scene with the same controls in place of this one."""
+        self.session.move_to(scene)
+        self.stage.release()
+        self.scene, self.look = scene, checked(self.look, refine.available(), overlays_of(scene))
+        self.stage = Stage(self.surface, scene, self.look)
+        self.camera = whole_scene(scene, self.session.script.camera)
+        self.touch, self.actions = Touch(self), actions_of(self)
+        self._drawn, self._posed, self._still_for = (None, FULL), {}, 0.0
 
     @property
     def _is_asking(self) -> bool:
