@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -165,7 +165,7 @@ _KEYS = (
         key_commands.can_rename,
     ),
     _of_keys("Duplicate", "Ctrl+D", key_commands.duplicate),
-    _of_keys("Delete", "Delete", key_commands.delete),
+    replace(_of_keys("Delete", "Delete", key_commands.delete), other_key="Backspace"),
     _of_keys("A frame earlier", "Shift+Left", lambda v: key_commands.nudge(v, -1)),
     _of_keys("A frame later", "Shift+Right", lambda v: key_commands.nudge(v, 1)),
     Action("Keys", "Select all keys", "Ctrl+A", key_commands.select_all),

@@ -6,6 +6,7 @@ lane has two keys at one time, so a key that arrives where another is takes its 
 
 from __future__ import annotations
 
+import bisect
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from operator import attrgetter
@@ -208,14 +209,17 @@ def _placed(
 
 def _merged(there: Iterable[Item], arriving: Iterable[Item]) -> list[Item]:
     """Both in the order of time; what arrives takes the place of what is there."""
-    new: list[Item] = list(arriving)
-    taken = [item.time for item in new]
-    result: list[Item] = [
-        item for item in there if all(abs(item.time - time) >= SAME for time in taken)
-    ]
-    result += new
+    result: list[Item] = list(arriving)
+    taken = sorted(item.time for item in result)
+    result += [item for item in there if not _is_among(item.time, taken)]
     result.sort(key=attrgetter("time"))
     return result
+
+
+def _is_among(time: float, times: list[float]) -> bool:
+    """Whether one of these times, which are in order, is the same [s]."""
+    after = bisect.bisect_left(times, time - SAME)
+    return after < len(times) and times[after] <= time + SAME
 
 
 def _with(script: Script, poses: Iterable[Pose], tracks: Mapping[str, list[Key]]) -> Script:

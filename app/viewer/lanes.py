@@ -6,9 +6,10 @@ import bisect
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 
 from ..script import Channel, Pose, Script
-from .keys import POSES, SAME, KeyPlace, lanes_of
+from .keys import POSES, SAME, KeyPlace
 from .rows import readable
 
 TRACKS = "Tracks"
@@ -32,18 +33,14 @@ class Lane:
 
     def near(self, time: float, reach: float) -> frozenset[KeyPlace]:
         """The keys at the time nearest to this one, none if that is further than `reach` [s]."""
-        times = [place.time for place in self.places]
-        if not times:
-            return frozenset()
-        after = bisect.bisect_left(times, time)
-        nearest = min(times[max(after - 1, 0) : after + 1], key=lambda each: abs(each - time))
-        if abs(nearest - time) > reach:
-            return frozenset()
-        return frozenset(place for place in self.places if place.time == nearest)
+        found = self.between(time - reach, time + reach)
+        nearest = min((place.time for place in found), key=lambda t: abs(t - time), default=0.0)
+        return frozenset(place for place in found if place.time == nearest)
 
-    def between(self, first: float, last: float) -> frozenset[KeyPlace]:
+    def between(self, first: float, last: float) -> Sequence[KeyPlace]:
         """The keys from one time to another [s]."""
-        return frozenset(place for place in self.places if first <= place.time <= last)
+        begin = bisect.bisect_left(self.places, first, key=attrgetter("time"))
+        return self.places[begin : bisect.bisect_right(self.places, last, key=attrgetter("time"))]
 
 
 def lanes_shown(script: Script, *, is_open: bool) -> tuple[Lane, ...]:
@@ -64,9 +61,9 @@ def lanes_shown(script: Script, *, is_open: bool) -> tuple[Lane, ...]:
 
 
 def _places(script: Script, lanes: Sequence[str]) -> tuple[KeyPlace, ...]:
-    times = lanes_of(script)
-    places = [KeyPlace(lane, time) for lane in lanes for time in times[lane]]
-    return tuple(sorted(places, key=lambda place: place.time))
+    items = ((lane, script.poses if lane == POSES else script.tracks[lane].keys) for lane in lanes)
+    places = [KeyPlace(lane, item.time) for lane, keys in items for item in keys]
+    return tuple(sorted(places, key=attrgetter("time")))
 
 
 def _held(poses: Sequence[Pose]) -> tuple[tuple[float, float], ...]:

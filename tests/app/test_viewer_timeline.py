@@ -147,7 +147,7 @@ def test_delete_and_duplicate(viewer: Viewer) -> None:
     assert viewer.timeline.sheet.selected == {KeyPlace(POSES, 2.0)}
     xdotool(viewer, "key", "Delete")
     assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0] and "1 key deleted" in viewer.messages.text
-    xdotool(viewer, "key", "ctrl+a", "Delete")
+    xdotool(viewer, "key", "ctrl+a", "BackSpace")
     assert viewer.messages.is_error and "at least one key" in viewer.messages.text
     xdotool(viewer, "key", "ctrl+z")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]

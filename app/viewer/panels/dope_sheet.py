@@ -241,7 +241,7 @@ class DopeSheet:
             self._viewer.attempt(act[drag.doing])
         if imgui.is_key_pressed(imgui.Key.escape) and drag.doing in ("keys", "end"):
             self._drag = None
-            self._viewer.session.edit(drag.script)
+            self._viewer.attempt(lambda: self._viewer.session.edit(drag.script))
             self.selected = drag.selected
         elif not imgui.is_mouse_down(drag.button):
             self._drag = None

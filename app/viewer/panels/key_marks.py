@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 LABEL_ROOM = 4.2  # [em] between two labels of the ruler
 FLAG = 0.7  # [em] of the handle at the script's end
 KEY = 0.36  # [em] from a key's middle to its corners
-CLOSEST = 1.5  # [window units] keys nearer than that are drawn as one
+LEAST_NAME = 2.4  # [em] of a pose's name: less would be no name
+CLOSEST = 2.0  # [window units] keys nearer than that are drawn as one
 
 Point = tuple[float, float]
 
@@ -132,11 +133,11 @@ def _draw_keys(
     """The keys that are in sight, selected ones last and on top."""
     margin = view.seconds(size)
     shown = lane.between(view.start - margin, view.start + view.span + margin)
-    plain: dict[int, float] = {}
+    plain: dict[int, float] = {}  # where they are, by what is drawn as one
     chosen: dict[int, float] = {}
     for key in shown:
         x = view.x(key.time)
-        (chosen if key in selected else plain)[round(x / CLOSEST)] = x
+        (chosen if selected and key in selected else plain)[int(x / CLOSEST)] = x
     for marks, ink, scale in ((plain, inks[0], 1.0), (chosen, inks[1], 1.2)):
         reach = scale * size
         for x in marks.values():
@@ -150,7 +151,9 @@ def _draw_names(lines: Any, view: TimeView, lane: Lane, top: float, right: float
     for (time, name), end in zip(lane.names, ends, strict=False):
         if view.start <= time <= view.start + view.span:
             x = view.x(time) - em(KEY)
-            lines.add_text((x, top), ink, shortened(name, min(end, right) - x))
+            room = min(end, right) - x
+            if room >= min(em(LEAST_NAME), imgui.calc_text_size(name).x):
+                lines.add_text((x, top), ink, shortened(name, room))
 
 
 def draw_box(viewer: Viewer, first: Point, last: Point) -> None:
