@@ -66,9 +66,8 @@ def save_script(viewer: Viewer, then: Callable[[], None] = _nothing) -> None:
     file = viewer.session.file
     if file.path is None:
         save_script_as(viewer, then)
-    elif file.is_foreign:
-        name = file.path.name
-        viewer.messages.say(f"{name}: another program has changed it; replace it, or choose a name")
+    elif objection := file.objection:
+        viewer.messages.say(f"{file.path.name}: {objection}; replace it, or choose another name")
         save_script_as(viewer, then)
     else:
         _write_script(viewer, file.path, then)

@@ -88,9 +88,10 @@ def can_rename(viewer: Viewer) -> bool:
 
 
 def rename(viewer: Viewer) -> None:
-    """Ask for the name of a pose."""
+    """Ask for the name of a pose, in the timeline."""
     pose = pose_to_name(viewer)
     if pose is not None:
+        viewer.is_bare = False
         viewer.timeline.sheet.ask_name(pose)
 
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from importlib.resources import files
 from pathlib import Path
 
-from ..script import Script
+from ..script import Script, preface_of
 from ..script_writer import save_script
+
+_QUOTED = re.compile(r"""'[^'\n]*'|"(?:\\.|[^"\\\n])*\"""")
 
 
 class ScriptFile:
@@ -32,9 +35,19 @@ class ScriptFile:
         return script is not self._saved and script != self._saved
 
     @property
-    def is_foreign(self) -> bool:
-        """Whether another program has changed the file since it was read or written here."""
-        return self.path is not None and self.path.exists() and _bytes_of(self.path) != self._bytes
+    def objection(self) -> str:
+        """What would be lost by writing the file unasked, in words; "" for nothing."""
+        if self.path is None or not self.path.exists():
+            return ""
+        if _bytes_of(self.path) != self._bytes:
+            return "another program has changed it"
+        return "its comments would be lost" if self._has_comments else ""
+
+    @property
+    def _has_comments(self) -> bool:
+        """Whether there are comments that are not kept: all but those at the head."""
+        text = (self._bytes or b"").decode(errors="replace")
+        return "#" in _QUOTED.sub("", text.removeprefix(preface_of(text)))
 
     def save(self, script: Script, path: Path) -> None:
         """Write the script, which from now on is kept there; UserError where it cannot be."""

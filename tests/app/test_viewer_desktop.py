@@ -29,7 +29,7 @@ from .driving import NEEDS_A_SCREEN, SIZE, click, nose, settle, show_controls, u
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("desktop")]
 
 ROOT = Path(__file__).parents[2]
-MANAGERS = ("openbox", "twm", "icewm", "metacity", "fluxbox")
+MANAGERS = ("openbox", "xfwm4", "metacity", "icewm", "fluxbox")
 MANAGER = next(filter(shutil.which, MANAGERS), None)
 needs_manager = pytest.mark.skipif(MANAGER is None, reason=f"needs one of {', '.join(MANAGERS)}")
 

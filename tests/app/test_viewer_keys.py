@@ -228,16 +228,22 @@ def test_the_file_goes_with_its_script(session: Session, tmp_path: Path) -> None
     assert Session(session.scene, script_for(None, "face")).file.path is None
 
 
-def test_another_programs_changes_are_noticed(session: Session) -> None:
-    """A file that was edited elsewhere is told from the one that was read, or written here."""
+def test_what_a_file_would_lose_is_noticed(session: Session) -> None:
+    """Changes by another program, and comments that are not kept; not a # in a title."""
     path = session.file.path
-    assert path is not None and not session.file.is_foreign
+    assert path is not None and session.file.objection == ""
     session.save_script(path)
-    assert not session.file.is_foreign
-    path.write_text(path.read_text() + "# mine\n")
-    assert session.file.is_foreign
+    assert session.file.objection == ""
+    text = path.read_text()
+    path.write_text(text + "# mine\n")
+    assert "another program" in session.file.objection
+    session.take(session.read(path))
+    assert "comments" in session.file.objection
+    path.write_text(text.replace('"Hello"', '"No. #1 \\" # 2"'))
+    session.take(session.read(path))
+    assert session.script.title == 'No. #1 " # 2' and session.file.objection == ""
     path.unlink()
-    assert not session.file.is_foreign
+    assert session.file.objection == ""
 
 
 def test_rows_of_the_timeline(hello: Script) -> None:
