@@ -77,7 +77,8 @@ def test_full_screen_and_back(viewer: Viewer, key: str) -> None:
     xdotool(viewer, "mousemove", *nose(viewer))
     xdotool(viewer, "key", key)
     assert until(viewer, lambda: viewer.surface.window_size == screen_size(), 5.0)
-    assert viewer.placement.is_full and place_of(viewer)[:2] == (0, 0)
+    assert until(viewer, lambda: place_of(viewer) == (0, 0, *screen_size()), 5.0)
+    assert viewer.placement.is_full
     assert viewer.surface.read().shape[1::-1] == screen_size()
     assert viewer.placement.size == SIZE  # which is what is remembered
     xdotool(viewer, "key", key)
