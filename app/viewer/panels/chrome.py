@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ..window import Viewer
 
 MESSAGE_SECONDS = 6.0
+LONGEST_FRAME = 0.25  # [s] that counts for a message: a frame that took longer showed nothing
 QUESTION = "Unsaved work"
 # Menus by column of the sheet of keys, and what the mouse does.
 HELP_COLUMNS = (
@@ -81,7 +82,7 @@ class Messages:
     def draw(self, viewer: Viewer, seconds: float) -> None:
         """Draw the line, if there is one."""
         if not self.is_error:
-            self.left -= seconds
+            self.left -= min(seconds, LONGEST_FRAME)
         if not self.text or self.left <= 0.0:
             self.text = ""
             return
