@@ -167,7 +167,7 @@ def capture(
             if film is not None:
                 film(frame)
             while wanted and wanted[0].time <= time + half_a_frame:
-                poses.append((wanted.pop(0).name, frame))
+                poses.append((wanted.pop(0).name or "", frame))
         if sheet is not None:
             outputs.save_png(sheet, contact_sheet(poses, columns=2 if options.compare else 3))
         return recording.most_triangles

@@ -14,7 +14,7 @@ from assets.fitting import FittedHead, fit_head
 
 from .errors import UserError
 from .scenes import SCENES
-from .script import Channel, Key, Script, load_script
+from .script import Pose, Script, load_script
 
 HELD = 1.0  # [s] that a pose of --set lasts
 
@@ -58,7 +58,7 @@ def check_apart(outputs: Sequence[Path | None], inputs: Sequence[Path | None]) -
 
 def held_pose(settings: Sequence[str]) -> Script:
     """The script that `--set NAME=VALUE ...` stands for: one pose, held. A bare NAME is at 1."""
-    poses = {}
+    values = {}
     for setting in settings:
         name, equals, text = setting.partition("=")
         try:
@@ -67,9 +67,9 @@ def held_pose(settings: Sequence[str]) -> Script:
             value = math.nan
         if not math.isfinite(value):
             raise UserError(f"--set {setting}: '{text}' is no number; write NAME=VALUE")
-        poses[name] = Channel((Key(0.0, value),))
+        values[name] = value
     title = ", ".join(settings)
-    return Script(title, duration=HELD, source="--set", poses=poses)
+    return Script(title, duration=HELD, source="--set", poses=(Pose(0.0, values),))
 
 
 def known_refiner(name: str) -> str:

@@ -32,6 +32,8 @@ from __future__ import annotations
 
 import bisect
 import difflib
+import functools
+import itertools
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -44,6 +46,7 @@ from .errors import UserError
 Limits = Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
 
 LARGEST = 86_400.0  # of any number in a script; as a time [s] it is a day
+DECIMALS = 6  # of numbers that come from sliders and clocks
 TOP_LEVEL_KEYS = ("title", "scene", "camera", "duration", "pose", "tracks")
 POSE_KEYS = ("time", "easing", "name")
 TRACK_KEYS = ("time", "value", "easing")
@@ -78,11 +81,13 @@ class Channel:
 
 
 @dataclass(frozen=True)
-class NamedPose:
-    """A pose of the script that is worth a picture on a contact sheet."""
+class Pose:
+    """A whole pose at `time` [s]: what it does not name is 0; approached by `easing`."""
 
     time: float
-    name: str
+    values: Mapping[str, float] = field(default_factory=dict)
+    easing: str = "smooth"
+    name: str | None = None  # one that has a name gets a picture on a contact sheet
 
 
 @dataclass(frozen=True)
@@ -91,16 +96,30 @@ class Script:
 
     title: str
     duration: float
-    source: str  # the file it came from, for error texts
+    source: str = field(compare=False)  # the file it came from, for error texts
     scene: str = "face"
     camera: str | None = None
-    poses: dict[str, Channel] = field(default_factory=dict)
+    poses: tuple[Pose, ...] = ()  # in the order of time
     tracks: dict[str, Channel] = field(default_factory=dict)
-    key_poses: tuple[NamedPose, ...] = ()
+    preface: str = ""  # the lines of comment with which the file begins
+
+    @functools.cached_property
+    def channels(self) -> dict[str, Channel]:
+        """What the poses make together, control by control."""
+        names = sorted({name for pose in self.poses for name in pose.values})
+        return {
+            name: Channel(tuple(Key(p.time, p.values.get(name, 0.0), p.easing) for p in self.poses))
+            for name in names
+        }
+
+    @property
+    def key_poses(self) -> tuple[Pose, ...]:
+        """The poses that have a name."""
+        return tuple(pose for pose in self.poses if pose.name is not None)
 
     def at(self, time: float) -> dict[str, float]:
         """The value of every channel that the script names, at `time` [s]."""
-        values = {name: channel.value(time) for name, channel in self.poses.items()}
+        values = {name: channel.value(time) for name, channel in self.channels.items()}
         for name, channel in self.tracks.items():
             values[name] = values.get(name, 0.0) + channel.value(time)
         return values
@@ -111,11 +130,11 @@ class Script:
         What tracks add to poses may be negative, and is cut off with them; no single key may be
         further from 0 than can have an effect.
         """
-        for name in (*self.poses, *self.tracks):
+        for name in (*self.channels, *self.tracks):
             if name not in limits:
                 hint = suggestion(name, limits, self.scene)
                 raise UserError(f"{self.source}: unknown name '{name}'; {hint}")
-        for name, channel in self.poses.items():
+        for name, channel in self.channels.items():
             self._check_values(name, channel, *limits[name])
         for name, channel in self.tracks.items():
             low, high = limits[name]
@@ -129,6 +148,11 @@ class Script:
                     f"{self.source}: {what} is {key.value:g}{when}; "
                     f"it must be from {low:g} to {high:g}"
                 )
+
+
+def rounded(number: float) -> float:
+    """A time or a value as programs write it into scripts: no digits that nobody meant."""
+    return round(float(number), DECIMALS)
 
 
 def suggestion(name: str, allowed: Iterable[str], scene: str) -> str:
@@ -159,18 +183,17 @@ def parse_script(text: str, *, source: str) -> Script:
         raise UserError(f"{source}: not valid TOML: {error}") from None
     reader = _Reader(source)
     reader.only(document, TOP_LEVEL_KEYS, where="top level")
-    poses, key_poses = reader.poses(document.get("pose", []))
+    poses = reader.poses(document.get("pose", []))
     tracks = reader.tracks(document.get("tracks", {}))
-    ends = [channel.keys[-1].time for channel in (*poses.values(), *tracks.values())]
-    ends += [pose.time for pose in key_poses]
-    ends += [float(pose["time"]) for pose in document.get("pose", [])]
+    ends = [channel.keys[-1].time for channel in tracks.values()]
+    ends += [pose.time for pose in poses[-1:]]
     if not ends:
         raise UserError(f"{source}: no [[pose]] and no [tracks]: a script needs at least one key")
     duration = reader.number(document, "duration", where="top level", default=max(ends))
     if duration <= 0.0:
         raise UserError(f"{source}: duration is {duration:g} s; it must be above 0")
-    for pose in key_poses:
-        if pose.time > duration:
+    for pose in poses:
+        if pose.name is not None and pose.time > duration:
             raise UserError(
                 f"{source}: pose '{pose.name}' at {pose.time:g} s comes after the duration, "
                 f"{duration:g} s"
@@ -183,8 +206,14 @@ def parse_script(text: str, *, source: str) -> Script:
         camera=reader.text(document, "camera", default=None),
         poses=poses,
         tracks=tracks,
-        key_poses=key_poses,
+        preface=preface_of(text),
     )
+
+
+def preface_of(text: str) -> str:
+    """The lines of comment with which a file begins; programs that write it anew keep them."""
+    comments = itertools.takewhile(lambda line: line.startswith("#"), text.split("\n"))
+    return "\n".join(comments)
 
 
 class _Reader:
@@ -239,27 +268,25 @@ class _Reader:
             )
         return time
 
-    def poses(self, tables: Any) -> tuple[dict[str, Channel], tuple[NamedPose, ...]]:
-        """The channels that all poses make together, and the poses that have a name."""
+    def poses(self, tables: Any) -> tuple[Pose, ...]:
+        """The whole poses, in the order of time."""
         if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
             raise self.fail("'pose' must be a list of tables, each written [[pose]]")
-        channel_names = {name for table in tables for name in table if name not in POSE_KEYS}
-        keys: dict[str, list[Key]] = {name: [] for name in sorted(channel_names)}
-        key_poses: list[NamedPose] = []
-        previous: float | None = None
+        poses: list[Pose] = []
         for number, table in enumerate(tables, start=1):
             where = f"pose {number}"
-            time = previous = self.time(table, previous, where=where)
+            time = self.time(table, poses[-1].time if poses else None, where=where)
             easing = self.easing(table, where=where)
-            if "name" in table:
-                if not isinstance(table["name"], str):
-                    raise self.fail(f"{where}: 'name' must be a text in quotes")
-                key_poses.append(NamedPose(time, table["name"]))
-            for name, channel_keys in keys.items():
-                value = self.number(table, name, where=where, default=0.0)
-                channel_keys.append(Key(time, value, easing))
-        channels = {name: Channel(tuple(channel_keys)) for name, channel_keys in keys.items()}
-        return channels, tuple(key_poses)
+            pose_name = table.get("name")
+            if pose_name is not None and not isinstance(pose_name, str):
+                raise self.fail(f"{where}: 'name' must be a text in quotes")
+            values = {
+                name: self.number(table, name, where=where)
+                for name in table
+                if name not in POSE_KEYS
+            }
+            poses.append(Pose(time, values, easing, pose_name))
+        return tuple(poses)
 
     def tracks(self, tables: Any) -> dict[str, Channel]:
         """The single channels of the table [tracks]."""

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from .outputs import save_text
-from .script import Channel, Key, Script
+from .script import Channel, Pose, Script, rounded
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 POSE_SECONDS = 1.0  # duration of a script that is one pose
@@ -24,11 +24,14 @@ def save_script(target: Path, script: Script) -> None:
 
 def script_text(script: Script) -> str:
     """The TOML text of a script."""
-    head = [f"title = {_quoted(script.title)}", f"scene = {_quoted(script.scene)}"]
+    head = [script.preface] if script.preface else []
+    if script.title:  # else it is called as its file is
+        head.append(f"title = {_quoted(script.title)}")
+    head.append(f"scene = {_quoted(script.scene)}")
     if script.camera is not None:
         head.append(f"camera = {_quoted(script.camera)}")
     head.append(f"duration = {_number(script.duration)}")
-    blocks = ["\n".join(head), *_poses(script)]
+    blocks = ["\n".join(head), *map(_pose, script.poses)]
     if script.tracks:
         tracks = [_track(name, channel) for name, channel in script.tracks.items()]
         blocks.append("\n".join(["[tracks]", *tracks]))
@@ -37,40 +40,25 @@ def script_text(script: Script) -> str:
 
 def pose_script(values: Mapping[str, float], *, title: str, scene: str) -> Script:
     """A script that is nothing but one pose; what is 0 is left out."""
-    poses = {name: Channel((Key(0.0, value),)) for name, value in values.items() if value}
-    return Script(title, POSE_SECONDS, source=title, scene=scene, poses=poses)
+    pose = Pose(0.0, {name: rounded(value) for name, value in values.items() if rounded(value)})
+    return Script(title, POSE_SECONDS, source=title, scene=scene, poses=(pose,))
 
 
 def is_pose(script: Script) -> bool:
     """Whether a script holds one pose and no motion."""
-    channels = (*script.poses.values(), *script.tracks.values())
-    return bool(channels) and all(len(channel.keys) == 1 for channel in channels)
+    is_still = all(len(channel.keys) == 1 for channel in script.tracks.values())
+    is_something = bool(script.channels or script.tracks)
+    return is_something and is_still and len(script.poses) <= 1
 
 
-def _poses(script: Script) -> list[str]:
-    """A [[pose]] for each time at which the pose channels have keys, or that has a name."""
-    names = {pose.time: pose.name for pose in script.key_poses}
-    rows: dict[float, dict[str, Key]] = {time: {} for time in names}
-    for name, channel in script.poses.items():
-        for key in channel.keys:
-            rows.setdefault(key.time, {})[name] = key
-    if not rows and not script.tracks:
-        rows[0.0] = {}
-    blocks = []
-    for time in sorted(rows):
-        lines = ["[[pose]]", f"time = {_number(time)}"]
-        easing = next((key.easing for key in rows[time].values()), "smooth")
-        if easing != "smooth":
-            lines.append(f"easing = {_quoted(easing)}")
-        if time in names:
-            lines.append(f"name = {_quoted(names[time])}")
-        # A pose is zero where it is silent; the first names all, so that no channel is lost.
-        is_first = time == min(rows)
-        for name, key in rows[time].items():
-            if key.value or is_first:
-                lines.append(f"{_key(name)} = {_number(key.value)}")
-        blocks.append("\n".join(lines))
-    return blocks
+def _pose(pose: Pose) -> str:
+    lines = ["[[pose]]", f"time = {_number(pose.time)}"]
+    if pose.easing != "smooth":
+        lines.append(f"easing = {_quoted(pose.easing)}")
+    if pose.name is not None:
+        lines.append(f"name = {_quoted(pose.name)}")
+    lines += [f"{_key(name)} = {_number(value)}" for name, value in pose.values.items()]
+    return "\n".join(lines)
 
 
 def _track(name: str, channel: Channel) -> str:
@@ -82,11 +70,11 @@ def _track(name: str, channel: Channel) -> str:
 
 
 def _number(value: float) -> str:
-    return repr(round(float(value), 6))
+    return repr(float(value))
 
 
 def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False)
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _key(name: str) -> str:

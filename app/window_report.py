@@ -19,7 +19,7 @@ import render
 
 from .benchmarks import processor
 from .choices import script_for
-from .script import Channel, Key, Script
+from .script import Pose, Script
 from .viewer import Viewer
 from .viewer.kept import REFRESH
 from .viewer.quality import LEVELS, Quality
@@ -99,10 +99,9 @@ def window_table(seconds: float, size: tuple[int, int]) -> str:
 
 
 def _smile() -> Script:
-    keys = (Key(0.0, 0.0), Key(0.6, 1.0), Key(1.2, 1.0), Key(1.8, 0.0))
-    return replace(
-        script_for(None, "face"), title="smile", duration=2.0, poses={"joy": Channel(keys)}
-    )
+    strengths = {0.0: 0.0, 0.6: 1.0, 1.2: 1.0, 1.8: 0.0}
+    poses = tuple(Pose(time, {"joy": strength}) for time, strength in strengths.items())
+    return replace(script_for(None, "face"), title="smile", duration=2.0, poses=poses)
 
 
 def _words(detail: render.Detail) -> str:

@@ -41,7 +41,7 @@ from .style import (
 )
 from .surface import Frame, OffscreenSurface, Surface, open_offscreen
 from .texture import Texture
-from .window import WindowSurface, open_window
+from .window import WindowSurface, open_window, size_on_screen
 
 __all__ = [
     "CLAY",
@@ -74,4 +74,5 @@ __all__ = [
     "open_offscreen",
     "open_window",
     "probe",
+    "size_on_screen",
 ]

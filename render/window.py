@@ -5,6 +5,7 @@ imported before, and a server without a screen never needs it.
 """
 
 import contextlib
+import sys
 from collections.abc import Iterator, Sequence
 from types import ModuleType, TracebackType
 from typing import Any
@@ -16,6 +17,8 @@ from .layers import Layers, Rectangle
 from .shown import Detail, Shown
 from .style import Colour
 from .surface import Frame, Surface, check_size, clamp_samples, most_samples, picture_of
+
+TITLE_BAR = 40  # [units at scale 1] that a desktop puts above a window (chosen: a little ample)
 
 
 class WindowSurface(Surface):
@@ -198,6 +201,33 @@ def open_window(
         raise diagnose("OpenGL in the window", error) from None
     Surface._current = surface
     return surface
+
+
+def size_on_screen(wanted: tuple[int, int], *, is_scaled: bool) -> tuple[int, int]:
+    """A size for `open_window` [screen units] that the main screen has room for.
+
+    is_scaled: `wanted` counts units of a screen of ordinary density, and a dense one gets more
+    where a unit is a pixel. Where there is no screen it is as wanted: opening a window tells.
+    """
+    glfw = _import_glfw()
+    with _complaints(glfw):
+        monitor = glfw.get_primary_monitor() if glfw.init() else None
+        if not monitor:
+            return wanted
+        scale = max(*glfw.get_monitor_content_scale(monitor), 1.0)
+        density = scale if _units_are_pixels(glfw) else 1.0
+        _, _, *room = glfw.get_monitor_workarea(monitor)
+    room[1] -= round(TITLE_BAR * density)
+    factor = density if is_scaled else 1.0
+    width, height = (min(round(factor * w), r) for w, r in zip(wanted, room, strict=True))
+    return max(width, 1), max(height, 1)
+
+
+def _units_are_pixels(glfw: ModuleType) -> bool:
+    """Whether windows on a dense screen have to be made larger by the program."""
+    if not hasattr(glfw, "get_platform"):  # before GLFW 3.4
+        return sys.platform != "darwin"
+    return glfw.get_platform() in (glfw.PLATFORM_X11, glfw.PLATFORM_WIN32)
 
 
 def _hint(glfw: ModuleType, visible: bool) -> None:

@@ -2,6 +2,7 @@
 
 window.py     one turn of the loop: input, time, picture, panels     (start reading here)
 session.py    what the user does: controls, script, recording, undo, unsaved work; knows no window
+keys.py       what can be done with the keys of a script; panels/dope_sheet.py is where
 stage.py      which meshes are drawn where, how they are coloured, what lies over them
 touch.py      the mouse in the picture
 actions.py    every key and menu, as data

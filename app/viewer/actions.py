@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from imgui_bundle import imgui
 
-from . import commands
+from ..easing import EASINGS
+from . import commands, dropped, key_commands
 
 if TYPE_CHECKING:
     from .window import Viewer
@@ -29,6 +30,7 @@ class Action:
     run: Callable[[Viewer], None]
     is_on: Callable[[Viewer], bool] | None = None
     can_run: Callable[[Viewer], bool] = lambda viewer: True
+    other_key: str = ""
 
     @property
     def shown_key(self) -> str:
@@ -36,22 +38,25 @@ class Action:
         return self.key.replace("Equal", "=").replace("Minus", "-")
 
     @property
-    def chord(self) -> int:
-        """The key as imgui counts it; 0 for none."""
-        if not self.key:
-            return 0
-        *modifiers, last = self.key.split("+")
-        name = _KEY_NAMES.get(last, last.lower())
-        key: Any = getattr(imgui.Key, f"_{name}" if name.isdigit() else name)
-        chord = int(key)
-        for modifier in modifiers:
-            chord |= int(_MODIFIERS[modifier])
-        return chord
+    def keys(self) -> tuple[str, ...]:
+        """All keys that do it."""
+        return tuple(key for key in (self.key, self.other_key) if key)
+
+
+def _chord(key: str) -> int:
+    """A key as imgui counts it."""
+    *modifiers, last = key.split("+")
+    name = _KEY_NAMES.get(last, last.lower())
+    code: Any = getattr(imgui.Key, f"_{name}" if name.isdigit() else name)
+    chord = int(code)
+    for modifier in modifiers:
+        chord |= int(_MODIFIERS[modifier])
+    return chord
 
 
 def actions_of(viewer: Viewer) -> tuple[Action, ...]:
     """All that menus and keys do for a window, in the order of its menus."""
-    return (*_FILE, *_EDIT, *_TIME, *_VIEW, *_expressions(viewer), *_HELP)
+    return (*_FILE, *_EDIT, *_TIME, *_KEYS, *_VIEW, *_expressions(viewer), *_HELP)
 
 
 def _expressions(viewer: Viewer) -> list[Action]:
@@ -105,10 +110,30 @@ def _flag(label: str, key: str, field: str) -> Action:
     )
 
 
+def _of_keys(label: str, key: str, run: Callable[[Viewer], None]) -> Action:
+    """What is done with the keys that are selected in the timeline."""
+    return Action("Keys", label, key, run, None, key_commands.has_selected)
+
+
+def _easing(name: str) -> Action:
+    """How the selected keys are approached."""
+    return Action(
+        "Keys",
+        f"Approach: {name}",
+        "",
+        lambda v: key_commands.ease(v, name),
+        lambda v: key_commands.is_eased(v, name),
+        key_commands.has_selected,
+    )
+
+
 _FILE = (
+    Action("File", "New script", "Ctrl+N", commands.new_script),
     Action("File", "Open script or pose ...", "Ctrl+O", commands.open_file),
-    Action("File", "Save script ...", "Ctrl+S", commands.save_script),
-    Action("File", "Save pose ...", "Ctrl+Shift+S", commands.save_pose),
+    Action("File", "Open head ...", "Ctrl+H", dropped.ask_head),
+    Action("File", "Save script", "Ctrl+S", commands.save_script),
+    Action("File", "Save script as ...", "Ctrl+Shift+S", commands.save_script_as),
+    Action("File", "Save pose ...", "Ctrl+P", commands.save_pose),
     Action("File", "Screenshot", "F12", commands.screenshot),
     Action("File", "Film", "F10", commands.toggle_film, lambda v: v.film is not None),
     Action("File", "Quit", "Ctrl+Q", commands.close_politely),
@@ -127,6 +152,24 @@ _TIME = (
     Action("Time", "To the start", "Home", lambda v: v.session.seek(0.0)),
     Action("Time", "To the key before", "Left", lambda v: v.session.seek_key(-1)),
     Action("Time", "To the next key", "Right", lambda v: v.session.seek_key(1)),
+    Action("Time", "Show the whole script", "Shift+F", key_commands.show_whole),
+)
+_KEYS = (
+    Action("Keys", "Set key", "K", key_commands.set_key, None, key_commands.can_edit),
+    Action(
+        "Keys",
+        "Name of the pose ...",
+        "Shift+K",
+        key_commands.rename,
+        None,
+        key_commands.can_rename,
+    ),
+    _of_keys("Duplicate", "Ctrl+D", key_commands.duplicate),
+    replace(_of_keys("Delete", "Delete", key_commands.delete), other_key="Backspace"),
+    _of_keys("A frame earlier", "Shift+Left", lambda v: key_commands.nudge(v, -1)),
+    _of_keys("A frame later", "Shift+Right", lambda v: key_commands.nudge(v, 1)),
+    Action("Keys", "Select all keys", "Ctrl+A", key_commands.select_all),
+    *(_easing(name) for name in EASINGS),
 )
 _VIEW = (
     _flag("Refine", "R", "is_refined"),
@@ -144,6 +187,15 @@ _VIEW = (
         lambda v: "muscles" in v.look.overlays,
     ),
     Action("View", "Frame the face", "F", commands.frame_face),
+    Action("View", "Hide panels", "Tab", commands.toggle_panels, lambda v: v.is_bare),
+    Action(
+        "View",
+        "Full screen",
+        "F11",
+        commands.toggle_full,
+        lambda v: v.placement.is_full,
+        other_key="Alt+Enter",
+    ),
     Action("View", "Dark theme", "F2", commands.toggle_theme, _is_dark),
     Action("View", "Larger words", "Ctrl+Equal", lambda v: commands.enlarge(v, 1.1)),
     Action("View", "Smaller words", "Ctrl+Minus", lambda v: commands.enlarge(v, 1.0 / 1.1)),
@@ -158,15 +210,30 @@ MOUSE = (
     ("double click a slider", "type a number"),
     ("right click a slider", "back to 0"),
     ("drag a panel's edge", "make it wider"),
-    ("drop a file", "open a script or pose"),
+    ("drop files", "script, pose, a head"),
 )
+TIMELINE = (
+    ("click a key", "select it, go there"),
+    ("Shift click", "select more, or fewer"),
+    ("drag a key", "move what is selected"),
+    ("Ctrl while dragging", "between frames"),
+    ("Escape", "leave it where it was"),
+    ("drag over nothing", "select in a box"),
+    ("double click a pose", "name it"),
+    ("right click", "all of this"),
+    ("wheel, Shift wheel", "zoom, scroll"),
+    ("drag the end", "longer, shorter"),
+)
+# Ctrl keys that a line of text takes for itself while one writes.
+WRITING = ("Ctrl+A", "Ctrl+Z", "Ctrl+Shift+Z")
 
 
 def run_pressed(viewer: Viewer, actions: tuple[Action, ...]) -> None:
     """Carry out the actions whose keys were pressed in this frame."""
-    io = imgui.get_io()
+    is_writing = imgui.get_io().want_text_input
     for action in actions:
-        is_typing = io.want_text_input and "+" not in action.key
-        if action.chord and not is_typing and imgui.is_key_chord_pressed(action.chord):
-            if action.can_run(viewer):
-                viewer.attempt(partial(action.run, viewer))
+        for key in action.keys:
+            is_for_text = is_writing and ("Ctrl" not in key or key in WRITING)
+            if not is_for_text and imgui.is_key_chord_pressed(_chord(key)):
+                if action.can_run(viewer):
+                    viewer.attempt(partial(action.run, viewer))

@@ -30,13 +30,16 @@ def open_file(viewer: Viewer) -> None:
     viewer.files.ask("Open script or pose", lambda path: load(viewer, path), saving=False)
 
 
-def load(viewer: Viewer, path: Path) -> None:
-    """Show the script or pose of a file, unless work would be lost: then ask first."""
+def load(viewer: Viewer, path: Path, remark: str = "") -> None:
+    """Show the script or pose of a file, unless work would be lost: then ask first.
+
+    remark: what else there is to say when it is opened.
+    """
     script = viewer.session.read(path)
 
     def take() -> None:
         viewer.session.take(script)
-        viewer.messages.say(f"{path.name}: opened")
+        viewer.messages.say(f"{path.name}: opened{remark}")
 
     if is_pose(script) and not viewer.session.has_unsaved_pose:
         take()  # whatever else is unsaved stays
@@ -48,18 +51,45 @@ def _nothing() -> None:
     """After saving, nothing else."""
 
 
+def new_script(viewer: Viewer) -> None:
+    """Begin with an empty script, unless work would be lost: then ask first."""
+
+    def begin() -> None:
+        viewer.session.begin_script()
+        viewer.messages.say("a new script; K makes the face as it is a key")
+
+    viewer.question.before(viewer, "Begin", begin)
+
+
 def save_script(viewer: Viewer, then: Callable[[], None] = _nothing) -> None:
+    """Write the script to its own file, or ask for one, and go on with `then`."""
+    file = viewer.session.file
+    if file.path is None:
+        save_script_as(viewer, then)
+    elif objection := file.objection:
+        viewer.messages.say(f"{file.path.name}: {objection}; replace it, or choose another name")
+        save_script_as(viewer, then)
+    else:
+        _write_script(viewer, file.path, then)
+
+
+def save_script_as(viewer: Viewer, then: Callable[[], None] = _nothing) -> None:
     """Ask for a name, write the script, and go on with `then`."""
-    source = Path(viewer.session.script.source)
-    is_own = source.suffix == ".toml" and "assets" not in source.parts
+    path = viewer.session.file.path
+    viewer.files.ask(
+        "Save script",
+        lambda chosen: _write_script(viewer, chosen, then),
+        saving=True,
+        proposed=str(path.absolute()) if path is not None else "script.toml",
+    )
 
-    def write(path: Path) -> None:
-        viewer.session.save_script(path)
-        viewer.messages.say(f"{path}: script written")
-        then()
 
-    proposed = str(source) if is_own else "script.toml"
-    viewer.files.ask("Save script", write, saving=True, proposed=proposed)
+def _write_script(viewer: Viewer, path: Path, then: Callable[[], None]) -> None:
+    viewer.session.save_script(path)
+    apart = viewer.session.has_unsaved_pose
+    rest = "; the pose is not part of it: K makes it a key" if apart else ""
+    viewer.messages.say(f"{path}: script written{rest}")
+    then()
 
 
 def save_pose(viewer: Viewer, then: Callable[[], None] = _nothing) -> None:
@@ -178,6 +208,20 @@ def enlarge(viewer: Viewer, factor: float) -> None:
     viewer.settings.zoom = min(max(viewer.settings.zoom * factor, least), most)
 
 
+def toggle_full(viewer: Viewer) -> None:
+    """Fill the screen, or go back."""
+    viewer.placement.toggle_full()
+    if viewer.placement.is_full:
+        viewer.messages.say("F11 leaves the full screen")
+
+
+def toggle_panels(viewer: Viewer) -> None:
+    """Hide all but the picture, or show it again."""
+    viewer.is_bare = not viewer.is_bare
+    if viewer.is_bare:
+        viewer.messages.say("Tab brings the panels back")
+
+
 def toggle_help(viewer: Viewer) -> None:
     """Show the sheet of keys or hide it."""
     viewer.is_help_open = not viewer.is_help_open
@@ -194,7 +238,7 @@ def remember(viewer: Viewer) -> None:
     place = [camera.yaw, camera.pitch, camera.distance, *camera.target.tolist()]
     settings.cameras[viewer.scene.name] = [float(number) for number in place]
     settings.look = viewer.look
-    settings.size = viewer.surface.window_size
+    settings.size = viewer.placement.size
     save_settings(viewer.settings_path, settings)
 
 

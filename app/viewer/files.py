@@ -16,7 +16,7 @@ from .gui import Gui
 from .panels.chooser import SUFFIX, Chooser
 
 LINUX_HELPERS = ("zenity", "kdialog", "matedialog", "qarma")  # one of which draws native dialogs
-FILTERS = ["Scripts and poses", f"*{SUFFIX}", "All files", "*"]
+SCRIPTS = "Scripts and poses"
 UNSEEN = 0.5  # [s] a dialog that has ended so soon without an answer never came up
 
 
@@ -27,6 +27,7 @@ class Request:
     title: str
     is_saving: bool
     proposed: Path  # where to begin; for saving with a name
+    suffixes: tuple[str, ...]  # how the names of such files end
     then: Callable[[Path], None]
     dialog: Any = None  # the native one
     began: float = 0.0  # [s] when it came up
@@ -47,14 +48,22 @@ class Files:
         return self._request is not None
 
     def ask(
-        self, title: str, then: Callable[[Path], None], *, saving: bool, proposed: str = ""
+        self,
+        title: str,
+        then: Callable[[Path], None],
+        *,
+        saving: bool,
+        proposed: str = "",
+        kind: str = SCRIPTS,
+        suffixes: tuple[str, ...] = (SUFFIX,),
     ) -> None:
-        """Ask for a file; `then` is called with it in a later frame, or never."""
+        """Ask for a file of a kind; `then` is called with it in a later frame, or never."""
         proposed_path = (self._folder or Path.cwd()) / proposed
-        request = Request(title, saving, proposed_path, then)
+        request = Request(title, saving, proposed_path, suffixes, then)
         if self._is_native:
-            kind = dialogs.save_file if saving else dialogs.open_file
-            request.dialog = kind(title, str(proposed_path), FILTERS)
+            dialog = dialogs.save_file if saving else dialogs.open_file
+            endings = " ".join(f"*{suffix}" for suffix in suffixes)
+            request.dialog = dialog(title, str(proposed_path), [kind, endings, "All files", "*"])
             request.began = time.monotonic()
         else:
             _open_chooser(request, proposed_path)
@@ -97,7 +106,9 @@ class Files:
 def _open_chooser(request: Request, target: Path) -> None:
     """Ask inside the window."""
     folder, name = (target.parent, target.name) if request.is_saving else (target, "")
-    request.chooser = Chooser(request.title, folder, name, is_saving=request.is_saving)
+    request.chooser = Chooser(
+        request.title, folder, name, is_saving=request.is_saving, suffixes=request.suffixes
+    )
 
 
 def has_native_dialogs() -> bool:

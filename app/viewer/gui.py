@@ -171,6 +171,24 @@ def on_drop(window: Any, take: Callable[[Sequence[str]], None]) -> None:
     glfw.set_drop_callback(window, callback)
 
 
+@contextlib.contextmanager
+def fixed_panel(
+    name: str, place: tuple[float, float], size: tuple[float, float], *, resizes: bool = False
+) -> Iterator[None]:
+    """A panel that stays where it is; its edges may be dragged if it resizes."""
+    imgui.set_next_window_pos(imgui.ImVec2(*place))
+    imgui.set_next_window_size(imgui.ImVec2(max(size[0], 1.0), max(size[1], 1.0)))
+    flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_scroll_with_mouse
+    flags |= imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_move
+    flags |= imgui.WindowFlags_.no_scrollbar if resizes else imgui.WindowFlags_.no_resize
+    flags |= imgui.WindowFlags_.no_background  # which the surface was filled with
+    imgui.begin(name, None, flags | imgui.WindowFlags_.no_bring_to_front_on_focus)
+    try:
+        yield
+    finally:
+        imgui.end()
+
+
 def em(count: float = 1.0) -> float:
     """So many letters' heights [window units]: the measure of all widths."""
     return float(count * imgui.get_font_size())

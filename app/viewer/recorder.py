@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..script import Channel, Key, Script
+from ..script import Channel, Key, Script, rounded
 
 TOLERANCE = 2e-3  # of a value: what a straight line between keys may be off
 
@@ -35,10 +35,15 @@ class Recorder:
         if self.time <= 0.0 or not self._tracks:
             return None
         tracks = {
-            name: Channel(tuple(Key(time, value, "linear") for time, value in straightened(track)))
+            name: Channel(
+                tuple(
+                    Key(rounded(time), rounded(value), "linear")
+                    for time, value in straightened(track)
+                )
+            )
             for name, track in sorted(self._tracks.items())
         }
-        return Script(title, self.time, title, scene=scene, camera=camera, tracks=tracks)
+        return Script(title, rounded(self.time), title, scene=scene, camera=camera, tracks=tracks)
 
 
 def straightened(track: list[tuple[float, float]]) -> list[tuple[float, float]]:

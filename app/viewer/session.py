@@ -7,22 +7,25 @@ units, expressions, visemes) is one entry of `values`; the scene adds them up.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import UserError
 from ..scenes import Scene, within
-from ..script import Script, load_script
+from ..script import Pose, Script, load_script, rounded
 from ..script_writer import is_pose, pose_script, save_script
+from . import keys
 from .history import History
 from .recorder import Recorder
 from .rows import mirrored, twin_of
+from .script_file import ScriptFile
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0)
 RANDOM_SHARE = 0.25  # of the muscles that a random pose moves
 RANDOM_STRENGTH = 0.8  # most of their range
+NEW_SECONDS = 4.0  # that a script begun from nothing lasts
 REPLAY_SETTLING = 1.0  # [s] for which the first pose of a replay was held, as in a film
 
 
@@ -30,33 +33,52 @@ REPLAY_SETTLING = 1.0  # [s] for which the first pose of a replay was held, as i
 class Document:
     """What can be undone and saved."""
 
-    values: Mapping[str, float]  # what is not 0
+    values: Mapping[str, float] | None  # set by hand, what is not 0; None: as the script has it
     script: Script
+    file: ScriptFile  # in which the script is kept
 
 
 class Session:
     """The controls of a scene and the script that may move them."""
 
+    is_playing: bool
+    is_looping: bool
+
     def __init__(self, scene: Scene, script: Script) -> None:
         script.check(scene.limits)
+        self._enter(scene)
+        self.values = dict.fromkeys(self.limits, 0.0)
+        self.script = script
+        self.file = ScriptFile.of(script)
+        self.time = 0.0
+        self.is_playing = False
+        self.is_looping = False
+        self.speed = 1.0
+        self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
+        self.is_following = False  # the controls are where the script has them
+        self._recorder: Recorder | None = None
+        self._held: dict[str, float] = {}  # by hand while a recording plays the script
+        self._history = History(self._document())
+
+    def _enter(self, scene: Scene) -> None:
         self.scene = scene
         self.limits = scene.limits
         simulation = getattr(scene, "simulation", None)
         # The lowest controls, to which all others add up; all where a scene does not tell.
         self.muscles = frozenset(simulation.controls if simulation is not None else self.limits)
         self.groups = _highest_first(scene.groups, self.muscles, scene.expressions)
-        self.values = dict.fromkeys(self.limits, 0.0)
-        self.script = script
-        self.time = 0.0
-        self.is_playing = False
-        self.is_looping = False
-        self.speed = 1.0
-        self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
-        self.script_is_unsaved = False
-        self._recorder: Recorder | None = None
         self._moved_by: dict[str, frozenset[str]] = {}
-        self._held: dict[str, float] = {}  # by hand while a recording plays the script
-        self._history = History(self._document())
+
+    def move_to(self, scene: Scene) -> None:
+        """Go on with another scene that has the same controls; UserError if it has not.
+
+        Script, pose, what can be undone and what is unsaved: all of it stays.
+        """
+        if scene.name != self.scene.name or not scene.limits.keys() >= self.limits.keys():
+            raise UserError(f"this window shows a {self.scene.name}, which has other controls")
+        self.script.check(scene.limits)
+        self._enter(scene)
+        self.values = self._all(self.values)
 
     # Controls by hand
 
@@ -67,12 +89,12 @@ class Session:
         """
         for each in {name, twin_of(name)} if linked else {name}:
             low, high = self.limits[each]
-            self.values[each] = min(max(float(value), low), high)
+            self.values[each] = min(max(rounded(value), low), high)
             if self.is_playing and self.is_recording:
                 self._held[each] = self.values[each]
         if not self.is_recording:
             self.is_playing = False
-        self.pose_is_unsaved = True
+        self.pose_is_unsaved, self.is_following = True, False
 
     def show(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""
@@ -111,7 +133,7 @@ class Session:
     def _take_pose(self, pose: Mapping[str, float], *, is_unsaved: bool = True) -> None:
         self.is_playing = False
         self.values = dict(pose)
-        self.pose_is_unsaved = is_unsaved
+        self.pose_is_unsaved, self.is_following = is_unsaved, False
         self.note()
 
     def moved_by(self, name: str) -> frozenset[str]:
@@ -130,7 +152,8 @@ class Session:
     # Undo
 
     def _document(self) -> Document:
-        return Document({name: value for name, value in self.values.items() if value}, self.script)
+        by_hand = {name: value for name, value in self.values.items() if value}
+        return Document(None if self.is_following else by_hand, self.script, self.file)
 
     def note(self) -> None:
         """A change is complete (a slider let go, a button pressed): it can be undone."""
@@ -157,11 +180,13 @@ class Session:
 
     def _restore(self, document: Document) -> None:
         self.is_playing = False
-        self.values = self._all(document.values)
+        self.script, self.file = document.script, document.file
+        self.time = min(self.time, self.script.duration)
+        if document.values is None:
+            self._follow_script()
+        else:
+            self.values, self.is_following = self._all(document.values), False
         self.pose_is_unsaved = bool(document.values)
-        if document.script != self.script:
-            self.script, self.script_is_unsaved = document.script, True
-            self.time = min(self.time, self.script.duration)
 
     # Time
 
@@ -190,10 +215,35 @@ class Session:
 
     def seek_key(self, direction: int) -> None:
         """Pause at the next time at which the script has a key, or with -1 at the one before."""
-        times = key_times(self.script)
+        times = {place.time for place in keys.places_of(self.script)}
         beyond = [time for time in times if (time - self.time) * direction > 1e-6]
         self.is_playing = False
         self.seek((min if direction > 0 else max)(beyond, default=self.time))
+
+    # Keys
+
+    def edit(self, script: Script, *, is_done: bool = True) -> None:
+        """Take the script as it was changed; a face that follows it follows the change.
+
+        is_done: the change is complete and can be undone; False while something is dragged.
+        """
+        if self.is_recording:
+            raise UserError("stop the recording first: it takes the place of the script")
+        self.script = script
+        self.time = min(self.time, script.duration)
+        if self.is_following:
+            self._follow_script()
+        if is_done:
+            self.note()
+
+    def set_key(self) -> float:
+        """The face as it is becomes a key of the script; its time [s]."""
+        time = keys.key_time(self.script, self.time)
+        self.is_playing = False
+        self.edit(keys.keyed(self.script, time, self.values, self.limits), is_done=False)
+        self.seek(time)
+        self.note()
+        return time
 
     def advance(self, seconds: float) -> None:
         """Let time pass: the script moves the controls, the scene follows them."""
@@ -209,6 +259,7 @@ class Session:
         self.scene.step(seconds)
 
     def _follow_script(self) -> None:
+        self.is_following = True
         self.values = self._all({**self.script.at(self.time), **self._held})
 
     def _all(self, values: Mapping[str, float]) -> dict[str, float]:
@@ -233,9 +284,7 @@ class Session:
         self.is_playing = False
         if take is None:
             raise UserError("nothing was recorded: no control moved")
-        self.script, self.script_is_unsaved, self.time = take, True, take.duration
-        self.pose_is_unsaved = False
-        self.note()
+        self._open(take, ScriptFile(None, None), take.duration)
 
     @property
     def recorded_seconds(self) -> float:
@@ -259,20 +308,32 @@ class Session:
         """A pose to show, which a recording takes in, or a script to play, which ends it."""
         self.is_playing = False
         if is_pose(script):
-            self.values = self._all(script.at(0.0))
+            self._take_pose(self._all(script.at(0.0)), is_unsaved=False)
         else:
-            self._recorder, self._held = None, {}
-            self.script, self.script_is_unsaved = script, False
-            self.seek(0.0)
-        self.pose_is_unsaved = False
+            self._open(script, ScriptFile.of(script), 0.0)
+
+    def begin_script(self) -> None:
+        """An empty script: the neutral face, to which keys can be added."""
+        script = Script(
+            "",
+            NEW_SECONDS,
+            "a new script",
+            scene=self.script.scene,
+            camera=self.script.camera,
+            poses=(Pose(0.0),),
+        )
+        self._open(script, ScriptFile(None, script), 0.0)
+
+    def _open(self, script: Script, file: ScriptFile, time: float) -> None:
+        """Another script in place of this one."""
+        self._recorder, self._held = None, {}
+        self.script, self.file = script, file
+        self.seek(time)
         self.note()
 
     def save_script(self, path: Path) -> None:
         """Write the script to a file; UserError where it cannot be written."""
-        save_script(path, self.script)
-        self.script = replace(self.script, source=str(path))
-        self.script_is_unsaved = False
-        self.note()
+        self.file.save(self.script, path)
 
     def save_pose(self, path: Path) -> None:
         """Write the controls as they are to a file; UserError where it cannot be written."""
@@ -284,21 +345,26 @@ class Session:
         """What would be lost by closing, in words; "" for nothing."""
         lost = {
             "the pose": self.has_unsaved_pose,
-            "the recorded script": self.script_is_unsaved,
+            "the script": self.script_is_unsaved,
             "the recording": self.is_recording,
         }
         return " and ".join(what for what, is_lost in lost.items() if is_lost)
 
     @property
+    def script_is_unsaved(self) -> bool:
+        """Whether the script says what its file does not."""
+        return self.file.differs(self.script)
+
+    @property
+    def name(self) -> str:
+        """What the script is called: by its file, if there is one, else by its title."""
+        path = self.file.path
+        return path.name if path is not None else self.script.title or "Untitled"
+
+    @property
     def has_unsaved_pose(self) -> bool:
         """Whether there is a pose made by hand that no file has."""
         return self.pose_is_unsaved and any(self.values.values())
-
-
-def key_times(script: Script) -> list[float]:
-    """The times at which a script has keys, in order [s]."""
-    channels = (*script.poses.values(), *script.tracks.values())
-    return sorted({key.time for channel in channels for key in channel.keys})
 
 
 def _highest_first(

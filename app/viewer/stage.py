@@ -74,6 +74,13 @@ class Stage:
             self.refined.stream.release()
         self.refined = refined
 
+    def release(self) -> None:
+        """Give back what only this scene needs; another stage takes its place."""
+        for stream in {id(each): each.stream for each in (self.static, self.refined)}.values():
+            stream.release()
+        if self._texture is not None:
+            self._texture.release()
+
     @contextmanager
     def timed(self, name: str) -> Iterator[None]:
         """Add the milliseconds that the block takes to the present frame's."""

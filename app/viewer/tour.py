@@ -15,6 +15,7 @@ from PIL import Image
 from ..choices import script_for
 from ..outputs import written_aside
 from . import commands
+from .keys import places_of
 from .settings import Look
 from .touch import Pull
 from .window import Viewer
@@ -90,6 +91,17 @@ def finger(viewer: Viewer) -> None:
     viewer.frame()
 
 
+def timeline(viewer: Viewer) -> None:
+    """Keys of poses and tracks, some of them selected; the dark theme."""
+    viewer.settings.theme, viewer.settings.folds["Tracks"] = "dark", True
+    sheet = viewer.timeline.sheet
+    viewer.session.seek(2.3)
+    viewer.frame()
+    sheet.view.zoom(0.6, sheet.view.x(0.0))
+    places = places_of(viewer.session.script)
+    sheet.selected = frozenset(place for place in places if 1.5 < place.time < 3.0)
+
+
 def keys(viewer: Viewer) -> None:
     """Help, made of the same table as the menus."""
     viewer.is_help_open = True
@@ -115,6 +127,7 @@ STOPS: dict[str, Callable[[Viewer], None]] = {
     "viewer_tension": tension,
     "viewer_anatomy": anatomy,
     "viewer_pull": finger,
+    "viewer_timeline": timeline,
     "viewer_keys": keys,
     "viewer_unsaved": unsaved,
     "viewer_large": large,

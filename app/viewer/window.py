@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
@@ -25,20 +25,23 @@ from assets.fitting import FittedHead
 from ..cameras import whole_scene
 from ..errors import UserError
 from ..pipeline import Viewport
-from ..scenes import build_scene
+from ..scenes import Scene, build_scene
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped
 from . import commands
 from .actions import actions_of, run_pressed
 from .clock import STEP, Clock
+from .dropped import Dropped, open_dropped
 from .files import Files
 from .gui import THEMES, Gui, em, on_drop, poll_events, wait_for_event
 from .kept import KeptPanels
 from .overlays import overlays_of
-from .panels.chrome import Messages, Question, draw_help, draw_menus
+from .panels import layout
+from .panels.chrome import Messages, Question, draw_help
 from .panels.face import FacePanel
 from .panels.mechanism import MechanismPanel
 from .panels.timeline import Timeline
+from .placement import Placement, first_size
 from .quality import FULL, Quality
 from .session import Session
 from .settings import Look, Settings, load_settings
@@ -46,8 +49,6 @@ from .stage import SceneView, Stage, checked
 from .take import FRAMES_PER_SECOND, Film
 from .touch import Touch
 
-PANEL_WIDTHS = 12.0, 60.0  # [em] between which the left panel may be drawn wider
-PANEL_SHARE = 0.45  # of the window, at most
 STILL = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
 CALM = 0.15  # [s] without change before physics rests and the scene is drawn in full
 IDLE_WAIT = 2.0  # [s] between two frames while nothing happens
@@ -64,6 +65,8 @@ class Viewer:
     look: Look
     settings: Settings
     is_help_open: bool
+    is_bare: bool  # without panels
+    placement: Placement
     film: Film | None
 
     def __init__(
@@ -90,14 +93,15 @@ class Viewer:
         known = overlays_of(self.scene)
         self.look = checked(look or self.settings.look, refine.available(), known)
         with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
-            title = f"Risorius: {script.title}"
-            self.surface = render.open_window(size or self.settings.size or (1280, 800), title)
+            title = f"Risorius: {self.session.name}"
+            self.surface = render.open_window(size or first_size(self.settings.size), title)
             stack.callback(self.surface.close)
             self.gui = Gui(self.surface.handle)
             stack.callback(self.gui.close)
             self.stage = Stage(self.surface, self.scene, self.look)
             self._resources = stack.pop_all()
         self.camera = commands.remembered_camera(self) or whole_scene(self.scene, script.camera)
+        self.placement = Placement(self.surface.handle)
         self.quality = Quality(is_software=self.surface.is_software)
         self.touch = Touch(self)
         self.kept = KeptPanels()
@@ -106,7 +110,7 @@ class Viewer:
         self.timeline = Timeline(self)
         self.actions = actions_of(self)
         self.film: Film | None = None
-        self.is_help_open = self.is_leaving = False
+        self.is_help_open = self.is_leaving = self.is_bare = False
         self.frames_per_second = 0.0
         self.picture_area = (0.0, 0.0, 1.0, 1.0)  # left, top, width, height [window units]
         self._clock = Clock()
@@ -116,6 +120,7 @@ class Viewer:
         self._drawn: tuple[object, render.Detail] = (None, FULL)  # what the scene's pixels show
         self._posed: dict[str, float] = {}  # the values at the last step of physics
         self._has_stepped = False
+        self._to_fit: Dropped | None = None  # a head, in the next frame
         self._still_for = 0.0  # [s] that no vertex has moved
         self._calm_for = 0.0  # [s] that the picture has not changed
         self._awake = FRAMES_AFTER_EVENT
@@ -142,12 +147,16 @@ class Viewer:
         self._last = time.perf_counter()
         with cleaned_up_if_stopped(lambda: commands.remember(self)):
             while True:
-                self.frame()
+                if self.placement.is_minimised:  # time stands still, and nothing is drawn
+                    self._wait()
+                else:
+                    self.frame()
                 if self.surface.should_close:
                     self.surface.should_close = False
                     commands.close_politely(self)
                     if self.surface.should_close:
                         break
+                    self.placement.bring_back()  # to be asked
                 if once and playing and not self.session.is_playing:
                     break
                 if self.is_idle:
@@ -171,10 +180,13 @@ class Viewer:
             # The mean of times, not of rates: a few quick frames must not outweigh the slow ones.
             shown = 1.0 / self.frames_per_second if self.frames_per_second else elapsed
             self.frames_per_second = 1.0 / (SMOOTHING * shown + (1.0 - SMOOTHING) * elapsed)
+        mark = " *" if self.session.unsaved else ""
+        self.placement.call(f"Risorius: {self.session.name}{mark}")
         self._let_time_pass(elapsed if self.film is None else 1.0 / FRAMES_PER_SECOND)
         is_moving = self._draw_scene(elapsed)
         self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
+        self._fit_dropped()
         if is_moving:
             self.quality.note(time.perf_counter() - now)
         if self.film is not None:  # on a fast machine a film is made in real time
@@ -311,50 +323,20 @@ class Viewer:
         if is_seen:
             self.surface.resolve()
             left, bottom, width, _ = self.viewport
-            self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
-            self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
+            if not self.is_bare:
+                self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
+                self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
         self._draw_gui(is_seen=is_seen)
         if is_seen:
             self.kept.note_drawn(size, is_over_scene=self.gui.covers(self.picture_area))
 
     def _draw_panels(self, elapsed: float) -> None:
-        display = imgui.get_io().display_size
-        top = draw_menus(self, self.actions)
-        left, strip = self._panel_width(display.x), round(self.timeline.height())
-        with _fixed("Controls", 0.0, top, left, display.y - top, may_resize=True):
-            if round(imgui.get_window_width()) != left:  # its edge is being dragged
-                self.settings.panel_width = imgui.get_window_width() / em()
-            self._draw_tabs()
-        with _fixed("Time", left, display.y - strip, display.x - left, strip):
-            self.timeline.draw()
-        width, height = max(display.x - left, 1.0), max(display.y - top - strip, 1.0)
-        self.picture_area = (left, top, width, height)
+        layout.draw(self)
         self.messages.draw(self, elapsed)
         self.attempt(lambda: self.files.draw(self.gui))
         self.attempt(lambda: self.question.draw(self))
         if self.is_help_open:
             self.is_help_open = draw_help(self, self.actions)
-
-    def _panel_width(self, window_width: float) -> int:
-        """Of the left panel [window units]: as it was dragged, as far as there is room."""
-        least, most = PANEL_WIDTHS
-        wanted = min(max(self.settings.panel_width, least), most)
-        return round(min(em(wanted), PANEL_SHARE * window_width))
-
-    def _draw_tabs(self) -> None:
-        self.face_panel.pointed = ()
-        if not imgui.begin_tab_bar("tabs"):
-            return
-        for title, panel in (("Face", self.face_panel), ("Mechanism", self.mechanism_panel)):
-            flags = imgui.TabItemFlags_.set_selected if self.wanted_tab == title else 0
-            is_open, _ = imgui.begin_tab_item(title, None, flags)
-            self.gui.remember(f"tab {title}")
-            if is_open:
-                if self.wanted_tab in ("", title):
-                    self.settings.tab, self.wanted_tab = title, ""
-                panel.draw()
-                imgui.end_tab_item()
-        imgui.end_tab_bar()
 
     # What actions and panels share
 
@@ -369,29 +351,33 @@ class Viewer:
             otherwise()
 
     def drop(self, paths: Sequence[str]) -> None:
-        """Open a file that was dropped onto the window."""
+        """Open files that were dropped onto the window."""
         self._awake = FRAMES_AFTER_EVENT
-        if paths:
-            self.attempt(lambda: commands.load(self, Path(paths[0])))
+        dropped = Dropped.of([Path(path) for path in paths])
+        if dropped.brings_head:  # which takes a while: first say so
+            self._to_fit = dropped
+            self.messages.say("fitting the muscles to this head ...")
+        else:
+            self.attempt(lambda: open_dropped(self, dropped))
+
+    def _fit_dropped(self) -> None:
+        """Open what has been announced."""
+        dropped, self._to_fit = self._to_fit, None
+        if dropped is not None:
+            self.messages.text = ""
+            self.attempt(lambda: open_dropped(self, dropped))
+            self._last = time.perf_counter()
+
+    def move_to(self, scene: Scene) -> None:
+        """Show another scene with the same controls in place of this one."""
+        self.session.move_to(scene)
+        self.stage.release()
+        self.scene, self.look = scene, checked(self.look, refine.available(), overlays_of(scene))
+        self.stage = Stage(self.surface, scene, self.look)
+        self.camera = whole_scene(scene, self.session.script.camera)
+        self.touch, self.actions = Touch(self), actions_of(self)
+        self._drawn, self._posed, self._still_for = (None, FULL), {}, 0.0
 
     @property
     def _is_asking(self) -> bool:
         return self.files.is_waiting or self.question.is_open
-
-
-@contextlib.contextmanager
-def _fixed(
-    name: str, left: float, top: float, width: float, height: float, *, may_resize: bool = False
-) -> Iterator[None]:
-    """A panel that stays where it is; its edges may be dragged if it may be resized."""
-    imgui.set_next_window_pos(imgui.ImVec2(left, top))
-    imgui.set_next_window_size(imgui.ImVec2(max(width, 1.0), max(height, 1.0)))
-    flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_scrollbar
-    flags |= imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_move
-    flags |= 0 if may_resize else imgui.WindowFlags_.no_resize
-    flags |= imgui.WindowFlags_.no_background  # which the surface was filled with
-    imgui.begin(name, None, flags | imgui.WindowFlags_.no_bring_to_front_on_focus)
-    try:
-        yield
-    finally:
-        imgui.end()

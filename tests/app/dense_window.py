@@ -1,11 +1,15 @@
 """Opens the window on a screen of twice the density and prints what a test wants to know.
 
-A program of its own, because GLFW asks for the density once, when it starts.
+A program of its own, because GLFW asks for the density once, when it starts. `first DOTS` opens it
+in the size that it chooses itself, on a screen of so many dots per inch.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
+import sys
+from collections.abc import Iterator
 
 from Xlib import Xatom, display
 
@@ -20,19 +24,31 @@ SIZE = (1200, 800)
 
 
 def main() -> None:
-    """Tell X that its screen is dense, look at the window, and tell X that it is not."""
+    """Look at the window on a dense screen, or at the size that it chooses itself."""
+    if sys.argv[1:2] == ["first"]:
+        with _screen_of(int(sys.argv[2])), Viewer(script_for(None, "face")) as viewer:
+            settle(viewer)
+            found = {"window": viewer.surface.window_size, "panel": viewer.picture_area[0]}
+            print(json.dumps(found))
+        return
+    with _screen_of(DOTS_PER_INCH), Viewer(script_for(None, "face"), SIZE) as viewer:
+        first = viewer.viewport[0]
+        viewer.files = Files(is_native=False)
+        settle(viewer)
+        is_settled = viewer.viewport[0] == first
+        print(json.dumps({**_findings(viewer), "is_settled": is_settled}))
+
+
+@contextlib.contextmanager
+def _screen_of(dots_per_inch: int) -> Iterator[None]:
+    """Tell X how dense its screen is, and in the end nothing of it any more."""
     screen = display.Display()
     root, resources = screen.screen().root, screen.intern_atom("RESOURCE_MANAGER")
-    root.change_property(resources, Xatom.STRING, 8, f"Xft.dpi:\t{DOTS_PER_INCH}\n".encode())
+    root.change_property(resources, Xatom.STRING, 8, f"Xft.dpi:\t{dots_per_inch}\n".encode())
     screen.flush()
     screen.sync()
     try:
-        with Viewer(script_for(None, "face"), SIZE) as viewer:
-            first = viewer.viewport[0]
-            viewer.files = Files(is_native=False)
-            settle(viewer)
-            is_settled = viewer.viewport[0] == first
-            print(json.dumps({**_findings(viewer), "is_settled": is_settled}))
+        yield
     finally:
         root.delete_property(resources)
         screen.sync()

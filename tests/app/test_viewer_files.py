@@ -5,17 +5,31 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from importlib import resources
 from pathlib import Path
 
 import pytest
 
+from app.script import load_script
 from app.viewer import Viewer
 from app.viewer.files import UNSEEN, Files
+from tests.heads import stranger
 
-from .driving import NEEDS_A_SCREEN, click, nose, settle, until, write, xdotool
+from .driving import (
+    NEEDS_A_SCREEN,
+    click,
+    drag,
+    moved,
+    nose,
+    settle,
+    until,
+    write,
+    xdotool,
+)
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
+EXAMPLE = "scripts/speech.toml"
 SCRIPT = "duration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
 POSE = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
 
@@ -87,13 +101,13 @@ def test_the_chooser_replaces_nothing_unasked(viewer: Viewer, tmp_path: Path) ->
     taken = tmp_path / "pose.toml"
     taken.write_text("precious")
     viewer.session.set("jaw_open", 0.4)
-    xdotool(viewer, "key", "ctrl+shift+s")
+    xdotool(viewer, "key", "ctrl+p")
     xdotool(viewer, "key", "Return")
     assert viewer.files.is_waiting and taken.read_text() == "precious"
     xdotool(viewer, "key", "Return")
     assert not viewer.files.is_waiting and "jaw_open = 0.4" in taken.read_text()
     viewer.session.set("jaw_open", 0.5)
-    xdotool(viewer, "key", "ctrl+shift+s")
+    xdotool(viewer, "key", "ctrl+p")
     xdotool(viewer, "key", "ctrl+a")
     write(viewer, "/proc/none/pose")
     xdotool(viewer, "key", "Return")
@@ -165,3 +179,128 @@ def test_what_cannot_be_written_is_told(viewer: Viewer, monkeypatch: pytest.Monk
         xdotool(viewer, "key", key)
         assert until(viewer, lambda: "cannot be written" in viewer.messages.text, 3.0), key
         assert viewer.film is None
+
+
+def title_of(viewer: Viewer) -> str:
+    """What the desktop shows above the window."""
+    settle(viewer)
+    command = ["xdotool", "search", "--onlyvisible", "--name", "^Risorius: "]
+    window = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()[-1]
+    name = ["xdotool", "getwindowname", window]
+    return subprocess.run(name, check=True, capture_output=True, text=True).stdout.strip()
+
+
+def test_saving_goes_to_the_known_file(viewer: Viewer, tmp_path: Path) -> None:
+    """A script that was opened is saved without a question; the title tells its name and state."""
+    script = tmp_path / "smile.toml"
+    script.write_text(f"# mine\n{SCRIPT}")
+    drop(viewer, script)
+    assert title_of(viewer) == "Risorius: smile.toml"
+    viewer.session.seek(1.0)
+    xdotool(viewer, "key", "k")
+    assert title_of(viewer) == "Risorius: smile.toml *"
+    xdotool(viewer, "key", "ctrl+s")
+    assert not viewer.files.is_waiting and title_of(viewer) == "Risorius: smile.toml"
+    assert script.read_text().startswith("# mine\n") and len(load_script(script).poses) == 3
+    xdotool(viewer, "key", "ctrl+shift+s")
+    assert viewer.files.is_waiting
+    xdotool(viewer, "key", "ctrl+a")
+    write(viewer, "other")
+    xdotool(viewer, "key", "Return")
+    assert title_of(viewer) == "Risorius: other.toml"
+    xdotool(viewer, "key", "Delete")
+    xdotool(viewer, "key", "ctrl+s")
+    assert len(load_script(tmp_path / "other.toml").poses) == 2
+    assert len(load_script(script).poses) == 3
+
+
+def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> None:
+    """New scripts and the program's own ask for a name; a file changed elsewhere is not lost."""
+    taken = tmp_path / "script.toml"
+    taken.write_text("precious")
+    xdotool(viewer, "key", "ctrl+n", "k", "ctrl+s")
+    assert viewer.files.is_waiting
+    xdotool(viewer, "key", "Return")
+    assert viewer.files.is_waiting and taken.read_text() == "precious"
+    xdotool(viewer, "key", "Escape")
+    viewer.session.take(viewer.session.read(Path(str(resources.files("assets"))) / EXAMPLE))
+    xdotool(viewer, "key", "ctrl+s")
+    assert viewer.files.is_waiting
+    xdotool(viewer, "key", "Escape")
+    script = tmp_path / "smile.toml"
+    script.write_text(SCRIPT)
+    drop(viewer, script)
+    script.write_text(SCRIPT.replace("joy", "anger"))
+    xdotool(viewer, "key", "k", "ctrl+s")
+    assert viewer.files.is_waiting and "another program" in viewer.messages.text
+    assert "anger" in script.read_text()
+    xdotool(viewer, "key", "Escape")
+
+
+def test_of_several_scripts_the_first_is_opened(viewer: Viewer, tmp_path: Path) -> None:
+    """The window says which files it has left, and goes on with one of them."""
+    names = ("one.toml", "two.toml", "three.toml")
+    for seconds, name in enumerate(names, start=3):
+        (tmp_path / name).write_text(SCRIPT.replace("duration = 2.0", f"duration = {seconds}.0"))
+    drop(viewer, *(tmp_path / name for name in names))
+    assert viewer.session.name == "one.toml" and viewer.session.script.duration == 3.0
+    said = viewer.messages.text
+    assert said.startswith("one.toml: opened") and said.endswith("two.toml, three.toml")
+    assert not viewer.messages.is_error
+
+
+def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path) -> None:
+    """The face is another one, the script plays on it; what was unsaved before is still there."""
+    before = viewer.scene
+    mesh, landmarks = stranger().write(tmp_path)
+    try:
+        viewer.session.set("jaw_open", 0.5)
+        viewer.session.note()
+        drop(viewer, mesh)
+        assert viewer.messages.is_error and "half of a head" in viewer.messages.text
+        drop(viewer, landmarks, mesh)
+        assert until(viewer, lambda: "opened" in viewer.messages.text, 30.0)
+        assert len(viewer.scene.faces) > len(before.faces)
+        assert viewer.session.values["jaw_open"] == 0.5 and viewer.session.has_unsaved_pose
+        assert until(viewer, lambda: moved(viewer) > 5.0)
+        assert viewer.stage.refined.triangle_count >= len(viewer.scene.faces)
+        xdotool(viewer, "key", "ctrl+z")
+        assert viewer.session.values["jaw_open"] == 0.0
+        script = tmp_path / "smile.toml"
+        script.write_text(SCRIPT)
+        drop(viewer, mesh, script, landmarks)
+        assert until(viewer, lambda: "smile.toml: opened with stranger" in viewer.messages.text, 30)
+        viewer.session.seek(2.0)
+        assert until(viewer, lambda: moved(viewer) > 2.0)
+        drag(viewer, nose(viewer), (30, 30))
+        assert until(viewer, lambda: viewer.touch.is_pulling)
+        xdotool(viewer, "mouseup", 1)
+    finally:
+        viewer.move_to(before)
+    assert until(viewer, lambda: viewer.is_idle)
+
+
+def test_a_head_is_opened_by_the_menu(viewer: Viewer, tmp_path: Path) -> None:
+    """The mesh is asked for, then its landmarks; only files of each kind are listed."""
+    before = viewer.scene
+    stranger().write(tmp_path)
+    click(viewer, "menu File")
+    click(viewer, "menu File: Open head ...")
+    assert until(viewer, lambda: "file stranger.obj" in viewer.gui.places, 3.0)
+    assert "file stranger.json" not in viewer.gui.places
+    click(viewer, "file stranger.obj", times=2)
+    assert until(viewer, lambda: "file stranger.json" in viewer.gui.places, 3.0)
+    click(viewer, "file stranger.json")
+    click(viewer, "path confirmed")
+    assert until(viewer, lambda: viewer.scene is not before, 30.0)
+    viewer.move_to(before)
+
+
+def test_a_head_that_is_none_is_told(viewer: Viewer, tmp_path: Path) -> None:
+    """Landmarks that do not fit are one line in the window, and the face stays."""
+    before = viewer.scene
+    mesh, landmarks = stranger().write(tmp_path)
+    landmarks.write_text('{"landmarks": [1, 2, 3]}')
+    drop(viewer, mesh, landmarks)
+    assert until(viewer, lambda: viewer.messages.is_error, 20.0)
+    assert "it must be the 68 iBug points" in viewer.messages.text and viewer.scene is before

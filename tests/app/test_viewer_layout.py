@@ -14,7 +14,7 @@ import pytest
 
 from app.choices import script_for
 from app.viewer import Viewer
-from app.viewer.session import key_times
+from app.viewer.keys import places_of
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -80,7 +80,7 @@ def test_everything_stays_inside_its_panel(viewer: Viewer, zoom: float) -> None:
 def test_keys_go_from_key_to_key(viewer: Viewer) -> None:
     """Right goes to the script's next key, Left back, Home to the start."""
     viewer.session.take(script_for(None, "face"))
-    times = key_times(viewer.session.script)
+    times = sorted({place.time for place in places_of(viewer.session.script)})
     for key, place in (("Right", 1), ("Right", 2), ("Left", 1), ("Home", 0)):
         xdotool(viewer, "key", key)
         assert viewer.session.time == pytest.approx(times[place]), key

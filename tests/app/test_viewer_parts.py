@@ -81,7 +81,7 @@ def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path
     wanted = session.scene.positions.copy()
     assert np.abs(wanted - session.scene.rest_positions).max() > 10.0
     session.toggle_recording()
-    assert "recorded script" in session.unsaved
+    assert "the script" in session.unsaved
     session.save_script(tmp_path / "take.toml")
     assert not session.unsaved
     session.neutral()

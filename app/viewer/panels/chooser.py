@@ -15,24 +15,33 @@ SUFFIX = ".toml"
 SIZE = (36.0, 26.0)  # [em]
 
 
-def listing(folder: Path) -> tuple[list[str], list[str]]:
-    """The names of folders, and of scripts and poses, in a folder; without those that hide."""
+def listing(folder: Path, suffixes: tuple[str, ...]) -> tuple[list[str], list[str]]:
+    """The names of folders, and of files that end so, in a folder; without those that hide."""
     with os.scandir(folder) as entries:
         shown = [entry for entry in entries if not entry.name.startswith(".")]
         folders = [entry.name for entry in shown if entry.is_dir()]
-        scripts = [entry.name for entry in shown if entry.name.endswith(SUFFIX)]
-    return sorted(folders, key=str.lower), sorted(scripts, key=str.lower)
+        found = [entry.name for entry in shown if entry.name.lower().endswith(suffixes)]
+    return sorted(folders, key=str.lower), sorted(found, key=str.lower)
 
 
 class Chooser:
     """Asks for one file: a line to type in, above it what is in the folder."""
 
-    def __init__(self, title: str, folder: Path, name: str, *, is_saving: bool) -> None:
+    def __init__(
+        self,
+        title: str,
+        folder: Path,
+        name: str,
+        *,
+        is_saving: bool,
+        suffixes: tuple[str, ...] = (SUFFIX,),
+    ) -> None:
         self._title = title
+        self._suffixes = suffixes
         self._is_saving = is_saving
         self._name = name
         self._folders: list[str] = []
-        self._scripts: list[str] = []
+        self._found: list[str] = []
         self._complaint = ""
         self._warned: Path | None = None  # what is there already, as was said
         self._wants_focus = True  # of the line: on opening, and after each answer that was none
@@ -72,7 +81,7 @@ class Chooser:
     def _draw_places(self, gui: Gui) -> None:
         """Where one may want to go, and where one is."""
         places = {"Up": self.folder.parent, "Home": Path.home()}
-        if not self._is_saving:
+        if not self._is_saving and SUFFIX in self._suffixes:
             places["Examples"] = Path(str(files("assets") / "scripts"))
         for label, place in places.items():
             if imgui.button(label):
@@ -85,7 +94,7 @@ class Chooser:
         )
 
     def _draw_listing(self, gui: Gui) -> Path | None:
-        """What is in the folder; the script that was clicked twice, if any."""
+        """What is in the folder; the file that was clicked twice, if any."""
         chosen = None
         room = 2.2 * imgui.get_frame_height_with_spacing()
         imgui.begin_child("listing", imgui.ImVec2(0.0, -room), imgui.ChildFlags_.borders)
@@ -95,7 +104,7 @@ class Chooser:
             if is_clicked:
                 self._enter(self.folder / name)
                 break
-        for name in self._scripts:
+        for name in self._found:
             flags = imgui.SelectableFlags_.allow_double_click
             is_clicked, _ = imgui.selectable(
                 f"{_label(name)}###file {name}", name == self._name, flags
@@ -105,8 +114,10 @@ class Chooser:
                 self._name, self._complaint = name, ""
                 if imgui.is_mouse_double_clicked(0) and not self._is_saving:
                     chosen = self.folder / name
-        if not self._folders and not self._scripts:
-            imgui.text_colored(colour(gui.theme.muted), f"no folders and no {SUFFIX} files here")
+        if not self._folders and not self._found:
+            imgui.text_colored(
+                colour(gui.theme.muted), f"no folders and no {' '.join(self._suffixes)} here"
+            )
         imgui.end_child()
         return chosen
 
@@ -130,7 +141,7 @@ class Chooser:
         """What the line stands for."""
         target = self.folder / Path(self._name.strip().strip("'\"")).expanduser()
         if self._is_saving and not target.suffix and not target.is_dir():
-            target = target.with_suffix(SUFFIX)
+            target = target.with_suffix(self._suffixes[0])
         return target
 
     def _confirmed(self) -> Path | None:
@@ -150,7 +161,7 @@ class Chooser:
     def _enter(self, folder: Path) -> None:
         """Show a folder, if it may be read."""
         try:
-            self._folders, self._scripts = listing(folder)
+            self._folders, self._found = listing(folder, self._suffixes)
         except OSError as error:
             self._complaint = f"{folder.name}: {error.strerror}"
             return

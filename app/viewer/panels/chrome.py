@@ -10,16 +10,28 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from .. import commands
-from ..actions import MOUSE, Action
+from ..actions import MOUSE, TIMELINE, Action
 from ..gui import colour, em
 
 if TYPE_CHECKING:
     from ..window import Viewer
 
 MESSAGE_SECONDS = 6.0
+LONGEST_FRAME = 0.25  # [s] that counts for a message: a frame that took longer showed nothing
 QUESTION = "Unsaved work"
-# Menus by column of the sheet of keys; a name that is no menu stands for the mouse.
-HELP_COLUMNS = (("File", "Edit", "Time"), ("View", "Help"), ("Expression", "Mouse"))
+# Menus by column of the sheet of keys, and what the mouse does.
+HELP_COLUMNS = (
+    ("File", "Edit", "Time"),
+    ("Keys", "Expression", "Help"),
+    ("View",),
+    ("Mouse", "Timeline"),
+)
+HELP_COLUMNS_NARROW = (
+    ("File", "Edit", "Time", "Help"),
+    ("Keys", "View"),
+    ("Mouse", "Timeline", "Expression"),
+)
+HELP_WIDTH = 63.0  # [em] that the wide ones take
 
 
 def draw_menus(viewer: Viewer, actions: Sequence[Action]) -> float:
@@ -32,22 +44,27 @@ def draw_menus(viewer: Viewer, actions: Sequence[Action]) -> float:
         viewer.gui.remember(f"menu {title}")
         if not is_open:
             continue
-        for action in actions:
-            if action.menu != title:
-                continue
-            is_on = action.is_on is not None and action.is_on(viewer)
-            is_clicked, _ = imgui.menu_item(
-                action.label, action.shown_key, is_on, action.can_run(viewer)
-            )
-            viewer.gui.remember(f"menu {title}: {action.label}")
-            if is_clicked:
-                viewer.attempt(partial(action.run, viewer))
+        draw_actions(viewer, actions, title)
         imgui.end_menu()
     unsaved = viewer.session.unsaved
     if unsaved:
         imgui.text_colored(colour(viewer.gui.theme.muted), f"   unsaved: {unsaved}")
     imgui.end_main_menu_bar()
     return height
+
+
+def draw_actions(viewer: Viewer, actions: Sequence[Action], menu: str) -> None:
+    """What a menu offers, inside it."""
+    for action in actions:
+        if action.menu != menu:
+            continue
+        is_on = action.is_on is not None and action.is_on(viewer)
+        is_clicked, _ = imgui.menu_item(
+            action.label, action.shown_key, is_on, action.can_run(viewer)
+        )
+        viewer.gui.remember(f"menu {menu}: {action.label}")
+        if is_clicked:
+            viewer.attempt(partial(action.run, viewer))
 
 
 @dataclass
@@ -65,7 +82,7 @@ class Messages:
     def draw(self, viewer: Viewer, seconds: float) -> None:
         """Draw the line, if there is one."""
         if not self.is_error:
-            self.left -= seconds
+            self.left -= min(seconds, LONGEST_FRAME)
         if not self.text or self.left <= 0.0:
             self.text = ""
             return
@@ -134,7 +151,7 @@ class Question:
         choices: tuple[tuple[str, bool, Callable[[], None]], ...] = (
             ("Save recording ...", session.is_recording, partial(_save_recording, viewer, again)),
             (
-                "Save script ...",
+                "Save script" if session.file.path else "Save script ...",
                 session.script_is_unsaved and not session.is_recording,
                 partial(commands.save_script, viewer, again),
             ),
@@ -170,15 +187,20 @@ def draw_help(viewer: Viewer, actions: Sequence[Action]) -> bool:
     flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_collapse
     flags |= imgui.WindowFlags_.horizontal_scrollbar
     _, stays = imgui.begin("Keys and mouse (F1)", True, flags)
-    keys = [(action.menu, action.shown_key, action.label) for action in actions if action.key]
-    lines = {menu: [line[1:] for line in keys if line[0] == menu] for menu, _, _ in keys}
-    for index, menus in enumerate(HELP_COLUMNS):
+    with_keys = [action for action in actions if action.key]
+    lines: dict[str, list[tuple[str, str]]] = {action.menu: [] for action in with_keys}
+    for action in with_keys:
+        key = ", ".join(filter(None, (action.shown_key, action.other_key)))
+        lines[action.menu].append((key, action.label))
+    lines |= {"Mouse": list(MOUSE), "Timeline": list(TIMELINE)}
+    is_wide = display.x > em(HELP_WIDTH)
+    for index, menus in enumerate(HELP_COLUMNS if is_wide else HELP_COLUMNS_NARROW):
         if index:
             imgui.same_line(0.0, em(1.5))
         imgui.begin_group()
         for menu in menus:
             imgui.text_colored(colour(viewer.gui.theme.muted), menu)
-            _draw_lines(viewer, menu, lines.get(menu, MOUSE))
+            _draw_lines(viewer, menu, lines.get(menu, []))
         imgui.end_group()
     place, size = imgui.get_window_pos(), imgui.get_window_size()
     viewer.gui.places["help"] = (place.x, place.y, place.x + size.x, place.y + size.y)

@@ -1,4 +1,4 @@
-"""The strip below the picture: play, record, loop, speed, and the script from start to end."""
+"""The strip below the picture: play, record, loop, speed, key; below them the keys in time."""
 
 from __future__ import annotations
 
@@ -7,20 +7,22 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from ...script import Script
-from .. import commands
+from .. import commands, key_commands
 from ..gui import colour, em
-from ..session import SPEEDS, key_times
+from ..session import SPEEDS
+from .dope_sheet import DopeSheet
 from .words import hint, shortened, stay_in_line
 
 if TYPE_CHECKING:
     from ..window import Viewer
 
 BUTTON_WIDTH, SPEED_WIDTH = 4.0, 4.6  # [em]
+MOST_HEIGHT = 0.4  # of the window
 HINTS = {
     "play": "play the script, or pause it (Space)",
     "record": "take every movement of every control, until it is stopped (Ctrl+R)",
     "loop": "begin again at the end (L)",
+    "set key": "the face as it is becomes a key at the time shown (K)",
 }
 
 
@@ -29,14 +31,15 @@ class Timeline:
 
     def __init__(self, viewer: Viewer) -> None:
         self._viewer = viewer
-        self._ticked: tuple[Script | None, list[float]] = None, []
+        self.sheet = DopeSheet(viewer)
         self._rows = 1  # of buttons, which go on in a second one where the window is narrow
 
     def height(self) -> float:
-        """Of the strip [window units]."""
-        rows = self._rows + 1
-        padding = imgui.get_style().window_padding.y
-        return float(rows * imgui.get_frame_height_with_spacing() + 2.0 * padding)
+        """Of the strip [window units]; where words are too large for the window, it scrolls."""
+        most = MOST_HEIGHT * imgui.get_io().display_size.y
+        buttons = self._rows * imgui.get_frame_height_with_spacing()
+        buttons += 2.0 * imgui.get_style().window_padding.y
+        return float(min(buttons + self.sheet.height(most - buttons), most))
 
     def draw(self) -> None:
         """Draw everything, inside the strip's window."""
@@ -60,24 +63,15 @@ class Timeline:
             imgui.end_combo()
         gui.remember("speed")
         hint("of playing")
+        self._button("Set key", "set key", lambda: key_commands.set_key(viewer))
         self._draw_words()
         self._rows = round((imgui.get_cursor_pos_y() - top) / imgui.get_frame_height_with_spacing())
-        imgui.set_next_item_width(-1.0)
-        duration = session.script.duration
-        is_changed, time = imgui.slider_float(
-            "##time", session.time, 0.0, duration, f"%.2f s of {duration:.2f}"
-        )
-        gui.remember("time")
-        self._draw_keys()
-        if is_changed:
-            session.seek(time)
-        if imgui.is_item_deactivated_after_edit():
-            session.note()
+        self.sheet.draw()
 
     def _draw_words(self) -> None:
-        """What is being made now, else the script's name."""
+        """The time, and what is being made now, else the script's name."""
         viewer, session, theme = self._viewer, self._viewer.session, self._viewer.gui.theme
-        words, ink = session.script.title, theme.muted
+        words, ink = session.name, theme.muted
         if session.script_is_unsaved:
             words += " *"
         if session.is_recording:
@@ -85,21 +79,13 @@ class Timeline:
         if viewer.film is not None:
             words, ink = f"filming {viewer.film.seconds:.1f} s", theme.error
         imgui.same_line()
+        time = f"{session.time:.2f} s of {session.script.duration:.2f}"
+        imgui.text(shortened(time, imgui.get_content_region_avail().x))
+        hint("the time shown, and the script's length; drag its end in the ruler")
+        imgui.same_line(0.0, em(1.2))
         imgui.text_colored(colour(ink), shortened(words, imgui.get_content_region_avail().x))
-        hint(f"{session.script.title}: {session.script.source}")
-
-    def _draw_keys(self) -> None:
-        """A tick for each time at which the script has a key."""
-        script = self._viewer.session.script
-        if script is not self._ticked[0]:
-            self._ticked = script, key_times(script)
-        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-        inset = 0.5 * imgui.get_style().grab_min_size + 2.0
-        ink = imgui.get_color_u32(colour(self._viewer.gui.theme.muted))
-        lines = imgui.get_window_draw_list()
-        for time in self._ticked[1]:
-            x = low.x + inset + (high.x - low.x - 2.0 * inset) * time / script.duration
-            lines.add_line(imgui.ImVec2(x, high.y - em(0.27)), imgui.ImVec2(x, high.y), ink)
+        where = session.file.path or "not kept in a file yet"
+        hint(f"{session.script.title or session.name}: {where}")
 
     def _button(
         self, label: str, name: str, run: Callable[[], None], *, is_on: bool = False

@@ -1,0 +1,233 @@
+"""Changes of a script's keys: set, move, copy, delete, rename. Each gives a new script.
+
+A key is known by its lane and its time. The whole poses are one lane, each track is another; no
+lane has two keys at one time, so a key that arrives where another is takes its place.
+"""
+
+from __future__ import annotations
+
+import bisect
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
+from operator import attrgetter
+from typing import NamedTuple, TypeVar
+
+from ..errors import UserError
+from ..scenes import within
+from ..script import LARGEST, Channel, Key, Limits, Pose, Script, rounded
+
+POSES = ""  # the lane of whole poses; any other is called as its control is
+FRAME = 1.0 / 30.0  # [s] to which times are rounded, as in the films that the window makes
+SAME = 1e-6  # of a value or a time [s]: no difference
+
+
+class KeyPlace(NamedTuple):
+    """Where a key is: the lane, and the time [s] in it."""
+
+    lane: str
+    time: float
+
+
+Places = Collection[KeyPlace]
+
+
+Item = TypeVar("Item", Pose, Key)
+
+
+def lanes_of(script: Script) -> dict[str, tuple[float, ...]]:
+    """The times of the keys in every lane [s]; the poses come first."""
+    lanes = {POSES: tuple(pose.time for pose in script.poses)}
+    return lanes | {
+        name: tuple(key.time for key in track.keys) for name, track in script.tracks.items()
+    }
+
+
+def places_of(script: Script) -> frozenset[KeyPlace]:
+    """All keys that a script has."""
+    lanes = lanes_of(script).items()
+    return frozenset(KeyPlace(lane, time) for lane, times in lanes for time in times)
+
+
+def on_frame(time: float) -> float:
+    """The time of the nearest frame [s]."""
+    return rounded(round(time / FRAME) * FRAME)
+
+
+def key_time(script: Script, time: float) -> float:
+    """Where a key set at `time` goes: to one that is less than half a frame away, or a frame."""
+    times = {place.time for place in places_of(script)}
+    near = min(times, key=lambda each: abs(each - time), default=time)
+    return near if abs(near - time) < 0.5 * FRAME else on_frame(time)
+
+
+def pose_at(script: Script, time: float) -> Pose | None:
+    """The pose at just this time, if there is one."""
+    return next((pose for pose in script.poses if abs(pose.time - time) < SAME), None)
+
+
+# Changes
+
+
+def moved(script: Script, places: Places, seconds: float) -> tuple[Script, frozenset[KeyPlace]]:
+    """The script with keys later by `seconds` (none before 0), and where they are then."""
+    return _placed(_kept(script, places), script, places, seconds)
+
+
+def copied(script: Script, places: Places, seconds: float) -> tuple[Script, frozenset[KeyPlace]]:
+    """The script with copies of keys later by `seconds` (none before 0), and where these are."""
+    return _placed(script, script, places, seconds)
+
+
+def without(script: Script, places: Places) -> Script:
+    """The script without these keys; UserError where none would be left."""
+    left = _kept(script, places)
+    if not places_of(left):
+        raise UserError("a script needs at least one key, so these stay")
+    return left
+
+
+def renamed(script: Script, time: float, name: str) -> Script:
+    """The script with another name for the pose at this time; "" for none."""
+    poses = [
+        replace(pose, name=name.strip() or None) if pose.time == time else pose
+        for pose in script.poses
+    ]
+    return _reaching(replace(script, poses=tuple(poses)), time)
+
+
+def eased(script: Script, places: Places, easing: str) -> Script:
+    """The script with these keys approached in another way."""
+    chosen = frozenset(places)
+
+    def change(lane: str, item: Item) -> Item:
+        is_meant = KeyPlace(lane, item.time) in chosen
+        return replace(item, easing=easing) if is_meant else item
+
+    return _with(
+        script,
+        [change(POSES, pose) for pose in script.poses],
+        {name: [change(name, key) for key in each.keys] for name, each in script.tracks.items()},
+    )
+
+
+def lasting(script: Script, seconds: float) -> Script:
+    """The script with another duration, which leaves out no named pose."""
+    ends = [pose.time for pose in script.key_poses]
+    return replace(script, duration=min(max(on_frame(seconds), FRAME, *ends), LARGEST))
+
+
+def keyed(script: Script, time: float, values: Mapping[str, float], limits: Limits) -> Script:
+    """The script with a key that shows these values at `time` [s].
+
+    The key is a pose, which holds what the tracks do not add; where a pose cannot (a track closes
+    the eye, and it shall be open) the track gets a key, too. In a script of tracks alone, as
+    recordings are, those get keys that differ; all of them where nothing does.
+    """
+    time = rounded(time)
+    plain = {name: channel.value(time) for name, channel in script.channels.items()}
+    added = {name: track.value(time) for name, track in script.tracks.items()}
+    shown = within(limits, script.at(time))
+    changed = [name for name in values if abs(values[name] - shown.get(name, 0.0)) > SAME]
+    if script.tracks and not script.poses:
+        return _with_track_keys(
+            _reaching(script, time), time, {name: values[name] for name in changed or script.tracks}
+        )
+    wanted = plain | {name: values[name] - added.get(name, 0.0) for name in changed}
+    posed = {name: rounded(value) for name, value in within(limits, wanted).items()}
+    rest = {name: values[name] - posed[name] for name in changed if name in script.tracks}
+    differing = {name: value for name, value in rest.items() if abs(value - added[name]) > SAME}
+    before = pose_at(script, time)
+    pose = Pose(
+        before.time if before else time,
+        {name: value for name, value in posed.items() if value},
+        before.easing if before else _easing_at(script.poses, time),
+        before.name if before else None,
+    )
+    with_pose = replace(script, poses=tuple(_merged(script.poses, [pose])))
+    return _reaching(_with_track_keys(with_pose, time, differing), time)
+
+
+def _with_track_keys(script: Script, time: float, values: Mapping[str, float]) -> Script:
+    """The script with a key in each of these tracks, which are made where they are not there."""
+    tracks = dict(script.tracks)
+    for name, value in values.items():
+        keys = tracks[name].keys if name in tracks else ()
+        before = next((key for key in keys if abs(key.time - time) < SAME), None)
+        easing = before.easing if before else _easing_at(keys, time)
+        key = Key(before.time if before else time, rounded(value), easing)
+        tracks[name] = Channel(tuple(_merged(keys, [key])))
+    return replace(script, tracks=tracks)
+
+
+def _easing_at(keys: Iterable[Pose] | Iterable[Key], time: float) -> str:
+    """How a new key is approached: as the one after it is."""
+    return next((key.easing for key in keys if key.time > time), "smooth")
+
+
+# How they are made
+
+
+def _kept(script: Script, places: Places) -> Script:
+    """The script without these keys, of which there may be none left."""
+    gone = frozenset(places)
+    return _with(
+        script,
+        [pose for pose in script.poses if KeyPlace(POSES, pose.time) not in gone],
+        {
+            name: [key for key in track.keys if KeyPlace(name, key.time) not in gone]
+            for name, track in script.tracks.items()
+        },
+    )
+
+
+def _placed(
+    base: Script, source: Script, places: Places, seconds: float
+) -> tuple[Script, frozenset[KeyPlace]]:
+    """`base` with the keys of `source` at these places, later by `seconds`."""
+    shift = max(seconds, -min((place.time for place in places), default=0.0))
+    chosen = frozenset(places)
+
+    def arrived(lane: str, items: Iterable[Item]) -> list[Item]:
+        return [
+            replace(item, time=rounded(item.time + shift))
+            for item in items
+            if KeyPlace(lane, item.time) in chosen
+        ]
+
+    poses = arrived(POSES, source.poses)
+    tracks = {name: arrived(name, track.keys) for name, track in source.tracks.items()}
+    stays = {name: base.tracks[name].keys if name in base.tracks else () for name in tracks}
+    script = _with(
+        base,
+        _merged(base.poses, poses),
+        {name: _merged(stays[name], keys) for name, keys in tracks.items()},
+    )
+    there = [KeyPlace(POSES, pose.time) for pose in poses]
+    there += [KeyPlace(name, key.time) for name, keys in tracks.items() for key in keys]
+    return _reaching(script, *(place.time for place in there)), frozenset(there)
+
+
+def _merged(there: Iterable[Item], arriving: Iterable[Item]) -> list[Item]:
+    """Both in the order of time; what arrives takes the place of what is there."""
+    result: list[Item] = list(arriving)
+    taken = sorted(item.time for item in result)
+    result += [item for item in there if not _is_among(item.time, taken)]
+    result.sort(key=attrgetter("time"))
+    return result
+
+
+def _is_among(time: float, times: list[float]) -> bool:
+    """Whether one of these times, which are in order, is the same [s]."""
+    after = bisect.bisect_left(times, time - SAME)
+    return after < len(times) and times[after] <= time + SAME
+
+
+def _with(script: Script, poses: Iterable[Pose], tracks: Mapping[str, list[Key]]) -> Script:
+    """The script with other keys; a track without any is none."""
+    channels = {name: Channel(tuple(keys)) for name, keys in tracks.items() if keys}
+    return replace(script, poses=tuple(poses), tracks=channels)
+
+
+def _reaching(script: Script, *times: float) -> Script:
+    """The script, made longer where it ends before one of these times [s]."""
+    return replace(script, duration=max([script.duration, *times]))

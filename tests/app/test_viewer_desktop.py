@@ -1,0 +1,213 @@
+"""The window among others: full screen and back, panels hidden, minimised, the first size.
+
+A window manager is used where one is there (openbox, say); only what needs one is skipped without.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from Xlib import X, display
+from Xlib.protocol import event
+
+from app.choices import script_for
+from app.viewer import Viewer
+from app.viewer.placement import FIRST_SIZE
+from app.viewer.settings import load_settings
+
+from .driving import NEEDS_A_SCREEN, SIZE, click, nose, settle, show_controls, until, xdotool
+
+pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("desktop")]
+
+ROOT = Path(__file__).parents[2]
+MANAGERS = ("openbox", "xfwm4", "metacity", "icewm", "fluxbox")
+MANAGER = next(filter(shutil.which, MANAGERS), None)
+needs_manager = pytest.mark.skipif(MANAGER is None, reason=f"needs one of {', '.join(MANAGERS)}")
+
+
+@pytest.fixture(scope="module")
+def desktop() -> Iterator[None]:
+    """A window manager for the tests of this file, where one is installed."""
+    if MANAGER is None:
+        yield
+        return
+    manager = subprocess.Popen([MANAGER], stderr=subprocess.DEVNULL)
+    try:
+        time.sleep(1.0)
+        yield
+    finally:
+        manager.terminate()
+        manager.wait()
+
+
+@pytest.fixture(scope="module")
+def viewer(desktop: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Viewer]:
+    """One window for all tests of this file, amid the desktop."""
+    path = tmp_path_factory.mktemp("settings") / "viewer.json"
+    with Viewer(script_for(None, "face"), SIZE, settings_path=path) as opened:
+        settle(opened, 8)
+        yield opened
+
+
+def screen_size() -> tuple[int, int]:
+    """Of the whole screen."""
+    screen = display.Display().screen()
+    return screen.width_in_pixels, screen.height_in_pixels
+
+
+def place_of(viewer: Viewer) -> tuple[int, int, int, int]:
+    """Where the window is, as the window itself knows it."""
+    settle(viewer, 3)
+    return viewer.placement._place()
+
+
+@pytest.mark.parametrize("key", ["F11", "alt+Return"])
+def test_full_screen_and_back(viewer: Viewer, key: str) -> None:
+    """All of the screen is the window; left again, it is as large and where it was."""
+    before = place_of(viewer)
+    xdotool(viewer, "mousemove", *nose(viewer))
+    xdotool(viewer, "key", key)
+    assert until(viewer, lambda: viewer.surface.window_size == screen_size(), 5.0)
+    assert until(viewer, lambda: place_of(viewer) == (0, 0, *screen_size()), 5.0)
+    assert viewer.placement.is_full
+    assert viewer.surface.read().shape[1::-1] == screen_size()
+    assert viewer.placement.size == SIZE  # which is what is remembered
+    xdotool(viewer, "key", key)
+    assert until(viewer, lambda: viewer.surface.window_size == SIZE, 5.0)
+    assert until(viewer, lambda: place_of(viewer) == before, 5.0)
+    assert not viewer.placement.is_full
+
+
+def test_panels_hide_and_come_back(viewer: Viewer) -> None:
+    """Tab leaves the picture alone; menus come up at its edge; Tab brings all back."""
+    around = viewer.picture_area
+    xdotool(viewer, "mousemove", *nose(viewer))
+    xdotool(viewer, "key", "Tab")
+    assert viewer.viewport == (0, 0, *SIZE) and "play" not in viewer.gui.places
+    assert until(viewer, lambda: viewer.is_idle or viewer.messages.is_fading)
+    picture = viewer.surface.read()
+    assert (np.ptp(picture[:300, :8].astype(int), axis=(0, 1)) > 3).any()  # backdrop, not a panel
+    assert "menu View" not in viewer.gui.places
+    x = nose(viewer)[0]
+    xdotool(viewer, "mousemove", x, viewer.placement._place()[1] + 5)
+    assert "menu View" in viewer.gui.places
+    click(viewer, "menu View")
+    click(viewer, "menu View: Hide panels")
+    assert viewer.picture_area == around and "play" in viewer.gui.places
+    show_controls(viewer, "jaw")
+    xdotool(viewer, "key", "Tab")  # which belongs to whoever writes
+    assert not viewer.is_bare
+    xdotool(viewer, "key", "Escape")
+
+
+def test_full_screen_without_panels_still_acts(viewer: Viewer) -> None:
+    """Keys act on the bare picture, and both ways back work in any order."""
+    xdotool(viewer, "mousemove", *nose(viewer))
+    viewer.face_panel.search = ""
+    xdotool(viewer, "key", "F11", "Tab")
+    assert until(viewer, lambda: viewer.viewport == (0, 0, *screen_size()), 5.0)
+    xdotool(viewer, "key", "3")
+    assert viewer.session.shown == list(viewer.scene.expressions)[2]
+    xdotool(viewer, "key", "F11")
+    assert until(viewer, lambda: viewer.viewport == (0, 0, *SIZE), 5.0)
+    xdotool(viewer, "key", "3", "Tab")
+    assert "play" in viewer.gui.places
+
+
+def test_the_first_size_suits_the_screen(tmp_path: Path) -> None:
+    """Without a size the window is no larger than the screen; on a dense one it grows with it."""
+    for dots, wanted in ((96, FIRST_SIZE), (192, (2 * FIRST_SIZE[0], 2 * FIRST_SIZE[1]))):
+        result = subprocess.run(
+            [sys.executable, "-m", "tests.app.dense_window", "first", str(dots)],
+            capture_output=True, text=True, timeout=120, check=False, cwd=ROOT,
+        )  # fmt: skip
+        assert result.returncode == 0, result.stderr
+        found = json.loads(result.stdout)
+        width, height = screen_size()
+        least = min(wanted[0], width - 20), min(wanted[1], height - 120)  # frames take some
+        assert least[0] <= found["window"][0] <= min(wanted[0], width), dots
+        assert least[1] <= found["window"][1] <= min(wanted[1], height), dots
+        assert found["panel"] == pytest.approx(22.5 * 15 * dots / 96, abs=3), dots
+
+
+@needs_manager
+def test_a_minimised_window_rests_and_comes_back(tmp_path: Path) -> None:
+    """While it plays: minimised it takes no time at all; brought back it looks and plays on."""
+    script = tmp_path / "long.toml"
+    script.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 600.0\njaw_open = 1.0\n")
+    settings = tmp_path / "risorius" / "viewer.json"
+    program = subprocess.Popen(
+        [sys.executable, "-m", "app", "replay", str(script), "--size", "700x500"],
+        stderr=subprocess.PIPE, text=True, cwd=ROOT,
+        env={**os.environ, "XDG_CONFIG_HOME": str(tmp_path)},
+    )  # fmt: skip
+    try:
+        search = ["xdotool", "search", "--sync", "--onlyvisible", "--name", "Risorius: long"]
+        found = subprocess.run(search, check=True, capture_output=True, text=True, timeout=60)
+        window = found.stdout.split()[-1]
+        time.sleep(2.0)
+        assert looks_whole(window)
+        playing = used_share(program.pid, 1.0)
+        tell(window, "windowminimize")
+        time.sleep(1.0)
+        minimised = used_share(program.pid, 3.0)
+        assert minimised < 0.02 < playing
+        tell(window, "windowactivate")
+        time.sleep(1.5)
+        assert looks_whole(window)
+        assert used_share(program.pid, 1.0) > 0.5 * playing
+        tell(window, "windowminimize")
+        time.sleep(0.5)
+        ask_to_close(window)
+        assert program.wait(20.0) == 0
+        assert program.stderr is not None and program.stderr.read() == ""
+        assert load_settings(settings)[0].size == (700, 500)
+    finally:
+        program.kill()
+
+
+def tell(window: str, what: str) -> None:
+    """Ask the desktop to do something with a window."""
+    subprocess.run(["xdotool", what, window], check=True, capture_output=True, timeout=30)
+
+
+def ask_to_close(window: str) -> None:
+    """What a click on the cross above the window sends it."""
+    screen = display.Display()
+    target = screen.create_resource_object("window", int(window))
+    words = [screen.intern_atom("WM_DELETE_WINDOW"), X.CurrentTime, 0, 0, 0]
+    kind = screen.intern_atom("WM_PROTOCOLS")
+    target.send_event(event.ClientMessage(window=target, client_type=kind, data=(32, words)))
+    screen.sync()
+
+
+def used_share(process: int, seconds: float) -> float:
+    """Of a core, by a process."""
+
+    def used() -> float:
+        fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    before = used()
+    time.sleep(seconds)
+    return (used() - before) / seconds
+
+
+def looks_whole(window: str) -> bool:
+    """Whether the window's pixels on the screen are panels at the left and a face beside them."""
+    seen = display.Display().create_resource_object("window", int(window))
+    size = seen.get_geometry()
+    raw = seen.get_image(0, 0, size.width, size.height, X.ZPixmap, 0xFFFFFFFF).data
+    pixels = np.frombuffer(raw, np.uint8).reshape(size.height, size.width, 4)[..., :3].astype(int)
+    skin = pixels[..., 2] - pixels[..., 0] > 30  # redder than blue
+    panel = pixels[:, : size.width // 4]
+    return bool(skin[:, size.width // 3 :].mean() > 0.05 and panel.std() > 5 and panel.mean() > 150)

@@ -1,0 +1,284 @@
+"""Editing keys without a window: what each change does to a script, and to a session."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.choices import script_for
+from app.errors import UserError
+from app.scenes import FaceScene
+from app.script import Script, load_script, parse_script
+from app.script_writer import save_script, script_text
+from app.viewer import keys
+from app.viewer.keys import FRAME, POSES, KeyPlace
+from app.viewer.lanes import described, lanes_shown
+from app.viewer.session import Session
+from app.viewer.time_view import LEAST_SPAN, TimeView
+
+HELLO = Path("docs/hello.toml")
+JOY = KeyPlace(POSES, 1.0)
+
+
+@pytest.fixture
+def hello() -> Script:
+    """Four poses, of which one has a name, and a blink."""
+    return load_script(HELLO)
+
+
+@pytest.fixture(scope="module")
+def scene() -> FaceScene:
+    """One face for all tests of this file."""
+    return FaceScene()
+
+
+@pytest.fixture
+def session(scene: FaceScene, tmp_path: Path) -> Session:
+    """A session with a script of the user's own."""
+    scene.reset()
+    own = tmp_path / "own.toml"
+    own.write_text(HELLO.read_text(encoding="utf-8"))
+    return Session(scene, load_script(own))
+
+
+def pose_times(script: Script) -> list[float]:
+    """When the script has poses [s]."""
+    return [pose.time for pose in script.poses]
+
+
+def test_a_moved_key_keeps_everything_but_its_time(hello: Script) -> None:
+    """Name, values and easing go along; what is not selected stays."""
+    script, places = keys.moved(hello, [JOY], 0.5)
+    assert places == {KeyPlace(POSES, 1.5)}
+    assert pose_times(script) == [0.0, 1.5, 3.0, 4.0]
+    assert replace(script.poses[1], time=1.0) == hello.poses[1]
+    assert script.tracks == hello.tracks and script.at(1.5)["joy"] == 1.0
+
+
+def test_moved_keys_stay_in_order_and_after_zero(hello: Script) -> None:
+    """A key can pass others; no key comes before 0; beyond the end the script grows."""
+    passed, _ = keys.moved(hello, [JOY], 2.5)
+    assert pose_times(passed) == [0.0, 3.0, 3.5, 4.0]
+    assert passed.poses[2].name == "joy"
+    both = [JOY, KeyPlace("blink", 2.0)]
+    first, places = keys.moved(hello, both, -9.0)
+    assert places == {KeyPlace(POSES, 0.0), KeyPlace("blink", 1.0)}
+    assert pose_times(first) == [0.0, 3.0, 4.0]  # it took the place of what was there
+    late, _ = keys.moved(hello, [KeyPlace(POSES, 4.0)], 2.0)
+    assert late.duration == 6.0
+    assert keys.moved(hello, [JOY], 0.1)[0].duration == hello.duration
+
+
+def test_moving_there_and_back_changes_nothing(hello: Script) -> None:
+    """All keys later by odd times and back again: the same script, without a crumb."""
+    script, places = hello, keys.places_of(hello)
+    for seconds in (0.1, 0.7, 1.0 / 3.0, -0.1, -1.0 / 3.0, -0.7):
+        script, places = keys.moved(script, places, seconds)
+    assert replace(script, duration=hello.duration) == hello
+
+
+def test_copies_and_deletions(hello: Script) -> None:
+    """A copy is as the key was; deleting it gives the script back; the last key stays."""
+    script, copies = keys.copied(hello, [JOY, KeyPlace("blink", 2.12)], 0.25)
+    assert copies == {KeyPlace(POSES, 1.25), KeyPlace("blink", 2.37)}
+    assert keys.places_of(script) == keys.places_of(hello) | copies
+    assert keys.without(script, copies) == hello
+    blinks = {place for place in keys.places_of(hello) if place.lane == "blink"}
+    assert keys.without(hello, blinks).tracks == {}
+    with pytest.raises(UserError, match="at least one key"):
+        keys.without(hello, keys.places_of(hello))
+
+
+def test_names_easings_and_the_end(hello: Script) -> None:
+    """A name can come and go; an easing is that of the chosen keys; named poses are kept in."""
+    named = keys.renamed(hello, 3.0, "  rest ")
+    assert [pose.name for pose in named.key_poses] == ["joy", "rest"]
+    assert keys.renamed(named, 3.0, "") == hello
+    eased = keys.eased(hello, [JOY, KeyPlace("blink", 2.0)], "hold")
+    assert eased.poses[1].easing == "hold" == eased.tracks["blink"].keys[0].easing
+    assert eased.poses[2].easing == "smooth"
+    assert keys.lasting(hello, 2.0).duration == 2.0
+    assert keys.lasting(named, 2.0).duration == 3.0
+    assert keys.lasting(replace(hello, poses=()), -5.0).duration == pytest.approx(FRAME)
+
+
+def test_a_key_shows_just_the_face_that_was_set(hello: Script, scene: FaceScene) -> None:
+    """At its time the script says what the controls were; the other poses stay."""
+    limits = scene.limits
+    zero = dict.fromkeys(limits, 0.0)
+    wanted = {**zero, "jaw_open": 0.4, "AU4_left": 0.2, "blink": 0.25}
+    script = keys.keyed(hello, 2.12, wanted, limits)
+    for name, value in wanted.items():
+        assert script.at(2.12).get(name, 0.0) == pytest.approx(value, abs=1e-9), name
+    script.check(limits)
+    assert [pose for pose in script.poses if pose.time != 2.12] == list(hello.poses)
+    assert [key for key in script.tracks["blink"].keys if key.time != 2.12] == [
+        key for key in hello.tracks["blink"].keys if key.time != 2.12
+    ]
+    again = keys.keyed(hello, 1.0, {**zero, "jaw_open": 0.7}, limits)
+    assert again.poses[1].name == "joy" and again.poses[1].easing == "ease-out"
+    assert again.poses[1].values == {"jaw_open": 0.7}
+
+
+def test_a_key_of_an_unchanged_face_is_what_was_there(hello: Script, scene: FaceScene) -> None:
+    """Where poses and tracks add up to more than a control can, neither is changed by a key."""
+    more = "[[pose]]\ntime=0\nblink=0.8\n[[pose]]\ntime=1\n[tracks]\nblink=[{time=0,value=0.9}]"
+    script = parse_script(more, source="more.toml")
+    shown = {**dict.fromkeys(scene.limits, 0.0), "blink": 1.0}
+    assert keys.keyed(script, 0.0, shown, scene.limits) == script
+
+
+def test_a_key_in_a_recording(scene: FaceScene) -> None:
+    """Where there are tracks only, those get a key that were changed; all if none was."""
+    text = "[tracks]\njoy=[{time=0,value=0},{time=2,value=1,easing='linear'}]\n"
+    script = parse_script(text + "jaw_open=[{time=0,value=0.5}]", source="take.toml")
+    limits, zero = scene.limits, dict.fromkeys(scene.limits, 0.0)
+    changed = keys.keyed(script, 1.0, {**zero, "joy": 0.5, "jaw_open": 0.1}, limits)
+    assert changed.poses == () and changed.tracks["joy"] == script.tracks["joy"]
+    assert [(key.time, key.value) for key in changed.tracks["jaw_open"].keys] == [
+        (0, 0.5),
+        (1, 0.1),
+    ]
+    held = keys.keyed(script, 1.0, {**zero, "joy": 0.5, "jaw_open": 0.5}, limits)
+    assert len(held.tracks["joy"].keys) == 3 and len(held.tracks["jaw_open"].keys) == 2
+    for time in np.linspace(0.0, 2.0, 9):
+        assert held.at(time) == pytest.approx(script.at(time))
+
+
+def test_edited_scripts_survive_a_file(session: Session, tmp_path: Path) -> None:
+    """Load, edit in every way, save, load: exactly the same, with the comment at its head."""
+    session.seek(0.77)
+    session.set("jaw_open", 0.123456789)
+    session.set_key()
+    script, _ = keys.moved(session.script, [JOY, KeyPlace("blink", 2.0)], 0.07)
+    script, _ = keys.copied(script, keys.places_of(script), 1.0 / 3.0)
+    script = keys.eased(keys.renamed(script, 3.0, 'a "name"\t\x7f'), [KeyPlace(POSES, 3.0)], "hold")
+    session.edit(script)
+    target = tmp_path / "edited.toml"
+    session.save_script(target)
+    read = load_script(target)
+    assert read == session.script and read.preface.startswith("# A smile with a blink")
+    save_script(tmp_path / "again.toml", read)
+    assert (tmp_path / "again.toml").read_bytes() == target.read_bytes()
+    assert load_script(HELLO) == parse_script(script_text(load_script(HELLO)), source="x")
+
+
+def test_undo_takes_back_an_edit_wherever_one_looks(session: Session) -> None:
+    """Scrubbing is no step of its own: one undo after it takes back the edit."""
+    before = session.script
+    session.seek(1.0)
+    session.note()
+    session.edit(keys.moved(session.script, [JOY], 0.5)[0])
+    for time in (0.5, 2.0, 3.0):
+        session.seek(time)
+        session.note()
+    assert session.script_is_unsaved
+    session.undo()
+    assert session.script == before and not session.script_is_unsaved
+    session.redo()
+    assert pose_times(session.script) == [0.0, 1.5, 3.0, 4.0]
+
+
+def test_a_key_set_is_one_step(session: Session) -> None:
+    """Undo after setting a key brings back the script, and the pose as one made by hand."""
+    before = session.script
+    session.seek(2.0)
+    session.set("jaw_open", 0.5)
+    session.note()
+    session.set_key()
+    assert not session.has_unsaved_pose and session.script_is_unsaved
+    assert session.script.at(2.0)["jaw_open"] == pytest.approx(0.5)
+    session.undo()
+    assert session.script == before and session.has_unsaved_pose
+    assert session.values["jaw_open"] == 0.5
+
+
+def test_the_face_follows_an_edit_if_it_followed_the_script(session: Session) -> None:
+    """A key that moves away from under the playhead is seen to; a pose by hand stays."""
+    session.seek(1.0)
+    assert session.values["joy"] == 1.0
+    session.edit(keys.moved(session.script, [JOY], 0.5)[0])
+    assert 0.0 < session.values["joy"] < 1.0
+    session.set("joy", 0.3)
+    session.edit(keys.moved(session.script, [KeyPlace(POSES, 1.5)], -0.5)[0])
+    assert session.values["joy"] == 0.3
+
+
+def test_keys_cannot_be_changed_while_recording(session: Session) -> None:
+    """What is being recorded takes the script's place: a change would be lost."""
+    session.toggle_recording()
+    with pytest.raises(UserError, match="stop the recording"):
+        session.edit(keys.moved(session.script, [JOY], 0.5)[0])
+
+
+def test_the_file_goes_with_its_script(session: Session, tmp_path: Path) -> None:
+    """Undo past opening another script gives back the first one's file, too."""
+    own, other = session.file.path, tmp_path / "other.toml"
+    other.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")
+    session.take(session.read(other))
+    assert session.file.path == other and session.name == "other.toml"
+    session.undo()
+    assert session.file.path == own and not session.script_is_unsaved
+    session.redo()
+    session.begin_script()
+    assert session.file.path is None and session.name == "Untitled"
+    assert Session(session.scene, script_for(None, "face")).file.path is None
+
+
+def test_what_a_file_would_lose_is_noticed(session: Session) -> None:
+    """Changes by another program, and comments that are not kept; not a # in a title."""
+    path = session.file.path
+    assert path is not None and session.file.objection == ""
+    session.save_script(path)
+    assert session.file.objection == ""
+    text = path.read_text()
+    path.write_text(text + "# mine\n")
+    assert "another program" in session.file.objection
+    session.take(session.read(path))
+    assert "comments" in session.file.objection
+    path.write_text(text.replace('"Hello"', '"No. #1 \\" # 2"'))
+    session.take(session.read(path))
+    assert session.script.title == 'No. #1 " # 2' and session.file.objection == ""
+    path.unlink()
+    assert session.file.objection == ""
+
+
+def test_rows_of_the_timeline(hello: Script) -> None:
+    """Poses with their names, all tracks in one row, and one row for each if it is open."""
+    poses, tracks = lanes_shown(hello, is_open=False)
+    assert [place.time for place in poses.places] == [0.0, 1.0, 3.0, 4.0]
+    assert poses.names == ((1.0, "joy"),) and tracks.is_sum
+    assert [lane.label for lane in lanes_shown(hello, is_open=True)][2:] == ["blink"]
+    assert lanes_shown(hello, is_open=True)[2].held == ((2.12, 2.22),)
+    assert poses.near(1.2, 0.3) == {JOY} and not poses.near(2.0, 0.3)
+    assert described(hello, frozenset({JOY})) == "joy, 1.00 s, ease-out\njoy 1.00\njaw open 0.10"
+    assert described(hello, frozenset({KeyPlace("blink", 2.12)})) == "2.12 s, ease-in\nblink 1.00"
+    assert described(hello, frozenset({KeyPlace(POSES, 0.0)})) == "0.00 s\nneutral"
+
+
+@pytest.mark.parametrize("end", [0.1, 4.0, 61.0, 5000.0, 86_400.0])
+@pytest.mark.parametrize("width", [5.0, 120.0, 700.0, 4000.0])
+def test_any_length_of_time_can_be_shown(end: float, width: float) -> None:
+    """Ruler marks are few and in order, zooming keeps the time under the mouse, limits hold."""
+    view = TimeView()
+    view.place(100.0, width)
+    view.fit(end)
+    assert view.start == 0.0 and view.span > end
+    for _ in range(60):
+        x = 100.0 + 0.7 * width
+        kept = view.time(x)
+        view.zoom(0.7, x)
+        if view.span > LEAST_SPAN:
+            assert view.time(x) == pytest.approx(kept, abs=1e-6 * end)
+        view.fit(end)
+        ticks = view.ticks(40.0)
+        labels = [tick.time for tick in ticks if tick.has_label]
+        assert len(ticks) <= width / 4.0 + 2.0 and ticks == sorted(ticks)
+        assert len(labels) <= width / 40.0 + 2.0
+    assert view.span >= LEAST_SPAN
+    view.zoom(1e9, 100.0)
+    view.fit(end)
+    assert view.is_whole and view.start == 0.0

@@ -1,0 +1,272 @@
+"""The timeline in the real window: keys that are dragged, deleted, copied, named, and undone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from imgui_bundle import imgui
+
+from app.script import load_script
+from app.viewer import Viewer
+from app.viewer.keys import POSES, KeyPlace, on_frame, places_of
+
+from .driving import (
+    NEEDS_A_SCREEN,
+    clear_search,
+    click,
+    drag,
+    middle,
+    on_screen,
+    settle,
+    show_controls,
+    until,
+    write,
+    xdotool,
+)
+
+pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "own")]
+
+SCRIPT = Path("docs/hello.toml").absolute()
+JOY = KeyPlace(POSES, 1.0)
+REST = KeyPlace(POSES, 3.0)
+
+
+@pytest.fixture
+def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
+    """A script of the user's own, opened."""
+    path = tmp_path / "own.toml"
+    path.write_text(SCRIPT.read_text(encoding="utf-8"))
+    viewer.session.take(viewer.session.read(path))
+    viewer.timeline.sheet.selected = frozenset()
+    viewer.timeline.sheet.view.is_whole = True
+    settle(viewer)
+    return path
+
+
+def at(viewer: Viewer, place: KeyPlace) -> tuple[int, int]:
+    """Where a key is, on the screen."""
+    return on_screen(viewer, *viewer.timeline.sheet.where(place))
+
+
+def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -> None:
+    """Click somewhere, with keys held down."""
+    xdotool(viewer, "mousemove", *place)
+    for key in keys:
+        xdotool(viewer, "keydown", key)
+    xdotool(viewer, "mousedown", button)
+    xdotool(viewer, "mouseup", button)
+    for key in keys:
+        xdotool(viewer, "keyup", key)
+
+
+def pose_times(viewer: Viewer) -> list[float]:
+    """When the script has poses [s]."""
+    return [pose.time for pose in viewer.session.script.poses]
+
+
+def test_a_key_is_dragged_and_undone_in_one_step(viewer: Viewer, own: Path) -> None:
+    """A drag goes to whole frames, the face follows, the file keeps it, one undo takes it back."""
+    before = viewer.session.script
+    viewer.session.seek(1.0)
+    drag(viewer, at(viewer, JOY), (40, 0))
+    xdotool(viewer, "mousemove_relative", "--", 13, 0)
+    assert viewer.session.values["joy"] < 1.0  # seen while it is dragged
+    xdotool(viewer, "mouseup", 1)
+    time = pose_times(viewer)[1]
+    assert time == on_frame(time) > 1.1
+    assert viewer.timeline.sheet.selected == {KeyPlace(POSES, time)}
+    assert viewer.session.name == "own.toml" and viewer.session.script_is_unsaved
+    xdotool(viewer, "key", "ctrl+s")
+    assert not viewer.session.unsaved and load_script(own) == viewer.session.script
+    assert load_script(own).poses[1].time == time
+    xdotool(viewer, "key", "ctrl+z")
+    assert viewer.session.script == before and viewer.session.script_is_unsaved
+    xdotool(viewer, "key", "ctrl+shift+z")
+    assert pose_times(viewer)[1] == time and not viewer.session.script_is_unsaved
+
+
+def test_ctrl_leaves_frames_and_escape_leaves_all(viewer: Viewer) -> None:
+    """With Ctrl a key goes anywhere; Escape during a drag puts it back."""
+    drag(viewer, at(viewer, JOY), (40, 0))
+    for _ in range(3):  # at least one of three places next to each other is between frames
+        xdotool(viewer, "keydown", "ctrl")
+        xdotool(viewer, "mousemove_relative", "--", 1, 0)
+        time = pose_times(viewer)[1]
+        if time != on_frame(time):
+            break
+    xdotool(viewer, "keyup", "ctrl")
+    assert time != on_frame(time)
+    xdotool(viewer, "key", "Escape")
+    xdotool(viewer, "mouseup", 1)
+    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+    assert not viewer.session.script_is_unsaved
+
+
+def test_a_click_selects_a_key_and_goes_there(viewer: Viewer) -> None:
+    """The pose under the mouse is selected and shown; Shift adds another and stays."""
+    press(viewer, at(viewer, JOY))
+    assert viewer.timeline.sheet.selected == {JOY}
+    assert viewer.session.time == 1.0 and viewer.session.values["joy"] == 1.0
+    press(viewer, at(viewer, REST), "shift")
+    assert viewer.timeline.sheet.selected == {JOY, REST} and viewer.session.time == 1.0
+    press(viewer, at(viewer, JOY), "shift")
+    assert viewer.timeline.sheet.selected == {REST}
+    x, y = at(viewer, KeyPlace(POSES, 1.0))
+    press(viewer, (x + 50, y))
+    assert not viewer.timeline.sheet.selected and not viewer.session.unsaved
+
+
+def test_a_box_selects_keys_that_then_move_together(viewer: Viewer) -> None:
+    """A drag over nothing takes the keys inside, of poses and tracks; they keep their distance."""
+    x, y = at(viewer, JOY)
+    right, low = at(viewer, KeyPlace("blink", 2.4))
+    drag(viewer, (x - 30, y - 4), (right + 12 - x + 30, low - y + 8))
+    xdotool(viewer, "mouseup", 1)
+    chosen = viewer.timeline.sheet.selected
+    assert {place.lane for place in chosen} == {POSES, "blink"} and len(chosen) == 5
+    drag(viewer, at(viewer, JOY), (-30, 0))
+    xdotool(viewer, "mouseup", 1)
+    by = viewer.session.script.poses[1].time - 1.0
+    assert by < -0.1
+    times = [key.time + 0.0 for key in viewer.session.script.tracks["blink"].keys]
+    assert times == pytest.approx([time + by for time in (2.0, 2.12, 2.22, 2.4)])
+    xdotool(viewer, "key", "shift+Right")
+    assert viewer.session.script.poses[1].time == pytest.approx(1.0 + by + 1.0 / 30.0, abs=1e-5)
+    xdotool(viewer, "key", "ctrl+z", "ctrl+z")
+    assert not viewer.session.script_is_unsaved
+
+
+def test_delete_and_duplicate(viewer: Viewer) -> None:
+    """Delete takes selected keys, Ctrl+D copies them to the time shown; both can be undone."""
+    press(viewer, at(viewer, JOY))
+    viewer.session.seek(2.0)
+    xdotool(viewer, "key", "ctrl+d")
+    assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert viewer.session.script.poses[2].name == "joy"
+    assert viewer.timeline.sheet.selected == {KeyPlace(POSES, 2.0)}
+    xdotool(viewer, "key", "Delete")
+    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0] and "1 key deleted" in viewer.messages.text
+    xdotool(viewer, "key", "ctrl+a", "BackSpace")
+    assert viewer.messages.is_error and "at least one key" in viewer.messages.text
+    xdotool(viewer, "key", "ctrl+z")
+    assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
+    xdotool(viewer, "key", "ctrl+z")
+    assert not viewer.session.script_is_unsaved
+
+
+def test_the_face_becomes_a_key(viewer: Viewer) -> None:
+    """Go to a time, move a slider, press K: a pose is there that shows just this face."""
+    viewer.session.seek(2.0)
+    show_controls(viewer, "jaw open")
+    drag(viewer, middle(viewer, "jaw_open"), (40, 0))
+    xdotool(viewer, "mouseup", 1)
+    clear_search(viewer)
+    wanted = dict(viewer.session.values)
+    xdotool(viewer, "key", "k")
+    assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert viewer.session.script.at(2.0)["jaw_open"] == pytest.approx(wanted["jaw_open"])
+    assert viewer.timeline.sheet.selected == {KeyPlace(POSES, 2.0)}
+    assert viewer.session.unsaved == "the script"
+    xdotool(viewer, "key", "Home")
+    press(viewer, at(viewer, KeyPlace(POSES, 2.0)))
+    assert viewer.session.values == pytest.approx(wanted)
+    click(viewer, "set key")
+    assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
+
+
+def test_a_pose_is_named(viewer: Viewer) -> None:
+    """A double click on a pose asks for its name; Escape leaves it."""
+    xdotool(viewer, "mousemove", *at(viewer, REST))
+    xdotool(viewer, "click", "--repeat", 2, "--delay", 50, 1)
+    write(viewer, "half a smile")
+    xdotool(viewer, "key", "Return")
+    assert [pose.name for pose in viewer.session.script.key_poses] == ["joy", "half a smile"]
+    xdotool(viewer, "key", "shift+k")
+    assert until(viewer, lambda: "pose name" in viewer.gui.places, 3.0)
+    write(viewer, "other")
+    xdotool(viewer, "key", "Escape")
+    assert viewer.session.script.key_poses[1].name == "half a smile"
+    assert "pose name" not in viewer.gui.places
+    xdotool(viewer, "key", "ctrl+z")
+    assert not viewer.session.script_is_unsaved
+
+
+def test_the_menus_do_the_same(viewer: Viewer) -> None:
+    """A right click on a key brings up its menu, in which there is more than keys have."""
+    press(viewer, at(viewer, REST), button=3)
+    assert viewer.timeline.sheet.selected == {REST}
+    click(viewer, "menu Keys: Approach: hold")
+    assert viewer.session.script.poses[2].easing == "hold"
+    press(viewer, at(viewer, REST), button=3)
+    click(viewer, "menu Keys: Delete")
+    assert pose_times(viewer) == [0.0, 1.0, 4.0]
+    click(viewer, "menu Edit")
+    click(viewer, "menu Edit: Undo")
+    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+
+
+def test_the_ruler_scrubs_and_the_wheel_zooms(viewer: Viewer) -> None:
+    """A drag in the ruler goes through frames; its end can be dragged; wheels zoom and scroll."""
+    sheet, session = viewer.timeline.sheet, viewer.session
+    x, y = middle(viewer, "time")
+    drag(viewer, (x, y), (30, 0))
+    assert session.time == on_frame(session.time) > 1.0
+    xdotool(viewer, "mouseup", 1)
+    kept = sheet.view.time(x - on_screen(viewer, 0, 0)[0] + 30)
+    xdotool(viewer, "click", "--repeat", 3, 4)
+    assert sheet.view.span < 3.0 and not sheet.view.is_whole
+    assert sheet.view.time(x - on_screen(viewer, 0, 0)[0] + 30) == pytest.approx(kept, abs=0.02)
+    start = sheet.view.start
+    xdotool(viewer, "keydown", "shift")
+    xdotool(viewer, "click", 5)
+    xdotool(viewer, "keyup", "shift")
+    assert sheet.view.start > start
+    xdotool(viewer, "key", "shift+f")
+    assert sheet.view.is_whole and sheet.view.start == 0.0
+    end = on_screen(viewer, sheet.view.x(4.0) + 3, 0)[0]
+    drag(viewer, (end, y), (-60, 0))
+    xdotool(viewer, "mouseup", 1)
+    assert 2.0 < session.script.duration < 3.9
+    xdotool(viewer, "key", "ctrl+z")
+    assert session.script.duration == 4.0
+
+
+def test_a_key_under_the_mouse_tells_what_it_is(viewer: Viewer) -> None:
+    """Pointing at a key brings up a tooltip, pointing beside it none."""
+
+    def is_told() -> bool:
+        windows = imgui.get_current_context().windows
+        return any(each.active and each.name.startswith("##Tooltip") for each in windows)
+
+    x, y = at(viewer, JOY)
+    xdotool(viewer, "mousemove", x, y)
+    assert until(viewer, is_told, 3.0)
+    xdotool(viewer, "mousemove", x + 40, y)
+    assert until(viewer, lambda: not is_told(), 3.0)
+
+
+def test_tracks_unfold_into_rows(viewer: Viewer) -> None:
+    """A click on the arrow gives each track a row; its keys are then selected alone."""
+    sheet = viewer.timeline.sheet
+    left = viewer.gui.places["keys"][0]
+    rows = viewer.timeline.height()
+    _, y = sheet.where(KeyPlace("blink", 2.0))
+    xdotool(viewer, "mousemove", *on_screen(viewer, left + 8, y))
+    xdotool(viewer, "click", 1)
+    assert viewer.timeline.height() > rows and viewer.settings.folds["Tracks"]
+    settle(viewer)
+    x, y = sheet.where(KeyPlace("blink", 2.4))
+    press(viewer, on_screen(viewer, x, y + imgui.get_font_size() * 1.35))
+    assert sheet.selected == {KeyPlace("blink", 2.4)}
+
+
+def test_while_recording_keys_stay(viewer: Viewer) -> None:
+    """A drag then says why not, and the script stays as it was."""
+    before = viewer.session.script
+    xdotool(viewer, "key", "ctrl+r")
+    drag(viewer, at(viewer, JOY), (40, 0))
+    xdotool(viewer, "mouseup", 1)
+    assert viewer.messages.is_error and "stop the recording" in viewer.messages.text
+    assert viewer.session.script is before and viewer.session.is_recording
+    assert places_of(before) >= viewer.timeline.sheet.selected
