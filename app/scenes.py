@@ -34,7 +34,7 @@ class Scene(Protocol):
     uv: npt.NDArray[np.float32] | None  # texture coordinates (U, 2), None: no texture
     face_uv: npt.NDArray[np.int32] | None  # which of them each corner has (F, 3)
     albedo: npt.NDArray[np.uint8] | None  # the texture (H, W, 3), sRGB
-    refiner_options: Mapping[str, Mapping[str, float]]  # for a refiner by name, where not default
+    refiner_options: Mapping[str, Mapping[str, Any]]  # for a refiner by name, where not default
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
@@ -89,7 +89,10 @@ class FaceScene:
         self.uv: npt.NDArray[np.float32] | None = head.uv
         self.face_uv: npt.NDArray[np.int32] | None = head.face_uv
         self.albedo: npt.NDArray[np.uint8] | None = head.albedo
-        self.refiner_options: Mapping[str, Mapping[str, float]] = {}
+        # Deformation alone would leave the outlines of crown, ears and neck polygons.
+        self.refiner_options: Mapping[str, Mapping[str, Any]] = {
+            "kahler": {"criterion": "normal+rest"}
+        }
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
@@ -153,7 +156,7 @@ class PlaneScene:
         self.albedo: npt.NDArray[np.uint8] | None = None
         # A flat mesh needs no slack for bends that it was made with. Found by search, so that the
         # wave makes about as many triangles at most as in Table 1 (1328).
-        self.refiner_options: Mapping[str, Mapping[str, float]] = {
+        self.refiner_options: Mapping[str, Mapping[str, Any]] = {
             "kahler": {"threshold_once": 0.001, "threshold_twice": 0.005}
         }
         self.groups: Mapping[str, tuple[str, ...]] = {"Wave": ("amplitude", "phase")}

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 # Words that options of refiners may be, asked of the plug-in.
 CHOICES: dict[str, Sequence[str]] = {
     "scheme": choices.NAMES,
-    "criterion": ("normal", *criteria.CRITERIA),
+    "criterion": ("normal", "normal+rest", *criteria.CRITERIA),
 }
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
@@ -38,7 +38,8 @@ HINTS = {
     "threshold once": "an edge splits once where the normals at its ends have turned apart by more "
     "than this since rest (drop of their dot product)",
     "threshold twice": "the same for splitting twice",
-    "criterion": "by what it is decided which edges split",
+    "criterion": "by what it is decided which edges split; normal: where the face moves (the "
+    "paper's), rest: where it is round at rest, so that outlines are",
     "scheme": "where the new points go",
     "blend": "new points grow out of the edge, and nothing pops",
     "coherent": "an edge keeps its split a little longer, and nothing flickers",
@@ -236,7 +237,7 @@ def _put(stored: dict[str, Any], name: str, value: Any) -> None:
 
 
 def _keep_in_order(
-    stored: dict[str, Any], name: str, value: float, scenes: Mapping[str, float]
+    stored: dict[str, Any], name: str, value: float, scenes: Mapping[str, Any]
 ) -> None:
     """Splitting twice never begins before splitting once: the other threshold gives way."""
     first, second = "threshold_once", "threshold_twice"
