@@ -17,8 +17,10 @@ import assets
 import sim
 from assets.fitting import FittedHead
 
+from .ambient import openness, shaded_mouth
 from .errors import UserError
 
+MOST_BAKED = 3000  # vertices; a larger head would take seconds, and takes the built-in one's light
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
 
 
@@ -56,6 +58,12 @@ class Scene(Protocol):
     def actions(self) -> Mapping[str, str]:
         """What controls do, in words, where that is known."""
 
+    def openness(self) -> npt.NDArray[np.uint8] | None:
+        """How open the skin is to light from all around, over the texture (H, W); None: all.
+
+        To be asked for before the scene moves.
+        """
+
     def pose(self, channels: Mapping[str, float]) -> None:
         """Set controls, each cut off at its limits; what is not named becomes 0.
 
@@ -84,7 +92,7 @@ class FaceScene:
         self.simulation = sim.create(head)
         self.faces = self.simulation.faces
         self.rest_positions = self.simulation.rest_positions
-        self.parts: tuple[Any, ...] = head.parts
+        self.parts: tuple[Any, ...] = shaded_mouth(head.parts)
         self.expressions: tuple[str, ...] = self.simulation.layers.get("Expressions", ())
         self.uv: npt.NDArray[np.float32] | None = head.uv
         self.face_uv: npt.NDArray[np.int32] | None = head.face_uv
@@ -116,6 +124,13 @@ class FaceScene:
     @property
     def actions(self) -> Mapping[str, str]:
         return self.simulation.actions
+
+    def openness(self) -> npt.NDArray[np.uint8] | None:
+        head, simulation = self.head, self.simulation
+        if len(head.vertices) > MOST_BAKED:  # it wears the same texture, laid out alike
+            head = assets.load("head")
+            simulation = sim.create(head)
+        return openness(head, simulation)
 
     def pose(self, channels: Mapping[str, float]) -> None:
         self.simulation.pose(within(self.limits, channels))
@@ -172,6 +187,9 @@ class PlaneScene:
         along = plane.vertices.sum(axis=1) / np.sqrt(2.0)
         self._turns = self.WAVES * along / self._length
         self.positions = plane.vertices.copy()
+
+    def openness(self) -> npt.NDArray[np.uint8] | None:
+        return None
 
     def pose(self, channels: Mapping[str, float]) -> None:
         self.values.update({**dict.fromkeys(self.limits, 0.0), **within(self.limits, channels)})

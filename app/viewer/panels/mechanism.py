@@ -48,6 +48,7 @@ HINTS = {
     "Colours": "of the simulated mesh's triangles, whatever they are refined to (C: splits)",
     "Skin": "T switches the texture",
     "Wireframe": "the edges of all triangles that are drawn (W)",
+    "Occlusion": "less light from all around in folds of the textured skin",
     "Muscles": "their fibres, redder the more they contract (U)",
     "Springs": "the skin's: stretched red, compressed blue",
     "Skull": "the bone under the skin; the mandible moves with the jaw",
@@ -143,6 +144,8 @@ class MechanismPanel:
             imgui.text_colored(colour(viewer.gui.theme.muted), COLOURS[look.colours].legend)
         self._choose("Skin", "skin", tuple(SKINS))
         self._check("Wireframe", look.wireframe, lambda: commands.toggle(viewer, "wireframe"))
+        imgui.same_line(_label_width())
+        self._check("Occlusion", look.occlusion, lambda: commands.toggle(viewer, "occlusion"))
 
     def _draw_overlays(self) -> None:
         viewer = self._viewer
