@@ -124,7 +124,9 @@ class Pipeline:
 
 def texture_of(scene: Scene, renderer: render.Renderer) -> render.Texture | None:
     """Hand the scene's albedo to the renderer; None where it has none."""
-    return None if scene.albedo is None else renderer.load_texture(scene.albedo)
+    if scene.albedo is None:
+        return None
+    return renderer.load_texture(scene.albedo, scene.openness())
 
 
 def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> npt.NDArray[np.uint8]:

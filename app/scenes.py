@@ -17,8 +17,10 @@ import assets
 import sim
 from assets.fitting import FittedHead
 
+from .ambient import openness, shaded_mouth
 from .errors import UserError
 
+MOST_BAKED = 3000  # vertices; a larger head would take seconds, and takes the built-in one's light
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
 
 
@@ -34,7 +36,7 @@ class Scene(Protocol):
     uv: npt.NDArray[np.float32] | None  # texture coordinates (U, 2), None: no texture
     face_uv: npt.NDArray[np.int32] | None  # which of them each corner has (F, 3)
     albedo: npt.NDArray[np.uint8] | None  # the texture (H, W, 3), sRGB
-    refiner_options: Mapping[str, Mapping[str, float]]  # for a refiner by name, where not default
+    refiner_options: Mapping[str, Mapping[str, Any]]  # for a refiner by name, where not default
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
@@ -55,6 +57,12 @@ class Scene(Protocol):
     @property
     def actions(self) -> Mapping[str, str]:
         """What controls do, in words, where that is known."""
+
+    def openness(self) -> npt.NDArray[np.uint8] | None:
+        """How open the skin is to light from all around, over the texture (H, W); None: all.
+
+        To be asked for before the scene moves.
+        """
 
     def pose(self, channels: Mapping[str, float]) -> None:
         """Set controls, each cut off at its limits; what is not named becomes 0.
@@ -84,12 +92,15 @@ class FaceScene:
         self.simulation = sim.create(head)
         self.faces = self.simulation.faces
         self.rest_positions = self.simulation.rest_positions
-        self.parts: tuple[Any, ...] = head.parts
+        self.parts: tuple[Any, ...] = shaded_mouth(head.parts)
         self.expressions: tuple[str, ...] = self.simulation.layers.get("Expressions", ())
         self.uv: npt.NDArray[np.float32] | None = head.uv
         self.face_uv: npt.NDArray[np.int32] | None = head.face_uv
         self.albedo: npt.NDArray[np.uint8] | None = head.albedo
-        self.refiner_options: Mapping[str, Mapping[str, float]] = {}
+        # Deformation alone would leave the outlines of crown, ears and neck polygons.
+        self.refiner_options: Mapping[str, Mapping[str, Any]] = {
+            "kahler": {"criterion": "normal+rest"}
+        }
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
@@ -113,6 +124,13 @@ class FaceScene:
     @property
     def actions(self) -> Mapping[str, str]:
         return self.simulation.actions
+
+    def openness(self) -> npt.NDArray[np.uint8] | None:
+        head, simulation = self.head, self.simulation
+        if len(head.vertices) > MOST_BAKED:  # it wears the same texture, laid out alike
+            head = assets.load("head")
+            simulation = sim.create(head)
+        return openness(head, simulation)
 
     def pose(self, channels: Mapping[str, float]) -> None:
         self.simulation.pose(within(self.limits, channels))
@@ -153,7 +171,7 @@ class PlaneScene:
         self.albedo: npt.NDArray[np.uint8] | None = None
         # A flat mesh needs no slack for bends that it was made with. Found by search, so that the
         # wave makes about as many triangles at most as in Table 1 (1328).
-        self.refiner_options: Mapping[str, Mapping[str, float]] = {
+        self.refiner_options: Mapping[str, Mapping[str, Any]] = {
             "kahler": {"threshold_once": 0.001, "threshold_twice": 0.005}
         }
         self.groups: Mapping[str, tuple[str, ...]] = {"Wave": ("amplitude", "phase")}
@@ -169,6 +187,9 @@ class PlaneScene:
         along = plane.vertices.sum(axis=1) / np.sqrt(2.0)
         self._turns = self.WAVES * along / self._length
         self.positions = plane.vertices.copy()
+
+    def openness(self) -> npt.NDArray[np.uint8] | None:
+        return None
 
     def pose(self, channels: Mapping[str, float]) -> None:
         self.values.update({**dict.fromkeys(self.limits, 0.0), **within(self.limits, channels)})

@@ -86,12 +86,9 @@ def table_1(*, rounds: int = 60) -> tuple[list[Measured], str]:
 
 
 def _measured(scene: Scene, easel: Easel, rounds: int) -> Measured:
-    static, dynamic = (
-        refine.create(
-            name, scene.faces, scene.rest_positions, **scene.refiner_options.get(name, {})
-        )
-        for name in ("none", "kahler")
-    )
+    options = {**scene.refiner_options["kahler"], "criterion": "normal"}
+    static = refine.create("none", scene.faces, scene.rest_positions)
+    dynamic = refine.create("kahler", scene.faces, scene.rest_positions, **options)
     positions, count = _fullest_frame(scene, dynamic)
     drawing = Drawing(camera_for(scene, script_for(None, scene.name).camera), GOURAUD)
 

@@ -4,7 +4,8 @@ Every action unit at full strength, the left, the right and both sides where it 
 expressions in which the mouth or an eye is shut, settled on the built-in head. Of each are told
 the widest slit between the lips, where nothing opens them, from the front and from four oblique
 views; the widest opening between the lids of each eye that it shuts; and how deep any skin sits in
-an eyeball. All of the mesh and of what refinement makes of it, whichever is worse (sight.py).
+an eyeball. All of the mesh and of what refinement makes of it, with round outlines as the window
+shows it, whichever is worse (sight.py).
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ def run() -> list[Pose]:
     """Measure every pose."""
     head = assets.load("head")
     simulation = sim.create(head)
-    refiner = refine.create("kahler", head.faces, head.vertices)
+    refiner = refine.create("kahler", head.faces, head.vertices, criterion="normal+rest")
     poses = []
     for name, is_shut in _rows(simulation):
         simulation.reset()

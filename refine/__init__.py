@@ -16,10 +16,10 @@ relation that a refined mesh breaks.
 `criterion` which edges are split, `blend` that nothing pops, `coherent` that no triangulation
 turns, `attributes` what rides along.
 
-Read in this order: plugin.py (the border), adaptive.py (a frame), criterion.py and criteria.py
-(which edges), schemes.py (where points go: masks.py, cubic.py, butterfly.py, detail.py), blend.py,
-patterns.py and coherence.py (the tables), output.py (rows and triangles), locality.py (large
-meshes). docs/refinement.md tells it all with pictures.
+Read in this order: plugin.py (the border), adaptive.py (a frame), criterion.py, criteria.py and
+rest_curvature.py (which edges), schemes.py (where points go: masks.py, cubic.py, butterfly.py,
+detail.py), blend.py, patterns.py and coherence.py (the tables), output.py (rows and triangles),
+locality.py (large meshes). docs/refinement.md tells it all with pictures.
 """
 
 from .adaptive import Kahler
@@ -31,6 +31,7 @@ from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, Measured, Nor
 from .kernels import on_compile
 from .passthrough import PassThrough
 from .plugin import Origins, RefinedMesh, Refiner, Stream, View, available, create, register
+from .rest_curvature import RestCurvature
 from .schemes import Frame, Scheme
 from .tension import Tension, TensionMap
 from .uniform import Loop
@@ -54,6 +55,7 @@ __all__ = [
     "PassThrough",
     "RefinedMesh",
     "Refiner",
+    "RestCurvature",
     "Scheme",
     "ScreenEdge",
     "Silhouette",

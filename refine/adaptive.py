@@ -81,8 +81,8 @@ class Kahler(BoundRefiner):
 
         `threshold_once`, `threshold_twice`: drop of the normal dot product above which an edge is
         split once or twice, for the paper's criterion, "normal".
-        `criterion`: "normal", "curvature", "silhouette", "screen", "bulge", an object, or a list of
-        them, of which the one counts that asks for most.
+        `criterion`: "normal", "curvature", "rest", "silhouette", "screen", "bulge", an object, or a
+        list of them, of which the one counts that asks for most; "normal+rest" is such a list.
         `scheme`: "loop", the paper's, "butterfly", "cubic", "detail", or an object.
         `detail`: for "detail" the finer mesh at rest, its positions and its triangles.
         `blend`: whether points grow out of their edges, so that nothing pops. None stands for what

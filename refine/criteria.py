@@ -1,4 +1,4 @@
-r"""Criteria beside the paper's: curvature, silhouette, screen, bulge, and several at once.
+r"""Criteria beside the paper's: curvature, rest, silhouette, screen, bulge, and several at once.
 
 Kähler, Haber, Seidel 2003, section 4.1 ("More complex criteria can be used as well, such as
 measuring discrete curvature on the mesh [19]") and section 6 ("refining the mesh along silhouette
@@ -6,6 +6,7 @@ edges. To achieve this, appropriate splitting criteria have to be developed").
 
     curvature   height of the arc over an edge      |k| L^2 / 8, k = 2 n . (b - a) / L^2 the
                 in mean edge lengths at rest        curvature along it (Taubin 1995, section 3)
+    rest        much the same at rest               rest_curvature.py: the same edges in every frame
     silhouette  how far the surface turns along     (1 - n_a . n_b) x facing; facing is 1 where the
                 an edge that is seen from aside     line of sight grazes the edge, 0 a BAND away
     screen      length of an edge as it is seen     L x focal / distance from the eye, in pixels
@@ -28,6 +29,7 @@ from .criterion import Criterion, Measured, NormalDrop, Thresholds
 from .curves import CurveScheme
 from .kernels import kernel
 from .plugin import View
+from .rest_curvature import RestCurvature
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
@@ -240,6 +242,7 @@ class Maximum:
 
 CRITERIA: dict[str, Callable[[], Criterion]] = {
     "curvature": Curvature,
+    "rest": RestCurvature,
     "bulge": Bulge,
     "silhouette": Silhouette,
     "screen": ScreenEdge,
@@ -250,13 +253,15 @@ def criterion_of(
     chosen: str | Criterion | Sequence[str | Criterion], normal_drop: NormalDrop
 ) -> Criterion:
     """Return the criterion of a name, of several, or of an object; `normal_drop` for "normal"."""
+    if isinstance(chosen, str) and "+" in chosen:
+        chosen = chosen.split("+")
     if isinstance(chosen, str):
         if chosen == "normal":
             return normal_drop
         if chosen not in CRITERIA:
             raise ValueError(
-                f"criterion {chosen!r} is unknown; there are {['normal', *CRITERIA]}, and any "
-                "object with bind and mark"
+                f"criterion {chosen!r} is unknown; there are {['normal', *CRITERIA]}, several "
+                "joined by +, and any object with bind and mark"
             )
         return CRITERIA[chosen]()
     if isinstance(chosen, Sequence):

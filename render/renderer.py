@@ -75,14 +75,17 @@ class Renderer:
         self.surface.make_current()
         return Stream(self._gl, vertex_capacity, triangle_capacity, columns)
 
-    def load_texture(self, image: npt.NDArray[np.uint8]) -> Texture:
+    def load_texture(
+        self, image: npt.NDArray[np.uint8], openness: npt.NDArray[np.uint8] | None = None
+    ) -> Texture:
         """Hand a picture of the skin to OpenGL; draw_mesh takes the albedo from it.
 
         image: sRGB, top row first, shape (H, W, 3), uint8; texture coordinate v is 1 at the top.
+        openness: how much of the light from all around gets there, 255 = all, shape (H, W), uint8.
         Raises ValueError for an image of another shape or type, or beyond the driver's limit.
         """
         self.surface.make_current()
-        return Texture(self._gl, image)
+        return Texture(self._gl, image, openness)
 
     def draw_background(self, style: Style, viewport: Viewport | None = None) -> None:
         """Paint the style's background over the viewport, and over what was drawn there."""
@@ -133,6 +136,7 @@ class Renderer:
         if is_textured and texture is not None:
             program["albedo_texture"] = texture.bind(_ALBEDO_UNIT)
             program["redness"] = texture.redness
+            program["occlusion"] = float(style.occlusion)
         if style.colour_by is not ColourBy.NONE:
             program["triangle_values"] = self._values.bind(_VALUE_UNIT)
             if style.colour_by is ColourBy.SPLITS:

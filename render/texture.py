@@ -23,13 +23,27 @@ class Texture:
     redness: median of red over green light; where the picture is redder, lips are, and they gloss.
     """
 
-    def __init__(self, gl: moderngl.Context, image: npt.NDArray[np.uint8]) -> None:
+    def __init__(
+        self,
+        gl: moderngl.Context,
+        image: npt.NDArray[np.uint8],
+        openness: npt.NDArray[np.uint8] | None = None,
+    ) -> None:
         rows = _checked(image, int(gl.info["GL_MAX_TEXTURE_SIZE"]))
+        if openness is not None and (
+            openness.shape != rows.shape[:2] or openness.dtype != np.uint8
+        ):
+            raise ValueError(
+                f"openness has shape {openness.shape} and dtype {openness.dtype}; it must be "
+                f"{rows.shape[:2]} uint8, as the texture's image"
+            )
         self.size = rows.shape[1], rows.shape[0]
         self.redness = _median_redness(rows)
-        opaque = np.full((*rows.shape[:2], 4), 255, np.uint8)
-        opaque[:, :, :3] = rows[::-1]  # OpenGL counts rows, and v, from below
-        self._texture = gl.texture(self.size, 4, opaque.tobytes(), internal_format=_SRGB8_ALPHA8)
+        texels = np.full((*rows.shape[:2], 4), 255, np.uint8)
+        texels[:, :, :3] = rows[::-1]  # OpenGL counts rows, and v, from below
+        if openness is not None:
+            texels[:, :, 3] = openness[::-1]  # alpha is not decoded as sRGB is
+        self._texture = gl.texture(self.size, 4, texels.tobytes(), internal_format=_SRGB8_ALPHA8)
         self._texture.repeat_x = self._texture.repeat_y = False
         self._texture.build_mipmaps()
         self._texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR

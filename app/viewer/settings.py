@@ -32,6 +32,7 @@ class Look:
     wireframe: bool = False
     colours: str = "none"  # a key of colours.COLOURS
     skin: str = "textured"  # textured, plain, clay
+    occlusion: bool = True  # less light in folds; of textured skin
     overlays: list[str] = field(default_factory=list)  # keys of overlays.OVERLAYS
 
 

@@ -207,6 +207,7 @@ def style_of(look: Look, background: render.Background) -> render.Style:
         wireframe=look.wireframe,
         colour_by=COLOURS[look.colours].kind,
         textured=is_textured,
+        occlusion=look.occlusion,
         albedo=albedo,
         background=background,
     )

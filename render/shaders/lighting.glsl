@@ -15,6 +15,8 @@ const vec3 SCATTER = vec3(0.25, 0.155, 0.115);
 // The same within the edge of a cast shadow, and what comes back from lit skin nearby, of the key.
 const vec3 BLEED = vec3(0.40, 0.10, 0.03);
 const vec3 BOUNCE = vec3(0.20, 0.105, 0.075);
+const vec3 OCCLUDED_BOUNCE = vec3(0.55, 0.15, 0.05);  // of what folds take away
+const float OCCLUDED_KEY = 0.35;  // how much folds take of the key: an area light, not a point
 const vec3 WARMTH = vec3(1.14, 0.97, 0.88);  // of the ambient light, from skin nearby
 
 struct Lit {
@@ -47,11 +49,14 @@ Lit studio(vec3 normal, vec3 to_eye, float subsurface, float gloss, float sharpn
     return lit;
 }
 
-// `lightness` is 1 in the key's light and 0 in its full shadow.
-vec3 lit_colour(Lit lit, vec3 albedo, float lightness, float subsurface) {
-    vec3 glow = subsurface * (1.0 - lightness) * (lightness * BLEED + BOUNCE);
-    return albedo * (lit.key * (lightness + glow) + lit.rest)
-        + lit.specular * (0.25 + 0.75 * lightness);
+// `lightness` is 1 in the key's light and 0 in its full shadow; `openness` 1 where all light comes
+// in from all around, 0 where none does.
+vec3 lit_colour(Lit lit, vec3 albedo, float lightness, float subsurface, float openness) {
+    // What skin nearby takes away it gives back in part, redder.
+    vec3 open = openness * (vec3(1.0) + (1.0 - openness) * subsurface * OCCLUDED_BOUNCE);
+    vec3 glow = subsurface * (1.0 - lightness) * (lightness * BLEED + BOUNCE * open);
+    return albedo * (lit.key * (lightness * mix(1.0, openness, OCCLUDED_KEY) + glow) + lit.rest * open)
+        + lit.specular * (0.25 + 0.75 * lightness) * openness;
 }
 
 // The inner side of the skin: only what the hemisphere and a bounce of the key bring in.

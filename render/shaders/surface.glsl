@@ -159,6 +159,7 @@ uniform vec3 inner_albedo;
 #if defined(TEXTURED)
 uniform sampler2D albedo_texture;
 uniform float redness;  // of most of the picture: red over green
+uniform float occlusion;  // how much the openness in the picture's alpha counts, 0 or 1
 #elif !defined(COLOURED)
 uniform vec3 albedo;
 #endif
@@ -175,11 +176,16 @@ uniform sampler2DShadow shadow_map;
 #endif
 out vec4 pixel_colour;
 
+// How open to light from all around.
+float openness = 1.0;
+
 vec3 front_albedo() {
 #if defined(COLOURED)
     vec3 front = surface.colour;
 #elif defined(TEXTURED)
-    vec3 front = texture(albedo_texture, surface.uv).rgb;
+    vec4 painted = texture(albedo_texture, surface.uv);
+    vec3 front = painted.rgb;
+    openness = mix(1.0, painted.a, occlusion);
 #else
     vec3 front = albedo;
 #endif
@@ -261,7 +267,7 @@ void main() {
     float excess = front.r / (max(front.g, 1e-3) * redness);
     lit.specular *= 1.0 + 1.6 * clamp(5.0 * excess - 6.0, 0.0, 1.0);
 #endif
-    vec3 light = lit_colour(lit, front, key_lightness(), subsurface);
+    vec3 light = lit_colour(lit, front, key_lightness(), subsurface, openness);
 #if defined(COLOURED)
     light *= 0.82;  // parts sit in sockets and mouths, where less light gets in
 #else

@@ -83,13 +83,13 @@ def test_the_mesh_and_the_simulation_never_notice(surface: Any) -> None:
 
 
 def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:
-    """At rest the refined picture is the static one, pixel for pixel."""
+    """By the paper's criterion the refined picture at rest is the static one, pixel for pixel."""
     scene = FaceScene()
     renderer = render.Renderer(surface)
     camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
     pictures = []
-    for name in ("none", "kahler"):
-        pipeline = Pipeline(scene, renderer, {name: None})
+    for name, options in (("none", None), ("kahler", {"criterion": "normal"})):
+        pipeline = Pipeline(scene, renderer, {name: options})
         surface.begin()
         pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
         surface.end()

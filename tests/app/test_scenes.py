@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import refine
 from app.errors import UserError
+from app.refining import refiner_for
 from app.scenes import FaceScene, PlaneScene, within
+from bench.sight import shown_meshes, widest_slit
 
 LIMITS = {"a": (0.0, 1.0), "b": (-1.0, 1.0)}
 
@@ -51,3 +54,39 @@ def test_a_long_step_is_divided() -> None:
     for _ in range(60):
         fine.step(1.0 / 60.0)
     assert np.abs(coarse.positions - fine.positions).max() < 1e-9
+
+
+def test_the_face_is_round_at_rest() -> None:
+    """The outline of the crown, seen from aside, has no high corners, and there are no cracks."""
+    face = FaceScene()
+    highest = {}
+    for name, options in (("paper", {"criterion": "normal"}), ("shown", None)):
+        refiner = refiner_for(face, "kahler", options)
+        mesh = refiner.refine(face.rest_positions)
+        refine.check(refiner, mesh, face.rest_positions)
+        outline = mesh.positions[abs(mesh.positions[:, 0]) < 1e-4, 1:].astype(np.float64)
+        crown = outline[outline[:, 0] > 0.65 * outline[:, 0].max() + 0.35 * outline[:, 0].min()]
+        around = crown - [crown[:, 0].min(), crown[:, 1].mean()]
+        crown = crown[np.argsort(np.arctan2(*around.T))]
+        # How far each point stands out of the line between its neighbours.
+        chords = crown[2:] - crown[:-2]
+        aside = (crown[1:-1] - crown[:-2]) @ [[0, 1], [-1, 0]]
+        heights = (aside * chords).sum(axis=1) / np.linalg.norm(chords, axis=1)
+        highest[name] = abs(heights).max()
+    assert highest["paper"] > 1.0  # [mm]
+    assert highest["shown"] < 0.6 * highest["paper"]
+
+
+@pytest.mark.parametrize("pose", ["rest", "joy", "disgust", "blink", "yawn"])
+def test_the_shown_face_keeps_shut_what_is_shut(pose: str) -> None:
+    """Triangles stay in bounds; closed lips have no slit that the mesh has not."""
+    face = FaceScene()
+    refiner = refiner_for(face, "kahler", None)
+    face.pose({} if pose == "rest" else {pose: 1.0})
+    face.step(1.0)
+    meshes = shown_meshes(face.simulation, refiner)
+    assert len(meshes["refined"][1]) < 2.8 * len(face.faces)
+    if pose in ("rest", "blink"):
+        landmarks = face.positions[face.landmarks]
+        slits = {name: widest_slit(*shown, landmarks) for name, shown in meshes.items()}
+        assert slits["refined"] < slits["static"] + 0.02

@@ -61,6 +61,43 @@ def test_relative_curvature() -> None:
     assert not splits[at_rim].any()
 
 
+def test_rest_by_hand() -> None:
+    """Where a tube is curved, by height and length; the same edges however it is bent and seen."""
+    tube = meshes.tube(24, 4)
+    around = 2 * np.sin(np.pi / 24)
+    edges = refine.connect(tube.faces, len(tube.vertices)).edges
+    size = np.linalg.norm(np.ptp(tube.vertices, axis=0))
+    measure = around**2 / 8 / size * np.cbrt(40.0 * around / size)
+    for factor, expected in ((0.9, 1), (1.1, 0)):
+        refiner = refine.create(
+            "kahler", tube.faces, tube.vertices,
+            criterion=refine.RestCurvature(factor * measure, 1.0),
+        )  # fmt: skip
+        is_around = edges[:, 0] // 24 == edges[:, 1] // 24
+        is_inner = (edges >= 24).all(axis=1) & (edges < 24 * 4).all(axis=1)
+        along = edges[:, 0] % 24 == edges[:, 1] % 24
+        for positions in (tube.vertices, meshes.wrinkled(tube, 3), tube.vertices[:, [1, 2, 0]]):
+            mesh = refiner.refine(positions, view=refine.View([0.0, 9.0, 0.0]))
+            refine.check(refiner, mesh, positions)
+            assert (refiner.splits[is_around & is_inner] == expected).all()
+            assert not refiner.splits[along].any()
+
+
+def test_rest_is_grown_at_once() -> None:
+    """Blended points that are there at rest stand where they stand without blending."""
+    sphere = ball(1)
+    points = []
+    for blend in (False, True):
+        refiner = refine.create(
+            "kahler", sphere.faces, sphere.vertices,
+            criterion="rest", scheme="cubic", blend=blend,
+        )  # fmt: skip
+        mesh = refiner.refine(sphere.vertices)
+        points.append({tuple(row) for row in mesh.positions.round(5).tolist()})
+    assert len(points[0]) > len(sphere.vertices)
+    assert points[0] < points[1]  # and the points in the middle of triangles
+
+
 def test_silhouette() -> None:
     """Edges where a ball turns away from the eye are split, those in front and behind are not."""
     sphere = ball()
@@ -113,6 +150,8 @@ def test_maximum() -> None:
     assert (together == np.max(single, axis=0)).all()
     assert len({s.tobytes() for s in single}) == 4
     assert len(set(together.tolist())) == 3
+    joined, _ = splits_of(mesh, deformed, "normal+curvature+silhouette", view=view)
+    assert (joined == np.max(single[:3], axis=0)).all()
 
 
 def test_maximum_of_needs() -> None:
@@ -164,6 +203,7 @@ def test_one_level_only(blend: bool) -> None:
     ("criterion", "text"),
     [
         ("bending", r"criterion 'bending' is unknown; there are \['normal', 'curvature'"),
+        ("normal+", r"criterion '' is unknown; .*, several joined by \+"),
         ([], "an empty list decides nothing"),
         (7, "criterion must be a name, an object with bind and mark, or a list, got 7"),
     ],
@@ -175,7 +215,9 @@ def test_bad_criteria(criterion: object, text: str) -> None:
         refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
 
 
-@pytest.mark.parametrize("kind", [refine.Curvature, refine.Silhouette, refine.ScreenEdge])
+@pytest.mark.parametrize(
+    "kind", [refine.Curvature, refine.RestCurvature, refine.Silhouette, refine.ScreenEdge]
+)
 def test_bad_thresholds(kind: type) -> None:
     """Thresholds out of order are refused by every criterion."""
     with pytest.raises(ValueError, match="0 <= threshold_once <= threshold_twice"):

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 # Words that options of refiners may be, asked of the plug-in.
 CHOICES: dict[str, Sequence[str]] = {
     "scheme": choices.NAMES,
-    "criterion": ("normal", *criteria.CRITERIA),
+    "criterion": ("normal", "normal+rest", *criteria.CRITERIA),
 }
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
@@ -38,7 +38,8 @@ HINTS = {
     "threshold once": "an edge splits once where the normals at its ends have turned apart by more "
     "than this since rest (drop of their dot product)",
     "threshold twice": "the same for splitting twice",
-    "criterion": "by what it is decided which edges split",
+    "criterion": "by what it is decided which edges split; normal: where the face moves (the "
+    "paper's), rest: where it is round at rest, so that outlines are",
     "scheme": "where the new points go",
     "blend": "new points grow out of the edge, and nothing pops",
     "coherent": "an edge keeps its split a little longer, and nothing flickers",
@@ -47,6 +48,7 @@ HINTS = {
     "Colours": "of the simulated mesh's triangles, whatever they are refined to (C: splits)",
     "Skin": "T switches the texture",
     "Wireframe": "the edges of all triangles that are drawn (W)",
+    "Occlusion": "less light from all around in folds of the textured skin",
     "Muscles": "their fibres, redder the more they contract (U)",
     "Springs": "the skin's: stretched red, compressed blue",
     "Skull": "the bone under the skin; the mandible moves with the jaw",
@@ -142,6 +144,8 @@ class MechanismPanel:
             imgui.text_colored(colour(viewer.gui.theme.muted), COLOURS[look.colours].legend)
         self._choose("Skin", "skin", tuple(SKINS))
         self._check("Wireframe", look.wireframe, lambda: commands.toggle(viewer, "wireframe"))
+        imgui.same_line(_label_width())
+        self._check("Occlusion", look.occlusion, lambda: commands.toggle(viewer, "occlusion"))
 
     def _draw_overlays(self) -> None:
         viewer = self._viewer
@@ -236,7 +240,7 @@ def _put(stored: dict[str, Any], name: str, value: Any) -> None:
 
 
 def _keep_in_order(
-    stored: dict[str, Any], name: str, value: float, scenes: Mapping[str, float]
+    stored: dict[str, Any], name: str, value: float, scenes: Mapping[str, Any]
 ) -> None:
     """Splitting twice never begins before splitting once: the other threshold gives way."""
     first, second = "threshold_once", "threshold_twice"

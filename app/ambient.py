@@ -1,0 +1,249 @@
+"""How open the skin is to light from all around: ambient occlusion, baked once for a head.
+
+From each vertex rays go out over its normal, more of them the closer they are to it, as light that
+comes from everywhere counts. What a ray meets within REACH takes its part of the light away, less
+the farther it is. A face moves: what touches at rest, lips or the folds of lids, may come to light
+later. So two poses are looked at, at rest and with mouth open and eyes shut, and the more open one
+counts. Teeth, gums and tongue only get darker toward the back.
+
+Sources: Zhukov, Iones, Kronin 1998, "An ambient light illumination model" (obscurance that fades
+with distance); Möller and Trumbore 1997 (ray and triangle).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+import sim
+
+REACH = 45.0  # [mm] beyond which nothing shades
+RAYS = 48  # from each vertex
+DEPTH = 1.6  # power of what is left; chosen by eye: folds are told from afar, and nothing is black
+REVEALED = 0.8  # most light that comes to what only a moving face shows
+STEEP, LONG = 0.15, 8.0  # change along an edge, and its length [mm]: beyond them its middle counts
+START = 0.4  # [mm] above the skin, lest it shade itself
+REVEALING = ("yawn", "jaw_open")  # the first of these that a head knows opens mouth and shuts eyes
+SETTLED = 60  # steps of 1/60 s
+IN_MOUTH = ("teeth", "gums", "tongue")  # names begin so; the cavity is painted dark
+LIT, DARK = 2.0, 34.0  # [mm] behind the front teeth, where it begins to get dark and no darker
+DIMMED = 0.4  # of the colour (sRGB) that is lost there
+MARGIN = 3.0  # [texels] painted beyond a triangle, for texels between patches
+
+Points = npt.NDArray[np.float64]
+Triangles = npt.NDArray[np.int32]
+Values = npt.NDArray[np.float32]
+
+
+def openness(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
+    """A picture over the head's texture: 255 where all light comes in, 0 where none; (H, W).
+
+    head: with texture coordinates `uv`, `face_uv` and `albedo` (H, W, 3).
+    simulation: of that head, at rest; it is moved, and at rest again at the end.
+    """
+    faces = simulation.faces
+    sides = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, edge_of_side = np.unique(sides, axis=0, return_inverse=True)
+    # Places that are looked at: vertices, and middles of long edges along which it gets dark.
+    count = len(simulation.positions)
+    ends = np.concatenate([np.repeat(np.arange(count)[:, None], 2, axis=1), edges])
+    values = np.empty(len(ends), np.float32)
+    values[:count] = open_to_light(simulation.positions, faces, ends[:count])
+    lengths = np.linalg.norm(np.diff(simulation.positions[edges], axis=1)[:, 0], axis=1)
+    is_steep = abs(np.diff(values[edges])[:, 0]) > STEEP
+    steep = count + np.flatnonzero(is_steep & (lengths > LONG))
+    values[steep] = open_to_light(simulation.positions, faces, ends[steep])
+    name = next((each for each in REVEALING if each in simulation.limits), None)
+    if name is not None:
+        simulation.set(name, 1.0)
+        for _ in range(SETTLED):
+            simulation.step(1.0 / 60.0)
+        looked_at = np.concatenate([np.arange(count), steep])
+        hidden = looked_at[values[looked_at] < REVEALED]
+        moved = open_to_light(simulation.positions, faces, ends[hidden])
+        values[hidden] = np.maximum(values[hidden], REVEALED * moved)
+        simulation.reset()
+    between = np.setdiff1d(np.arange(count, len(ends)), steep)
+    values[between] = values[ends[between]].mean(axis=1)
+    height, width = head.albedo.shape[:2]
+    corners = (head.uv * [width, -height] + [-0.5, height - 0.5])[head.face_uv]
+    middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
+    picture = np.ones((height, width), np.float32)
+    shades = values**DEPTH
+    at_corners, at_middles = shades[faces], shades[count + edge_of_side.reshape(-1, 3)]
+    for margin in (MARGIN, 0.0):  # first what overlaps, then what is meant
+        _paint(corners, middles, at_corners, at_middles, margin, picture)
+    return np.round(255.0 * picture).astype(np.uint8)
+
+
+def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
+    """The parts, those of the mouth the darker the farther back they are."""
+    front = max((part.vertices[:, 2].max() for part in parts if "teeth" in part.name), default=0.0)
+
+    def shaded(part: Any) -> Any:
+        if not part.name.startswith(IN_MOUTH):
+            return part
+        share = np.clip((front - part.vertices[:, 2] - LIT) / (DARK - LIT), 0.0, 1.0)
+        light = 1.0 - DIMMED * share * share * (3.0 - 2.0 * share)
+        return replace(part, colours=(part.colours * light[:, None]).astype(np.float32))
+
+    return tuple(shaded(part) for part in parts)
+
+
+def open_to_light(positions: Points, faces: Triangles, ends: npt.NDArray[np.intp]) -> Values:
+    """The share of the light from all around that reaches the middles between `ends`, 0..1.
+
+    ends: pairs of vertices, (n, 2); twice the same for a vertex itself.
+    """
+    corners = positions[faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = np.zeros_like(positions)
+    for corner in range(3):
+        np.add.at(normals, faces[:, corner], across)
+    normals = _unit(_unit(normals)[ends].sum(axis=1))
+    middles = corners.mean(axis=1)
+    radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
+    values = np.empty(len(ends), np.float32)
+    _cast(positions[ends].mean(axis=1), normals, corners, middles, radii, _hemisphere(), values)
+    return values
+
+
+def _unit(vectors: Points) -> Points:
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    unit: Points = vectors / np.maximum(lengths, 1e-12)
+    return unit
+
+
+def _hemisphere() -> Points:
+    """Directions above the plane z = 0, as many as go with the cosine; shape (RAYS, 3)."""
+    steps = np.arange(RAYS) + 0.5
+    outward, turn = np.sqrt(steps / RAYS), steps * np.pi * (3.0 - np.sqrt(5.0))
+    up = np.sqrt(1.0 - outward**2)
+    return np.stack([outward * np.cos(turn), outward * np.sin(turn), up], axis=1)
+
+
+@numba.njit(cache=True)
+def _cast(
+    positions: Points,
+    normals: Points,
+    corners: Points,
+    middles: Points,
+    radii: Points,
+    directions: Points,
+    values: Values,
+) -> None:
+    near = np.empty((len(corners), 9), np.float32)
+    for v in range(len(positions)):
+        normal = normals[v]
+        eye = positions[v] + START * normal
+        count = 0
+        for t in range(len(corners)):
+            away = middles[t] - eye
+            reach = REACH + radii[t]
+            # Nothing below the plane of the vertex can be met.
+            if np.dot(away, away) < reach * reach and np.dot(away, normal) > -radii[t]:
+                for i in range(3):
+                    near[count, i] = corners[t, 0, i] - eye[i]
+                    near[count, 3 + i] = corners[t, 1, i] - corners[t, 0, i]
+                    near[count, 6 + i] = corners[t, 2, i] - corners[t, 0, i]
+                count += 1
+        # Any two directions across the normal.
+        side = np.array([1.0, 0.0, 0.0]) if abs(normal[0]) < 0.6 else np.array([0.0, 1.0, 0.0])
+        first = np.cross(normal, side)
+        first /= max(np.sqrt(np.dot(first, first)), 1e-12)
+        second = np.cross(normal, first)
+        lost = 0.0
+        for r in range(len(directions)):
+            ray = directions[r, 0] * first + directions[r, 1] * second + directions[r, 2] * normal
+            nearest = _nearest(ray.astype(np.float32), near, count)
+            lost += 1.0 - nearest / REACH
+        values[v] = 1.0 - lost / len(directions)
+
+
+@numba.njit(cache=True)
+def _nearest(ray: Values, near: Values, count: int) -> float:
+    """How far a ray goes before it meets a triangle, at most REACH.
+
+    near: a corner, as seen from where the ray begins, and the sides from there; shape (.., 9).
+    """
+    x, y, z = ray
+    nearest = np.float32(REACH)
+    zero, one = np.float32(0.0), np.float32(1.0)
+    for t in range(count):
+        ux, uy, uz = near[t, 3], near[t, 4], near[t, 5]
+        wx, wy, wz = near[t, 6], near[t, 7], near[t, 8]
+        px, py, pz = y * wz - z * wy, z * wx - x * wz, x * wy - y * wx
+        size = ux * px + uy * py + uz * pz
+        part = one / size if size != zero else zero
+        sx, sy, sz = -near[t, 0], -near[t, 1], -near[t, 2]
+        b = (sx * px + sy * py + sz * pz) * part
+        qx, qy, qz = sy * uz - sz * uy, sz * ux - sx * uz, sx * uy - sy * ux
+        c = (x * qx + y * qy + z * qz) * part
+        distance = (wx * qx + wy * qy + wz * qz) * part
+        is_met = (b >= zero) & (c >= zero) & (b + c <= one) & (distance > zero)
+        if is_met and distance < nearest:
+            nearest = distance
+    return float(nearest)
+
+
+@numba.njit(cache=True)
+def _paint(
+    corners: Points,
+    middles: Points,
+    at_corners: Values,
+    at_middles: Values,
+    margin: float,
+    picture: Values,
+) -> None:
+    """Paint each triangle in four, straight between values at corners and middles of its sides."""
+    for t in range(len(corners)):
+        for i in range(3):
+            before = (i + 2) % 3
+            _paint_triangle(
+                corners[t, i], middles[t, i], middles[t, before],
+                at_corners[t, i], at_middles[t, i], at_middles[t, before], margin, picture,
+            )  # fmt: skip
+        _paint_triangle(
+            middles[t, 0], middles[t, 1], middles[t, 2],
+            at_middles[t, 0], at_middles[t, 1], at_middles[t, 2], 0.0, picture,
+        )  # fmt: skip
+
+
+@numba.njit(cache=True)
+def _paint_triangle(
+    a: Points,
+    b: Points,
+    c: Points,
+    at_a: float,
+    at_b: float,
+    at_c: float,
+    margin: float,
+    picture: Values,
+) -> None:
+    """Paint texels in a triangle and `margin` beside it."""
+    height, width = picture.shape
+    area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    if abs(area) < 1e-9:
+        return
+    least, most = min(at_a, at_b, at_c), max(at_a, at_b, at_c)
+    # How much of a corner's weight is lost within a margin beyond the side opposite to it.
+    slack_a = margin * np.hypot(c[0] - b[0], c[1] - b[1]) / abs(area) + 1e-9
+    slack_b = margin * np.hypot(a[0] - c[0], a[1] - c[1]) / abs(area) + 1e-9
+    slack_c = margin * np.hypot(b[0] - a[0], b[1] - a[1]) / abs(area) + 1e-9
+    left = max(int(np.floor(min(a[0], b[0], c[0]) - margin)), 0)
+    right = min(int(np.ceil(max(a[0], b[0], c[0]) + margin)), width - 1)
+    top = max(int(np.floor(min(a[1], b[1], c[1]) - margin)), 0)
+    bottom = min(int(np.ceil(max(a[1], b[1], c[1]) + margin)), height - 1)
+    for y in range(top, bottom + 1):
+        for x in range(left, right + 1):
+            of_b = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area
+            of_c = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area
+            of_a = 1.0 - of_b - of_c
+            if of_a > -slack_a and of_b > -slack_b and of_c > -slack_c:
+                value = of_a * at_a + of_b * at_b + of_c * at_c
+                picture[y, x] = min(max(value, least), most)

@@ -1,0 +1,82 @@
+"""Ambient occlusion: where light from all around reaches, and what it leaves of the scene."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from app.ambient import open_to_light, openness, shaded_mouth
+from app.scenes import FaceScene
+from tests import meshes
+
+
+@pytest.fixture(scope="module")
+def face() -> FaceScene:
+    """The built-in head."""
+    return FaceScene()
+
+
+def each(count: int) -> np.ndarray:
+    """All vertices, as places to look at."""
+    return np.repeat(np.arange(count)[:, None], 2, axis=1)
+
+
+def test_outside_and_inside_of_a_ball() -> None:
+    """Nothing stands around a ball; inside, every ray ends at the other side."""
+    ball = meshes.octahedron()
+    faces = ball.faces.astype(np.int32)
+    for size in (4.0, 16.0):
+        positions = size * ball.vertices
+        assert open_to_light(positions, faces, each(6)).min() > 0.999
+        inside = open_to_light(positions, faces[:, ::-1].copy(), each(6))
+        # From a corner of an octahedron to the other side: between an edge and a diagonal.
+        assert np.ptp(inside) < 0.05
+        assert inside.max() < 2.0 * size / 45.0
+
+
+def test_light_on_the_head(face: FaceScene) -> None:
+    """Forehead and crown are open, nostrils, lips that touch and the back of ears are not."""
+    before = face.positions.copy()
+    picture = face.openness()
+    assert picture is not None and picture.shape == face.head.albedo.shape[:2]
+    assert np.array_equal(face.positions, before)
+    assert np.array_equal(face.openness(), picture)
+
+    height, width = picture.shape
+    places = face.head.uv * [width, -height] + [0, height]
+    columns, rows = np.clip(places.astype(int), 0, width - 1).T
+    shade = np.full(len(before), 255)
+    shade[face.faces] = picture[rows, columns][face.head.face_uv]
+    crown = before[:, 1] > before[:, 1].max() - 40.0
+    assert shade[crown].min() > 240
+    assert (shade < 100).any()
+    assert np.median(shade) > 200  # a face, not a soot
+    mirrored = before * [-1.0, 1.0, 1.0]
+    twins = np.linalg.norm(before[:, None] - mirrored, axis=2).argmin(axis=1)
+    assert abs(shade - shade[twins]).max() < 40
+
+
+def test_a_mouth_gets_darker_toward_the_back(face: FaceScene) -> None:
+    """Molars lose more than incisors, eyes nothing."""
+    head, shown = face.head.parts, face.parts
+    for given, drawn in zip(head, shown, strict=True):
+        if given.name.startswith("eye"):
+            assert drawn is given
+        elif given.name.startswith("teeth"):
+            left = (drawn.colours / given.colours).mean(axis=1)
+            assert left[given.vertices[:, 2].argmax()] > 0.9
+            assert left[given.vertices[:, 2].argmin()] < 0.75
+    assert shaded_mouth(()) == ()
+
+
+def test_a_head_that_cannot_yawn(face: FaceScene) -> None:
+    """Without a pose that reveals what touches, rest alone counts, and is darker."""
+    still = SimpleNamespace(
+        positions=face.simulation.positions, faces=face.simulation.faces, limits={}
+    )
+    alone, shown = openness(face.head, still), face.openness()
+    assert shown is not None
+    assert alone.mean() < shown.mean()
+    assert (alone.astype(int) < shown.astype(int) - 60).any()
