@@ -34,6 +34,7 @@ class Scene(Protocol):
     uv: npt.NDArray[np.float32] | None  # texture coordinates (U, 2), None: no texture
     face_uv: npt.NDArray[np.int32] | None  # which of them each corner has (F, 3)
     albedo: npt.NDArray[np.uint8] | None  # the texture (H, W, 3), sRGB
+    wrinkles: assets.Wrinkles | None  # where skin wrinkles; None: nowhere
     refiner_options: Mapping[str, Mapping[str, float]]  # for a refiner by name, where not default
 
     @property
@@ -89,6 +90,7 @@ class FaceScene:
         self.uv: npt.NDArray[np.float32] | None = head.uv
         self.face_uv: npt.NDArray[np.int32] | None = head.face_uv
         self.albedo: npt.NDArray[np.uint8] | None = head.albedo
+        self.wrinkles: assets.Wrinkles | None = head.wrinkles
         self.refiner_options: Mapping[str, Mapping[str, float]] = {}
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
@@ -151,6 +153,7 @@ class PlaneScene:
         self.uv: npt.NDArray[np.float32] | None = None
         self.face_uv: npt.NDArray[np.int32] | None = None
         self.albedo: npt.NDArray[np.uint8] | None = None
+        self.wrinkles: assets.Wrinkles | None = None
         # A flat mesh needs no slack for bends that it was made with. Found by search, so that the
         # wave makes about as many triangles at most as in Table 1 (1328).
         self.refiner_options: Mapping[str, Mapping[str, float]] = {

@@ -32,6 +32,7 @@ from .kernels import on_compile
 from .passthrough import PassThrough
 from .plugin import Origins, RefinedMesh, Refiner, Stream, View, available, create, register
 from .schemes import Frame, Scheme
+from .shortening import Shortening
 from .tension import Tension, TensionMap
 from .uniform import Loop
 
@@ -56,6 +57,7 @@ __all__ = [
     "Refiner",
     "Scheme",
     "ScreenEdge",
+    "Shortening",
     "Silhouette",
     "Stream",
     "Tension",

@@ -5,6 +5,8 @@ program it likes; `upload` hands exactly those rows to OpenGL. Nothing is alloca
 Source: Kähler et al. 2003, section 3: refined triangles go to the renderer and are forgotten.
 """
 
+from typing import Any
+
 import moderngl
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +22,7 @@ class Stream:
     source: number of the triangle that each one comes from, shape (triangle_capacity,), int32; the
         borrower writes; never uploaded.
     vertex_count, triangle_count: what the last `upload` handed over.
+    has_wrinkles: whether that came with amounts of wrinkling.
     corners: of the box that holds the uploaded vertices, shape (8, 3), float64.
     """
 
@@ -43,11 +46,21 @@ class Stream:
         self.corners = np.zeros((8, 3))
         self._gl = gl
         self._vertex_buffer = gl.buffer(reserve=self.vertices.nbytes, dynamic=True)
+        self.has_wrinkles = False
+        self._wrinkle_buffer: moderngl.Buffer | None = None
         self._index_buffer = gl.buffer(reserve=self.triangles.nbytes, dynamic=True)
         self._vertex_arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
 
-    def upload(self, vertex_count: int, triangle_count: int) -> None:
-        """Hand the first `vertex_count` vertices and `triangle_count` triangles to OpenGL."""
+    def upload(
+        self,
+        vertex_count: int,
+        triangle_count: int,
+        wrinkling: npt.NDArray[np.float32] | None = None,
+    ) -> None:
+        """Hand the first `vertex_count` vertices and `triangle_count` triangles to OpenGL.
+
+        wrinkling: how far each vertex wrinkles, 0..1 in either slot of the map, (vertex_count, 2).
+        """
         if not 0 <= vertex_count <= len(self.vertices):
             raise ValueError(
                 f"vertex_count is {vertex_count}; this stream holds 0 to {len(self.vertices)}"
@@ -56,7 +69,13 @@ class Stream:
             raise ValueError(
                 f"triangle_count is {triangle_count}; this stream holds 0 to {len(self.triangles)}"
             )
+        if wrinkling is not None and wrinkling.shape != (vertex_count, 2):
+            raise ValueError(
+                f"wrinkling has shape {wrinkling.shape}; it must be ({vertex_count}, 2), two "
+                "amounts for each uploaded vertex"
+            )
         self.vertex_count, self.triangle_count = vertex_count, triangle_count
+        self.has_wrinkles = wrinkling is not None
         if vertex_count == 0 or triangle_count == 0:
             return
         self.corners = box_corners(self.vertices[:vertex_count, :3])
@@ -65,6 +84,15 @@ class Stream:
         self._vertex_buffer.write(self.vertices[:vertex_count])
         self._index_buffer.orphan()
         self._index_buffer.write(self.triangles[:triangle_count])
+        if wrinkling is not None:
+            self._upload_wrinkling(wrinkling)
+
+    def _upload_wrinkling(self, wrinkling: npt.NDArray[np.float32]) -> None:
+        if self._wrinkle_buffer is None:
+            room = 2 * self.vertices.itemsize * len(self.vertices)
+            self._wrinkle_buffer = self._gl.buffer(reserve=room, dynamic=True)
+        self._wrinkle_buffer.orphan()
+        self._wrinkle_buffer.write(np.ascontiguousarray(wrinkling, np.float32))
 
     def draw(self, program: moderngl.Program) -> None:
         """Draw the uploaded triangles (attributes in_position, in_normal and in_uv, as needed)."""
@@ -77,9 +105,12 @@ class Stream:
             if self.vertices.shape[1] == 6:
                 names.pop()
                 layout = "3f 3f"
+            content: list[Any] = [(self._vertex_buffer, layout, *names)]
+            if "in_wrinkling" in list(program):
+                content.append((self._wrinkle_buffer, "2f", "in_wrinkling"))
             array = self._gl.vertex_array(
                 program,
-                [(self._vertex_buffer, layout, *names)],
+                content,
                 index_buffer=self._index_buffer,
                 index_element_size=4,
                 skip_errors=True,  # flat shading has no use for normals, plain skin none for uv
@@ -94,4 +125,6 @@ class Stream:
         self._vertex_arrays.clear()
         self._vertex_buffer.release()
         self._index_buffer.release()
+        if self._wrinkle_buffer is not None:
+            self._wrinkle_buffer.release()
         self.vertex_count = self.triangle_count = 0
