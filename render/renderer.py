@@ -22,7 +22,7 @@ from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
 from .shadow import TEXEL, ShadowMap
 from .sight import Sight
-from .stream import Stream
+from .stream import Share, Stream
 from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, Colour, ColourBy, Shading, Style, linear
 from .surface import Surface
 from .texture import Texture
@@ -131,17 +131,46 @@ class Renderer:
             self._values.upload(_checked_values(values, stream.triangle_count))
         if style.shadows:
             self._draw_shadow(stream, sight)
-        program = self._program(
-            "surface.glsl",
-            style.shading.name,
-            *(["WIREFRAME"] if style.wireframe else []),
-            *_DEFINES[style.colour_by],
-            *(["TEXTURED"] if is_textured else []),
-            *(["SHADOWS"] if style.shadows else []),
-            *(["WRINKLES"] if wrinkles is not None else []),
-        )
-        if not self._aim(program, sight, stream.corners, np.eye(4)):
-            return
+        is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
+        shares = [Share.ALL] if wrinkles is None or is_coloured else [Share.WRINKLED, Share.SMOOTH]
+        drawn = []
+        for share in shares:
+            shown = None if share is Share.SMOOTH else wrinkles
+            program = self._program(
+                "surface.glsl",
+                style.shading.name,
+                *(["WIREFRAME"] if style.wireframe else []),
+                *_DEFINES[style.colour_by],
+                *(["TEXTURED"] if is_textured else []),
+                *(["SHADOWS"] if style.shadows else []),
+                *(["WRINKLES"] if shown is not None else []),
+            )
+            if not self._aim(program, sight, stream.corners, np.eye(4)):
+                return
+            self._set_surface(program, sight, style, texture if is_textured else None, shown)
+            drawn.append((program, share))
+        if self.surface.is_software:
+            # What turns away is mostly hidden: drawn last, it is not shaded at all there.
+            self._gl.enable(moderngl.CULL_FACE)
+            for culled in ("back", "front"):
+                self._gl.cull_face = culled
+                for program, share in drawn:
+                    stream.draw(program, share)
+            self._gl.cull_face = "back"
+            self._gl.disable(moderngl.CULL_FACE)
+        else:
+            for program, share in drawn:
+                stream.draw(program, share)
+
+    def _set_surface(
+        self,
+        program: moderngl.Program,
+        sight: Sight,
+        style: Style,
+        texture: Texture | None,
+        wrinkles: WrinkleMap | None,
+    ) -> None:
+        """Set what the mesh's program asks for beside matrices."""
         _set_skin(program, style)
         if style.shadows:
             self._set_shadow(program, sight)
@@ -149,7 +178,7 @@ class Renderer:
             program["viewport_size"] = sight.viewport[2:]
             program["wire_half_width"] = 0.5 * style.wire_width * self._line_scale
             program["wire_colour"] = *style.wire_colour, style.wire_opacity
-        if is_textured and texture is not None:
+        if texture is not None:
             program["albedo_texture"] = texture.bind(_ALBEDO_UNIT)
             program["redness"] = texture.redness
         if wrinkles is not None:
@@ -162,16 +191,6 @@ class Renderer:
                 write_uniform(program, "split_palette", _PALETTE)
             else:
                 write_uniform(program, "ramp", _RAMPS[style.colour_by])
-        if self.surface.is_software:
-            # What turns away is mostly hidden: drawn last, it is not shaded at all there.
-            self._gl.enable(moderngl.CULL_FACE)
-            for culled in ("back", "front"):
-                self._gl.cull_face = culled
-                stream.draw(program)
-            self._gl.cull_face = "back"
-            self._gl.disable(moderngl.CULL_FACE)
-        else:
-            stream.draw(program)
 
     def draw_parts(
         self,

@@ -5,6 +5,7 @@ program it likes; `upload` hands exactly those rows to OpenGL. Nothing is alloca
 Source: Kähler et al. 2003, section 3: refined triangles go to the renderer and are forgotten.
 """
 
+from enum import Enum
 from typing import Any
 
 import moderngl
@@ -12,6 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 from .sight import box_corners
+
+
+class Share(Enum):
+    """Which of the uploaded triangles are drawn."""
+
+    ALL = "all"  # in their order
+    WRINKLED = "wrinkled"  # those with a corner that wrinkles
+    SMOOTH = "smooth"  # all others
 
 
 class Stream:
@@ -47,9 +56,10 @@ class Stream:
         self._gl = gl
         self._vertex_buffer = gl.buffer(reserve=self.vertices.nbytes, dynamic=True)
         self.has_wrinkles = False
-        self._wrinkle_buffer: moderngl.Buffer | None = None
+        self._wrinkle_buffers: tuple[moderngl.Buffer, moderngl.Buffer] | None = None
+        self._wrinkled_count = 0  # triangles; they come first in the second of these buffers
         self._index_buffer = gl.buffer(reserve=self.triangles.nbytes, dynamic=True)
-        self._vertex_arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
+        self._vertex_arrays: dict[tuple[moderngl.Program, bool], moderngl.VertexArray] = {}
 
     def upload(
         self,
@@ -88,17 +98,35 @@ class Stream:
             self._upload_wrinkling(wrinkling)
 
     def _upload_wrinkling(self, wrinkling: npt.NDArray[np.float32]) -> None:
-        if self._wrinkle_buffer is None:
+        """Upload amounts, and the triangles anew: first those that wrinkle."""
+        if self._wrinkle_buffers is None:
             room = 2 * self.vertices.itemsize * len(self.vertices)
-            self._wrinkle_buffer = self._gl.buffer(reserve=room, dynamic=True)
-        self._wrinkle_buffer.orphan()
-        self._wrinkle_buffer.write(np.ascontiguousarray(wrinkling, np.float32))
+            self._wrinkle_buffers = (
+                self._gl.buffer(reserve=room, dynamic=True),
+                self._gl.buffer(reserve=self.triangles.nbytes, dynamic=True),
+            )
+        triangles = self.triangles[: self.triangle_count]
+        is_wrinkled = (wrinkling.max(axis=1) > 0.0)[triangles].any(axis=1)
+        self._wrinkled_count = int(np.count_nonzero(is_wrinkled))
+        parted = np.concatenate([triangles[is_wrinkled], triangles[~is_wrinkled]])
+        for buffer, array in zip(self._wrinkle_buffers, (wrinkling, parted), strict=True):
+            buffer.orphan()
+            buffer.write(np.ascontiguousarray(array))
 
-    def draw(self, program: moderngl.Program) -> None:
-        """Draw the uploaded triangles (attributes in_position, in_normal and in_uv, as needed)."""
-        if self.vertex_count == 0 or self.triangle_count == 0:
+    def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
+        """Draw uploaded triangles; attributes in_position, in_normal, in_uv, as needed.
+
+        `share`: WRINKLED and SMOOTH need amounts of wrinkling, and give the program in_wrinkling.
+        """
+        first, count = {
+            Share.ALL: (0, self.triangle_count),
+            Share.WRINKLED: (0, self._wrinkled_count),
+            Share.SMOOTH: (self._wrinkled_count, self.triangle_count - self._wrinkled_count),
+        }[share]
+        if self.vertex_count == 0 or count == 0:
             return
-        array = self._vertex_arrays.get(program)
+        is_parted = share is not Share.ALL
+        array = self._vertex_arrays.get((program, is_parted))
         if array is None:
             names = ["in_position", "in_normal", "in_uv"]
             layout = "3f 3f 2f"
@@ -106,17 +134,19 @@ class Stream:
                 names.pop()
                 layout = "3f 3f"
             content: list[Any] = [(self._vertex_buffer, layout, *names)]
-            if "in_wrinkling" in list(program):
-                content.append((self._wrinkle_buffer, "2f", "in_wrinkling"))
+            indices = self._index_buffer
+            if self._wrinkle_buffers is not None:
+                content.append((self._wrinkle_buffers[0], "2f", "in_wrinkling"))
+                indices = self._wrinkle_buffers[1] if is_parted else indices
             array = self._gl.vertex_array(
                 program,
                 content,
-                index_buffer=self._index_buffer,
+                index_buffer=indices,
                 index_element_size=4,
                 skip_errors=True,  # flat shading has no use for normals, plain skin none for uv
             )
-            self._vertex_arrays[program] = array
-        array.render(moderngl.TRIANGLES, vertices=3 * self.triangle_count)
+            self._vertex_arrays[program, is_parted] = array
+        array.render(moderngl.TRIANGLES, vertices=3 * count, first=3 * first)
 
     def release(self) -> None:
         """Give the buffers back to OpenGL; the arrays stay readable."""
@@ -125,6 +155,6 @@ class Stream:
         self._vertex_arrays.clear()
         self._vertex_buffer.release()
         self._index_buffer.release()
-        if self._wrinkle_buffer is not None:
-            self._wrinkle_buffer.release()
+        for buffer in self._wrinkle_buffers or ():
+            buffer.release()
         self.vertex_count = self.triangle_count = 0

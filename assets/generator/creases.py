@@ -55,7 +55,7 @@ class Crease(NamedTuple):
     """One region at n places of the left half."""
 
     slot: int
-    near: Values  # (n,) weight of `across` among regions of the slot; reaches further than cover
+    near: Values  # (n,) in its slot the nearest region counts; reaches further than cover
     across: Points  # (n, 3) unit direction in which skin shortens there
     readiness: float  # how much of a wrinkle a given shortening makes
     cover: Values  # (n,) 0..1, where furrows are seen
@@ -136,7 +136,7 @@ def glabella(points: Points, seed: int) -> Crease:
     main = lay(Lines(11.0, 1.1, 0.62, 30.0, 0.85), place - 5.6 + wander, y, seed + 10, side < 0.0)
     fine = lay(Lines(3.3, 0.6, 0.09, 12.0, 0.35), side * place + wander, y, seed + 20)
     near = band(y, 5.0, 12.0, 36.0, 50.0) * smooth_step(24.0, 14.0, x)
-    return Crease(1, near, np.tile(ASIDE, (len(points), 1)), 1.0, cover, both(main, fine))
+    return Crease(1, near, np.tile(ASIDE, (len(points), 1)), 1.3, cover, both(main, fine))
 
 
 def nose_root(points: Points, seed: int) -> Crease:
@@ -183,6 +183,7 @@ def lower_lid(points: Points, seed: int) -> Crease:
     found = lay(Lines(3.1, 0.55, 0.17, 9.0), place, 14.0 * angle, seed + 10, points[:, 0] < 0.0)
     across = unit(np.column_stack([away, np.zeros_like(x)]))
     near = band(radius, 8.0, 11.0, 28.0, 36.0) * smooth_step(2.0, -4.0, y)
+    near = near * smooth_step(8.0, 14.0, x)
     return Crease(1, near, across, 1.0, cover, found)
 
 
@@ -227,20 +228,20 @@ def mental_crease(points: Points, seed: int) -> Crease:
     return Crease(0, near, np.tile(UP, (len(points), 1)), 1.0, cover, Furrows(depth, -depth))
 
 
-def around_lips(points: Points, seed: int, mouth_row: Values) -> Crease:
-    """Fine lines that run away from the lips: orbicularis oris (AU18)."""
+def above_lip(points: Points, seed: int, mouth_row: Values) -> Crease:
+    """Fine lines that rise from the upper lip: orbicularis oris (AU18).
+
+    Those below the lower one would lie in its shadow, and look like hair.
+    """
     x, y = np.abs(points[:, 0]), points[:, 1]
     side = np.where(points[:, 0] < 0.0, -1.0, 1.0)
     away = np.column_stack([x, y - MOUTH_HEIGHT])
-    is_upper = y > MOUTH_HEIGHT
-    off = np.hypot(x / (lips.HALF_WIDTH + 3.0), away[:, 1] / np.where(is_upper, 11.5, 13.5))
-    cover = smooth_step(6.02, 6.4, mouth_row) * smooth_step(1.65, 1.0, off)
-    # Below the lower lip, in its shadow, they would look like hair.
-    reach = np.where(is_upper, smooth_step(24.0, 14.0, x), 0.2 * smooth_step(17.0, 9.0, x))
-    cover = cover * reach * (1.0 - 0.75 * bump(x, 0.0, 3.0) * is_upper)  # none in the philtrum
-    angle = np.abs(np.arctan2(1.55 * away[:, 1], x))
+    off = np.hypot(x / (lips.HALF_WIDTH + 3.0), away[:, 1] / 11.5)
+    cover = smooth_step(6.02, 6.4, mouth_row) * smooth_step(1.65, 1.0, off) * (away[:, 1] > 0.0)
+    cover = cover * smooth_step(24.0, 14.0, x) * (1.0 - 0.75 * bump(x, 0.0, 3.0))  # the philtrum
+    angle = np.arctan2(1.55 * away[:, 1], x)
     place = 21.0 * side * (0.5 * np.pi - angle) + stray(points, 0.6, 7.0, seed)
-    found = lay(Lines(3.0, 0.55, 0.27, 14.0, 0.75), place, 16.0 * off, seed + 10, ~is_upper)
+    found = lay(Lines(2.8, 0.55, 0.40, 14.0, 0.9), place, 16.0 * off, seed + 10)
     across = unit(np.column_stack([-away[:, 1], x, np.zeros_like(x)]))
     return Crease(1, smooth_step(3.2, 2.2, off), across, 1.0, cover, found)
 
@@ -260,7 +261,7 @@ REGIONS: tuple[Callable[[Points, int], Crease], ...] = (
 def creases(points: Points, mouth_row: Values) -> list[Crease]:
     """All regions at places on the face, shape (n, 3) [mm]; mouth_row: as in `Texels`."""
     found = [region(points, 100 * k) for k, region in enumerate(REGIONS)]
-    found.append(around_lips(points, 900, mouth_row))
+    found.append(above_lip(points, 900, mouth_row))
     side = np.where(points[:, :1] < 0.0, [-1.0, 1.0, 1.0], 1.0)
     front = smooth_step(10.0, 30.0, points[:, 2])
     return [

@@ -10,17 +10,17 @@ import numpy.typing as npt
 
 from ..model import Head, Wrinkles
 from .creases import SLOTS, creases
-from .fields import Points, Values, smooth_step
+from .fields import Values, smooth_step
 from .mouth_rows import OUTER_ROW
 from .texels import corner_values, left_texels
 
-SIZE = 1280  # texels, as of the picture of the skin
 STEEPEST = 1.0  # slope [mm/mm] of a full byte
 DEEPEST = 0.8  # [mm] of a full byte
+NEAR = 1e-3  # of a region, below which a vertex has no direction
 SCALE = 400.0  # [mm] of the face on the unit of texture coordinates, about
 
 
-def paint_wrinkles(head: Head, size: int = SIZE) -> Wrinkles:
+def paint_wrinkles(head: Head, size: int) -> Wrinkles:
     """Paint the map and find the directions of all vertices."""
     height, depth, slot = np.zeros((size, size)), np.zeros((size, size)), np.zeros((size, size))
     texels = left_texels(head, size)
@@ -46,12 +46,29 @@ def paint_wrinkles(head: Head, size: int = SIZE) -> Wrinkles:
         ],
         axis=-1,
     )
-    return Wrinkles(np.rint(texel).astype(np.uint8), STEEPEST * SCALE, across(head))
+    picture = np.rint(texel).astype(np.uint8)
+    return Wrinkles(picture, STEEPEST * SCALE, across(head) * _shows(head, picture)[:, None, None])
 
 
 def _free(eye_row: Values, ear_row: Values, nostril: Values) -> Values:
     """Where skin may wrinkle: not on the lids' margins, not on ears, not in nostrils."""
     return smooth_step(3.0, 4.2, eye_row) * (ear_row < 0.5) * (nostril < 0.02)
+
+
+def _shows(head: Head, picture: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
+    """The vertices with a triangle around in which the map is not plain, shape (V,).
+
+    Only those are measured, and triangles between others are drawn without wrinkles.
+    """
+    is_plain = (picture[..., :2] == 128).all(axis=2) & (picture[..., 2] == 0)
+    size = len(picture)
+    places = head.uv[head.face_uv] * [size, -size] + [0.0, size]
+    low = np.floor(places.min(axis=1)).astype(int) - 1
+    high = np.ceil(places.max(axis=1)).astype(int) + 1
+    shows = np.zeros(len(head.vertices), dtype=bool)
+    for face, (left, top), (right, bottom) in zip(head.faces, low, high, strict=True):
+        shows[face] |= not is_plain[max(top, 0) : bottom, max(left, 0) : right].all()
+    return shows | shows[head.mirror]
 
 
 def across(head: Head) -> npt.NDArray[np.float32]:
@@ -61,14 +78,13 @@ def across(head: Head) -> npt.NDArray[np.float32]:
     """
     values = corner_values(head)
     mouth_row = np.minimum(values[:, 2], values[head.mirror, 2])
-    total: Points = np.zeros((SLOTS, len(head.vertices), 3))
-    weight = np.zeros((SLOTS, len(head.vertices)))
-    readiness = np.zeros((SLOTS, len(head.vertices)))
+    found = np.zeros((len(head.vertices), SLOTS, 3))
+    nearest = np.full((len(head.vertices), SLOTS), NEAR)
     for crease in creases(head.vertices, np.minimum(mouth_row, OUTER_ROW + 1.0)):
-        total[crease.slot] += crease.near[:, None] * crease.across
-        weight[crease.slot] += crease.near
-        readiness[crease.slot] += crease.near * crease.readiness
-    length = np.maximum(np.linalg.norm(total, axis=2), 1e-12)
-    is_near = weight > 1e-3
-    found = total * (is_near * readiness / np.maximum(weight, 1e-12) / length)[:, :, None]
-    return np.ascontiguousarray(found.transpose(1, 0, 2), dtype=np.float32)
+        is_nearest = crease.near > nearest[:, crease.slot]
+        found[is_nearest, crease.slot] = crease.readiness * crease.across[is_nearest]
+        nearest[is_nearest, crease.slot] = crease.near[is_nearest]
+    # Mirrored, or the sides would differ where two regions are equally near.
+    is_right = head.vertices[:, 0] < 0.0
+    found[is_right] = found[head.mirror[is_right]] * [-1.0, 1.0, 1.0]
+    return found.astype(np.float32)
