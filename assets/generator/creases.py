@@ -58,7 +58,7 @@ class Crease(NamedTuple):
     near: Values  # (n,) in its slot the nearest region counts; reaches further than cover
     across: Points  # (n, 3) unit direction in which skin shortens there
     readiness: float  # how much of a wrinkle a given shortening makes
-    cover: Values  # (n,) 0..1, where furrows are seen
+    cover: Values  # (n,) 0..1, where furrows are seen, and 0 far from them
     furrows: Furrows
 
 
@@ -129,14 +129,14 @@ def glabella(points: Points, seed: int) -> Crease:
     """Upright lines between the brows: corrugator (AU4)."""
     x, y = np.abs(points[:, 0]), points[:, 1]
     side = np.where(points[:, 0] < 0.0, -1.0, 1.0)
-    cover = band(y, 9.0, 15.0, 27.0, 40.0) * smooth_step(15.0, 9.0, x)
+    cover = band(y, 9.0, 15.0, 26.0, 36.0) * smooth_step(15.0, 9.0, x)
     place = x - 0.13 * (y - 18.0) * smooth_step(0.0, 6.0, x)
     wander = stray(points, 0.9, 13.0, seed)
     # Two main lines rise from the heads of the brows; fainter ones stand beside.
-    main = lay(Lines(11.0, 1.1, 0.62, 30.0, 0.85), place - 5.6 + wander, y, seed + 10, side < 0.0)
+    main = lay(Lines(11.0, 1.1, 0.48, 30.0, 0.85), place - 5.6 + wander, y, seed + 10, side < 0.0)
     fine = lay(Lines(3.3, 0.6, 0.09, 12.0, 0.35), side * place + wander, y, seed + 20)
     near = band(y, 5.0, 12.0, 36.0, 50.0) * smooth_step(24.0, 14.0, x)
-    return Crease(1, near, np.tile(ASIDE, (len(points), 1)), 1.3, cover, both(main, fine))
+    return Crease(1, near, np.tile(ASIDE, (len(points), 1)), 1.0, cover, both(main, fine))
 
 
 def nose_root(points: Points, seed: int) -> Crease:
@@ -202,7 +202,9 @@ def smile_lines(points: Points, seed: int) -> Crease:
     depth = ragged * (0.42 * fold + 0.20 * bracket + 0.12 * outer)
     across = np.column_stack([lean, -lean * slope, np.zeros_like(x)])
     near = band(beside, -16.0, -8.0, 24.0, 34.0) * band(y, -98.0, -88.0, -40.0, -33.0)
-    return Crease(0, near, across, 1.6, smooth_step(40.0, 56.0, z), Furrows(depth, -depth))
+    cover = smooth_step(40.0, 56.0, z) * band(place, -6.0, -3.0, 17.0, 20.0)
+    cover = cover * band(y, -85.0, -82.0, -38.0, -34.0)
+    return Crease(0, near, across, 1.6, cover, Furrows(depth, -depth))
 
 
 def chin(points: Points, seed: int) -> Crease:
@@ -223,7 +225,7 @@ def mental_crease(points: Points, seed: int) -> Crease:
     place = y + 87.5 + 0.012 * x**2 + stray(points, 0.5, 9.0, seed)
     ragged = np.clip(0.75 + 0.3 * noise(points, 8.0, seed=seed + 3), 0.0, 1.0)
     depth = ragged * (0.40 * bump(place, 0.0, 1.5) + 0.14 * bump(place, -4.2, 0.9))
-    cover = smooth_step(19.0, 8.0, np.abs(x))
+    cover = smooth_step(19.0, 8.0, np.abs(x)) * band(place, -8.0, -5.0, 4.0, 6.0)
     near = smooth_step(9.0, 4.0, np.abs(place)) * smooth_step(30.0, 20.0, np.abs(x))
     return Crease(0, near, np.tile(UP, (len(points), 1)), 1.0, cover, Furrows(depth, -depth))
 
@@ -241,7 +243,7 @@ def above_lip(points: Points, seed: int, mouth_row: Values) -> Crease:
     cover = cover * smooth_step(24.0, 14.0, x) * (1.0 - 0.75 * bump(x, 0.0, 3.0))  # the philtrum
     angle = np.arctan2(1.55 * away[:, 1], x)
     place = 21.0 * side * (0.5 * np.pi - angle) + stray(points, 0.6, 7.0, seed)
-    found = lay(Lines(2.8, 0.55, 0.40, 14.0, 0.9), place, 16.0 * off, seed + 10)
+    found = lay(Lines(2.8, 0.55, 0.20, 14.0, 0.8), place, 16.0 * off, seed + 10)
     across = unit(np.column_stack([-away[:, 1], x, np.zeros_like(x)]))
     return Crease(1, smooth_step(3.2, 2.2, off), across, 1.0, cover, found)
 

@@ -61,6 +61,18 @@ def test_no_furrows_where_skin_does_not_wrinkle(head: assets.Head, rings: list[s
             assert is_plain(texels(head, head.rings[f"{ring}_{side}"])), ring
 
 
+@pytest.mark.parametrize(("place", "slot"), [("glabella", 255), ("metopion", 0), ("nasion", 0)])
+def test_furrows_follow_the_amount_of_their_own_region(
+    head: assets.Head, place: str, slot: int
+) -> None:
+    """No other region has a say where it has no furrows."""
+    size = len(head.wrinkles.map)
+    column, row = (head.uv[head.anatomy[place]] * [size, -size] + [0.0, size]).astype(int)
+    around = head.wrinkles.map[row - 12 : row + 13, column - 25 : column + 26].reshape(-1, 4)
+    furrows = around[around[:, 2] > 20]
+    assert len(furrows) > 20 and (furrows[:, 3] == slot).mean() > 0.95
+
+
 def test_none_behind_the_face(head: assets.Head) -> None:
     """Scalp, nape, throat."""
     _, y, z = head.vertices.T
