@@ -21,6 +21,7 @@ from .pipeline import Pipeline, side_by_side, texture_of
 from .scenes import Scene, build_scene
 from .script import Script
 from .stopping import cleaned_up_if_stopped
+from .wrinkling import wrinkling_of
 
 SETTLING = 1.0  # [s] after which the face rests in a pose
 
@@ -53,7 +54,8 @@ class Capture:
             refiners["none"] = None
         refiners[options.refiner] = options.refiner_options
         renderer = render.Renderer(self.surface)
-        self.pipeline = Pipeline(scene, renderer, refiners, texture_of(scene, renderer))
+        texture, wrinkling = texture_of(scene, renderer), wrinkling_of(scene, renderer)
+        self.pipeline = Pipeline(scene, renderer, refiners, texture, wrinkling)
         self.viewports = side_by_side(self.surface.size, len(refiners))
         self.camera = camera_for(scene, options.camera)
         self.most_triangles = 0

@@ -79,7 +79,9 @@ def known_refiner(name: str) -> str:
     return name
 
 
-def style_of(shading: str, wireframe: bool, splits: bool, skin: str) -> render.Style:
+def style_of(
+    shading: str, wireframe: bool, splits: bool, skin: str, wrinkles: float
+) -> render.Style:
     """The style that the drawing options ask for."""
     return render.Style(
         shading=render.Shading[shading.upper()],
@@ -87,4 +89,5 @@ def style_of(shading: str, wireframe: bool, splits: bool, skin: str) -> render.S
         colour_by=render.ColourBy.SPLITS if splits else render.ColourBy.NONE,
         textured=skin == "textured",
         albedo=render.CLAY if skin == "clay" else render.SKIN,
+        wrinkles=wrinkles,
     )

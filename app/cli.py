@@ -60,6 +60,13 @@ def drawing_options(command: Command) -> Command:
             show_default=True,
             help="clay is plain grey, as in the paper's pictures.",
         ),
+        click.option(
+            "--wrinkles",
+            type=FiniteRange(0, 1),
+            default=1.0,
+            show_default=True,
+            help="How deep skin wrinkles where it is compressed; 0: not at all.",
+        ),
     ):
         command = option(command)
     return command

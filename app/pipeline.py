@@ -21,6 +21,7 @@ import render
 
 from .refining import refiner_for
 from .scenes import Scene
+from .wrinkling import Amounts, Wrinkling, on_rows
 
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 
@@ -57,10 +58,11 @@ class Picture:
             seen["view"] = refine.View(camera.eye, focal)
         self.mesh = self.refiner.refine(positions, out=self.stream, **seen)
 
-    def upload(self) -> None:
-        """Hand over what was refined last."""
+    def upload(self, wrinkling: Amounts | None = None) -> None:
+        """Hand over what was refined last, and how far the scene's vertices wrinkle."""
         assert self.mesh is not None
-        self.stream.upload(len(self.mesh.positions), len(self.mesh.triangles))
+        rows = None if wrinkling is None else on_rows(wrinkling, self.refiner)
+        self.stream.upload(len(self.mesh.positions), len(self.mesh.triangles), rows)
 
     @property
     def triangle_count(self) -> int:
@@ -77,14 +79,16 @@ class Pipeline:
         renderer: render.Renderer,
         refiners: Mapping[str, Mapping[str, Any] | None],
         texture: render.Texture | None = None,
+        wrinkling: Wrinkling | None = None,
     ) -> None:
         """Bind `refiners` (name -> options beside the scene's own) to the scene, left to right.
 
-        `texture`: the scene's albedo, as `texture_of` made it.
+        `texture`: the scene's albedo, as `texture_of` made it; `wrinkling`: as `wrinkling_of` did.
         """
         self.scene = scene
         self.renderer = renderer
         self.texture = texture
+        self.wrinkling = wrinkling
         self.pictures = [
             Picture.of(scene, renderer, name, options) for name, options in refiners.items()
         ]
@@ -98,9 +102,12 @@ class Pipeline:
     ) -> None:
         """The lower half: refine the mesh for each picture, and draw it into its viewport."""
         bones = self.scene.bone_transforms()
+        amounts = None
+        if self.wrinkling is not None and style.wrinkles > 0.0:
+            amounts = self.wrinkling.amounts(self.scene.positions)
         for picture, viewport in zip(self.pictures, viewports, strict=True):
             picture.refine(self.scene.positions, camera, viewport)
-            picture.upload()
+            picture.upload(amounts)
             self._draw(picture, bones, camera, style, viewport)
 
     def _draw(
@@ -116,7 +123,13 @@ class Pipeline:
             values = splits_of_source(picture.refiner, picture.mesh)
         self.renderer.draw_background(style, viewport)
         self.renderer.draw_mesh(
-            picture.stream, camera, style, viewport=viewport, values=values, texture=self.texture
+            picture.stream,
+            camera,
+            style,
+            viewport=viewport,
+            values=values,
+            texture=self.texture,
+            wrinkles=None if self.wrinkling is None else self.wrinkling.map,
         )
         # After the mesh: the skin throws its shadow on eyes and teeth.
         self.renderer.draw_parts(self.scene.parts, bones, camera, style, viewport=viewport)

@@ -37,6 +37,7 @@ class Scene(Protocol):
     face_uv: npt.NDArray[np.int32] | None  # which of them each corner has (F, 3)
     albedo: npt.NDArray[np.uint8] | None  # the texture (H, W, 3), sRGB
     refiner_options: Mapping[str, Mapping[str, Any]]  # for a refiner by name, where not default
+    wrinkles: assets.Wrinkles | None  # where skin wrinkles; None: nowhere
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
@@ -101,6 +102,7 @@ class FaceScene:
         self.refiner_options: Mapping[str, Mapping[str, Any]] = {
             "kahler": {"criterion": "normal+rest"}
         }
+        self.wrinkles: assets.Wrinkles | None = head.wrinkles
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
@@ -169,6 +171,7 @@ class PlaneScene:
         self.uv: npt.NDArray[np.float32] | None = None
         self.face_uv: npt.NDArray[np.int32] | None = None
         self.albedo: npt.NDArray[np.uint8] | None = None
+        self.wrinkles: assets.Wrinkles | None = None
         # A flat mesh needs no slack for bends that it was made with. Found by search, so that the
         # wave makes about as many triangles at most as in Table 1 (1328).
         self.refiner_options: Mapping[str, Mapping[str, Any]] = {

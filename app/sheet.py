@@ -23,6 +23,7 @@ from .labels import contact_sheet
 from .outputs import Frame, written_aside
 from .pipeline import Pipeline, texture_of
 from .scenes import FaceScene, Scene
+from .wrinkling import wrinkling_of
 
 FOLDER = Path("docs/pictures")
 TITLES = {"Action units": "action_units", "Expressions": "expressions", "Visemes": "visemes"}
@@ -41,8 +42,8 @@ class Studio:
         self.scene = scene
         self.surface = render.open_offscreen(size, samples=4)
         renderer = render.Renderer(self.surface)
-        texture = texture_of(scene, renderer)
-        self.pipeline = Pipeline(scene, renderer, {"kahler": None}, texture)
+        texture, wrinkling = texture_of(scene, renderer), wrinkling_of(scene, renderer)
+        self.pipeline = Pipeline(scene, renderer, {"kahler": None}, texture, wrinkling)
         self.near, self.far = (
             [camera_for(scene, view) for view in views] for views in (VIEWS, FAR_VIEWS)
         )

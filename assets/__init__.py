@@ -11,7 +11,7 @@ The programs that generate them are in this package too; `python -m assets.build
 
 from .loading import available, load
 from .meshes import Mesh, read_mesh
-from .model import AssetError, Eye, Head, Layer, Part, Plane, Tone
+from .model import AssetError, Eye, Head, Layer, Part, Plane, Tone, Wrinkles
 from .painting import paint
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "Part",
     "Plane",
     "Tone",
+    "Wrinkles",
     "available",
     "load",
     "paint",

@@ -22,6 +22,7 @@ from .generator.painting import SIZE, paint_skin
 from .generator.skin import Skin, build_half, mirrored
 from .generator.solids import Solid
 from .generator.unwrap import unwrap
+from .generator.wrinkling import paint_wrinkles
 from .loading import HEAD_FILE, fingerprint, load_head
 from .model import Head, Tone
 from .pictures import write_picture
@@ -114,6 +115,17 @@ def build_finer(head: Head) -> dict[str, npt.NDArray[np.generic]]:
     }
 
 
+def build_wrinkles(head: Head, size: int) -> dict[str, npt.NDArray[np.generic]]:
+    """Build everything that the file of the wrinkles holds, array name -> array."""
+    wrinkles = paint_wrinkles(head, size)
+    return {
+        "map": wrinkles.map,
+        "steepest": np.array(wrinkles.steepest),
+        "across": wrinkles.across,
+        "made_from": np.array(fingerprint(head), dtype=np.uint32),
+    }
+
+
 def main(arguments: list[str]) -> None:
     """Write data files and picture, to the place where `load` looks or to the one given."""
     parser = argparse.ArgumentParser(
@@ -122,12 +134,13 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("file", nargs="?", type=Path, default=HEAD_FILE, help="the data file")
     tones = [tone.value for tone in Tone]
     parser.add_argument("--tone", choices=tones, default=Tone.MEDIUM_LIGHT.value)
-    parser.add_argument("--size", type=int, default=SIZE, help="of the picture [texels]")
+    parser.add_argument("--size", type=int, default=SIZE, help="of picture and wrinkles [texels]")
     given = parser.parse_args(arguments)
     given.file.parent.mkdir(parents=True, exist_ok=True)
     np.savez_compressed(given.file, allow_pickle=False, **build_head())
     head = load_head(given.file)
     np.savez_compressed(head.finer_file, allow_pickle=False, **build_finer(head))
+    np.savez_compressed(head.wrinkles_file, allow_pickle=False, **build_wrinkles(head, given.size))
     picture = paint_skin(head, tone=Tone(given.tone), size=given.size)
     write_picture(head.albedo_file, picture)
 

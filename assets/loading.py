@@ -16,7 +16,7 @@ from typing import Any, Literal, overload
 import numpy as np
 import numpy.typing as npt
 
-from .model import AssetError, Eye, FineMesh, Head, Layer, Part, Plane
+from .model import AssetError, Eye, FineMesh, Head, Layer, Part, Plane, Wrinkles
 from .plane import make_plane
 from .subdivision import coarse_places, quarter
 
@@ -64,8 +64,9 @@ def load_head(
 ) -> Head:
     """Read a head from its data file, its rig file and the files of its layers of controls.
 
-    The picture of the skin lies beside the data file, as a PNG file of the same name; so does the
-    file of the finer meshes (`_finer.npz`), which is read only when one is asked for.
+    The picture of the skin lies beside the data file, as a PNG file of the same name; so do the
+    files of its wrinkles (`_wrinkles.npz`) and of the finer meshes (`_finer.npz`). All three are
+    read only when they are asked for.
 
     Raises AssetError when the data file is missing or incomplete, or a text file is not TOML.
     """
@@ -93,11 +94,7 @@ def read_finer(head: Head, level: int) -> FineMesh:
         raise ValueError(
             f"level was {level!r}; allowed are 1 (4 triangles for each one) and 2 (16)"
         )
-    arrays = _read_arrays(head.finer_file)
-    if int(arrays.get("made_from", -1)) != fingerprint(head):
-        raise AssetError(
-            f"{head.finer_file} was made for another head; rebuild it with 'python -m assets.build'"
-        )
+    arrays = _made_for(head, head.finer_file)
     faces, count = head.faces, len(head.vertices)
     for _ in range(level):
         cut = quarter(faces, count)
@@ -110,6 +107,27 @@ def read_finer(head: Head, level: int) -> FineMesh:
     for array in (fine.vertices, fine.faces, fine.coarse_triangle, fine.barycentric, normals):
         array.flags.writeable = False
     return fine
+
+
+def read_wrinkles(head: Head) -> Wrinkles:
+    """Read where the head's skin wrinkles; see `Head.wrinkles`."""
+    arrays = _made_for(head, head.wrinkles_file)
+    try:
+        return Wrinkles(arrays["map"], float(arrays["steepest"]), arrays["across"])
+    except KeyError as error:
+        raise AssetError(
+            f"{head.wrinkles_file} has no array {error}; rebuild it with 'python -m assets.build'"
+        ) from error
+
+
+def _made_for(head: Head, path: Path) -> dict[str, npt.NDArray[Any]]:
+    """The arrays of a file that belongs to a head; AssetError if it belongs to another."""
+    arrays = _read_arrays(path)
+    if int(arrays.get("made_from", -1)) != fingerprint(head):
+        raise AssetError(
+            f"{path} was made for another head; rebuild it with 'python -m assets.build'"
+        )
+    return arrays
 
 
 def fingerprint(head: Head) -> int:
@@ -144,6 +162,7 @@ def _assemble(
         uv=arrays["uv"],
         face_uv=arrays["faces"],  # one piece without seams: a corner is a vertex
         albedo_file=head_file.with_suffix(".png"),
+        wrinkles_file=head_file.with_name(f"{head_file.stem}_wrinkles.npz"),
         finer_file=head_file.with_name(f"{head_file.stem}_finer.npz"),
         rig=rig,
         layers=layers,

@@ -93,6 +93,23 @@ class Layer:
 
 
 @dataclass(frozen=True)
+class Wrinkles:
+    """What a face wrinkles like: furrows over its texture, and when its vertices show them.
+
+    map: row 0 is v = 1, shape (H, W, 4), uint8. Slope of the skin's height along u and v (128 is
+        level), depth of the furrow, and the slot that the texel follows (0 the first, 255 the
+        second, between them both).
+    steepest: slope of 255 in `map` [mm for one unit of the texture coordinates].
+    across: for each vertex and slot the direction at rest in which skin shortens when it wrinkles;
+        its length is how readily it does; zero where it does not; shape (V, 2, 3), float32.
+    """
+
+    map: Picture
+    steepest: float
+    across: SingleArray
+
+
+@dataclass(frozen=True)
 class FineMesh:
     """The skin of a head with more triangles, at rest, and where it lies on the coarse one.
 
@@ -147,6 +164,7 @@ class Head:
     face_uv: numbers of the texture coordinates of each face's corners, shape (F, 3), int32; the
         same numbers as `faces`.
     albedo_file: the picture of the skin.
+    wrinkles_file: the map of its wrinkles.
     finer_file: what the finer meshes of the same form need; read by `finer`.
     rig: the parsed rig file, {} where there is none.
     layers: action units, expressions and visemes, from the lowest up; () where there are no files.
@@ -166,6 +184,7 @@ class Head:
     uv: SingleArray
     face_uv: IndexArray
     albedo_file: Path
+    wrinkles_file: Path
     finer_file: Path
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
@@ -189,6 +208,17 @@ class Head:
         from .pictures import read_picture  # Pillow, which to load a head takes no time for
 
         return read_picture(self.albedo_file)
+
+    @cached_property
+    def wrinkles(self) -> Wrinkles:
+        """Where the skin wrinkles, and like what; arrays read-only.
+
+        Read from `wrinkles_file` when it is first asked for. Raises AssetError when the file is
+        missing, broken or that of another head.
+        """
+        from .loading import read_wrinkles  # which imports this module
+
+        return read_wrinkles(self)
 
     def finer(self, level: int) -> FineMesh:
         """The same form with 4 (level 1) or 16 (level 2) triangles for each one; arrays read-only.

@@ -33,6 +33,7 @@ from .passthrough import PassThrough
 from .plugin import Origins, RefinedMesh, Refiner, Stream, View, available, create, register
 from .rest_curvature import RestCurvature
 from .schemes import Frame, Scheme
+from .shortening import Shortening
 from .tension import Tension, TensionMap
 from .uniform import Loop
 
@@ -58,6 +59,7 @@ __all__ = [
     "RestCurvature",
     "Scheme",
     "ScreenEdge",
+    "Shortening",
     "Silhouette",
     "Stream",
     "Tension",

@@ -42,6 +42,7 @@ from .style import (
 from .surface import Frame, OffscreenSurface, Surface, open_offscreen
 from .texture import Texture
 from .window import WindowSurface, open_window, size_on_screen
+from .wrinkles import WrinkleMap
 
 __all__ = [
     "CLAY",
@@ -71,6 +72,7 @@ __all__ = [
     "Texture",
     "Viewport",
     "WindowSurface",
+    "WrinkleMap",
     "open_offscreen",
     "open_window",
     "probe",

@@ -22,10 +22,11 @@ from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
 from .shadow import TEXEL, ShadowMap
 from .sight import Sight
-from .stream import Stream
-from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, Colour, ColourBy, Style, linear
+from .stream import Share, Stream
+from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, Colour, ColourBy, Shading, Style, linear
 from .surface import Surface
 from .texture import Texture
+from .wrinkles import WrinkleMap
 
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 
@@ -35,6 +36,7 @@ SHADOW_REACH = 2.0 * TEXEL  # how far the shadow's look-up reaches to each side
 TO_KEY = (-0.5300, 0.6300, 0.5677)  # unit vector in view space: over the viewer's left shoulder
 
 _VALUE_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the layers use 1
+_WRINKLE_UNIT = 5  # 4 belongs to a window's enlargement
 _PALETTE = np.array([linear(colour) for colour in SPLIT_PALETTE], np.float32)
 _RAMPS = {
     kind: np.array([(*linear(colour), cover) for colour, cover in ramp], np.float32)
@@ -87,6 +89,17 @@ class Renderer:
         self.surface.make_current()
         return Texture(self._gl, image, openness)
 
+    def load_wrinkles(self, texels: npt.NDArray[np.uint8], steepest: float) -> WrinkleMap:
+        """Hand a map of wrinkles to OpenGL; draw_mesh takes the furrows of the skin from it.
+
+        texels: slope of the skin's height along u and v (128 is level), depth of the furrow, which
+            of the stream's two amounts counts (0 the first .. 255 the second); top row first,
+            shape (H, W, 4), uint8. steepest: slope of 255 [mm for a whole texture coordinate].
+        Raises ValueError for another shape or type.
+        """
+        self.surface.make_current()
+        return WrinkleMap(self._gl, texels, steepest)
+
     def draw_background(self, style: Style, viewport: Viewport | None = None) -> None:
         """Paint the style's background over the viewport, and over what was drawn there."""
         self._backdrop.paint(self.surface.layers, self._viewport(viewport), style.background)
@@ -101,6 +114,7 @@ class Renderer:
         clip: Viewport | None = None,
         values: npt.NDArray[np.uint8] | None = None,
         texture: Texture | None = None,
+        wrinkles: WrinkleMap | None = None,
     ) -> None:
         """Draw what `stream` last uploaded.
 
@@ -108,24 +122,58 @@ class Renderer:
             unless that is NONE. Raises ValueError where it does not fit.
         texture: the albedo of the front side, unless the style is not textured; needs a stream of
             8 columns, ValueError else.
+        wrinkles: furrows of the skin, as far as the style and the amounts of wrinkling that were
+            uploaded let them show; per-pixel shading alone has them. Needs 8 columns, too.
         """
-        _check_texture(texture, stream)
+        _check_texture(texture or wrinkles, stream)
+        if style.wrinkles <= 0.0 or style.shading is not Shading.PIXEL or not stream.has_wrinkles:
+            wrinkles = None
         is_textured = texture is not None and style.textured
         sight = self._sight(camera, viewport, clip)
         if style.colour_by is not ColourBy.NONE:
             self._values.upload(_checked_values(values, stream.triangle_count))
         if style.shadows:
             self._draw_shadow(stream, sight)
-        program = self._program(
-            "surface.glsl",
-            style.shading.name,
-            *(["WIREFRAME"] if style.wireframe else []),
-            *_DEFINES[style.colour_by],
-            *(["TEXTURED"] if is_textured else []),
-            *(["SHADOWS"] if style.shadows else []),
-        )
-        if not self._aim(program, sight, stream.corners, np.eye(4)):
-            return
+        is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
+        shares = [Share.ALL] if wrinkles is None or is_coloured else [Share.WRINKLED, Share.SMOOTH]
+        drawn = []
+        for share in shares:
+            shown = None if share is Share.SMOOTH else wrinkles
+            program = self._program(
+                "surface.glsl",
+                style.shading.name,
+                *(["WIREFRAME"] if style.wireframe else []),
+                *_DEFINES[style.colour_by],
+                *(["TEXTURED"] if is_textured else []),
+                *(["SHADOWS"] if style.shadows else []),
+                *(["WRINKLES"] if shown is not None else []),
+            )
+            if not self._aim(program, sight, stream.corners, np.eye(4)):
+                return
+            self._set_surface(program, sight, style, texture if is_textured else None, shown)
+            drawn.append((program, share))
+        if self.surface.is_software:
+            # What turns away is mostly hidden: drawn last, it is not shaded at all there.
+            self._gl.enable(moderngl.CULL_FACE)
+            for culled in ("back", "front"):
+                self._gl.cull_face = culled
+                for program, share in drawn:
+                    stream.draw(program, share)
+            self._gl.cull_face = "back"
+            self._gl.disable(moderngl.CULL_FACE)
+        else:
+            for program, share in drawn:
+                stream.draw(program, share)
+
+    def _set_surface(
+        self,
+        program: moderngl.Program,
+        sight: Sight,
+        style: Style,
+        texture: Texture | None,
+        wrinkles: WrinkleMap | None,
+    ) -> None:
+        """Set what the mesh's program asks for beside matrices."""
         _set_skin(program, style)
         if style.shadows:
             self._set_shadow(program, sight)
@@ -133,26 +181,20 @@ class Renderer:
             program["viewport_size"] = sight.viewport[2:]
             program["wire_half_width"] = 0.5 * style.wire_width * self._line_scale
             program["wire_colour"] = *style.wire_colour, style.wire_opacity
-        if is_textured and texture is not None:
+        if texture is not None:
             program["albedo_texture"] = texture.bind(_ALBEDO_UNIT)
             program["redness"] = texture.redness
             program["occlusion"] = float(style.occlusion)
+        if wrinkles is not None:
+            program["wrinkle_map"] = wrinkles.bind(_WRINKLE_UNIT)
+            program["wrinkle_slope"] = wrinkles.steepest
+            program["wrinkle_strength"] = style.wrinkles
         if style.colour_by is not ColourBy.NONE:
             program["triangle_values"] = self._values.bind(_VALUE_UNIT)
             if style.colour_by is ColourBy.SPLITS:
                 write_uniform(program, "split_palette", _PALETTE)
             else:
                 write_uniform(program, "ramp", _RAMPS[style.colour_by])
-        if self.surface.is_software:
-            # What turns away is mostly hidden: drawn last, it is not shaded at all there.
-            self._gl.enable(moderngl.CULL_FACE)
-            for culled in ("back", "front"):
-                self._gl.cull_face = culled
-                stream.draw(program)
-            self._gl.cull_face = "back"
-            self._gl.disable(moderngl.CULL_FACE)
-        else:
-            stream.draw(program)
 
     def draw_parts(
         self,
@@ -313,7 +355,7 @@ def _set_part(program: moderngl.Program, shine: float) -> None:
     program["sharpness"] = 20.0 * 40.0**shine
 
 
-def _check_texture(texture: Texture | None, stream: Stream) -> None:
+def _check_texture(texture: Texture | WrinkleMap | None, stream: Stream) -> None:
     columns = stream.vertices.shape[1]
     if texture is not None and columns != 8:
         raise ValueError(

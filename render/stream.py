@@ -5,11 +5,22 @@ program it likes; `upload` hands exactly those rows to OpenGL. Nothing is alloca
 Source: Kähler et al. 2003, section 3: refined triangles go to the renderer and are forgotten.
 """
 
+from enum import Enum
+from typing import Any
+
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
 from .sight import box_corners
+
+
+class Share(Enum):
+    """Which of the uploaded triangles are drawn."""
+
+    ALL = "all"  # in their order
+    WRINKLED = "wrinkled"  # those with a corner that wrinkles
+    SMOOTH = "smooth"  # all others
 
 
 class Stream:
@@ -20,6 +31,7 @@ class Stream:
     source: number of the triangle that each one comes from, shape (triangle_capacity,), int32; the
         borrower writes; never uploaded.
     vertex_count, triangle_count: what the last `upload` handed over.
+    has_wrinkles: whether that came with amounts of wrinkling.
     corners: of the box that holds the uploaded vertices, shape (8, 3), float64.
     """
 
@@ -43,11 +55,22 @@ class Stream:
         self.corners = np.zeros((8, 3))
         self._gl = gl
         self._vertex_buffer = gl.buffer(reserve=self.vertices.nbytes, dynamic=True)
+        self.has_wrinkles = False
+        self._wrinkle_buffers: tuple[moderngl.Buffer, moderngl.Buffer] | None = None
+        self._wrinkled_count = 0  # triangles; they come first in the second of these buffers
         self._index_buffer = gl.buffer(reserve=self.triangles.nbytes, dynamic=True)
-        self._vertex_arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
+        self._vertex_arrays: dict[tuple[moderngl.Program, bool], moderngl.VertexArray] = {}
 
-    def upload(self, vertex_count: int, triangle_count: int) -> None:
-        """Hand the first `vertex_count` vertices and `triangle_count` triangles to OpenGL."""
+    def upload(
+        self,
+        vertex_count: int,
+        triangle_count: int,
+        wrinkling: npt.NDArray[np.float32] | None = None,
+    ) -> None:
+        """Hand the first `vertex_count` vertices and `triangle_count` triangles to OpenGL.
+
+        wrinkling: how far each vertex wrinkles, 0..1 in either slot of the map, (vertex_count, 2).
+        """
         if not 0 <= vertex_count <= len(self.vertices):
             raise ValueError(
                 f"vertex_count is {vertex_count}; this stream holds 0 to {len(self.vertices)}"
@@ -56,7 +79,13 @@ class Stream:
             raise ValueError(
                 f"triangle_count is {triangle_count}; this stream holds 0 to {len(self.triangles)}"
             )
+        if wrinkling is not None and wrinkling.shape != (vertex_count, 2):
+            raise ValueError(
+                f"wrinkling has shape {wrinkling.shape}; it must be ({vertex_count}, 2), two "
+                "amounts for each uploaded vertex"
+            )
         self.vertex_count, self.triangle_count = vertex_count, triangle_count
+        self.has_wrinkles = wrinkling is not None
         if vertex_count == 0 or triangle_count == 0:
             return
         self.corners = box_corners(self.vertices[:vertex_count, :3])
@@ -65,27 +94,59 @@ class Stream:
         self._vertex_buffer.write(self.vertices[:vertex_count])
         self._index_buffer.orphan()
         self._index_buffer.write(self.triangles[:triangle_count])
+        if wrinkling is not None:
+            self._upload_wrinkling(wrinkling)
 
-    def draw(self, program: moderngl.Program) -> None:
-        """Draw the uploaded triangles (attributes in_position, in_normal and in_uv, as needed)."""
-        if self.vertex_count == 0 or self.triangle_count == 0:
+    def _upload_wrinkling(self, wrinkling: npt.NDArray[np.float32]) -> None:
+        """Upload amounts, and the triangles anew: first those that wrinkle."""
+        if self._wrinkle_buffers is None:
+            room = 2 * self.vertices.itemsize * len(self.vertices)
+            self._wrinkle_buffers = (
+                self._gl.buffer(reserve=room, dynamic=True),
+                self._gl.buffer(reserve=self.triangles.nbytes, dynamic=True),
+            )
+        triangles = self.triangles[: self.triangle_count]
+        is_wrinkled = (wrinkling.max(axis=1) > 0.0)[triangles].any(axis=1)
+        self._wrinkled_count = int(np.count_nonzero(is_wrinkled))
+        parted = np.concatenate([triangles[is_wrinkled], triangles[~is_wrinkled]])
+        for buffer, array in zip(self._wrinkle_buffers, (wrinkling, parted), strict=True):
+            buffer.orphan()
+            buffer.write(np.ascontiguousarray(array))
+
+    def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
+        """Draw uploaded triangles; attributes in_position, in_normal, in_uv, as needed.
+
+        `share`: WRINKLED and SMOOTH need amounts of wrinkling, and give the program in_wrinkling.
+        """
+        first, count = {
+            Share.ALL: (0, self.triangle_count),
+            Share.WRINKLED: (0, self._wrinkled_count),
+            Share.SMOOTH: (self._wrinkled_count, self.triangle_count - self._wrinkled_count),
+        }[share]
+        if self.vertex_count == 0 or count == 0:
             return
-        array = self._vertex_arrays.get(program)
+        is_parted = share is not Share.ALL
+        array = self._vertex_arrays.get((program, is_parted))
         if array is None:
             names = ["in_position", "in_normal", "in_uv"]
             layout = "3f 3f 2f"
             if self.vertices.shape[1] == 6:
                 names.pop()
                 layout = "3f 3f"
+            content: list[Any] = [(self._vertex_buffer, layout, *names)]
+            indices = self._index_buffer
+            if self._wrinkle_buffers is not None:
+                content.append((self._wrinkle_buffers[0], "2f", "in_wrinkling"))
+                indices = self._wrinkle_buffers[1] if is_parted else indices
             array = self._gl.vertex_array(
                 program,
-                [(self._vertex_buffer, layout, *names)],
-                index_buffer=self._index_buffer,
+                content,
+                index_buffer=indices,
                 index_element_size=4,
                 skip_errors=True,  # flat shading has no use for normals, plain skin none for uv
             )
-            self._vertex_arrays[program] = array
-        array.render(moderngl.TRIANGLES, vertices=3 * self.triangle_count)
+            self._vertex_arrays[program, is_parted] = array
+        array.render(moderngl.TRIANGLES, vertices=3 * count, first=3 * first)
 
     def release(self) -> None:
         """Give the buffers back to OpenGL; the arrays stay readable."""
@@ -94,4 +155,6 @@ class Stream:
         self._vertex_arrays.clear()
         self._vertex_buffer.release()
         self._index_buffer.release()
+        for buffer in self._wrinkle_buffers or ():
+            buffer.release()
         self.vertex_count = self.triangle_count = 0

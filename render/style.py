@@ -96,6 +96,7 @@ class Style:
     gloss: float = 0.5  # strength of the skin's highlight, 0..1
     shadows: bool = True  # of the key light
     occlusion: bool = True  # less light from all around in folds, where the texture says so
+    wrinkles: float = 1.0  # how much of a map of wrinkles shows, where there is one; 0 = none
     background: Background = LIGHT
     wire_colour: Colour = (0.07, 0.08, 0.12)
     wire_width: float = 1.0  # [pixels at scale 1]; a window on a dense screen draws it wider

@@ -33,6 +33,7 @@ class Look:
     colours: str = "none"  # a key of colours.COLOURS
     skin: str = "textured"  # textured, plain, clay
     occlusion: bool = True  # less light in folds; of textured skin
+    wrinkles: float = 1.0  # how deep skin wrinkles where it is compressed, 0..1
     overlays: list[str] = field(default_factory=list)  # keys of overlays.OVERLAYS
 
 
@@ -59,9 +60,10 @@ def look_of(
     wireframe: bool,
     splits: bool,
     skin: str,
+    wrinkles: float,
 ) -> Look | None:
     """The look that the command line asks for; None where it asks for nothing: as it was last."""
-    look = Look(shading=shading, wireframe=wireframe, skin=skin)
+    look = Look(shading=shading, wireframe=wireframe, skin=skin, wrinkles=wrinkles)
     look.colours = "splits" if splits else "none"
     if refiner == "none":
         look.is_refined = False

@@ -19,6 +19,7 @@ from ..labels import caption
 from ..outputs import Frame
 from ..pipeline import Picture, Viewport, texture_of
 from ..scenes import Scene
+from ..wrinkling import wrinkling_of
 from .colours import COLOURS
 from .overlays import OVERLAYS, Lines, pointed_lines
 from .quality import FULL
@@ -56,6 +57,7 @@ class Stage:
         self.scene = scene
         self.renderer = render.Renderer(surface)
         self._texture = texture_of(scene, self.renderer)
+        self._wrinkling = wrinkling_of(scene, self.renderer)
         self.static = Picture.of(scene, self.renderer, "none", None)
         self.refined = self.static
         self._adopted: object = None
@@ -121,11 +123,15 @@ class Stage:
     ) -> None:
         """Draw the scene as it is now; the surface's `detail` says how finely."""
         shots = self.shots(look, viewport)
+        amounts = None
+        if self._wrinkling is not None and look.wrinkles > 0.0:
+            with self.timed("refinement"):
+                amounts = self._wrinkling.amounts(self.scene.positions)
         for shot in shots:
             with self.timed("refinement"):
                 shot.picture.refine(self.scene.positions, camera, shot.viewport)
             with self.timed("upload"):
-                shot.picture.upload()
+                shot.picture.upload(amounts)
         with self.timed("draw"):
             self.surface.begin()
             style = style_of(look, background)
@@ -159,6 +165,7 @@ class Stage:
             clip=shot.clip,
             values=None if values is None else np.asarray(values, np.uint8),
             texture=self._texture,
+            wrinkles=None if self._wrinkling is None else self._wrinkling.map,
         )
         # After the mesh: the skin throws its shadow on eyes and teeth.
         self.renderer.draw_parts(
@@ -209,6 +216,7 @@ def style_of(look: Look, background: render.Background) -> render.Style:
         textured=is_textured,
         occlusion=look.occlusion,
         albedo=albedo,
+        wrinkles=look.wrinkles,
         background=background,
     )
 
@@ -226,6 +234,7 @@ def checked(look: Look, refiners: Sequence[str], overlays: Sequence[str]) -> Loo
         if getattr(look, name) not in allowed:
             setattr(look, name, getattr(Look(), name))
     look.overlays = [name for name in look.overlays if name in overlays]
+    look.wrinkles = look.wrinkles if 0.0 <= look.wrinkles <= 1.0 else 1.0
     look.divider = look.divider if 0.0 <= look.divider <= 1.0 else 0.5
     look.options = {name: dict(found) for name, found in look.options.items() if name in refiners}
     return look

@@ -22,7 +22,18 @@ import numpy as np
 
 from ..loading import load
 from ..meshes import Mesh, read_mesh
-from ..model import AssetError, Eye, FloatArray, Head, IndexArray, Layer, Part, Picture, SingleArray
+from ..model import (
+    AssetError,
+    Eye,
+    FloatArray,
+    Head,
+    IndexArray,
+    Layer,
+    Part,
+    Picture,
+    SingleArray,
+    Wrinkles,
+)
 from .landmark_file import COUNT, read_landmarks
 from .organs import Place, place_eyes, place_parts
 from .soundness import Skin, check_manifold, check_openings, skin_of
@@ -53,6 +64,7 @@ class FittedHead:
     uv: SingleArray
     face_uv: IndexArray
     albedo: Picture
+    wrinkles: Wrinkles
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
     to_millimetres: Similarity
@@ -110,6 +122,9 @@ def fit(
         uv=foot.carry(known.uv).astype(np.float32),
         face_uv=skin.faces,
         albedo=known.albedo,
+        wrinkles=replace(
+            known.wrinkles, across=foot.carry(known.wrinkles.across).astype(np.float32)
+        ),
         rig=known.rig,
         layers=known.layers,
         to_millimetres=similarity,

@@ -1,7 +1,7 @@
 // Skin and rigid parts.
 // One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
 // stage), VALUES (colour by a value per triangle: SPLITS a count, RAMP an amount), COLOURED (vertex colours), TEXTURED (skin's albedo from
-// a picture), SHADOWS (of the key).
+// a picture), SHADOWS (of the key), WRINKLES (of the skin; with PIXEL).
 
 #include "lighting.glsl"
 
@@ -26,10 +26,16 @@ uniform float sharpness;
 #else
 #define COLOUR_VARYING
 #endif
-#if defined(TEXTURED)
+#if defined(TEXTURED) || defined(WRINKLES)
+#define HAS_UV
 #define TEXTURE_VARYING vec2 uv;
 #else
 #define TEXTURE_VARYING
+#endif
+#if defined(WRINKLES)
+#define WRINKLE_VARYING vec2 wrinkling;
+#else
+#define WRINKLE_VARYING
 #endif
 #if defined(SHADOWS)
 #define SHADOW_VARYING vec3 light_place;
@@ -37,7 +43,7 @@ uniform float sharpness;
 #define SHADOW_VARYING
 #endif
 #define VARYINGS vec3 position; NORMAL_VARYING LIT_VARYING COLOUR_VARYING TEXTURE_VARYING \
-    SHADOW_VARYING
+    SHADOW_VARYING WRINKLE_VARYING
 
 #if defined(VERTEX_STAGE)
 
@@ -46,8 +52,11 @@ in vec3 in_normal;
 #if defined(COLOURED)
 in vec3 in_colour;
 #endif
-#if defined(TEXTURED)
+#if defined(HAS_UV)
 in vec2 in_uv;
+#endif
+#if defined(WRINKLES)
+in vec2 in_wrinkling;
 #endif
 uniform mat4 model_view;
 uniform mat4 projection;
@@ -79,8 +88,11 @@ void main() {
 #if defined(COLOURED)
     surface.colour = in_colour;
 #endif
-#if defined(TEXTURED)
+#if defined(HAS_UV)
     surface.uv = in_uv;
+#endif
+#if defined(WRINKLES)
+    surface.wrinkling = in_wrinkling;
 #endif
 #if defined(SHADOWS)
     float height = shadow_offset + shadow_reach * length(cross(normal, to_key));
@@ -128,8 +140,11 @@ void main() {
         drawn.inner = corner[i].inner;
         drawn.facing = corner[i].facing;
 #endif
-#if defined(TEXTURED)
+#if defined(HAS_UV)
         drawn.uv = corner[i].uv;
+#endif
+#if defined(WRINKLES)
+        drawn.wrinkling = corner[i].wrinkling;
 #endif
 #if defined(SHADOWS)
         drawn.light_place = corner[i].light_place;
@@ -173,6 +188,9 @@ uniform vec4 ramp[5];  // colour, and how much of it
 #endif
 #if defined(SHADOWS)
 uniform sampler2DShadow shadow_map;
+#endif
+#if defined(WRINKLES)
+#include "wrinkles.glsl"
 #endif
 out vec4 pixel_colour;
 
@@ -257,6 +275,10 @@ void main() {
     vec3 to_eye = normalize(-surface.position);
 #endif
     vec3 normal = shading_normal();
+#if defined(WRINKLES)
+    Wrinkle wrinkle = wrinkle_at(surface.uv, gl_FrontFacing ? surface.wrinkling : vec2(0.0));
+    normal = wrinkled(normal, surface.position, surface.uv, wrinkle);
+#endif
     Lit lit = studio(normal, to_eye, subsurface, gloss, sharpness);
     vec3 inner = inside(normal);
     float facing = dot(normal, to_eye);
@@ -266,6 +288,9 @@ void main() {
     // Lips are redder than the skin around, and moist. Chosen by eye: not yet at red cheeks.
     float excess = front.r / (max(front.g, 1e-3) * redness);
     lit.specular *= 1.0 + 1.6 * clamp(5.0 * excess - 6.0, 0.0, 1.0);
+#endif
+#if defined(WRINKLES)
+    front *= 1.0 - wrinkle.depth * FURROW;
 #endif
     vec3 light = lit_colour(lit, front, key_lightness(), subsurface, openness);
 #if defined(COLOURED)

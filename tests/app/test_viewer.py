@@ -211,6 +211,22 @@ def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
     assert not viewer.messages.text
 
 
+def test_wrinkles_have_a_slider(viewer: Viewer) -> None:
+    """Dragged to the left they are gone from the picture; a right click brings them back."""
+    viewer.session.show("surprise")
+    click(viewer, "tab Mechanism")
+    assert until(viewer, lambda: viewer.is_idle)
+    assert viewer.look.wrinkles == 1.0 and viewer.stage.refined.stream.has_wrinkles
+    drag(viewer, middle(viewer, "wrinkles"), (-400, 0))
+    xdotool(viewer, "mouseup", 1)
+    assert viewer.look.wrinkles == 0.0 and not viewer.stage.refined.stream.has_wrinkles
+    xdotool(viewer, "click", 3)
+    xdotool(viewer, "mousemove", *middle(viewer, "wrinkles"))
+    xdotool(viewer, "click", 3)
+    assert viewer.look.wrinkles == 1.0
+    assert until(viewer, lambda: viewer.stage.refined.stream.has_wrinkles)
+
+
 def test_recording_survives_a_file(viewer: Viewer, tmp_path: Path) -> None:
     """Record a slider, save through the window, open again, replay: the same face."""
     xdotool(viewer, "key", "ctrl+r")

@@ -57,6 +57,15 @@ def test_repainted_skin_is_the_shipped_one(rebuilt: Path) -> None:
     assert (difference > 24).mean() < 0.01
 
 
+def test_repainted_wrinkles_are_the_shipped_ones(rebuilt: Path) -> None:
+    """The map to a few texels of rounding, and the directions of all vertices."""
+    fresh, shipped = load_head(rebuilt).wrinkles, load("head").wrinkles
+    assert fresh.steepest == shipped.steepest
+    difference = np.abs(fresh.map.astype(int) - shipped.map.astype(int))
+    assert difference.mean() < 0.02 and (difference > 8).mean() < 0.001
+    assert np.allclose(fresh.across, shipped.across, atol=1e-4)
+
+
 def test_tone_and_size_are_options(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

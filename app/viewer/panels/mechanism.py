@@ -47,6 +47,7 @@ HINTS = {
     "Shading": "S goes through them",
     "Colours": "of the simulated mesh's triangles, whatever they are refined to (C: splits)",
     "Skin": "T switches the texture",
+    "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
     "Wireframe": "the edges of all triangles that are drawn (W)",
     "Occlusion": "less light from all around in folds of the textured skin",
     "Muscles": "their fibres, redder the more they contract (U)",
@@ -143,9 +144,20 @@ class MechanismPanel:
         if COLOURS[look.colours].legend:
             imgui.text_colored(colour(viewer.gui.theme.muted), COLOURS[look.colours].legend)
         self._choose("Skin", "skin", tuple(SKINS))
+        if viewer.scene.wrinkles is not None:
+            self._draw_wrinkles()
         self._check("Wireframe", look.wireframe, lambda: commands.toggle(viewer, "wireframe"))
         imgui.same_line(_label_width())
         self._check("Occlusion", look.occlusion, lambda: commands.toggle(viewer, "occlusion"))
+
+    def _draw_wrinkles(self) -> None:
+        look = self._viewer.look
+        imgui.align_text_to_frame_padding()
+        imgui.text("Wrinkles")
+        hint(HINTS["Wrinkles"])
+        imgui.same_line(_label_width())
+        slid = self._sliders.draw("wrinkles", look.wrinkles, (0.0, 1.0), width=-1.0, neutral=1.0)
+        look.wrinkles = slid.value
 
     def _draw_overlays(self) -> None:
         viewer = self._viewer

@@ -1,0 +1,234 @@
+"""Wrinkles that follow the simulated skin: when, where, which way, and on which heads."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import assets
+import render
+from app.capture import Capture, CaptureOptions
+from app.scenes import FaceScene, PlaneScene
+from app.wrinkling import Wrinkling, on_rows, wrinkling_of
+from assets.fitting import fit_head
+from tests.heads import stranger
+
+Array = npt.NDArray[np.float64]
+SETTLED = 1.2  # [s]
+CARD: Any = SimpleNamespace(load_wrinkles=lambda *_: None)  # no graphics card is needed to measure
+
+
+@pytest.fixture(scope="module")
+def scene() -> FaceScene:
+    """One face for all tests; each begins by posing it."""
+    return FaceScene()
+
+
+@pytest.fixture(scope="module")
+def wrinkling(scene: FaceScene) -> Wrinkling:
+    """What measures it."""
+    return Wrinkling(scene, CARD)
+
+
+def amounts(scene: FaceScene, wrinkling: Wrinkling, **pose: float) -> Array:
+    """How far the face wrinkles in a pose that it has settled in."""
+    scene.reset()
+    scene.pose(pose)
+    scene.step(SETTLED)
+    return wrinkling.amounts(scene.positions).astype(np.float64)
+
+
+def region(scene: FaceScene, low: tuple[float, ...], high: tuple[float, ...]) -> Array:
+    """The vertices at rest in a box [mm]."""
+    rest = scene.rest_positions
+    return ((rest > low) & (rest < high)).all(axis=1)
+
+
+def forehead(scene: FaceScene) -> Array:
+    return region(scene, (-30, 36, 60), (30, 62, 120))
+
+
+def test_nothing_wrinkles_at_rest(scene: FaceScene, wrinkling: Wrinkling) -> None:
+    """Exactly nothing, so that the picture without wrinkles is drawn."""
+    found = amounts(scene, wrinkling)
+    assert not found.any()
+    assert on_rows(found.astype(np.float32), SimpleNamespace()) is None  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["AU1", "AU4", "AU6", "AU17", "AU18"])
+def test_amounts_grow_with_the_muscle_and_never_jump(
+    scene: FaceScene, wrinkling: Wrinkling, name: str
+) -> None:
+    """In twenty steps no vertex moves by more than a fifth, and the sum only grows."""
+    steps = [amounts(scene, wrinkling, **{name: share}) for share in np.linspace(0.0, 1.0, 21)]
+    changes = np.abs(np.diff(steps, axis=0))
+    assert changes.max() < 0.2
+    assert changes[0].max() < 0.08  # from nothing
+    sums = [step.sum() for step in steps]
+    assert sums[-1] > 1.0 and (np.diff(sums) > -0.01 * sums[-1]).all()
+
+
+def test_amounts_follow_time_without_a_jump(scene: FaceScene, wrinkling: Wrinkling) -> None:
+    """At thirty frames a second, from rest into a full expression in half a second."""
+    scene.reset()
+    last = wrinkling.amounts(scene.positions).copy()
+    for frame in range(20):
+        scene.pose({"surprise": min(frame / 15.0, 1.0)})
+        scene.step(1.0 / 30.0)
+        now = wrinkling.amounts(scene.positions).copy()
+        assert np.abs(now - last).max() < 0.25
+        last = now
+
+
+@pytest.mark.parametrize("name", ["AU1", "AU4", "AU6", "AU12"])
+def test_mirrored_input_gives_mirrored_amounts(
+    scene: FaceScene, wrinkling: Wrinkling, name: str
+) -> None:
+    """Left and right of the face, though furrows themselves differ."""
+    assert isinstance(scene.head, assets.Head)
+    left = amounts(scene, wrinkling, **{f"{name}_left": 1.0})
+    right = amounts(scene, wrinkling, **{f"{name}_right": 1.0})
+    assert left.any()
+    np.testing.assert_allclose(right[scene.head.mirror], left, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "high", "slot"),
+    [
+        ("AU1", (-30, 36, 60), (30, 62, 120), 0),  # across the forehead
+        ("AU4", (-12, 12, 60), (12, 34, 120), 1),  # upright between the brows
+        ("AU6", (50, -12, 30), (66, 10, 80), 0),  # crow's feet
+        ("AU9", (-12, -22, 60), (12, 8, 120), 0),  # the root of the nose
+        ("AU17", (-14, -106, 60), (14, -92, 120), 0),  # dimples of the chin
+        ("AU18", (-14, -58, 60), (14, -50, 120), 1),  # lines around the lips
+        ("joy", (50, -12, 30), (66, 10, 80), 0),
+    ],
+)
+def test_each_wrinkles_where_it_does_in_people(
+    scene: FaceScene, wrinkling: Wrinkling, name: str, low: Any, high: Any, slot: int
+) -> None:
+    """A clear amount there, and next to none on a forehead that nothing moves."""
+    found = amounts(scene, wrinkling, **{name: 1.0})
+    assert found[region(scene, low, high), slot].max() > 0.3
+    if name in ("AU6", "AU17", "AU18"):
+        assert found[forehead(scene)].max() < 0.05
+
+
+def test_lines_lie_across_the_muscles(scene: FaceScene) -> None:
+    """The skin shortens along the fibres: level lines under the frontalis, upright ones between."""
+    assert scene.wrinkles is not None
+    for muscle, slot, level in (
+        ("frontalis_medial_left", 0, False),
+        ("corrugator_supercilii_left", 1, True),
+    ):
+        rest, found = scene.rest_positions, []
+        for fibre in scene.simulation.fibres()[muscle]:
+            for start, end in pairwise(fibre):
+                nearest = int(np.linalg.norm(rest - 0.5 * (start + end), axis=1).argmin())
+                across = scene.wrinkles.across[nearest, slot].astype(np.float64)
+                if across.any():
+                    way = (end - start)[:2] / np.linalg.norm((end - start)[:2])
+                    found.append(abs(across[:2] @ way) / np.linalg.norm(across[:2]))
+                    assert (abs(across[0]) > abs(across[1])) == level
+        assert len(found) > 3 and np.median(found) > 0.8, muscle
+
+
+def test_lines_of_the_forehead_are_level(scene: FaceScene) -> None:
+    """In the map itself: where it is steep, it is steep upward."""
+    assert scene.wrinkles is not None and scene.uv is not None
+    slopes = scene.wrinkles.map[..., :2].astype(float) - 128.0
+    size = len(slopes)
+    places = scene.uv[forehead(scene).astype(bool)] * [size, -size] + [0.0, size]
+    left, top = places.min(axis=0).astype(int)
+    right, bottom = places.max(axis=0).astype(int)
+    around = np.abs(slopes[top:bottom, left:right])
+    assert around[..., 1].sum() > 4.0 * around[..., 0].sum()
+
+
+def pictures(scene: FaceScene, pose: dict[str, float], camera: str) -> tuple[Array, Array, Capture]:
+    """The pose without and with wrinkles."""
+    options = CaptureOptions(size=(260, 300), camera=camera)
+    with Capture(scene, options) as capture:
+        scene.reset()
+        scene.pose(pose)
+        scene.step(SETTLED)
+        frames = []
+        for strength in (0.0, 1.0):
+            capture.options = replace(options, style=render.Style(wrinkles=strength))
+            frames.append(capture.picture().astype(np.float64))
+    return frames[0], frames[1], capture
+
+
+def test_the_picture_at_rest_is_the_one_without(scene: FaceScene) -> None:
+    """To the byte, and so is that of a pose that compresses nothing."""
+    smooth, wrinkled, _ = pictures(scene, {}, "front")
+    assert (smooth == wrinkled).all()
+
+
+def test_only_skin_that_wrinkles_is_drawn_differently(scene: FaceScene) -> None:
+    """Neither eyes nor the red of the lips, nor ears, scalp or background."""
+    pose = {"AU1": 1.0, "AU2": 1.0, "AU6": 1.0, "AU9": 0.6, "AU18": 0.7}
+    smooth, wrinkled, capture = pictures(scene, pose, "0,0,1.1")
+    differs = np.abs(wrinkled - smooth).max(axis=2) > 6
+    assert 0.004 < differs.mean() < 0.15
+    assert isinstance(scene.head, assets.Head)
+    head, size = scene.head, (260, 300)
+    camera = capture.camera
+    matrix = camera.view_matrix() @ camera.projection_matrix(size[0] / size[1])
+
+    def shown(points: Array) -> npt.NDArray[np.bool_]:
+        clip = np.column_stack([points, np.ones(len(points))]) @ np.asarray(matrix, np.float64)
+        place = (0.5 + 0.5 * clip[:, :2] / clip[:, 3:]) * size
+        return differs[size[1] - 1 - place[:, 1].astype(int), place[:, 0].astype(int)]
+
+    now = scene.positions
+    rings = [
+        head.rings[f"{ring}_{side}"] for ring in ("ear_1", "mouth_4") for side in ("left", "right")
+    ]
+    for ring in rings:
+        assert not shown(now[ring]).any()
+    for eye in head.eyes:
+        assert not shown(eye.centre[None] + [0.0, 0.0, eye.radius]).any()
+    assert shown(now[forehead(scene).astype(bool)]).any()
+    assert not differs[:8].any() and not differs[:, :4].any()  # background
+
+
+def test_other_heads_wrinkle_too(tmp_path: Path, scene: FaceScene, wrinkling: Wrinkling) -> None:
+    """A fitted one of another shape and mesh, and the built-in one with more triangles."""
+    head = assets.load("head")
+    fine = head.finer(1)
+    finer = SimpleNamespace(
+        **{name: getattr(head, name) for name in ("landmarks", "jaw_axis", "eyes", "parts", "rig")},
+        layers=head.layers,
+        vertices=fine.vertices,
+        faces=fine.faces,
+        bone_depth=fine.carried(head.bone_depth),
+        mandible_weight=fine.carried(head.mandible_weight),
+        uv=fine.carried(head.uv).astype(np.float32),
+        face_uv=fine.faces,
+        albedo=head.albedo,
+        wrinkles=replace(
+            head.wrinkles, across=fine.carried(head.wrinkles.across).astype(np.float32)
+        ),
+    )
+    built_in = amounts(scene, wrinkling, AU1=1.0, AU2=1.0)[forehead(scene).astype(bool), 0].mean()
+    fitted: Any = fit_head(*stranger().write(tmp_path))
+    for other in (fitted, finer):
+        another = FaceScene(other)
+        measure = Wrinkling(another, CARD)
+        assert not amounts(another, measure).any()
+        found = amounts(another, measure, AU1=1.0, AU2=1.0)
+        mean = found[forehead(another).astype(bool), 0].mean()
+        assert 0.5 * built_in < mean < 1.6 * built_in
+
+
+def test_the_plane_has_none() -> None:
+    """Nothing is loaded for it."""
+    assert wrinkling_of(PlaneScene(), CARD) is None

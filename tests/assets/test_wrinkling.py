@@ -1,0 +1,121 @@
+"""The map of wrinkles: furrows where skin wrinkles, and nothing where it does not."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import assets
+from assets.loading import HEAD_FILE, load_head
+
+STEEPEST_FURROW = 0.7  # slope: about 35 degrees
+
+
+@pytest.fixture(scope="module")
+def head() -> assets.Head:
+    """The built-in head."""
+    return assets.load("head")
+
+
+def texels(head: assets.Head, vertices: npt.NDArray[np.intp]) -> npt.NDArray[np.uint8]:
+    """The map's texels at vertices, shape (n, 4)."""
+    size = len(head.wrinkles.map)
+    columns, rows = (head.uv[vertices] * [size, -size] + [0.0, size]).astype(int).T
+    return np.asarray(head.wrinkles.map[rows, columns])
+
+
+def is_plain(found: npt.NDArray[np.uint8]) -> bool:
+    """Whether there is no furrow in any of the texels, but for the last of one that fades out."""
+    slopes = np.abs(found[:, :2].astype(int) - 128)
+    return bool(slopes.max() < 4 and found[:, 2].max() < 4)
+
+
+def test_arrays_fit_the_head(head: assets.Head) -> None:
+    """Shapes and types as `Wrinkles` says, directions of a sensible length, all read-only."""
+    wrinkles = head.wrinkles
+    assert wrinkles.map.ndim == 3 and wrinkles.map.shape[2] == 4
+    assert wrinkles.map.dtype == np.uint8 and not wrinkles.map.flags.writeable
+    assert wrinkles.across.shape == (len(head.vertices), 2, 3)
+    length = np.linalg.norm(wrinkles.across, axis=2)
+    assert ((length == 0.0) | ((length > 0.5) & (length < 2.0))).all()
+    assert 100 < (length > 0.0).any(axis=1).sum() < 0.6 * len(head.vertices)
+
+
+@pytest.mark.parametrize(
+    "rings",
+    [
+        [f"eye_{row}" for row in range(4)],
+        [f"mouth_{row}" for row in range(7)],
+        [f"ear_{row}" for row in range(1, 5)],
+        ["nostril", "rim", "concha"],
+    ],
+)
+def test_no_furrows_where_skin_does_not_wrinkle(head: assets.Head, rings: list[str]) -> None:
+    """Margins of the lids, the red of the lips, ears, nostrils, the foot of the neck."""
+    for ring in rings:
+        for side in ("left", "right"):
+            assert is_plain(texels(head, head.rings[f"{ring}_{side}"])), ring
+
+
+@pytest.mark.parametrize(("place", "slot"), [("glabella", 255), ("metopion", 0), ("nasion", 0)])
+def test_furrows_follow_the_amount_of_their_own_region(
+    head: assets.Head, place: str, slot: int
+) -> None:
+    """No other region has a say where it has no furrows."""
+    size = len(head.wrinkles.map)
+    column, row = (head.uv[head.anatomy[place]] * [size, -size] + [0.0, size]).astype(int)
+    around = head.wrinkles.map[row - 12 : row + 13, column - 25 : column + 26].reshape(-1, 4)
+    furrows = around[around[:, 2] > 20]
+    assert len(furrows) > 20 and (furrows[:, 3] == slot).mean() > 0.95
+
+
+def test_none_behind_the_face(head: assets.Head) -> None:
+    """Scalp, nape, throat."""
+    _, y, z = head.vertices.T
+    assert is_plain(texels(head, np.flatnonzero((z < 10.0) | (y > 78.0) | (y < -125.0))))
+
+
+def test_furrows_are_no_cliffs(head: assets.Head) -> None:
+    """No slope is cut off at the ends of a byte, and few are steep."""
+    slopes = np.abs(head.wrinkles.map[..., :2].astype(int) - 128)
+    assert slopes.max() < 127
+    assert (slopes > 127 * STEEPEST_FURROW).mean() < 1e-4
+
+
+def test_left_and_right_are_not_alike(head: assets.Head) -> None:
+    """Directions are mirrored; furrows lie in the same regions, and differ."""
+    across = head.wrinkles.across
+    mirrored = across[head.mirror] * [-1.0, 1.0, 1.0]
+    same_way = np.sign((mirrored * across).sum(axis=2, keepdims=True))  # a sign has no meaning
+    np.testing.assert_allclose(same_way * mirrored, across, atol=1e-4)
+    depth = head.wrinkles.map[..., 2].astype(float)
+    half = depth.shape[1] // 2
+    left, right = depth[:, half:], depth[:, :half][:, ::-1]
+    assert 0.5 < left.sum() / right.sum() < 2.0
+    assert np.abs(left - right).sum() > 0.3 * (left + right).sum()
+
+
+def test_a_file_that_is_missing_broken_or_of_another_head_is_named(tmp_path: Path) -> None:
+    """One error for each, with the cure."""
+    for name in ("head.npz", "head.png", "head_wrinkles.npz"):
+        shutil.copy(HEAD_FILE.with_name(name), tmp_path)
+    copy = tmp_path / "head.npz"
+    assert load_head(copy).wrinkles.map.size
+    file = load_head(copy).wrinkles_file
+    arrays = dict(np.load(file))
+    np.savez(file, **{**arrays, "made_from": np.array(1)})
+    with pytest.raises(assets.AssetError, match="made for another head"):
+        _ = load_head(copy).wrinkles
+    np.savez(file, **{name: arrays[name] for name in ("made_from", "map")})
+    with pytest.raises(assets.AssetError, match="has no array"):
+        _ = load_head(copy).wrinkles
+    file.write_bytes(b"nothing")
+    with pytest.raises(assets.AssetError, match="not a readable npz"):
+        _ = load_head(copy).wrinkles
+    file.unlink()
+    with pytest.raises(assets.AssetError, match="is missing"):
+        _ = load_head(copy).wrinkles

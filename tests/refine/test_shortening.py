@@ -1,0 +1,103 @@
+"""Shortening along given directions: known strains, rigid motion, bends, bad input."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from scipy.spatial.transform import Rotation
+
+import refine
+from tests import meshes
+
+Array = npt.NDArray[np.float64]
+ALONG, ACROSS = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+
+
+def sheet(count: int = 9) -> tuple[npt.NDArray[np.int64], Array]:
+    """Triangles and vertices of a flat sheet, 10 long and wide."""
+    place = np.linspace(-5.0, 5.0, count)
+    vertices = np.stack([*np.meshgrid(place, place), np.zeros((count, count))], axis=-1)
+    corner = (np.arange(count - 1)[:, None] * count + np.arange(count - 1)).ravel()
+    faces = [[corner, corner + 1, corner + count + 1], [corner, corner + count + 1, corner + count]]
+    return np.concatenate([np.stack(each, axis=1) for each in faces]), vertices.reshape(-1, 3)
+
+
+def both_ways(count: int) -> Array:
+    """Along x and along y, at every vertex."""
+    return np.tile([ALONG, ACROSS], (count, 1, 1))
+
+
+def test_at_rest_there_is_none() -> None:
+    """To the last bit, on an irregular mesh."""
+    mesh = meshes.irregular(3)
+    directions = np.random.default_rng(3).normal(size=(len(mesh.vertices), 2, 3))
+    measured = refine.Shortening(mesh.faces, mesh.vertices, directions).measure(mesh.vertices)
+    assert (measured == 0.0).all()
+
+
+def test_a_squeeze_is_found_along_its_direction_alone() -> None:
+    """A fifth shorter along x, a tenth longer along y: a fifth, and nothing."""
+    faces, rest = sheet()
+    shortening = refine.Shortening(faces, rest, both_ways(len(rest)))
+    measured = shortening.measure(rest * [0.8, 1.1, 1.0])
+    np.testing.assert_allclose(measured[:, 0], 0.2, atol=1e-5)
+    assert (measured[:, 1] == 0.0).all()
+
+
+def test_only_the_way_of_a_direction_counts() -> None:
+    """Neither length nor sign nor what stands on the skin counts; zero measures nothing."""
+    faces, rest = sheet()
+    directions = both_ways(len(rest))
+    other = directions * [[-3.0], [0.0]] + [0.0, 0.0, 0.7]
+    other[:, 1] = 0.0
+    squeezed = rest * [0.8, 0.9, 1.0]
+    measured = refine.Shortening(faces, rest, directions).measure(squeezed).copy()
+    again = refine.Shortening(faces, rest, other).measure(squeezed)
+    np.testing.assert_allclose(again[:, 0], measured[:, 0], atol=1e-5)
+    assert (again[:, 1] == 0.0).all()
+
+
+def test_rigid_motions_and_bends_shorten_nothing() -> None:
+    """A turned sheet, and one rolled up by its finest triangles: less than their chords lose."""
+    faces, rest = sheet(41)
+    shortening = refine.Shortening(faces, rest, both_ways(len(rest)))
+    turned = Rotation.from_euler("xyz", [0.3, -1.2, 2.0]).apply(rest + 300.0)
+    assert shortening.measure(turned).max() < 1e-5
+    radius = 4.0
+    angle = rest[:, 0] / radius
+    rolled = np.stack([radius * np.sin(angle), rest[:, 1], radius * np.cos(angle)], axis=1)
+    assert shortening.measure(rolled).max() < 1e-3
+
+
+def test_agrees_with_the_tension_map() -> None:
+    """Along the direction of the largest compression of a flat deformation they are the same."""
+    faces, rest = sheet()
+    gradient = np.array([[0.9, 0.15, 0.0], [-0.05, 0.75, 0.0], [0.0, 0.0, 1.0]])
+    stretches, ways = np.linalg.svd(gradient[:2, :2])[1:]
+    directions = np.tile([[*ways[1], 0.0]], (len(rest), 1, 1))
+    now = rest @ gradient.T
+    measured = refine.Shortening(faces, rest, directions).measure(now)[:, 0]
+    tension = refine.Tension(faces, rest).measure(now)
+    np.testing.assert_allclose(measured, 1.0 - stretches[1], atol=1e-5)
+    np.testing.assert_allclose(measured, tension.compression, atol=1e-4)
+
+
+def test_what_does_not_fit_is_refused() -> None:
+    """Directions and positions of another shape, and directions that are no numbers."""
+    faces, rest = sheet(3)
+    for directions in (np.zeros((len(rest), 3)), np.full((len(rest), 1, 3), np.nan)):
+        with pytest.raises(ValueError, match="directions must be finite"):
+            refine.Shortening(faces, rest, directions)
+    with pytest.raises(ValueError, match="positions must be of shape"):
+        refine.Shortening(faces, rest, both_ways(len(rest))).measure(rest[:-1])
+
+
+@pytest.mark.parametrize("name", meshes.NAMED)
+def test_named_meshes(name: str) -> None:
+    """Debris, borders, flat triangles: finite, from 0 to 1."""
+    mesh = meshes.NAMED[name]()
+    directions = np.tile([ALONG, (0.3, 0.4, -0.5)], (len(mesh.vertices), 1, 1))
+    shortening = refine.Shortening(mesh.faces, mesh.vertices, directions)
+    measured = shortening.measure(meshes.wrinkled(mesh, 5))
+    assert np.isfinite(measured).all() and (measured >= 0.0).all() and (measured <= 1.0).all()

@@ -1,0 +1,131 @@
+"""Wrinkles of the skin: they show as far as they are asked for, and nowhere else."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import render
+
+from .scenes import PLAIN, at, facing, lent, sphere, square
+
+LEVEL, STEEP = (128, 128, 0, 0), 100.0  # a slope of 1 over a square of 100 mm
+
+
+def furrowed(
+    surface: render.Surface,
+    texel: tuple[int, int, int, int],
+    amounts: tuple[float, float] | None,
+    style: render.Style = PLAIN,
+) -> npt.NDArray[np.int32]:
+    """A square whose right half has `texel` in its map and wrinkles by `amounts`."""
+    texels = np.full((32, 32, 4), LEVEL, np.uint8)
+    texels[:, 16:] = texel
+    shape = square()
+    renderer = render.Renderer(surface)
+    stream = lent(renderer, shape, columns=8)
+    stream.vertices[:, 6:] = shape.positions[:, :2] / 100.0 + 0.5
+    rows = None if amounts is None else np.tile(np.float32(amounts), (len(shape.positions), 1))
+    stream.upload(len(shape.positions), len(shape.triangles), rows)
+    surface.begin()
+    renderer.draw_background(style)
+    values = np.zeros(len(shape.triangles), np.uint8)
+    renderer.draw_mesh(
+        stream, facing(), style, values=values, wrinkles=renderer.load_wrinkles(texels, STEEP)
+    )
+    surface.end()
+    return surface.read().astype(np.int32)
+
+
+def test_slopes_are_lit_like_the_slopes_they_are(surface: render.Surface) -> None:
+    """The key comes from the viewer's upper left: what rises to the right faces it, and shines."""
+    plain = furrowed(surface, LEVEL, (1.0, 1.0))
+    rises_right = furrowed(surface, (190, 128, 0, 0), (1.0, 0.0))
+    rises_up = furrowed(surface, (128, 190, 0, 0), (1.0, 0.0))
+    assert at(rises_right, 25, 0).sum() > at(plain, 25, 0).sum() + 10
+    assert at(rises_up, 25, 0).sum() < at(plain, 25, 0).sum() - 10
+    assert (at(rises_right, -25, 0) == at(plain, -25, 0)).all()
+
+
+def test_furrows_are_darker(surface: render.Surface) -> None:
+    """By their depth, red least."""
+    plain = at(furrowed(surface, LEVEL, (1.0, 1.0)), 25, 0)
+    deep = at(furrowed(surface, (128, 128, 200, 0), (1.0, 0.0)), 25, 0)
+    assert (deep < plain).all() and deep[0] / plain[0] > deep[2] / plain[2]
+
+
+def test_a_texel_follows_its_own_amount(surface: render.Surface) -> None:
+    """Alpha 0 the first, 255 the second."""
+    plain = at(furrowed(surface, LEVEL, (1.0, 1.0)), 25, 0)
+    first, second = (190, 190, 90, 0), (190, 190, 90, 255)
+    for texel, amounts in ((first, (0.0, 1.0)), (second, (1.0, 0.0))):
+        assert (at(furrowed(surface, texel, amounts), 25, 0) == plain).all()
+    for texel, amounts in ((first, (1.0, 0.0)), (second, (0.0, 1.0))):
+        assert (at(furrowed(surface, texel, amounts), 25, 0) != plain).any()
+
+
+@pytest.mark.parametrize("amounts", [None, (0.0, 0.0), (1.0, 1.0)])
+def test_none_without_amounts_or_strength(
+    surface: render.Surface, amounts: tuple[float, float] | None
+) -> None:
+    """A style without wrinkles, and skin that does not wrinkle, are drawn to the same bytes."""
+    smooth = replace(PLAIN, wrinkles=0.0)
+    style = smooth if amounts == (1.0, 1.0) else PLAIN
+    texel = (190, 90, 200, 128)
+    assert (furrowed(surface, texel, amounts, style) == furrowed(surface, texel, None)).all()
+
+
+@pytest.mark.parametrize("shading", [render.Shading.FLAT, render.Shading.GOURAUD])
+def test_per_pixel_shading_alone_has_them(surface: render.Surface, shading: render.Shading) -> None:
+    """Nothing else has a normal for each pixel."""
+    style = replace(PLAIN, shading=shading)
+    texel = (190, 90, 200, 128)
+    wrinkled = furrowed(surface, texel, (1.0, 1.0), style)
+    assert (wrinkled == furrowed(surface, texel, None, style)).all()
+
+
+@pytest.mark.parametrize("colour_by", render.ColourBy)
+@pytest.mark.parametrize("wireframe", [False, True])
+def test_goes_with_every_style(
+    surface: render.Surface, colour_by: render.ColourBy, wireframe: bool
+) -> None:
+    """Colours by values keep the order of triangles; lines lie over all."""
+    style = replace(PLAIN, colour_by=colour_by, wireframe=wireframe)
+    frame = furrowed(surface, (190, 90, 200, 0), (1.0, 1.0), style)
+    assert (frame != furrowed(surface, LEVEL, (1.0, 1.0), style)).any()
+
+
+def test_part_of_a_mesh_wrinkles_without_a_crack(surface: render.Surface) -> None:
+    """With a level map, a sphere half of whose vertices wrinkle looks as it does without."""
+    shape = sphere()
+    renderer = render.Renderer(surface)
+    stream = lent(renderer, shape, columns=8)
+    level = renderer.load_wrinkles(np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
+    frames = []
+    for share in (0.0, 0.5):
+        rows = np.zeros((len(shape.positions), 2), np.float32)
+        rows[: int(share * len(rows))] = 1.0
+        stream.upload(len(shape.positions), len(shape.triangles), rows)
+        surface.begin()
+        renderer.draw_background(PLAIN)
+        renderer.draw_mesh(stream, facing(), PLAIN, wrinkles=level)
+        surface.end()
+        frames.append(surface.read().astype(np.int32))
+    assert np.abs(frames[0] - frames[1]).max() <= 1
+
+
+def test_what_does_not_fit_is_refused(surface: render.Surface) -> None:
+    """A map that is none, amounts for other vertices, a stream without texture coordinates."""
+    renderer = render.Renderer(surface)
+    with pytest.raises(ValueError, match="map of wrinkles"):
+        renderer.load_wrinkles(np.zeros((4, 4, 3), np.uint8), STEEP)
+    shape = square()
+    stream = lent(renderer, shape)
+    with pytest.raises(ValueError, match="wrinkling has shape"):
+        stream.upload(4, 2, np.zeros((3, 2), np.float32))
+    level = renderer.load_wrinkles(np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
+    with pytest.raises(ValueError, match="8 columns"):
+        renderer.draw_mesh(stream, facing(), PLAIN, wrinkles=level)
