@@ -169,7 +169,7 @@ def hang_on_ring(
     weight *= x[:, 2] > landmarks[[36, 45], 2].mean() - FACE_DEPTH
     weight *= _gate(muscle, side, places)
     pull = np.array(muscle.contraction) * (centre - x)
-    if muscle.opening > 0.0:
+    if muscle.opening != (0.0, 0.0):
         pull[:, :2] = _round_mouth(muscle, x, landmarks) - x[:, :2]
     pull += np.array(muscle.push) * (side.sign, 1.0, 1.0)
     seam = landmarks[[62, 66], 1].mean()
@@ -183,19 +183,23 @@ def hang_on_ring(
 
 
 def _round_mouth(muscle: RingMuscle, x: Array, landmarks: Array) -> Array:
-    """Where lips lie, seen from the front, around a circular opening, shape (n, 2) [mm].
+    """Where lips lie, seen from the front, around an oval opening, shape (n, 2) [mm].
 
-    What lies at a share u of the way from the middle to the corner goes to radius (sin(u 90 deg),
-    sqrt(1 - u^2)): a little fuller than a circle beside the middle, as corners lag behind. The lip
-    keeps its height.
+    What lies at a share u of the way from the middle to the corner goes to (sin(u 90 deg),
+    sqrt(1 - u^2)) half axes: a little fuller than an ellipse beside the middle, as corners lag
+    behind. The lip keeps its height, and what lies beside the corner its distance from it.
     """
     seam = landmarks[[62, 66], 1].mean()
-    across = np.clip(x[:, 0] / abs(landmarks[54, 0]), -1.0, 1.0)
+    corner = abs(landmarks[54, 0])
+    across = np.clip(x[:, 0] / corner, -1.0, 1.0)
     height = x[:, 1] - seam
     side = {"upper_lip": 1.0, "lower_lip": -1.0}.get(muscle.gate, np.sign(height))
-    radius = muscle.opening + np.maximum(height * side, 0.0)
-    up = seam + side * radius * np.sqrt(1.0 - across**2)
-    return np.stack([radius * np.sin(across * np.pi / 2.0), up], axis=1)
+    outward = np.maximum(height * side, 0.0)
+    wide, high = muscle.opening
+    aside = np.sign(x[:, 0]) * np.maximum(np.abs(x[:, 0]) - corner, 0.0)
+    lateral = (wide + outward) * np.sin(across * np.pi / 2.0) + aside
+    up = seam + side * (high + outward) * np.sqrt(1.0 - across**2)
+    return np.stack([lateral, up], axis=1)
 
 
 def _middle(muscle: RingMuscle, landmarks: Array, side: Side) -> Array:

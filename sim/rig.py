@@ -71,6 +71,7 @@ class Tissue:
     stiffening: float = _number(1.0, 20.0, default=4.0)  # slope of an edge spring beyond the limit
     stiffening_strain: float = _number(0.0, 2.0, default=0.25)  # strain where it starts (biphasic)
     modiolus: float = _number(0.0, 50.0, default=0.0)  # how much firmer skin is at mouth corners
+    modiolus_shear: float = _number(0.0, 50.0, default=0.0)  # the same, against turning
     passive: float = _number(0.0, 1.0, default=0.2)  # share of a muscle's stiffness when relaxed
     heaviness: float = _number(0.0, 1.0, default=0.1)  # share of weight and inertia that is free
     lip_seal: float = _number(0.0, 1000.0, default=40.0)  # springs that hold closed lips together
@@ -186,7 +187,9 @@ class RingMuscle(Muscle):
     push: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, 0.0, 0.0))
     bulge: float = _number(0.0, 40.0, default=0.0)  # mm outward along the skin's normal
     flare: float = _number(-30.0, 30.0, default=0.0)  # mm up for the upper, down for the lower lip
-    opening: float = _number(0.0, 30.0, default=0.0)  # mm, of the round mouth drawn to; 0: centre
+    opening: tuple[float, float] = _vector(
+        2, 0.0, 30.0, default=(0.0, 0.0)
+    )  # mm, half width and half height of the oval mouth drawn to; both 0: to the centre
     arc_deg: tuple[float, float, float] = _vector(3, -360.0, 360.0, default=(0.0, 180.0, 1.0))
 
 

@@ -41,17 +41,20 @@ class EdgeSprings(NamedTuple):
         """Springs along all edges of a surface.
 
         knots: points (K, 3) [mm] around which skin is firm, the mouth corners: there many muscles
-        are knotted together (the modiolus), and no fold may turn inside out.
+        are knotted together (the modiolus), and no fold may turn inside out. The knot resists
+        stretch more than turning, or a round mouth has pointed corners.
         """
         stiffness = tissue.membrane * tissue.stiffness_scale * surface.edge_stiffness
         middle = surface.positions[surface.edges].mean(axis=1)
+        shear = tissue.shear * stiffness
         for knot in knots:
-            squared = ((middle - knot) ** 2).sum(axis=1)
-            stiffness = stiffness * (1.0 + tissue.modiolus * np.exp(-squared / MODIOLUS**2))
+            near = np.exp(-((middle - knot) ** 2).sum(axis=1) / MODIOLUS**2)
+            stiffness = stiffness * (1.0 + tissue.modiolus * near)
+            shear = shear * (1.0 + tissue.modiolus_shear * near)
         rows = np.searchsorted(surface.edges[:, 0], np.arange(surface.vertex_count + 1))
         return cls(
             surface.edges.astype(np.uint32), rows.astype(np.uint32), surface.lengths, stiffness,
-            tissue.shear * stiffness, tissue.stiffening, tissue.stiffening_strain,
+            shear, tissue.stiffening, tissue.stiffening_strain,
         )  # fmt: skip
 
     def row_bound(self, vertex_count: int) -> Array:

@@ -113,7 +113,9 @@ class FacePanel:
         values = [session.values[name] for name in row.names]
         is_linked = viewer.settings.is_linked and len(row.names) == 2 and len(set(values)) == 1
         shown = row.names[1:] if is_linked else row.names
-        is_selected = self._selected in row.names
+        # A muscle whose halves act together may have but one slider for both.
+        whole = (self._selected or "").removesuffix("_left").removesuffix("_right")
+        is_selected = self._selected in row.names or whole in row.names
         if is_selected:
             imgui.set_scroll_here_y(0.4)
         is_marked = any(values) or (self._flash and is_selected)
