@@ -110,8 +110,8 @@ def options_in_words(name: str, settings: Sequence[str]) -> dict[str, Any] | Non
 
 
 def _value(text: str) -> bool | int | float | str:
-    if text in WORDS:
-        return WORDS[text]
+    if text.lower() in WORDS:
+        return WORDS[text.lower()]
     for kind in (int, float):
         try:
             return kind(text)
