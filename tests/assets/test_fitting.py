@@ -181,6 +181,25 @@ def test_missing_landmark_file(other: Stranger, tmp_path: Path) -> None:
         fit_head(mesh, tmp_path / "nowhere.json")
 
 
+@pytest.mark.parametrize(("off", "is_allowed"), [(0.04, True), (0.07, False)])
+def test_points_lie_on_the_mesh(
+    other: Stranger, tmp_path: Path, off: float, is_allowed: bool
+) -> None:
+    """A point may hover by a twentieth of the distance of the eyes; further off it is named."""
+    mesh, file = other.write(tmp_path)
+    points = other.mesh.vertices[other.landmarks]
+    tip = points[30]
+    outward = tip - points[[1, 15]].mean(axis=0)
+    outward /= np.linalg.norm(outward)
+    points[30] = tip + off * np.linalg.norm(points[36] - points[45]) * outward
+    file.write_text(json.dumps(points.tolist()))
+    if is_allowed:
+        fit_head(mesh, file)
+        return
+    with pytest.raises(AssetError, match=r"landmark 30 lies .* units off the mesh; allowed are"):
+        fit_head(mesh, file)
+
+
 def test_swapped_sides_are_noticed(other: Stranger) -> None:
     """Landmarks numbered from the viewer's side are the commonest mistake."""
     with pytest.raises(AssetError, match="left and right are swapped in the landmarks"):
