@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import click
+
+from .stopping import listen
 
 
 class UserError(Exception):
@@ -30,6 +32,13 @@ def told_in_one_line() -> Iterator[None]:
     except (UserError, render.GLError, assets.AssetError, OSError) as error:
         click.echo(f"risorius: {error}", err=True)
         sys.exit(2)
+
+
+def run_alone(main: Callable[[Sequence[str]], None]) -> None:
+    """Run a program beside the command, `python -m app.sheet` and its like, by the same rules."""
+    listen()
+    with told_in_one_line():
+        main(sys.argv[1:])
 
 
 class OneLineGroup(click.Group):

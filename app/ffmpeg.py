@@ -10,6 +10,7 @@ import contextlib
 import re
 import subprocess
 import tempfile
+import time
 from fractions import Fraction
 from pathlib import Path
 
@@ -19,6 +20,7 @@ import numpy.typing as npt
 
 from .errors import UserError
 
+PATIENCE = 1.0  # [s] for the end of a killed process
 # H.264; 4:2:0 as every player wants it, at a quality without blocks.
 CODING = "-an -vcodec libx264 -pix_fmt yuv420p -crf 16 -preset veryfast -movflags +faststart"
 
@@ -58,19 +60,29 @@ class Encoder:
         """Wait until the file is whole; UserError if it is not."""
         with contextlib.suppress(BrokenPipeError):
             self._frames.close()
-        if self._process.wait():
+        if self._ended():
             raise self._failure()
 
     def stop(self) -> None:
         """End the process, whatever it is doing; does nothing after `finish`."""
         self._process.kill()
-        self._process.wait()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(PATIENCE)
         self._words.close()
         with contextlib.suppress(BrokenPipeError):
             self._frames.close()
 
+    def _ended(self) -> int:
+        """Wait for the end of the process, and return its code.
+
+        Not with `wait`: that holds a lock for which `stop`, called by a signal, would wait forever.
+        """
+        while (code := self._process.poll()) is None:
+            time.sleep(0.01)
+        return code
+
     def _failure(self) -> UserError:
-        code = self._process.wait()
+        code = self._ended()
         self._words.seek(0)
         said = self._words.read().decode(errors="replace").strip().splitlines()
         # Without the part of ffmpeg that speaks: "[out#0/mp4 @ 0x55e9629d] ".

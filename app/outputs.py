@@ -16,7 +16,7 @@ from PIL import Image
 
 from .errors import UserError
 from .ffmpeg import Encoder
-from .stopping import cleaned_up_if_stopped
+from .stopping import cleaned_up_if_stopped, done_whole
 
 ASIDE = ".risorius-"  # what the name of a folder begins with in which something is being written
 FILM_SUFFIXES = (".mp4", ".mov", ".mkv")
@@ -167,7 +167,7 @@ def _frames(target: Path) -> Iterator[FrameSink]:
             count += 1
 
         yield add
-        with cannot_be_written(target):
+        with done_whole(), cannot_be_written(target):  # neither film may be lost between the two
             for old in target.iterdir():
                 if FRAME_NAME.fullmatch(old.name):
                     old.unlink()

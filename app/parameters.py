@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+import argparse
 import math
 import re
 from typing import Any
 
 import click
+
+LEAST, MOST = 16, 8192  # [pixels] of a side
+
+
+def pixels(text: str) -> int:
+    """The width of a picture, for argparse."""
+    if re.fullmatch("[0-9]{1,6}", text) and LEAST <= int(text) <= MOST:
+        return int(text)
+    raise argparse.ArgumentTypeError(f"'{text}' is no width; write {LEAST} to {MOST} pixels")
 
 
 class Size(click.ParamType[tuple[int, int]]):
@@ -23,9 +33,11 @@ class Size(click.ParamType[tuple[int, int]]):
         written = re.fullmatch("([0-9]{1,6})x([0-9]{1,6})", str(value).lower())
         if written:
             size = (int(written[1]), int(written[2]))
-            if all(16 <= side <= 8192 for side in size):
+            if all(LEAST <= side <= MOST for side in size):
                 return size
-        self.fail(f"'{value}' is no size; write width x height, each 16 to 8192, as in 1280x720")
+        self.fail(
+            f"'{value}' is no size; write width x height, each {LEAST} to {MOST}, as in 1280x720"
+        )
 
 
 class FiniteRange(click.FloatRange):

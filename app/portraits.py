@@ -6,7 +6,6 @@ triangles) and `head_details.png` (the open jaw, the mesh, the finer meshes of t
 """
 
 import argparse
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -19,8 +18,10 @@ import refine
 import render
 import sim
 
+from .errors import run_alone
 from .labels import contact_sheet
-from .outputs import Frame, save_png
+from .outputs import Frame, check_picture, save_png
+from .parameters import pixels
 
 FOLDER = Path("docs/pictures")
 CELL = (260, 320)  # [pixels] of one portrait: a sheet stays below 600 kB
@@ -129,8 +130,10 @@ def main(arguments: Sequence[str]) -> None:
         prog="python -m app.portraits", description=(__doc__ or "").splitlines()[0]
     )
     parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
-    parser.add_argument("--width", type=int, default=CELL[0], help="of one portrait [pixels]")
+    parser.add_argument("--width", type=pixels, default=CELL[0], help="of one portrait [pixels]")
     given = parser.parse_args(arguments)
+    for name in ("views", "details"):
+        check_picture(given.folder / f"head_{name}.png")
     size = given.width, given.width * CELL[1] // CELL[0]
     with Studio(assets.load("head"), size) as studio:
         for name, cells in (("views", views(studio)), ("details", details(studio))):
@@ -139,4 +142,4 @@ def main(arguments: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    run_alone(main)

@@ -9,7 +9,6 @@ refine_sequences.png  the 271 sequences of splits
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -20,7 +19,8 @@ from refine.coherence import sequence_tables
 from refine.patterns import POINTS, splits_of, subdivide
 
 from .diagrams import FAINT, FILL, INK, MOVED, NEW, SECOND, Sheet, equilateral
-from .outputs import Frame, save_png
+from .errors import run_alone
+from .outputs import Frame, check_picture, save_png
 from .tension_figure import tension_map
 
 FOLDER = Path("docs/pictures")
@@ -260,9 +260,11 @@ def main(arguments: Sequence[str]) -> None:
     )
     parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
     given = parser.parse_args(arguments)
+    for name in FIGURES:
+        check_picture(given.folder / f"refine_{name}.png")
     for name, figure in FIGURES.items():
         save_png(given.folder / f"refine_{name}.png", figure())
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    run_alone(main)

@@ -29,14 +29,15 @@ def refiner_for(scene: Scene, name: str, options: Mapping[str, Any] | None) -> r
 
     options: over those that suit the scene; None for the latter alone.
     """
-    if options:
-        _check(name, options_of(refine.create(name, scene.faces, scene.rest_positions)), options)
-    merged: dict[str, Any] = {**scene.refiner_options.get(name, {}), **(options or {})}
-    if merged.get("scheme") == DETAIL and "detail" not in merged:
-        merged["detail"] = finer_mesh(scene)
-        if merged["detail"] is None:
-            raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
     try:
+        if options:
+            plain = refine.create(name, scene.faces, scene.rest_positions)
+            _check(name, options_of(plain), options)
+        merged: dict[str, Any] = {**scene.refiner_options.get(name, {}), **(options or {})}
+        if merged.get("scheme") == DETAIL and "detail" not in merged:
+            merged["detail"] = finer_mesh(scene)
+            if merged["detail"] is None:
+                raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
         return refine.create(
             name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **merged
         )
@@ -110,8 +111,8 @@ def options_in_words(name: str, settings: Sequence[str]) -> dict[str, Any] | Non
 
 
 def _value(text: str) -> bool | int | float | str:
-    if text in WORDS:
-        return WORDS[text]
+    if text.lower() in WORDS:
+        return WORDS[text.lower()]
     for kind in (int, float):
         try:
             return kind(text)

@@ -45,6 +45,7 @@ from .errors import UserError
 
 Limits = Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
 
+LONGEST_FILE = 2**24  # [bytes]; a day of speech has less, and /dev/zero has no end
 LARGEST = 86_400.0  # of any number in a script; as a time [s] it is a day
 DECIMALS = 6  # of numbers that come from sliders and clocks
 TOP_LEVEL_KEYS = ("title", "scene", "camera", "duration", "pose", "tracks")
@@ -167,11 +168,15 @@ def suggestion(name: str, allowed: Iterable[str], scene: str) -> str:
 def load_script(path: Path) -> Script:
     """Read a script file. Raises UserError with the file and the line or key that is wrong."""
     try:
-        text = path.read_text(encoding="utf-8")
+        with path.open("rb") as file:
+            content = file.read(LONGEST_FILE + 1)
+        text = content.decode("utf-8-sig")
     except FileNotFoundError:
         raise UserError(f"{path}: no such script") from None
     except (OSError, UnicodeDecodeError) as error:
         raise UserError(f"{path}: cannot be read as a text file: {error}") from None
+    if len(content) > LONGEST_FILE:
+        raise UserError(f"{path}: is longer than a script may be, {LONGEST_FILE >> 20} MB")
     return parse_script(text, source=str(path))
 
 
@@ -191,7 +196,10 @@ def parse_script(text: str, *, source: str) -> Script:
         raise UserError(f"{source}: no [[pose]] and no [tracks]: a script needs at least one key")
     duration = reader.number(document, "duration", where="top level", default=max(ends))
     if duration <= 0.0:
-        raise UserError(f"{source}: duration is {duration:g} s; it must be above 0")
+        raise UserError(
+            f"{source}: duration is {duration:g} s; it must be above 0: "
+            "write duration = 1.0, or a key after 0 s"
+        )
     for pose in poses:
         if pose.name is not None and pose.time > duration:
             raise UserError(

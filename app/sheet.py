@@ -8,7 +8,6 @@ some of them, larger with `--width`, into sheet.png: to judge a row while it is 
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
@@ -18,9 +17,10 @@ from PIL import Image
 import render
 
 from .cameras import camera_for
-from .errors import UserError
+from .errors import run_alone
 from .labels import contact_sheet
-from .outputs import Frame, written_aside
+from .outputs import Frame, check_picture, written_aside
+from .parameters import pixels
 from .pipeline import Pipeline, texture_of
 from .scenes import FaceScene, Scene
 from .wrinkling import wrinkling_of
@@ -107,13 +107,15 @@ def main(arguments: Sequence[str]) -> None:
         prog="python -m app.sheet", description=(__doc__ or "").splitlines()[0]
     )
     parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
-    parser.add_argument("--width", type=int, default=CELL[0], help="of one view [pixels]")
+    parser.add_argument("--width", type=pixels, default=CELL[0], help="of one view [pixels]")
     parser.add_argument("--only", nargs="+", metavar="NAME", help="these controls, in sheet.png")
     given = parser.parse_args(arguments)
     scene = FaceScene()
     groups = {file: rows_of(scene.groups.get(title, ())) for title, file in TITLES.items()}
     if given.only:
         groups = {"sheet": given.only}
+    for file in groups:
+        check_picture(given.folder / f"{file}.png")
     size = given.width, given.width * CELL[1] // CELL[0]
     with Studio(scene, size) as studio:
         for file, names in groups.items():
@@ -125,7 +127,4 @@ def main(arguments: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
-    try:
-        main(sys.argv[1:])
-    except UserError as error:
-        sys.exit(f"sheet: {error}")
+    run_alone(main)

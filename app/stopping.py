@@ -13,6 +13,8 @@ import sys
 from collections.abc import Callable, Iterator
 
 _cleanups: list[Callable[[], object]] = []
+_postponed: list[int] = []
+_is_postponing = False
 
 
 @contextlib.contextmanager
@@ -25,6 +27,19 @@ def cleaned_up_if_stopped(clean_up: Callable[[], object]) -> Iterator[None]:
         _cleanups.remove(clean_up)
 
 
+@contextlib.contextmanager
+def done_whole() -> Iterator[None]:
+    """A signal that comes inside this block ends the process after it; keep it short."""
+    global _is_postponing
+    _is_postponing = True
+    try:
+        yield
+    finally:
+        _is_postponing = False
+        if _postponed:
+            _stop(_postponed[0], None)
+
+
 def listen() -> None:
     """Let signals end this process as described above; those that are ignored stay ignored."""
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):  # Windows has not the last
@@ -35,13 +50,17 @@ def listen() -> None:
 
 
 def _stop(number: int, _: object) -> None:
+    if _is_postponing:
+        _postponed.append(number)
+        return
     signal.signal(number, signal.SIG_DFL)  # once more: at once
     for clean_up in reversed(_cleanups):
         with contextlib.suppress(Exception):  # the others have their turn
             clean_up()
-    with contextlib.suppress(Exception):  # streams may be closed
+    with contextlib.suppress(Exception):  # streams may be closed, or in the middle of a word
         if number == signal.SIGINT:
             print("risorius: stopped", file=sys.stderr)
         sys.stderr.flush()
+    with contextlib.suppress(Exception):
         sys.stdout.flush()
     os._exit(128 + number)

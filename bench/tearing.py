@@ -76,8 +76,8 @@ def _inverted(rest: Array, now: Array, faces: npt.NDArray[np.int32]) -> int:
     before, after = _normals(rest, faces), _normals(now, faces)
     count = 0
     for face in np.flatnonzero((before * after).sum(axis=1) < 0.0):
-        middle = rest[faces[face]].mean(axis=0)
-        near = np.linalg.norm(rest - middle, axis=1) < AROUND
+        away = np.linalg.norm(rest - rest[faces[face]].mean(axis=0), axis=1)
+        near = away < max(AROUND, 2.0 * away[faces[face]].max())  # never the triangle alone
         a, b = rest[near] - rest[near].mean(axis=0), now[near] - now[near].mean(axis=0)
         left, _, right = np.linalg.svd(a.T @ b)
         turn = right.T @ np.diag([1.0, 1.0, np.linalg.det(right.T @ left.T)]) @ left.T

@@ -1,10 +1,11 @@
-"""A refiner of one's own, registered from outside: every triangle with a long edge is cut in four.
+"""A refiner of one's own, registered from outside: cuts every triangle in four where edges grow.
 
     python examples/own_refiner.py
 
 What a refiner has to be is `refine.Refiner`: edges and splits to tell what it did, capacities to
 tell how much room it needs, `refine` to fill a stream, `origins` to tell where vertices come from.
-This one cuts all edges or none, and does not smooth. After `register` the whole program knows it by
+This one cuts all edges or none, does not smooth, and is no match for triangles that name a vertex
+twice. After `register` the whole program knows it by
 name. A package of its own needs no call; it says in its pyproject.toml
 
     [project.entry-points."risorius.refiners"]
@@ -34,19 +35,23 @@ class Quarters:
         longest: float = 1.5,
     ) -> None:
         """`longest`: length at which all is cut, over the longest edge at rest."""
-        if uv is not None or face_uv is not None:
-            raise ValueError("the refiner 'quarters' carries no texture coordinates")
         self._rest = np.array(rest_positions, dtype=np.float32)
-        self._mesh = connect(np.asarray(faces), len(self._rest))
+        self._uv = None if uv is None else np.array(uv, dtype=np.float32)
+        # Wedges and rims are vertices and edges, counted once for each side of a texture seam.
+        mesh = self._mesh = connect(
+            np.asarray(faces), len(self._rest), None if face_uv is None else np.asarray(face_uv)
+        )
         self._limit = longest * self._longest_edge(self._rest)
-        self.edges = self._mesh.edges
-        self.triangle_edges = self._mesh.triangle_edges
+        self.edges = mesh.edges
+        self.triangle_edges = mesh.triangle_edges
         self.splits = np.zeros(len(self.edges), dtype=np.uint8)
-        self.vertex_capacity = len(self._rest) + len(self.edges)
-        self.triangle_capacity = 4 * len(self._mesh.faces)
-        self.vertex_columns = 6
-        self._whole = self._mesh.faces
+        self.vertex_capacity = len(mesh.wedge_vertices) + len(mesh.rim_edges)
+        self.triangle_capacity = 4 * len(mesh.faces)
+        self.vertex_columns = 6 if uv is None else 8
+        self._whole = mesh.corners
         self._cut = self._quartered()
+        # Where rows lie on the mesh: both sides of a seam are one place, and have one normal.
+        self._places = np.concatenate([mesh.wedge_vertices, len(self._rest) + mesh.rim_edges])
         self._own_stream = SimpleNamespace(
             vertices=np.zeros((self.vertex_capacity, self.vertex_columns), dtype=np.float32),
             triangles=np.zeros((self.triangle_capacity, 3), dtype=np.uint32),
@@ -59,9 +64,15 @@ class Quarters:
         stream: Stream = self._own_stream if out is None else out
         self.splits[:] = self._longest_edge(points) > self._limit
         corners, pieces = (self._cut, 4) if self.splits.any() else (self._whole, 1)
-        rows = np.concatenate([points, points[self.edges].mean(axis=1)]) if pieces == 4 else points
+        middles = points[self.edges].mean(axis=1)
+        places = self._places if pieces == 4 else self._mesh.wedge_vertices
+        rows = np.concatenate([points, middles])[places]
         stream.vertices[: len(rows), :3] = rows
-        stream.vertices[: len(rows), 3:6] = _normals(rows, corners)
+        stream.vertices[: len(rows), 3:6] = _normals(rows, corners, places)
+        if self._uv is not None:
+            ends = self._uv[self._mesh.rim_uv].mean(axis=1)
+            uv = np.concatenate([self._uv[self._mesh.wedge_uv], ends])
+            stream.vertices[: len(rows), 6:] = uv[: len(rows)]
         stream.triangles[: len(corners)] = corners
         stream.source[: len(corners)] = np.repeat(np.arange(len(self._whole)), pieces)
         return RefinedMesh(
@@ -69,15 +80,16 @@ class Quarters:
             normals=stream.vertices[: len(rows), 3:6],
             triangles=stream.triangles[: len(corners)],
             source=stream.source[: len(corners)],
-            uv=None,
+            uv=None if self._uv is None else stream.vertices[: len(rows), 6:],
         )
 
     def origins(self) -> Origins:
         """Vertices are themselves; a new point is half of one end and half of the other."""
-        vertices = np.repeat(np.arange(len(self._rest), dtype=np.int32)[:, None], 3, axis=1)
+        vertices = np.repeat(self._mesh.wedge_vertices.astype(np.int32)[:, None], 3, axis=1)
         weights = np.tile(np.array([1.0, 0.0, 0.0], dtype=np.float32), (len(vertices), 1))
         if self.splits.any():
-            ends = np.column_stack([self.edges, self.edges[:, 0]]).astype(np.int32)
+            a, b = self.edges[self._mesh.rim_edges].T
+            ends = np.column_stack([a, b, a]).astype(np.int32)
             halves = np.tile(np.array([0.5, 0.5, 0.0], dtype=np.float32), (len(ends), 1))
             vertices, weights = np.concatenate([vertices, ends]), np.concatenate([weights, halves])
         return Origins(vertices, weights)
@@ -87,22 +99,26 @@ class Quarters:
         return float(np.linalg.norm(a - b, axis=1).max(initial=0.0))
 
     def _quartered(self) -> npt.NDArray[np.uint32]:
-        a, b, c = self._mesh.faces.astype(np.int64).T
-        ab, bc, ca = len(self._rest) + self._mesh.triangle_edges.astype(np.int64).T
+        a, b, c = self._mesh.corners.astype(np.int64).T
+        # The lowest bit of a rim tells its direction, for which a point in the middle has no use.
+        ab, bc, ca = len(self._mesh.wedge_vertices) + (self._mesh.triangle_rims >> 1).T
         four = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
         return np.array(four).transpose(2, 0, 1).reshape(-1, 3).astype(np.uint32)
 
 
 def _normals(
-    points: npt.NDArray[np.float32], triangles: npt.NDArray[np.uint32]
+    points: npt.NDArray[np.float32],
+    triangles: npt.NDArray[np.uint32],
+    places: npt.NDArray[np.integer],
 ) -> npt.NDArray[np.float32]:
+    """Mean normals of the triangles around, weighted by area; rows of one place share theirs."""
     a, b, c = (points[triangles[:, k]] for k in range(3))
     cross = np.cross(b - a, c - a)
-    sums = np.zeros_like(points)
+    sums = np.zeros((places.max(initial=0) + 1, 3), dtype=np.float32)
     for k in range(3):
-        np.add.at(sums, triangles[:, k], cross)
+        np.add.at(sums, places[triangles[:, k]], cross)
     length = np.linalg.norm(sums, axis=1, keepdims=True)
-    return np.asarray(sums / np.where(length > 0.0, length, 1.0))
+    return np.asarray((sums / np.where(length > 0.0, length, 1.0))[places])
 
 
 def main() -> list[int]:

@@ -91,7 +91,7 @@ def _folder() -> Path:
     """Where machine code is kept: where numba keeps its own, or for the user if that is closed."""
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     here = Path(chosen) if chosen else Path(__file__).parent / "__pycache__"
-    home = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / __name__
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / __name__
     for folder in (here, home):
         try:
             folder.mkdir(parents=True, exist_ok=True)

@@ -172,7 +172,8 @@ def create(
     A large mesh whose vertices or triangles lie about is walked in a better order (locality.py):
     row v stays vertex v, `source` and `edges` keep the caller's numbers, but triangles come in
     another order, and so do edges, of which `edges` and `triangle_edges` tell.
-    Raises ValueError for an unknown name or option and for arrays that do not fit together.
+    Raises ValueError for an unknown name or option, for arrays that do not fit together, and for a
+    refiner of an installed package that cannot be imported.
     """
     factory = _find(name)
     _check_options(name, factory, options)
@@ -185,7 +186,13 @@ def _find(name: str) -> Factory:
     points = _entry_points()
     if name not in points:
         raise ValueError(f"unknown refiner {name!r}; available are {available()}")
-    factory: Factory = points[name].load()
+    try:
+        factory: Factory = points[name].load()
+    except Exception as error:  # whatever the module of somebody else does when it is imported
+        raise ValueError(
+            f"refiner {name!r} of {points[name].value!r} cannot be loaded: "
+            f"{type(error).__name__}: {error}"
+        ) from error
     return factory
 
 

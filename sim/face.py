@@ -79,7 +79,7 @@ class Simulation:
 
     @property
     def controls(self) -> tuple[str, ...]:
-        """Names of the lowest controls: muscles, jaw, gaze."""
+        """Names of the lowest controls: muscles, lips, jaw, gaze, head."""
         return self._controls.lowest
 
     @property
@@ -158,7 +158,10 @@ class Simulation:
         self._weight.forget()
 
     def kick(self, velocities: npt.ArrayLike) -> None:
-        """Add velocities [head units / s], shape (V, 3): a blow, or a mouse pulling at the skin."""
+        """Add velocities [head units / s], shape (V, 3): a blow.
+
+        Raises ValueError for another shape, and for what is not finite.
+        """
         added = np.asarray(velocities, dtype=np.float64)
         if added.shape != self._state.v.shape or not np.isfinite(added).all():
             raise ValueError(

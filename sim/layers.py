@@ -25,7 +25,6 @@ Differs from FACS: units add, where some of theirs exclude each other.
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -35,6 +34,7 @@ from typing import Any
 import numpy as np
 
 from .landmarks import Array
+from .rig_reader import question
 
 BOTH_SIDES = "Both sides"  # title of the layer that every face with paired muscles has
 SIDES = ("_left", "_right")
@@ -152,7 +152,7 @@ def _side_of(where: str, control: str, side: str, below: Mapping[str, Array]) ->
     """Shares of what an entry names; for a side of a pair, of that side or half of the middle."""
     if control not in below:
         raise ValueError(
-            f"{where}: no layer below has a control called '{control}'{_hint(control, below)}"
+            f"{where}: no layer below has a control called '{control}'{question(control, below)}"
         )
     if not side:
         return below[control]
@@ -162,8 +162,3 @@ def _side_of(where: str, control: str, side: str, below: Mapping[str, Array]) ->
         return below[control + side]
     half: Array = 0.5 * below[control]
     return half
-
-
-def _hint(name: str, known: Iterable[str]) -> str:
-    near = difflib.get_close_matches(name, list(known), n=1)
-    return f"; did you mean '{near[0]}'?" if near else ""

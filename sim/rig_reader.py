@@ -86,7 +86,7 @@ def _check_stack(muscles: Mapping[str, Muscle]) -> None:
             raise ValueError(f"{where}: a lid lies on the eyeball; leave the key away")
         for name in muscle.lies_on:
             if name not in muscles:
-                raise ValueError(f"{where}: there is no muscle '{name}'{_hint(name, muscles)}")
+                raise ValueError(f"{where}: there is no muscle '{name}'{question(name, muscles)}")
             if isinstance(muscles[name], LidMuscle):
                 raise ValueError(f"{where}: '{name}' is a lid, which carries nothing; take it out")
         _refuse_circle(muscles, (muscle.name,))
@@ -208,11 +208,11 @@ def _known_keys(table: Mapping[str, Any], known: tuple[str, ...], where: str) ->
     """Refuse a key nobody reads, and offer the nearest one that is."""
     for key in table:
         if key not in known:
-            hint = _hint(key, known)
+            hint = question(key, known) or "."
             raise ValueError(f"{where}: unknown key '{key}'{hint} Allowed: {', '.join(known)}")
 
 
-def _hint(name: str, known: Iterable[str]) -> str:
-    """The nearest known name, as a question."""
+def question(name: str, known: Iterable[str]) -> str:
+    """The nearest known name, as a question at the end of an error; nothing if none is near."""
     near = difflib.get_close_matches(name, list(known), n=1)
     return f"; did you mean '{near[0]}'?" if near else ""

@@ -22,6 +22,7 @@ from .soundness import ways
 from .warp import nearest_on
 
 COUNT = 68
+LONGEST_FILE = 2**24  # [bytes] that are read
 FARTHEST = 0.05  # of the distance between the outer eye corners: a point off the mesh is a mistake
 OUTER_EYE_CORNERS = [36, 45]
 OUTER_LIPS = ((50, 51, 52), (56, 57, 58))  # upper, lower
@@ -37,7 +38,8 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray]:
     on the mesh.
     """
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
+        with path.open("rb") as file:
+            document = json.loads(file.read(LONGEST_FILE).decode("utf-8-sig"))
     except FileNotFoundError:
         raise AssetError(f"{path}: no such landmark file") from None
     except (OSError, ValueError, RecursionError) as error:

@@ -40,12 +40,14 @@ class Skin:
 def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> Skin:
     """Leave away what hangs together with no landmark: eyeballs, teeth, vertices of no triangle.
 
-    Raises AssetError if landmarks lie on two pieces or on none, or there are too many triangles.
+    Raises AssetError if landmarks lie on two pieces or on none, or there are too many triangles,
+    or too few.
     """
     if not FEWEST_TRIANGLES <= len(faces) <= MOST_TRIANGLES:
+        cure = "reduce" if len(faces) > MOST_TRIANGLES else "subdivide"
         raise AssetError(
             f"the head has {len(faces)} triangles; allowed are {FEWEST_TRIANGLES} to "
-            f"{MOST_TRIANGLES}: reduce it in a modelling program"
+            f"{MOST_TRIANGLES}: {cure} it in a modelling program"
         )
     count = len(vertices)
     links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
@@ -65,6 +67,13 @@ def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> S
 
 def check_manifold(faces: IndexArray) -> None:
     """Raise AssetError unless each edge has one or two triangles, which agree on the outside."""
+    names_twice = (faces == np.roll(faces, 1, axis=1)).any(axis=1)
+    if names_twice.any():
+        where = int(names_twice.argmax())
+        raise AssetError(
+            f"the mesh is not manifold: triangle {where} has the vertices {faces[where].tolist()}, "
+            "one of them twice; remove triangles without area"
+        )
     directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     edges, uses = np.unique(np.sort(directed, axis=1), axis=0, return_counts=True)
     if (uses > 2).any():

@@ -130,6 +130,10 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["capture", "SMILE", "-o", "x.mp4", "--option", "threshold_once=a"], "be a number"),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "blend=maybe"], "must be on or off"),
         (
+            ["capture", "SMILE", "-o", "x.mp4", "--option", "blend=True", "--option", "coherent=1"],
+            "option coherent was 1, must be on or off",
+        ),
+        (
             ["capture", "SMILE", "-o", "x.mp4", "--refiner", "loop", "--option", "scheme=cubic"],
             "unknown option scheme; it takes levels",
         ),

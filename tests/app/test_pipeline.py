@@ -10,8 +10,10 @@ import pytest
 
 import refine
 import render
+from app.capture import SETTLING, Capture, CaptureOptions
 from app.pipeline import Pipeline, side_by_side, splits_of_source
 from app.scenes import FaceScene, PlaneScene
+from app.script import parse_script
 
 SIZE = (320, 240)
 
@@ -121,3 +123,20 @@ def test_side_by_side_covers_the_frame() -> None:
     assert first[0] + first[2] == second[0]
     assert second[0] + second[2] == third[0]
     assert third[0] + third[2] == 101
+
+
+@pytest.mark.parametrize(("first", "settling"), [(0.0, 0.0), (0.5, SETTLING)])
+@pytest.mark.parametrize("rate", [24.0, 30.0])
+def test_a_film_takes_as_long_as_its_script(first: float, settling: float, rate: float) -> None:
+    """As much time passes in the scene as between the frames, each of which has its pose."""
+    text = f"[[pose]]\ntime = 0\namplitude = {first}\n[[pose]]\ntime = 0.5\namplitude = 1\n"
+    script = parse_script(text, source="wave")
+    options = CaptureOptions(size=SIZE, samples=0, frames_per_second=rate)
+    with Capture(PlaneScene(), options) as capture:
+        steps: list[float] = []
+        capture.pipeline.step = steps.append  # type: ignore[method-assign]
+        times = list(capture.play(script, progress=False))
+        assert times == pytest.approx(np.arange(len(times)) / rate)
+        assert times[-1] == pytest.approx(0.5)
+        assert sum(steps) == pytest.approx(0.5 + settling)
+        assert capture.scene.values["amplitude"] == 1.0

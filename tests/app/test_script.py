@@ -72,7 +72,7 @@ def test_easings_stay_between_the_keys(fraction: float, name: str) -> None:
         ("[[pose]]\ntime=1\n[[pose]]\ntime=1", r"pose 2: time 1 s does not come after"),
         ("[[pose]]\ntime=1\neasing='x'", r"pose 1: easing 'x'; allowed are linear, smooth"),
         ("[[pose]]\ntime=1\njoy=true", r"pose 1: 'joy' is True; it must be a number"),
-        ("[[pose]]\ntime=0", r"duration is 0 s; it must be above 0"),
+        ("[[pose]]\ntime=0", r"duration is 0 s; it must be above 0: write duration = 1.0, or"),
         ("[[pose]]\ntime=1\neasing=['a']", r"pose 1: easing \['a'\]; allowed are"),
         ("[[pose]]\ntime=1" + 400 * "0", r"pose 1: 'time' must lie between -86400 and 86400"),
         ("duration=1\n[[pose]]\ntime=2\nname='x'", r"pose 'x' at 2 s comes after the duration"),
@@ -133,3 +133,12 @@ def test_missing_and_unreadable_files(tmp_path: Path) -> None:
     binary.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(UserError, match="cannot be read as a text file"):
         load_script(binary)
+    with pytest.raises(UserError, match="is longer than a script may be, 16 MB"):
+        load_script(Path("/dev/zero"))
+
+
+def test_scripts_of_other_editors(tmp_path: Path) -> None:
+    """A byte order mark and line ends of Windows are no mistake."""
+    path = tmp_path / "windows.toml"
+    path.write_bytes(b"\xef\xbb\xbf[[pose]]\r\ntime = 2.0\r\njoy = 1.0\r\n")
+    assert load_script(path).at(2.0) == {"joy": 1.0}

@@ -64,6 +64,55 @@ def test_a_signal_is_heard_where_errors_are_dropped() -> None:
     assert (ended.returncode, ended.stdout, ended.stderr) == (143, "clean\n", "")
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
+def test_a_film_can_be_stopped_while_it_is_finished(tmp_path: Path) -> None:
+    """Ctrl-C while all frames are handed over and ffmpeg is still at work: the end, and no film."""
+    slow = tmp_path / "slow_ffmpeg"
+    slow.write_text("#!/bin/sh\ncat > /dev/null\ntouch $0.has_all\nexec sleep 100\n")
+    slow.chmod(0o755)
+    folder = tmp_path / "films"
+    code = (
+        "import numpy, pathlib\nfrom app import outputs, stopping\nstopping.listen()\n"
+        f"with outputs.film(pathlib.Path({str(folder / 'film.mp4')!r}), (16, 16), 30) as add:\n"
+        "    add(numpy.zeros((16, 16, 3), numpy.uint8))"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", code],
+        stderr=subprocess.PIPE,
+        env={**os.environ, "IMAGEIO_FFMPEG_EXE": str(slow)},
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    while process.poll() is None and not (tmp_path / "slow_ffmpeg.has_all").exists():
+        time.sleep(0.01)
+    process.send_signal(signal.SIGINT)
+    try:
+        _, told = process.communicate(timeout=20)
+    finally:
+        process.kill()
+    assert (process.returncode, told) == (130, b"risorius: stopped\n")
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
+def test_frames_give_way_whole(tmp_path: Path) -> None:
+    """A signal while the frames of an earlier film are replaced: all of the new ones are there."""
+    code = (
+        "import numpy, os, pathlib, signal, sys\nfrom app import outputs, stopping\n"
+        "stopping.listen()\nreplace, target = os.replace, pathlib.Path(sys.argv[1])\n"
+        "def disturbed(*paths):\n    replace(*paths)\n    signal.raise_signal(signal.SIGTERM)\n"
+        "for os.replace in (replace, disturbed):\n"
+        "    with outputs.folder(target, overwrite=True) as add:\n"
+        "        for _ in range(3):\n            add(numpy.zeros((16, 16, 3), numpy.uint8))\n"
+        "print('went on')"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path / "frames")], capture_output=True, check=False
+    )
+    assert (ended.returncode, ended.stdout, ended.stderr) == (143, b"", b"")
+    names = sorted(path.name for path in (tmp_path / "frames").iterdir())
+    assert names == ["frame_00000.png", "frame_00001.png", "frame_00002.png"]
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell")
 def test_missing_streams_are_no_error(tmp_path: Path) -> None:
     """Nobody reads the output, or there is no stream at all: no traceback, and the picture."""

@@ -173,10 +173,31 @@ def test_broken_landmark_files_are_named(
 
 
 def test_missing_landmark_file(other: Stranger, tmp_path: Path) -> None:
-    """A path that leads nowhere is one line."""
+    """A path that leads nowhere, or to no end, is one line."""
     mesh, _ = other.write(tmp_path)
+    with pytest.raises(AssetError, match=r"/dev/zero: not readable as JSON"):
+        fit_head(mesh, "/dev/zero")
     with pytest.raises(AssetError, match=r"nowhere.json: no such landmark file"):
         fit_head(mesh, tmp_path / "nowhere.json")
+
+
+@pytest.mark.parametrize(("off", "is_allowed"), [(0.04, True), (0.07, False)])
+def test_points_lie_on_the_mesh(
+    other: Stranger, tmp_path: Path, off: float, is_allowed: bool
+) -> None:
+    """A point may hover by a twentieth of the distance of the eyes; further off it is named."""
+    mesh, file = other.write(tmp_path)
+    points = other.mesh.vertices[other.landmarks]
+    tip = points[30]
+    outward = tip - points[[1, 15]].mean(axis=0)
+    outward /= np.linalg.norm(outward)
+    points[30] = tip + off * np.linalg.norm(points[36] - points[45]) * outward
+    file.write_text(json.dumps(points.tolist()))
+    if is_allowed:
+        fit_head(mesh, file)
+        return
+    with pytest.raises(AssetError, match=r"landmark 30 lies .* units off the mesh; allowed are"):
+        fit_head(mesh, file)
 
 
 def test_swapped_sides_are_noticed(other: Stranger) -> None:
@@ -218,9 +239,10 @@ def test_closed_openings_are_named(
     ("change", "message"),
     [
         (lambda f: np.vstack([f, f[:1]]), "not manifold: 3 triangles meet|not oriented"),
+        (lambda f: np.vstack([f[:9], [[5, 6, 5]], f]), r"triangle 9 has the vertices \[5, 6, 5\]"),
         (lambda f: np.vstack([f[:1, ::-1], f[1:]]), "not oriented: both triangles at the edge"),
-        (lambda f: f[:100], "the head has 100 triangles; allowed are 300 to 50000"),
-        (lambda f: np.tile(f, (8, 1)), "the head has 64960 triangles"),
+        (lambda f: f[:100], "the head has 100 triangles; allowed are 300 to 50000: sub"),
+        (lambda f: np.tile(f, (8, 1)), "the head has 64960 triangles; .*: reduce it"),
     ],
 )
 def test_meshes_that_are_no_surface_are_named(other: Stranger, change: Any, message: str) -> None:

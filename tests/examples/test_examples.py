@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
 
 import refine
@@ -80,3 +81,19 @@ def test_own_refiner(monkeypatch: pytest.MonkeyPatch) -> None:
     )
     with pytest.raises(ValueError, match="takes \\['longest'\\]"):
         refine.create("quarters", [[0, 1, 2]], [[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], level=3)
+
+
+def test_own_refiner_carries_texture() -> None:
+    """Along a seam both sides keep their own coordinates, and no crack opens."""
+    quarters = example("own_refiner").Quarters
+    rest = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.5]])
+    faces, uv = [[0, 1, 2], [0, 2, 3]], np.arange(12.0).reshape(6, 2)
+    refiner = quarters(faces, rest, uv=uv, face_uv=[[0, 1, 2], [3, 4, 5]])
+    for stretch, count, rows in ((1.0, 2, 6), (3.0, 8, 12)):
+        mesh = refiner.refine(stretch * rest)
+        refine.check(refiner, mesh, stretch * rest)
+        assert (len(mesh.triangles), len(mesh.positions)) == (count, rows)
+        for corners, source in zip(mesh.triangles, mesh.source, strict=True):
+            own = uv[:3] if source == 0 else uv[3:]
+            assert (mesh.uv[corners] >= own.min(axis=0)).all()
+            assert (mesh.uv[corners] <= own.max(axis=0)).all()

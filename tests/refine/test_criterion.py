@@ -64,6 +64,16 @@ def test_rigid_motion_of_slivers() -> None:
         assert not refiner.splits.any()
 
 
+def test_rigid_motion_of_a_sliver_on_sound_skin() -> None:
+    """One end of an edge without a direction is enough: the other end's is no measure for it."""
+    points = np.array([[0, 0, 0], [1, 1, 1], [0, 1, 0], [0.3, 0.3, 0.3]]) / 3.0
+    faces = np.array([[0, 1, 2], [1, 0, 3]])
+    refiner = refine.create("kahler", faces, points, threshold_once=0.0, threshold_twice=0.0)
+    for seed in range(20):
+        refiner.refine(points @ meshes.rotation(seed).T)
+        assert not refiner.splits.any()
+
+
 @pytest.mark.parametrize("scale", [1e-4, 1.0, 1e4])
 def test_units_do_not_matter(scale: float) -> None:
     """The same mesh in other units splits the same edges."""

@@ -91,6 +91,15 @@ def test_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
     assert isinstance(refine.create("installed", FINE.faces, FINE.vertices), Outside)
 
 
+def test_broken_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A package that cannot be imported is named with its reason, and only when it is asked for."""
+    point = importlib.metadata.EntryPoint("far", "nowhere_at_all:X", "risorius.refiners")
+    monkeypatch.setattr(importlib.metadata, "entry_points", lambda *, group: [point])
+    assert "far" in refine.available()
+    with pytest.raises(ValueError, match=r"'far' of 'nowhere_at_all:X' cannot be loaded: Module"):
+        refine.create("far", FINE.faces, FINE.vertices)
+
+
 @pytest.mark.usefixtures("clean_registry")
 @pytest.mark.parametrize(
     ("name", "factory", "text"),

@@ -96,6 +96,15 @@ def test_zoom_scales_what_is_seen() -> None:
     assert seen(camera, beside)[0, 0] == pytest.approx(2.0 * before)
 
 
+def test_zoom_has_an_end_on_both_sides() -> None:
+    """A wheel that is turned for ever never takes the eye into the target, nor out of sight."""
+    camera = render.OrbitCamera.framing(HEAD)
+    camera.zoom(1e30)
+    assert camera.distance == pytest.approx(0.02 * camera.scene_radius)
+    camera.zoom(1e-30)
+    assert camera.distance == pytest.approx(100.0 * camera.scene_radius)
+
+
 def test_pan_moves_by_the_height_of_the_frame() -> None:
     """Panning half a frame up puts the old target on the lower border."""
     camera = render.OrbitCamera.framing(HEAD, view="profile")

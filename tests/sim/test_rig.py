@@ -102,7 +102,7 @@ PULLER = ("muscle", "puller")
         (_set(*PULLER, "width", value=0.0), r"'puller', key 'width': was 0.0, must be .* 1 to 60"),
         (_set(*PULLER, "bone", value="maxilla"), r"'bone': was 'maxilla', allowed are cranium"),
         (_set(*PULLER, "gate", value="upper"), r"'gate': was 'upper', allowed are none, upper_lip"),
-        (_set(*PULLER, "radii", value=[1, 1, 1]), r"'puller': unknown key 'radii'"),
+        (_set(*PULLER, "radii", value=[1, 1, 1]), r"'puller': unknown key 'radii'\. Allowed: "),
         (_delete(*PULLER, "fibre"), r"'puller': a linear muscle needs at least one"),
         (_set(*PULLER, "fibre", value={}), r"must be a list of fibre tables"),
         (_delete(*PULLER, "fibre", 0, "origin"), r"'fibres' 1, key 'origin': is missing"),

@@ -1,0 +1,51 @@
+"""Where a camera stands, from a name or from numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.cameras import camera_for, whole_scene
+from app.errors import UserError
+from app.scenes import FaceScene
+
+
+@pytest.fixture(scope="module")
+def scene() -> FaceScene:
+    """The built-in face."""
+    return FaceScene()
+
+
+def test_numbers_stand_around_the_middle_of_the_face(scene: FaceScene) -> None:
+    """Yaw and pitch in degrees about the landmarks, not about the skull; zoom 2 is half as far."""
+    camera = camera_for(scene, "-15,2,2.3")
+    assert (camera.yaw, camera.pitch) == pytest.approx((-15.0, 2.0))
+    assert camera.target == pytest.approx(scene.focus)
+    assert scene.focus[2] > camera_for(scene, "front").target[2] + 20.0
+    near, far = (camera_for(scene, f"0,0,{zoom}").distance for zoom in (2, 1))
+    assert near == pytest.approx(0.5 * far)
+    assert camera_for(scene, "0,0").distance == far
+
+
+def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene: FaceScene) -> None:
+    """A camera that stood too near steps back; one that stood further away stays there."""
+    near, far = whole_scene(scene, "0,0,4"), whole_scene(scene, "0,0,0.2")
+    for camera in (near, far):
+        clip = camera.projection_matrix(1.0) * camera.view_matrix()
+        ends = np.column_stack([scene.rest_positions, np.ones(len(scene.rest_positions))])
+        seen = ends @ np.asarray(clip)
+        assert np.abs(seen[:, :2] / seen[:, 3:]).max() < 1.0
+    assert near.distance > camera_for(scene, "0,0,4").distance
+    assert far.distance == camera_for(scene, "0,0,0.2").distance
+
+
+@pytest.mark.parametrize(
+    "text", ["behind", "1", "1,2,3,4", "nan,0", "0,inf", "0,0,0", "0,0,-1", ""]
+)
+def test_what_no_camera_is(scene: FaceScene, text: str) -> None:
+    """Other names and numbers are told with what is allowed; nothing is the usual view."""
+    if not text:
+        assert camera_for(scene, text).yaw == camera_for(scene, "three-quarter").yaw
+        return
+    with pytest.raises(UserError, match=r"allowed are front, .* zoom above 0"):
+        camera_for(scene, text)
