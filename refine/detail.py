@@ -34,7 +34,7 @@ from .arguments import checked_indices, checked_positions
 from .closest import Surface
 from .connectivity import Connectivity
 from .cubic import CubicScheme
-from .fit import ALONE, END, MIDDLE, START, Points, fitted, fitted_normals, saved_turns
+from .fit import Points, fitted, fitted_normals, saved_turns
 from .kernels import kernel
 from .local_frames import edge_axes, triangle_axes, vertex_axes
 from .schemes import Frame
@@ -46,6 +46,8 @@ Unsigned = npt.NDArray[np.uint32]
 FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 """Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
 
+START, MIDDLE, END, ALONE = 0, 1, 2, 3
+"""Points of an edge (fit.py)."""
 AXES_OF = [START, MIDDLE, END, MIDDLE]
 """The directions that each point of an edge is stored along: both middles have the same."""
 ZERO = np.float32(0.0)
