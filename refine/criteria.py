@@ -11,7 +11,7 @@ edges. To achieve this, appropriate splitting criteria have to be developed").
                 an edge that is seen from aside     line of sight grazes the edge, 0 a BAND away
     screen      length of an edge as it is seen     L x focal / distance from the eye, in pixels
     bulge       how far the scheme moves a middle   for schemes with curved edges (curves.py);
-                and turns its normal, if it knows   `detail` does
+                and mends normals, if it knows      `detail` does
 
 Each has two thresholds, above which an edge is split once and twice, and says how much an edge
 needs a split, so that all of them can be blended (blend.py) and any of them combined.
@@ -159,11 +159,11 @@ class Bulge(_Measuring):
     For the schemes that interpolate. What is coarse at rest counts as well, unlike in the paper.
     """
 
-    def __init__(self, once: float = 0.03, twice: float = 0.15, *, turning: float = 0.25) -> None:
+    def __init__(self, once: float = 0.03, twice: float = 0.15, *, turning: float = 0.15) -> None:
         """`once`, `twice`: distances in mean edge lengths of the mesh at rest.
 
-        `turning`: the distance that a normal counts that a split would turn by a radian, for the
-        scheme `detail`; 0 looks at distances only.
+        `turning`: the distance that an error of normals of a radian counts that a split would mend,
+        for the scheme `detail`; 0 looks at distances only.
         """
         super().__init__(once, twice, "distances in mean edge lengths")
         self.turning = turning
@@ -289,9 +289,10 @@ def bulge_sizes(bulges: Floats, sizes: Floats) -> None:
 
 @kernel
 def count_turns(sizes: Floats, turns: Floats, scale: np.float32) -> None:
-    """Raise the sizes of edges, shape (E,), to what the turns of their normals count."""
+    """Add what the turns of normals count to the sizes of edges, shape (E,), as squares."""
     for e in range(sizes.shape[0]):
-        sizes[e] = max(sizes[e], scale * turns[e])
+        turn = scale * turns[e]
+        sizes[e] = np.sqrt(sizes[e] * sizes[e] + turn * turn)
 
 
 @kernel

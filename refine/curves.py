@@ -48,10 +48,7 @@ class CurveScheme:
 
     interpolates = True
     turns: Floats | None = None
-    """How much there is to see in the normals of every edge, shape (E,), if a scheme knows that.
-
-    The turn [rad] from the mean of the normals at both ends to the one in the middle, times the
-    root of the edge's length in mean edge lengths: a longer edge shows more of it."""
+    """How much a split would mend in normals [rad] at every edge, shape (E,), if that is known."""
 
     def bind(
         self,

@@ -20,6 +20,9 @@ around a vertex turned less than its own where the mesh was folded, and stars st
 The normal of a point turns to that of the finer mesh as far as the edges around have grown, in the
 mean: where what is refined ends, a fold would otherwise end as a crease.
 
+The middle of an edge has two places, for one split and for two (fit.py), and goes from the first to
+the second while the quarters grow.
+
 Vertices stay where they are (they lie on the finer mesh if they are taken from it). All of them
 show its normals, fitted (fit.py) and stored along their own normal and one of their edges.
 """
@@ -31,7 +34,7 @@ from .arguments import checked_indices, checked_positions
 from .closest import Surface
 from .connectivity import Connectivity
 from .cubic import CubicScheme
-from .fit import fitted, fitted_normals
+from .fit import Points, fitted, fitted_normals, saved_turns
 from .kernels import kernel
 from .local_frames import edge_axes, triangle_axes, vertex_axes
 from .schemes import Frame
@@ -43,6 +46,10 @@ Unsigned = npt.NDArray[np.uint32]
 FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 """Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
 
+START, MIDDLE, END, ALONE = 0, 1, 2, 3
+"""Points of an edge (fit.py)."""
+AXES_OF = [START, MIDDLE, END, MIDDLE]
+"""The directions that each point of an edge is stored along: both middles have the same."""
 ZERO = np.float32(0.0)
 QUARTER = np.float32(0.25)
 HALF = np.float32(0.5)
@@ -88,61 +95,61 @@ class DetailScheme(CubicScheme):
         self._bulge_cubic(rest_positions, everything, edge_count, self._bulges)
         # All directions follow the normals that the cubic has, now as in every frame.
         rest_normals = self._normals.copy()
-        points, normals = _points_on(self._bulges, connectivity, rest_positions, rest_normals)
-        places, _ = _closest(self._surface, points, normals)
-        centres, centre_normals = _centres_of(places, connectivity, rest_positions, rest_normals)
-        centre_places, _ = _closest(self._surface, centres, centre_normals)
-        places, centre_places = fitted(
-            self._surface, connectivity, rest_positions, places, centre_places
-        )
-        centres, _ = _centres_of(places, connectivity, rest_positions, rest_normals)
-        looks = self._rest_looks(rest_positions, rest_normals, places, normals, centre_places,
-                                 centre_normals)  # fmt: skip
-        self._remember(
-            rest_positions, rest_normals, places - points, centre_places - centres, looks
-        )
+        points, ups = _points_on(self._bulges, connectivity, rest_positions, rest_normals)
+        places, _ = _closest(self._surface, points, ups)
+        centres = _centres_of(places, connectivity, rest_positions)
+        centre_ups = np.repeat(rest_normals[connectivity.faces].sum(1)[:, None], 2, axis=1)
+        centre_places, _ = _closest(self._surface, centres, centre_ups)
+        fit = fitted(self._surface, connectivity, rest_positions, Points(places, centre_places))
+        where = fit.stacked(rest_positions)
+        _, looks = _closest(self._surface, where, Points(ups, centre_ups).stacked(rest_normals))
+        looks = fitted_normals(self._surface, connectivity, where, looks)
+        centres = _centres_of(fit.of_edges, connectivity, rest_positions)
+        offsets = Points(fit.of_edges - points, fit.of_triangles - centres)
+        self._remember(rest_positions, rest_normals, offsets, looks)
+        # What is off around an edge; and what turns in its middle, where few finer vertices are.
+        saved = saved_turns(self._surface, connectivity, where, looks)
+        self.turns = np.hypot(saved, self._turns_at(rest_positions, looks)).astype(np.float32)
         self._surface = None
 
-    def _rest_looks(
-        self, rest_positions: Doubles, rest_normals: Floats, places: Doubles, normals: Doubles,
-        centre_places: Doubles, centre_normals: Doubles,
-    ) -> Doubles:  # fmt: skip
-        """Normals of the finer mesh for vertices, points of edges and centres, in one list."""
-        assert self._surface is not None
-        where = np.concatenate([rest_positions, places.reshape(-1, 3), centre_places])
-        up = np.concatenate([rest_normals, normals.reshape(-1, 3), centre_normals])
-        _, looks = _closest(self._surface, where, up)
-        return fitted_normals(self._surface, self._connectivity, where, looks)
-
     def _remember(
-        self, rest_positions: Doubles, rest_normals: Floats, offsets: Doubles,
-        centre_offsets: Doubles, looks: Doubles,
-    ) -> None:  # fmt: skip
+        self, rest_positions: Doubles, rest_normals: Floats, offsets: Points, looks: Doubles
+    ) -> None:
         """Store offsets and normals along the directions of edges, triangles and vertices."""
-        mesh, vertex_count, edge_count = self._connectivity, len(rest_positions), len(offsets)
+        mesh, edge_count = self._connectivity, len(self._axes)
         edges = np.arange(edge_count, dtype=np.uint32)
         twice = np.full(edge_count, 2, dtype=np.uint8)
         edge_axes(
             rest_positions, rest_normals, mesh.edge_points, twice, edges, edge_count, self._axes
         )
-        self._offsets = _along(self._axes, offsets)
-        point_looks = looks[vertex_count : vertex_count + 3 * edge_count].reshape(-1, 3, 3)
-        self._looks = _along(self._axes, point_looks)
         triangles = np.arange(len(mesh.faces), dtype=np.uint32)
         triangle_axes(
             rest_positions, rest_normals, mesh.faces, triangles, len(triangles), self._centre_axes
         )
-        self._centre_offsets = _along(self._centre_axes, centre_offsets)
-        self._centre_looks = _along(self._centre_axes, looks[vertex_count + 3 * edge_count :])
         vertex_axes(rest_positions, rest_normals, self._towards, self._vertex_axes)
+        point_looks = Points.unstacked(looks, mesh)
+        point_axes, centre_axes = self._axes[:, AXES_OF], self._centre_axes[:, None]
+        self._offsets = _along(point_axes, offsets.of_edges)
+        self._looks = _along(point_axes, point_looks.of_edges)
+        self._centre_offsets = _along(centre_axes, offsets.of_triangles)
+        self._centre_looks = _along(centre_axes, point_looks.of_triangles)
         # A vertex without a normal has no frame: nothing to show there.
-        self._vertex_looks = _along(self._vertex_axes, looks[:vertex_count])
+        self._vertex_looks = _along(self._vertex_axes, looks[: mesh.vertex_count])
+
+    def _turns_at(self, rest_positions: Doubles, looks: Doubles) -> Doubles:
+        """How far the middle of each edge split once turns from between its ends, shape (E,).
+
+        Times the root of the edge's length in mean lengths: a longer edge shows more of it.
+        """
+        mesh = self._connectivity
         mean = looks[mesh.edges].sum(axis=1)
         mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-12)
-        cosine = np.clip((mean * point_looks[:, 1]).sum(axis=1), -1.0, 1.0)
+        middles = Points.unstacked(looks, mesh).of_edges[:, ALONE]
+        angles = np.arccos(np.clip((mean * middles).sum(axis=1), -1.0, 1.0))
         lengths = np.linalg.norm(np.diff(rest_positions[mesh.edges], axis=1)[:, 0], axis=1)
-        share = np.sqrt(lengths / lengths.mean()) if edge_count else lengths
-        self.turns = (np.arccos(cosine) * share).astype(np.float32)
+        share: Doubles = np.sqrt(lengths / lengths.mean()) if len(lengths) else lengths
+        turns: Doubles = angles * share
+        return turns
 
     def place(self, frame: Frame) -> None:
         """Write vertices and points, then the normals of the finer mesh at points."""
@@ -181,7 +188,13 @@ class DetailScheme(CubicScheme):
             self._axes,
         )
         add_offsets(
-            self._offsets, self._axes, frame.splits, frame.split_once, frame.once_count, bulges
+            self._offsets,
+            self._axes,
+            frame.splits,
+            frame.growth_twice,
+            frame.split_once,
+            frame.once_count,
+            bulges,
         )
 
     def place_centres(self, frame: Frame) -> None:
@@ -201,7 +214,9 @@ class DetailScheme(CubicScheme):
             self._centre_looks,
             self._centre_axes,
             mesh.triangle_edges,
+            frame.splits,
             frame.growth_once,
+            frame.growth_twice,
             frame.centre_triangles,
             frame.centre_count,
             frame.first_centre,
@@ -212,22 +227,21 @@ class DetailScheme(CubicScheme):
 def _points_on(
     bulges: Floats, mesh: Connectivity, positions: Doubles, normals: Floats
 ) -> tuple[Doubles, Doubles]:
-    """Points of all edges split twice, and normals there, both of shape (E, 3, 3)."""
+    """Points of all edges (fit.Points), and normals there, both of shape (E, 4, 3)."""
     share = np.array([0.25, 0.5, 0.75])[:, None]
     a, b = mesh.edges[:, 0], mesh.edges[:, 1]
     points = (1.0 - share) * positions[a][:, None] + share * positions[b][:, None] + bulges
     between = (1.0 - share) * normals[a][:, None] + share * normals[b][:, None]
-    return points, between
+    return points[:, AXES_OF], between[:, AXES_OF]
 
 
-def _centres_of(
-    places: Doubles, mesh: Connectivity, positions: Doubles, normals: Floats
-) -> tuple[Doubles, Doubles]:
-    """Middles of triangles whose edges are all split, as blending has them, and normals there."""
-    bulges = places[:, 1] - positions[mesh.edges].mean(axis=1)
-    bulges = np.concatenate([bulges, np.zeros((1, 3))])  # found at -1, where there is no edge
-    centres = positions[mesh.faces].mean(axis=1) + 4.0 / 9.0 * bulges[mesh.triangle_edges].sum(1)
-    return centres, normals[mesh.faces].sum(axis=1, dtype=np.float64)
+def _centres_of(places: Doubles, mesh: Connectivity, positions: Doubles) -> Doubles:
+    """Middles of triangles whose edges are all split, as blending has them, shape (F, 2, 3)."""
+    bulges = places[:, [MIDDLE, ALONE]] - positions[mesh.edges].mean(axis=1)[:, None]
+    bulges = np.concatenate([bulges, np.zeros((1, 2, 3))])  # found at -1, where there is no edge
+    flat: Doubles = positions[mesh.faces].mean(axis=1)[:, None]
+    centres: Doubles = flat + 4.0 / 9.0 * bulges[mesh.triangle_edges].sum(axis=1)
+    return centres
 
 
 def _closest(surface: Surface, points: Doubles, normals: Doubles) -> tuple[Doubles, Doubles]:
@@ -250,6 +264,7 @@ def add_offsets(
     offsets: Floats,
     axes: Floats,
     splits: npt.NDArray[np.uint8],
+    growth_twice: Floats,
     split_once: Unsigned,
     once_count: int,
     bulges: Floats,
@@ -257,13 +272,23 @@ def add_offsets(
     """Add the stored offsets of the split edges to their bulges."""
     for k in range(once_count):
         e = split_once[k]
-        for point in range(3) if splits[e] == 2 else range(1, 2):
+        twice = growth_twice[e] if splits[e] == 2 else ZERO
+        for j in range(3):
+            offset = between(offsets[e, ALONE, j], offsets[e, MIDDLE, j], twice)
             for i in range(3):
-                bulges[e, point, i] += (
-                    offsets[e, point, 0] * axes[e, point, 0, i]
-                    + offsets[e, point, 1] * axes[e, point, 1, i]
-                    + offsets[e, point, 2] * axes[e, point, 2, i]
-                )
+                bulges[e, MIDDLE, i] += offset * axes[e, MIDDLE, j, i]
+        if splits[e] < 2:
+            continue
+        for point in (START, END):
+            for j in range(3):
+                for i in range(3):
+                    bulges[e, point, i] += offsets[e, point, j] * axes[e, point, j, i]
+
+
+@kernel
+def between(start: np.float32, end: np.float32, share: np.float32) -> np.float32:
+    """A share of the way from one number to another, neither of which is lost at its end."""
+    return (ONE - share) * start + share * end
 
 
 @kernel
@@ -306,6 +331,7 @@ def show_points(
     vertices: Floats,
 ) -> None:
     """Turn the normals of the points of split edges to those of the finer mesh."""
+    look = np.empty(3, np.float32)
     for k in range(once_count):
         e = split_once[k]
         row = first_points[e] + (splits[e] >> 1)
@@ -316,7 +342,10 @@ def show_points(
                 wing = edge_wings[e, i]
                 around += QUARTER * growth_once[wing] if splits[wing] > 0 else ZERO
             share = min(share, around)
-        turn(vertices[row, 3:6], looks[e, 1], axes[e, 1], share)
+        twice = growth_twice[e] if splits[e] == 2 else ZERO
+        for j in range(3):
+            look[j] = between(looks[e, ALONE, j], looks[e, MIDDLE, j], twice)
+        turn(vertices[row, 3:6], look, axes[e, MIDDLE], share)
         if splits[e] < 2:
             continue
         for end in range(2):
@@ -338,19 +367,26 @@ def show_centres(
     looks: Floats,
     axes: Floats,
     triangle_edges: npt.NDArray[np.int32],
+    splits: npt.NDArray[np.uint8],
     growth_once: Floats,
+    growth_twice: Floats,
     centre_triangles: Unsigned,
     centre_count: int,
     first_centre: int,
     vertices: Floats,
 ) -> None:
     """Move and turn the points in the middle of triangles as the least grown edge allows."""
+    look = np.empty(3, np.float32)
     for k in range(centre_count):
         t, row = centre_triangles[k], first_centre + k
-        growth = ONE
+        once = twice = ONE
         for i in range(3):
-            growth = min(growth, growth_once[triangle_edges[t, i]])
+            e = triangle_edges[t, i]
+            once = min(once, growth_once[e])
+            twice = min(twice, growth_twice[e] if splits[e] == 2 else ZERO)
         for j in range(3):
+            look[j] = between(looks[t, 1, j], looks[t, 0, j], twice)
+            offset = once * between(offsets[t, 1, j], offsets[t, 0, j], twice)
             for i in range(3):
-                vertices[row, i] += growth * offsets[t, j] * axes[t, j, i]
-        turn(vertices[row, 3:6], looks[t], axes[t], growth)
+                vertices[row, i] += offset * axes[t, j, i]
+        turn(vertices[row, 3:6], look, axes[t], once)

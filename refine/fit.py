@@ -6,89 +6,148 @@ closest to, and the points of all split edges and the middles of all triangles g
 vertices of the coarse mesh stay: linear least squares, solved by conjugate gradients, a few times
 over because after each time other triangles are the closest.
 
+Triangles around an edge that is split once are twice as long as around one that is split twice, and
+cut more off: the middle of an edge has one place for each, and so has the middle of a triangle.
+
 Normals: in the folds of lips and lids, where the vertices of a decimated face often lie, the normal
 of one place says nothing about the triangles around it. So the normals that are shown are fitted
-too, at vertices and points at once, to those of all finer vertices; once with no edge split and
-once with all of them, because a frame shows something between the two.
+too, at vertices and points at once, to those of all finer vertices; unsplit, split once and split
+twice, because a frame shows something between them.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from .closest import Surface
 from .connectivity import Connectivity
-from .patterns import FANS
+from .patterns import CENTRE, CONFIGURATIONS, FANS, FixedPatterns
 
 Doubles = npt.NDArray[np.float64]
 Wide = npt.NDArray[np.int64]
 
-ROUNDS = 4
-"""Times that closest triangles are found anew; more gave less than 1 % (measured, a scanned face).
-"""
+ROUNDS, ONCE_ROUNDS = 4, 2
+"""Times that closest triangles are found anew, for all points and for those of edges split once;
+more gave less than 1 % (measured, a scanned face)."""
 STEPS = 20
 """Steps of conjugate gradients in each round."""
-STIFFNESS = 0.005
+STIFFNESS = 0.05
 """Pull back to where a point was, against 1 of a vertex of the finer mesh. Chosen by measurement:
-less fits the vertices better and what lies between them worse."""
+less fits the vertices better and what lies between them worse, and lets points leap far out where
+the finer mesh is hardly finer."""
 NORMAL_STIFFNESS, CORNER_STIFFNESS = 0.1, 1.0
 """The same for normals of points, and of vertices, which are there whatever is split around them.
 Chosen by measurement on two heads."""
-UNSPLIT = 0.3
-"""How much the unsplit mesh counts in the fit of normals, against 1 of the split one. Chosen by
-measurement, flat from 0.1 to 1."""
+UNSPLIT = 1.0
+"""How much the unsplit mesh counts in the fit of normals, against 1 of the one whose edges are all
+split twice. Chosen by measurement, flat from 0.3 to 1."""
+TWICE = (FANS, 26)
+ONCE = ((FANS, 13), (CONFIGURATIONS, 13))
+"""Tables and rows (patterns.py) that points are fitted to: all edges split twice, and once; blended
+and not, because the middle of a triangle is there only in one of them."""
+START, MIDDLE, END, ALONE = 0, 1, 2, 3
+"""Points of an edge: two quarters and the middle if it is split twice, the middle if once."""
 TOO_FAR = 1.0
 """A finer vertex farther away than this, in edge lengths, belongs nowhere on the coarse mesh."""
 LOST = 0.05
 """Length of a fitted normal below which those that pulled at it have cancelled each other."""
 
 
-def fitted(
-    surface: Surface, mesh: Connectivity, positions: Doubles, points: Doubles, centres: Doubles
-) -> tuple[Doubles, Doubles]:
-    """Return points of edges, shape (E, 3, 3), and of triangles, shape (F, 3), that fit better.
+class Points(NamedTuple):
+    """Something for each point that splitting may make: places, or normals there."""
 
-    `surface`: the finer mesh; `positions`: of the coarse mesh at rest, shape (V, 3); `points` and
-    `centres`: where to begin.
+    of_edges: Doubles
+    """START, MIDDLE, END of edges split twice, ALONE of those split once, shape (E, 4, 3)."""
+    of_triangles: Doubles
+    """The middle, with all edges split twice, and once, shape (F, 2, 3)."""
+
+    def stacked(self, vertices: npt.NDArray[np.floating]) -> Doubles:
+        """One list, shape (N, 3): those of vertices first."""
+        return np.concatenate([vertices, *(part.reshape(-1, 3) for part in self)])
+
+    @staticmethod
+    def unstacked(rows: Doubles, mesh: Connectivity) -> "Points":
+        """Take the list apart again."""
+        first = mesh.vertex_count + 4 * len(mesh.edges)
+        of_edges, of_triangles = rows[mesh.vertex_count : first], rows[first:]
+        return Points(of_edges.reshape(-1, 4, 3), of_triangles.reshape(-1, 2, 3))
+
+
+def fitted(surface: Surface, mesh: Connectivity, positions: Doubles, points: Points) -> Points:
+    """Return points that fit better.
+
+    `surface`: the finer mesh; `positions`: of the coarse mesh at rest, shape (V, 3); `points`:
+    where to begin.
     """
-    vertex_count, edge_count = len(positions), len(points)
-    triangles = _all_split(mesh, vertex_count, edge_count)
-    reach = _reach(mesh, positions)
-    everything = np.concatenate([positions, points.reshape(-1, 3), centres])
-    for _ in range(ROUNDS if len(triangles) else 0):
-        corners, weights = _held(surface, everything, triangles, reach)
-        pull = surface.positions - np.einsum("nk,nki->ni", weights, everything[corners])
-        everything[vertex_count:] += _solved(
-            corners - vertex_count, weights, pull, len(everything) - vertex_count, STIFFNESS
+    reach, vertex_count = _reach(mesh, positions), len(positions)
+    places = points.stacked(positions)
+    shapes = [(split_everywhere(mesh, *row), 1.0) for row in (TWICE, *ONCE)]
+    for k in range(ROUNDS if len(shapes[0][0]) else 0):
+        if k == ONCE_ROUNDS:
+            shapes = shapes[:1]
+        corners, weights, pull = _pulls(surface, places, shapes, reach, surface.positions, places)
+        places[vertex_count:] += _solved(
+            corners - vertex_count, weights, pull, len(places) - vertex_count, STIFFNESS
         )
-    new_points = everything[vertex_count : vertex_count + 3 * edge_count]
-    return new_points.reshape(-1, 3, 3), everything[vertex_count + 3 * edge_count :]
+    return Points.unstacked(places, mesh)
 
 
 def fitted_normals(
-    surface: Surface, mesh: Connectivity, everything: Doubles, normals: Doubles
+    surface: Surface, mesh: Connectivity, places: Doubles, normals: Doubles
 ) -> Doubles:
-    """Return unit normals of vertices, points and centres that fit better, all of shape (N, 3).
+    """Return unit normals of vertices and points that fit better, stacked, shape (N, 3).
 
-    `everything`: where they are, in this order; `normals`: where to begin.
+    `places`: where they are; `normals`: where to begin.
     """
-    vertex_count, edge_count = mesh.vertex_count, len(mesh.edges)
-    split = _all_split(mesh, vertex_count, edge_count)
-    if len(split) == 0:
-        return normals
     whole = mesh.faces[~mesh.is_degenerate].astype(np.int64)
-    reach = _reach(mesh, everything[:vertex_count])
-    terms = []
-    for triangles, share in ((split, 1.0), (whole, UNSPLIT)):
-        corners, weights = _held(surface, everything, triangles, reach)
-        is_near = weights.any(axis=1, keepdims=True)
-        pull = is_near * surface.normals - np.einsum("nk,nki->ni", weights, normals[corners])
-        terms.append((corners, np.sqrt(share) * weights, np.sqrt(share) * pull))
-    corners, weights, pull = (np.concatenate(part) for part in zip(*terms, strict=True))
+    if len(whole) == 0:
+        return normals
+    reach = _reach(mesh, places[: mesh.vertex_count])
+    shapes = [(split_everywhere(mesh, *row), 1.0) for row in (TWICE, *ONCE)]
+    shapes.append((whole, UNSPLIT))
+    corners, weights, pull = _pulls(surface, places, shapes, reach, surface.normals, normals)
     stiffness = np.full((len(normals), 1), NORMAL_STIFFNESS)
-    stiffness[:vertex_count] = CORNER_STIFFNESS
+    stiffness[: mesh.vertex_count] = CORNER_STIFFNESS
     turned = normals + _solved(corners, weights, pull, len(normals), stiffness)
     lengths = np.linalg.norm(turned, axis=1, keepdims=True)
     return np.where(lengths > LOST, turned / np.maximum(lengths, LOST), normals)
+
+
+def saved_turns(
+    surface: Surface, mesh: Connectivity, places: Doubles, normals: Doubles
+) -> npt.NDArray[np.float32]:
+    """Return how much a split of each edge saves of the errors of normals [rad], shape (E,).
+
+    The root of the squared angles that all finer vertices are off, before less after, each a third
+    for every edge of the triangle that it is closest to, over the finer vertices of an edge. The
+    very closest triangle counts, as for who looks at it: coarse lips that touch show through.
+    """
+    whole = mesh.faces[~mesh.is_degenerate].astype(np.int64)
+    saved = np.zeros(len(mesh.edges))
+    if len(whole) == 0:
+        return saved.astype(np.float32)
+    nearest, before = _squared_angles(surface, places, normals, whole)
+    _, after = _squared_angles(surface, places, normals, split_everywhere(mesh, CONFIGURATIONS, 13))
+    by_triangle = np.maximum(np.bincount(nearest, before - after, len(whole)), 0.0)
+    np.add.at(saved, mesh.triangle_edges[~mesh.is_degenerate], by_triangle[:, None] / 3.0)
+    return np.sqrt(saved * len(saved) / len(surface.positions)).astype(np.float32)
+
+
+def split_everywhere(mesh: Connectivity, patterns: FixedPatterns, row: int) -> Wide:
+    """All triangles cut like one row of a table, of stacked points, shape (K, 3)."""
+    proper = np.flatnonzero(~mesh.is_degenerate)
+    edges = mesh.triangle_edges[proper].astype(np.int64)
+    is_against = mesh.edges[edges][..., 0] != mesh.faces[proper]
+    is_twice = row == TWICE[1]
+    local = np.empty((len(proper), CENTRE + 1), dtype=np.int64)
+    local[:, :3] = mesh.faces[proper]
+    first = mesh.vertex_count + 4 * edges
+    local[:, 3:12:3] = first + (MIDDLE if is_twice else ALONE)
+    local[:, 4:12:3] = first + np.where(is_against, END, START)
+    local[:, 5:12:3] = first + np.where(is_against, START, END)
+    local[:, CENTRE] = mesh.vertex_count + 4 * len(mesh.edges) + 2 * proper + (not is_twice)
+    return local[:, patterns.subtriangles[row, : patterns.counts[row]]].reshape(-1, 3)
 
 
 def _reach(mesh: Connectivity, positions: Doubles) -> float:
@@ -97,30 +156,39 @@ def _reach(mesh: Connectivity, positions: Doubles) -> float:
     return TOO_FAR * float(lengths.mean()) if len(lengths) else 0.0
 
 
-def _held(
-    surface: Surface, positions: Doubles, triangles: Wide, reach: float
+def _pulls(
+    surface: Surface, places: Doubles, shapes: list[tuple[Wide, float]], reach: float,
+    wanted: npt.NDArray[np.floating], values: Doubles,
+) -> tuple[Wide, Doubles, Doubles]:  # fmt: skip
+    """What the finer vertices want at the triangles that they are closest to, in every shape.
+
+    Returns corners and weights, shape (N, 3), and what is missing there from `values` at `places`
+    to what is `wanted`, shape (N, 3).
+    """
+    terms = []
+    for triangles, share in shapes:
+        refined = Surface(places, triangles.astype(np.uint32))
+        hit, weights = refined.closest(surface.positions, surface.normals.astype(np.float64))
+        away = surface.positions - refined.at(places, hit, weights)
+        is_near = np.linalg.norm(away, axis=1, keepdims=True) <= reach
+        corners = triangles[hit]
+        missing = wanted - np.einsum("nk,nki->ni", weights, values[corners])
+        scale = np.sqrt(share) * is_near
+        terms.append((corners, scale * weights, scale * missing))
+    corners, weights, pull = (np.concatenate(part) for part in zip(*terms, strict=True))
+    return corners, weights, pull
+
+
+def _squared_angles(
+    surface: Surface, places: Doubles, normals: Doubles, triangles: Wide
 ) -> tuple[Wide, Doubles]:
-    """The triangle that is closest to each finer vertex: its corners and their weights, (N, 3)."""
-    refined = Surface(positions, triangles.astype(np.uint32))
-    hit, weights = refined.closest(surface.positions, surface.normals.astype(np.float64))
-    away = surface.positions - refined.at(positions, hit, weights)
-    weights[np.linalg.norm(away, axis=1) > reach] = 0.0
-    return triangles[hit], weights
-
-
-def _all_split(mesh: Connectivity, vertex_count: int, edge_count: int) -> Wide:
-    """The triangles of a mesh whose edges are all split twice, into fans, shape (12 F, 3)."""
-    proper = np.flatnonzero(~mesh.is_degenerate)
-    edges = mesh.triangle_edges[proper].astype(np.int64)
-    is_against = mesh.edges[edges][..., 0] != mesh.faces[proper]
-    local = np.empty((len(proper), 13), dtype=np.int64)
-    local[:, :3] = mesh.faces[proper]
-    first = vertex_count + 3 * edges
-    local[:, 3:12:3] = first + 1
-    local[:, 4:12:3] = first + 2 * is_against
-    local[:, 5:12:3] = first + 2 - 2 * is_against
-    local[:, 12] = vertex_count + 3 * edge_count + proper
-    return local[:, FANS.subtriangles[26]].reshape(-1, 3)
+    """The triangle that is closest to each finer vertex, and how far the normal there is off."""
+    refined = Surface(places, triangles.astype(np.uint32))
+    hit, weights = refined.closest(surface.positions, np.zeros_like(surface.positions))
+    shown = np.einsum("nk,nki->ni", weights, normals[triangles[hit]])
+    shown /= np.maximum(np.linalg.norm(shown, axis=1, keepdims=True), LOST)
+    cosines = np.einsum("ni,ni->n", shown, surface.normals)
+    return hit, np.arccos(np.clip(cosines, -1.0, 1.0)) ** 2
 
 
 def _solved(

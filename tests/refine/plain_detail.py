@@ -1,8 +1,8 @@
 """The scheme `detail` once more, in plain Python: what is seen at rest moves with the surface.
 
-What the finer mesh adds is taken from the refiner itself, at rest and with everything split, by the
-names of its points; how it moves is worked out here. That it is like the finer mesh is another
-test's business (test_detail.py).
+What the finer mesh adds is taken from the refiner itself, at rest and with everything split, once
+and twice, by the names of its points; how it moves is worked out here. That it is like the finer
+mesh is another test's business (test_detail.py).
 """
 
 from __future__ import annotations
@@ -87,9 +87,9 @@ class DetailRules:
         positions: list[Vector],
         faces: list[Face],
         edges: list[tuple[int, int]],
-        seen: Seen,
+        seen: tuple[Seen, Seen],
     ) -> None:
-        """`edges`: as the refiner has them; `seen`: at rest, with everything split and blended."""
+        """`edges`: as the refiner has them; `seen`: at rest, blended, all split once, and twice."""
         towards = list(range(len(rest)))
         both_ways = [*edges, *((b, a) for a, b in edges)]
         for a, b in sorted(
@@ -98,32 +98,46 @@ class DetailRules:
             towards[a] = b  # the longest edge comes last
         self.rest = Form(cubic(rest, rest, faces), towards)
         self.now = Form(cubic(rest, positions, faces), towards)
-        self.faces, self.seen, self.around = faces, seen, Surroundings(faces)
+        self.faces, self.around = faces, Surroundings(faces)
+        self.seen_once, self.seen = seen
+        self.twice: dict[EdgeName, float] = {}
         names: list[Name] = [("vertex", v) for v in range(len(rest))]
         self.shown = [self._look(name) for name in names]
 
     def _frames(self, name: Name) -> tuple[Axes, Axes]:
         return self.rest.axes(name), self.now.axes(name)
 
-    def _look(self, name: Name, known_as: Name | None = None) -> Vector:
-        return carried(self.seen[known_as or name][1], *self._frames(name))
+    def _look(self, name: Name, known_as: Name | None = None, twice: float = 1.0) -> Vector:
+        known_as = known_as or name
+        look = self.seen[known_as][1]
+        if twice < 1.0:
+            look = mix((1 - twice, self.seen_once[known_as][1]), (twice, look))
+        return carried(look, *self._frames(name))
 
     def curve(self, edge: EdgeName, quarters: int) -> Vector:
         """The cubic, and what was missing in it at rest."""
         name: Name = ("edge", *edge, quarters)
         before = self.rest.cubic.curve(edge, quarters)
-        missing = mix((1, self.seen[name][0]), (-1, before))
+        known = self.seen[name][0]
+        if quarters == 2:
+            twice = self.twice[edge]
+            known = mix((1 - twice, self.seen_once[name][0]), (twice, known))
+        missing = mix((1, known), (-1, before))
         now = self.now.cubic.curve(edge, quarters)
         return mix((1, now), (1, carried(missing, *self._frames(name))))
 
     def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
         """Points on these curves, and normals that turn to those seen as all around grows."""
+        self.twice = {
+            edge: twice if count[edge] == 2 else 0.0 for edge, (_, twice) in grown.items()
+        }
         rules = CurveRules(self.now.cubic.positions, self.faces, self.curve, self.shown)
         place = rules.placed(count, grown)
         for (a, b), (once, twice) in grown.items():
             normals = place.point_normals[a, b]
             share = min(once, self._around(grown, a, b))
-            middle = turned(normals[2], self._look(("edge", a, b, 2)), share)
+            look = self._look(("edge", a, b, 2), twice=self.twice[a, b])
+            middle = turned(normals[2], look, share)
             normals[2] = middle
             for quarters, end in ((1, a), (3, b)):
                 between = mix((0.5, self.shown[end]), (0.5, middle))
@@ -139,21 +153,29 @@ class DetailRules:
         return sum(grown.get(wing, (0.0, 0.0))[0] for wing in wings) / 4
 
     def centre(
-        self, source: int, point: Vector, normal: Vector, grown: float
+        self, source: int, point: Vector, normal: Vector, grown: tuple[float, float]
     ) -> tuple[Vector, Vector]:
         """Moved and turned as far as all edges around have grown."""
         face = self.faces[source]
         name: Name = ("face", *face)
         known_as: Name = ("centre", *sorted(face))
+        once, twice = grown
+        missing = mix(
+            (1 - twice, self._missing(face, known_as, self.seen_once)),
+            (twice, self._missing(face, known_as, self.seen)),
+        )
+        moved = mix((1, point), (once, carried(missing, *self._frames(name))))
+        return moved, turned(normal, self._look(name, known_as, twice), once)
+
+    def _missing(self, face: Face, known_as: Name, seen: Seen) -> Vector:
+        """What is missing, at rest, where blending alone has the middle of a triangle."""
         before = mix(*((1 / 3, self.rest.cubic.positions[v]) for v in face))
         for i in range(3):
             edge = edge_name(face[i], face[(i + 1) % 3])
             straight = mix(*((0.5, self.rest.cubic.positions[v]) for v in edge))
-            bulge = mix((1, self.seen["edge", *edge, 2][0]), (-1, straight))
+            bulge = mix((1, seen["edge", *edge, 2][0]), (-1, straight))
             before = mix((1, before), (4 / 9, bulge))
-        missing = mix((1, self.seen[known_as][0]), (-1, before))
-        moved = mix((1, point), (grown, carried(missing, *self._frames(name))))
-        return moved, turned(normal, self._look(name, known_as), grown)
+        return mix((1, seen[known_as][0]), (-1, before))
 
 
 def turned(normal: Vector, look: Vector, share: float) -> Vector:

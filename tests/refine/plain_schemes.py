@@ -86,11 +86,11 @@ class CurveRules:
         return Placed(self.positions, points, self.normals, normals)
 
     def centre(
-        self, source: int, point: Vector, normal: Vector, grown: float
+        self, source: int, point: Vector, normal: Vector, grown: tuple[float, float]
     ) -> tuple[Vector, Vector]:
         """Raised out of the plane of the corners."""
         flat = mix(*((1 / 3, self.positions[v]) for v in self.faces[source]))
-        share = (self.centre_fullness - 1) * grown
+        share = (self.centre_fullness - 1) * grown[0]
         return mix((1 + share, point), (-share, flat)), normal
 
 

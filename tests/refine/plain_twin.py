@@ -152,9 +152,9 @@ class Rules(Protocol):
         """All points and normals, for these splits."""
 
     def centre(
-        self, source: int, point: Vector, normal: Vector, grown: float
+        self, source: int, point: Vector, normal: Vector, grown: tuple[float, float]
     ) -> tuple[Vector, Vector]:
-        """The middle of a triangle whose edges have grown at least so far."""
+        """The middle of a triangle whose edges have grown at least so far, on both levels."""
 
 
 class PaperRules:
@@ -174,7 +174,7 @@ class PaperRules:
         return Placed(moved, points, normals, at_points)
 
     def centre(
-        self, source: int, point: Vector, normal: Vector, grown: float
+        self, source: int, point: Vector, normal: Vector, grown: tuple[float, float]
     ) -> tuple[Vector, Vector]:
         """As it comes."""
         return point, normal
@@ -207,7 +207,10 @@ def refine(
         edges = [edge_name(face[i], face[(i + 1) % 3]) for i in range(3)]
         if growth is not None and is_proper(face) and sum(count[e] for e in edges) > 1:
             fan, centre = _fan(twin, face, count, grown)
-            least = min(grown.get(e, (0.0, 0.0))[0] for e in edges)
+            least = (
+                min(grown.get(e, (0.0, 0.0))[0] for e in edges),
+                min(grown[e][1] if count[e] == 2 else 0.0 for e in edges),
+            )
             before = twin.positions[centre], twin.normals[centre]
             twin.positions[centre], twin.normals[centre] = rules.centre(source, *before, least)
             twin.triangles += [(source, corners) for corners in fan]

@@ -12,7 +12,7 @@ from refine.closest import Surface
 from tests import meshes
 from tests.refine import plain_twin
 from tests.refine.cases import Needed, as_lists, assert_equals_twin, point_names
-from tests.refine.plain_detail import DetailRules
+from tests.refine.plain_detail import DetailRules, Seen
 
 
 def bumpy(columns: int, rows: int) -> meshes.Mesh:
@@ -152,13 +152,17 @@ def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, blend: bool) -> None:
             detail=(mesh.vertices + lift, mesh.faces), criterion=Needed(need),
         )  # fmt: skip
 
-    everything = refiner_of(np.full(edge_count, 2.0), True)
-    still = everything.refine(mesh.vertices)
-    rows = np.concatenate([still.positions, still.normals], axis=1).astype(float).tolist()
-    seen = {
-        name: ((x, y, z), (u, v, w))
-        for name, (x, y, z, u, v, w) in zip(point_names(everything.origins()), rows, strict=True)
-    }
+    def seen_with(need: float) -> Seen:
+        everything = refiner_of(np.full(edge_count, need), True)
+        still = everything.refine(mesh.vertices)
+        rows = np.concatenate([still.positions, still.normals], axis=1).astype(float).tolist()
+        names = point_names(everything.origins())
+        return {
+            name: ((x, y, z), (u, v, w))
+            for name, (x, y, z, u, v, w) in zip(names, rows, strict=True)
+        }
+
+    seen = seen_with(0.9), seen_with(2.0)
     need = generator.uniform(-0.7, 2.0, edge_count)
     deformed = meshes.wrinkled(mesh, seed, 0.1)
     refiner = refiner_of(need, blend)
