@@ -17,7 +17,7 @@ from .panels.chooser import SUFFIX, Chooser
 
 LINUX_HELPERS = ("zenity", "kdialog", "matedialog", "qarma")  # one of which draws native dialogs
 SCRIPTS = "Scripts and poses"
-UNSEEN = 0.5  # [s] a dialog that has ended so soon without an answer never came up
+UNSEEN = 1.0  # [s] a dialog that has ended so soon without an answer never came up
 
 
 @dataclass
