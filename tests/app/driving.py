@@ -20,6 +20,7 @@ NEEDS_A_SCREEN = [
         reason="needs a display and xdotool; `make test` brings both",
     ),
 ]
+DELIVERY = 0.02  # [s] that the screen may take to hand on what xdotool sent before it ended
 SIZE = (900, 600)  # of the window that tests share
 
 
@@ -32,6 +33,7 @@ def settle(viewer: Viewer, frames: int = 4) -> None:
 def xdotool(viewer: Viewer, *words: object) -> None:
     """Send real events and let the window take them in."""
     subprocess.run(["xdotool", *map(str, words)], check=True, capture_output=True)
+    time.sleep(DELIVERY)
     settle(viewer)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ from imgui_bundle import imgui
 
 from app.script import load_script
 from app.viewer import Viewer
+from app.viewer.kept import REFRESH
 from app.viewer.keys import POSES, KeyPlace, on_frame, places_of
 
 from .driving import (
@@ -40,7 +42,9 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
     viewer.session.take(viewer.session.read(path))
     viewer.timeline.sheet.selected = frozenset()
     viewer.timeline.sheet.view.is_whole = True
-    settle(viewer)
+    # While the face moves, panels are drawn anew a few times a second only.
+    end = time.monotonic() + 2.0 * REFRESH
+    assert until(viewer, lambda: time.monotonic() > end)
     return path
 
 
@@ -50,7 +54,9 @@ def at(viewer: Viewer, place: KeyPlace) -> tuple[int, int]:
 
 
 def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -> None:
-    """Click somewhere, with keys held down."""
+    """Click somewhere, with keys held down; never the second half of a double click."""
+    io = imgui.get_io()
+    usual, io.mouse_double_click_time = io.mouse_double_click_time, 0.0
     xdotool(viewer, "mousemove", *place)
     for key in keys:
         xdotool(viewer, "keydown", key)
@@ -58,6 +64,7 @@ def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -
     xdotool(viewer, "mouseup", button)
     for key in keys:
         xdotool(viewer, "keyup", key)
+    io.mouse_double_click_time = usual
 
 
 def pose_times(viewer: Viewer) -> list[float]:
