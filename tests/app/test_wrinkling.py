@@ -67,10 +67,10 @@ def test_amounts_grow_with_the_muscle_and_never_jump(
     scene: FaceScene, wrinkling: Wrinkling, name: str
 ) -> None:
     """In twenty steps no vertex moves by more than a fifth, and the sum only grows."""
-    steps = [amounts(scene, wrinkling, **{name: share}) for share in np.linspace(0.0, 1.0, 21)]
-    changes = np.abs(np.diff(steps, axis=0))
-    assert changes.max() < 0.2
-    assert changes[0].max() < 0.08  # from nothing
+    steps = [amounts(scene, wrinkling, **{name: share}) for share in np.linspace(0.0, 1.0, 41)]
+    coarse, fine = (np.abs(np.diff(steps[::skip], axis=0)) for skip in (2, 1))
+    assert fine.max() < 0.65 * coarse.max() < 0.2  # half a step, half a change: there is no jump
+    assert coarse[0].max() < 0.08  # from nothing
     sums = [step.sum() for step in steps]
     assert sums[-1] > 1.0 and (np.diff(sums) > -0.01 * sums[-1]).all()
 
@@ -106,7 +106,8 @@ def test_mirrored_input_gives_mirrored_amounts(
         ("AU4", (-12, 12, 60), (12, 34, 120), 1),  # upright between the brows
         ("AU6", (50, -12, 30), (66, 10, 80), 0),  # crow's feet
         ("AU9", (-12, -22, 60), (12, 8, 120), 0),  # the root of the nose
-        ("AU17", (-14, -106, 60), (14, -92, 120), 0),  # dimples of the chin
+        ("AU17", (14, -76, 60), (34, -58, 120), 1),  # from the corners of the mouth down
+        ("AU18", (-6, -84, 60), (6, -78, 120), 0),  # dimples of the chin
         ("AU18", (-14, -58, 60), (14, -50, 120), 1),  # lines around the lips
         ("joy", (50, -12, 30), (66, 10, 80), 0),
     ],
