@@ -131,7 +131,9 @@ class FaceScene:
         head, simulation = self.head, self.simulation
         if len(head.vertices) > MOST_BAKED:  # it wears the same texture, laid out alike
             head = assets.load("head")
-            simulation = sim.create(head)
+        is_at_rest = np.array_equal(self.positions, self.rest_positions)
+        if head is not self.head or any(self.values.values()) or not is_at_rest:
+            simulation = sim.create(head)  # baking moves it
         return openness(head, simulation)
 
     def pose(self, channels: Mapping[str, float]) -> None:

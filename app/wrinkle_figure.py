@@ -6,7 +6,6 @@ Some poses of the built-in head from near, without and with the wrinkles that th
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import numpy as np
 import render
 
 from .capture import Capture, CaptureOptions
+from .errors import run_alone
 from .labels import contact_sheet
 from .outputs import Frame, save_png
 from .scenes import FaceScene
@@ -61,4 +61,4 @@ def main(arguments: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    run_alone(main)

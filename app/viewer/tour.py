@@ -5,7 +5,6 @@ Each is a window as a user would see it, brought there by the same commands that
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,6 +12,7 @@ import numpy as np
 from PIL import Image
 
 from ..choices import script_for
+from ..errors import run_alone
 from ..outputs import written_aside
 from . import commands
 from .keys import places_of
@@ -149,4 +149,4 @@ def main(arguments: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    run_alone(main)

@@ -58,6 +58,17 @@ def test_light_on_the_head(face: FaceScene) -> None:
     assert abs(shade - shade[twins]).max() < 40
 
 
+def test_baking_leaves_a_posed_face_alone(face: FaceScene) -> None:
+    """Baking moves a face: one that is posed already keeps its pose, and gets the same picture."""
+    picture = face.openness()
+    face.pose({"joy": 1.0})
+    face.step(0.3)
+    before = face.positions.copy()
+    assert np.array_equal(face.openness(), picture)
+    assert np.array_equal(face.positions, before) and face.values["joy"] == 1.0
+    face.reset()
+
+
 def test_a_mouth_gets_darker_toward_the_back(face: FaceScene) -> None:
     """Molars lose more than incisors, eyes nothing."""
     head, shown = face.head.parts, face.parts
