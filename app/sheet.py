@@ -49,7 +49,7 @@ class Studio:
             [camera_for(scene, view) for view in views] for views in (VIEWS, FAR_VIEWS)
         )
         for camera in self.near:
-            camera.target = camera.target + [0.0, RAISED, 0.0]
+            camera.target += np.array([0.0, RAISED, 0.0])
 
     def __enter__(self) -> Studio:
         return self

@@ -5,7 +5,7 @@ Each is a window as a user would see it, brought there by the same commands that
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -134,7 +134,7 @@ STOPS: dict[str, Callable[[Viewer], None]] = {
 }
 
 
-def main(arguments: list[str]) -> None:
+def main(arguments: Sequence[str]) -> None:
     """Draw the pictures into the folder given; further arguments choose some of them."""
     folder = Path(arguments[0]) if arguments else FOLDER
     for name in arguments[1:] or STOPS:
