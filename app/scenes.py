@@ -62,7 +62,7 @@ class Scene(Protocol):
     def openness(self) -> npt.NDArray[np.uint8] | None:
         """How open the skin is to light from all around, over the texture (H, W); None: all.
 
-        To be asked for before the scene moves.
+        Baked anew each time; the scene stays as it is.
         """
 
     def pose(self, channels: Mapping[str, float]) -> None:
