@@ -14,6 +14,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import glfw
 import numpy as np
 import pytest
 from Xlib import X, display
@@ -43,8 +44,11 @@ def desktop() -> Iterator[None]:
     manager = subprocess.Popen([MANAGER], stderr=subprocess.DEVNULL)
     try:
         time.sleep(1.0)
+        # GLFW asks once, when it is made ready, what a window manager can do.
+        glfw.terminate()
         yield
     finally:
+        glfw.terminate()
         manager.terminate()
         manager.wait()
 
