@@ -105,15 +105,20 @@ def _weights(rest: Doubles, faces: npt.NDArray[np.int64], directions: Doubles) -
 
 
 @kernel
+def _square_length(positions: Doubles, a: int, b: int) -> float:
+    """The squared length of the edge between two vertices."""
+    x = positions[b, 0] - positions[a, 0]
+    y = positions[b, 1] - positions[a, 1]
+    z = positions[b, 2] - positions[a, 2]
+    return float(x * x + y * y + z * z)
+
+
+@kernel
 def _square_lengths(positions: Doubles, faces: Unsigned, squares: Doubles) -> None:
     """Write the squared lengths of the edges 01, 12, 20 of each triangle, shape (F, 3)."""
     for t in range(faces.shape[0]):
         for i in range(3):
-            a, b = faces[t, i], faces[t, (i + 1) % 3]
-            x = positions[b, 0] - positions[a, 0]
-            y = positions[b, 1] - positions[a, 1]
-            z = positions[b, 2] - positions[a, 2]
-            squares[t, i] = x * x + y * y + z * z
+            squares[t, i] = _square_length(positions, faces[t, i], faces[t, (i + 1) % 3])
 
 
 @kernel
@@ -125,11 +130,8 @@ def _shorten(
     grown = np.empty(3, dtype=np.float32)
     for t in range(faces.shape[0]):
         for i in range(3):
-            a, b = faces[t, i], faces[t, (i + 1) % 3]
-            x = positions[b, 0] - positions[a, 0]
-            y = positions[b, 1] - positions[a, 1]
-            z = positions[b, 2] - positions[a, 2]
-            grown[i] = x * x + y * y + z * z - rest[t, i]
+            squared = _square_length(positions, faces[t, i], faces[t, (i + 1) % 3])
+            grown[i] = squared - rest[t, i]
         for i in range(3):
             v = faces[t, i]
             for k in range(lost.shape[1]):
