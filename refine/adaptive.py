@@ -37,10 +37,12 @@ from .detail import FinerMesh
 from .native import Turns
 from .output import (
     CENTRE,
+    NO_ROOM,
     copy_rims,
     copy_wedges,
     look_up_triangles,
     number_points,
+    overflow,
 )
 from .patterns import (
     CONFIGURATIONS,
@@ -149,10 +151,11 @@ class Kahler(BoundRefiner):
     def _bind_passes(self) -> None:
         """Bind the compiled passes of a frame to their arguments, and join what can be joined.
 
-        The paper's criterion and scheme make two calls of compiled code of a frame: one before it
-        is known how much room it needs, and one behind.
+        With the paper's criterion and scheme a frame is one call of compiled code, and another only
+        where it needs more room than there is.
         """
         mesh, frame, patterns = self.connectivity, self._frame, self._patterns
+        self._drawn_to: Rows | None = None
         self._number_points = number_points.bind(
             self._rim_splits,
             mesh.rim_edges,
@@ -179,17 +182,20 @@ class Kahler(BoundRefiner):
             np.zeros(0, dtype=np.int32),
         )
         self._draws = [self._look_up_triangles]
-        self._is_marked = type(self._criterion) is NormalDrop and not self._blend
-        if self._is_marked:
-            marking = cast(NormalDrop, self._criterion).marking(self._normals, self._edge_splits)
-            self._begin = Turns(self._take_in, self._find_normals, marking, self._number_points)
         self._is_placed = (
             type(self._scheme) is LoopScheme and self._values is None and not self._blend
         )
         if self._is_placed:
             self._draws.insert(0, cast(LoopScheme, self._scheme).placing(frame))
         self._draw = Turns(*self._draws)
-        self._drawn_to: Rows | None = None
+        self._is_marked = type(self._criterion) is NormalDrop and not self._blend
+        self._is_whole = self._is_marked and self._is_placed and patterns is CONFIGURATIONS
+        if self._is_marked:
+            marking = cast(NormalDrop, self._criterion).marking(self._normals, self._edge_splits)
+            begin = [self._take_in, self._find_normals, marking, self._number_points]
+            if self._is_whole:
+                begin += [overflow.bind(frame.counts, self._room), *self._draws]
+            self._begin = Turns(*begin)
 
     @property
     def history(self) -> Coherent | None:
@@ -214,12 +220,14 @@ class Kahler(BoundRefiner):
         most = MAXIMUM_FAN if self._blend else MAXIMUM_SUBTRIANGLES
         return most * len(self.connectivity.faces)
 
-    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+    def _fill(self, stream: Stream, view: View | None, begun: int) -> tuple[int, int]:
         frame, patterns = self._frame, self._patterns
         if not self._is_marked:
             self._mark(view)
             self._number_points()
         vertex_count, _, _, triangle_count = frame.counts.tolist()
+        if self._is_whole and begun != NO_ROOM:
+            return vertex_count, triangle_count
         if patterns is not CONFIGURATIONS:
             rows = patterns.rows(self._triangle_configurations)
             self._look_up_triangles.put("rows", rows)
@@ -228,18 +236,24 @@ class Kahler(BoundRefiner):
                     rows, patterns.counts, patterns.subtriangles, CENTRE, frame.centre_triangles
                 )
                 vertex_count += frame.centre_count
-        lent = self._reserve(stream, vertex_count, triangle_count)
-        if lent is not self._drawn_to:
-            self._draw_to(lent)
+        self._draw_to(stream, self._reserve(stream, vertex_count, triangle_count))
         if not self._is_placed:
             self._place()
         self._draw()
         return vertex_count, triangle_count
 
-    def _draw_to(self, lent: Rows) -> None:
-        """Hand other rows of the output to the passes that write them."""
-        self._drawn_to = lent
-        self._frame.rows, triangles, source = lent
+    def _draw_to(self, stream: Stream, rows: Rows) -> None:
+        """Hand the rows of the output to the passes that write them.
+
+        Where nobody has to be asked for room in every frame, the next one may write there at once.
+        """
+        if stream is self._own_stream or not hasattr(stream, "reserve"):
+            self._written = stream, rows
+            self._room[:] = len(rows[0]), len(rows[1])
+        if rows is self._drawn_to:
+            return
+        self._drawn_to = rows
+        self._frame.rows, triangles, source = rows
         self._look_up_triangles.put("triangles", triangles)
         self._look_up_triangles.put("source", source)
         if self._is_placed:

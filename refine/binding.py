@@ -34,6 +34,8 @@ from .plugin import Origins, RefinedMesh, Stream, View
 Floats = npt.NDArray[np.float32]
 Rows = tuple[Floats, npt.NDArray[np.uint32], npt.NDArray[np.int32]]
 
+NOTHING = -1
+"""Room for less than an empty frame."""
 SPARE = 1.25
 """How much more than it needs a stream of one's own takes when it has to grow."""
 
@@ -95,7 +97,11 @@ class BoundRefiner(ABC):
         self._take_in = bind_take_in(self._positions, self._points)
         self._find_normals = bind_normals(self._positions, self.connectivity.faces, self._normals)
         self._begin = Turns(self._take_in, self._find_normals)
-        """What every frame begins with; other than 0 if positions are not numbers."""
+        """What every frame begins with; above 0 if positions are not numbers."""
+        self._room = np.full(2, NOTHING, dtype=np.int64)
+        """Rows and triangles that `_begin` may write at once, to where the last frame wrote."""
+        self._written: tuple[Stream | None, Rows] = (None, _NO_ROWS)
+        """Where that is."""
         self._shape = self._positions.shape
         self._own_stream: OwnStream | None = None
         self._accepted: Rows = _NO_ROWS
@@ -121,10 +127,10 @@ class BoundRefiner(ABC):
         """Say for every vertex of the last frame where it lies on the input mesh."""
 
     @abstractmethod
-    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+    def _fill(self, stream: Stream, view: View | None, begun: int) -> tuple[int, int]:
         """Write the frame for `self._positions` into the rows that `self._reserve` gives.
 
-        `self._begin` has been run: normals are there.
+        `self._begin` has been run and returned `begun`: normals are there.
 
         Returns the numbers of vertices and triangles.
         """
@@ -171,13 +177,16 @@ class BoundRefiner(ABC):
         stream = self._lend_own_stream() if out is None else out
         if out is not None and not hasattr(out, "reserve"):
             self._accept(out, self.vertex_capacity, self.triangle_capacity)
+        if self._written[0] is not stream or self._written[1] is not self._accepted:
+            self._room[:] = NOTHING
         if self._order is None:
-            np.copyto(self._positions, positions)
+            self._positions[...] = positions
         else:
             self._order.gather(positions, self._positions)
-        if self._begin():
+        begun = self._begin()
+        if begun > 0:
             raise ValueError(not_finite(positions))
-        vertex_count, triangle_count = self._fill(stream, view)
+        vertex_count, triangle_count = self._fill(stream, view, begun)
         vertices, triangles, source = self._accepted
         if self._order is not None:
             self._order.give_back(vertices, source[:triangle_count])

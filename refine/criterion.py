@@ -22,7 +22,8 @@ import numpy.typing as npt
 
 from .connectivity import Connectivity
 from .kernels import kernel
-from .native import Call, native
+from .lanes import above, four, spread, sums_of_three, write
+from .native import Call, has_room, native, with_room
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
@@ -40,8 +41,6 @@ ROUNDING = 1e-5
 """Drops up to this size are rounding (measured, see above)."""
 NARROWEST = 1e-6
 """Least distance of two thresholds; where they are equal there is nothing to blend over."""
-BLOCK = 512
-"""Edges whose drops are compared at a time; so many stay in the first cache."""
 UNDEFINED_NORMAL = 1e-6
 """A normal shorter than this fraction of the lengths that made it is rounding, not a direction."""
 
@@ -156,7 +155,6 @@ class NormalDrop:
         """Store the dot product of every edge of the undeformed mesh."""
         self._edges = connectivity.edges.view(np.uint32)
         self._rest_dots = np.empty(len(self._edges), dtype=np.float32)
-        self._drops = np.empty(BLOCK, dtype=np.float32)
         edge_dots(rest_normals, self._edges, self._rest_dots)
         self._marking = self._measuring = None
         # No direction to compare with at rest (all triangles around are slivers): never split.
@@ -168,7 +166,7 @@ class NormalDrop:
 
     def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write the number of splits of every edge into `splits`, shape (E,)."""
-        self.marking(normals, splits)()
+        self.marking(normals if has_room(normals) else with_room(normals), splits)()
 
     def marking(self, normals: Floats, splits: Small) -> Call:
         """Return the call that marks edges by these `normals`, whatever they are by then."""
@@ -178,7 +176,6 @@ class NormalDrop:
             self._edges,
             self._rest_dots,
             self.thresholds.limits,
-            self._drops,
             splits,
         )
         return self._marking
@@ -192,15 +189,21 @@ class NormalDrop:
 
 
 @native
+def dot_along(normals: Floats, edges: npt.NDArray[np.uint32], e: int | np.uint64) -> np.float32:
+    """The dot product of the normals at both ends of an edge."""
+    a, b = edges[e, 0], edges[e, 1]
+    return np.float32(
+        normals[a, 0] * normals[b, 0]
+        + normals[a, 1] * normals[b, 1]
+        + normals[a, 2] * normals[b, 2]
+    )
+
+
+@native
 def edge_dots(normals: Floats, edges: npt.NDArray[np.uint32], dots: Floats) -> None:
     """Write the dot product of the normals at both ends of every edge into `dots`, shape (E,)."""
     for e in range(edges.shape[0]):
-        a, b = edges[e, 0], edges[e, 1]
-        dots[e] = (
-            normals[a, 0] * normals[b, 0]
-            + normals[a, 1] * normals[b, 1]
-            + normals[a, 2] * normals[b, 2]
-        )
+        dots[e] = dot_along(normals, edges, np.uint64(e))
 
 
 @native
@@ -209,28 +212,26 @@ def mark_drops(
     edges: npt.NDArray[np.uint32],
     rest_dots: Floats,
     limits: Floats,
-    drops: Floats,
     splits: Small,
 ) -> None:
     """Write 0, 1 or 2 into `splits`, shape (E,), by the drop of the dot product (as above).
 
-    `limits`: the two thresholds, shape (2,). `drops`: scratch, shape (BLOCK,): drops are compared
-    some at a time, because comparing eight is one instruction.
+    `limits`: the two thresholds, shape (2,). Four edges at a time; `normals` have room (lanes.py).
     """
-    once, twice = limits[0], limits[1]
-    for first in range(0, edges.shape[0], BLOCK):
-        count = min(BLOCK, edges.shape[0] - first)
-        for k in range(count):
-            e = np.uint64(first + k)
-            a, b = edges[e, 0], edges[e, 1]
-            drops[k] = rest_dots[e] - (
-                normals[a, 0] * normals[b, 0]
-                + normals[a, 1] * normals[b, 1]
-                + normals[a, 2] * normals[b, 2]
-            )
-        for k in range(count):
-            e = np.uint64(first + k)
-            splits[e] = np.uint8(drops[k] > once) + np.uint8(drops[k] > twice)
+    once, twice = spread(limits[0]), spread(limits[1])
+    count = edges.shape[0]
+    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
+    for first in range(0, count - 3, 4):
+        e = np.uint64(first)
+        p = four(normals, edges[e, 0]) * four(normals, edges[e, 1])
+        q = four(normals, edges[e + one, 0]) * four(normals, edges[e + one, 1])
+        r = four(normals, edges[e + two, 0]) * four(normals, edges[e + two, 1])
+        s = four(normals, edges[e + three, 0]) * four(normals, edges[e + three, 1])
+        drops = four(rest_dots, e) - sums_of_three(p, q, r, s)
+        write(splits, e, above(drops, once) + above(drops, twice))
+    for last in range(count - count % 4, count):
+        drop = rest_dots[last] - dot_along(normals, edges, last)
+        splits[last] = np.uint8(drop > limits[0]) + np.uint8(drop > limits[1])
 
 
 @kernel

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from .kernels import OPTIONS, Compiled, say_compiling
+from .lanes import Instruction
 
 NUMBA_ONLY = ("numba_", "NRT_", "Py")
 """Names of what is not there without numba: its memory, its errors, and Python."""
@@ -68,7 +69,7 @@ def _function(symbol: str, made_of: str, compiled: Callable[[], bytes]) -> Calla
 
 
 def _sources(kernel: Compiled[Any, Any]) -> str:
-    """Digests of the files that a kernel is made from: its own, those of kernels it calls, ours."""
+    """Digests of the files that a kernel is made from: its own, those of what it calls, ours."""
     files = {__file__}
     waiting = [kernel.py_func]
     while waiting:
@@ -78,6 +79,8 @@ def _sources(kernel: Compiled[Any, Any]) -> str:
             used = function.__globals__.get(name)
             if isinstance(used, Compiled) and used.py_func is not function:
                 waiting.append(used.py_func)
+            elif isinstance(used, Instruction):
+                files.add(used.file)
     return " ".join(_digest(file) for file in sorted(files))
 
 
@@ -251,7 +254,7 @@ def _entry_source(types: str, returns: object) -> str:
         dtype = "bool_" if dtype == "bool" else dtype
         arguments.append(f"carray(pointer(at[{place}]), ({', '.join(shape)},), numpy.{dtype})")
         place += 1 + len(shape)
-    result = "result" if returns is not None else "0"
+    result = "result" if returns not in (None, "None") else "0"
     return "\n    ".join(
         [
             "def entry(list):",

@@ -40,23 +40,19 @@ of its two sides to the last bit, so the same code serves both.
 Normals of new points are interpolated between their two neighbours on the edge and normalised
 (section 4.4, first paragraph).
 
-Positions are handled four numbers at a time, three and the one behind: the compiler makes one
-instruction of what would be three, as long as everything is read before anything is written, and
-the fourth number is used to the end. So a row of the output gets its position first and then, over
-the fourth number, its normal (half the time on an edge that is split twice).
+Positions are handled four numbers at a time (lanes.py). So a row of the output gets its position
+first and then, over the fourth number, its normal (half the time on an edge that is split twice).
 """
 
 import numpy as np
 import numpy.typing as npt
 
 from .kernels import kernel
+from .lanes import Four, four, write
 from .native import native
 
 Floats = npt.NDArray[np.float32]
 Unsigned = npt.NDArray[np.uint32]
-
-Four = tuple[np.float32, np.float32, np.float32, np.float32]
-"""A position and one number more, of no meaning: three numbers take three steps, four take one."""
 
 NEAR = 8
 """Neighbours that every vertex has in its table (rings.py)."""
@@ -90,33 +86,9 @@ def unit(x: np.float32, y: np.float32, z: np.float32) -> tuple[np.float32, np.fl
 
 
 @native
-def four(rows: Floats, k: int | np.uint32) -> Four:
-    """Position k and the number behind it, whatever that is: four are read as one."""
-    return rows[k, 0], rows[k, 1], rows[k, 2], rows[k, 3]
-
-
-@native
-def plus(p: Four, q: Four) -> Four:
-    """Sum."""
-    return p[0] + q[0], p[1] + q[1], p[2] + q[2], p[3] + q[3]
-
-
-@native
-def times(weight: np.float32, p: Four) -> Four:
-    """Multiple."""
-    return weight * p[0], weight * p[1], weight * p[2], weight * p[3]
-
-
-@native
 def mix(from_: Four, to: Four, growth: np.float32) -> Four:
     """One side at growth 0, the other at growth 1, to the last bit."""
-    return plus(times(ONE - growth, from_), times(growth, to))
-
-
-@native
-def write(rows: Floats, k: int | np.uint32, p: Four) -> None:
-    """Write a position and the number behind it, over which a normal goes in rows of the output."""
-    rows[k, 0], rows[k, 1], rows[k, 2], rows[k, 3] = p
+    return (ONE - growth) * from_ + growth * to
 
 
 @native
@@ -166,11 +138,10 @@ def place_vertices(
         if vertex_growth[v] > ZERO:
             total = four(points, near[v, 0])
             for k in range(1, NEAR):
-                total = plus(total, four(points, near[v, k]))
+                total = total + four(points, near[v, k])
             for k in range(starts[v], starts[v + 1]):
-                total = plus(total, four(points, others[k]))
-            moved = plus(times(own[v], point), times(ring[v], total))
-            point = mix(point, moved, vertex_growth[v])
+                total = total + four(points, others[k])
+            point = mix(point, own[v] * point + ring[v] * total, vertex_growth[v])
         write(vertices, v, point)
         write_normal(vertices, v, normals[v, 0], normals[v, 1], normals[v, 2])
 
@@ -194,19 +165,21 @@ def place_middles(
         e = split_once[k]
         a, b, c, d = edge_points[e, 0], edge_points[e, 1], edge_points[e, 2], edge_points[e, 3]
         row = np.uint32(first_points[e] + (splits[e] >> 1))
-        ends = plus(four(points, a), four(points, b))
+        ends = four(points, a) + four(points, b)
         if is_interior[e]:
-            wings = plus(four(points, c), four(points, d))
-            middle = plus(times(EDGE_END, ends), times(EDGE_WING, wings))
+            middle = EDGE_END * ends + EDGE_WING * (four(points, c) + four(points, d))
         else:
-            middle = times(BORDER_EDGE_END, ends)
+            middle = BORDER_EDGE_END * ends
         write(middles, e, middle)
         if growth_once[e] < ONE:
-            straight = times(HALF, plus(four(vertices, a), four(vertices, b)))
+            straight = HALF * (four(vertices, a) + four(vertices, b))
             middle = mix(straight, middle, growth_once[e])
         write(vertices, row, middle)
-        normal = plus(four(normals, a), four(normals, b))
-        x, y, z = unit(normal[0], normal[1], normal[2])
+        x, y, z = unit(
+            normals[a, 0] + normals[b, 0],
+            normals[a, 1] + normals[b, 1],
+            normals[a, 2] + normals[b, 2],
+        )
         write_normal(vertices, row, x, y, z)
 
 
@@ -251,29 +224,28 @@ def place_quarters(
         centre, near_b = np.uint32(near_a + 1), np.uint32(near_a + 2)
         a, b = edge_points[e, 0], edge_points[e, 1]
         m, moved_a, moved_b = four(middles, e), four(vertices, a), four(vertices, b)
-        ends_a, ends_b = plus(moved_a, m), plus(moved_b, m)
+        ends_a, ends_b = moved_a + m, moved_b + m
         if is_interior[e]:
             at_a, at_b = four(points, a), four(points, b)
             at_c, at_d = four(points, edge_points[e, 2]), four(points, edge_points[e, 3])
             wing_p, wing_q = edge_wings[e, 0], edge_wings[e, 1]
             wing_r, wing_s = edge_wings[e, 2], edge_wings[e, 3]
-            p = wing(times(HALF, plus(at_a, at_c)), wing_p, splits, growth_once, middles)
-            q = wing(times(HALF, plus(at_b, at_c)), wing_q, splits, growth_once, middles)
-            r = wing(times(HALF, plus(at_a, at_d)), wing_r, splits, growth_once, middles)
-            s = wing(times(HALF, plus(at_b, at_d)), wing_s, splits, growth_once, middles)
-            wings_a, wings_b = plus(p, r), plus(q, s)
-            ring = plus(plus(moved_a, moved_b), plus(wings_a, wings_b))
-            beside_a = plus(times(EDGE_END, ends_a), times(EDGE_WING, wings_a))
-            beside_b = plus(times(EDGE_END, ends_b), times(EDGE_WING, wings_b))
-            middle = plus(times(MIDDLE_OWN, m), times(MIDDLE_RING, ring))
+            p = wing(HALF * (at_a + at_c), wing_p, splits, growth_once, middles)
+            q = wing(HALF * (at_b + at_c), wing_q, splits, growth_once, middles)
+            r = wing(HALF * (at_a + at_d), wing_r, splits, growth_once, middles)
+            s = wing(HALF * (at_b + at_d), wing_s, splits, growth_once, middles)
+            wings_a, wings_b = p + r, q + s
+            ring = (moved_a + moved_b) + (wings_a + wings_b)
+            beside_a = EDGE_END * ends_a + EDGE_WING * wings_a
+            beside_b = EDGE_END * ends_b + EDGE_WING * wings_b
+            middle = MIDDLE_OWN * m + MIDDLE_RING * ring
         else:
-            beside_a, beside_b = times(BORDER_EDGE_END, ends_a), times(BORDER_EDGE_END, ends_b)
-            ends = plus(moved_a, moved_b)
-            middle = plus(times(BORDER_MIDDLE_OWN, m), times(BORDER_MIDDLE_RING, ends))
+            beside_a, beside_b = BORDER_EDGE_END * ends_a, BORDER_EDGE_END * ends_b
+            middle = BORDER_MIDDLE_OWN * m + BORDER_MIDDLE_RING * (moved_a + moved_b)
         x, y, z = vertices[centre, 3], vertices[centre, 4], vertices[centre, 5]
-        write(vertices, near_a, mix(times(HALF, ends_a), beside_a, growth))
+        write(vertices, near_a, mix(HALF * ends_a, beside_a, growth))
         write(vertices, centre, mix(m, middle, growth))
-        write(vertices, near_b, mix(times(HALF, ends_b), beside_b, growth))
+        write(vertices, near_b, mix(HALF * ends_b, beside_b, growth))
         x_a, y_a, z_a = unit(vertices[a, 3] + x, vertices[a, 4] + y, vertices[a, 5] + z)
         x_b, y_b, z_b = unit(vertices[b, 3] + x, vertices[b, 4] + y, vertices[b, 5] + z)
         write_normal(vertices, near_a, x_a, y_a, z_a)

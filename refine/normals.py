@@ -10,6 +10,7 @@ origin loses nothing. Normals at rest and in a frame come from the same code: se
 import numpy as np
 import numpy.typing as npt
 
+from .lanes import cross, four, single, write
 from .native import Call, has_room, native
 
 Floats = npt.NDArray[np.float32]
@@ -37,28 +38,19 @@ def vertex_normals(positions: Doubles, faces: Unsigned, sums: Floats, normals: F
 
     Zero where a vertex has no triangle with an area. `sums`: scratch, shape (V, 4).
 
-    Four numbers side by side are one instruction, three are many: so a position is read with the
-    number behind it, the x of the next one, and what becomes of that in the fourth column of the
-    sums is of no interest.
+    Three numbers are taken four at a time (lanes.py): behind each row of `positions` has to be
+    something to read.
     """
     for v in range(sums.shape[0]):
         sums[v, 0] = sums[v, 1] = sums[v, 2] = sums[v, 3] = ZERO
-    for t in range(faces.shape[0]):
+    for k in range(faces.shape[0]):
+        t = np.uint64(k)
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        ux = np.float32(positions[b, 0] - positions[a, 0])
-        uy = np.float32(positions[b, 1] - positions[a, 1])
-        uz = np.float32(positions[b, 2] - positions[a, 2])
-        uw = np.float32(positions[b, 3] - positions[a, 3])
-        vx = np.float32(positions[c, 0] - positions[a, 0])
-        vy = np.float32(positions[c, 1] - positions[a, 1])
-        vz = np.float32(positions[c, 2] - positions[a, 2])
-        vw = np.float32(positions[c, 3] - positions[a, 3])
-        x, y, z, w = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx, uw * vw - uw * vw
-        for corner in (a, b, c):
-            sums[corner, 0] += x
-            sums[corner, 1] += y
-            sums[corner, 2] += z
-            sums[corner, 3] += w
+        at_a = four(positions, a)
+        normal = cross(single(four(positions, b) - at_a), single(four(positions, c) - at_a))
+        write(sums, a, four(sums, a) + normal)
+        write(sums, b, four(sums, b) + normal)
+        write(sums, c, four(sums, c) + normal)
     for v in range(sums.shape[0]):
         x, y, z = sums[v, 0], sums[v, 1], sums[v, 2]
         scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .kernels import kernel
+from .lanes import counted_from, four, is_zero, twelve, write
 from .native import native
 
 Floats = npt.NDArray[np.float32]
@@ -27,11 +28,15 @@ GEOMETRY_COLUMNS = 6
 """x y z, nx ny nz: columns of a row before attributes."""
 CENTRE = 12
 """Number of the point in the middle of a triangle (patterns.py)."""
+NO_ROOM = -1
+"""What `overflow` returns when it is asked to stop; the other calls of a frame return 0 or more."""
 QUARTER = np.float32(0.25)
 HALF = np.float32(0.5)
 THREE_QUARTERS = np.float32(0.75)
 SIDE_BITS, SIDE_MASK = np.uint32(2), np.uint32(3)
 """A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
+AT_ONCE = 4
+"""Triangles that are handed through in one go where none of them is split."""
 PLACE_VALUES = np.array([1, 3, 9], dtype=np.uint16)
 """Of the splits of a triangle's three edges in the number of its configuration."""
 
@@ -173,8 +178,8 @@ def look_up_triangles(
     points: Unsigned,
     triangles: Unsigned,
     source: npt.NDArray[np.int32],
-) -> int:
-    """Write the subtriangles of every triangle by its table row (section 4.3); return how many.
+) -> None:
+    """Write the subtriangles of every triangle by its table row (section 4.3).
 
     A rim keeps its points in the direction of the edge; a triangle that runs against it reads the
     quarter points in reverse. Centres are numbered in the order of the triangles that have one.
@@ -182,15 +187,24 @@ def look_up_triangles(
     """
     points[CENTRE] = counts[0]
     one, two = np.uint32(1), np.uint32(2)  # unsigned, or every index is tested for being negative
+    next_, at_once, total = np.uint64(1), np.uint64(AT_ONCE), np.uint64(corners.shape[0])
     count = np.uint32(0)
-    for t in range(corners.shape[0]):
+    t = np.uint64(0)
+    while t < total:
+        # Most triangles are not split: hand them through, and four in one go where it can be.
+        if t + at_once <= total and is_zero(four(rows, t)):
+            write(triangles, count, twelve(corners, t))
+            write(source, count, counted_from(t))
+            count = np.uint32(count + np.uint32(AT_ONCE))
+            t += at_once
+            continue
         row = rows[t]
-        # Most triangles are not split: hand them through.
         if row == 0:
             for i in range(3):
                 triangles[count, i] = corners[t, i]
             source[count] = t
             count = np.uint32(count + one)
+            t += next_
             continue
         # The 12 numbered points; those of edges that are not split are never looked up.
         for i in range(3):
@@ -206,4 +220,13 @@ def look_up_triangles(
             source[count] = t
             count = np.uint32(count + one)
         points[CENTRE] += subtriangles[row, 0, 0] == CENTRE
-    return int(count)
+        t += next_
+
+
+@native
+def overflow(counts: npt.NDArray[np.int64], room: npt.NDArray[np.int64]) -> int:
+    """Return NO_ROOM if a frame is larger than what it may write to, else 0.
+
+    `counts`: as `number_points` writes them; `room`: for rows and for subtriangles, shape (2,).
+    """
+    return NO_ROOM if counts[0] > room[0] or counts[3] > room[1] else 0

@@ -55,7 +55,7 @@ class PassThrough(BoundRefiner):
         """The triangles of the input."""
         return len(self.connectivity.faces)
 
-    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+    def _fill(self, stream: Stream, view: View | None, begun: int) -> tuple[int, int]:
         connectivity = self.connectivity
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
         vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)

@@ -136,7 +136,7 @@ class Loop(BoundRefiner):
         """Triangles of the finest level: 4 or 16 for each."""
         return len(self._triangles)
 
-    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+    def _fill(self, stream: Stream, view: View | None, begun: int) -> tuple[int, int]:
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
         vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
         for level, finer in pairwise(self._levels):

@@ -102,6 +102,50 @@ def test_read_only_stream() -> None:
         refiner.refine(mesh.vertices, out=stream)
 
 
+class Growing:
+    """A stream that is asked for room in every frame, and hands out new arrays each time."""
+
+    def __init__(self, refiner: refine.Refiner) -> None:
+        self.columns, self.asked = refiner.vertex_columns, 0
+        self.reserve(0, 0)
+
+    def reserve(self, vertex_count: int, triangle_count: int) -> None:
+        """Take new arrays of just this size."""
+        self.asked += 1
+        self.vertices = np.full((vertex_count, self.columns), np.nan, dtype=np.float32)
+        self.triangles = np.full((triangle_count, 3), 2**32 - 1, dtype=np.uint32)
+        self.source = np.full(triangle_count, -1, dtype=np.int32)
+
+
+def test_any_row_of_streams() -> None:
+    """Whoever was written to before, a frame goes where it should, and nowhere else."""
+    mesh = meshes.irregular(3)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    frames = [mesh.vertices + amount * (meshes.wrinkled(mesh, 4) - mesh.vertices)
+              for amount in (0.0, 0.3, 1.0)]  # fmt: skip
+    streams = [None, stream_for(refiner), stream_for(refiner), Growing(refiner)]
+    fresh = [refine.create("kahler", mesh.faces, mesh.vertices).refine(frame) for frame in frames]
+    assert len({len(frame.triangles) for frame in fresh}) == 3
+    rng = np.random.default_rng(5)
+    kept: dict[int, list[bytes]] = {}
+    for _ in range(60):
+        k, stream = int(rng.integers(3)), streams[int(rng.integers(4))]
+        if stream is not None and rng.random() < 0.1:
+            stream.triangles = stream.triangles.copy()
+        refined = refiner.refine(frames[k], out=stream)
+        frame = [np.ascontiguousarray(part).tobytes() for part in refined[:4]]
+        assert frame == [np.ascontiguousarray(part).tobytes() for part in fresh[k][:4]]
+        for other in streams:
+            if other is not stream and id(other) in kept and other is not None:
+                assert [other.vertices.tobytes(), other.triangles.tobytes()] == kept[id(other)]
+        if stream is not None:
+            kept[id(stream)] = [stream.vertices.tobytes(), stream.triangles.tobytes()]
+    asked = streams[3].asked
+    refiner.refine(frames[0], out=streams[3])
+    refiner.refine(frames[0], out=streams[3])
+    assert streams[3].asked == asked + 2
+
+
 def test_stream_may_be_the_input() -> None:
     """Positions that live in the lent stream are read before they are overwritten."""
     mesh = meshes.irregular(2)
