@@ -89,6 +89,10 @@ def test_missing_peers_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(builtins, "__import__", without_vtk)
     peers = peers_for(sheet("sheet", 600), 900)
-    assert peers.missing == ["VTK adaptive: left out, vtkmodules is not installed (extra 'peers')"]
+    left_out = "left out, vtkmodules is not installed (extra 'peers')"
+    assert peers.missing == [
+        f"VTK adaptive: {left_out}",
+        f"VTK adaptive, whole frame: {left_out}",
+    ]
     assert "VTK adaptive" not in [peer.name for peer in peers.found]
     assert "trimesh Loop 1x" in [peer.name for peer in peers.found]
