@@ -34,8 +34,8 @@ The paper leaves open, and we decide: m, p, q, r, s enter the second level as th
 them, so that the order of edges cannot matter.
 
 *Growth* is how much of its way from the straight edge a point has gone: 0 to 1, for each level of
-each edge, and 1 always unless the frame is blended (blend.py). A mix with growth 0 or 1 returns one
-of its two sides to the last bit, so the same code serves both.
+each edge, in arrays of one column; unless the frame is blended (blend.py) these have no column, and
+growth is 1. A mix with growth 0 or 1 returns one of its two sides to the last bit.
 
 Normals of new points are interpolated between their two neighbours on the edge and normalised
 (section 4.4, first paragraph).
@@ -74,6 +74,8 @@ MIDDLE_RING = np.float32(1 / 16)
 ZERO = np.float32(0.0)
 HALF = np.float32(0.5)
 ONE = np.float32(1.0)
+ALL_GROWN = np.zeros((0, 0), dtype=np.float32)
+"""Growth of edges where nothing is blended."""
 TINY = np.finfo(np.float32).tiny
 """Squared length below which a vector is left as it is instead of being normalised."""
 
@@ -89,6 +91,18 @@ def unit(x: np.float32, y: np.float32, z: np.float32) -> tuple[np.float32, np.fl
 def mix(from_: Four, to: Four, growth: np.float32) -> Four:
     """One side at growth 0, the other at growth 1, to the last bit."""
     return (ONE - growth) * from_ + growth * to
+
+
+@native
+def growth_of(e: int | np.uint32, growth: Floats) -> np.float32:
+    """How far a point of an edge has grown; without columns the compiler knows that it is 1."""
+    return growth[e, 0] if growth.shape[1] else ONE
+
+
+@native
+def grown(from_: Four, to: Four, e: int | np.uint32, growth: Floats) -> Four:
+    """Mix as far as a point of an edge has grown."""
+    return mix(from_, to, growth[e, 0]) if growth.shape[1] else to
 
 
 @native
@@ -112,7 +126,7 @@ def grow_vertices(
         vertex_growth[v] = ZERO
     for k in range(once_count):
         e = split_once[k]
-        a, b, growth = edge_points[e, 0], edge_points[e, 1], growth_once[e]
+        a, b, growth = edge_points[e, 0], edge_points[e, 1], growth_of(e, growth_once)
         if growth == ONE:  # there is no more: nothing has to be read, and nothing waits for it
             vertex_growth[a] = vertex_growth[b] = ONE
         else:
@@ -171,9 +185,9 @@ def place_middles(
         else:
             middle = BORDER_EDGE_END * ends
         write(middles, e, middle)
-        if growth_once[e] < ONE:
+        if growth_of(e, growth_once) < ONE:
             straight = HALF * (four(vertices, a) + four(vertices, b))
-            middle = mix(straight, middle, growth_once[e])
+            middle = grown(straight, middle, e, growth_once)
         write(vertices, row, middle)
         x, y, z = unit(
             normals[a, 0] + normals[b, 0],
@@ -181,13 +195,6 @@ def place_middles(
             normals[a, 2] + normals[b, 2],
         )
         write_normal(vertices, row, x, y, z)
-
-
-@native
-def grown(e: np.uint32, splits: npt.NDArray[np.uint8], growth_once: Floats) -> np.float32:
-    """How far the middle of an edge has grown, 0 where it has none."""
-    is_split = np.uint32(splits[e] + 1) >> np.uint32(1)  # 0, 1, 1: a test would be a branch
-    return np.float32(growth_once[e] * np.float32(is_split))
 
 
 @native
@@ -199,7 +206,11 @@ def wing(
     middles: Floats,
 ) -> Four:
     """The first-level point of a neighbour edge, its middle where it has none."""
-    return mix(straight, four(middles, e), grown(e, splits, growth_once))
+    middle = four(middles, e)
+    is_split = splits[e] > 0
+    if growth_once.shape[1]:
+        return mix(straight, middle, growth_once[e, 0] * np.float32(is_split))  # no branch
+    return middle if is_split else straight
 
 
 @native
@@ -220,7 +231,7 @@ def place_quarters(
     """Write the quarter points of every edge that is split twice, and move its middle (Fig. 4)."""
     for k in range(twice_count):
         e = split_twice[k]
-        near_a, growth = first_points[e], growth_twice[e]
+        near_a = first_points[e]
         centre, near_b = np.uint32(near_a + 1), np.uint32(near_a + 2)
         a, b = edge_points[e, 0], edge_points[e, 1]
         m, moved_a, moved_b = four(middles, e), four(vertices, a), four(vertices, b)
@@ -243,9 +254,9 @@ def place_quarters(
             beside_a, beside_b = BORDER_EDGE_END * ends_a, BORDER_EDGE_END * ends_b
             middle = BORDER_MIDDLE_OWN * m + BORDER_MIDDLE_RING * (moved_a + moved_b)
         x, y, z = vertices[centre, 3], vertices[centre, 4], vertices[centre, 5]
-        write(vertices, near_a, mix(HALF * ends_a, beside_a, growth))
-        write(vertices, centre, mix(m, middle, growth))
-        write(vertices, near_b, mix(HALF * ends_b, beside_b, growth))
+        write(vertices, near_a, grown(HALF * ends_a, beside_a, e, growth_twice))
+        write(vertices, centre, grown(m, middle, e, growth_twice))
+        write(vertices, near_b, grown(HALF * ends_b, beside_b, e, growth_twice))
         x_a, y_a, z_a = unit(vertices[a, 3] + x, vertices[a, 4] + y, vertices[a, 5] + z)
         x_b, y_b, z_b = unit(vertices[b, 3] + x, vertices[b, 4] + y, vertices[b, 5] + z)
         write_normal(vertices, near_a, x_a, y_a, z_a)

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .connectivity import Connectivity
-from .masks import place_points
+from .masks import ALL_GROWN, place_points
 from .native import Call, has_room
 from .rings import vertex_rings
 
@@ -69,6 +69,11 @@ class Frame:
     def once_count(self) -> int:
         """How many edges are split."""
         return int(self.counts[1])
+
+    @property
+    def is_blended(self) -> bool:
+        """Whether points grow out of their edges, instead of being there or not."""
+        return self.centre_triangles is not None
 
     @property
     def twice_count(self) -> int:
@@ -140,8 +145,8 @@ class LoopScheme:
             rings.starts,
             rings.others,
             frame.splits,
-            frame.growth_once,
-            frame.growth_twice,
+            frame.growth_once[:, None] if frame.is_blended else ALL_GROWN,
+            frame.growth_twice[:, None] if frame.is_blended else ALL_GROWN,
             frame.first_points,
             frame.split_once,
             frame.split_twice,

@@ -22,7 +22,7 @@ import numpy.typing as npt
 from .arguments import AttributeLike
 from .binding import BoundRefiner
 from .connectivity import Connectivity, connect
-from .masks import place_middles, place_vertices
+from .masks import ALL_GROWN, place_middles, place_vertices
 from .native import Call, has_room, with_room
 from .output import GEOMETRY_COLUMNS, copy_wedges
 from .plugin import Origins, Stream, View
@@ -43,7 +43,6 @@ class Level:
         self._connectivity = connectivity
         self._rings: Rings = vertex_rings(connectivity)
         self._all_move = np.ones(vertex_count, dtype=np.float32)
-        self._all_grown = np.ones(edge_count, dtype=np.float32)
         self._all_once = np.ones(edge_count, dtype=np.uint8)
         self._all_edges = np.arange(edge_count, dtype=np.uint32)
         self._first_points = self._all_edges + np.uint32(vertex_count)
@@ -79,7 +78,7 @@ class Level:
             self._connectivity.edge_points,
             self._connectivity.is_interior,
             self._all_once,
-            self._all_grown,
+            ALL_GROWN,
             self._first_points,
             self._all_edges,
             len(self._all_edges),
