@@ -36,7 +36,7 @@ THREE_QUARTERS = np.float32(0.75)
 SIDE_BITS, SIDE_MASK = np.uint32(2), np.uint32(3)
 """A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
 AT_ONCE = 4
-"""Triangles that are handed through in one go where none of them is split."""
+"""Triangles, or edges, that are passed over in one go where none of them is split."""
 PLACE_VALUES = np.array([1, 3, 9], dtype=np.uint16)
 """Of the splits of a triangle's three edges in the number of its configuration."""
 
@@ -45,6 +45,16 @@ PLACE_VALUES = np.array([1, 3, 9], dtype=np.uint16)
 def points_on(split: int) -> int:
     """New points on an edge that was split 0, 1 or 2 times: 0, 1 or 3."""
     return split + (split >> 1)
+
+
+@native
+def listed(e: np.uint64, rim_splits: Small, split_once: Unsigned, count: np.uint32) -> np.uint32:
+    """Write an edge behind the `count` in the list; return their number, one more if it is split.
+
+    Written always and counted when split: no branch that a processor could guess wrong.
+    """
+    split_once[count] = e
+    return np.uint32(count + (rim_splits[e] > 0))
 
 
 @native
@@ -69,10 +79,13 @@ def number_points(
     """
     edge_count = edge_sides.shape[0]
     once_count = twice_count = np.uint32(0)
-    # Written always and counted when split: no branch that a processor could guess wrong.
-    for e in range(edge_count):
-        split_once[once_count] = e
-        once_count = np.uint32(once_count + (rim_splits[e] > 0))
+    beyond = edge_count - edge_count % AT_ONCE
+    for first in range(0, beyond, AT_ONCE):
+        if not is_zero(four(rim_splits, np.uint64(first))):
+            for i in range(AT_ONCE):
+                once_count = listed(np.uint64(first + i), rim_splits, split_once, once_count)
+    for e in range(beyond, edge_count):
+        once_count = listed(np.uint64(e), rim_splits, split_once, once_count)
     configurations[:] = 0
     none = np.uint32(4 * (configurations.shape[0] - 1))
     row, triangle_count = wedge_count, configurations.shape[0] - 1
