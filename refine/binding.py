@@ -11,6 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import cached_property
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -38,6 +39,17 @@ NOTHING = -1
 """Room for less than an empty frame."""
 SPARE = 1.25
 """How much more than it needs a stream of one's own takes when it has to grow."""
+
+
+def plain_array(positions: object) -> npt.NDArray[Any]:
+    """Return what is not quite an array as one; raises ValueError if something of it is masked."""
+    if isinstance(positions, np.ma.MaskedArray) and np.ma.is_masked(positions):
+        hidden = np.flatnonzero(np.ma.getmaskarray(positions).reshape(len(positions), -1).any(1))
+        raise ValueError(
+            f"positions must be known for every vertex, but vertex {hidden[0]} is masked "
+            f"({len(hidden)} such vertices in all)"
+        )
+    return np.asarray(positions)
 
 
 class OwnStream:
@@ -107,6 +119,13 @@ class BoundRefiner(ABC):
         self._accepted: Rows = _NO_ROWS
         self._geometry: tuple[Floats, Floats]
 
+    def __reduce__(self) -> str:
+        """Raise TypeError: machine code and its arguments live in one process."""
+        raise TypeError(
+            "a refiner cannot be copied, pickled or sent to another process; make one there with "
+            "refine.create from the same faces and rest positions"
+        )
+
     @property
     @abstractmethod
     def splits(self) -> npt.NDArray[np.uint8]:
@@ -168,7 +187,10 @@ class BoundRefiner(ABC):
         Raises ValueError if `positions` or the arrays of `out` have a wrong shape or type, or if
         positions are not finite.
         """
-        positions = np.asarray(positions)
+        if type(positions) is not np.ndarray:
+            positions = plain_array(positions)
+        if view is not None and not isinstance(view, View):
+            raise ValueError(f"view must be a refine.View(eye, focal), got {type(view).__name__}")
         if positions.shape != self._shape or positions.dtype.kind != "f":
             raise ValueError(
                 f"positions must be floats of shape {self._shape} like the mesh that was bound, "
@@ -223,7 +245,13 @@ class BoundRefiner(ABC):
 
     def _accept(self, stream: Stream, vertex_count: int, triangle_count: int) -> None:
         """Raise ValueError unless the arrays can take this much; seen ones need no second look."""
-        vertices, triangles, source = stream.vertices, stream.triangles, stream.source
+        try:
+            vertices, triangles, source = stream.vertices, stream.triangles, stream.source
+        except AttributeError as error:
+            raise ValueError(
+                "a stream must have the arrays vertices, triangles and source "
+                f"(refine.Stream); {type(stream).__name__} has no {error.name}"
+            ) from None
         accepted = self._accepted
         is_known = vertices is accepted[0] and triangles is accepted[1] and source is accepted[2]
         if is_known and len(vertices) >= vertex_count and len(triangles) >= triangle_count:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import gc
+import pickle
 import tracemalloc
+from collections.abc import Callable
 from types import SimpleNamespace
 
 import numpy as np
@@ -213,3 +216,40 @@ def test_bad_positions(positions: np.ndarray) -> None:
     refiner = refine.create("none", mesh.faces, mesh.vertices)
     with pytest.raises(ValueError, match=r"positions must be floats of shape \(6, 3\) .*, got"):
         refiner.refine(positions)
+
+
+def test_masked_positions() -> None:
+    """What is masked is not known, and is not taken from under the mask."""
+    mesh = meshes.octahedron()
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    expected = refiner.refine(mesh.vertices).positions.copy()
+    nothing_hidden = np.ma.masked_array(mesh.vertices, mask=False)
+    assert (refiner.refine(nothing_hidden).positions == expected).all()
+    nothing_hidden[4, 1] = np.ma.masked
+    with pytest.raises(ValueError, match=r"vertex 4 is masked \(1 such"):
+        refiner.refine(nothing_hidden)
+
+
+def test_not_a_stream() -> None:
+    """What lends no arrays is refused with what is missing."""
+    mesh = meshes.octahedron()
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    with pytest.raises(ValueError, match="ndarray has no vertices"):
+        refiner.refine(mesh.vertices, out=np.zeros(3))
+
+
+def test_not_a_view() -> None:
+    """A bare eye point is no view."""
+    mesh = meshes.octahedron()
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion="screen")
+    with pytest.raises(ValueError, match=r"view must be a refine.View\(eye, focal\), got tuple"):
+        refiner.refine(mesh.vertices, view=(0.0, 0.0, 5.0))
+
+
+@pytest.mark.parametrize("copied", [pickle.dumps, copy.deepcopy])
+def test_refiners_stay_where_they_are(copied: Callable[[refine.Refiner], object]) -> None:
+    """A copy would share buffers with the original, or point to nowhere in another process."""
+    mesh = meshes.octahedron()
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    with pytest.raises(TypeError, match=r"make one there with refine\.create"):
+        copied(refiner)
