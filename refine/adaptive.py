@@ -38,8 +38,6 @@ from .native import Turns
 from .output import (
     CENTRE,
     NO_ROOM,
-    copy_rims,
-    copy_wedges,
     look_up_triangles,
     number_points,
     overflow,
@@ -57,6 +55,7 @@ from .plugin import Origins, Stream, View
 from .schemes import Frame, LoopScheme, Scheme
 
 Floats = npt.NDArray[np.float32]
+Unsigned = npt.NDArray[np.uint32]
 Small = npt.NDArray[np.uint8]
 
 
@@ -181,20 +180,19 @@ class Kahler(BoundRefiner):
             np.zeros((0, 3), dtype=np.uint32),
             np.zeros(0, dtype=np.int32),
         )
-        self._draws = [self._look_up_triangles]
-        self._is_placed = (
-            type(self._scheme) is LoopScheme and self._values is None and not self._blend
-        )
+        self._is_placed = type(self._scheme) is LoopScheme and not self._blend
+        self._writes = self._bind_values(mesh, self._rim_splits, frame.first_points)
         if self._is_placed:
-            self._draws.insert(0, cast(LoopScheme, self._scheme).placing(frame))
-        self._draw = Turns(*self._draws)
+            self._writes.insert(0, cast(LoopScheme, self._scheme).placing(frame))
+        draws = [*self._writes, self._look_up_triangles]
+        self._draw = Turns(*draws)
         self._is_marked = type(self._criterion) is NormalDrop and not self._blend
         self._is_whole = self._is_marked and self._is_placed and patterns is CONFIGURATIONS
         if self._is_marked:
             marking = cast(NormalDrop, self._criterion).marking(self._normals, self._edge_splits)
             begin = [self._take_in, self._find_normals, marking, self._number_points]
             if self._is_whole:
-                begin += [overflow.bind(frame.counts, self._room), *self._draws]
+                begin += [overflow.bind(frame.counts, self._room), *draws]
             self._begin = Turns(*begin)
 
     @property
@@ -238,8 +236,10 @@ class Kahler(BoundRefiner):
                 vertex_count += frame.centre_count
         self._draw_to(stream, self._reserve(stream, vertex_count, triangle_count))
         if not self._is_placed:
-            self._place()
+            self._scheme.place(frame)
         self._draw()
+        if frame.centre_triangles is not None:
+            self._place_centres(frame.centre_triangles)
         return vertex_count, triangle_count
 
     def _draw_to(self, stream: Stream, rows: Rows) -> None:
@@ -256,8 +256,8 @@ class Kahler(BoundRefiner):
         self._frame.rows, triangles, source = rows
         self._look_up_triangles.put("triangles", triangles)
         self._look_up_triangles.put("source", source)
-        if self._is_placed:
-            self._draws[0].put("vertices", self._frame.rows)
+        for call in self._writes:
+            call.put("vertices", self._frame.rows)
 
     def _mark(self, view: View | None) -> None:
         """Decide on the splits of every edge, and how far their points have grown."""
@@ -272,30 +272,22 @@ class Kahler(BoundRefiner):
         if self._is_foreign:
             self._check_splits()
 
-    def _place(self) -> None:
-        """Write all rows: points by the scheme, copies along seams, attributes, centres."""
+    def _place_centres(self, centre_triangles: Unsigned) -> None:
+        """Write the points in the middle of triangles, when all others are there."""
         mesh, frame = self.connectivity, self._frame
-        self._scheme.place(frame)
-        if self._values is not None:
-            copy_wedges(mesh.vertex_count, mesh.wedge_vertices, frame.rows)
-            copy_rims(
-                len(mesh.edges), mesh.rim_edges, self._rim_splits, frame.first_points, frame.rows
-            )
-            self._place_attributes(mesh, self._rim_splits, frame.first_points, frame.rows)
-        if frame.centre_triangles is not None:
-            place_centres(
-                mesh.faces,
-                mesh.corners,
-                mesh.triangle_edges,
-                self._rim_splits,
-                frame.growth_once,
-                frame.first_points,
-                frame.centre_triangles,
-                frame.centre_count,
-                frame.first_centre,
-                frame.rows,
-            )
-            self._scheme.place_centres(frame)
+        place_centres(
+            mesh.faces,
+            mesh.corners,
+            mesh.triangle_edges,
+            self._rim_splits,
+            frame.growth_once,
+            frame.first_points,
+            centre_triangles,
+            frame.centre_count,
+            frame.first_centre,
+            frame.rows,
+        )
+        self._scheme.place_centres(frame)
 
     def _check_splits(self) -> None:
         """Raise ValueError if a criterion from outside asks for more than the table has."""

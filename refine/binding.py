@@ -27,9 +27,9 @@ from .arguments import (
 )
 from .connectivity import Connectivity, connect
 from .locality import Order, better_order
-from .native import Turns, with_room
+from .native import Call, Turns, with_room
 from .normals import bind_normals
-from .output import GEOMETRY_COLUMNS, place_attributes
+from .output import GEOMETRY_COLUMNS, copy_rims, copy_wedges, place_attributes
 from .plugin import Origins, RefinedMesh, Stream, View
 
 Floats = npt.NDArray[np.float32]
@@ -276,18 +276,26 @@ class BoundRefiner(ABC):
         uv = values[:, :2] if self._values.has_uv else None
         return uv, {name: values[:, columns] for name, columns in self._values.columns.items()}
 
-    def _place_attributes(
+    def _bind_values(
         self,
         mesh: Connectivity,
         rim_splits: npt.NDArray[np.uint8],
         first_points: npt.NDArray[np.uint32],
-        vertices: Floats,
-    ) -> None:
-        """Write the attributes of wedges, and of points on split rims."""
-        if self._values is not None:
-            place_attributes(
-                self._values.values, mesh.wedge_uv, mesh.rim_uv, rim_splits, first_points, vertices
-            )
+    ) -> list[Call]:
+        """Bind what follows the points in `vertices`: copies along seams, and attributes.
+
+        Nothing for a mesh without texture coordinates and attributes.
+        """
+        if self._values is None:
+            return []
+        rows = np.zeros((0, self.vertex_columns), np.float32)
+        return [
+            copy_wedges.bind(mesh.vertex_count, mesh.wedge_vertices, rows),
+            copy_rims.bind(len(mesh.edges), mesh.rim_edges, rim_splits, first_points, rows),
+            place_attributes.bind(
+                self._values.values, mesh.wedge_uv, mesh.rim_uv, rim_splits, first_points, rows
+            ),
+        ]
 
 
 _NO_ROWS: Rows = (

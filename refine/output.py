@@ -121,7 +121,7 @@ def place_unmoved(points: Floats, normals: Floats, vertices: Floats) -> None:
             vertices[v, 3 + i] = normals[v, i]
 
 
-@kernel
+@native
 def copy_wedges(vertex_count: int, wedge_vertices: Unsigned, vertices: Floats) -> None:
     """Copy position and normal of vertices on texture seams to their other sides."""
     for w in range(vertex_count, len(wedge_vertices)):
@@ -129,7 +129,7 @@ def copy_wedges(vertex_count: int, wedge_vertices: Unsigned, vertices: Floats) -
             vertices[w, i] = vertices[wedge_vertices[w], i]
 
 
-@kernel
+@native
 def copy_rims(
     edge_count: int,
     rim_edges: Unsigned,
@@ -146,7 +146,7 @@ def copy_rims(
                 vertices[copy, i] = vertices[original, i]
 
 
-@kernel
+@native
 def place_attributes(
     values: Floats,
     wedge_values: npt.NDArray[np.int32],

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from .arguments import AttributeLike
 from .binding import BoundRefiner
-from .output import copy_wedges, place_unmoved
+from .output import place_unmoved
 from .plugin import Origins, Stream, View
 
 
@@ -37,8 +37,9 @@ class PassThrough(BoundRefiner):
         self._source = np.arange(len(self.connectivity.faces), dtype=np.int32)
         # No rim is split, so attributes only need a row of zeros for each.
         rim_count = len(self.connectivity.rim_edges)
-        self._rim_splits = np.zeros(rim_count, dtype=np.uint8)
-        self._first_points = np.zeros(rim_count, dtype=np.uint32)
+        self._write_values = self._bind_values(
+            self.connectivity, np.zeros(rim_count, np.uint8), np.zeros(rim_count, np.uint32)
+        )
 
     @property
     def splits(self) -> npt.NDArray[np.uint8]:
@@ -56,13 +57,12 @@ class PassThrough(BoundRefiner):
         return len(self.connectivity.faces)
 
     def _fill(self, stream: Stream, view: View | None, begun: int) -> tuple[int, int]:
-        connectivity = self.connectivity
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
         vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
         place_unmoved(self._points, self._normals, vertices)
-        if self._values is not None:
-            copy_wedges(connectivity.vertex_count, connectivity.wedge_vertices, vertices)
-            self._place_attributes(connectivity, self._rim_splits, self._first_points, vertices)
+        for call in self._write_values:
+            call.put("vertices", vertices)
+            call()
         triangles[:triangle_count] = self._output_corners
         source[:triangle_count] = self._source
         return vertex_count, triangle_count

@@ -117,6 +117,7 @@ class Loop(BoundRefiner):
             self._levels.append(Level(finest.connectivity, with_room(rest), with_room(rest)))
         self._rows = np.zeros((len(self._levels[-1].points), GEOMETRY_COLUMNS), np.float32)
         self._finest = finest.subdivided()
+        self._copy_wedges: Call | None = None
         self._triangles = self._finest.connectivity.corners
         self._wedge_values = self._finest.wedge_values()
 
@@ -146,7 +147,10 @@ class Loop(BoundRefiner):
 
         finest = self._finest.connectivity
         if self._values is not None:
-            copy_wedges(finest.vertex_count, finest.wedge_vertices, vertices)
+            self._copy_wedges = copy_wedges.again(
+                self._copy_wedges, finest.vertex_count, finest.wedge_vertices, vertices
+            )
+            self._copy_wedges()
             vertices[:vertex_count, GEOMETRY_COLUMNS:] = self._wedge_values
         triangles[:triangle_count] = self._triangles
         source[:triangle_count] = self._finest.source
