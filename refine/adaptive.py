@@ -23,7 +23,7 @@ import numpy.typing as npt
 from .arguments import AttributeLike
 from .binding import BoundRefiner, Rows
 from .blend import grow, number_centres, place_centres
-from .choices import may_renumber, scheme_of
+from .choices import marking_of, may_renumber, scheme_of
 from .coherence_pass import Coherent
 from .criteria import criterion_of
 from .criterion import (
@@ -186,11 +186,13 @@ class Kahler(BoundRefiner):
             self._writes.insert(0, cast(LoopScheme, self._scheme).placing(frame))
         draws = [*self._writes, self._look_up_triangles]
         self._draw = Turns(*draws)
-        self._is_marked = type(self._criterion) is NormalDrop and not self._blend
+        marking = None
+        if not self._blend:
+            marking = marking_of(self._criterion, self._normals, self._edge_splits)
+        self._is_marked = marking is not None
         self._is_whole = self._is_marked and self._is_placed and patterns is CONFIGURATIONS
-        if self._is_marked:
-            marking = cast(NormalDrop, self._criterion).marking(self._normals, self._edge_splits)
-            begin = [self._take_in, self._find_normals, marking, self._number_points]
+        if marking is not None:
+            begin = [self._take_in, self._find_normals, *marking, self._number_points]
             if self._is_whole:
                 begin += [overflow.bind(frame.counts, self._room), *draws]
             self._begin = Turns(*begin)

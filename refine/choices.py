@@ -1,11 +1,21 @@
 """Schemes by name, and what is known of those that are built in."""
 
+from typing import cast
+
+import numpy as np
+import numpy.typing as npt
+
 from .butterfly import ButterflyScheme
 from .criteria import CRITERIA, Maximum
-from .criterion import Criterion, NormalDrop
+from .criterion import Criterion, NormalDrop, raise_splits
 from .cubic import CubicScheme
 from .detail import DetailScheme, FinerMesh
+from .native import Call
+from .rest_curvature import RestCurvature
 from .schemes import LoopScheme, Scheme
+
+Floats = npt.NDArray[np.float32]
+Small = npt.NDArray[np.uint8]
 
 NAMES = ("loop", "butterfly", "cubic", "detail")
 
@@ -42,3 +52,22 @@ def may_renumber(scheme: Scheme, criterion: Criterion) -> bool:
         return all(may_renumber(scheme, one) for one in criterion.criteria)
     schemes = (LoopScheme, ButterflyScheme, CubicScheme, DetailScheme)
     return type(scheme) in schemes and type(criterion) in (NormalDrop, *CRITERIA.values())
+
+
+def marking_of(criterion: Criterion, normals: Floats, splits: Small) -> list[Call] | None:
+    """Return the compiled calls by which a built-in criterion marks edges in `splits`, shape (E,).
+
+    None for one that marks in Python. Not asked of subclasses, which may mark otherwise.
+    """
+    if type(criterion) in (NormalDrop, RestCurvature):
+        return [cast(NormalDrop | RestCurvature, criterion).marking(normals, splits)]
+    if type(criterion) is not Maximum:
+        return None
+    calls: list[Call] = []
+    for k, one in enumerate(criterion.criteria):
+        asked = splits if k == 0 else np.zeros_like(splits)
+        marking = marking_of(one, normals, asked)
+        if marking is None:
+            return None
+        calls += marking if k == 0 else [*marking, raise_splits.bind(asked, splits)]
+    return calls

@@ -131,6 +131,7 @@ class NormalDrop:
     ) -> None:
         self._marking: Call | None = None
         self._measuring: Call | None = None
+        self._joined: list[Call] = []
         self.thresholds = Thresholds(
             threshold_once, threshold_twice, "drops of a dot product", least=ROUNDING
         )
@@ -143,8 +144,8 @@ class NormalDrop:
     @thresholds.setter
     def thresholds(self, thresholds: Thresholds) -> None:
         self._thresholds = thresholds
-        if self._marking is not None:
-            self._marking.put("limits", thresholds.limits)
+        for marking in self._joined:
+            marking.put("limits", thresholds.limits)
 
     def bind(
         self,
@@ -157,6 +158,7 @@ class NormalDrop:
         self._rest_dots = np.empty(len(self._edges), dtype=np.float32)
         edge_dots(rest_normals, self._edges, self._rest_dots)
         self._marking = self._measuring = None
+        self._joined = []
         # No direction to compare with at rest (all triangles around are slivers): never split.
         undefined = np.empty(len(rest_positions), dtype=np.bool_)
         sums = np.zeros((len(rest_positions), 4))
@@ -166,19 +168,19 @@ class NormalDrop:
 
     def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write the number of splits of every edge into `splits`, shape (E,)."""
-        self.marking(normals if has_room(normals) else with_room(normals), splits)()
+        if not has_room(normals):
+            normals = with_room(normals)
+        self._marking = mark_drops.again(
+            self._marking, normals, self._edges, self._rest_dots, self.thresholds.limits, splits
+        )
+        self._marking()
 
     def marking(self, normals: Floats, splits: Small) -> Call:
-        """Return the call that marks edges by these `normals`, whatever they are by then."""
-        self._marking = mark_drops.again(
-            self._marking,
-            normals,
-            self._edges,
-            self._rest_dots,
-            self.thresholds.limits,
-            splits,
-        )
-        return self._marking
+        """Return a call that marks edges by these `normals`, whatever they are by then."""
+        assert has_room(normals)
+        limits = self.thresholds.limits
+        self._joined.append(mark_drops.bind(normals, self._edges, self._rest_dots, limits, splits))
+        return self._joined[-1]
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
@@ -232,6 +234,13 @@ def mark_drops(
     for last in range(count - count % 4, count):
         drop = rest_dots[last] - dot_along(normals, edges, last)
         splits[last] = np.uint8(drop > limits[0]) + np.uint8(drop > limits[1])
+
+
+@native
+def raise_splits(more: Small, splits: Small) -> None:
+    """Raise splits of edges, shape (E,), to those that are `more`."""
+    for e in range(splits.shape[0]):
+        splits[e] = max(splits[e], more[e])
 
 
 @kernel

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import refine
+from refine.criterion import Thresholds
+from refine.rest_curvature import RestCurvature
 from tests import meshes
 from tests.refine.cases import Forced, Needed
 
@@ -254,3 +258,53 @@ def test_bulge_needs_curves() -> None:
     mesh = meshes.octahedron()
     with pytest.raises(ValueError, match=r"it goes with the schemes .* got LoopScheme"):
         refine.create("kahler", mesh.faces, mesh.vertices, criterion="bulge")
+
+
+@pytest.mark.parametrize("names", ["normal+rest", "rest+normal", "normal+normal", "rest", "normal"])
+def test_joined_marking(names: str) -> None:
+    """What built-in criteria mark within the frame is what they mark when they are asked.
+
+    Also after their thresholds have been replaced, or moved.
+    """
+    mesh = meshes.irregular(4)
+    deformed = meshes.wrinkled(mesh, 5)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=names)
+    assert refiner._is_whole
+    parts = [refine.NormalDrop() if name == "normal" else RestCurvature()
+             for name in names.split("+")]  # fmt: skip
+    plain = refine.create("none", mesh.faces, mesh.vertices)
+    rest_normals = plain.refine(mesh.vertices).normals.copy()
+    normals = plain.refine(deformed).normals.copy()
+    for part in parts:
+        part.bind(refiner.connectivity, mesh.vertices, rest_normals)
+    drops = [refiner._criterion, *getattr(refiner._criterion, "criteria", ())]
+    drops = [one for one in drops if isinstance(one, refine.NormalDrop)]
+    for change in (None, 0.3, 0.05):
+        if change == 0.3:
+            for one in (*drops, *(p for p in parts if isinstance(p, refine.NormalDrop))):
+                one.thresholds = Thresholds(0.3, 0.5, "drops")
+        elif change:
+            for one in (*drops, *(p for p in parts if isinstance(p, refine.NormalDrop))):
+                one.thresholds.once = change
+        refiner.refine(deformed)
+        asked = []
+        for part in parts:
+            splits = np.zeros(len(refiner.edges), np.uint8)
+            part.mark(deformed, normals, splits)
+            asked.append(splits)
+        assert (refiner.splits == np.max(asked, axis=0)).all()
+    assert refiner.splits.any()
+
+
+def test_a_rule_of_ones_own_is_asked() -> None:
+    """A subclass that marks otherwise is not passed over."""
+    mesh = meshes.irregular(4)
+
+    class Everything(refine.NormalDrop):
+        def mark(self, positions: Any, normals: Any, splits: Any) -> None:
+            splits[:] = 2
+
+    for criterion in (Everything(), ["rest", Everything()]):
+        refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
+        refiner.refine(mesh.vertices)
+        assert (refiner.splits == 2).all()
