@@ -73,7 +73,7 @@ def test_attributes_without_uv() -> None:
 @pytest.mark.parametrize(
     ("attribute", "text"),
     [
-        (np.zeros(6), r"attributes\['heat'\] must be numbers of shape \(V, k\), got float64"),
+        (np.zeros(6), r"attributes\['heat'\] must be numbers of shape \(V, k\), .*, got float64"),
         (np.zeros((5, 2)), "needs one row per vertex .6., got 5"),
         (np.full((6, 1), np.nan), "must be finite"),
         ((np.zeros((3, 1)), np.full((8, 3), 3)), r"must hold indices from 0 to 2 into attributes"),
