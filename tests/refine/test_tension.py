@@ -85,6 +85,20 @@ def test_rigid_motion(scale: float) -> None:
     measured = Tension(mesh.faces, rest).measure(rest @ meshes.rotation(5).T + scale)
     assert measured.stretch.max() < 1e-5
     assert measured.compression.max() < 1e-5
+    assert not measured.direction.any()
+
+
+def test_flipped_triangles() -> None:
+    """Triangles that look the other way than the skin around them are as tense as they would be."""
+    mesh = meshes.open_grid(6, 5)
+    faces = mesh.faces.copy()
+    faces[::7] = faces[::7, ::-1]
+    stretched = mesh.vertices * [1.5, 0.8, 1.0]
+    measured = Tension(faces, mesh.vertices).measure(stretched)
+    used = np.linalg.norm(measured.direction, axis=1) > 0.0
+    assert used.mean() > 0.9  # a vertex between as much of both has no normal
+    np.testing.assert_allclose(measured.stretch[used], 0.5, atol=1e-5)
+    np.testing.assert_allclose(measured.compression[used], 0.2, atol=1e-5)
 
 
 def test_shear() -> None:
