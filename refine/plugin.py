@@ -127,7 +127,7 @@ class Refiner(Protocol):
         """Turn deformed `positions`, shape (V, 3), any float type, into triangles; never writes it.
 
         The result views the arrays of `out`, or of the refiner's own stream without it. `view`:
-        for criteria that ask where the eye is.
+        for criteria that ask where the eye is. One frame at a time: threads take a refiner each.
         """
 
     def origins(self) -> Origins:

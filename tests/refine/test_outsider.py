@@ -108,7 +108,7 @@ def assert_no_crack(
     assert {(min(e), max(e)): 2**split for e, split in splits} == counts
 
 
-@settings(max_examples=150)
+@settings(max_examples=100)
 @given(
     mesh=MESHES,
     chosen=options(),
