@@ -19,7 +19,17 @@ from types import SimpleNamespace
 import numpy as np
 import numpy.typing as npt
 
-from refine import Origins, RefinedMesh, Stream, available, check, connect, create, register
+from refine import (
+    Origins,
+    RefinedMesh,
+    Stream,
+    View,
+    available,
+    check,
+    connect,
+    create,
+    register,
+)
 
 
 class Quarters:
@@ -58,8 +68,13 @@ class Quarters:
             source=np.zeros(self.triangle_capacity, dtype=np.int32),
         )
 
-    def refine(self, positions: npt.NDArray[np.floating], out: Stream | None = None) -> RefinedMesh:
-        """Fill the stream for one frame."""
+    def refine(
+        self,
+        positions: npt.NDArray[np.floating],
+        out: Stream | None = None,
+        view: View | None = None,
+    ) -> RefinedMesh:
+        """Fill the stream for one frame; where the eye is, is all the same to this one."""
         points = np.asarray(positions, dtype=np.float32)
         stream: Stream = self._own_stream if out is None else out
         self.splits[:] = self._longest_edge(points) > self._limit

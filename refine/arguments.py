@@ -6,11 +6,18 @@ that later changes to the caller's arrays cannot reach a frame.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from .native import Call, native
+
+LARGEST = 1e15
+"""No coordinate may be larger: cross products of edges have to stay finite in single precision."""
+SIZES = 1e-6, 1e9
+"""Sizes of a mesh, longest side of its box, in which single precision tells normals from rounding.
+Measured: sheets with edges of a fortieth of that are refined as ever from 1e-7 to 1e9."""
 
 AttributeLike = npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]
 """Values of each vertex, shape (V, k), or values (A, k) and the row of each corner (F, 3)."""
@@ -62,40 +69,70 @@ def checked_positions(
     rest_positions: npt.ArrayLike, name: str = "rest_positions"
 ) -> npt.NDArray[np.float64]:
     """Return positions, shape (V, 3), as a copy in double precision."""
-    positions = np.asarray(rest_positions)
+    positions = as_array(name, rest_positions, "numbers of shape (V, 3)")
     if positions.ndim != 2 or positions.shape[1] != 3 or positions.dtype.kind not in "fiu":
         raise ValueError(
             f"{name} must be numbers of shape (V, 3), "
             f"got {positions.dtype} of shape {positions.shape}"
         )
-    if not np.isfinite(positions).all():
-        bad = np.flatnonzero(~np.isfinite(positions).all(axis=1))
+    checked = np.array(positions, dtype=np.float64, order="C")
+    is_good = np.abs(checked) < LARGEST
+    if not is_good.all():
+        bad = np.flatnonzero(~is_good.all(axis=1))
         raise ValueError(
-            f"{name} must be finite, but vertex {bad[0]} is {positions[bad[0]]} "
-            f"({len(bad)} such vertices in all); repair the mesh before binding it"
+            f"{name} must be finite and below {LARGEST:g}, but vertex {bad[0]} is "
+            f"{positions[bad[0]]} ({len(bad)} such vertices in all); repair the mesh before "
+            "binding it"
         )
-    return np.array(positions, dtype=np.float64, order="C")
+    size = float(np.ptp(checked, axis=0).max()) if len(checked) else 0.0
+    if size != 0.0 and not SIZES[0] <= size <= SIZES[1]:
+        raise ValueError(
+            f"{name} must extend over {SIZES[0]:g} to {SIZES[1]:g} (or lie all at one place), but "
+            f"extend over {size:g}; take another unit of length, at binding and in all frames"
+        )
+    return checked
+
+
+def as_array(name: str, given: npt.ArrayLike, wanted: str) -> npt.NDArray[Any]:
+    """Return what was given as an array; raises ValueError if it is ragged or has masked entries.
+
+    `wanted`: what it should be, for the error.
+    """
+    try:
+        array = np.asarray(given)
+    except ValueError as error:  # numpy's own words for rows of unequal length
+        raise ValueError(f"{name} must be {wanted}, but is no array: {error}") from None
+    if np.ma.is_masked(given):
+        raise ValueError(f"{name} must be {wanted}, but has masked entries; fill them first")
+    return array
 
 
 def checked_indices(
     name: str, indices: npt.ArrayLike, limit: int, target: str
 ) -> npt.NDArray[np.int64]:
     """Return triangles, shape (F, 3), as a copy; all indices are from 0 to `limit` - 1."""
-    array = np.asarray(indices)
-    if array.size == 0 and array.ndim == 2:
-        array = array.astype(np.int64)
+    return as_indices(name, indices, limit, target).astype(np.int64)
+
+
+def as_indices(
+    name: str, indices: npt.ArrayLike, limit: int, target: str
+) -> npt.NDArray[np.integer]:
+    """Do the same without a copy, if it can be done without."""
+    array = as_array(name, indices, "integers of shape (F, 3)")
+    if array.shape in ((0,), (0, 3)):
+        return np.zeros((0, 3), dtype=np.int64)
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iu":
         raise ValueError(
             f"{name} must be integers of shape (F, 3), got {array.dtype} of shape {array.shape}; "
             "cut polygons into triangles first"
         )
-    if array.size and not (array.min() >= 0 and array.max() < limit):
+    if not (array.min() >= 0 and array.max() < limit):
         bad = np.flatnonzero(((array < 0) | (array >= limit)).any(axis=1))
         raise ValueError(
             f"{name} must hold indices from 0 to {limit - 1} into {target}, "
             f"but triangle {bad[0]} is {array[bad[0]].tolist()}"
         )
-    return array.astype(np.int64)
+    return array
 
 
 def checked_corner_values(
@@ -116,6 +153,11 @@ def checked_corner_values(
         if values.shape[1] != 2:
             raise ValueError(f"uv must be numbers of shape (U, 2), got shape {values.shape}")
         tables, indices = [values], [corners]
+    if attributes is not None and not isinstance(attributes, Mapping):
+        raise ValueError(
+            "attributes must be arrays by name, as in {'colour': array of shape (V, 3)}, "
+            f"got {type(attributes).__name__}"
+        )
     for name, given in (attributes or {}).items():
         what = f"attributes[{name!r}]"
         pair = given if isinstance(given, tuple) and len(given) == 2 else (given, None)
@@ -144,14 +186,21 @@ def _checked_values(
     faces: npt.NDArray[np.int64],
     vertex_count: int,
 ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int64] | None]:
-    array = np.asarray(values)
+    wanted = "numbers of shape " + (
+        "(U, 2)" if what == "uv" else "(V, k), or a tuple of such values and the row of each corner"
+    )
+    array = as_array(what, values, wanted)
     if array.ndim != 2 or array.shape[1] == 0 or array.dtype.kind not in "fiu":
-        shape = "(U, 2)" if what == "uv" else "(V, k)"
+        raise ValueError(f"{what} must be {wanted}, got {array.dtype} of shape {array.shape}")
+    with np.errstate(over="ignore"):
+        table = np.array(array, dtype=np.float32)
+    is_finite = np.isfinite(table).all(axis=1)
+    if not is_finite.all():
+        bad = int(is_finite.argmin())
         raise ValueError(
-            f"{what} must be numbers of shape {shape}, got {array.dtype} of shape {array.shape}"
+            f"{what} must be finite as single precision, but row {bad} is {array[bad]} "
+            f"({np.count_nonzero(~is_finite)} such rows in all)"
         )
-    if not np.isfinite(array).all():
-        raise ValueError(f"{what} must be finite, but holds NaN or infinity")
     if corners is None:
         if len(array) != vertex_count:
             raise ValueError(
@@ -159,37 +208,37 @@ def _checked_values(
                 f"{len(array)}; pass {what_corners}, shape (F, 3), if corners have values of their "
                 "own"
             )
-        return np.array(array, dtype=np.float32), None
+        return table, None
     rows = checked_indices(what_corners, corners, len(array), what)
     if len(rows) != len(faces):
         raise ValueError(
             f"{what_corners} must have one row per triangle ({len(faces)}), got {len(rows)}"
         )
-    return np.array(array, dtype=np.float32), rows
+    return table, rows
 
 
 def bind_take_in(positions: npt.NDArray[np.float64], points: npt.NDArray[np.float32]) -> Call:
     """Return a call that writes positions, shape (V, 3), as single precision into `points`.
 
-    It returns how many are not numbers, 0 unless what moves the mesh has blown up.
+    It returns how many are no numbers below LARGEST, 0 unless what moves the mesh has blown up.
     """
     return round_finite.bind(positions.reshape(-1), points.reshape(-1))
 
 
 def not_finite(positions: npt.NDArray[np.floating]) -> str:
-    """Say which of the positions of a frame are not numbers."""
-    bad = np.flatnonzero(~np.isfinite(positions).all(axis=1))
+    """Say which of the positions of a frame are no numbers below LARGEST."""
+    bad = np.flatnonzero(~(np.abs(positions) < LARGEST).all(axis=1))
     return (
-        f"positions must be finite, but vertex {bad[0]} is {positions[bad[0]]} "
-        f"({len(bad)} such vertices in all); what moves the mesh has blown up"
+        f"positions must be finite and below {LARGEST:g}, but vertex {bad[0]} is "
+        f"{positions[bad[0]]} ({len(bad)} such vertices in all); what moves the mesh has blown up"
     )
 
 
 @native
 def round_finite(numbers: npt.NDArray[np.float64], rounded: npt.NDArray[np.float32]) -> int:
-    """Write numbers as single precision; return how many are NaN or infinite."""
+    """Write numbers as single precision; return how many are NaN or not below LARGEST."""
     finite = 0  # counted, not left early: so the loop takes several at a time
     for k in range(numbers.shape[0]):
         rounded[k] = numbers[k]
-        finite += abs(numbers[k]) < np.inf
+        finite += abs(numbers[k]) < LARGEST
     return int(numbers.shape[0] - finite)

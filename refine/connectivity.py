@@ -32,6 +32,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import as_indices, checked_positions
 from .native import native
 
 Indices = npt.NDArray[np.int32]
@@ -82,15 +83,23 @@ class Connectivity:
 
 
 def connect(
-    faces: npt.NDArray[np.integer],
+    faces: npt.ArrayLike,
     vertex_count: int,
-    face_uv: npt.NDArray[np.integer] | None = None,
+    face_uv: npt.ArrayLike | None = None,
 ) -> Connectivity:
     """Build the connectivity of triangles `faces`, shape (F, 3), with indices below `vertex_count`.
 
     `face_uv`: texture coordinate index of each corner, shape (F, 3); None when each vertex has one.
+    Raises ValueError for other shapes or types and for indices out of range.
     """
-    corners = np.array(faces, dtype=np.uint32, order="C").reshape(-1, 3)
+    given = as_indices("faces", faces, vertex_count, "the vertices")
+    corners = np.array(given, dtype=np.uint32, order="C")
+    if face_uv is not None:
+        face_uv = as_indices("face_uv", face_uv, 2**31, "the texture coordinates")
+        if len(face_uv) != len(corners):
+            raise ValueError(
+                f"face_uv must have one row per triangle ({len(corners)}), got {len(face_uv)}"
+            )
     half_edge_count = corners.size
     edge_of = np.full(half_edge_count, -1, dtype=np.int32)
     edges = np.empty((half_edge_count, 2), dtype=np.int32)
@@ -274,9 +283,7 @@ def number_by_first_use(keys: Wide) -> tuple[Wide, Wide]:
     return rank[inverse.reshape(-1)], first[order].astype(np.int64)
 
 
-def weld(
-    positions: npt.NDArray[np.floating], faces: npt.NDArray[np.integer]
-) -> tuple[Indices, Indices]:
+def weld(positions: npt.ArrayLike, faces: npt.ArrayLike) -> tuple[Indices, Indices]:
     """Merge vertices with equal positions: for meshes whose vertices were doubled along seams.
 
     `positions`: shape (V, 3); `faces`: shape (F, 3). Returns the kept vertices, shape (K,), and
@@ -285,11 +292,13 @@ def weld(
     original triangles as `face_uv`, and hand it `positions[kept]` in every frame.
 
     It is a call of its own, never done unasked: closed lips touch at rest and must not be sewn up.
+    Raises ValueError for arrays that do not fit together, and for positions that are not finite.
     """
-    points = np.asarray(positions) + 0.0  # turns -0.0 into 0.0, which compares equal but differs
+    points = checked_positions(positions, "positions")
+    corners = as_indices("faces", faces, len(points), "positions")
     rows = np.unique(points, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
     number, kept = number_by_first_use(rows)
-    return kept.astype(np.int32), number[np.asarray(faces)].astype(np.int32)
+    return kept.astype(np.int32), number[corners].astype(np.int32)
 
 
 def _rims(

@@ -41,6 +41,10 @@ class RefinedMesh(NamedTuple):
     attributes: Mapping[str, npt.NDArray[np.float32]] = MappingProxyType({})
     """The attributes that were bound, by name, shape (N, k)."""
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copy and pickle as arrays of its own: to keep a frame, or send it to another process."""
+        return RefinedMesh, (*self[:-1], dict(self.attributes))
+
 
 class View(NamedTuple):
     """Where the mesh is looked at from, for criteria that depend on it."""
@@ -123,7 +127,7 @@ class Refiner(Protocol):
         """Turn deformed `positions`, shape (V, 3), any float type, into triangles; never writes it.
 
         The result views the arrays of `out`, or of the refiner's own stream without it. `view`:
-        for criteria that ask where the eye is.
+        for criteria that ask where the eye is. One frame at a time: threads take a refiner each.
         """
 
     def origins(self) -> Origins:
@@ -138,8 +142,8 @@ _factories: dict[str, Factory] = {}
 
 def register(name: str, factory: Factory) -> None:
     """Make `factory` known as `name`; raises ValueError if the name is empty or taken."""
-    if not name:
-        raise ValueError("the name of a refiner must not be empty")
+    if not (isinstance(name, str) and name):
+        raise ValueError(f"the name of a refiner must be a word, got {name!r}")
     if name in _factories:
         raise ValueError(f"a refiner named {name!r} exists already; taken are {available()}")
     if not callable(factory):

@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import bind_take_in, checked_indices, checked_positions, not_finite
 from .kernels import kernel
 from .native import with_room
 from .normals import bind_normals
@@ -69,24 +70,8 @@ class Tension:
         Triangles without area and vertices without triangles are fine and have no tension. Raises
         ValueError for arrays of other shapes, indices out of range, and positions not finite.
         """
-        rest = np.array(rest_positions, dtype=np.float64, order="C")
-        if rest.ndim != 2 or rest.shape[1] != 3 or not np.isfinite(rest).all():
-            raise ValueError(
-                f"rest_positions must be finite, of shape (V, 3), got shape {rest.shape}"
-                + ("" if np.isfinite(rest).all() else " with NaN or infinity in it")
-            )
-        triangles = np.asarray(faces)
-        if triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind not in "iu":
-            raise ValueError(
-                "faces must be integers of shape (F, 3), "
-                f"got {triangles.dtype} of shape {triangles.shape}"
-            )
-        if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(rest):
-            raise ValueError(
-                f"faces must hold indices from 0 to {len(rest) - 1}, "
-                f"got {triangles.min()} to {triangles.max()}"
-            )
-        self._faces = triangles.astype(np.uint32)
+        rest = checked_positions(rest_positions)
+        self._faces = checked_indices("faces", faces, len(rest), "rest_positions").astype(np.uint32)
         self._inverses, weights = _rest_frames(rest, self._faces)
         totals = np.zeros(len(rest))
         for k in range(3):
@@ -95,6 +80,7 @@ class Tension:
         self._shares = (1.0 / np.where(totals > 0.0, totals, np.inf)).astype(np.float32)
         self._positions = with_room(rest)
         self._normals = np.zeros((len(rest), 3), dtype=np.float32)
+        self._take_in = bind_take_in(self._positions, np.empty(rest.shape, dtype=np.float32))
         self._find_normals = bind_normals(self._positions, self._faces, self._normals)
         self._sums = np.zeros((len(rest), 6), dtype=np.float32)
         self._stretch = np.zeros(len(rest), dtype=np.float32)
@@ -113,6 +99,8 @@ class Tension:
                 f"positions, got {positions.dtype} of shape {positions.shape}"
             )
         np.copyto(self._positions, positions)
+        if self._take_in():
+            raise ValueError(not_finite(positions))
         self._find_normals()
         sum_tensors(
             self._positions, self._faces, self._inverses, self._weights, self._normals, self._sums

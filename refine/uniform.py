@@ -102,7 +102,7 @@ class Loop(BoundRefiner):
     ) -> None:
         """Bind to a mesh (see `plugin.create`). `levels`: 1 or 2, how often all edges are split."""
         super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv, attributes=attributes)
-        if levels not in (1, 2):
+        if not isinstance(levels, int | np.integer) or levels not in (1, 2):
             raise ValueError(f"levels must be 1 or 2, got {levels!r}")
         self._splits = np.full(len(self.connectivity.edges), levels, dtype=np.uint8)
         self._splits.flags.writeable = False

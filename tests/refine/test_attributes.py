@@ -73,7 +73,7 @@ def test_attributes_without_uv() -> None:
 @pytest.mark.parametrize(
     ("attribute", "text"),
     [
-        (np.zeros(6), r"attributes\['heat'\] must be numbers of shape \(V, k\), got float64"),
+        (np.zeros(6), r"attributes\['heat'\] must be numbers of shape \(V, k\), .*, got float64"),
         (np.zeros((5, 2)), "needs one row per vertex .6., got 5"),
         (np.full((6, 1), np.nan), "must be finite"),
         ((np.zeros((3, 1)), np.full((8, 3), 3)), r"must hold indices from 0 to 2 into attributes"),
@@ -127,6 +127,8 @@ def test_own_stream_grows(blend: bool) -> None:
     refine.check(refiner, all_split, mesh.vertices)
     assert len(all_split.triangles) == refiner.triangle_capacity
     assert refiner.memory > before + 5 * unsplit
+    rows = all_split.positions.base
+    assert rows is not None and len(rows) == refiner.vertex_capacity  # no room that is of no use
     most = refiner.memory
     needed.need[:] = -1.0
     refine.check(refiner, refiner.refine(mesh.vertices), mesh.vertices)
@@ -170,3 +172,19 @@ def test_lent_stream_that_grows(name: str, options: dict[str, object]) -> None:
     stubborn.make = lambda *_: None  # type: ignore[method-assign]
     with pytest.raises(ValueError, match=r"stream.vertices must be a writable"):
         refiner.refine(deformed, out=stubborn)
+
+
+def test_lent_stream_that_stops_growing() -> None:
+    """Arrays that took the frame before are refused when they are too small for this one."""
+    mesh = meshes.irregular(9)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    stream = Growing(refiner.vertex_columns)
+    refiner.refine(mesh.vertices, out=stream)
+    stream.make = lambda *_: None  # type: ignore[method-assign]
+    with pytest.raises(ValueError, match=r"stream.vertices must be .* shape \(>= \d+, 6\), got"):
+        refiner.refine(meshes.wrinkled(mesh, 1), out=stream)
+    before = len(stream.vertices)
+    stream.vertices = np.zeros((refiner.vertex_capacity, 6), dtype=np.float32)
+    with pytest.raises(ValueError, match=r"stream.triangles must be .* shape \(>= \d+, 3\), got"):
+        refiner.refine(meshes.wrinkled(mesh, 1), out=stream)
+    assert len(refiner.refine(mesh.vertices, out=stream).positions) == before

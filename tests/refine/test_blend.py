@@ -206,6 +206,7 @@ def test_defaults() -> None:
         ({"scheme": "cubic"}, 12),
         ({"scheme": "butterfly", "blend": False}, 10),
         ({"scheme": "cubic", "criterion": Forced(np.zeros(12))}, 10),
+        ({"scheme": "cubic", "coherent": True}, 10),
         ({"blend": True}, 12),
     ):
         refiner = refine.create("kahler", mesh.faces, mesh.vertices, **options)

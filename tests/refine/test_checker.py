@@ -210,11 +210,14 @@ def test_edge_flip_inside(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray])
         refine.check(refiner, halves, mesh.vertices)
 
 
-def test_wrong_split_count(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
-    """Splits that do not fit the sub-edges are noticed."""
+@pytest.mark.parametrize(("has", "says"), [(2, 1), (1, 2), (0, 1), (1, 0)])
+def test_wrong_split_count(
+    frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray], has: int, says: int
+) -> None:
+    """Splits that do not fit the sub-edges are noticed, be they too many or too few."""
     refiner, refined, deformed = frame
-    e = int(np.flatnonzero(refiner.splits == 2)[0])
-    refiner.splits[e] = 1
+    e = int(np.flatnonzero(refiner.splits == has)[0])
+    refiner.splits[e] = says
     with pytest.raises(refine.BrokenMeshError, match="2 to the power of s sub-edges"):
         refine.check(refiner, refined, deformed)
 

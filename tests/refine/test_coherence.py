@@ -106,6 +106,32 @@ def test_transitions_by_hand(
     assert TABLES.removals[state, configuration] == removed
 
 
+CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]])
+"""Of an equilateral triangle."""
+
+
+def length_of_lines(state: int) -> float:
+    """Length of all inner lines of a sequence."""
+    places = patterns.POINTS / 4.0 @ CORNERS
+    return sum(float(np.linalg.norm(places[a] - places[b])) for a, b in inner_lines(state))
+
+
+@pytest.mark.parametrize("length", range(4))
+def test_new_splits_make_the_shortest_lines(length: int) -> None:
+    """Of all orders in which splits of one frame can be put, none has shorter lines."""
+    lengths = [length_of_lines(state) for state in range(len(TABLES.sequences))]
+    for state in states_of(length):
+        begun = TABLES.sequences[state]
+        best: dict[int, float] = {}
+        for other, sequence in enumerate(TABLES.sequences):
+            if sequence[:length] == begun:
+                key = patterns.configuration_of(coherence._splits_of(sequence))
+                best[key] = min(best.get(key, np.inf), lengths[other])
+        for configuration, shortest in best.items():
+            taken = int(TABLES.transitions[state, configuration])
+            assert lengths[taken] == pytest.approx(shortest, abs=1e-9)
+
+
 @given(st.lists(st.sampled_from(ALL_SPLITS), max_size=30))
 def test_any_history(history: list[tuple[int, int, int]]) -> None:
     """Whatever came before, a triangle has the splits that are wanted, and all gone is all new."""

@@ -96,7 +96,7 @@ def test_weld() -> None:
     vertex_of_uv = np.zeros(len(tube.uv), dtype=int)
     vertex_of_uv[tube.face_uv] = tube.faces
     doubled = tube.vertices[vertex_of_uv]
-    doubled[doubled == 0.0] = -0.0
+    doubled[1::2][doubled[1::2] == 0.0] = -0.0  # equal to 0.0, if not in its bits
     kept, faces = refine.weld(doubled, tube.face_uv)
     assert len(kept) == len(tube.vertices)
     assert (doubled[kept][faces] == tube.vertices[tube.faces]).all()
@@ -109,3 +109,35 @@ def test_empty_mesh() -> None:
     connectivity = refine.connect(np.zeros((0, 3), dtype=np.int32), 2)
     assert len(connectivity.edges) == 0
     assert connectivity.wedge_vertices.tolist() == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (([[0, 1, 4]], 4), r"from 0 to 3 into the vertices, but triangle 0 is \[0, 1, 4\]"),
+        (([[0, 1, -1]], 4), r"triangle 0 is \[0, 1, -1\]"),
+        (([[0.0, 1.0, 2.0]], 4), "faces must be integers .* got float64"),
+        (([0, 1, 2], 4), r"shape \(F, 3\), got int64 of shape \(3,\)"),
+        (([[0, 1, 2]], 4, [[0, 1, 2]] * 2), r"face_uv must have one row per triangle \(1\), got 2"),
+        (([[0, 1, 2]], 4, [[0, -1, 2]]), r"into the texture coordinates, but triangle 0 is"),
+    ],
+)
+def test_bad_triangles(arguments: tuple[object, ...], text: str) -> None:
+    """Indices that point outside are refused before compiled code follows them."""
+    with pytest.raises(ValueError, match=text):
+        refine.connect(*arguments)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("positions", "faces", "text"),
+    [
+        (np.zeros(9), [[0, 1, 2]], r"positions must be numbers of shape \(V, 3\)"),
+        (np.full((3, 3), np.nan), [[0, 1, 2]], "positions must be finite"),
+        (np.eye(3), [[0, 1, 3]], "from 0 to 2 into positions, but triangle 0 is"),
+        (np.eye(3), [[0, 1, -1]], "triangle 0 is"),
+    ],
+)
+def test_bad_welds(positions: np.ndarray, faces: list[list[int]], text: str) -> None:
+    """What cannot be welded is refused: an index of -1 is not the last vertex."""
+    with pytest.raises(ValueError, match=text):
+        refine.weld(positions, faces)

@@ -203,6 +203,75 @@ def test_one_level_only(blend: bool) -> None:
     assert refiner.splits.max() == 1
 
 
+EYE = np.array([3.0, 2.0, 4.0])
+
+
+def plain_measure(
+    kind: type, positions: np.ndarray, normals: np.ndarray, edges: np.ndarray, unit: float
+) -> np.ndarray:
+    """What a criterion measures at every edge, written once more, plainly."""
+    values = []
+    for a, b in edges:
+        d, cosine = positions[b] - positions[a], float(normals[a] @ normals[b])
+        if kind is refine.NormalDrop:
+            values.append(-cosine)
+        elif kind is refine.Curvature:
+            values.append(abs(d @ normals[b] - d @ normals[a]) / 8 / unit)
+        elif kind is refine.ScreenEdge:
+            distance = np.linalg.norm(EYE - (positions[a] + positions[b]) / 2)
+            values.append(500.0 * np.linalg.norm(d) / distance)
+        else:
+            sight = [(EYE - positions[v]) / np.linalg.norm(EYE - positions[v]) for v in (a, b)]
+            facing = [float(normals[v] @ s) for v, s in zip((a, b), sight, strict=True)]
+            aside = 0.0 if facing[0] * facing[1] <= 0 else min(map(abs, facing))
+            values.append((1 - cosine) * max(0.0, 1 - aside / 0.3))
+    return np.array(values)
+
+
+@pytest.mark.parametrize("level", ["both", "first only"])
+@pytest.mark.parametrize(
+    ("kind", "once", "twice"),
+    [
+        (refine.NormalDrop, 0.02, 0.08),
+        (refine.Curvature, 0.025, 0.06),
+        (refine.Silhouette, 0.005, 0.03),
+        (refine.ScreenEdge, 80.0, 120.0),
+    ],
+)
+def test_needs_by_hand(kind: type, once: float, twice: float, level: str) -> None:
+    """Needs are measures over the distance of the thresholds; without a second one, over itself."""
+    mesh = meshes.irregular(2)
+    deformed = meshes.wrinkled(mesh, 3)
+    none = refine.create("none", mesh.faces, mesh.vertices)
+    connectivity = refine.connect(mesh.faces, len(mesh.vertices))
+    edges = connectivity.edges
+    at_rest = none.refine(mesh.vertices).normals.copy()
+    now = none.refine(deformed).normals.copy()
+    unit = np.linalg.norm(np.diff(mesh.vertices[edges], axis=1)[:, 0], axis=1).mean()
+    expected = plain_measure(kind, deformed, now.astype(float), edges, unit)
+    if kind in (refine.NormalDrop, refine.Curvature):
+        expected -= plain_measure(kind, mesh.vertices, at_rest.astype(float), edges, unit)
+
+    criterion = kind(once, twice if level == "both" else np.inf)
+    criterion.bind(connectivity, mesh.vertices, at_rest)
+    if hasattr(criterion, "look"):
+        criterion.look(refine.View(EYE, 500.0))
+    need = np.zeros(len(edges), dtype=np.float32)
+    criterion.measure(deformed, now, need)
+    if level == "both":
+        wanted = (expected - once) / (twice - once)
+    else:
+        wanted = np.minimum((expected - once) / once, 1.0)
+    np.testing.assert_allclose(need, wanted, rtol=1e-4, atol=1e-3)
+    assert 0.05 < (need > 0).mean() < 0.95
+    splits = np.zeros(len(edges), dtype=np.uint8)
+    criterion.mark(deformed, now, splits)
+    clear = (abs(need) > 1e-3) & ((abs(need - 1) > 1e-3) | (level == "first only"))
+    assert clear.sum() > 0.5 * len(edges)
+    count = (need > 0).astype(int) + (need > 1)
+    np.testing.assert_array_equal(splits[clear], count[clear])
+
+
 @pytest.mark.parametrize(
     ("criterion", "text"),
     [

@@ -190,14 +190,3 @@ def test_criterion_from_outside() -> None:
     wrong = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Forced([1, 3] * 6))
     with pytest.raises(ValueError, match=r"Forced.mark must write 0, 1 or 2 .* edge 1 got 3"):
         wrong.refine(mesh.vertices)
-
-
-def test_not_finite_positions() -> None:
-    """A frame that has blown up is refused with the number of the vertex."""
-    mesh = meshes.irregular(1)
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
-    for value in (np.nan, np.inf):
-        broken = mesh.vertices.copy()
-        broken[17] = value
-        with pytest.raises(ValueError, match="positions must be finite, but vertex 17 is"):
-            refiner.refine(broken)

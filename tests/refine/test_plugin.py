@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import importlib.metadata
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -105,11 +107,12 @@ def test_broken_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
     ("name", "factory", "text"),
     [
         ("kahler", Outside, "named 'kahler' exists already; taken are"),
-        ("", Outside, "must not be empty"),
+        ("", Outside, "must be a word, got ''"),
+        (3, Outside, "must be a word, got 3"),
         ("broken", 7, "must be callable, got 7"),
     ],
 )
-def test_bad_registration(name: str, factory: object, text: str) -> None:
+def test_bad_registration(name: object, factory: object, text: str) -> None:
     """Names cannot be taken twice, and factories have to be callable."""
     with pytest.raises(ValueError, match=text):
         refine.register(name, factory)  # type: ignore[arg-type]
@@ -151,12 +154,21 @@ NAN[4, 1] = np.nan
         ({"faces": FINE.faces - 1}, r"but triangle 0 is \[-1, 1, 3\]"),
         ({"faces": [[0, 1, 2, 3]]}, "cut polygons into triangles"),
         ({"rest_positions": FINE.vertices[:, :2]}, r"numbers of shape \(V, 3\), got float64"),
-        ({"rest_positions": NAN}, "must be finite, but vertex 4 is"),
+        ({"faces": [[0, 1, 2], [0, 1]]}, "faces must be integers .* is no array"),
+        ({"faces": np.ma.masked_equal(FINE.faces, 3)}, "faces .* has masked entries"),
+        ({"rest_positions": NAN}, "must be finite and below 1e.15, but vertex 4 is"),
+        ({"rest_positions": FINE.vertices * 1e16}, "must be finite and below 1e.15"),
+        ({"rest_positions": FINE.vertices * 1e9}, "must extend over 1e-06 to 1e.09 .* over 2e.09"),
+        ({"rest_positions": FINE.vertices * 1e-7}, "extend over 2e-07; take another unit"),
+        ({"rest_positions": np.ma.masked_equal(FINE.vertices, 1.0)}, "has masked entries"),
         ({"rest_positions": FINE.vertices.astype(str)}, "rest_positions must be numbers"),
         ({"face_uv": FINE.faces}, "face_uv points into uv, but uv is None"),
         ({"uv": np.zeros((6, 3))}, r"uv must be numbers of shape \(U, 2\)"),
         ({"uv": np.zeros((5, 2))}, "needs one row per vertex"),
-        ({"uv": np.full((6, 2), np.inf)}, "uv must be finite"),
+        ({"uv": np.full((6, 2), np.inf)}, "uv must be finite as single precision, but row 0"),
+        ({"uv": np.full((6, 2), 1e39)}, "uv must be finite as single precision"),
+        ({"attributes": [FINE.vertices]}, "attributes must be arrays by name, .* got list"),
+        ({"attributes": {"a": [FINE.vertices, FINE.faces]}}, "a tuple of such values and the row"),
         ({"uv": np.zeros((3, 2)), "face_uv": FINE.faces}, "face_uv must hold indices from 0 to 2"),
         ({"uv": np.zeros((6, 2)), "face_uv": FINE.faces[:3]}, "one row per triangle .8., got 3"),
     ],
@@ -207,6 +219,46 @@ def test_lists_are_welcome(name: str) -> None:
     """Faces and positions may be nested lists."""
     refiner = refine.create(name, FINE.faces.tolist(), FINE.vertices.tolist())
     assert len(refiner.refine(FINE.vertices).triangles) >= 8
+
+
+@pytest.mark.parametrize("name", ["none", "kahler", "loop"])
+@pytest.mark.parametrize("faces", [[], ()])
+def test_empty_lists_are_no_triangles(name: str, faces: object) -> None:
+    """An empty list has no second dimension, and says what it means all the same."""
+    refiner = refine.create(name, faces, FINE.vertices)
+    assert len(refiner.refine(FINE.vertices).triangles) == 0
+
+
+@pytest.mark.parametrize("scheme", ["loop", "butterfly", "cubic"])
+@pytest.mark.parametrize("unit", [1e-6, 5e7])
+def test_units_of_length(unit: float, scheme: str) -> None:
+    """Whatever the unit, between the limits that binding sets, the same triangles come out."""
+    sheet = meshes.irregular(3)
+    deformed = meshes.wrinkled(sheet, 4)
+
+    def refined(scale: float) -> refine.RefinedMesh:
+        refiner = refine.create("kahler", sheet.faces, scale * sheet.vertices, scheme=scheme)
+        return refiner.refine(scale * deformed)
+
+    here, there = refined(1.0), refined(unit)
+    np.testing.assert_array_equal(there.triangles, here.triangles)
+    np.testing.assert_allclose(there.positions / unit, here.positions, atol=1e-5)
+    np.testing.assert_allclose(there.normals, here.normals, atol=1e-3)
+
+
+def test_frames_can_be_kept() -> None:
+    """Deep copies and pickles of a frame have arrays of their own, which no later frame touches."""
+    refiner = refine.create(
+        "kahler", FINE.faces, FINE.vertices, attributes={"rest": FINE.vertices}, threshold_once=0.0
+    )
+    refined = refiner.refine(FINE.vertices * [1.0, 1.0, 4.0])
+    kept = [copy.deepcopy(refined), pickle.loads(pickle.dumps(refined))]
+    expected = refined.positions.copy(), refined.attributes["rest"].copy()
+    refiner.refine(FINE.vertices)
+    for mesh in kept:
+        assert isinstance(mesh, refine.RefinedMesh)
+        np.testing.assert_array_equal(mesh.positions, expected[0])
+        np.testing.assert_array_equal(mesh.attributes["rest"], expected[1])
 
 
 def test_folder_can_be_lifted_out(tmp_path: Path) -> None:

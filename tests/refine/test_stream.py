@@ -253,3 +253,30 @@ def test_refiners_stay_where_they_are(copied: Callable[[refine.Refiner], object]
     refiner = refine.create("kahler", mesh.faces, mesh.vertices)
     with pytest.raises(TypeError, match=r"make one there with refine\.create"):
         copied(refiner)
+
+
+@pytest.mark.parametrize("number", [np.nan, np.inf, -1e15, 1e39])
+@pytest.mark.parametrize("name", ["none", "kahler", "loop"])
+def test_positions_that_are_no_numbers(name: str, number: float) -> None:
+    """What would overflow in single precision is refused; the refiner goes on as if never asked."""
+    mesh = meshes.octahedron()
+    refiner = refine.create(name, mesh.faces, mesh.vertices)
+    deformed = mesh.vertices * [1.0, 1.0, 4.0]
+    expected = refiner.refine(deformed).positions.copy()
+    broken = mesh.vertices.copy()
+    broken[3, 1] = number
+    with pytest.raises(ValueError, match=r"finite and below 1e\+15, but vertex 3 .*\(1 such"):
+        refiner.refine(broken)
+    np.testing.assert_array_equal(refiner.refine(deformed).positions, expected)
+
+
+@pytest.mark.parametrize("scheme", ["loop", "butterfly", "cubic", "detail"])
+def test_anything_below_the_limit_is_finite(scheme: str) -> None:
+    """A mesh that has blown up comes out as finite numbers, so nothing downstream sees a NaN."""
+    mesh = meshes.double_cone(60)
+    detail = {"detail": (mesh.vertices, mesh.faces)} if scheme == "detail" else {}
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, scheme=scheme, **detail)
+    blown = np.random.default_rng(5).uniform(-0.99e15, 0.99e15, mesh.vertices.shape)
+    refined = refiner.refine(blown)
+    assert np.isfinite(refined.positions).all()
+    assert np.isfinite(refined.normals).all()

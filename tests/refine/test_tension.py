@@ -85,6 +85,20 @@ def test_rigid_motion(scale: float) -> None:
     measured = Tension(mesh.faces, rest).measure(rest @ meshes.rotation(5).T + scale)
     assert measured.stretch.max() < 1e-5
     assert measured.compression.max() < 1e-5
+    assert not measured.direction.any()
+
+
+def test_flipped_triangles() -> None:
+    """Triangles that look the other way than the skin around them are as tense as they would be."""
+    mesh = meshes.open_grid(6, 5)
+    faces = mesh.faces.copy()
+    faces[::7] = faces[::7, ::-1]
+    stretched = mesh.vertices * [1.5, 0.8, 1.0]
+    measured = Tension(faces, mesh.vertices).measure(stretched)
+    used = np.linalg.norm(measured.direction, axis=1) > 0.0
+    assert used.mean() > 0.9  # a vertex between as much of both has no normal
+    np.testing.assert_allclose(measured.stretch[used], 0.5, atol=1e-5)
+    np.testing.assert_allclose(measured.compression[used], 0.2, atol=1e-5)
 
 
 def test_shear() -> None:
@@ -116,9 +130,9 @@ def test_inputs_stay_and_any_floats_do() -> None:
 @pytest.mark.parametrize(
     ("faces", "rest", "text"),
     [
-        ([[0, 1, 2]], [[0.0, 0.0]], r"rest_positions must be finite, of shape \(V, 3\)"),
-        ([[0, 1, 2]], np.full((3, 3), np.nan), "NaN or infinity"),
-        ([[0, 1, 3]], np.eye(3), "indices from 0 to 2, got 0 to 3"),
+        ([[0, 1, 2]], [[0.0, 0.0]], r"rest_positions must be numbers of shape \(V, 3\)"),
+        ([[0, 1, 2]], np.full((3, 3), np.nan), "rest_positions must be finite"),
+        ([[0, 1, 3]], np.eye(3), r"indices from 0 to 2 .* triangle 0 is \[0, 1, 3\]"),
         ([[0.0, 1.0, 2.0]], np.eye(3), "faces must be integers"),
     ],
 )
@@ -129,7 +143,12 @@ def test_bad_meshes(faces: npt.ArrayLike, rest: npt.ArrayLike, text: str) -> Non
 
 
 def test_bad_positions() -> None:
-    """A frame of another mesh is refused."""
+    """A frame of another mesh is refused, and one that is not finite, without harm to the next."""
     mesh = meshes.octahedron()
+    tension, broken = Tension(mesh.faces, mesh.vertices), mesh.vertices.copy()
+    broken[4, 1] = np.nan
+    with pytest.raises(ValueError, match=r"positions must be finite .* but vertex 4 is"):
+        tension.measure(broken)
+    assert not tension.measure(mesh.vertices).stretch.any()
     with pytest.raises(ValueError, match=r"positions must be floats of shape \(6, 3\)"):
         Tension(mesh.faces, mesh.vertices).measure(np.zeros((5, 3)))

@@ -149,8 +149,8 @@ def _sharpest_fold(positions: np.ndarray, triangles: np.ndarray) -> float:
     return float(np.arccos((pairs[:, 0] * pairs[:, 1]).sum(axis=1).min()))
 
 
-@pytest.mark.parametrize("levels", [0, 3, 1.5])
-def test_bad_levels(levels: float) -> None:
+@pytest.mark.parametrize("levels", [0, 3, 1.5, 2.0, "2"])
+def test_bad_levels(levels: object) -> None:
     """Only one or two levels are allowed."""
     mesh = meshes.triangle()
     with pytest.raises(ValueError, match="levels must be 1 or 2, got"):

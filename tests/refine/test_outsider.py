@@ -1,0 +1,171 @@
+"""What a stranger may do: any mesh with any options, judged by corners and sub-edges alone.
+
+The other properties look at one option each. Here all of them meet, in any numeric type and order
+in memory, and what comes out is judged in another way than by `refine.check`: the border of each
+triangle's pieces is walked, and along an edge all triangles must show the same bytes.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import refine
+from tests import meshes
+from tests.refine.cases import soups
+
+MESHES = st.one_of(
+    soups(),
+    st.builds(meshes.double_cone, st.integers(3, 60)).map(lambda m: (m.vertices, m.faces)),
+    st.builds(meshes.irregular, st.integers(0, 99), st.just(4), st.just(3), st.integers(0, 2)).map(
+        lambda m: (m.vertices, m.faces)
+    ),
+    st.sampled_from([make() for make in meshes.NAMED.values()]).map(
+        lambda m: (m.vertices, m.faces)
+    ),
+)
+CRITERIA = ("normal", "curvature", "rest", "silhouette", "screen", "bulge", "normal+rest")
+INDEX_TYPES = ("i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", ">i4")
+
+
+@st.composite
+def options(draw: st.DrawFn) -> dict[str, Any]:
+    """Options that go together."""
+    scheme = draw(st.sampled_from(["loop", "butterfly", "cubic", "detail"]))
+    blend = draw(st.sampled_from([None, False, True]))
+    return {
+        "scheme": scheme,
+        "criterion": draw(
+            st.sampled_from([c for c in CRITERIA if scheme != "loop" or c != "bulge"])
+        ),
+        "blend": blend,
+        "coherent": blend is not True and draw(st.booleans()),
+    }
+
+
+def in_other_order(array: npt.NDArray[Any], order: str) -> npt.NDArray[Any]:
+    """The same numbers, laid out otherwise in memory, and not to be written."""
+    if order == "fortran":
+        array = np.asfortranarray(array)
+    elif order == "reversed":
+        array = array[::-1].copy()[::-1]
+    elif order == "every other":
+        array = np.repeat(array, 2, axis=0)[::2]
+    view = array.view()
+    view.flags.writeable = False
+    return view
+
+
+def borders(
+    mesh: refine.RefinedMesh, face: list[int], pieces: npt.NDArray[Any], names: npt.NDArray[Any]
+) -> list[list[int]]:
+    """Rows along the three edges of an input triangle, walked along the border of its pieces."""
+    sides = Counter((int(t[i]), int(t[(i + 1) % 3])) for t in pieces for i in range(3))
+    assert max(sides.values()) == 1
+    following = {a: b for a, b in sides if (b, a) not in sides}
+    assert len(following) == sum((b, a) not in sides for a, b in sides)
+    (start,) = [row for row in following if names[row] == face[0]]
+    loop = [start]
+    while following[loop[-1]] != start:
+        loop.append(following[loop[-1]])
+        assert len(loop) <= 12
+    assert len(loop) == len(following)
+    places = [next(k for k, row in enumerate(loop) if names[row] == corner) for corner in face]
+    assert places == sorted(places)
+    loop.append(start)
+    ends = [*places[1:], len(loop) - 1]
+    return [loop[begin : end + 1] for begin, end in zip(places, ends, strict=True)]
+
+
+def assert_no_crack(
+    refiner: refine.Refiner, mesh: refine.RefinedMesh, faces: npt.NDArray[Any]
+) -> None:
+    """Along every edge of the input all triangles that have it show the same bytes."""
+    origins = refiner.origins()
+    is_vertex = origins.weights.max(axis=1) == 1.0
+    vertex = origins.vertices[np.arange(len(is_vertex)), origins.weights.argmax(axis=1)]
+    names = np.where(is_vertex, vertex, -1)
+    shown = np.concatenate([mesh.positions, mesh.normals], axis=1)
+    seen: dict[tuple[int, int], set[bytes]] = defaultdict(set)
+    counts: dict[tuple[int, int], int] = {}
+    for number, face in enumerate(faces.tolist()):
+        pieces = mesh.triangles[mesh.source == number].astype(np.int64)
+        if len(set(face)) < 3:
+            assert [names[pieces[0]].tolist()] == [face]
+            continue
+        for i, rows in enumerate(borders(mesh, face, pieces, names)):
+            a, b = face[i], face[(i + 1) % 3]
+            along = rows if a < b else rows[::-1]
+            seen[min(a, b), max(a, b)].add(shown[along].tobytes())
+            counts[min(a, b), max(a, b)] = len(rows) - 1
+    assert all(len(different) == 1 for different in seen.values())
+    splits = zip(refiner.edges.tolist(), refiner.splits.tolist(), strict=True)
+    assert {(min(e), max(e)): 2**split for e, split in splits} == counts
+
+
+@settings(max_examples=100)
+@given(
+    mesh=MESHES,
+    chosen=options(),
+    seed=st.integers(0, 2**16),
+    precision=st.sampled_from(["f2", "f4", "f8", ">f4", ">f8"]),
+    index=st.sampled_from(INDEX_TYPES),
+    order=st.sampled_from(["c", "fortran", "reversed", "every other"]),
+    textured=st.booleans(),
+)
+def test_anything_goes(
+    mesh: tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]],
+    chosen: dict[str, Any],
+    seed: int,
+    precision: str,
+    index: str,
+    order: str,
+    textured: bool,
+) -> None:
+    """Three frames of any mesh with any options: proper, no crack, and nothing is touched."""
+    generator = np.random.default_rng(seed)
+    rest = in_other_order(mesh[0].astype(precision), order)
+    faces = in_other_order(mesh[1].astype(index), order)
+    corner_rows = generator.integers(4, size=mesh[1].shape)
+    corner_values = generator.random((4, 2))
+    if chosen["scheme"] == "detail":
+        ball = meshes.octahedron()
+        chosen = {**chosen, "detail": (ball.vertices + 0.1, ball.faces)}
+    if textured:
+        chosen = {**chosen, "uv": corner_values, "face_uv": corner_rows}
+        chosen["attributes"] = {"weight": generator.random((len(rest), 3))}
+    refiner = refine.create("kahler", faces, rest, **chosen)
+    view = refine.View(generator.uniform(-5.0, 5.0, 3), 60.0)
+    for amplitude in (0.0, 0.5, 0.25):
+        deformed = meshes.wrinkled(meshes.Mesh(*mesh), seed, amplitude).astype(precision)
+        frame = in_other_order(deformed, order)
+        refined = refiner.refine(frame, view=view)
+        assert frame.tobytes() == deformed.tobytes()
+        refine.check(refiner, refined, frame)
+        assert_no_crack(refiner, refined, mesh[1])
+        if textured:
+            assert refined.uv is not None
+            assert_linear(refiner, refined, mesh[1], corner_values[corner_rows])
+    assert rest.tobytes() == mesh[0].astype(precision).tobytes()
+
+
+def assert_linear(
+    refiner: refine.Refiner,
+    mesh: refine.RefinedMesh,
+    faces: npt.NDArray[Any],
+    corner_values: npt.NDArray[np.float64],
+) -> None:
+    """Texture coordinates are those of their place in their own triangle, (F, 3, 2) at corners."""
+    origins = refiner.origins()
+    proper = np.array([len(set(face)) == 3 for face in faces.tolist()])[mesh.source]
+    triangles, source = mesh.triangles[proper], mesh.source[proper]
+    is_corner = origins.vertices[triangles][..., None] == faces[source][:, None, None, :]
+    places = (origins.weights[triangles][..., None] * is_corner).sum(axis=2)
+    expected = np.einsum("tci,tiu->tcu", places, corner_values[source])
+    assert mesh.uv is not None
+    np.testing.assert_allclose(mesh.uv[triangles], expected, rtol=0, atol=1e-5)
