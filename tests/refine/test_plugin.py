@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import importlib.metadata
-import subprocess
-import sys
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -207,25 +204,3 @@ def test_lists_are_welcome(name: str) -> None:
     """Faces and positions may be nested lists."""
     refiner = refine.create(name, FINE.faces.tolist(), FINE.vertices.tolist())
     assert len(refiner.refine(FINE.vertices).triangles) >= 8
-
-
-def test_folder_can_be_lifted_out(tmp_path: Path) -> None:
-    """Copied alone to another place under another name, the package imports and works."""
-    source = Path(refine.__file__).parent
-    target = tmp_path / "lifted"
-    target.mkdir()
-    for path in source.glob("*.py"):
-        (target / path.name).write_bytes(path.read_bytes())
-    code = (
-        "import numpy as np, lifted;"
-        "r = lifted.create('none', [[0, 1, 2]], np.eye(3));"
-        "print(len(r.refine(np.eye(3)).triangles))"
-    )
-    result = subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert result.stdout.split() == ["1"], result.stderr
