@@ -13,6 +13,9 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || { command -v sudo >/dev/null && sudo -n t
 OPENGL_PACKAGES := libegl1 libgl1 libgl1-mesa-dri
 SCREEN_PACKAGES := xvfb xauth xdotool
 
+# Tests start the command dozens of times: our modules are compiled once, whatever the machine says.
+unexport PYTHONDONTWRITEBYTECODE
+
 # $(call debian_packages,what needs them,packages): install where we may, else name the one command.
 define debian_packages
 	if command -v apt-get >/dev/null && { [ "$$(id -u)" = 0 ] || [ -n "$(SUDO)" ]; }; then \

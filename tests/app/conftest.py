@@ -32,8 +32,7 @@ def viewer() -> Iterator[Viewer]:
 def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Start from the neutral face with refinement on, in a folder of the test's own."""
     monkeypatch.chdir(tmp_path)
-    xdotool(viewer, "mousemove", 2, 2)
-    xdotool(viewer, "key", "Escape")
+    xdotool(viewer, "mousemove", 2, 2, "key", "Escape")
     script = replace(script_for(None, "face"), duration=0.5)
     viewer.session = type(viewer.session)(viewer.scene, script)
     viewer.scene.reset()

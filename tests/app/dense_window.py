@@ -26,7 +26,7 @@ SIZE = (1200, 800)
 def main() -> None:
     """Look at the window on a dense screen, or at the size that it chooses itself."""
     if sys.argv[1:2] == ["first"]:
-        with _screen_of(int(sys.argv[2])), Viewer(script_for(None, "face")) as viewer:
+        with _screen_of(int(sys.argv[2])), Viewer(script_for(None, "plane")) as viewer:
             settle(viewer)
             found = {"window": viewer.surface.window_size, "panel": viewer.picture_area[0]}
             print(json.dumps(found))

@@ -15,6 +15,7 @@ from click.testing import CliRunner, Result
 from PIL import Image
 
 from app.cli import main
+from app.scenes import SCENES, FaceScene
 from tests.heads import stranger
 
 SMILE = """
@@ -39,6 +40,21 @@ def smile(tmp_path: Path) -> Path:
     path = tmp_path / "smile.toml"
     path.write_text(SMILE)
     return path
+
+
+@pytest.fixture(scope="module")
+def face() -> FaceScene:
+    """The built-in face, with its light already baked."""
+    scene = FaceScene()
+    picture = scene.openness()
+    scene.openness = lambda: picture
+    return scene
+
+
+@pytest.fixture
+def ready_face(face: FaceScene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands that fail before a face moves need none of their own."""
+    monkeypatch.setitem(SCENES, "face", lambda: face)
 
 
 def test_a_script_becomes_a_film_and_a_sheet(smile: Path, tmp_path: Path) -> None:
@@ -155,6 +171,7 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["bench", "motion", "--reference", "nowhere"], "Directory 'nowhere' does not exist"),
     ],
 )
+@pytest.mark.usefixtures("ready_face")
 def test_mistakes_are_one_line(
     arguments: list[str], message: str, smile: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -246,6 +263,7 @@ def test_a_pose_needs_no_script(tmp_path: Path) -> None:
         (("--head", "no.obj", "--landmarks", "no.json"), "no.obj: no such mesh file"),
     ],
 )
+@pytest.mark.usefixtures("ready_face")
 def test_mistakes_of_poses_and_heads(
     tmp_path: Path, arguments: tuple[str, ...], message: str
 ) -> None:

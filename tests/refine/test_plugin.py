@@ -5,9 +5,6 @@ from __future__ import annotations
 import copy
 import importlib.metadata
 import pickle
-import subprocess
-import sys
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -259,25 +256,3 @@ def test_frames_can_be_kept() -> None:
         assert isinstance(mesh, refine.RefinedMesh)
         np.testing.assert_array_equal(mesh.positions, expected[0])
         np.testing.assert_array_equal(mesh.attributes["rest"], expected[1])
-
-
-def test_folder_can_be_lifted_out(tmp_path: Path) -> None:
-    """Copied alone to another place under another name, the package imports and works."""
-    source = Path(refine.__file__).parent
-    target = tmp_path / "lifted"
-    target.mkdir()
-    for path in source.glob("*.py"):
-        (target / path.name).write_bytes(path.read_bytes())
-    code = (
-        "import numpy as np, lifted;"
-        "r = lifted.create('none', [[0, 1, 2]], np.eye(3));"
-        "print(len(r.refine(np.eye(3)).triangles))"
-    )
-    result = subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert result.stdout.split() == ["1"], result.stderr
