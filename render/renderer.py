@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from .backdrop import Backdrop
 from .camera import OrbitCamera
-from .geometry import LineBuffer, ValueTexture
+from .geometry import LineBuffer, ValueTexture, checked_values
 from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
 from .shadow import TEXEL, ShadowMap
@@ -71,6 +71,21 @@ class Renderer:
         self._backdrop = Backdrop(self._gl)
         self._shadow: ShadowMap | None = None
         self._shadow_key: tuple[int, bytes] = (0, b"")
+
+    def release(self) -> None:
+        """Give back all that was compiled and uploaded here; streams and textures are not its own.
+
+        Streams that were drawn with these programs have to be released, too.
+        """
+        self.surface.make_current()
+        self.surface.layers.frame.use()  # not what is released: moderngl would bind it again
+        for owner in (self._parts, self._values, self._lines, self._backdrop):
+            owner.release()
+        for program in self._programs.values():
+            program.release()
+        self._programs.clear()
+        if self._shadow is not None:
+            self._shadow.release()
 
     def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
         """Lend arrays for a mesh of at most so many vertices and triangles (see Stream)."""
@@ -128,42 +143,54 @@ class Renderer:
         _check_texture(texture or wrinkles, stream)
         if style.wrinkles <= 0.0 or style.shading is not Shading.PIXEL or not stream.has_wrinkles:
             wrinkles = None
-        is_textured = texture is not None and style.textured
+        if not style.textured:
+            texture = None
+        is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
         sight = self._sight(camera, viewport, clip)
-        if style.colour_by is not ColourBy.NONE:
-            self._values.upload(_checked_values(values, stream.triangle_count))
+        if is_coloured:
+            self._values.upload(checked_values(values, stream.triangle_count))
         if style.shadows:
             self._draw_shadow(stream, sight)
-        is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
         shares = [Share.ALL] if wrinkles is None or is_coloured else [Share.WRINKLED, Share.SMOOTH]
         drawn = []
         for share in shares:
             shown = None if share is Share.SMOOTH else wrinkles
-            program = self._program(
-                "surface.glsl",
-                style.shading.name,
-                *(["WIREFRAME"] if style.wireframe else []),
-                *_DEFINES[style.colour_by],
-                *(["TEXTURED"] if is_textured else []),
-                *(["SHADOWS"] if style.shadows else []),
-                *(["WRINKLES"] if shown is not None else []),
-            )
+            program = self._surface_program(style, texture, shown)
             if not self._aim(program, sight, stream.corners, np.eye(4)):
                 return
-            self._set_surface(program, sight, style, texture if is_textured else None, shown)
+            self._set_surface(program, sight, style, texture, shown)
             drawn.append((program, share))
-        if self.surface.is_software:
-            # What turns away is mostly hidden: drawn last, it is not shaded at all there.
-            self._gl.enable(moderngl.CULL_FACE)
-            for culled in ("back", "front"):
-                self._gl.cull_face = culled
-                for program, share in drawn:
-                    stream.draw(program, share)
-            self._gl.cull_face = "back"
-            self._gl.disable(moderngl.CULL_FACE)
-        else:
-            for program, share in drawn:
+        self._draw_sides(stream, drawn)
+
+    def _draw_sides(self, stream: Stream, shares: Sequence[tuple[moderngl.Program, Share]]) -> None:
+        """Draw shares of the mesh; where software draws, what turns to the eye goes first.
+
+        What turns away is mostly hidden: drawn last, it is not shaded at all there.
+        """
+        if not self.surface.is_software:
+            for program, share in shares:
                 stream.draw(program, share)
+            return
+        self._gl.enable(moderngl.CULL_FACE)
+        for culled in ("back", "front"):
+            self._gl.cull_face = culled
+            for program, share in shares:
+                stream.draw(program, share)
+        self._gl.cull_face = "back"
+        self._gl.disable(moderngl.CULL_FACE)
+
+    def _surface_program(
+        self, style: Style, texture: Texture | None, wrinkles: WrinkleMap | None
+    ) -> moderngl.Program:
+        return self._program(
+            "surface.glsl",
+            style.shading.name,
+            *(["WIREFRAME"] if style.wireframe else []),
+            *_DEFINES[style.colour_by],
+            *(["TEXTURED"] if texture is not None else []),
+            *(["SHADOWS"] if style.shadows else []),
+            *(["WRINKLES"] if wrinkles is not None else []),
+        )
 
     def _set_surface(
         self,
@@ -362,16 +389,3 @@ def _check_texture(texture: Texture | WrinkleMap | None, stream: Stream) -> None
             f"a texture meets a stream of {columns} columns; it needs texture coordinates: lend a "
             "stream of 8 columns (position, normal, u v), or draw without texture"
         )
-
-
-def _checked_values(
-    values: npt.NDArray[np.uint8] | None, triangle_count: int
-) -> npt.NDArray[np.uint8]:
-    if values is None:
-        raise ValueError("the style colours by values, so draw_mesh needs values, one per triangle")
-    if values.shape != (triangle_count,) or values.dtype != np.uint8:
-        raise ValueError(
-            f"values has shape {values.shape} and dtype {values.dtype}; it must be "
-            f"({triangle_count},) uint8, one per uploaded triangle"
-        )
-    return values

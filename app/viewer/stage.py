@@ -82,6 +82,9 @@ class Stage:
             stream.release()
         if self._texture is not None:
             self._texture.release()
+        if self._wrinkling is not None:
+            self._wrinkling.map.release()
+        self.renderer.release()
 
     @contextmanager
     def timed(self, name: str) -> Iterator[None]:
