@@ -179,6 +179,15 @@ class Stage:
             viewport=shot.viewport,
             clip=shot.clip,
         )
+        if not self.surface.samples:
+            self.renderer.draw_outline(
+                shot.picture.stream,
+                camera,
+                style,
+                viewport=shot.viewport,
+                clip=shot.clip,
+                texture=self._texture,
+            )
 
     def _overlays(
         self, look: Look, camera: render.OrbitCamera, pointed: Collection[str]

@@ -58,6 +58,7 @@ def draw_all(surface: render.Surface) -> np.ndarray:
         renderer.draw_background(style)
         renderer.draw_mesh(stream, camera, style, values=values, texture=texture, wrinkles=wrinkles)
         renderer.draw_parts([Ball()], STILL, camera, style)
+        renderer.draw_outline(stream, camera, style, texture=texture)
         renderer.draw_lines([shape.positions[:5]], (1.0, 0.0, 0.0), camera)
         surface.end()
     frame = surface.read()
