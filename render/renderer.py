@@ -132,7 +132,7 @@ class Renderer:
             uploaded let them show; per-pixel shading alone has them. Needs 8 columns, too.
         """
         _check_texture(texture or wrinkles, stream)
-        if style.wrinkles <= 0.0 or style.shading is not Shading.PIXEL or not stream.has_wrinkles:
+        if not (style.shows_wrinkles and stream.has_wrinkles):
             wrinkles = None
         if not style.textured:
             texture = None

@@ -126,8 +126,9 @@ class Stage:
     ) -> None:
         """Draw the scene as it is now; the surface's `detail` says how finely."""
         shots = self.shots(look, viewport)
+        style = style_of(look, background)
         amounts = None
-        if self._wrinkling is not None and look.wrinkles > 0.0:
+        if self._wrinkling is not None and style.shows_wrinkles:
             with self.timed("refinement"):
                 amounts = self._wrinkling.amounts(self.scene.positions)
         for shot in shots:
@@ -137,7 +138,6 @@ class Stage:
                 shot.picture.upload(amounts)
         with self.timed("draw"):
             self.surface.begin()
-            style = style_of(look, background)
             overlays = self._overlays(look, camera, pointed)
             self.renderer.draw_background(style, viewport)
             for shot in shots:
