@@ -103,7 +103,7 @@ class Pipeline:
         """The lower half: refine the mesh for each picture, and draw it into its viewport."""
         bones = self.scene.bone_transforms()
         amounts = None
-        if self.wrinkling is not None and style.wrinkles > 0.0:
+        if self.wrinkling is not None and style.shows_wrinkles:
             amounts = self.wrinkling.amounts(self.scene.positions)
         for picture, viewport in zip(self.pictures, viewports, strict=True):
             picture.refine(self.scene.positions, camera, viewport)

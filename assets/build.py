@@ -5,7 +5,11 @@ shipped file is therefore part of the package, and a test compares it with a fre
 """
 
 import argparse
+import errno
+import os
+import signal
 import sys
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -24,9 +28,11 @@ from .generator.solids import Solid
 from .generator.unwrap import unwrap
 from .generator.wrinkling import paint_wrinkles
 from .loading import HEAD_FILE, fingerprint, load_head
-from .model import Head, Tone
+from .model import AssetError, Head, Tone
 from .pictures import write_picture
 
+ASIDE = ".risorius-"  # what the name of a folder begins with in which files are made
+SMALLEST, LARGEST = 64, 8192  # [texels] of picture and wrinkles
 MIRROR = np.array([-1.0, 1.0, 1.0])
 
 
@@ -127,23 +133,62 @@ def build_wrinkles(head: Head, size: int) -> dict[str, npt.NDArray[np.generic]]:
 
 
 def main(arguments: list[str]) -> None:
-    """Write data files and picture, to the place where `load` looks or to the one given."""
+    """Write data files and picture, to the place where `load` looks or to the one given.
+
+    They are made in a folder beside it and moved when all are whole. OSError where that cannot be.
+    """
     parser = argparse.ArgumentParser(
         prog="python -m assets.build", description=(__doc__ or "").splitlines()[0]
     )
     parser.add_argument("file", nargs="?", type=Path, default=HEAD_FILE, help="the data file")
     tones = [tone.value for tone in Tone]
     parser.add_argument("--tone", choices=tones, default=Tone.MEDIUM_LIGHT.value)
-    parser.add_argument("--size", type=int, default=SIZE, help="of picture and wrinkles [texels]")
+    parser.add_argument("--size", type=_size, default=SIZE, help="of picture and wrinkles [texels]")
     given = parser.parse_args(arguments)
+    if given.file.is_dir():
+        raise IsADirectoryError(errno.EISDIR, "is a folder; name a file", str(given.file))
     given.file.parent.mkdir(parents=True, exist_ok=True)
-    np.savez_compressed(given.file, allow_pickle=False, **build_head())
-    head = load_head(given.file)
-    np.savez_compressed(head.finer_file, allow_pickle=False, **build_finer(head))
-    np.savez_compressed(head.wrinkles_file, allow_pickle=False, **build_wrinkles(head, given.size))
-    picture = paint_skin(head, tone=Tone(given.tone), size=given.size)
-    write_picture(head.albedo_file, picture)
+    with tempfile.TemporaryDirectory(dir=given.file.parent, prefix=ASIDE) as aside:
+        _write(Path(aside) / given.file.name, tone=Tone(given.tone), size=given.size)
+        for made in Path(aside).iterdir():
+            os.replace(made, given.file.parent / made.name)
+
+
+def _write(file: Path, *, tone: Tone, size: int) -> None:
+    """Build everything into `file` and the files that go with it."""
+    _save(file, build_head())
+    head = load_head(file)
+    _save(head.finer_file, build_finer(head))
+    _save(head.wrinkles_file, build_wrinkles(head, size))
+    write_picture(head.albedo_file, paint_skin(head, tone=tone, size=size))
+
+
+def _save(path: Path, arrays: dict[str, npt.NDArray[np.generic]]) -> None:
+    with path.open("wb") as file:  # numpy would add an end to the name
+        np.savez_compressed(file, allow_pickle=False, **arrays)
+
+
+def _size(text: str) -> int:
+    size = int(text) if text.isdecimal() else 0
+    if not SMALLEST <= size <= LARGEST:
+        raise argparse.ArgumentTypeError(f"'{text}' is no size; write {SMALLEST} to {LARGEST}")
+    return size
+
+
+def run(arguments: list[str]) -> None:
+    """Run the program; what the user can mend is told in one line, with exit code 2."""
+    try:
+        main(arguments)
+    except (OSError, AssetError) as error:
+        words = [str(error)]
+        if isinstance(error, OSError) and error.strerror:
+            words = [*([str(error.filename)] if error.filename else []), error.strerror]
+        print(f"assets.build: {': '.join(words)}", file=sys.stderr)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        print("assets.build: stopped", file=sys.stderr)
+        sys.exit(128 + signal.SIGINT)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    run(sys.argv[1:])

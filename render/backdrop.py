@@ -6,7 +6,7 @@ against 8 ms at 1280 x 720), and a tenth of a copy of a part, which is no plain 
 
 import moderngl
 
-from .layers import Layers, Rectangle, overlap
+from .layers import Layers, Rectangle, overlap, release_target
 from .programs import compile_program
 from .style import Background
 
@@ -53,9 +53,14 @@ class Backdrop:
         self._program["edge"] = background.edge
         self._triangle.render(moderngl.TRIANGLES, vertices=3)
 
+    def release(self) -> None:
+        """Give everything back to OpenGL."""
+        self._forget()
+        self._triangle.release()
+        self._program.release()
+
     def _forget(self) -> None:
         if self._store is not None:
-            for attachment in self._store.color_attachments:
-                attachment.release()
-            self._store.release()
+            release_target(self._store)
+            self._store = None
         self._stored.clear()

@@ -41,6 +41,26 @@ class ValueTexture:
             self._texture.use(unit)
         return unit
 
+    def release(self) -> None:
+        """Give the texture back to OpenGL; the next upload makes another."""
+        if self._texture is not None:
+            self._texture.release()
+        self._texture, self._rows = None, self._rows[:0]
+
+
+def checked_values(
+    values: npt.NDArray[np.uint8] | None, triangle_count: int
+) -> npt.NDArray[np.uint8]:
+    """The numbers to colour so many triangles by; ValueError where they are no such thing."""
+    if values is None:
+        raise ValueError("the style colours by values, so draw_mesh needs values, one per triangle")
+    if values.shape != (triangle_count,) or values.dtype != np.uint8:
+        raise ValueError(
+            f"values has shape {values.shape} and dtype {values.dtype}; it must be "
+            f"({triangle_count},) uint8, one per uploaded triangle"
+        )
+    return values
+
 
 class LineBuffer:
     """Polylines as coloured segments, rewritten whenever lines are drawn."""
@@ -84,10 +104,15 @@ class LineBuffer:
         if self._array is not None:
             self._array.render(moderngl.LINES, vertices=self._index_count)
 
-    def _allocate(self, program: moderngl.Program, vertex_bytes: int, index_bytes: int) -> None:
+    def release(self) -> None:
+        """Give everything back to OpenGL; the next upload makes it anew."""
         for resource in (self._array, self._vertices, self._indices):
             if resource is not None:
                 resource.release()
+        self._array = self._vertices = self._indices = None
+
+    def _allocate(self, program: moderngl.Program, vertex_bytes: int, index_bytes: int) -> None:
+        self.release()
         self._vertices = self._gl.buffer(reserve=vertex_bytes, dynamic=True)
         self._indices = self._gl.buffer(reserve=index_bytes, dynamic=True)
         self._array = self._gl.vertex_array(

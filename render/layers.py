@@ -127,6 +127,14 @@ class Layers:
             buffer.release()
 
 
+def release_target(target: moderngl.Framebuffer) -> None:
+    """Give a framebuffer of one's own back to OpenGL, with what was drawn into."""
+    for attachment in (*target.color_attachments, target.depth_attachment):
+        if attachment is not None:
+            attachment.release()
+    target.release()
+
+
 def overlap(first: Rectangle, second: Rectangle) -> bool:
     """Whether two rectangles share a pixel."""
     return (

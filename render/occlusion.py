@@ -13,7 +13,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .layers import Layers, Rectangle
+from .layers import Layers, Rectangle, release_target
 from .programs import compile_program
 
 BLOCK = 8  # pixels each way
@@ -69,10 +69,9 @@ class DepthReader:
 
     def release(self) -> None:
         """Give everything back to OpenGL."""
-        for attachment in self._target.color_attachments:
-            attachment.release()
-        for resource in (self._target, self._triangle, self._program):
-            resource.release()
+        release_target(self._target)
+        self._triangle.release()
+        self._program.release()
 
 
 class ProjectedFaces:

@@ -7,8 +7,9 @@ Programs are compiled on first use, one per combination of shading and options.
 Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the figures are shaded).
 """
 
+import contextlib
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import moderngl
@@ -17,37 +18,26 @@ import numpy.typing as npt
 
 from .backdrop import Backdrop
 from .camera import OrbitCamera
-from .geometry import LineBuffer, ValueTexture
+from .geometry import LineBuffer, ValueTexture, checked_values
+from .materials import COLOUR_DEFINES, TO_KEY, set_palette, set_part, set_skin
+from .outline import Outline
 from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
 from .shadow import TEXEL, ShadowMap
 from .sight import Sight
 from .stream import Share, Stream
-from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, Colour, ColourBy, Shading, Style, linear
+from .style import Colour, ColourBy, Shading, Style
 from .surface import Surface
 from .texture import Texture
 from .wrinkles import WrinkleMap
 
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 
-SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
 SHADOW_OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
 SHADOW_REACH = 2.0 * TEXEL  # how far the shadow's look-up reaches to each side
-TO_KEY = (-0.5300, 0.6300, 0.5677)  # unit vector in view space: over the viewer's left shoulder
 
 _VALUE_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the layers use 1
 _WRINKLE_UNIT = 5  # 4 belongs to a window's enlargement
-_PALETTE = np.array([linear(colour) for colour in SPLIT_PALETTE], np.float32)
-_RAMPS = {
-    kind: np.array([(*linear(colour), cover) for colour, cover in ramp], np.float32)
-    for kind, ramp in ((ColourBy.AMOUNT, AMOUNT_RAMP), (ColourBy.SIGNED, SIGNED_RAMP))
-}
-_DEFINES = {
-    ColourBy.NONE: (),
-    ColourBy.SPLITS: ("VALUES", "SPLITS"),
-    ColourBy.AMOUNT: ("VALUES", "RAMP"),
-    ColourBy.SIGNED: ("VALUES", "RAMP"),
-}
 # Colour as usual; the layer starts out transparent and collects premultiplied colour.
 _PREMULTIPLYING_BLEND: Any = (
     moderngl.SRC_ALPHA,
@@ -69,8 +59,24 @@ class Renderer:
         self._values = ValueTexture(self._gl)
         self._lines = LineBuffer(self._gl)
         self._backdrop = Backdrop(self._gl)
+        self._outline = Outline(self._gl)
         self._shadow: ShadowMap | None = None
         self._shadow_key: tuple[int, bytes] = (0, b"")
+
+    def release(self) -> None:
+        """Give back all that was compiled and uploaded here; streams and textures are not its own.
+
+        Streams that were drawn with these programs have to be released, too.
+        """
+        self.surface.make_current()
+        self.surface.layers.frame.use()  # not what is released: moderngl would bind it again
+        for owner in (self._parts, self._values, self._lines, self._backdrop, self._outline):
+            owner.release()
+        for program in self._programs.values():
+            program.release()
+        self._programs.clear()
+        if self._shadow is not None:
+            self._shadow.release()
 
     def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
         """Lend arrays for a mesh of at most so many vertices and triangles (see Stream)."""
@@ -126,44 +132,84 @@ class Renderer:
             uploaded let them show; per-pixel shading alone has them. Needs 8 columns, too.
         """
         _check_texture(texture or wrinkles, stream)
-        if style.wrinkles <= 0.0 or style.shading is not Shading.PIXEL or not stream.has_wrinkles:
+        if not (style.shows_wrinkles and stream.has_wrinkles):
             wrinkles = None
-        is_textured = texture is not None and style.textured
+        if not style.textured:
+            texture = None
+        is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
         sight = self._sight(camera, viewport, clip)
-        if style.colour_by is not ColourBy.NONE:
-            self._values.upload(_checked_values(values, stream.triangle_count))
+        if is_coloured:
+            self._values.upload(checked_values(values, stream.triangle_count))
         if style.shadows:
             self._draw_shadow(stream, sight)
-        is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
         shares = [Share.ALL] if wrinkles is None or is_coloured else [Share.WRINKLED, Share.SMOOTH]
         drawn = []
         for share in shares:
             shown = None if share is Share.SMOOTH else wrinkles
-            program = self._program(
-                "surface.glsl",
-                style.shading.name,
-                *(["WIREFRAME"] if style.wireframe else []),
-                *_DEFINES[style.colour_by],
-                *(["TEXTURED"] if is_textured else []),
-                *(["SHADOWS"] if style.shadows else []),
-                *(["WRINKLES"] if shown is not None else []),
-            )
+            program = self._surface_program(style, texture, shown)
             if not self._aim(program, sight, stream.corners, np.eye(4)):
                 return
-            self._set_surface(program, sight, style, texture if is_textured else None, shown)
+            self._set_surface(program, sight, style, texture, shown)
             drawn.append((program, share))
-        if self.surface.is_software:
-            # What turns away is mostly hidden: drawn last, it is not shaded at all there.
-            self._gl.enable(moderngl.CULL_FACE)
-            for culled in ("back", "front"):
-                self._gl.cull_face = culled
-                for program, share in drawn:
-                    stream.draw(program, share)
-            self._gl.cull_face = "back"
-            self._gl.disable(moderngl.CULL_FACE)
-        else:
-            for program, share in drawn:
+        self._draw_sides(stream, drawn)
+
+    def draw_outline(
+        self,
+        stream: Stream,
+        camera: OrbitCamera,
+        style: Style,
+        *,
+        viewport: Viewport | None = None,
+        clip: Viewport | None = None,
+        texture: Texture | None = None,
+    ) -> None:
+        """Smooth the edges of a mesh that was drawn just now, where pixels have a single sample.
+
+        Draw it after the parts. Flat shading, colours by values and wireframes stay as they are.
+        """
+        is_smooth = style.shading is not Shading.FLAT and not style.wireframe
+        if not is_smooth or style.colour_by is not ColourBy.NONE or not stream.triangle_count:
+            return
+        texture = texture if style.textured else None
+        sight = self._sight(camera, viewport, clip)
+        if not self._outline.upload(stream, sight):
+            return
+        program = self._surface_program(style, texture, None, "STRIP")
+        if self._aim(program, sight, stream.corners, np.eye(4)):
+            self._set_surface(program, sight, style, texture, None)
+            with self._blending():
+                self._outline.draw(program)
+
+    def _draw_sides(self, stream: Stream, shares: Sequence[tuple[moderngl.Program, Share]]) -> None:
+        """Draw shares of the mesh; where software draws, what turns to the eye goes first.
+
+        What turns away is mostly hidden: drawn last, it is not shaded at all there.
+        """
+        if not self.surface.is_software:
+            for program, share in shares:
                 stream.draw(program, share)
+            return
+        self._gl.enable(moderngl.CULL_FACE)
+        for culled in ("back", "front"):
+            self._gl.cull_face = culled
+            for program, share in shares:
+                stream.draw(program, share)
+        self._gl.cull_face = "back"
+        self._gl.disable(moderngl.CULL_FACE)
+
+    def _surface_program(
+        self, style: Style, texture: Texture | None, wrinkles: WrinkleMap | None, *more: str
+    ) -> moderngl.Program:
+        return self._program(
+            "surface.glsl",
+            style.shading.name,
+            *(["WIREFRAME"] if style.wireframe else []),
+            *COLOUR_DEFINES[style.colour_by],
+            *(["TEXTURED"] if texture is not None else []),
+            *(["SHADOWS"] if style.shadows else []),
+            *(["WRINKLES"] if wrinkles is not None else []),
+            *more,
+        )
 
     def _set_surface(
         self,
@@ -174,7 +220,7 @@ class Renderer:
         wrinkles: WrinkleMap | None,
     ) -> None:
         """Set what the mesh's program asks for beside matrices."""
-        _set_skin(program, style)
+        set_skin(program, style)
         if style.shadows:
             self._set_shadow(program, sight)
         if style.wireframe:
@@ -191,10 +237,7 @@ class Renderer:
             program["wrinkle_strength"] = style.wrinkles
         if style.colour_by is not ColourBy.NONE:
             program["triangle_values"] = self._values.bind(_VALUE_UNIT)
-            if style.colour_by is ColourBy.SPLITS:
-                write_uniform(program, "split_palette", _PALETTE)
-            else:
-                write_uniform(program, "ramp", _RAMPS[style.colour_by])
+            set_palette(program, style.colour_by)
 
     def draw_parts(
         self,
@@ -223,7 +266,7 @@ class Renderer:
             placed = self._parts.seen(placed, sight, self.surface.layers)
         for buffers, transform in placed:
             if self._aim(program, sight, buffers.corners, transform):
-                _set_part(program, buffers.part.shine)
+                set_part(program, buffers.part.shine)
                 buffers.draw(program)
 
     def draw_lines(
@@ -254,16 +297,22 @@ class Renderer:
         program["half_width"] = 0.5 * width
         if touched[2] < 1 or touched[3] < 1:
             return
-        gl, layers = self._gl, self.surface.layers
-        layers.use_layer(sight.viewport, touched)
+        self.surface.layers.use_layer(sight.viewport, touched)
+        with self._blending():
+            for depth_func, opacity in ((">", hidden_opacity), ("<=", 1.0)):
+                if opacity > 0.0:
+                    self._gl.depth_func = depth_func
+                    program["opacity"] = opacity
+                    self._lines.draw()
+
+    @contextlib.contextmanager
+    def _blending(self) -> Iterator[None]:
+        """What this block draws lies over what is there, by its opacity, and hides nothing."""
+        gl = self._gl
         gl.enable(moderngl.BLEND)
         gl.blend_func = _PREMULTIPLYING_BLEND
         gl.fbo.depth_mask = False
-        for depth_func, opacity in ((">", hidden_opacity), ("<=", 1.0)):
-            if opacity > 0.0:
-                gl.depth_func = depth_func
-                program["opacity"] = opacity
-                self._lines.draw()
+        yield
         gl.fbo.depth_mask = True
         gl.depth_func = "<="
         gl.disable(moderngl.BLEND)
@@ -337,24 +386,6 @@ class Renderer:
         program["shadow_map"] = self._shadow.bind(_SHADOW_UNIT)
 
 
-def _set_skin(program: moderngl.Program, style: Style) -> None:
-    program["to_key"] = TO_KEY
-    if "albedo" in program:  # not where a texture takes its place
-        program["albedo"] = linear(style.albedo)
-    program["inner_albedo"] = linear(style.inner_albedo)
-    program["subsurface"] = style.scattering
-    program["gloss"] = 0.26 * style.gloss
-    program["sharpness"] = SKIN_SHARPNESS
-
-
-def _set_part(program: moderngl.Program, shine: float) -> None:
-    """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights."""
-    program["to_key"] = TO_KEY
-    program["subsurface"] = 0.3
-    program["gloss"] = 0.04 + 0.9 * shine * shine
-    program["sharpness"] = 20.0 * 40.0**shine
-
-
 def _check_texture(texture: Texture | WrinkleMap | None, stream: Stream) -> None:
     columns = stream.vertices.shape[1]
     if texture is not None and columns != 8:
@@ -362,16 +393,3 @@ def _check_texture(texture: Texture | WrinkleMap | None, stream: Stream) -> None
             f"a texture meets a stream of {columns} columns; it needs texture coordinates: lend a "
             "stream of 8 columns (position, normal, u v), or draw without texture"
         )
-
-
-def _checked_values(
-    values: npt.NDArray[np.uint8] | None, triangle_count: int
-) -> npt.NDArray[np.uint8]:
-    if values is None:
-        raise ValueError("the style colours by values, so draw_mesh needs values, one per triangle")
-    if values.shape != (triangle_count,) or values.dtype != np.uint8:
-        raise ValueError(
-            f"values has shape {values.shape} and dtype {values.dtype}; it must be "
-            f"({triangle_count},) uint8, one per uploaded triangle"
-        )
-    return values

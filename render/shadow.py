@@ -12,6 +12,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from .layers import release_target
 from .programs import compile_program, write_uniform
 from .sight import Sight
 from .stream import Stream
@@ -47,6 +48,11 @@ class ShadowMap:
         gl.viewport, gl.scissor = (0, 0, RESOLUTION, RESOLUTION), None
         self._target.clear(depth=1.0)
         stream.draw(self._program)
+
+    def release(self) -> None:
+        """Give everything back to OpenGL."""
+        release_target(self._target)
+        self._program.release()
 
     def bind(self, unit: int) -> int:
         """Bind the depth texture to a texture unit, and return that unit."""

@@ -36,6 +36,9 @@ class ColourBy(Enum):
 SKIN: Colour = (0.79, 0.625, 0.545)
 SKIN_LIGHT: Colour = (0.88, 0.75, 0.685)
 SKIN_DARK: Colour = (0.47, 0.325, 0.255)
+FLESH: Colour = (0.45, 0.19, 0.17)  # inside of lids and mouth
+INNER_SHARE = 0.75  # of a cold albedo, on its back side
+WARM = 0.8  # from which on an albedo is that of skin
 CLAY: Colour = (0.74, 0.74, 0.73)  # like the plain grey of the paper's pictures
 
 # Colour of a triangle whose edges have 1..6 splits in all; 0 keeps the albedo. Green to indigo,
@@ -89,7 +92,7 @@ class Style:
     colour_by: ColourBy = ColourBy.NONE
     albedo: Colour = SKIN  # of the front side
     textured: bool = True  # a texture, where there is one, takes the place of the albedo
-    inner_albedo: Colour = (0.45, 0.19, 0.17)  # of the back side: inside of lids and mouth
+    inner_albedo: Colour | None = None  # of the back side; None: by how warm the front's is
     subsurface: float | None = (
         None  # 0 = hard terminator, 1 = skin; None: by how warm the albedo is
     )
@@ -105,10 +108,29 @@ class Style:
     @property
     def scattering(self) -> float:
         """How far light bleeds past the terminator: `subsurface`, or from the albedo's warmth."""
-        if self.subsurface is not None:
-            return self.subsurface
+        return max(self._warmth, 0.25) if self.subsurface is None else self.subsurface
+
+    @property
+    def inside(self) -> Colour:
+        """The albedo of the back side: red inside of lids and mouth, darker clay behind clay."""
+        if self.inner_albedo is not None:
+            return self.inner_albedo
+        warmth = min(self._warmth / WARM, 1.0)
+        red, green, blue = (
+            warmth * flesh + (1.0 - warmth) * INNER_SHARE * front
+            for flesh, front in zip(FLESH, self.albedo, strict=True)
+        )
+        return red, green, blue
+
+    @property
+    def shows_wrinkles(self) -> bool:
+        """Whether anything of a map of wrinkles is to be seen: only pixel shading has them."""
+        return self.wrinkles > 0.0 and self.shading is Shading.PIXEL
+
+    @property
+    def _warmth(self) -> float:
         red, _, blue = self.albedo
-        return min(max((red - blue) / 0.25, 0.25), 1.0)
+        return min(max((red - blue) / 0.25, 0.0), 1.0)
 
 
 def linear(srgb: Colour | npt.NDArray[Any]) -> Any:

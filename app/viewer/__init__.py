@@ -8,6 +8,7 @@ touch.py      the mouse in the picture
 actions.py    every key and menu, as data
 panels/       what stands around the picture
 quality.py, clock.py    the two that keep it smooth: detail by need, physics by steps
+recovery.py, unsaved.py    unsaved work outlives a crash
 """
 
 from . import gui  # first, before anything opens a window: see there

@@ -121,6 +121,11 @@ def toggle_film(viewer: Viewer) -> None:
         viewer.messages.say(f"{film.target.name}: {film.seconds:.1f} s in {film.target.parent}")
 
 
+def recover(viewer: Viewer) -> None:
+    """Go on with what a window before this one has left behind, unless work would be lost."""
+    viewer.question.before(viewer, "Recover", lambda: viewer.recovery.take_found(viewer.session))
+
+
 def close_politely(viewer: Viewer) -> None:
     """Close the window, unless work would be lost: then ask first."""
 

@@ -10,17 +10,16 @@ from __future__ import annotations
 import render
 
 FULL = render.Detail(samples=4, scale=1.0)
-# A little blurred with smooth edges, then rough edges: those are seen less than a blurred face.
-# Two samples would not help: software draws four. Processor time of software OpenGL at 940 x 660,
-# as parts of the first: 1, 0.76, 0.38, 0.35, 0.29 (measured 2026-11-21).
+# One sample, outlines smoothed by strips (render/outline.py); then a little blurred, too.
+# Two samples would not help: software draws four. Processor time of a whole frame at 1280 x 720,
+# as parts of the first: 1, 0.57, 0.46, 0.41 (measured 2026-11-21); with four samples at 0.75: 0.8.
 LEVELS = (
     FULL,
-    render.Detail(samples=4, scale=0.75),
     render.Detail(samples=0, scale=1.0),
     render.Detail(samples=0, scale=0.75),
     render.Detail(samples=0, scale=0.6),
 )
-FIRST_ON_SOFTWARE = 2  # lest the first second stutters
+FIRST_ON_SOFTWARE = 1  # lest the first second stutters
 TOO_SLOW = 0.045  # [s] a frame; more than 20 a second are promised
 AMPLE = 0.024  # [s] a frame at which the next finer level is safe
 PATIENCE = 4  # frames in a row that decide

@@ -15,6 +15,7 @@ class Recorder:
     def __init__(self) -> None:
         self.time = 0.0
         self._tracks: dict[str, list[tuple[float, float]]] = {}
+        self._drafts: dict[str, tuple[list[tuple[float, float]], int]] = {}
 
     def take(self, seconds: float, values: Mapping[str, float]) -> None:
         """`seconds` went by since the last call, and the controls are now at `values`."""
@@ -32,18 +33,35 @@ class Recorder:
 
     def script(self, *, title: str, scene: str, camera: str | None) -> Script | None:
         """What was taken, or None where nothing was."""
-        if self.time <= 0.0 or not self._tracks:
+        tracks = {name: straightened(track) for name, track in self._tracks.items()}
+        return self._script_of(tracks, title, scene, camera)
+
+    def draft(self, *, title: str, scene: str, camera: str | None) -> Script | None:
+        """The same so far, with a few more keys: only what is new since the last one is thinned."""
+        for name, track in self._tracks.items():
+            kept, count = self._drafts.get(name, (track[:1], 1))
+            if len(track) > count:
+                kept += straightened(track[count - 1 :])[1:]
+            self._drafts[name] = kept, len(track)
+        tracks = {name: kept for name, (kept, _) in self._drafts.items()}
+        return self._script_of(tracks, title, scene, camera)
+
+    def _script_of(
+        self,
+        tracks: Mapping[str, list[tuple[float, float]]],
+        title: str,
+        scene: str,
+        camera: str | None,
+    ) -> Script | None:
+        if self.time <= 0.0 or not tracks:
             return None
-        tracks = {
+        channels = {
             name: Channel(
-                tuple(
-                    Key(rounded(time), rounded(value), "linear")
-                    for time, value in straightened(track)
-                )
+                tuple(Key(rounded(time), rounded(value), "linear") for time, value in track)
             )
-            for name, track in sorted(self._tracks.items())
+            for name, track in sorted(tracks.items())
         }
-        return Script(title, rounded(self.time), title, scene=scene, camera=camera, tracks=tracks)
+        return Script(title, rounded(self.time), title, scene=scene, camera=camera, tracks=channels)
 
 
 def straightened(track: list[tuple[float, float]]) -> list[tuple[float, float]]:

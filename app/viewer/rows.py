@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 # Controls of the middle that a mirror turns round, by the end of their names; and action units
@@ -76,3 +76,15 @@ def found(rows: Iterable[Row], words: str, *, group: str, actions: Mapping[str, 
             for word in wanted
         )
     ]
+
+
+def highest_first(
+    groups: Mapping[str, tuple[str, ...]], muscles: Collection[str], expressions: Collection[str]
+) -> dict[str, tuple[str, ...]]:
+    """Expressions, then the other layers above the muscles, then muscles, jaw and gaze."""
+
+    def rank(title: str) -> int:
+        first = groups[title][0]
+        return 0 if first in expressions else 1 if first not in muscles else 2
+
+    return {title: groups[title] for title in sorted(groups, key=rank)}

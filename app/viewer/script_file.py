@@ -30,6 +30,14 @@ class ScriptFile:
         is_own = path.is_file() and not path.resolve().is_relative_to(str(files("assets")))
         return cls(path if is_own else None, script)
 
+    @classmethod
+    def recovered(cls, path: Path | None, when: float) -> ScriptFile:
+        """The file of a script that was not saved to it, as it was at a time [s since 1970]."""
+        file = cls(path, None)
+        if path is not None and path.exists() and path.stat().st_mtime > when:
+            file._bytes = None  # somebody has written it since
+        return file
+
     def differs(self, script: Script) -> bool:
         """Whether saving would change anything."""
         return script is not self._saved and script != self._saved

@@ -6,9 +6,10 @@ units, expressions, visemes) is one entry of `values`; the scene adds them up.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -19,8 +20,9 @@ from ..script_writer import is_pose, pose_script, save_script
 from . import keys
 from .history import History
 from .recorder import Recorder
-from .rows import mirrored, twin_of
+from .rows import highest_first, mirrored, twin_of
 from .script_file import ScriptFile
+from .unsaved import Work
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0)
 RANDOM_SHARE = 0.25  # of the muscles that a random pose moves
@@ -66,7 +68,7 @@ class Session:
         simulation = getattr(scene, "simulation", None)
         # The lowest controls, to which all others add up; all where a scene does not tell.
         self.muscles = frozenset(simulation.controls if simulation is not None else self.limits)
-        self.groups = _highest_first(scene.groups, self.muscles, scene.expressions)
+        self.groups = highest_first(scene.groups, self.muscles, scene.expressions)
         self._moved_by: dict[str, frozenset[str]] = {}
 
     def move_to(self, scene: Scene) -> None:
@@ -277,14 +279,21 @@ class Session:
             self._recorder = Recorder()
             self._held = {}
             return
-        take = self._recorder.script(
-            title="Recording", scene=self.script.scene, camera=self.script.camera
-        )
+        take = self._recorder.script(**self._recording_head)
         self._recorder, self._held = None, {}
         self.is_playing = False
         if take is None:
             raise UserError("nothing was recorded: no control moved")
         self._open(take, ScriptFile(None, None), take.duration)
+
+    @property
+    def recording_so_far(self) -> Script | None:
+        """What would be taken as the script if the recording was stopped now, or nearly so."""
+        return self._recorder.draft(**self._recording_head) if self._recorder is not None else None
+
+    @property
+    def _recording_head(self) -> dict[str, Any]:
+        return {"title": "Recording", "scene": self.script.scene, "camera": self.script.camera}
 
     @property
     def recorded_seconds(self) -> float:
@@ -331,6 +340,16 @@ class Session:
         self.seek(time)
         self.note()
 
+    def recover(self, work: Work, when: float) -> None:
+        """Go on with unsaved work of another session, as it was at a time [s since 1970]."""
+        self.is_playing = False
+        if work.script is not None:
+            self._open(work.script, ScriptFile.recovered(work.path, when), 0.0)
+        if work.recording is not None:
+            self._open(work.recording, ScriptFile(None, None), work.recording.duration)
+        if work.pose is not None:
+            self._take_pose(self._all(work.pose.at(0.0)))
+
     def save_script(self, path: Path) -> None:
         """Write the script to a file; UserError where it cannot be written."""
         self.file.save(self.script, path)
@@ -365,15 +384,3 @@ class Session:
     def has_unsaved_pose(self) -> bool:
         """Whether there is a pose made by hand that no file has."""
         return self.pose_is_unsaved and any(self.values.values())
-
-
-def _highest_first(
-    groups: Mapping[str, tuple[str, ...]], muscles: Collection[str], expressions: Collection[str]
-) -> dict[str, tuple[str, ...]]:
-    """Expressions, then the other layers above the muscles, then muscles, jaw and gaze."""
-
-    def rank(title: str) -> int:
-        first = groups[title][0]
-        return 0 if first in expressions else 1 if first not in muscles else 2
-
-    return {title: groups[title] for title in sorted(groups, key=rank)}

@@ -82,6 +82,9 @@ class Stage:
             stream.release()
         if self._texture is not None:
             self._texture.release()
+        if self._wrinkling is not None:
+            self._wrinkling.map.release()
+        self.renderer.release()
 
     @contextmanager
     def timed(self, name: str) -> Iterator[None]:
@@ -123,8 +126,9 @@ class Stage:
     ) -> None:
         """Draw the scene as it is now; the surface's `detail` says how finely."""
         shots = self.shots(look, viewport)
+        style = style_of(look, background)
         amounts = None
-        if self._wrinkling is not None and look.wrinkles > 0.0:
+        if self._wrinkling is not None and style.shows_wrinkles:
             with self.timed("refinement"):
                 amounts = self._wrinkling.amounts(self.scene.positions)
         for shot in shots:
@@ -134,7 +138,6 @@ class Stage:
                 shot.picture.upload(amounts)
         with self.timed("draw"):
             self.surface.begin()
-            style = style_of(look, background)
             overlays = self._overlays(look, camera, pointed)
             self.renderer.draw_background(style, viewport)
             for shot in shots:
@@ -176,6 +179,15 @@ class Stage:
             viewport=shot.viewport,
             clip=shot.clip,
         )
+        if not self.surface.samples:
+            self.renderer.draw_outline(
+                shot.picture.stream,
+                camera,
+                style,
+                viewport=shot.viewport,
+                clip=shot.clip,
+                texture=self._texture,
+            )
 
     def _overlays(
         self, look: Look, camera: render.OrbitCamera, pointed: Collection[str]

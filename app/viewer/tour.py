@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+from imgui_bundle import imgui
 from PIL import Image
 
 from ..choices import script_for
@@ -139,6 +140,8 @@ def main(arguments: Sequence[str]) -> None:
     folder = Path(arguments[0]) if arguments else FOLDER
     for name in arguments[1:] or STOPS:
         with Viewer(script_for(None, "face"), SIZE) as viewer:
+            # Wherever the mouse happens to be, it points at nothing: no hint comes up.
+            imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
             settled(viewer)
             STOPS[name](viewer)
             if viewer.touch.pull is None:

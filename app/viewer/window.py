@@ -40,9 +40,11 @@ from .panels import layout
 from .panels.chrome import Messages, Question, draw_help
 from .panels.face import FacePanel
 from .panels.mechanism import MechanismPanel
+from .panels.offer import draw_offer
 from .panels.timeline import Timeline
 from .placement import Placement, first_size
 from .quality import FULL, Quality
+from .recovery import Recovery
 from .session import Session
 from .settings import Look, Settings, load_settings
 from .stage import SceneView, Stage, checked
@@ -81,8 +83,8 @@ class Viewer:
         """Open the window.
 
         head: one that somebody brought, None for the built-in one. size, look: None takes what was
-        remembered. settings_path: where that is kept, None for nowhere. Raises UserError for a
-        script that names what the scene has not.
+        remembered. settings_path: where that is kept, and beside it what is not saved; None for
+        nowhere. Raises UserError for a script that names what the scene has not.
         """
         self.settings_path = settings_path
         self.settings, complaint = Settings(), ""
@@ -90,6 +92,8 @@ class Viewer:
             self.settings, complaint = load_settings(settings_path)
         self.scene = build_scene(script.scene, head)
         self.session = Session(self.scene, script)
+        self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
+        self.recovery.look(self.session)
         known = overlays_of(self.scene)
         self.look = checked(look or self.settings.look, refine.available(), known)
         with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
@@ -138,6 +142,7 @@ class Viewer:
             commands.remember(self)
         if self.film is not None:
             self.film.close()
+        self.recovery.close()
         self._resources.close()
 
     def run(self, *, playing: bool = False, once: bool = False) -> None:
@@ -145,19 +150,22 @@ class Viewer:
         if playing:
             self.session.toggle_playing()
         self._last = time.perf_counter()
-        with cleaned_up_if_stopped(lambda: commands.remember(self)):
+        remembered = cleaned_up_if_stopped(lambda: commands.remember(self))
+        with self.recovery.guarding(self.session), remembered:
             while True:
                 if self.placement.is_minimised:  # time stands still, and nothing is drawn
                     self._wait()
                 else:
                     self.frame()
+                self.attempt(lambda: self.recovery.watch(self.session))
                 if self.surface.should_close:
                     self.surface.should_close = False
                     commands.close_politely(self)
                     if self.surface.should_close:
                         break
                     self.placement.bring_back()  # to be asked
-                if once and playing and not self.session.is_playing:
+                is_over = playing and not self.session.is_playing
+                if once and is_over and not self.session.unsaved:
                     break
                 if self.is_idle:
                     self._wait()
@@ -218,6 +226,7 @@ class Viewer:
         """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
         is_watching = self.files.is_waiting or imgui.get_io().want_text_input  # a cursor blinks
         patience = WATCHFUL_WAIT if is_watching else IDLE_WAIT
+        patience = min(patience, max(self.recovery.due_in(), 0.0))
         begin = time.perf_counter()
         wait_for_event(patience)
         self._last = time.perf_counter()
@@ -333,6 +342,7 @@ class Viewer:
     def _draw_panels(self, elapsed: float) -> None:
         layout.draw(self)
         self.messages.draw(self, elapsed)
+        draw_offer(self)
         self.attempt(lambda: self.files.draw(self.gui))
         self.attempt(lambda: self.question.draw(self))
         if self.is_help_open:

@@ -1,7 +1,8 @@
 // Skin and rigid parts.
 // One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
 // stage), VALUES (colour by a value per triangle: SPLITS a count, RAMP an amount), COLOURED (vertex colours), TEXTURED (skin's albedo from
-// a picture), SHADOWS (of the key), WRINKLES (of the skin; with PIXEL).
+// a picture), SHADOWS (of the key), WRINKLES (of the skin; with PIXEL), STRIP (fading strips along
+// contours, see outline.py).
 
 #include "lighting.glsl"
 
@@ -42,8 +43,13 @@ uniform float sharpness;
 #else
 #define SHADOW_VARYING
 #endif
+#if defined(STRIP)
+#define STRIP_VARYING float coverage;
+#else
+#define STRIP_VARYING
+#endif
 #define VARYINGS vec3 position; NORMAL_VARYING LIT_VARYING COLOUR_VARYING TEXTURE_VARYING \
-    SHADOW_VARYING WRINKLE_VARYING
+    SHADOW_VARYING WRINKLE_VARYING STRIP_VARYING
 
 #if defined(VERTEX_STAGE)
 
@@ -57,6 +63,9 @@ in vec2 in_uv;
 #endif
 #if defined(WRINKLES)
 in vec2 in_wrinkling;
+#endif
+#if defined(STRIP)
+in vec3 in_strip;  // how far aside in clip space, coverage
 #endif
 uniform mat4 model_view;
 uniform mat4 projection;
@@ -99,6 +108,10 @@ void main() {
     surface.light_place = (shadow_matrix * vec4(position.xyz + height * normal, 1.0)).xyz;
 #endif
     gl_Position = projection * position;
+#if defined(STRIP)
+    gl_Position.xy += in_strip.xy * gl_Position.w;
+    surface.coverage = in_strip.z;
+#endif
 }
 
 #elif defined(GEOMETRY_STAGE)
@@ -192,6 +205,11 @@ uniform sampler2DShadow shadow_map;
 #if defined(WRINKLES)
 #include "wrinkles.glsl"
 #endif
+#if defined(STRIP)
+#define IS_FRONT true
+#else
+#define IS_FRONT gl_FrontFacing
+#endif
 out vec4 pixel_colour;
 
 // How open to light from all around.
@@ -258,7 +276,7 @@ vec3 shading_normal() {
 #elif defined(COLOURED)
     return normalize(surface.normal);
 #else
-    return normalize(gl_FrontFacing ? surface.normal : -surface.normal);
+    return normalize(IS_FRONT ? surface.normal : -surface.normal);
 #endif
 }
 #endif
@@ -276,7 +294,7 @@ void main() {
 #endif
     vec3 normal = shading_normal();
 #if defined(WRINKLES)
-    Wrinkle wrinkle = wrinkle_at(surface.uv, gl_FrontFacing ? surface.wrinkling : vec2(0.0));
+    Wrinkle wrinkle = wrinkle_at(surface.uv, IS_FRONT ? surface.wrinkling : vec2(0.0));
     normal = wrinkled(normal, surface.position, surface.uv, wrinkle);
 #endif
     Lit lit = studio(normal, to_eye, subsurface, gloss, sharpness);
@@ -298,7 +316,7 @@ void main() {
 #else
     // Skin that only just turns away is the outline, where front and back have the same depth: it
     // keeps its colour, or dark specks of the inner side would come through there.
-    float inwardness = gl_FrontFacing ? 0.0 : clamp(5.0 * facing - 0.75, 0.0, 1.0);
+    float inwardness = IS_FRONT ? 0.0 : clamp(5.0 * facing - 0.75, 0.0, 1.0);
     light = mix(light, inner_albedo * inner, inwardness);
 #endif
     vec3 shown = display(light);
@@ -308,7 +326,11 @@ void main() {
     float coverage = clamp(wire_half_width + 0.5 - nearest, 0.0, 1.0);
     shown = mix(shown, wire_colour.rgb, wire_colour.a * surface.wire_strength * coverage);
 #endif
+#if defined(STRIP)
+    pixel_colour = vec4(shown, surface.coverage);
+#else
     pixel_colour = vec4(shown, 1.0);
+#endif
 }
 
 #endif

@@ -10,10 +10,12 @@ from pathlib import Path
 
 import pytest
 
+from app.scenes import build_scene
 from app.script import load_script
 from app.viewer import Viewer
 from app.viewer.files import UNSEEN, Files
 from tests.heads import stranger
+from tests.render.test_release import counting
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -304,3 +306,21 @@ def test_a_head_that_is_none_is_told(viewer: Viewer, tmp_path: Path) -> None:
     drop(viewer, mesh, landmarks)
     assert until(viewer, lambda: viewer.messages.is_error, 20.0)
     assert "it must be the 68 iBug points" in viewer.messages.text and viewer.scene is before
+
+
+def test_heads_come_and_go_without_leaving_anything(
+    viewer: Viewer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ten changes of head, each drawn until it is at rest: OpenGL holds as much as after one."""
+    scenes = [viewer.scene, build_scene("face", None)]
+    viewer.look.compare, viewer.look.overlays = "wipe", ["muscles", "springs"]
+    count = counting(monkeypatch)
+    held = []
+    for turn in range(10):
+        viewer.move_to(scenes[(turn + 1) % 2])
+        viewer.session.set("jaw_open", 0.3)
+        settle(viewer)
+        assert until(viewer, lambda: viewer.is_idle)
+        held.append(count())
+    viewer.move_to(scenes[0])
+    assert held[-1] == held[0] and held[0]["Program"] > 3

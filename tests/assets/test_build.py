@@ -1,5 +1,7 @@
 """The generator still makes the head that is shipped."""
 
+import errno
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -80,3 +82,42 @@ def test_tone_and_size_are_options(
     with pytest.raises(SystemExit):
         build.main([str(tmp_path / "pink.npz"), "--tone", "pink"])
     assert "medium-light" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="paths of POSIX systems")
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["/proc/none/head.npz"], "assets.build: /proc/none: No such file or directory\n"),
+        (["{folder}"], "assets.build: {folder}: is a folder; name a file\n"),
+        (["{folder}/head.npz", "--size", "0"], "'0' is no size; write 64 to 8192\n"),
+    ],
+)
+def test_mistakes_are_told_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], told: str
+) -> None:
+    """Where nothing can be written it is told before anything is built; nothing is left."""
+    with pytest.raises(SystemExit) as ended:
+        build.run([word.format(folder=tmp_path) for word in words])
+    assert ended.value.code == 2
+    assert capsys.readouterr().err.endswith(told.format(folder=tmp_path))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_leaves_the_files_that_were_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """An error in the middle of building: one line, the old file untouched, nothing beside it."""
+    path = tmp_path / "head.npz"
+    path.write_bytes(b"precious")
+
+    def full(file: Path, **_: object) -> None:
+        file.write_bytes(b"half of")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(build, "_write", full)
+    with pytest.raises(SystemExit) as ended:
+        build.run([str(path)])
+    assert ended.value.code == 2
+    assert capsys.readouterr().err == "assets.build: No space left on device\n"
+    assert path.read_bytes() == b"precious" and list(tmp_path.iterdir()) == [path]

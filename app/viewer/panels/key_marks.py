@@ -147,7 +147,7 @@ def _draw_keys(
 
 def _draw_names(lines: Any, view: TimeView, lane: Lane, top: float, right: float, ink: int) -> None:
     """The names of poses above them, as much of each as there is room for before the next."""
-    ends = [view.x(time) - em(0.3) for time, _ in lane.names[1:]] + [right]
+    ends = [view.x(time) - em(0.6) for time, _ in lane.names[1:]] + [right]
     for (time, name), end in zip(lane.names, ends, strict=False):
         if view.start <= time <= view.start + view.span:
             x = view.x(time) - em(KEY)

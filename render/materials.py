@@ -1,0 +1,50 @@
+"""How skin and rigid parts take light and colours: what surface.glsl asks of each."""
+
+import moderngl
+import numpy as np
+
+from .programs import write_uniform
+from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Style, linear
+
+SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
+TO_KEY = (-0.5300, 0.6300, 0.5677)  # unit vector in view space: over the viewer's left shoulder
+_PALETTE = np.array([linear(colour) for colour in SPLIT_PALETTE], np.float32)
+_RAMPS = {
+    kind: np.array([(*linear(colour), cover) for colour, cover in ramp], np.float32)
+    for kind, ramp in ((ColourBy.AMOUNT, AMOUNT_RAMP), (ColourBy.SIGNED, SIGNED_RAMP))
+}
+# Of surface.glsl.
+COLOUR_DEFINES: dict[ColourBy, tuple[str, ...]] = {
+    ColourBy.NONE: (),
+    ColourBy.SPLITS: ("VALUES", "SPLITS"),
+    ColourBy.AMOUNT: ("VALUES", "RAMP"),
+    ColourBy.SIGNED: ("VALUES", "RAMP"),
+}
+
+
+def set_skin(program: moderngl.Program, style: Style) -> None:
+    """How skin of this style takes light."""
+    program["to_key"] = TO_KEY
+    if "albedo" in program:  # not where a texture takes its place
+        program["albedo"] = linear(style.albedo)
+    if "inner_albedo" in program:  # strips along contours have no inner side
+        program["inner_albedo"] = linear(style.inside)
+    program["subsurface"] = style.scattering
+    program["gloss"] = 0.26 * style.gloss
+    program["sharpness"] = SKIN_SHARPNESS
+
+
+def set_part(program: moderngl.Program, shine: float) -> None:
+    """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights."""
+    program["to_key"] = TO_KEY
+    program["subsurface"] = 0.3
+    program["gloss"] = 0.04 + 0.9 * shine * shine
+    program["sharpness"] = 20.0 * 40.0**shine
+
+
+def set_palette(program: moderngl.Program, kind: ColourBy) -> None:
+    """What triangles are coloured in by their values."""
+    if kind is ColourBy.SPLITS:
+        write_uniform(program, "split_palette", _PALETTE)
+    else:
+        write_uniform(program, "ramp", _RAMPS[kind])

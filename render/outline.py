@@ -1,0 +1,117 @@
+"""Smooth outlines where a pixel has but one sample: a fading strip along each contour of the mesh.
+
+Contours are the edges between a triangle that turns to the eye and one that turns away, and the
+mesh's borders. Along each a strip of one pixel is drawn outward, shaded as the skin beside it, that
+fades over what lies behind. Only these pixels are shaded, and no picture is filtered afterwards.
+Source: Sander, Hoppe, Snyder, Gortler 2001, "Discontinuity edge overdraw".
+"""
+
+from typing import Any
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from .sight import Sight
+from .stream import Stream
+
+WIDTH = 1.0  # [pixels] in which a strip fades: as far as the steps of its edge reach
+_SHORTEST = 1e-3  # [pixels] of an edge that has a direction
+# The corners of a strip's two triangles: at which end of the edge, and whether on the outer side.
+_ENDS = np.array([0, 0, 1, 0, 1, 1])
+_SIDES = np.array([0, 1, 1, 0, 1, 0])
+
+Floats = npt.NDArray[np.float32]
+
+
+class Outline:
+    """The strips along the contours of one mesh, made anew whenever it is drawn."""
+
+    def __init__(self, gl: moderngl.Context) -> None:
+        self._gl = gl
+        self._buffer: moderngl.Buffer | None = None
+        self._arrays: dict[tuple[moderngl.Program, int], moderngl.VertexArray] = {}
+        self._vertex_count = 0
+        self._columns = 0
+
+    def upload(self, stream: Stream, sight: Sight) -> bool:
+        """Make the strips for what `stream` last uploaded; whether there are any."""
+        rows = strips(
+            stream.vertices[: stream.vertex_count], stream.triangles[: stream.triangle_count], sight
+        )
+        self._vertex_count, self._columns = len(rows), rows.shape[1]
+        if not len(rows):
+            return False
+        if self._buffer is None or rows.nbytes > self._buffer.size:
+            self.release()
+            self._buffer = self._gl.buffer(reserve=2 * rows.nbytes, dynamic=True)
+        self._buffer.orphan()
+        self._buffer.write(rows)
+        return True
+
+    def draw(self, program: moderngl.Program) -> None:
+        """Draw the strips with a program that has in_strip and what a mesh has."""
+        key = program, self._columns
+        if key not in self._arrays:
+            names = ["in_position", "in_normal", "in_uv", "in_strip"]
+            layout = "3f 3f 2f 3f"
+            if self._columns == 9:
+                names.remove("in_uv")
+                layout = "3f 3f 3f"
+            content: list[Any] = [(self._buffer, layout, *names)]
+            self._arrays[key] = self._gl.vertex_array(program, content, skip_errors=True)
+        self._arrays[key].render(moderngl.TRIANGLES, vertices=self._vertex_count)
+
+    def release(self) -> None:
+        """Give everything back to OpenGL; the next upload makes it anew."""
+        for array in self._arrays.values():
+            array.release()
+        self._arrays.clear()
+        if self._buffer is not None:
+            self._buffer.release()
+        self._buffer = None
+
+
+def strips(vertices: Floats, triangles: npt.NDArray[np.uint32], sight: Sight) -> Floats:
+    """Two triangles for each contour: the mesh's columns, offset in clip space x y, coverage."""
+    matrix = sight.world_to_clip.astype(np.float32)
+    clip = matrix[:3].T @ vertices[:, :3].T + matrix[3][:, None]  # by column
+    half_size = 0.5 * np.array(sight.viewport[2:], np.float32)
+    x, y = clip[:2] / np.maximum(clip[3], np.float32(1e-6)) * half_size[:, None]
+    a, b, c = np.ascontiguousarray(triangles.T)
+    area = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])
+    is_front = area > 0.0
+    if clip[3].min(initial=1.0) <= 0.0:  # behind the eye
+        is_front &= (clip[3] > 0.0)[triangles].all(axis=1)
+    ends = contours(triangles[is_front])
+    along = np.stack([x[ends[1]] - x[ends[0]], y[ends[1]] - y[ends[0]]], axis=1)
+    length = np.hypot(along[:, 0], along[:, 1])
+    is_long = length > _SHORTEST
+    ends, along, length = ends[:, is_long], along[is_long], length[is_long]
+    rows = np.zeros((2, 2, len(length), vertices.shape[1] + 3), np.float32)  # by end and side
+    rows[:, :, :, :-3] = vertices[ends][:, None]
+    # Seen from the front a triangle lies to the left of its edges: outward is right.
+    rows[:, 1, :, -3] = along[:, 1] * (WIDTH / half_size[0]) / length
+    rows[:, 1, :, -2] = along[:, 0] * (-WIDTH / half_size[1]) / length
+    rows[:, 0, :, -1] = 1.0
+    return np.ascontiguousarray(rows[_ENDS, _SIDES].swapaxes(0, 1).reshape(-1, rows.shape[3]))
+
+
+def contours(front: npt.NDArray[np.uint32]) -> npt.NDArray[np.intp]:
+    """First and last vertex of the edges that only one of these triangles has, shape (2, n).
+
+    They run as in that triangle. Of all triangles that turn to the eye these are the contours.
+    """
+    first = front.astype(np.int64)
+    last = first[:, [1, 2, 0]].ravel()
+    first = first.ravel()
+    # Sorted by their ends, edges between two triangles stand side by side.
+    size, count = int(first.max(initial=0)) + 1, max(len(first), 1)
+    order = (np.minimum(first, last) * size + np.maximum(first, last)) * count
+    order += np.arange(len(first))
+    order.sort()
+    edge = order // count
+    is_other = np.ones(len(edge) + 1, np.bool_)
+    np.not_equal(edge[1:], edge[:-1], out=is_other[1:-1])
+    found = order[is_other[1:] & is_other[:-1]] % count
+    return np.stack([first[found], last[found]])

@@ -1,0 +1,414 @@
+"""Unsaved work outlives the window: kept while one works, offered at the next start."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.choices import script_for
+from app.errors import UserError
+from app.scenes import FaceScene, PlaneScene
+from app.script import load_script
+from app.viewer import Viewer
+from app.viewer.clock import STEP
+from app.viewer.recovery import LONGEST, QUIET, Recovery
+from app.viewer.session import Session
+from app.viewer.unsaved import Place, Work
+
+from .driving import NEEDS_A_SCREEN, SIZE, click, settle, xdotool
+
+ROOT = Path(__file__).parents[2]
+POSED = {"jaw_open": 0.4}
+SCRIPT = "# mine\nduration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
+
+
+class Clock:
+    """Time that passes when it is told to."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.fixture(scope="module")
+def scene() -> FaceScene:
+    """One face for all tests of this file."""
+    return FaceScene()
+
+
+@pytest.fixture
+def session(scene: FaceScene, tmp_path: Path) -> Session:
+    """A script of the user's own, opened from a file."""
+    scene.reset()
+    path = tmp_path / "smile.toml"
+    path.write_text(SCRIPT)
+    return Session(scene, load_script(path))
+
+
+@pytest.fixture
+def clock() -> Clock:
+    """A clock that stands still."""
+    return Clock()
+
+
+@pytest.fixture
+def recovery(tmp_path: Path, clock: Clock) -> Iterator[Recovery]:
+    """Of a window that lives."""
+    made = Recovery(tmp_path / "unsaved", clock)
+    yield made
+    made.close()
+
+
+def kept(folder: Path) -> dict[str, str]:
+    """The texts that are kept there, by kind."""
+    return {file.name.split(".")[1]: file.read_text() for file in folder.glob("unsaved/*.toml")}
+
+
+def found_by_next(folder: Path, session: Session) -> Work | None:
+    """What a window that opens now would offer."""
+    other = Recovery(folder / "unsaved")
+    other.look(session)
+    found = other.found
+    other.close()
+    return found
+
+
+def test_work_is_written_after_a_pause(
+    session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
+) -> None:
+    """Nothing at first; a pose when it was left alone for a while; nothing again when undone."""
+    recovery.watch(session)
+    assert recovery.due_in() == float("inf") and not (tmp_path / "unsaved").exists()
+    session.set("jaw_open", 0.4)
+    recovery.watch(session)
+    assert kept(tmp_path) == {} and recovery.due_in() == pytest.approx(QUIET)
+    clock.now += 0.9 * QUIET
+    recovery.watch(session)
+    assert kept(tmp_path) == {}
+    clock.now += 0.2 * QUIET
+    recovery.watch(session)
+    assert "jaw_open = 0.4" in kept(tmp_path)["pose"] and recovery.due_in() == float("inf")
+    session.note()
+    session.undo()
+    recovery.watch(session)
+    assert list((tmp_path / "unsaved").iterdir()) == []
+
+
+def test_work_without_a_pause_is_written_too(
+    session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
+) -> None:
+    """Whoever drags a slider to and fro for long loses a few seconds at most."""
+    recovery.watch(session)
+    for step in range(round(1.5 * LONGEST / STEP)):
+        session.set("jaw_open", 0.2 + 0.001 * (step % 100))
+        recovery.watch(session)
+        clock.now += STEP
+    written = load_script(next((tmp_path / "unsaved").glob("*.pose.toml"))).at(0.0)["jaw_open"]
+    assert 0.2 <= written < 0.3
+
+
+def test_a_recording_is_kept_while_it_goes_on(
+    session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
+) -> None:
+    """What was recorded some seconds ago is in the file, near to what stopping would give."""
+    session.toggle_recording()
+    for step in range(round(4.0 * LONGEST / STEP)):
+        session.set("jaw_open", 0.5 - 0.5 / (1.0 + 0.02 * step))
+        session.advance(STEP)
+        clock.now += STEP
+        recovery.watch(session)
+    draft = load_script(next((tmp_path / "unsaved").glob("*.recording.toml")))
+    assert session.recorded_seconds - LONGEST - 0.1 < draft.duration < session.recorded_seconds
+    session.toggle_recording()
+    for moment in (0.3, 1.0, 5.0, draft.duration):
+        wanted = session.script.at(moment)["jaw_open"]
+        assert draft.at(moment)["jaw_open"] == pytest.approx(wanted, abs=5e-3)
+    whole = len(session.script.tracks["jaw_open"].keys)
+    assert len(draft.tracks["jaw_open"].keys) < whole + 10
+
+
+def test_saved_work_is_kept_no_more(
+    session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
+) -> None:
+    """The script goes from the folder when it is in its own file, the pose stays until it is."""
+    session.set("jaw_open", 0.4)
+    session.edit(replace(session.script, duration=3.0))
+    recovery.watch(session)
+    clock.now += QUIET
+    recovery.watch(session)
+    assert set(kept(tmp_path)) == {"script", "pose"}
+    session.save_script(tmp_path / "smile.toml")
+    recovery.watch(session)
+    clock.now += QUIET
+    recovery.watch(session)
+    assert set(kept(tmp_path)) == {"pose"}
+    session.save_pose(tmp_path / "pose.toml")
+    recovery.watch(session)
+    assert list((tmp_path / "unsaved").iterdir()) == []
+
+
+def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Path) -> None:
+    """Script, recording and pose, each digit; the script knows its file, comments and all."""
+    session.set("jaw_open", 0.25)
+    session.set_key()
+    edited = session.script
+    session.toggle_recording()
+    session.set("jaw_open", 1.0 / 3.0)
+    session.advance(STEP)
+    recovery.keep(session)
+    assert found_by_next(tmp_path, session) is None  # its window still lives
+    recovery.close()
+    after = Session(session.scene, script_for(None, "face"))
+    next_one = Recovery(tmp_path / "unsaved")
+    next_one.look(after)
+    assert next_one.found is not None
+    assert next_one.found.words == "the script smile.toml, a recording and a pose"
+    next_one.take_found(after)
+    assert next_one.found is None and after.unsaved == "the pose and the script"
+    assert after.values["jaw_open"] == session.values["jaw_open"]
+    assert after.script.tracks["jaw_open"].value(1.0) == pytest.approx(1.0 / 3.0, abs=1e-6)
+    after.undo()  # the pose
+    after.undo()  # the recording
+    assert after.script == edited and after.script.preface == "# mine"
+    assert after.file.path == tmp_path / "smile.toml" and after.file.objection == ""
+    next_one.keep(after)
+    next_one.close()
+    assert found_by_next(tmp_path, session) == Work(edited, tmp_path / "smile.toml")
+
+
+def test_a_file_that_was_changed_since_is_not_replaced_unasked(
+    session: Session, recovery: Recovery, tmp_path: Path
+) -> None:
+    """Between the crash and the recovery somebody wrote the script's file: saving says so."""
+    session.set("jaw_open", 0.25)
+    session.set_key()
+    recovery.keep(session)
+    recovery.close()
+    later = time.time() + 10.0
+    os.utime(tmp_path / "smile.toml", (later, later))
+    after = Session(session.scene, script_for(None, "face"))
+    next_one = Recovery(tmp_path / "unsaved")
+    next_one.look(after)
+    next_one.take_found(after)
+    assert "another program" in after.file.objection
+    next_one.close()
+
+
+def test_what_is_thrown_away_is_gone(session: Session, tmp_path: Path) -> None:
+    """The latest is offered first, then the one before; damaged files are passed by."""
+    folder = tmp_path / "unsaved"
+    for value in (0.1, 0.2):
+        one = Recovery(folder)
+        session.set("jaw_open", value)
+        one.keep(session)
+        one.close()
+        for file in folder.glob("*-*-*"):  # begun in one second, names are by chance
+            file.rename(folder / file.name.replace(file.name[:8], f"2026010{round(10 * value)}"))
+    (folder / "20270101-000000-abc.pose.toml").write_text("nonsense")
+    (folder / "20270101-000000-abd.pose.toml").write_bytes(bytes(range(256)))
+    next_one = Recovery(folder)
+    next_one.look(session)
+    assert next_one.found is not None and next_one.found.pose is not None
+    assert next_one.found.pose.at(0.0)["jaw_open"] == 0.2
+    next_one.drop_found(session)
+    assert next_one.found is not None and next_one.found.pose is not None
+    assert next_one.found.pose.at(0.0)["jaw_open"] == 0.1
+    next_one.drop_found(session)
+    assert next_one.found is None
+    assert {file.name[:8] for file in folder.glob("*.toml")} == {"20270101"}
+
+
+def test_only_what_fits_the_scene_is_offered(
+    session: Session, recovery: Recovery, tmp_path: Path
+) -> None:
+    """A window with the plane leaves a face's pose to the next window with a face."""
+    session.set("jaw_open", 0.4)
+    recovery.keep(session)
+    recovery.close()
+    plane = Session(PlaneScene(), script_for(None, "plane"))
+    assert found_by_next(tmp_path, plane) is None
+    assert found_by_next(tmp_path, session) is not None
+
+
+def test_a_folder_that_takes_nothing_is_told_once(session: Session, clock: Clock) -> None:
+    """The user is told that work is not safe, and works on."""
+    recovery = Recovery(Path("/proc/none/unsaved"), clock)
+    for value, words in ((0.4, "not kept safe: .*/proc/none"), (0.5, "")):
+        session.set("jaw_open", value)
+        recovery.watch(session)
+        clock.now += QUIET
+        if words:
+            with pytest.raises(UserError, match=words):
+                recovery.watch(session)
+        else:
+            recovery.watch(session)
+    recovery.close()
+
+
+def test_work_that_fails_to_be_written_leaves_what_was_kept(
+    session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A disk that fills up in the middle of writing: the file of before is still whole."""
+    place = Place.new(tmp_path)
+    place.write(Work(script=session.script), Work())
+    before = place.read()
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "replace", full)
+    longer = replace(session.script, duration=9.0)
+    with pytest.raises(UserError, match="No space left"):
+        place.write(Work(script=longer), before)
+    assert place.read() == before
+    place.remove()
+    assert [file.name for file in tmp_path.iterdir()] == ["smile.toml"]
+
+
+# Real windows, real signals
+
+
+def windows_process(folder: Path) -> subprocess.Popen[str]:
+    """`risorius view`, with settings of its own; its window has been drawn."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "app", "view", "--size", "700x500"],
+        cwd=ROOT, stderr=subprocess.PIPE, text=True,
+        env={**os.environ, "XDG_CONFIG_HOME": str(folder)}, start_new_session=True,
+        # Tests that run behind an `&` or `nohup` have signals ignored, and pass that on.
+        preexec_fn=lambda: [signal.signal(n, signal.SIG_DFL) for n in (1, 2, 15)],
+    )  # fmt: skip
+    search = ["xdotool", "search", "--sync", "--onlyvisible", "--name", "^Risorius: Expressions$"]
+    subprocess.run(search, check=True, capture_output=True, timeout=60)
+    return process
+
+
+def wait_for(condition: Callable[[], object], seconds: float = 15.0) -> None:
+    """Until something has come true."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def press(*keys: str) -> None:
+    """Keys, for the window under the mouse."""
+    for key in keys:
+        subprocess.run(["xdotool", "mousemove", "450", "200", "key", key], check=True)
+        time.sleep(0.2)
+
+
+@pytest.fixture
+def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
+    """A window in which somebody has made a face by chance just now."""
+    process = windows_process(tmp_path)
+    try:
+        title = ["xdotool", "search", "--onlyvisible", "--name", r"^Risorius: Expressions \*$"]
+
+        def is_posed() -> bool:
+            press("x")
+            return bool(subprocess.run(title, capture_output=True, check=False).stdout)
+
+        wait_for(is_posed)
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+@pytest.mark.window
+@NEEDS_A_SCREEN[1]
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_window_that_is_told_to_stop_loses_nothing(
+    at_work: subprocess.Popen[str], tmp_path: Path, number: signal.Signals
+) -> None:
+    """What was done this moment is written before the end."""
+    at_work.send_signal(number)
+    assert at_work.wait(10.0) == -number
+    assert at_work.stderr is not None and at_work.stderr.read() == ""
+    [pose] = [load_script(file) for file in tmp_path.glob("risorius/unsaved/*.pose.toml")]
+    assert any(pose.at(0.0).values())
+
+
+@pytest.mark.window
+@NEEDS_A_SCREEN[1]
+def test_a_window_that_crashed_is_recovered(at_work: subprocess.Popen[str], tmp_path: Path) -> None:
+    """Killed some seconds after the last change; the next windows offer it until it is answered."""
+    folder = tmp_path / "risorius"
+    wait_for(lambda: kept(folder), LONGEST + 2.0)
+    at_work.kill()
+    at_work.wait()
+    [pose] = [load_script(file) for file in folder.glob("unsaved/*.pose.toml")]
+    script = script_for(None, "face")
+    for answer in ("Recover", "Throw away"):
+        with Viewer(script, SIZE, settings_path=folder / "viewer.json") as viewer:
+            settle(viewer, 8)
+            assert not viewer.session.unsaved
+            click(viewer, f"offer: {answer}")
+            assert "offer: Recover" not in viewer.gui.places
+            if answer == "Recover":
+                assert viewer.session.unsaved == "the pose" and kept(folder)
+                values = viewer.session.values
+                assert all(values[name] == value for name, value in pose.at(0.0).items())
+    assert list((folder / "unsaved").iterdir()) == []
+
+
+@pytest.mark.window
+@NEEDS_A_SCREEN[1]
+def test_work_that_is_undone_is_kept_no_more(
+    at_work: subprocess.Popen[str], tmp_path: Path
+) -> None:
+    """In a window that nobody touches any more, files come and go within seconds."""
+    folder = tmp_path / "risorius"
+    wait_for(lambda: kept(folder), LONGEST + 2.0)
+    press("n")
+    wait_for(lambda: not kept(folder), 2.0)
+    press("ctrl+q")
+    assert at_work.wait(10.0) == 0
+    assert list((folder / "unsaved").iterdir()) == []
+
+
+@pytest.mark.window
+@NEEDS_A_SCREEN[1]
+def test_work_that_is_given_up_is_not_offered(tmp_path: Path) -> None:
+    """Closed without saving, after the question: nothing is left."""
+    with Viewer(script_for(None, "face"), SIZE, settings_path=tmp_path / "viewer.json") as viewer:
+        settle(viewer, 8)
+        viewer.session.set("jaw_open", 0.4)
+        viewer.recovery.keep(viewer.session)
+        assert kept(tmp_path)
+        xdotool(viewer, "key", "ctrl+q")
+        click(viewer, "question: Close without saving")
+        viewer.run()
+    assert list((tmp_path / "unsaved").iterdir()) == []
+
+
+@pytest.mark.window
+@NEEDS_A_SCREEN[1]
+def test_recovering_asks_before_other_work_is_lost(session: Session, tmp_path: Path) -> None:
+    """With something unsaved of its own, the window asks; going back keeps both."""
+    recovery = Recovery(tmp_path / "unsaved")
+    session.set("jaw_open", 0.4)
+    recovery.keep(session)
+    recovery.close()
+    script = script_for(None, "face")
+    with Viewer(script, SIZE, settings_path=tmp_path / "viewer.json") as viewer:
+        settle(viewer, 8)
+        viewer.session.set("AU12", 0.7)
+        click(viewer, "offer: Recover")
+        click(viewer, "question: Back")
+        assert viewer.session.values["AU12"] == 0.7 and viewer.recovery.found is not None
+        click(viewer, "offer: Recover")
+        click(viewer, "question: Recover without saving")
+        assert viewer.session.values["AU12"] == 0.0
+        assert viewer.session.values["jaw_open"] == 0.4
+    assert found_by_next(tmp_path, session) is not None  # it was not closed, but cut off

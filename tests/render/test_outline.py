@@ -1,0 +1,100 @@
+"""Smooth outlines where a pixel has one sample."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import render
+from render.outline import contours, strips
+from render.sight import Sight
+
+from .scenes import PLAIN, facing, joined, lent, sphere, square
+
+RADIUS = 45.0
+
+
+def ball(
+    samples: int, *, is_smoothed: bool, style: render.Style = PLAIN, radius: float = RADIUS
+) -> np.ndarray:
+    """A smaller ball in front of a larger one, shape (H, W, 3)."""
+    small = sphere(4, radius / 3.0)
+    small.positions[:] += np.float32((10.0, 5.0, 60.0))
+    shape = joined(sphere(5, radius), small)
+    with render.open_offscreen((128, 128), samples=samples) as surface:
+        renderer = render.Renderer(surface)
+        stream = lent(renderer, shape)
+        values = np.zeros(len(shape.triangles), np.uint8)
+        surface.begin()
+        renderer.draw_background(style)
+        renderer.draw_mesh(stream, facing(), style, values=values)
+        if is_smoothed:
+            renderer.draw_outline(stream, facing(), style)
+        surface.end()
+        assert surface.gl.error == "GL_NO_ERROR"
+        return surface.read().astype(np.int32)
+
+
+@pytest.mark.parametrize("shading", [render.Shading.PIXEL, render.Shading.GOURAUD])
+def test_edges_are_as_smooth_as_with_samples(shading: render.Shading) -> None:
+    """Before the background and before other skin; all but the edges is as it was.
+
+    Strips lie outside: edges are those of balls that are larger by half a pixel.
+    """
+    style = replace(PLAIN, shading=shading)
+    rough, smooth = (ball(0, is_smoothed=on, style=style) for on in (False, True))
+    fine = ball(16, is_smoothed=False, style=style)
+    pixels = 0.5 * (fine < 250).any(axis=2).any(axis=0).sum()  # the radius
+    larger = ball(16, is_smoothed=False, style=style, radius=RADIUS * (1.0 + 0.5 / pixels))
+    off = [np.square(rough - fine).mean(), np.square(smooth - larger).mean()]
+    assert off[1] < 0.35 * off[0]
+    changed = (smooth != rough).any(axis=2)
+    assert 100 < changed.sum() < 2.0 * np.pi * (4.0 / 3.0) * pixels * 1.6
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"shading": render.Shading.FLAT},
+        {"wireframe": True},
+        {"colour_by": render.ColourBy.SPLITS},
+    ],
+)
+def test_what_cannot_be_smoothed_stays(changes: dict[str, object]) -> None:
+    """Flat shading, wireframes and colours by values are drawn as without."""
+    style = replace(PLAIN, **changes)
+    rough, smooth = (ball(0, is_smoothed=on, style=style) for on in (False, True))
+    assert (rough == smooth).all()
+
+
+def test_contours_are_the_edges_of_one_triangle() -> None:
+    """The rim of a square, running as its triangles do; of a closed ball there is none."""
+    begins, ends = contours(square().triangles)
+    edges = set(zip(begins.tolist(), ends.tolist(), strict=True))
+    assert edges == {(0, 1), (1, 2), (2, 3), (3, 0)}
+    assert contours(sphere().triangles).shape == (2, 0)
+    assert contours(np.zeros((0, 3), np.uint32)).shape == (2, 0)
+
+
+def test_strips_lie_outside_by_a_pixel() -> None:
+    """Each strip goes from the contour, where it covers all, to a pixel outside, where nothing."""
+    shape, sight = square(30.0), Sight(facing(), (0, 0, 200, 100))
+    rows = strips(np.hstack([shape.positions, shape.normals]), shape.triangles, sight)
+    assert rows.shape == (4 * 6, 9)
+    is_outer = rows[:, 8] == 0.0
+    pixels = rows[:, 6:8] * (100.0, 50.0)
+    assert np.allclose(np.hypot(*pixels[is_outer].T), 1.0, atol=1e-4)
+    assert (pixels[~is_outer] == 0.0).all() and is_outer.sum() == 12
+    assert ((pixels * rows[:, :2]).sum(axis=1) >= 0.0).all()
+
+
+def test_what_lies_behind_the_eye_has_no_strips() -> None:
+    """A camera in the middle of the mesh: nothing fails, and nothing is not a number."""
+    shape, camera = sphere(3), facing()
+    camera.distance = 10.0
+    rows = strips(
+        np.hstack([shape.positions, shape.normals]), shape.triangles, Sight(camera, (0, 0, 64, 64))
+    )
+    assert np.isfinite(rows).all()

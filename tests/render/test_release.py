@@ -1,0 +1,96 @@
+"""What is given back to OpenGL: a renderer that is released leaves nothing behind."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import moderngl
+import numpy as np
+import pytest
+
+import render
+
+from .scenes import PLAIN, STILL, Ball, facing, lent, sphere
+
+KINDS = ("program", "buffer", "texture", "depth_texture", "renderbuffer", "framebuffer")
+KINDS += ("vertex_array", "simple_framebuffer", "depth_renderbuffer", "sampler")
+
+
+def counting(monkeypatch: pytest.MonkeyPatch) -> Callable[[], Counter[str]]:
+    """What says how many objects of each kind were made from now on and not given back."""
+    made: list[Any] = []
+
+    def noting(make: Callable[..., Any]) -> Callable[..., Any]:
+        def noted(*arguments: Any, **options: Any) -> Any:
+            made.append(make(*arguments, **options))
+            return made[-1]
+
+        return noted
+
+    for name in KINDS:
+        monkeypatch.setattr(moderngl.Context, name, noting(getattr(moderngl.Context, name)))
+    return lambda: Counter(
+        type(each).__name__ for each in made if not isinstance(each.mglo, moderngl.InvalidObject)
+    )
+
+
+def draw_all(surface: render.Surface) -> np.ndarray:
+    """A picture that needs every program and buffer; everything is released after it."""
+    renderer = render.Renderer(surface)
+    shape, camera = sphere(), facing()
+    stream = renderer.lend_stream(len(shape.positions), len(shape.triangles), 8)
+    stream.vertices[:, :3], stream.vertices[:, 3:6] = shape.positions, shape.normals
+    stream.triangles[:] = shape.triangles
+    amounts = np.linspace(0.0, 1.0, 2 * len(shape.positions), dtype=np.float32).reshape(-1, 2)
+    stream.upload(len(shape.positions), len(shape.triangles), amounts)
+    texture = renderer.load_texture(np.full((8, 8, 3), 200, np.uint8))
+    wrinkles = renderer.load_wrinkles(np.full((8, 8, 4), 128, np.uint8), 1.0)
+    values = np.arange(len(shape.triangles), dtype=np.uint8)
+    styles = [
+        replace(PLAIN, shadows=True),
+        replace(PLAIN, wireframe=True, colour_by=render.ColourBy.SPLITS),
+    ]
+    for style in styles:
+        surface.begin()
+        renderer.draw_background(style)
+        renderer.draw_mesh(stream, camera, style, values=values, texture=texture, wrinkles=wrinkles)
+        renderer.draw_parts([Ball()], STILL, camera, style)
+        renderer.draw_outline(stream, camera, style, texture=texture)
+        renderer.draw_lines([shape.positions[:5]], (1.0, 0.0, 0.0), camera)
+        surface.end()
+    frame = surface.read()
+    for each in (stream, texture, wrinkles, renderer):
+        each.release()
+    return frame
+
+
+@pytest.mark.parametrize("samples", [0, 4])
+def test_a_released_renderer_leaves_nothing(samples: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ten renderers one after the other: the same picture, and not one object is left."""
+    with render.open_offscreen((96, 96), samples=samples) as surface:
+        count = counting(monkeypatch)
+        pictures = [draw_all(surface) for _ in range(10)]
+        assert count() == {}
+        assert surface.gl.error == "GL_NO_ERROR"
+    assert all((picture == pictures[0]).all() for picture in pictures)
+
+
+def test_another_renderer_goes_on(surface: render.Surface) -> None:
+    """What one renderer gives back is not what another draws with."""
+    shape, camera = sphere(), facing()
+    stays = render.Renderer(surface)
+    stream = lent(stays, shape)
+
+    def frame() -> np.ndarray:
+        surface.begin()
+        stays.draw_background(PLAIN)
+        stays.draw_mesh(stream, camera, PLAIN)
+        surface.end()
+        return surface.read()
+
+    before = frame()
+    draw_all(surface)
+    assert (frame() == before).all()
