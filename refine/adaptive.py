@@ -90,6 +90,9 @@ class Kahler(BoundRefiner):
         costs nothing in faithfulness: True for the schemes that interpolate, False for the paper's.
         `coherent`: whether triangulations continue those of the frame before (section 4.4).
         """
+        for name, flag in (("blend", blend), ("coherent", coherent)):
+            if flag not in (None, True, False):
+                raise ValueError(f"{name} must be True or False, got {flag!r}")
         self._scheme = scheme_of(scheme, detail)
         self._criterion = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))
         super().__init__(

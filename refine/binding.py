@@ -11,13 +11,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from .arguments import (
     AttributeLike,
+    as_array,
     bind_take_in,
     check_lent,
     checked_corner_values,
@@ -39,17 +39,6 @@ NOTHING = -1
 """Room for less than an empty frame."""
 SPARE = 1.25
 """How much more than it needs a stream of one's own takes when it has to grow."""
-
-
-def plain_array(positions: object) -> npt.NDArray[Any]:
-    """Return what is not quite an array as one; raises ValueError if something of it is masked."""
-    if isinstance(positions, np.ma.MaskedArray) and np.ma.is_masked(positions):
-        hidden = np.flatnonzero(np.ma.getmaskarray(positions).reshape(len(positions), -1).any(1))
-        raise ValueError(
-            f"positions must be known for every vertex, but vertex {hidden[0]} is masked "
-            f"({len(hidden)} such vertices in all)"
-        )
-    return np.asarray(positions)
 
 
 class OwnStream:
@@ -188,7 +177,7 @@ class BoundRefiner(ABC):
         positions are not finite.
         """
         if type(positions) is not np.ndarray:
-            positions = plain_array(positions)
+            positions = as_array("positions", positions, f"floats of shape {self._shape}")
         if view is not None and not isinstance(view, View):
             raise ValueError(f"view must be a refine.View(eye, focal), got {type(view).__name__}")
         if positions.shape != self._shape or positions.dtype.kind != "f":

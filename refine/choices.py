@@ -30,7 +30,8 @@ def scheme_of(chosen: str | Scheme, detail: FinerMesh | None) -> Scheme:
     if detail is not None:
         return DetailScheme(detail)
     if not isinstance(chosen, str):
-        if not (hasattr(chosen, "bind") and hasattr(chosen, "place")):
+        is_made = not isinstance(chosen, type)
+        if not (is_made and hasattr(chosen, "bind") and hasattr(chosen, "place")):
             raise ValueError(f"scheme must be one of {NAMES} or a refine.Scheme, got {chosen!r}")
         return chosen
     if chosen not in NAMES:

@@ -111,13 +111,16 @@ class _Seen(_Measuring):
                 f"{type(self).__name__} needs to know where the eye is; pass "
                 "view=refine.View(eye, focal) to refine()"
             )
-        eye = np.asarray(view.eye, dtype=np.float64)
-        if eye.shape != (3,) or not np.isfinite(eye).all() or not 0.0 < view.focal < np.inf:
+        try:
+            eye, focal = np.asarray(view.eye, dtype=np.float64), float(view.focal)
+        except (TypeError, ValueError):
+            eye, focal = np.zeros(0), 0.0
+        if eye.shape != (3,) or not np.isfinite(eye).all() or not 0.0 < focal < np.inf:
             raise ValueError(
                 "view must have an eye of shape (3,) and a focal length in pixels above 0, all "
                 f"finite, got {view!r}"
             )
-        self._view = View(eye, float(view.focal))
+        self._view = View(eye, focal)
 
     def _looked(self) -> tuple[Doubles, np.float32]:
         if self._view is None:
@@ -266,7 +269,7 @@ def criterion_of(
         return CRITERIA[chosen]()
     if isinstance(chosen, Sequence):
         return Maximum([criterion_of(one, normal_drop) for one in chosen])
-    if not (hasattr(chosen, "bind") and hasattr(chosen, "mark")):
+    if isinstance(chosen, type) or not (hasattr(chosen, "bind") and hasattr(chosen, "mark")):
         raise ValueError(
             f"criterion must be a name, an object with bind and mark, or a list, got {chosen!r}"
         )

@@ -15,6 +15,7 @@ wherever they are; float32 positions lose bits before they arrive here, 8e-6 aro
 one metre away, still far below the default thresholds.
 """
 
+from numbers import Real
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -76,6 +77,10 @@ class Measured(Criterion, Protocol):
         """
 
 
+def _is_number(limit: object) -> bool:
+    return isinstance(limit, Real) and not isinstance(limit, bool)
+
+
 class Thresholds:
     """Two values of a measure: above the first an edge is split once, above the second twice."""
 
@@ -84,7 +89,7 @@ class Thresholds:
 
         Raises ValueError if the two are out of order.
         """
-        if not 0.0 <= once <= twice:
+        if not (_is_number(once) and _is_number(twice) and 0.0 <= once <= twice):
             raise ValueError(
                 f"threshold_once and threshold_twice are {meaning} with "
                 "0 <= threshold_once <= threshold_twice (inf switches a level off), "

@@ -12,6 +12,7 @@ import pytest
 
 import refine
 from refine import plugin
+from refine.schemes import LoopScheme
 from tests import meshes
 
 FINE = meshes.octahedron()
@@ -256,3 +257,28 @@ def test_frames_can_be_kept() -> None:
         assert isinstance(mesh, refine.RefinedMesh)
         np.testing.assert_array_equal(mesh.positions, expected[0])
         np.testing.assert_array_equal(mesh.attributes["rest"], expected[1])
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"threshold_once": "a"}, "threshold_once and threshold_twice are .*got 'a'"),
+        ({"threshold_twice": True}, "got .*True"),
+        ({"blend": "no"}, "blend must be True or False, got 'no'"),
+        ({"coherent": "no"}, "coherent must be True or False, got 'no'"),
+        ({"criterion": refine.Curvature}, "criterion must be a name, an object .*Curvature"),
+        ({"scheme": LoopScheme}, "scheme must be one of .*LoopScheme"),
+    ],
+)
+def test_options_of_another_kind(options: dict[str, object], text: str) -> None:
+    """A word for a number, or a class for an object, is refused with what it is."""
+    with pytest.raises(ValueError, match=text):
+        refine.create("kahler", FINE.faces, FINE.vertices, **options)
+
+
+@pytest.mark.parametrize("view", [refine.View((0, 0, 5), "x"), refine.View("eye"), refine.View(5)])
+def test_views_of_another_kind(view: refine.View) -> None:
+    """An eye is a point, and a focal length a number."""
+    refiner = refine.create("kahler", FINE.faces, FINE.vertices, criterion="screen")
+    with pytest.raises(ValueError, match="view must have an eye of shape"):
+        refiner.refine(FINE.vertices, view=view)

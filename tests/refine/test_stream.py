@@ -226,8 +226,10 @@ def test_masked_positions() -> None:
     nothing_hidden = np.ma.masked_array(mesh.vertices, mask=False)
     assert (refiner.refine(nothing_hidden).positions == expected).all()
     nothing_hidden[4, 1] = np.ma.masked
-    with pytest.raises(ValueError, match=r"vertex 4 is masked \(1 such"):
+    with pytest.raises(ValueError, match=r"positions must be .* masked entries; fill them"):
         refiner.refine(nothing_hidden)
+    with pytest.raises(ValueError, match=r"positions must be .* is no array"):
+        refiner.refine([[0.0, 0.0], [1.0]])
 
 
 def test_not_a_stream() -> None:
