@@ -75,7 +75,8 @@ def held_pose(settings: Sequence[str]) -> Script:
 def known_refiner(name: str) -> str:
     """The name of a registered refiner, or UserError with those that are."""
     if name not in refine.available():
-        raise UserError(f"refiner '{name}'; available are {', '.join(refine.available())}")
+        there_are = ", ".join(refine.available())
+        raise UserError(f"refiner '{name}' is unknown; there are {there_are}")
     return name
 
 

@@ -122,7 +122,10 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["capture", "SMILE"], "nothing to write: give -o OUTPUT"),
         (["capture", "SMILE", "-o", "x.avi"], "what is '.avi'? Allowed are .mp4"),
         (["capture", "SMILE", "-o", "x.mp4", "--size", "321x200"], "take 322x200"),
-        (["capture", "SMILE", "-o", "x.mp4", "--refiner", "magic"], "'magic'; available are"),
+        (
+            ["capture", "SMILE", "-o", "x.mp4", "--refiner", "magic"],
+            "'magic' is unknown; there are",
+        ),
         (["capture", "SMILE", "-o", "x.mp4", "--camera", "behind"], "camera 'behind'; allowed"),
         (["capture", "SMILE", "-o", "x.mp4", "--camera", "1,2,x"], "camera '1,2,x': allowed"),
         (["capture", "SMILE", "-o", "x.mp4", "--camera", "1,2,0"], "zoom above 0"),
