@@ -10,8 +10,11 @@ d = b - a, and heights h_a = d . n_a, h_b = d . n_b over these planes:
 
 Differs from PN triangles: the normals are weighted by the geometric mean of a triangle's angle and
 its area at rest. Angle alone is truest on smooth surfaces, area alone where decimation has left
-folds of small triangles; between them both lose little. An edge on a border is cubic in the border
-curve itself, because a surface's normal says nothing about where it ends.
+folds of small triangles; between them both lose little. And a mean over the triangles around shows
+what bends less than it does; so where heights are taken, not where light falls, normals go a little
+further from those of their neighbours than they are: n - 0.15 x mean of the neighbours, normalised.
+On a plane and a sphere of equal triangles that changes nothing. An edge on a border is cubic in the
+border curve itself, because a surface's normal says nothing about where it ends.
 
 The middle of a triangle (blend.py) hears a second opinion. Its edges say from the normals how far
 the surface stands out; the corners across them say it from places:
@@ -42,6 +45,11 @@ Unsigned = npt.NDArray[np.uint32]
 FULLNESS = np.float32(1.2)
 """How much more than the cubic an inner edge bulges. Triangles between curves are flat, so the best
 fit stands out a little; measured on ellipsoids, a torus and heads, flat between 1.1 and 1.25."""
+STEEPER = np.float32(0.15)
+"""Share of the mean normal around that is taken off a normal. A first step of undoing the mean that
+vertex normals are; a second, or more of it, finds the noise of decimated meshes. Measured on two
+faces and their decimations: half a point of 35 % better on scans, level on smooth heads, and half a
+point worse on the roughest and on a torus."""
 CENTRE_FULLNESS = np.float32(1.15)
 """How much farther the middle of a triangle stands out, which the largest flat triangles meet."""
 SECOND_OPINION = 0.6
@@ -82,6 +90,10 @@ class CubicScheme(CurveScheme):
         self._weights = np.zeros(connectivity.faces.shape, dtype=np.float32)
         weigh_corners(rest_positions, connectivity.faces, self._weights)
         self._normals = np.zeros_like(rest_normals)
+        self._steeper = np.zeros_like(rest_normals)
+        ends = connectivity.edges.ravel()
+        valences = np.bincount(ends, minlength=len(rest_normals))
+        self._off = (STEEPER / np.maximum(valences, 1)).astype(np.float32)
         self._beyond = np.zeros((len(connectivity.edges), 2), dtype=np.uint32)
         follow_borders(connectivity.edges, connectivity.is_interior, rest_normals, self._beyond)
         self._across = connectivity.faces.copy()
@@ -129,9 +141,10 @@ class CubicScheme(CurveScheme):
     ) -> None:
         mesh = self._connectivity
         weighted_normals(positions, mesh.faces, self._weights, self._normals)
+        steepen_normals(self._normals, mesh.edges, self._off, self._steeper)
         bulge_cubic(
             positions,
-            self._normals,
+            self._steeper,
             mesh.edge_points,
             mesh.is_interior,
             self._beyond,
@@ -205,6 +218,25 @@ def weighted_normals(positions: Doubles, faces: Unsigned, weights: Floats, norma
         x, y, z = normals[v, 0], normals[v, 1], normals[v, 2]
         scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
         normals[v, 0], normals[v, 1], normals[v, 2] = x * scale, y * scale, z * scale
+
+
+@kernel
+def steepen_normals(
+    normals: Floats, edges: npt.NDArray[np.int32], off: Floats, steeper: Floats
+) -> None:
+    """Write unit normals less those of their neighbours, `off` of each, shape (V,)."""
+    steeper[:] = ZERO
+    for e in range(edges.shape[0]):
+        a, b = edges[e, 0], edges[e, 1]
+        for i in range(3):
+            steeper[a, i] += normals[b, i]
+            steeper[b, i] += normals[a, i]
+    for v in range(normals.shape[0]):
+        x = normals[v, 0] - off[v] * steeper[v, 0]
+        y = normals[v, 1] - off[v] * steeper[v, 1]
+        z = normals[v, 2] - off[v] * steeper[v, 2]
+        scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
+        steeper[v, 0], steeper[v, 1], steeper[v, 2] = x * scale, y * scale, z * scale
 
 
 @kernel
