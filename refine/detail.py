@@ -18,7 +18,8 @@ A quarter has to turn with the vertex near it: with one direction n for all of a
 around a vertex turned less than its own where the mesh was folded, and stars stood there.
 
 The normal of a point turns to that of the finer mesh as far as the edges around have grown, in the
-mean: where what is refined ends, a fold would otherwise end as a crease.
+mean: where what is refined ends, a fold would otherwise end as a crease. The middle of a triangle,
+which blending adds, slides toward the edges that bend (local_frames.py).
 
 The middle of an edge has two places, for one split and for two (fit.py), and goes from the first to
 the second while the quarters grow.
@@ -34,9 +35,9 @@ from .arguments import checked_indices, checked_positions
 from .closest import Surface
 from .connectivity import Connectivity
 from .cubic import CubicScheme
-from .fit import Points, fitted, fitted_normals, saved_turns
+from .fit import Points, fit, middles_of
 from .kernels import kernel
-from .local_frames import edge_axes, triangle_axes, vertex_axes
+from .local_frames import edge_axes, list_grown, slide_middles, triangle_axes, vertex_axes
 from .schemes import Frame
 
 Floats = npt.NDArray[np.float32]
@@ -51,6 +52,9 @@ START, MIDDLE, END, ALONE = 0, 1, 2, 3
 AXES_OF = [START, MIDDLE, END, MIDDLE]
 """The directions that each point of an edge is stored along: both middles have the same."""
 ZERO = np.float32(0.0)
+THIRD = np.float32(1 / 3)
+FOUR = np.float32(4.0)
+FOUR_NINTHS = np.float32(4 / 9)
 QUARTER = np.float32(0.25)
 HALF = np.float32(0.5)
 ONE = np.float32(1.0)
@@ -82,6 +86,7 @@ class DetailScheme(CubicScheme):
         edge_count = len(connectivity.edges)
         self._axes = np.zeros((edge_count, 3, 3, 3), dtype=np.float32)
         self._centre_axes = np.zeros((len(connectivity.faces), 3, 3), dtype=np.float32)
+        self._middle_shares = np.zeros((len(connectivity.faces), 3), dtype=np.float32)
         self._vertex_axes = np.zeros((len(rest_normals), 3, 3), dtype=np.float32)
         self._shown = np.zeros_like(rest_normals)
         self._towards = np.arange(connectivity.vertex_count, dtype=np.uint32)
@@ -95,22 +100,26 @@ class DetailScheme(CubicScheme):
         self._bulge_cubic(rest_positions, everything, edge_count, self._bulges)
         # All directions follow the normals that the cubic has, now as in every frame.
         rest_normals = self._normals.copy()
+        self._grown = np.arange(len(connectivity.faces), dtype=np.uint32)
+        self._find_middles(rest_positions, rest_normals, len(self._grown))
         points, ups = _points_on(self._bulges, connectivity, rest_positions, rest_normals)
-        places, _ = _closest(self._surface, points, ups)
-        centres = _centres_of(places, connectivity, rest_positions)
-        centre_ups = np.repeat(rest_normals[connectivity.faces].sum(1)[:, None], 2, axis=1)
-        centre_places, _ = _closest(self._surface, centres, centre_ups)
-        fit = fitted(self._surface, connectivity, rest_positions, Points(places, centre_places))
-        where = fit.stacked(rest_positions)
-        _, looks = _closest(self._surface, where, Points(ups, centre_ups).stacked(rest_normals))
-        looks = fitted_normals(self._surface, connectivity, where, looks)
-        centres = _centres_of(fit.of_edges, connectivity, rest_positions)
-        offsets = Points(fit.of_edges - points, fit.of_triangles - centres)
+        shares = self._middle_shares.astype(np.float64)
+        middles = shares, self._centre_axes[:, 0].astype(np.float64)
+        places, looks, saved = fit(
+            self._surface, connectivity, rest_positions, rest_normals, (points, ups), middles
+        )
+        centres = middles_of(places.of_edges, connectivity, rest_positions, shares)
+        offsets = Points(places.of_edges - points, places.of_triangles - centres)
         self._remember(rest_positions, rest_normals, offsets, looks)
         # What is off around an edge; and what turns in its middle, where few finer vertices are.
-        saved = saved_turns(self._surface, connectivity, where, looks)
         self.turns = np.hypot(saved, self._turns_at(rest_positions, looks)).astype(np.float32)
         self._surface = None
+
+    def _find_middles(self, positions: Doubles, normals: Floats, count: int) -> None:
+        """Find where the middles of the first `count` grown triangles lie, and directions there."""
+        faces, listed, shares = self._connectivity.faces, self._grown, self._middle_shares
+        slide_middles(positions, normals, faces, listed, count, shares)
+        triangle_axes(positions, normals, faces, listed, count, shares, self._centre_axes)
 
     def _remember(
         self, rest_positions: Doubles, rest_normals: Floats, offsets: Points, looks: Doubles
@@ -121,10 +130,6 @@ class DetailScheme(CubicScheme):
         twice = np.full(edge_count, 2, dtype=np.uint8)
         edge_axes(
             rest_positions, rest_normals, mesh.edge_points, twice, edges, edge_count, self._axes
-        )
-        triangles = np.arange(len(mesh.faces), dtype=np.uint32)
-        triangle_axes(
-            rest_positions, rest_normals, mesh.faces, triangles, len(triangles), self._centre_axes
         )
         vertex_axes(rest_positions, rest_normals, self._towards, self._vertex_axes)
         point_looks = Points.unstacked(looks, mesh)
@@ -201,15 +206,17 @@ class DetailScheme(CubicScheme):
         """Move the points in the middle of triangles as far as the edges around have grown."""
         assert frame.centre_triangles is not None
         mesh = self._connectivity
-        triangle_axes(
-            frame.positions,
-            self._normals,
-            mesh.faces,
+        grown_count = list_grown(
+            mesh.triangle_edges,
+            frame.growth_once,
             frame.centre_triangles,
             frame.centre_count,
-            self._centre_axes,
+            self._grown,
         )
+        self._find_middles(frame.positions, self._normals, grown_count)
         show_centres(
+            mesh.faces,
+            self._middle_shares,
             self._centre_offsets,
             self._centre_looks,
             self._centre_axes,
@@ -217,6 +224,7 @@ class DetailScheme(CubicScheme):
             frame.splits,
             frame.growth_once,
             frame.growth_twice,
+            frame.first_points,
             frame.centre_triangles,
             frame.centre_count,
             frame.first_centre,
@@ -233,24 +241,6 @@ def _points_on(
     points = (1.0 - share) * positions[a][:, None] + share * positions[b][:, None] + bulges
     between = (1.0 - share) * normals[a][:, None] + share * normals[b][:, None]
     return points[:, AXES_OF], between[:, AXES_OF]
-
-
-def _centres_of(places: Doubles, mesh: Connectivity, positions: Doubles) -> Doubles:
-    """Middles of triangles whose edges are all split, as blending has them, shape (F, 2, 3)."""
-    bulges = places[:, [MIDDLE, ALONE]] - positions[mesh.edges].mean(axis=1)[:, None]
-    bulges = np.concatenate([bulges, np.zeros((1, 2, 3))])  # found at -1, where there is no edge
-    flat: Doubles = positions[mesh.faces].mean(axis=1)[:, None]
-    centres: Doubles = flat + 4.0 / 9.0 * bulges[mesh.triangle_edges].sum(axis=1)
-    return centres
-
-
-def _closest(surface: Surface, points: Doubles, normals: Doubles) -> tuple[Doubles, Doubles]:
-    """Closest points on the finer mesh, and its unit normals there, in the shape of `points`."""
-    triangles, weights = surface.closest(points.reshape(-1, 3), normals.reshape(-1, 3))
-    looks = surface.at(surface.normals, triangles, weights)
-    looks /= np.maximum(np.linalg.norm(looks, axis=1, keepdims=True), 1e-12)
-    places = surface.at(surface.positions, triangles, weights)
-    return places.reshape(points.shape), looks.reshape(points.shape)
 
 
 def _along(axes: Floats, vectors: Doubles) -> Floats:
@@ -363,6 +353,8 @@ def show_points(
 
 @kernel
 def show_centres(
+    faces: Unsigned,
+    shares: Floats,
     offsets: Floats,
     looks: Floats,
     axes: Floats,
@@ -370,12 +362,16 @@ def show_centres(
     splits: npt.NDArray[np.uint8],
     growth_once: Floats,
     growth_twice: Floats,
+    first_points: Unsigned,
     centre_triangles: Unsigned,
     centre_count: int,
     first_centre: int,
     vertices: Floats,
 ) -> None:
-    """Move and turn the points in the middle of triangles as the least grown edge allows."""
+    """Slide, move and turn the points in the middle of triangles as the least grown edge allows.
+
+    They are where blending has them (blend.py): in the centroid.
+    """
     look = np.empty(3, np.float32)
     for k in range(centre_count):
         t, row = centre_triangles[k], first_centre + k
@@ -384,6 +380,16 @@ def show_centres(
             e = triangle_edges[t, i]
             once = min(once, growth_once[e])
             twice = min(twice, growth_twice[e] if splits[e] == 2 else ZERO)
+        if once == ZERO:
+            continue
+        for i in range(3):
+            e, a, b = triangle_edges[t, i], faces[t, i], faces[t, (i + 1) % 3]
+            middle = first_points[e] + (splits[e] >> 1)
+            corner = once * (shares[t, i] - THIRD)
+            bulge = once * (FOUR * shares[t, i] * shares[t, (i + 1) % 3] - FOUR_NINTHS)
+            for j in range(3):
+                out = vertices[middle, j] - HALF * (vertices[a, j] + vertices[b, j])
+                vertices[row, j] += corner * vertices[a, j] + bulge * out
         for j in range(3):
             look[j] = between(looks[t, 1, j], looks[t, 0, j], twice)
             offset = once * between(offsets[t, 1, j], offsets[t, 0, j], twice)

@@ -9,6 +9,9 @@ over because after each time other triangles are the closest.
 Triangles around an edge that is split once are twice as long as around one that is split twice, and
 cut more off: the middle of an edge has one place for each, and so has the middle of a triangle.
 
+The middles of triangles are fitted twice: with all else where the edges meet half way, because an
+unblended frame has none of them; then alone, where they slide to (local_frames.py).
+
 Normals: in the folds of lips and lids, where the vertices of a decimated face often lie, the normal
 of one place says nothing about the triangles around it. So the normals that are shown are fitted
 too, at vertices and points at once, to those of all finer vertices; unsplit, split once and split
@@ -74,31 +77,98 @@ class Points(NamedTuple):
         return Points(of_edges.reshape(-1, 4, 3), of_triangles.reshape(-1, 2, 3))
 
 
-def fitted(surface: Surface, mesh: Connectivity, positions: Doubles, points: Points) -> Points:
+class Fit(NamedTuple):
+    """Where points lie on the finer mesh, and what is seen there."""
+
+    places: Points
+    looks: Doubles
+    """Unit normals, stacked."""
+    saved: npt.NDArray[np.float32]
+    """What a split of each edge mends, shape (E,) (saved_turns)."""
+
+
+def fit(
+    surface: Surface, mesh: Connectivity, positions: Doubles, normals: npt.NDArray[np.float32],
+    edges: tuple[Doubles, Doubles], middles: tuple[Doubles, Doubles],
+) -> Fit:  # fmt: skip
+    """Fit everything to the finer mesh `surface`.
+
+    `positions`, `normals`: of the coarse mesh at rest, shape (V, 3); `edges`: points of edges to
+    begin with and normals there, shape (E, 4, 3); `middles`: where in triangles their middle points
+    lie, as shares of the corners, and normals there, shape (F, 3).
+    """
+    shares, middle_ups = middles[0], np.repeat(middles[1][:, None], 2, axis=1)
+    points, ups = edges
+    of_edges, _ = closest_places(surface, points, ups)
+    corner_ups = np.repeat(normals[mesh.faces].sum(axis=1)[:, None], 2, axis=1)
+    centres = middles_of(of_edges, mesh, positions, np.full_like(shares, 1.0 / 3.0))
+    start = Points(of_edges, closest_places(surface, centres, corner_ups)[0])
+    places = fitted(surface, mesh, positions, start, mesh.vertex_count)
+    where = places.stacked(positions)
+    _, looks = closest_places(surface, where, Points(ups, corner_ups).stacked(normals))
+    looks = fitted_normals(surface, mesh, where, looks, 0)
+    saved = saved_turns(surface, mesh, where, looks)
+
+    first_middle = mesh.vertex_count + 4 * len(mesh.edges)
+    centres = middles_of(places.of_edges, mesh, positions, shares)
+    start = Points(places.of_edges, closest_places(surface, centres, middle_ups)[0])
+    places = fitted(surface, mesh, positions, start, first_middle)
+    _, middle_looks = closest_places(surface, places.of_triangles, middle_ups)
+    looks[first_middle:] = middle_looks.reshape(-1, 3)
+    looks = fitted_normals(surface, mesh, places.stacked(positions), looks, first_middle)
+    return Fit(places, looks, saved)
+
+
+def middles_of(
+    of_edges: Doubles, mesh: Connectivity, positions: Doubles, shares: Doubles
+) -> Doubles:
+    """Middles of triangles whose edges are all split, twice and once, shape (F, 2, 3).
+
+    `of_edges`: places of the points of edges; `shares`: where in the triangles, shape (F, 3).
+    """
+    bulges = of_edges[:, [MIDDLE, ALONE]] - positions[mesh.edges].mean(axis=1)[:, None]
+    bulges = np.concatenate([bulges, np.zeros((1, 2, 3))])  # found at -1, where there is no edge
+    weights = 4.0 * shares * np.roll(shares, -1, axis=1)
+    flat = np.einsum("fi,fij->fj", shares, positions[mesh.faces])
+    middles: Doubles = flat[:, None] + np.einsum(
+        "fi,fikj->fkj", weights, bulges[mesh.triangle_edges]
+    )
+    return middles
+
+
+def closest_places(surface: Surface, points: Doubles, normals: Doubles) -> tuple[Doubles, Doubles]:
+    """Closest points on the finer mesh, and its unit normals there, in the shape of `points`."""
+    triangles, weights = surface.closest(points.reshape(-1, 3), normals.reshape(-1, 3))
+    looks = surface.at(surface.normals, triangles, weights)
+    looks /= np.maximum(np.linalg.norm(looks, axis=1, keepdims=True), 1e-12)
+    places = surface.at(surface.positions, triangles, weights)
+    return places.reshape(points.shape), looks.reshape(points.shape)
+
+
+def fitted(
+    surface: Surface, mesh: Connectivity, positions: Doubles, points: Points, first: int
+) -> Points:
     """Return points that fit better.
 
-    `surface`: the finer mesh; `positions`: of the coarse mesh at rest, shape (V, 3); `points`:
-    where to begin.
+    `points`: where to begin; `first`: the first that may move, of vertices and points stacked.
     """
-    reach, vertex_count = _reach(mesh, positions), len(positions)
+    reach = _reach(mesh, positions)
     places = points.stacked(positions)
     shapes = [(split_everywhere(mesh, *row), 1.0) for row in (TWICE, *ONCE)]
     for k in range(ROUNDS if len(shapes[0][0]) else 0):
         if k == ONCE_ROUNDS:
             shapes = shapes[:1]
         corners, weights, pull = _pulls(surface, places, shapes, reach, surface.positions, places)
-        places[vertex_count:] += _solved(
-            corners - vertex_count, weights, pull, len(places) - vertex_count, STIFFNESS
-        )
+        places[first:] += _solved(corners - first, weights, pull, len(places) - first, STIFFNESS)
     return Points.unstacked(places, mesh)
 
 
 def fitted_normals(
-    surface: Surface, mesh: Connectivity, places: Doubles, normals: Doubles
+    surface: Surface, mesh: Connectivity, places: Doubles, normals: Doubles, first: int
 ) -> Doubles:
     """Return unit normals of vertices and points that fit better, stacked, shape (N, 3).
 
-    `places`: where they are; `normals`: where to begin.
+    `places`: where they are; `normals`: where to begin; `first`: the first that may turn.
     """
     whole = mesh.faces[~mesh.is_degenerate].astype(np.int64)
     if len(whole) == 0:
@@ -109,7 +179,10 @@ def fitted_normals(
     corners, weights, pull = _pulls(surface, places, shapes, reach, surface.normals, normals)
     stiffness = np.full((len(normals), 1), NORMAL_STIFFNESS)
     stiffness[: mesh.vertex_count] = CORNER_STIFFNESS
-    turned = normals + _solved(corners, weights, pull, len(normals), stiffness)
+    turned = normals.copy()
+    turned[first:] += _solved(
+        corners - first, weights, pull, len(normals) - first, stiffness[first:]
+    )
     lengths = np.linalg.norm(turned, axis=1, keepdims=True)
     return np.where(lengths > LOST, turned / np.maximum(lengths, LOST), normals)
 

@@ -8,7 +8,9 @@ mesh is another test's business (test_detail.py).
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from tests.refine.plain_schemes import CurveRules, Face, cross, cubic, dot
 from tests.refine.plain_twin import (
@@ -23,6 +25,7 @@ from tests.refine.plain_twin import (
     unit,
 )
 
+T = TypeVar("T")
 Axes = tuple[Vector, Vector, Vector]
 Seen = dict[Name, tuple[Vector, Vector]]
 """Position and normal of every point."""
@@ -33,6 +36,11 @@ def axes_of(up: Vector, towards: Vector) -> Axes:
     up = unit(up)
     towards = unit(mix((1, towards), (-dot(towards, up), up)))
     return up, towards, cross(up, towards)
+
+
+def ring(items: Sequence[T]) -> list[tuple[T, T]]:
+    """Each of three and the next."""
+    return [(items[i], items[(i + 1) % 3]) for i in range(3)]
 
 
 def squared(vector: Vector) -> float:
@@ -59,6 +67,27 @@ class Form:
         mean = mix((1, self.cubic.normals[a]), (1, self.cubic.normals[b]))
         return unit(mix((1, mean), (-dot(mean, chord) / dot(chord, chord), chord)))
 
+    def shares(self, corners: Sequence[int]) -> list[float]:
+        """Where the middle of a face lies: 0.6 of the way from its centroid to where it bends."""
+        points, normals = self.cubic.positions, self.cubic.normals
+        bends = []
+        for a, b in ring(corners):
+            chord = mix((1, points[b]), (-1, points[a]))
+            turn_a, turn_b = dot(chord, normals[a]), dot(chord, normals[b])
+            bulge = mix((turn_a, normals[a]), (-turn_b, normals[b]))
+            bends.append(dot(bulge, bulge) + 0.02 * dot(chord, chord))
+        total = sum(bends)
+        return [0.4 / 3 + 0.6 * (bends[i] + bends[i - 1]) / (2 * total) for i in range(3)]
+
+    def middle(self, face: Face, middles: dict[EdgeName, Vector], shares: list[float]) -> Vector:
+        """The quadratic through corners and middles of edges, at some shares of the corners."""
+        points = self.cubic.positions
+        place = mix(*((share, points[v]) for v, share in zip(face, shares, strict=True)))
+        for (a, b), (s, t) in zip(ring(face), ring(shares), strict=True):
+            bulge = mix((1, middles[edge_name(a, b)]), (-0.5, points[a]), (-0.5, points[b]))
+            place = mix((1, place), (4 * s * t, bulge))
+        return place
+
     def axes(self, name: Name) -> Axes:
         """Directions of a vertex, of a point of an edge, or of the middle of a face (a, b, c)."""
         points, normals = self.cubic.positions, self.cubic.normals
@@ -72,9 +101,13 @@ class Form:
                 up = mix((1, up), (1, normals[a if quarters == 1 else b]))
             return axes_of(up, mix((1, points[b]), (-1, points[a])))
         corners = [int(v) for v in name[1:]]
-        pairs = [(corners[i], corners[(i + 1) % 3]) for i in range(3)]
-        ups = [(4.0, self.upright(a, b)) for a, b in pairs]
-        up = mix(*ups, *((-1.0, normals[v]) for v in corners))
+        shares = self.shares(corners)
+        ups = [
+            (4.0 * s * t, self.upright(a, b))
+            for (a, b), (s, t) in zip(ring(corners), ring(shares), strict=True)
+        ]
+        own = [(s * (2.0 * s - 1.0), normals[v]) for v, s in zip(corners, shares, strict=True)]
+        up = mix(*ups, *own)
         return axes_of(up, mix((1, points[corners[1]]), (-1, points[corners[0]])))
 
 
@@ -101,6 +134,7 @@ class DetailRules:
         self.faces, self.around = faces, Surroundings(faces)
         self.seen_once, self.seen = seen
         self.twice: dict[EdgeName, float] = {}
+        self.middles: dict[EdgeName, Vector] = {}
         names: list[Name] = [("vertex", v) for v in range(len(rest))]
         self.shown = [self._look(name) for name in names]
 
@@ -139,6 +173,7 @@ class DetailRules:
             look = self._look(("edge", a, b, 2), twice=self.twice[a, b])
             middle = turned(normals[2], look, share)
             normals[2] = middle
+            self.middles[a, b] = place.points[a, b][2]
             for quarters, end in ((1, a), (3, b)):
                 between = mix((0.5, self.shown[end]), (0.5, middle))
                 look = self._look(("edge", a, b, quarters))
@@ -164,17 +199,17 @@ class DetailRules:
             (1 - twice, self._missing(face, known_as, self.seen_once)),
             (twice, self._missing(face, known_as, self.seen)),
         )
+        if once > 0:
+            slid = self.now.middle(face, self.middles, self.now.shares(face))
+            before = self.now.middle(face, self.middles, [1 / 3] * 3)
+            point = mix((1, point), (once, slid), (-once, before))
         moved = mix((1, point), (once, carried(missing, *self._frames(name))))
         return moved, turned(normal, self._look(name, known_as, twice), once)
 
     def _missing(self, face: Face, known_as: Name, seen: Seen) -> Vector:
-        """What is missing, at rest, where blending alone has the middle of a triangle."""
-        before = mix(*((1 / 3, self.rest.cubic.positions[v]) for v in face))
-        for i in range(3):
-            edge = edge_name(face[i], face[(i + 1) % 3])
-            straight = mix(*((0.5, self.rest.cubic.positions[v]) for v in edge))
-            bulge = mix((1, seen["edge", *edge, 2][0]), (-1, straight))
-            before = mix((1, before), (4 / 9, bulge))
+        """What is missing at rest, where the middle of a triangle has slid to."""
+        middles = {e: seen["edge", *e, 2][0] for e in (edge_name(*ends) for ends in ring(face))}
+        before = self.rest.middle(face, middles, self.rest.shares(face))
         return mix((1, seen[known_as][0]), (-1, before))
 
 
