@@ -58,7 +58,7 @@ from .teeth import Teeth, watch_teeth
 from .tissue import TissueSprings, masses_for_step
 
 SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
-SEAL_LOST_BY_THRUST = 0.2  # at full jaw_forward: lips slide, or the upper turns inside out
+SEAL_LOST_BY_THRUST = 0.15  # at full jaw_forward: lips slide, or the upper turns inside out
 NECK = 45.0  # mm below the chin; the turn of the head fades evenly, or the throat turns over
 LIPS_MEET_AT = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
 LIPS_WHOLE, LIPS_END = 7.0, 32.0  # mm from the mouth line: skin that goes along, in full and at all

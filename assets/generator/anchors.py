@@ -1,6 +1,7 @@
 """Points that must be vertices: landmarks, the crease around the wing of the nose, the fold below.
 
-The nasolabial fold is a row of edges too: a smile can crease the skin only where the mesh has one.
+The nasolabial fold is a row of edges too: a smile can crease the skin only where the mesh has one;
+so are the bands in which the platysma stands out on the neck, and the hollow between them.
 Every point is given for the left half and put onto the surface. Names are anatomical; numbers such
 as `jaw_12` are those of the iBug landmark at the point.
 """
@@ -56,6 +57,12 @@ FROM_AXIS = {
     "gonion": (88.0, -84.0),
     "temple": (72.0, 22.0),
 }
+# angle about the axis [deg], height [mm], from the jaw down: inner band, hollow, outer band
+NECK_ROWS = (
+    ((17.0, -129.0), (20.0, -139.0), (23.0, -149.0)),
+    ((34.0, -125.5), (38.0, -136.0), (42.0, -147.0)),
+    ((50.0, -122.0), (55.0, -133.0), (60.0, -144.0)),
+)
 # Angles around the wing of the nose [deg], from above it to below, at which its crease is sought.
 CREASE_ANGLES = (62.0, 30.0, -2.0, -36.0, -72.0)
 FOLD_START = 1  # the first point of the fold's curve lies on the alar crease
@@ -85,6 +92,12 @@ def nasolabial_fold() -> Points:
     """The fold from beside the alar crease past the corner of the mouth, shape (n, 3)."""
     x, y = np.array(FOLD[FOLD_START:]).T
     return from_front(x, y)
+
+
+def neck_rows() -> list[Points]:
+    """The bands of the platysma and the hollow between them, each of shape (n, 3)."""
+    rows = (np.array(row).T for row in NECK_ROWS)
+    return [from_axis(np.radians(angle), height) for angle, height in rows]
 
 
 def alar_crease() -> Points:

@@ -213,7 +213,7 @@ def chin(points: Points, seed: int) -> Crease:
     away = np.hypot(x / 18.0, (y - CHIN_HEIGHT) / 12.0)
     cover = smooth_step(1.45, 0.35, away) * smooth_step(60.0, 75.0, z)
     coarse, fine = noise(points, 5.0, seed=seed), noise(points, 2.6, seed=seed + 1)
-    height = 0.19 * coarse + 0.07 * fine
+    height = 0.26 * coarse + 0.10 * fine
     near = smooth_step(1.9, 1.2, away)
     across = np.tile(ASIDE, (len(points), 1))
     return Crease(0, near, across, 1.6, cover, Furrows(np.maximum(-height, 0.0), height))

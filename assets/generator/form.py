@@ -26,6 +26,8 @@ FOLD = (
     (15.6, -36.5), (21.4, -40.8), (26.2, -46.6), (29.9, -52.8), (33.0, -59.2), (35.1, -65.8),
     (35.8, -72.6), (35.0, -79.4),
 )  # fmt: skip
+# The sternomastoid, from behind the jaw down to the pit of the throat: height [mm], angle [deg].
+NECK_MUSCLE = ((-170, 24), (-156, 33), (-140, 47), (-122, 66), (-104, 84), (-86, 96), (-70, 103))
 RELIEF_BEHIND, RELIEF_IN_FRONT = 40.0, 56.0  # [mm] z: small forms are drawn on the face alone
 
 
@@ -41,13 +43,25 @@ def relief(x: Values, y: Values) -> Values:
 
     brow = 0.6 * bump(x, 38.0, 12.0) * bump(y, 21.0, 5.5)
     lid_fold = 1.1 * bump(x, 37.0, 11.0) * bump(y, 13.0, 3.6)
-    cheek = 2.0 * bump(x, 42.0, 13.0) * bump(y, -22.0, 11.0)
-    hollows = -0.9 * bump(x, 47.0, 9.0) * bump(y, -58.0, 13.0)
+    cheek = 2.5 * bump(x, 42.0, 13.0) * bump(y, -22.0, 11.0)
+    hollows = -1.5 * bump(x, 47.0, 9.0) * bump(y, -58.0, 13.0)
     hollows -= 1.2 * bump(x, 60.0, 8.0) * bump(y, 22.0, 14.0)
     chin = 0.6 * bump(x, 7.0, 7.0) * bump(y, -100.0, 8.0)
-    corner = -0.7 * bump(x, 27.0, 3.4) * bump(y, -66.3, 3.4)
-    corner += 0.6 * bump(x, 30.0, 6.0) * bump(y, -70.0, 9.0)
+    corner = -1.1 * bump(x, 27.3, 3.4) * bump(y, -66.3, 3.6)
+    corner += 0.9 * bump(x, 32.5, 4.6) * bump(y, -68.5, 9.0)
     return philtrum + fold + brow + lid_fold + cheek + hollows + chin + corner
+
+
+def neck_relief(angle: Values, height: Values, radius: Values) -> Values:
+    """The muscle that turns the head, the hollow in front of it, and the larynx [mm]."""
+    heights, degrees = np.array(NECK_MUSCLE).T
+    behind = radius * (np.abs(angle) - np.radians(np.interp(height, heights, degrees)))
+    from_middle = radius * np.abs(angle)
+    muscle = 4.4 * bump(behind, 0.0, 8.5) - 2.0 * bump(behind, -14.0, 9.0)
+    larynx = bump(height, -143.0, 8.0) + 0.6 * smooth_step(-143.0, -152.0, height)
+    throat = 4.0 * larynx * bump(from_middle, 0.0, 8.0) * smooth_step(-128.0, -140.0, height)
+    along = smooth_step(-84.0, -112.0, height) * smooth_step(-166.0, -138.0, height)
+    return muscle * along + throat
 
 
 def head_distance(points: Points) -> Values:
@@ -57,6 +71,7 @@ def head_distance(points: Points) -> Values:
     surface = base_radius(angle, height)
     in_front = smooth_step(RELIEF_BEHIND, RELIEF_IN_FRONT, points[:, 2])
     surface = surface + in_front * (relief(x, y) + lips.displacement(x, y))
+    surface = surface + neck_relief(angle, height, surface)
     return (radius - surface) * RADIAL_SLOPE
 
 

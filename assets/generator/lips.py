@@ -37,14 +37,14 @@ def seam_height(x: Values) -> Values:
 def upper_border(x: Values) -> Values:
     """Height y of the upper border of the red [mm], with Cupid's bow."""
     t = _relative(x)
-    height = 8.4 * (1 - t**1.7) ** 0.95 + 0.9 * bump(t, 0.2, 0.12) - 1.0 * bump(t, 0.0, 0.10)
-    return seam_height(x) + height * (1 - t**6)
+    height = 8.4 * (1 - t**1.75) ** 0.85 + 0.9 * bump(t, 0.2, 0.12) - 1.0 * bump(t, 0.0, 0.10)
+    return seam_height(x) + height * (1 - t**9)
 
 
 def lower_border(x: Values) -> Values:
     """Height y of the lower border of the red [mm]."""
     t = _relative(x)
-    return seam_height(x) - 9.8 * (1 - t**2.1) ** 1.05
+    return seam_height(x) - 9.8 * (1 - t**2.1) ** 0.9
 
 
 def displacement(x: Values, y: Values) -> Values:

@@ -32,7 +32,7 @@ OUTER_DISTANCE = 4.2  # [mm]
 def _columns() -> Values:
     """Relative x of the columns, a little closer toward the corner."""
     even = np.arange(SIDE) / SIDE
-    return 0.45 * np.sin(even * np.pi / 2) + 0.55 * even
+    return 0.48 * np.sin(even * np.pi / 2) + 0.52 * even
 
 
 def _around(upper: Points, corner: Points, lower: Points) -> Points:

@@ -28,7 +28,7 @@ def distance(points: Points) -> Values:
     lobe = sphere(half, (3.7, -35.6, 113.4), 6.3)
     wing = ellipsoid(half, (10.9, -39.2, 102.0), (5.4, 6.6, 10.3), turn_deg=22)
     triangle = ellipsoid(half, (7.6, -38.6, 108.6), (4.3, 4.7, 6.2), turn_deg=30)
-    columella = tapered_capsule(half, (0, -41.5, 101), (0, -40.4, 114.2), 3.0, 3.1)
+    columella = tapered_capsule(half, (0, -42.2, 101), (0, -41.2, 113.9), 3.0, 3.1)
 
     result = smooth_minimum(ridge, lower_ridge, 6.0)
     result = smooth_minimum(result, side_wall, 9.0)

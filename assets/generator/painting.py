@@ -90,7 +90,7 @@ def _pigments(texels: Texels, complexion: Complexion) -> tuple[Values, Values, V
     roll = smooth_step(0.0, 0.5, lip) * smooth_step(1.0, 0.5, lip)
     melanin = melanin - 0.05 * roll * texels.is_upper_lip
 
-    melanin = melanin + 0.16 * _corner_of_mouth(points) + 0.05 * _fold_beside_mouth(points)
+    melanin = melanin + 0.20 * _corner_of_mouth(points) + 0.05 * _fold_beside_mouth(points)
     fold_of_lid = bump(texels.eye_row, 4.0, 0.35) * texels.is_upper_lid
     melanin = melanin + 0.10 * fold_of_lid
     redness = redness * (1.0 - 0.45 * scalp(texels))
@@ -172,11 +172,12 @@ def _mouth(texels: Texels) -> list[Cover]:
     # Toward the corner the groove between the lips grows flat, and light would fall into it.
     x = np.abs(texels.points[:, 0])
     flat = smooth_step(lips.HALF_WIDTH - 9.0, lips.HALF_WIDTH - 2.0, x)
+    shade = 0.75 * flat * smooth_step(2.5, 1.5, row)
     line = np.clip((2.6 + 0.9 * flat - row) / (0.6 + 0.9 * flat), 0.0, 1.0)
     return [
-        (to_linear(LINE_OF_LIPS), 0.46 * line * smooth_step(1.3, 1.9, row)),
+        (to_linear(LINE_OF_LIPS), (0.46 + 0.24 * flat) * line * smooth_step(1.3, 1.9, row)),
         (to_linear(MUCOSA), smooth_step(2.0, 1.4, row)),
-        (to_linear(MUCOSA_DEEP), smooth_step(1.3, 0.1, row)),
+        (to_linear(MUCOSA_DEEP), np.maximum(smooth_step(1.3, 0.1, row), shade)),
     ]
 
 

@@ -80,7 +80,7 @@ def red(texels: Texels) -> Values:
     edge = 0.22 * noise(texels.points, 1.3, seed=21)
     upper = smooth_step(-0.55, 1.0, above + edge - past_corner)
     lower = smooth_step(-1.1, 1.8, below + edge - past_corner)
-    toward_corner = smooth_step(lips.HALF_WIDTH + 0.6, lips.HALF_WIDTH - 8.0, x)
+    toward_corner = smooth_step(lips.HALF_WIDTH + 0.6, lips.HALF_WIDTH - 5.0, x)
     in_front = np.minimum(upper, lower) * toward_corner * (texels.mouth_row < 7.6)
     return np.where(texels.mouth_row < 2.0, 1.0, in_front)
 

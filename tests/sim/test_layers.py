@@ -25,6 +25,7 @@ EXPRESSIONS = (
     "mouth_open", "blink",
 )  # fmt: skip
 HEAD_UNITS = ("AU51", "AU52", "AU53", "AU54", "AU55", "AU56")
+AXIS_OF_NECK = 15.0  # [mm] z, from which the neck is seen outward
 VISEMES = "sil PP FF TH DD kk CH SS nn RR aa E ih oh ou".split()
 
 
@@ -180,6 +181,30 @@ def test_a_funnelled_mouth_is_round(simulation: sim.Simulation, head: Head) -> N
     straight, curved = 1.0 - across, np.sqrt(1.0 - across**2)
     low = (lips[54, 1] - lips[56, 1]) / (lips[54, 1] - lips[57, 1])
     assert low > (straight + curved) / 2.0
+
+
+def test_neck_tightener_shows_bands(simulation: sim.Simulation, head: Head) -> None:
+    """AU21 brings two bands on each side of the neck out of it and sinks the skin between."""
+    moved = settle(simulation, {"AU21": 1.0})
+    outward = head.vertices * [1.0, 0.0, 1.0] - [0.0, 0.0, AXIS_OF_NECK]
+    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+    out = (moved * outward).sum(axis=1)
+    for side in ("left", "right"):
+        inner, hollow, outer = (head.rings[f"neck_{n}_{side}"] for n in range(3))
+        assert min(out[inner].min(), out[outer].min()) > 3.0
+        assert out[hollow].max() < -3.0
+
+
+def test_funnel_hides_lower_teeth(simulation: sim.Simulation, head: Head) -> None:
+    """AU22 parts the lips and keeps the lower one above the edges of its incisors."""
+    settle(simulation, {"AU22": 1.0})
+    lips = simulation.positions[head.landmarks]
+    (teeth,) = (part.vertices for part in head.parts if part.name == "teeth_lower")
+    moved = teeth @ simulation.bone_transforms()["mandible"][:3, :3].T
+    moved = moved + simulation.bone_transforms()["mandible"][:3, 3]
+    incisors = np.abs(teeth[:, 0]) < 5.0
+    assert lips[62, 1] - lips[66, 1] > 4.0
+    assert moved[incisors, 1].max() < lips[66, 1]
 
 
 def test_units_that_look_alike_differ(simulation: sim.Simulation, head: Head) -> None:
