@@ -30,7 +30,7 @@ def test_paper_figures() -> None:
     assert nine.shape[1] == 3 * 96
     assert nine.std() > 10.0
     ten = paper_figures.figure_10((80, 64), poses=("joy",))
-    assert ten.shape[1] == 3 * 80
+    assert ten.shape[1] == 4 * 80
     left, right = ten[30:90, :80].astype(int), ten[30:90, 80:160].astype(int)
     assert np.abs(left - right).max() > 20  # refinement shows
 
