@@ -184,10 +184,13 @@ def test_only_skin_that_wrinkles_is_drawn_differently(scene: FaceScene) -> None:
     camera = capture.camera
     matrix = camera.view_matrix() @ camera.projection_matrix(size[0] / size[1])
 
-    def shown(points: Array) -> npt.NDArray[np.bool_]:
+    def pixels(points: Array) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
         clip = np.column_stack([points, np.ones(len(points))]) @ np.asarray(matrix, np.float64)
         place = (0.5 + 0.5 * clip[:, :2] / clip[:, 3:]) * size
-        return differs[size[1] - 1 - place[:, 1].astype(int), place[:, 0].astype(int)]
+        return size[1] - 1 - place[:, 1].astype(int), place[:, 0].astype(int)
+
+    def shown(points: Array) -> npt.NDArray[np.bool_]:
+        return differs[pixels(points)]
 
     now = scene.positions
     rings = [
@@ -197,7 +200,9 @@ def test_only_skin_that_wrinkles_is_drawn_differently(scene: FaceScene) -> None:
         assert not shown(now[ring]).any()
     for eye in head.eyes:
         assert not shown(eye.centre[None] + [0.0, 0.0, eye.radius]).any()
-    assert shown(now[forehead(scene).astype(bool)]).any()
+    rows, columns = pixels(now[forehead(scene).astype(bool)])
+    between = differs[rows.min() : rows.max(), columns.min() : columns.max()]
+    assert 0.05 < between.mean() < 0.6
     assert not differs[:8].any() and not differs[:, :4].any()  # background
 
 
