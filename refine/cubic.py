@@ -370,7 +370,8 @@ def raise_centres(
     vertices: Floats,
 ) -> None:
     """Move the points in the middle of triangles to where edges and triangles around have them."""
-    u, v, higher = np.empty(3, np.float32), np.empty(3, np.float32), np.empty(3, np.float32)
+    # In double: the fourth power of a length is beyond single precision for many a unit of length.
+    u, v, higher = np.empty(3), np.empty(3), np.empty(3)
     for k in range(centre_count):
         t, row = centre_triangles[k], first_centre + k
         growth = ONE
@@ -378,7 +379,7 @@ def raise_centres(
             growth = min(growth, growth_once[triangle_edges[t, i]])
         if growth <= ZERO:
             continue  # not all edges have a middle
-        higher[:] = ZERO
+        higher[:] = 0.0
         for j in range(3):
             a, b, c, e = faces[t, j], faces[t, (j + 1) % 3], across[t, j], triangle_edges[t, j]
             m = first_points[e] + (splits[e] >> 1)
@@ -387,11 +388,11 @@ def raise_centres(
                 depth = vertices[a, i] - vertices[c, i]
                 higher[i] += shares[t, j] * depth + shares[t, 3 + j] * bulge
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        squares = ZERO
+        squares = 0.0
         for i in range(3):
             at_a, at_b, at_c = vertices[a, i], vertices[b, i], vertices[c, i]
             u[i], v[i] = at_b - at_a, at_c - at_a
-            squares += u[i] * u[i] + v[i] * v[i] + (at_c - at_b) * (at_c - at_b)
+            squares += u[i] * u[i] + v[i] * v[i] + (v[i] - u[i]) * (v[i] - u[i])
             flat = THIRD * (at_a + at_b + at_c)
             vertices[row, i] += (CENTRE_FULLNESS - ONE) * growth * (vertices[row, i] - flat)
         x = u[1] * v[2] - u[2] * v[1]
@@ -400,6 +401,6 @@ def raise_centres(
         # Along the normal; a triangle that has been crushed to a line has none.
         area = x * x + y * y + z * z + FLATTENED * squares * squares
         height = growth * (x * higher[0] + y * higher[1] + z * higher[2]) / max(area, TINY)
-        vertices[row, 0] += height * x
-        vertices[row, 1] += height * y
-        vertices[row, 2] += height * z
+        vertices[row, 0] += np.float32(height * x)
+        vertices[row, 1] += np.float32(height * y)
+        vertices[row, 2] += np.float32(height * z)
