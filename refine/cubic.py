@@ -36,6 +36,8 @@ import numpy.typing as npt
 from .connectivity import Connectivity
 from .curves import CurveScheme
 from .kernels import kernel
+from .lanes import four, write
+from .native import native, with_room
 from .schemes import Frame
 
 Floats = npt.NDArray[np.float32]
@@ -89,11 +91,16 @@ class CubicScheme(CurveScheme):
         super().bind(connectivity, rest_positions, rest_normals)
         self._weights = np.zeros(connectivity.faces.shape, dtype=np.float32)
         weigh_corners(rest_positions, connectivity.faces, self._weights)
-        self._normals = np.zeros_like(rest_normals)
+        self._normals = with_room(np.zeros_like(rest_normals))
         self._steeper = np.zeros_like(rest_normals)
-        ends = connectivity.edges.ravel()
-        valences = np.bincount(ends, minlength=len(rest_normals))
-        self._off = (STEEPER / np.maximum(valences, 1)).astype(np.float32)
+        valences = np.bincount(connectivity.edges.ravel(), minlength=len(rest_normals))
+        self._steepen = steepen_normals.bind(
+            self._normals,
+            connectivity.edges.view(np.uint32),
+            (STEEPER / np.maximum(valences, 1)).astype(np.float32),
+            np.zeros((len(rest_normals), 4), np.float32),
+            self._steeper,
+        )
         self._beyond = np.zeros((len(connectivity.edges), 2), dtype=np.uint32)
         follow_borders(connectivity.edges, connectivity.is_interior, rest_normals, self._beyond)
         self._across = connectivity.faces.copy()
@@ -141,7 +148,7 @@ class CubicScheme(CurveScheme):
     ) -> None:
         mesh = self._connectivity
         weighted_normals(positions, mesh.faces, self._weights, self._normals)
-        steepen_normals(self._normals, mesh.edges, self._off, self._steeper)
+        self._steepen()
         bulge_cubic(
             positions,
             self._steeper,
@@ -220,21 +227,24 @@ def weighted_normals(positions: Doubles, faces: Unsigned, weights: Floats, norma
         normals[v, 0], normals[v, 1], normals[v, 2] = x * scale, y * scale, z * scale
 
 
-@kernel
+@native
 def steepen_normals(
-    normals: Floats, edges: npt.NDArray[np.int32], off: Floats, steeper: Floats
+    normals: Floats, edges: Unsigned, off: Floats, sums: Floats, steeper: Floats
 ) -> None:
-    """Write unit normals less those of their neighbours, `off` of each, shape (V,)."""
-    steeper[:] = ZERO
+    """Write unit normals less those of their neighbours, `off` of each, shape (V,).
+
+    `normals` have room (lanes.py); `sums`: scratch, shape (V, 4).
+    """
+    for v in range(sums.shape[0]):
+        sums[v, 0] = sums[v, 1] = sums[v, 2] = sums[v, 3] = ZERO
     for e in range(edges.shape[0]):
         a, b = edges[e, 0], edges[e, 1]
-        for i in range(3):
-            steeper[a, i] += normals[b, i]
-            steeper[b, i] += normals[a, i]
-    for v in range(normals.shape[0]):
-        x = normals[v, 0] - off[v] * steeper[v, 0]
-        y = normals[v, 1] - off[v] * steeper[v, 1]
-        z = normals[v, 2] - off[v] * steeper[v, 2]
+        write(sums, a, four(sums, a) + four(normals, b))
+        write(sums, b, four(sums, b) + four(normals, a))
+    for v in range(sums.shape[0]):
+        x = normals[v, 0] - off[v] * sums[v, 0]
+        y = normals[v, 1] - off[v] * sums[v, 1]
+        z = normals[v, 2] - off[v] * sums[v, 2]
         scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
         steeper[v, 0], steeper[v, 1], steeper[v, 2] = x * scale, y * scale, z * scale
 
