@@ -212,8 +212,9 @@ def test_what_is_thrown_away_is_gone(session: Session, tmp_path: Path) -> None:
         session.set("jaw_open", value)
         one.keep(session)
         one.close()
-        for file in folder.glob("*-*-*"):  # begun in one second, names are by chance
-            file.rename(folder / file.name.replace(file.name[:8], f"2026010{round(10 * value)}"))
+        new = [file for file in folder.iterdir() if not file.name.startswith("2020010")]
+        for file in new:  # begun in one second, names are by chance
+            file.rename(folder / f"2020010{round(10 * value)}{file.name[8:]}")
     (folder / "20270101-000000-abc.pose.toml").write_text("nonsense")
     (folder / "20270101-000000-abd.pose.toml").write_bytes(bytes(range(256)))
     next_one = Recovery(folder)
