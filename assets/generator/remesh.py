@@ -10,7 +10,7 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
-from .fields import Points, normals, project
+from .fields import Points, Values, normals, project
 from .form import distance
 from .sheet import wanted_length
 from .topology import Edge, Faces, cross_products, edge_faces, edge_key
@@ -50,20 +50,29 @@ def _opposite(face: list[int], edge: Edge) -> int:
     return next(vertex for vertex in face if vertex not in edge)
 
 
-def _angle(apex: Points, first: Points, second: Points) -> float:
-    u, v = first - apex, second - apex
-    return float(np.arctan2(np.linalg.norm(np.cross(u, v)), u @ v))
+def _corner_angles(vertices: Points, faces: Faces) -> Values:
+    """The inner angle at every corner of every face [rad], shape (F, 3)."""
+    size = np.linalg.norm(cross_products(vertices, faces), axis=1)
+    angles = np.empty(faces.shape)
+    for i in range(3):
+        apex, first, second = (vertices[faces[:, (i + k) % 3]] for k in range(3))
+        angles[:, i] = np.arctan2(size, ((first - apex) * (second - apex)).sum(axis=1))
+    return angles
 
 
 def flip_edges(sheet: Sheet, *, rounds: int = 6) -> None:
     """Flip every edge whose opposite angles add up to more than 180 degrees."""
     triangles = sheet.faces.tolist()
     for _ in range(rounds):
-        beside = edge_faces(np.array(triangles, dtype=np.int32))
+        faces = np.array(triangles, dtype=np.int32)
+        beside, angles = edge_faces(faces), _corner_angles(sheet.vertices, faces)
         existing, flips = set(beside), 0
         touched: set[int] = set()
         for edge, pair in beside.items():
             if len(pair) != 2 or edge in sheet.locked or touched & set(pair):
+                continue
+            opposite = [angles[t, triangles[t].index(_opposite(triangles[t], edge))] for t in pair]
+            if sum(opposite) <= np.pi + 1e-3:
                 continue
             new = _flipped(sheet.vertices, triangles[pair[0]], triangles[pair[1]], edge, existing)
             if new is not None:
@@ -80,15 +89,10 @@ def flip_edges(sheet: Sheet, *, rounds: int = 6) -> None:
 def _flipped(
     vertices: Points, left: list[int], right: list[int], edge: Edge, existing: set[Edge]
 ) -> tuple[list[int], list[int]] | None:
-    """The two faces after a flip, or None if it would not help or would fold the surface."""
+    """The two faces after a flip, or None if it would fold the surface."""
     a, b = edge
     c, d = _opposite(left, edge), _opposite(right, edge)
     if edge_key(c, d) in existing:
-        return None
-    points = vertices
-    if _angle(points[c], points[a], points[b]) + _angle(points[d], points[a], points[b]) <= (
-        np.pi + 1e-3
-    ):
         return None
     if left[(left.index(a) + 1) % 3] == b:
         new = ([d, c, a], [c, d, b])
