@@ -23,7 +23,7 @@ import numpy.typing as npt
 from .arguments import AttributeLike
 from .binding import BoundRefiner, Rows
 from .blend import grow, number_centres, place_centres
-from .choices import marking_of, may_renumber, scheme_of
+from .choices import marking_of, may_renumber, measuring_of, scheme_of
 from .coherence_pass import Coherent
 from .criteria import criterion_of
 from .criterion import (
@@ -33,8 +33,9 @@ from .criterion import (
     Measured,
     NormalDrop,
 )
+from .cubic import CubicScheme
 from .detail import FinerMesh
-from .native import Turns
+from .native import Call, Turns
 from .output import (
     CENTRE,
     NO_ROOM,
@@ -153,12 +154,12 @@ class Kahler(BoundRefiner):
     def _bind_passes(self) -> None:
         """Bind the compiled passes of a frame to their arguments, and join what can be joined.
 
-        With the paper's criterion and scheme a frame is one call of compiled code, and another only
-        where it needs more room than there is.
+        With the paper's criterion, and its scheme or `cubic`, a frame is one call of compiled code,
+        and another only where it needs more room than there is.
         """
         mesh, frame, patterns = self.connectivity, self._frame, self._patterns
         self._drawn_to: Rows | None = None
-        self._number_points = number_points.bind(
+        number = number_points.bind(
             self._rim_splits,
             mesh.rim_edges,
             mesh.edge_sides,
@@ -170,6 +171,7 @@ class Kahler(BoundRefiner):
             self._configurations,
             frame.counts,
         )
+        numbering = [number]
         self._look_up_triangles = look_up_triangles.bind(
             self._output_corners,
             mesh.triangle_rims,
@@ -183,22 +185,58 @@ class Kahler(BoundRefiner):
             np.zeros((0, 3), dtype=np.uint32),
             np.zeros(0, dtype=np.int32),
         )
-        self._is_placed = type(self._scheme) is LoopScheme and not self._blend
-        self._writes = self._bind_values(mesh, self._rim_splits, frame.first_points)
+        draws = [
+            *self._bind_values(mesh, self._rim_splits, frame.first_points),
+            self._look_up_triangles,
+        ]
+        if frame.centre_triangles is not None:
+            numbering.append(
+                number_centres.bind(
+                    self._triangle_configurations,
+                    patterns.counts,
+                    patterns.subtriangles,
+                    CENTRE,
+                    frame.centre_triangles,
+                    frame.counts,
+                )
+            )
+            draws.append(
+                place_centres.bind(
+                    mesh.faces,
+                    mesh.corners,
+                    mesh.triangle_edges,
+                    self._rim_splits,
+                    frame.growth_once,
+                    frame.first_points,
+                    frame.centre_triangles,
+                    frame.counts,
+                    frame.rows,
+                )
+            )
+        self._is_placed = type(self._scheme) in (LoopScheme, CubicScheme)
         if self._is_placed:
-            self._writes.insert(0, cast(LoopScheme, self._scheme).placing(frame))
-        draws = [*self._writes, self._look_up_triangles]
-        self._draw = Turns(*draws)
-        marking = None
-        if not self._blend:
-            marking = marking_of(self._criterion, self._normals, self._edge_splits)
+            scheme = cast(LoopScheme | CubicScheme, self._scheme)
+            draws = [*scheme.placing(frame), *draws]
+            draws += scheme.raising(frame) if self._blend else []
+        self._writes = [call for call in draws if call.takes("vertices")]
+        self._draw, self._number = Turns(*draws), Turns(*numbering)
+        marking = self._bind_marking()
         self._is_marked = marking is not None
-        self._is_whole = self._is_marked and self._is_placed and patterns is CONFIGURATIONS
+        self._is_whole = self._is_marked and self._is_placed and self.history is None
         if marking is not None:
-            begin = [self._take_in, self._find_normals, *marking, self._number_points]
+            begin = [self._take_in, self._find_normals, *marking, *numbering]
             if self._is_whole:
                 begin += [overflow.bind(frame.counts, self._room), *draws]
             self._begin = Turns(*begin)
+
+    def _bind_marking(self) -> list[Call] | None:
+        """Return the calls that decide on splits and growth; None if the criterion is Python."""
+        if not self._blend:
+            return marking_of(self._criterion, self._normals, self._edge_splits)
+        frame = self._frame
+        self._grow = grow.bind(self._need, self._edge_splits, frame.growth_once, frame.growth_twice)
+        measuring = measuring_of(self._criterion, self._normals, self._need)
+        return None if measuring is None else [measuring, self._grow]
 
     @property
     def history(self) -> Coherent | None:
@@ -224,27 +262,22 @@ class Kahler(BoundRefiner):
         return most * len(self.connectivity.faces)
 
     def _fill(self, stream: Stream, view: View | None, begun: int) -> tuple[int, int]:
-        frame, patterns = self._frame, self._patterns
+        frame = self._frame
         if not self._is_marked:
             self._mark(view)
-            self._number_points()
-        vertex_count, _, _, triangle_count = frame.counts.tolist()
+            self._number()
+        vertex_count, _, _, triangle_count, centre_count = frame.counts.tolist()
+        vertex_count += centre_count
         if self._is_whole and begun != NO_ROOM:
             return vertex_count, triangle_count
-        if patterns is not CONFIGURATIONS:
-            rows = patterns.rows(self._triangle_configurations)
-            self._look_up_triangles.put("rows", rows)
-            if frame.centre_triangles is not None:
-                frame.centre_count, triangle_count = number_centres(
-                    rows, patterns.counts, patterns.subtriangles, CENTRE, frame.centre_triangles
-                )
-                vertex_count += frame.centre_count
+        if self.history is not None:
+            self._look_up_triangles.put("rows", self.history.rows(self._triangle_configurations))
         self._draw_to(stream, self._reserve(stream, vertex_count, triangle_count))
         if not self._is_placed:
             self._scheme.place(frame)
         self._draw()
-        if frame.centre_triangles is not None:
-            self._place_centres(frame.centre_triangles)
+        if self._blend and not self._is_placed:
+            self._scheme.place_centres(frame)
         return vertex_count, triangle_count
 
     def _draw_to(self, stream: Stream, rows: Rows) -> None:
@@ -266,33 +299,16 @@ class Kahler(BoundRefiner):
 
     def _mark(self, view: View | None) -> None:
         """Decide on the splits of every edge, and how far their points have grown."""
-        frame, criterion = self._frame, self._criterion
+        criterion = self._criterion
         if self._looks:
             criterion.look(view)  # type: ignore[attr-defined]
         if self._blend:
             cast(Measured, criterion).measure(self._positions, self._normals, self._need)
-            grow(self._need, self._edge_splits, frame.growth_once, frame.growth_twice)
+            self._grow()
             return
         criterion.mark(self._positions, self._normals, self._edge_splits)
         if self._is_foreign:
             self._check_splits()
-
-    def _place_centres(self, centre_triangles: Unsigned) -> None:
-        """Write the points in the middle of triangles, when all others are there."""
-        mesh, frame = self.connectivity, self._frame
-        place_centres(
-            mesh.faces,
-            mesh.corners,
-            mesh.triangle_edges,
-            self._rim_splits,
-            frame.growth_once,
-            frame.first_points,
-            centre_triangles,
-            frame.centre_count,
-            frame.first_centre,
-            frame.rows,
-        )
-        self._scheme.place_centres(frame)
 
     def _check_splits(self) -> None:
         """Raise ValueError if a criterion from outside asks for more than the table has."""

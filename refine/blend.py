@@ -29,7 +29,8 @@ Differs from the paper: "We don't generate any new vertices in the interior" (se
 import numpy as np
 import numpy.typing as npt
 
-from .kernels import kernel
+from .lanes import four, write
+from .native import native
 
 Floats = npt.NDArray[np.float32]
 Unsigned = npt.NDArray[np.uint32]
@@ -50,7 +51,7 @@ THIRD = np.float32(1 / 3)
 TINY = np.finfo(np.float32).tiny
 
 
-@kernel
+@native
 def grow(need: Floats, splits: Small, growth_once: Floats, growth_twice: Floats) -> None:
     """Write splits and growth of every edge from its need, all of shape (E,)."""
     for e in range(need.shape[0]):
@@ -59,20 +60,46 @@ def grow(need: Floats, splits: Small, growth_once: Floats, growth_twice: Floats)
         growth_twice[e] = min(max((need[e] - ONE) / RAMP, ZERO), ONE)
 
 
-@kernel
+@native
 def number_centres(
-    rows: Short, counts: Small, subtriangles: Small, centre: int, centre_triangles: Unsigned
-) -> tuple[int, int]:
-    """List the triangles that have a point in the middle; return how many, and all subtriangles."""
-    centre_count, triangle_count = 0, 0
+    rows: Short,
+    subtriangle_counts: Small,
+    subtriangles: Small,
+    centre: int,
+    centre_triangles: Unsigned,
+    counts: npt.NDArray[np.int64],
+) -> None:
+    """List the triangles that have a point in the middle; count them, and all subtriangles.
+
+    `rows`: of the table, shape (F,); `centre`: number of that point in it; `counts`: schemes.Frame.
+    """
+    centre_count = triangle_count = 0
     for t in range(rows.shape[0]):
         centre_triangles[centre_count] = t
         centre_count += subtriangles[rows[t], 0, 0] == centre
-        triangle_count += counts[rows[t]]
-    return centre_count, triangle_count
+        triangle_count += subtriangle_counts[rows[t]]
+    counts[3], counts[4] = triangle_count, centre_count
 
 
-@kernel
+@native
+def middle_of(
+    edges: npt.NDArray[np.int32],
+    t: np.uint32,
+    i: int,
+    none: np.uint32,
+    splits: Small,
+    growth_once: Floats,
+    first_points: Unsigned,
+) -> tuple[np.float32, np.uint32]:
+    """Weight of the middle of edge i of a triangle, and its row; 0 and `none` where none is."""
+    e = edges[t, i]
+    if splits[e] == 0:
+        return ZERO, none
+    others = max(growth_once[edges[t, (i + 1) % 3]], growth_once[edges[t, (i + 2) % 3]])
+    return ALONE - SHARED * others, np.uint32(first_points[e] + (splits[e] >> 1))
+
+
+@native
 def place_centres(
     faces: Unsigned,
     corners: Unsigned,
@@ -81,36 +108,39 @@ def place_centres(
     growth_once: Floats,
     first_points: Unsigned,
     centre_triangles: Unsigned,
-    centre_count: int,
-    first_centre: int,
+    counts: npt.NDArray[np.int64],
     vertices: Floats,
 ) -> None:
-    """Write the rows of the points in the middle of triangles, attributes too."""
-    weights = np.empty(3, np.float32)
-    middles = np.empty(3, np.uint32)
-    for k in range(centre_count):
-        t, row = centre_triangles[k], first_centre + k
-        for i in range(3):
-            e = triangle_edges[t, i]
-            after, before = triangle_edges[t, (i + 1) % 3], triangle_edges[t, (i + 2) % 3]
-            middles[i] = first_points[e] + (splits[e] >> 1)
-            others = max(growth_once[before], growth_once[after])
-            weights[i] = (ALONE - SHARED * others) if splits[e] > 0 else ZERO
-        for column in range(6):
-            value = ZERO
-            for i in range(3):
-                a, b = faces[t, i], faces[t, (i + 1) % 3]
-                value += THIRD * vertices[a, column]
-                if weights[i] > ZERO:
-                    straight = HALF * (vertices[a, column] + vertices[b, column])
-                    value += weights[i] * (vertices[middles[i], column] - straight)
-            vertices[row, column] = value
+    """Write the rows of the points in the middle of triangles, attributes too.
+
+    `counts`: the first of these rows at 0, their number at 4 (schemes.Frame).
+    """
+    for k in range(counts[4]):
+        t, row = centre_triangles[k], np.uint32(counts[0] + k)
+        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        u, p = middle_of(triangle_edges, t, 0, a, splits, growth_once, first_points)
+        v, q = middle_of(triangle_edges, t, 1, b, splits, growth_once, first_points)
+        w, r = middle_of(triangle_edges, t, 2, c, splits, growth_once, first_points)
+        at_a, at_b, at_c = four(vertices, a), four(vertices, b), four(vertices, c)
+        out_p = four(vertices, p) - HALF * (at_a + at_b)
+        out_q = four(vertices, q) - HALF * (at_b + at_c)
+        out_r = four(vertices, r) - HALF * (at_c + at_a)
+        side_a, side_b, side_c = THIRD * at_a, THIRD * at_b, THIRD * at_c
+        write(vertices, row, side_a + u * out_p + side_b + v * out_q + side_c + w * out_r)
+        for i in range(3, 6):
+            along_a, along_b, along_c = vertices[a, i], vertices[b, i], vertices[c, i]
+            vertices[row, i] = (
+                THIRD * along_a
+                + u * (vertices[p, i] - HALF * (along_a + along_b))
+                + THIRD * along_b
+                + v * (vertices[q, i] - HALF * (along_b + along_c))
+                + THIRD * along_c
+                + w * (vertices[r, i] - HALF * (along_c + along_a))
+            )
         x, y, z = vertices[row, 3], vertices[row, 4], vertices[row, 5]
         scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
-        for column in range(3, 6):
-            vertices[row, column] *= scale
-        for column in range(6, vertices.shape[1]):
-            a, b, c = corners[t, 0], corners[t, 1], corners[t, 2]
-            vertices[row, column] = THIRD * (
-                vertices[a, column] + vertices[b, column] + vertices[c, column]
+        vertices[row, 3], vertices[row, 4], vertices[row, 5] = x * scale, y * scale, z * scale
+        for i in range(6, vertices.shape[1]):
+            vertices[row, i] = THIRD * (
+                vertices[corners[t, 0], i] + vertices[corners[t, 1], i] + vertices[corners[t, 2], i]
             )

@@ -55,6 +55,14 @@ def may_renumber(scheme: Scheme, criterion: Criterion) -> bool:
     return type(scheme) in schemes and type(criterion) in (NormalDrop, *CRITERIA.values())
 
 
+def measuring_of(criterion: Criterion, normals: Floats, need: Floats) -> Call | None:
+    """Return the compiled call by which the paper's criterion measures edges, shape (E,).
+
+    None for the others, which measure in Python.
+    """
+    return criterion.measuring(normals, need) if type(criterion) is NormalDrop else None
+
+
 def marking_of(criterion: Criterion, normals: Floats, splits: Small) -> list[Call] | None:
     """Return the compiled calls by which a built-in criterion marks edges in `splits`, shape (E,).
 

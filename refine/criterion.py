@@ -22,8 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .connectivity import Connectivity
-from .kernels import kernel
-from .lanes import above, four, spread, sums_of_three, write
+from .lanes import Four, above, four, spread, sums_of_three, write
 from .native import Call, has_room, native, with_room
 
 Floats = npt.NDArray[np.float32]
@@ -42,6 +41,7 @@ ROUNDING = 1e-5
 """Drops up to this size are rounding (measured, see above)."""
 NARROWEST = 1e-6
 """Least distance of two thresholds; where they are equal there is nothing to blend over."""
+ZERO, ONE, INFINITE = np.float32(0.0), np.float32(1.0), np.float32(np.inf)
 UNDEFINED_NORMAL = 1e-6
 """A normal shorter than this fraction of the lengths that made it is rounding, not a direction."""
 
@@ -189,10 +189,19 @@ class NormalDrop:
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
-        limits = self.thresholds
-        self._measuring = edge_dots.again(self._measuring, normals, self._edges, need)
+        if not has_room(normals):
+            normals = with_room(normals)
+        self._measuring = measure_drops.again(
+            self._measuring, normals, self._edges, self._rest_dots, self.thresholds.limits, need
+        )
         self._measuring()
-        needs_of_drops(need, self._rest_dots, limits.once, limits.width, limits.most)
+
+    def measuring(self, normals: Floats, need: Floats) -> Call:
+        """Return a call that measures edges by these `normals`, whatever they are by then."""
+        assert has_room(normals)
+        limits = self.thresholds.limits
+        self._joined.append(measure_drops.bind(normals, self._edges, self._rest_dots, limits, need))
+        return self._joined[-1]
 
 
 @native
@@ -214,6 +223,17 @@ def edge_dots(normals: Floats, edges: npt.NDArray[np.uint32], dots: Floats) -> N
 
 
 @native
+def four_dots(normals: Floats, edges: npt.NDArray[np.uint32], e: np.uint64) -> Four:
+    """The dot products along four edges, from edge e on; `normals` have room (lanes.py)."""
+    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
+    p = four(normals, edges[e, 0]) * four(normals, edges[e, 1])
+    q = four(normals, edges[e + one, 0]) * four(normals, edges[e + one, 1])
+    r = four(normals, edges[e + two, 0]) * four(normals, edges[e + two, 1])
+    s = four(normals, edges[e + three, 0]) * four(normals, edges[e + three, 1])
+    return sums_of_three(p, q, r, s)
+
+
+@native
 def mark_drops(
     normals: Floats,
     edges: npt.NDArray[np.uint32],
@@ -227,14 +247,9 @@ def mark_drops(
     """
     once, twice = spread(limits[0]), spread(limits[1])
     count = edges.shape[0]
-    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
     for first in range(0, count - 3, 4):
         e = np.uint64(first)
-        p = four(normals, edges[e, 0]) * four(normals, edges[e, 1])
-        q = four(normals, edges[e + one, 0]) * four(normals, edges[e + one, 1])
-        r = four(normals, edges[e + two, 0]) * four(normals, edges[e + two, 1])
-        s = four(normals, edges[e + three, 0]) * four(normals, edges[e + three, 1])
-        drops = four(rest_dots, e) - sums_of_three(p, q, r, s)
+        drops = four(rest_dots, e) - four_dots(normals, edges, e)
         write(splits, e, above(drops, once) + above(drops, twice))
     for last in range(count - count % 4, count):
         drop = rest_dots[last] - dot_along(normals, edges, last)
@@ -248,12 +263,30 @@ def raise_splits(more: Small, splits: Small) -> None:
         splits[e] = max(splits[e], more[e])
 
 
-@kernel
-def needs_of_drops(
-    need: Floats, rest_dots: Floats, once: np.float32, width: np.float32, most: np.float32
+@native
+def measure_drops(
+    normals: Floats,
+    edges: npt.NDArray[np.uint32],
+    rest_dots: Floats,
+    limits: Floats,
+    need: Floats,
 ) -> None:
-    """Turn the dot products in `need`, shape (E,), into needs."""
-    for e in range(need.shape[0]):
+    """Write needs of edges, shape (E,), by the drop of the dot product (as above).
+
+    `limits`: the two thresholds, shape (2,); need is 0 at the first, and 1 at the second (see
+    `Thresholds`). `normals` have room (lanes.py).
+    """
+    count = edges.shape[0]
+    for first in range(0, count - 3, 4):
+        write(need, first, four_dots(normals, edges, np.uint64(first)))
+    for last in range(count - count % 4, count):
+        need[last] = dot_along(normals, edges, last)
+    once, most = limits[0], INFINITE
+    width = np.float32(max(np.float64(limits[1] - once), NARROWEST))
+    if limits[1] == INFINITE:
+        most = ONE
+        width = once if ZERO < once < INFINITE else ONE
+    for e in range(count):
         need[e] = min((rest_dots[e] - need[e] - once) / width, most)
 
 

@@ -36,13 +36,15 @@ import numpy.typing as npt
 from .connectivity import Connectivity
 from .curves import CurveScheme
 from .kernels import kernel
-from .lanes import four, write
-from .native import native, with_room
+from .lanes import cross, four, single, write
+from .masks import unit
+from .native import Call, has_room, native, with_room
 from .schemes import Frame
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
 Unsigned = npt.NDArray[np.uint32]
+Vector = tuple[np.float32, np.float32, np.float32]
 
 FULLNESS = np.float32(1.2)
 """How much more than the cubic an inner edge bulges. Triangles between curves are flat, so the best
@@ -69,8 +71,8 @@ NEAR, FAR = np.float32(9 / 64), np.float32(3 / 64)
 """Share of the nearer and of the farther tangent at a quarter of a cubic."""
 SLIVER = 1e-9
 """Sine of an angle below which a triangle has no direction."""
-MIDDLE, NEAR_START, NEAR_END = 1, 0, 2
-"""Points of an edge in an array of bulges (curves.py)."""
+MIDDLE, NEAR_END = 1, 2
+"""Rows of the middle and of the far quarter of an edge, behind that of the near one (curves.py)."""
 ZERO = np.float32(0.0)
 HALF = np.float32(0.5)
 THIRD = np.float32(1 / 3)
@@ -91,16 +93,6 @@ class CubicScheme(CurveScheme):
         super().bind(connectivity, rest_positions, rest_normals)
         self._weights = np.zeros(connectivity.faces.shape, dtype=np.float32)
         weigh_corners(rest_positions, connectivity.faces, self._weights)
-        self._normals = with_room(np.zeros_like(rest_normals))
-        self._steeper = np.zeros_like(rest_normals)
-        valences = np.bincount(connectivity.edges.ravel(), minlength=len(rest_normals))
-        self._steepen = steepen_normals.bind(
-            self._normals,
-            connectivity.edges.view(np.uint32),
-            (STEEPER / np.maximum(valences, 1)).astype(np.float32),
-            np.zeros((len(rest_normals), 4), np.float32),
-            self._steeper,
-        )
         self._beyond = np.zeros((len(connectivity.edges), 2), dtype=np.uint32)
         follow_borders(connectivity.edges, connectivity.is_interior, rest_normals, self._beyond)
         self._across = connectivity.faces.copy()
@@ -115,50 +107,68 @@ class CubicScheme(CurveScheme):
             self._shares,
         )
 
-    def _vertex_normals(self, frame: Frame) -> Floats:
-        if frame.once_count == 0:
-            weighted_normals(
-                frame.positions, self._connectivity.faces, self._weights, self._normals
-            )
-        return self._normals
+        self._normals = with_room(np.zeros_like(rest_normals))
+        valences = np.bincount(connectivity.edges.ravel(), minlength=len(rest_normals))
+        self._steeper_by = (STEEPER / np.maximum(valences, 1)).astype(np.float32)
+        self._steeper = with_room(np.zeros_like(rest_normals))
+        self._sums = np.zeros((2, len(rest_normals), 4), dtype=np.float32)
 
-    def place_centres(self, frame: Frame) -> None:
-        """Raise the points in the middle of triangles as far as the edges around have grown."""
+    def placing(self, frame: Frame) -> list[Call]:
+        """Return the calls that place points in the arrays of a frame; `vertices` are its rows."""
+        return [*self._bind_bulging(frame), *self._bind_pointing(frame)]
+
+    def raising(self, frame: Frame) -> list[Call]:
+        """Return the call that raises points in the middle of triangles, when others are there."""
         assert frame.centre_triangles is not None
-        raise_centres(
-            self._connectivity.faces,
-            self._connectivity.triangle_edges,
+        mesh = self._connectivity
+        raising = raise_centres.bind(
+            mesh.faces,
+            mesh.triangle_edges,
             frame.splits,
             frame.growth_once,
             frame.first_points,
             self._across,
             self._shares,
             frame.centre_triangles,
-            frame.centre_count,
-            frame.first_centre,
+            frame.counts,
+            np.zeros((2, 3)),
+            np.zeros(3),
             frame.rows,
         )
+        return [raising]
 
-    def _bulge(self, frame: Frame, bulges: Floats) -> None:
-        if frame.once_count > 0:
-            self._bulge_cubic(frame.positions, frame.split_once, frame.once_count, bulges)
-
-    def _bulge_cubic(
-        self, positions: Doubles, split_once: Unsigned, once_count: int, bulges: Floats
-    ) -> None:
+    def _bind_bulging(self, frame: Frame) -> list[Call]:
+        """Return the calls that find normals and bulges by the positions of a frame."""
+        assert has_room(frame.positions)
         mesh = self._connectivity
-        weighted_normals(positions, mesh.faces, self._weights, self._normals)
-        self._steepen()
-        bulge_cubic(
-            positions,
+        find_normals = weighted_normals.bind(
+            frame.positions, mesh.faces, self._weights, self._sums[0], self._normals
+        )
+        bulge = bulge_cubic.bind(
+            frame.positions,
+            self._normals,
+            mesh.edges.view(np.uint32),
+            self._steeper_by,
+            self._sums[1],
             self._steeper,
             mesh.edge_points,
             mesh.is_interior,
             self._beyond,
-            split_once,
-            once_count,
-            bulges,
+            frame.split_once,
+            frame.counts,
+            self._bulge_rows,
         )
+        return [find_normals, bulge]
+
+    def _vertex_normals(self, frame: Frame) -> Floats:
+        return self._normals
+
+    def _bulge(self, frame: Frame, bulges: Floats) -> None:
+        frame.bound(self._bind_bulging)()
+
+    def place_centres(self, frame: Frame) -> None:
+        """Raise the points in the middle of triangles as far as the edges around have grown."""
+        frame.bound(self.raising)()
 
 
 @kernel
@@ -203,28 +213,27 @@ def follow_borders(
         beyond[e, 1] = sums[b] - a if border_count[b] == 2 else b
 
 
-@kernel
-def weighted_normals(positions: Doubles, faces: Unsigned, weights: Floats, normals: Floats) -> None:
-    """Write unit vertex normals, each corner weighted as at rest, shape (V, 3)."""
-    normals[:] = ZERO
-    for t in range(faces.shape[0]):
+@native
+def weighted_normals(
+    positions: Doubles, faces: Unsigned, weights: Floats, sums: Floats, normals: Floats
+) -> None:
+    """Write unit vertex normals, each corner weighted as at rest, shape (V, 3).
+
+    `positions` have room (lanes.py); `sums`: scratch, shape (V, 4).
+    """
+    for v in range(sums.shape[0]):
+        sums[v, 0] = sums[v, 1] = sums[v, 2] = sums[v, 3] = ZERO
+    for k in range(faces.shape[0]):
+        t = np.uint64(k)
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        ux = np.float32(positions[b, 0] - positions[a, 0])
-        uy = np.float32(positions[b, 1] - positions[a, 1])
-        uz = np.float32(positions[b, 2] - positions[a, 2])
-        vx = np.float32(positions[c, 0] - positions[a, 0])
-        vy = np.float32(positions[c, 1] - positions[a, 1])
-        vz = np.float32(positions[c, 2] - positions[a, 2])
-        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        for i in range(3):
-            v, weight = faces[t, i], weights[t, i]
-            normals[v, 0] += weight * x
-            normals[v, 1] += weight * y
-            normals[v, 2] += weight * z
-    for v in range(normals.shape[0]):
-        x, y, z = normals[v, 0], normals[v, 1], normals[v, 2]
-        scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
-        normals[v, 0], normals[v, 1], normals[v, 2] = x * scale, y * scale, z * scale
+        at_a = four(positions, a)
+        normal = cross(single(four(positions, b) - at_a), single(four(positions, c) - at_a))
+        write(sums, a, four(sums, a) + weights[t, 0] * normal)
+        write(sums, b, four(sums, b) + weights[t, 1] * normal)
+        write(sums, c, four(sums, c) + weights[t, 2] * normal)
+    for v in range(sums.shape[0]):
+        x, y, z = unit(sums[v, 0], sums[v, 1], sums[v, 2])
+        normals[v, 0], normals[v, 1], normals[v, 2] = x, y, z
 
 
 @native
@@ -237,62 +246,85 @@ def steepen_normals(
     """
     for v in range(sums.shape[0]):
         sums[v, 0] = sums[v, 1] = sums[v, 2] = sums[v, 3] = ZERO
-    for e in range(edges.shape[0]):
+    for k in range(edges.shape[0]):
+        e = np.uint64(k)
         a, b = edges[e, 0], edges[e, 1]
         write(sums, a, four(sums, a) + four(normals, b))
         write(sums, b, four(sums, b) + four(normals, a))
     for v in range(sums.shape[0]):
-        x = normals[v, 0] - off[v] * sums[v, 0]
-        y = normals[v, 1] - off[v] * sums[v, 1]
-        z = normals[v, 2] - off[v] * sums[v, 2]
-        scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
-        steeper[v, 0], steeper[v, 1], steeper[v, 2] = x * scale, y * scale, z * scale
+        x, y, z = unit(
+            normals[v, 0] - off[v] * sums[v, 0],
+            normals[v, 1] - off[v] * sums[v, 1],
+            normals[v, 2] - off[v] * sums[v, 2],
+        )
+        steeper[v, 0], steeper[v, 1], steeper[v, 2] = x, y, z
 
 
-@kernel
+@native
+def along(d: Vector, normals: Floats, v: np.uint32) -> np.float32:
+    """Height of an edge over the plane across a normal."""
+    return np.float32(d[0] * normals[v, 0] + d[1] * normals[v, 1] + d[2] * normals[v, 2])
+
+
+@native
+def length_of(d: Vector) -> np.float32:
+    """Length of an edge."""
+    return np.float32(np.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]))
+
+
+@native
+def between(positions: Doubles, a: np.uint32, b: np.uint32) -> Vector:
+    """The edge from a to b, rounded when it has been taken."""
+    return (
+        np.float32(positions[b, 0] - positions[a, 0]),
+        np.float32(positions[b, 1] - positions[a, 1]),
+        np.float32(positions[b, 2] - positions[a, 2]),
+    )
+
+
+@native
 def bulge_cubic(
     positions: Doubles,
     normals: Floats,
+    edges: Unsigned,
+    off: Floats,
+    sums: Floats,
+    steeper: Floats,
     edge_points: Unsigned,
     is_interior: npt.NDArray[np.bool_],
     beyond: Unsigned,
     split_once: Unsigned,
-    once_count: int,
+    counts: npt.NDArray[np.int64],
     bulges: Floats,
 ) -> None:
-    """Write the bulges of the split edges: those of the cubic with the tangents at both ends."""
-    d = np.empty(3, np.float32)
-    for k in range(once_count):
+    """Write the bulges of the split edges: those of the cubic with the tangents at both ends.
+
+    `bulges`: three rows of three for each edge, with room (lanes.py), in which edges are written in
+    their order; `counts`: see schemes.Frame; the others as for `steepen_normals`.
+    """
+    if counts[1] == 0:
+        return
+    steepen_normals(normals, edges, off, sums, steeper)
+    for k in range(counts[1]):
         e = split_once[k]
-        a, b = edge_points[e, 0], edge_points[e, 1]
-        for i in range(3):
-            d[i] = positions[b, i] - positions[a, i]
+        a, b, row = edge_points[e, 0], edge_points[e, 1], np.uint64(3) * np.uint64(e)
         if is_interior[e]:
-            height_a = d[0] * normals[a, 0] + d[1] * normals[a, 1] + d[2] * normals[a, 2]
-            height_b = d[0] * normals[b, 0] + d[1] * normals[b, 1] + d[2] * normals[b, 2]
-            for i in range(3):
-                # How much the tangents turn away from the straight edge.
-                turn_a = -FULLNESS * height_a * normals[a, i]
-                turn_b = -FULLNESS * height_b * normals[b, i]
-                bulges[e, MIDDLE, i] = EIGHTH * (turn_a - turn_b)
-                bulges[e, NEAR_START, i] = NEAR * turn_a - FAR * turn_b
-                bulges[e, NEAR_END, i] = FAR * turn_a - NEAR * turn_b
-            continue
-        p, q = beyond[e, 0], beyond[e, 1]
-        length = before = after = ZERO
-        for i in range(3):
-            length += d[i] * d[i]
-            before += np.float32(positions[a, i] - positions[p, i]) ** 2
-            after += np.float32(positions[q, i] - positions[b, i]) ** 2
-        length, before, after = np.sqrt(length), np.sqrt(before), np.sqrt(after)
-        share_a = length / max(length + before, TINY)
-        share_b = length / max(length + after, TINY)
-        for i in range(3):
-            turn_a = share_a * np.float32(positions[b, i] - positions[p, i]) - d[i]
-            turn_b = share_b * np.float32(positions[q, i] - positions[a, i]) - d[i]
-            bulges[e, MIDDLE, i] = EIGHTH * (turn_a - turn_b)
-            bulges[e, NEAR_START, i] = NEAR * turn_a - FAR * turn_b
-            bulges[e, NEAR_END, i] = FAR * turn_a - NEAR * turn_b
+            d = between(positions, a, b)
+            # How much the tangents turn away from the straight edge.
+            turn_a = (-FULLNESS * along(d, steeper, a)) * four(steeper, a)
+            turn_b = (-FULLNESS * along(d, steeper, b)) * four(steeper, b)
+        else:
+            p, q = beyond[e, 0], beyond[e, 1]
+            at_a, at_b = four(positions, a), four(positions, b)
+            length = length_of(between(positions, a, b))
+            share_a = length / max(length + length_of(between(positions, p, a)), TINY)
+            share_b = length / max(length + length_of(between(positions, b, q)), TINY)
+            straight = single(at_b - at_a)
+            turn_a = share_a * single(at_b - four(positions, p)) - straight
+            turn_b = share_b * single(four(positions, q) - at_a) - straight
+        write(bulges, row, NEAR * turn_a - FAR * turn_b)
+        write(bulges, row + np.uint64(MIDDLE), EIGHTH * (turn_a - turn_b))
+        write(bulges, row + np.uint64(NEAR_END), FAR * turn_a - NEAR * turn_b)
 
 
 @kernel
@@ -365,7 +397,7 @@ def weigh_neighbours(
             shares[t, 3 + i] *= gain
 
 
-@kernel
+@native
 def raise_centres(
     faces: Unsigned,
     triangle_edges: npt.NDArray[np.int32],
@@ -375,15 +407,18 @@ def raise_centres(
     across: Unsigned,
     shares: Floats,
     centre_triangles: Unsigned,
-    centre_count: int,
-    first_centre: int,
+    counts: npt.NDArray[np.int64],
+    sides: Doubles,
+    higher: Doubles,
     vertices: Floats,
 ) -> None:
-    """Move the points in the middle of triangles to where edges and triangles around have them."""
-    # In double: the fourth power of a length is beyond single precision for many a unit of length.
-    u, v, higher = np.empty(3), np.empty(3), np.empty(3)
-    for k in range(centre_count):
-        t, row = centre_triangles[k], first_centre + k
+    """Move the points in the middle of triangles to where edges and triangles around have them.
+
+    `counts`: see schemes.Frame. Scratch, `sides`, shape (2, 3), and `higher`, shape (3,), is in
+    double precision: the fourth power of a length is beyond single for many a unit of length.
+    """
+    for k in range(counts[4]):
+        t, row = centre_triangles[k], np.uint32(counts[0] + k)
         growth = ONE
         for i in range(3):
             growth = min(growth, growth_once[triangle_edges[t, i]])
@@ -401,13 +436,14 @@ def raise_centres(
         squares = 0.0
         for i in range(3):
             at_a, at_b, at_c = vertices[a, i], vertices[b, i], vertices[c, i]
-            u[i], v[i] = at_b - at_a, at_c - at_a
-            squares += u[i] * u[i] + v[i] * v[i] + (v[i] - u[i]) * (v[i] - u[i])
+            u, v = np.float64(at_b - at_a), np.float64(at_c - at_a)
+            sides[0, i], sides[1, i] = u, v
+            squares += u * u + v * v + (v - u) * (v - u)
             flat = THIRD * (at_a + at_b + at_c)
             vertices[row, i] += (CENTRE_FULLNESS - ONE) * growth * (vertices[row, i] - flat)
-        x = u[1] * v[2] - u[2] * v[1]
-        y = u[2] * v[0] - u[0] * v[2]
-        z = u[0] * v[1] - u[1] * v[0]
+        x = sides[0, 1] * sides[1, 2] - sides[0, 2] * sides[1, 1]
+        y = sides[0, 2] * sides[1, 0] - sides[0, 0] * sides[1, 2]
+        z = sides[0, 0] * sides[1, 1] - sides[0, 1] * sides[1, 0]
         # Along the normal; a triangle that has been crushed to a line has none.
         area = x * x + y * y + z * z + FLATTENED * squares * squares
         height = growth * (x * higher[0] + y * higher[1] + z * higher[2]) / max(area, TINY)

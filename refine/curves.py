@@ -21,7 +21,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .connectivity import Connectivity
-from .kernels import kernel
+from .lanes import four, write
+from .masks import grown, growth_of, unit, write_normal
+from .native import Call, has_room, native, with_room
 from .output import place_unmoved
 from .schemes import Frame
 
@@ -33,7 +35,6 @@ ZERO = np.float32(0.0)
 QUARTER = np.float32(0.25)
 HALF = np.float32(0.5)
 THREE_QUARTERS = np.float32(0.75)
-ONE = np.float32(1.0)
 TINY = np.finfo(np.float32).tiny
 
 UPRIGHT = np.float32(0.95)
@@ -58,26 +59,35 @@ class CurveScheme:
     ) -> None:
         """Take the mesh; `rest_positions` and `rest_normals`, shape (V, 3)."""
         self._connectivity = connectivity
-        self._bulges = np.zeros((len(connectivity.edges), 3, 3), dtype=np.float32)
+        self._bulge_rows = with_room(np.zeros((3 * len(connectivity.edges), 3), dtype=np.float32))
+        self._bulges = self._bulge_rows.reshape(-1, 3, 3)
         self._everything: Frame | None = None
 
     def place(self, frame: Frame) -> None:
         """Write vertices as they are, and the points of split edges on their curves."""
         self._bulge(frame, self._bulges)
-        place_unmoved(frame.points, self._vertex_normals(frame), frame.rows)
-        place_on_curves(
-            self._connectivity.edge_points,
-            self._connectivity.edge_wings,
-            self._connectivity.is_interior,
+        self._find_vertex_normals(frame)
+        frame.bound(self._bind_pointing)()
+
+    def _bind_pointing(self, frame: Frame) -> list[Call]:
+        """Return the call that writes all rows of a frame when bulges and normals are there."""
+        assert has_room(frame.points)
+        mesh = self._connectivity
+        pointing = place_on_curves.bind(
+            frame.points,
+            self._vertex_normals(frame),
+            mesh.edge_points,
+            mesh.edge_wings,
+            mesh.is_interior,
             frame.splits,
-            frame.growth_once,
-            frame.growth_twice,
+            *frame.growth,
             frame.first_points,
             frame.split_once,
-            frame.once_count,
-            self._bulges,
+            frame.counts,
+            self._bulge_rows,
             frame.rows,
         )
+        return [pointing]
 
     def all_bulges(self, positions: Doubles, normals: Floats) -> Floats:
         """Bulges of all edges as if each were split once, shape (E, 3, 3): middles are number 1.
@@ -85,6 +95,13 @@ class CurveScheme:
         For criteria that ask how far an edge is from where it should be. The array is the one that
         `place` uses.
         """
+        self._bulge(self._every_edge(positions, normals), self._bulges)
+        return self._bulges
+
+    def _every_edge(self, positions: Doubles, normals: Floats) -> Frame:
+        """Return a frame in which each edge is split once; the same for the same arrays."""
+        if not has_room(positions):
+            positions = with_room(positions)
         frame = self._everything
         if frame is None or frame.positions is not positions or frame.normals is not normals:
             edge_count = len(self._bulges)
@@ -101,31 +118,26 @@ class CurveScheme:
                 split_once=every_edge,
                 split_twice=every_edge,
                 rows=none,
-                counts=np.array([0, edge_count, 0, 0]),
+                counts=np.array([0, edge_count, 0, 0, 0]),
             )
-        self._bulge(frame, self._bulges)
-        return self._bulges
+        return frame
 
     def place_centres(self, frame: Frame) -> None:
         """Leave them as blending has them."""
 
     def _vertex_normals(self, frame: Frame) -> Floats:
-        """Return the normals that the vertices get in the output, shape (V, 3)."""
+        """Return the array of the normals that vertices get in the output, shape (V, 3)."""
         return frame.normals
+
+    def _find_vertex_normals(self, frame: Frame) -> None:
+        """Fill this array, if what is in it is not known before bulges are."""
 
     def _bulge(self, frame: Frame, bulges: Floats) -> None:
         """Write the bulges of the split edges; of those split once the middle is enough."""
         raise NotImplementedError
 
 
-@kernel
-def unit(x: np.float32, y: np.float32, z: np.float32) -> tuple[np.float32, np.float32, np.float32]:
-    """Normalise a vector; zero stays zero."""
-    scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
-    return x * scale, y * scale, z * scale
-
-
-@kernel
+@native
 def stand_upright(
     vertices: Floats,
     a: np.uint32,
@@ -135,22 +147,37 @@ def stand_upright(
     share: np.float32,
 ) -> None:
     """Write the normal of the middle of an edge: the mean, less a share of its slope."""
-    start, end = (row - 1, row + 1) if has_quarters else (a, b)
+    start = np.uint32(row - 1) if has_quarters else a
+    end = np.uint32(row + 1) if has_quarters else b
     along = slope = ZERO
     for i in range(3):
         d = vertices[end, i] - vertices[start, i]
         along += d * d
         slope += d * (vertices[a, 3 + i] + vertices[b, 3 + i])
     slope *= share / max(along, TINY)
-    vertices[row, 3], vertices[row, 4], vertices[row, 5] = unit(
+    x, y, z = unit(
         vertices[a, 3] + vertices[b, 3] - slope * (vertices[end, 0] - vertices[start, 0]),
         vertices[a, 4] + vertices[b, 4] - slope * (vertices[end, 1] - vertices[start, 1]),
         vertices[a, 5] + vertices[b, 5] - slope * (vertices[end, 2] - vertices[start, 2]),
     )
+    write_normal(vertices, row, x, y, z)
 
 
-@kernel
+@native
+def turn_quarter(vertices: Floats, end: np.uint32, middle: np.uint32, row: np.uint32) -> None:
+    """Write the normal of a quarter point: the mean of its neighbours'."""
+    x, y, z = unit(
+        vertices[end, 3] + vertices[middle, 3],
+        vertices[end, 4] + vertices[middle, 4],
+        vertices[end, 5] + vertices[middle, 5],
+    )
+    write_normal(vertices, row, x, y, z)
+
+
+@native
 def place_on_curves(
+    points: Floats,
+    normals: Floats,
     edge_points: Unsigned,
     edge_wings: Unsigned,
     is_interior: npt.NDArray[np.bool_],
@@ -159,39 +186,35 @@ def place_on_curves(
     growth_twice: Floats,
     first_points: Unsigned,
     split_once: Unsigned,
-    once_count: int,
+    counts: npt.NDArray[np.int64],
     bulges: Floats,
     vertices: Floats,
 ) -> None:
-    """Write the one or three points of every split edge; the vertices are there already."""
-    for k in range(once_count):
+    """Write vertices as they are, and the one or three points of every split edge.
+
+    `points` and `bulges`, rows of three, have room (lanes.py); `counts`: see schemes.Frame.
+    """
+    place_unmoved(points, normals, vertices)
+    for k in range(counts[1]):
         e = split_once[k]
         a, b = edge_points[e, 0], edge_points[e, 1]
-        row, growth = np.uint32(first_points[e] + (splits[e] >> 1)), growth_once[e]
-        for i in range(3):
-            straight = HALF * (vertices[a, i] + vertices[b, i])
-            vertices[row, i] = straight + growth * bulges[e, MIDDLE, i]
+        row, bulge = np.uint32(first_points[e] + (splits[e] >> 1)), np.uint64(3) * np.uint64(e)
+        at_a, at_b, share = four(points, a), four(points, b), growth_of(e, growth_once)
+        middle = HALF * (at_a + at_b) + share * four(bulges, bulge + np.uint64(MIDDLE))
+        write(vertices, row, middle)
         if splits[e] == 2:
-            growth = growth_twice[e]
-            for end in range(2):
-                near, far = (a, b) if end == 0 else (b, a)
-                point = np.uint32(row - 1 + 2 * end)
-                for i in range(3):
-                    chord = HALF * (vertices[near, i] + vertices[row, i])
-                    straight = THREE_QUARTERS * vertices[near, i] + QUARTER * vertices[far, i]
-                    on_curve = straight + bulges[e, NEAR_START + 2 * end, i]
-                    vertices[point, i] = (ONE - growth) * chord + growth * on_curve
-        share = growth_once[e]
+            near_a = THREE_QUARTERS * at_a + QUARTER * at_b + four(bulges, bulge)
+            near_b = THREE_QUARTERS * at_b + QUARTER * at_a
+            near_b = near_b + four(bulges, bulge + np.uint64(NEAR_END))
+            near_a = grown(HALF * (at_a + middle), near_a, e, growth_twice)
+            near_b = grown(HALF * (at_b + middle), near_b, e, growth_twice)
+            write(vertices, np.uint32(row - 1), near_a)
+            write(vertices, np.uint32(row + 1), near_b)
         if is_interior[e]:
             for i in range(4):
                 wing = edge_wings[e, i]
-                share = min(share, growth_once[wing] if splits[wing] > 0 else ZERO)
+                share = min(share, growth_of(wing, growth_once) if splits[wing] > 0 else ZERO)
         stand_upright(vertices, a, b, row, splits[e] == 2, UPRIGHT * share)
         if splits[e] == 2:
-            for end in range(2):
-                near, point = a if end == 0 else b, row - 1 + 2 * end
-                vertices[point, 3], vertices[point, 4], vertices[point, 5] = unit(
-                    vertices[near, 3] + vertices[row, 3],
-                    vertices[near, 4] + vertices[row, 4],
-                    vertices[near, 5] + vertices[row, 5],
-                )
+            turn_quarter(vertices, a, row, np.uint32(row - 1))
+            turn_quarter(vertices, b, row, np.uint32(row + 1))

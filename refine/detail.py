@@ -96,8 +96,7 @@ class DetailScheme(CubicScheme):
         squared = along[:, 0] ** 2 + along[:, 1] ** 2 + along[:, 2] ** 2
         start, end = both_ways[np.argsort(squared, kind="stable")].T
         self._towards[start] = end
-        everything = np.arange(edge_count, dtype=np.uint32)
-        self._bulge_cubic(rest_positions, everything, edge_count, self._bulges)
+        super()._bulge(self._every_edge(rest_positions, rest_normals), self._bulges)
         # All directions follow the normals that the cubic has, now as in every frame.
         rest_normals = self._normals.copy()
         self._grown = np.arange(len(connectivity.faces), dtype=np.uint32)
@@ -175,11 +174,12 @@ class DetailScheme(CubicScheme):
         )
 
     def _vertex_normals(self, frame: Frame) -> Floats:
-        axes = self._vertex_axes
-        normals = super()._vertex_normals(frame)
-        vertex_axes(frame.positions, normals, self._towards, axes)
-        show_vertices(normals, self._vertex_looks, axes, self._shown)
         return self._shown
+
+    def _find_vertex_normals(self, frame: Frame) -> None:
+        axes = self._vertex_axes
+        vertex_axes(frame.positions, self._normals, self._towards, axes)
+        show_vertices(self._normals, self._vertex_looks, axes, self._shown)
 
     def _bulge(self, frame: Frame, bulges: Floats) -> None:
         super()._bulge(frame, bulges)

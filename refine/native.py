@@ -73,6 +73,10 @@ class Call(functools.partial[int]):
         assert code is not None
         return code, self.args[0]
 
+    def takes(self, name: str) -> bool:
+        """Whether the kernel has an argument of this name."""
+        return name in self._numbers
+
     def has(self, arguments: tuple[object, ...]) -> bool:
         """Whether these objects, not others that are equal, are the arguments."""
         return all(map(operator.is_, self._arguments, arguments))

@@ -112,12 +112,12 @@ def number_points(
     counts[0], counts[1], counts[2], counts[3] = row, once_count, twice_count, triangle_count
 
 
-@kernel
+@native
 def place_unmoved(points: Floats, normals: Floats, vertices: Floats) -> None:
-    """Write vertices as they are."""
+    """Write vertices as they are; `points` have room (lanes.py)."""
     for v in range(points.shape[0]):
+        write(vertices, v, four(points, v))
         for i in range(3):
-            vertices[v, i] = points[v, i]
             vertices[v, 3 + i] = normals[v, i]
 
 
@@ -240,6 +240,6 @@ def look_up_triangles(
 def overflow(counts: npt.NDArray[np.int64], room: npt.NDArray[np.int64]) -> int:
     """Return NO_ROOM if a frame is larger than what it may write to, else 0.
 
-    `counts`: as `number_points` writes them; `room`: for rows and for subtriangles, shape (2,).
+    `counts`: see schemes.Frame; `room`: for rows and for subtriangles, shape (2,).
     """
-    return NO_ROOM if counts[0] > room[0] or counts[3] > room[1] else 0
+    return NO_ROOM if counts[0] + counts[4] > room[0] or counts[3] > room[1] else 0

@@ -37,9 +37,11 @@ class PassThrough(BoundRefiner):
         self._source = np.arange(len(self.connectivity.faces), dtype=np.int32)
         # No rim is split, so attributes only need a row of zeros for each.
         rim_count = len(self.connectivity.rim_edges)
-        self._write_values = self._bind_values(
+        values = self._bind_values(
             self.connectivity, np.zeros(rim_count, np.uint8), np.zeros(rim_count, np.uint32)
         )
+        no_rows = np.zeros((0, self.vertex_columns), dtype=np.float32)
+        self._writes = [place_unmoved.bind(self._points, self._normals, no_rows), *values]
 
     @property
     def splits(self) -> npt.NDArray[np.uint8]:
@@ -59,8 +61,7 @@ class PassThrough(BoundRefiner):
     def _fill(self, stream: Stream, view: View | None, begun: int) -> tuple[int, int]:
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
         vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
-        place_unmoved(self._points, self._normals, vertices)
-        for call in self._write_values:
+        for call in self._writes:
             call.put("vertices", vertices)
             call()
         triangles[:triangle_count] = self._output_corners

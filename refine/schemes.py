@@ -11,6 +11,7 @@ split and where in the output their points go:
     detail      cubic, plus what a finer mesh at rest has in addition (detail.py)
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -19,11 +20,12 @@ import numpy.typing as npt
 
 from .connectivity import Connectivity
 from .masks import ALL_GROWN, place_points
-from .native import Call, has_room
+from .native import Call, Turns, has_room
 from .rings import vertex_rings
 
 Floats = npt.NDArray[np.float32]
 Unsigned = npt.NDArray[np.uint32]
+Bind = Callable[["Frame"], list[Call]]
 
 
 @dataclass
@@ -53,17 +55,24 @@ class Frame:
     """The edges that are split twice; the first `twice_count` count."""
     rows: Floats
     """The output: x y z, nx ny nz, attributes; row v is vertex v."""
-    counts: npt.NDArray[np.int64] = field(default_factory=lambda: np.zeros(4, dtype=np.int64))
-    """Numbers of output rows without centres, of edges that are split, of those split twice, and of
-    subtriangles, shape (4,)."""
+    counts: npt.NDArray[np.int64] = field(default_factory=lambda: np.zeros(5, dtype=np.int64))
+    """Numbers of output rows without centres, of edges that are split, of those split twice, of
+    subtriangles, and of centres, shape (5,)."""
     centre_triangles: Unsigned | None = None
     """The triangles with a point in the middle, only with blending; `centre_count` of them."""
-    centre_count: int = 0
+    _bound: dict[Bind, tuple[list[Call], Turns]] = field(
+        default_factory=dict, init=False, repr=False
+    )
 
     @property
     def first_centre(self) -> int:
         """Output row of the first of these points."""
         return int(self.counts[0])
+
+    @property
+    def centre_count(self) -> int:
+        """How many triangles have a point in the middle."""
+        return int(self.counts[4])
 
     @property
     def once_count(self) -> int:
@@ -74,6 +83,24 @@ class Frame:
     def is_blended(self) -> bool:
         """Whether points grow out of their edges, instead of being there or not."""
         return self.centre_triangles is not None
+
+    def bound(self, bind: Bind) -> Turns:
+        """Return what `bind` makes of this frame, made once; it writes to the rows of now."""
+        found = self._bound.get(bind)
+        if found is None:
+            calls = bind(self)
+            found = [call for call in calls if call.takes("vertices")], Turns(*calls)
+            self._bound[bind] = found
+        for call in found[0]:
+            call.put("vertices", self.rows)
+        return found[1]
+
+    @property
+    def growth(self) -> tuple[Floats, Floats]:
+        """Growth once and twice as compiled code takes it (masks.py), shape (E, 1) or (0, 0)."""
+        if not self.is_blended:
+            return ALL_GROWN, ALL_GROWN
+        return self.growth_once[:, None], self.growth_twice[:, None]
 
     @property
     def twice_count(self) -> int:
@@ -119,21 +146,16 @@ class LoopScheme:
         self._rings = vertex_rings(connectivity)
         self._vertex_growth = np.zeros(connectivity.vertex_count, dtype=np.float32)
         self._middles = np.zeros((len(connectivity.edges), 4), dtype=np.float32)
-        self._placing: Call | None = None
-        self._bound_to: Frame | None = None
 
     def place(self, frame: Frame) -> None:
         """Write moved vertices, first level, second level."""
-        if self._placing is None or frame is not self._bound_to:
-            self._placing, self._bound_to = self.placing(frame), frame
-        self._placing.put("vertices", frame.rows)
-        self._placing()
+        frame.bound(self.placing)()
 
-    def placing(self, frame: Frame) -> Call:
+    def placing(self, frame: Frame) -> list[Call]:
         """Return the call that places points in the arrays of a frame; `vertices` are its rows."""
         assert has_room(frame.points) and has_room(frame.normals)
         mesh, rings = self._connectivity, self._rings
-        return place_points.bind(
+        placing = place_points.bind(
             frame.points,
             frame.normals,
             mesh.edge_points,
@@ -145,8 +167,7 @@ class LoopScheme:
             rings.starts,
             rings.others,
             frame.splits,
-            frame.growth_once[:, None] if frame.is_blended else ALL_GROWN,
-            frame.growth_twice[:, None] if frame.is_blended else ALL_GROWN,
+            *frame.growth,
             frame.first_points,
             frame.split_once,
             frame.split_twice,
@@ -155,6 +176,11 @@ class LoopScheme:
             self._middles,
             frame.rows,
         )
+        return [placing]
+
+    def raising(self, frame: Frame) -> list[Call]:
+        """Return no call: points in the middle of triangles stay as blending has them."""
+        return []
 
     def place_centres(self, frame: Frame) -> None:
         """Leave them as blending has them."""
