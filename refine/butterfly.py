@@ -77,7 +77,10 @@ class ButterflyScheme(CurveScheme):
             self._valence,
         )
         self._beyond = np.zeros((edge_count, 2), dtype=np.uint32)
-        follow_borders(connectivity.edges, connectivity.is_interior, rest_normals, self._beyond)
+        counts = np.zeros((2, connectivity.vertex_count), dtype=np.int64)
+        follow_borders(
+            connectivity.edges, connectivity.is_interior, counts[0], counts[1], self._beyond
+        )
         self._middles = np.zeros((edge_count, 3), dtype=np.float64)
         self._is_known = np.zeros(edge_count, dtype=np.bool_)
 

@@ -35,7 +35,6 @@ import numpy.typing as npt
 
 from .connectivity import Connectivity
 from .curves import CurveScheme
-from .kernels import kernel
 from .lanes import cross, four, single, write
 from .masks import unit
 from .native import Call, has_room, native, with_room
@@ -94,15 +93,21 @@ class CubicScheme(CurveScheme):
         self._weights = np.zeros(connectivity.faces.shape, dtype=np.float32)
         weigh_corners(rest_positions, connectivity.faces, self._weights)
         self._beyond = np.zeros((len(connectivity.edges), 2), dtype=np.uint32)
-        follow_borders(connectivity.edges, connectivity.is_interior, rest_normals, self._beyond)
+        counts = np.zeros((2, len(rest_normals)), dtype=np.int64)
+        follow_borders(
+            connectivity.edges, connectivity.is_interior, counts[0], counts[1], self._beyond
+        )
         self._across = connectivity.faces.copy()
         self._shares = np.zeros((len(connectivity.faces), 6), dtype=np.float32)
+        doubled, squared = np.zeros(len(self._shares)), np.zeros((len(self._shares), 3))
+        measure_triangles(rest_positions, connectivity.faces, doubled, squared)
         weigh_neighbours(
-            rest_positions,
             connectivity.faces,
             connectivity.triangle_edges,
             connectivity.edge_sides,
             connectivity.is_interior,
+            doubled,
+            squared,
             self._across,
             self._shares,
         )
@@ -171,7 +176,7 @@ class CubicScheme(CurveScheme):
         frame.bound(self.raising)()
 
 
-@kernel
+@native
 def weigh_corners(positions: Doubles, faces: Unsigned, weights: Floats) -> None:
     """Write sqrt(angle / |cross product|) of every corner, shape (F, 3); 0 without an area."""
     for t in range(faces.shape[0]):
@@ -188,17 +193,18 @@ def weigh_corners(positions: Doubles, faces: Unsigned, weights: Floats) -> None:
             )
 
 
-@kernel
+@native
 def follow_borders(
     edges: npt.NDArray[np.int32],
     is_interior: npt.NDArray[np.bool_],
-    normals: Floats,
+    border_count: npt.NDArray[np.int64],
+    sums: npt.NDArray[np.int64],
     beyond: Unsigned,
 ) -> None:
-    """Write the vertices before and after every border edge, or its ends where its border ends."""
-    vertex_count = normals.shape[0]
-    border_count = np.zeros(vertex_count, np.int32)
-    sums = np.zeros(vertex_count, np.int64)
+    """Write the vertices before and after every border edge, or its ends where its border ends.
+
+    `border_count`, `sums`: zeros, shape (V,).
+    """
     for e in range(edges.shape[0]):
         if not is_interior[e]:
             a, b = edges[e, 0], edges[e, 1]
@@ -327,44 +333,44 @@ def bulge_cubic(
         write(bulges, row + np.uint64(NEAR_END), FAR * turn_a - NEAR * turn_b)
 
 
-@kernel
+@native
 def measure_triangles(
     positions: Doubles, faces: Unsigned, doubled: Doubles, squared: Doubles
 ) -> None:
     """Write twice the areas, shape (F,), 0 of slivers, and squared edges, shape (F, 3)."""
-    d = np.empty((3, 3))
     for t in range(faces.shape[0]):
-        for i in range(3):
-            a, b = faces[t, i], faces[t, (i + 1) % 3]
-            for k in range(3):
-                d[i, k] = positions[b, k] - positions[a, k]
-                squared[t, i] += d[i, k] * d[i, k]
-        x = d[0, 1] * d[1, 2] - d[0, 2] * d[1, 1]
-        y = d[0, 2] * d[1, 0] - d[0, 0] * d[1, 2]
-        z = d[0, 0] * d[1, 1] - d[0, 1] * d[1, 0]
+        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        ux, vx = positions[b, 0] - positions[a, 0], positions[c, 0] - positions[b, 0]
+        uy, vy = positions[b, 1] - positions[a, 1], positions[c, 1] - positions[b, 1]
+        uz, vz = positions[b, 2] - positions[a, 2], positions[c, 2] - positions[b, 2]
+        wx, wy, wz = ux + vx, uy + vy, uz + vz
+        squared[t, 0] = ux * ux + uy * uy + uz * uz
+        squared[t, 1] = vx * vx + vy * vy + vz * vz
+        squared[t, 2] = wx * wx + wy * wy + wz * wz
+        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
         area = np.sqrt(x * x + y * y + z * z)
-        doubled[t] = area if area > SLIVER * squared[t].sum() else 0.0
+        total = squared[t, 0] + squared[t, 1] + squared[t, 2]
+        doubled[t] = area if area > SLIVER * total else 0.0
 
 
-@kernel
+@native
 def weigh_neighbours(
-    positions: Doubles,
     faces: Unsigned,
     triangle_edges: npt.NDArray[np.int32],
     edge_sides: Unsigned,
     is_interior: npt.NDArray[np.bool_],
+    doubled: Doubles,
+    squared: Doubles,
     across: Unsigned,
     shares: Floats,
 ) -> None:
     """Write the corners across the edges of each triangle, (F, 3), and weights, shape (F, 6).
 
+    `doubled`, `squared`: twice the areas, shape (F,), and squared edges, shape (F, 3).
     Weights: of the depths of these corners, then of the bulges of the edges, which say how deep the
     corners are expected. A border edge has no corner across it, and weight 0.
     """
-    face_count = faces.shape[0]
-    doubled, squared = np.zeros(face_count), np.zeros((face_count, 3))
-    measure_triangles(positions, faces, doubled, squared)
-    for t in range(face_count):
+    for t in range(faces.shape[0]):
         size = 0.0
         for i in range(3):
             e = triangle_edges[t, i]

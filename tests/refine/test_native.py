@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -19,13 +20,16 @@ from refine.native import Turns, native
 
 HALF = np.float32(0.5)
 START = """
-import sys
-import numpy, lifted as refine
+import json, sys
+import numpy
+import NAME as refine
 told = []
 refine.on_compile(lambda: told.append(1))
 faces = numpy.array([[0, 1, 2], [2, 1, 3]])
 rest = numpy.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
-mesh = refine.create("kahler", faces, rest).refine(rest + rest[:, :1] * rest[:, 1:2])
+options = json.loads(sys.argv[1])
+refiner = refine.create("kahler", faces, rest, **options)
+mesh = refiner.refine(rest + rest[:, :1] * rest[:, 1:2])
 print(len(told), "numba" in sys.modules, len(mesh.triangles))
 """
 
@@ -163,18 +167,36 @@ def test_lifted_out_it_compiles_once(tmp_path: Path) -> None:
     for path in Path(refine.__file__).parent.glob("*.py"):
         (tmp_path / "lifted" / path.name).write_bytes(path.read_bytes())
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "compiled")}
-    starts = [
-        subprocess.run(
-            [sys.executable, "-c", START],
-            cwd=tmp_path,
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout.split()
-        for _ in range(2)
-    ]
+    starts = [_start("lifted", {}, tmp_path, environment) for _ in range(2)]
     assert starts[0][:2] == ["1", "True"]
     assert starts[1][:2] == ["0", "False"]
     assert starts[0][2] == starts[1][2]
     assert int(starts[0][2]) > 2
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"blend": True}, {"scheme": "cubic"}, {"scheme": "cubic", "blend": False}],
+    ids=["blend", "cubic", "cubic, no blend"],
+)
+def test_later_starts_need_no_numba(options: dict[str, Any]) -> None:
+    """Blending and cubic edges are native through and through, binding included."""
+    root = Path(refine.__file__).parents[1]
+    _, later = (_start("refine", options, root, dict(os.environ)) for _ in range(2))
+    assert later[:2] == ["0", "False"]
+    assert int(later[2]) > 2
+
+
+def _start(
+    name: str, options: dict[str, Any], folder: Path, environment: dict[str, str]
+) -> list[str]:
+    """What a fresh interpreter says of its first frame."""
+    program = START.replace("NAME", name)
+    return subprocess.run(
+        [sys.executable, "-c", program, json.dumps(options)],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.split()
