@@ -84,7 +84,9 @@ def _targets(report: Report) -> Iterator[str]:
     if face is not None:
         took = face.milliseconds
         yield line(
-            took <= FACE_MILLISECONDS, f"face: {FACE_MILLISECONDS} ms at most; took {took:.4f}"
+            took <= FACE_MILLISECONDS,
+            f"face: {FACE_MILLISECONDS} ms at most; took {took:.4f}, "
+            f"shortest {face.best_milliseconds:.4f}",
         )
         for peer, factor in (
             ("VTK adaptive", FASTER_THAN_VTK),
@@ -94,8 +96,11 @@ def _targets(report: Report) -> Iterator[str]:
             theirs = report.row("face", peer)
             if theirs is not None:
                 faster = theirs.milliseconds / took
+                at_best = theirs.best_milliseconds / face.best_milliseconds
                 yield line(
-                    faster >= factor, f"face: {factor:g} x faster than {peer}; is {faster:.1f} x"
+                    faster >= factor,
+                    f"face: {factor:g} x faster than {peer}; is {faster:.1f} x, "
+                    f"by shortest times {at_best:.1f} x",
                 )
     for mesh, limits in NANOSECONDS.items():
         for share, limit in limits.items():
@@ -104,7 +109,8 @@ def _targets(report: Report) -> Iterator[str]:
                 took = row.nanoseconds_per_triangle
                 yield line(
                     took <= limit,
-                    f"{mesh}, {share} %: {limit:g} ns per triangle at most; took {took:.1f}",
+                    f"{mesh}, {share} %: {limit:g} ns per triangle at most; took {took:.1f}, "
+                    f"shortest {1e6 * row.best_milliseconds / row.triangles_out:.1f}",
                 )
         yield from (line(*verdict) for verdict in _against_sparse(report, mesh))
     big = report.row("1M", "kahler 10 %")

@@ -8,7 +8,8 @@ edges. To achieve this, appropriate splitting criteria have to be developed").
                 in mean edge lengths at rest        curvature along it (Taubin 1995, section 3)
     rest        much the same at rest               rest_curvature.py: the same edges in every frame
     silhouette  how far the surface turns along     (1 - n_a . n_b) x facing; facing is 1 where the
-                an edge that is seen from aside     line of sight grazes the edge, 0 a BAND away
+                an edge that is seen from aside     line of sight grazes the edge, 0 a BAND away;
+                                                    the turn counts up to where points have grown
     screen      length of an edge as it is seen     L x focal / distance from the eye, in pixels
     bulge       how far the scheme moves a middle   for schemes with curved edges (curves.py);
                 and mends normals, if it knows      `detail` does
@@ -36,6 +37,7 @@ Doubles = npt.NDArray[np.float64]
 Small = npt.NDArray[np.uint8]
 Unsigned = npt.NDArray[np.uint32]
 
+ONE = np.float32(1.0)
 BAND = 0.3
 """Cosine between normal and line of sight at which an edge is no silhouette: 17 degrees aside."""
 
@@ -129,7 +131,11 @@ class _Seen(_Measuring):
 
 
 class Silhouette(_Seen):
-    """Edges along which the surface turns away from the eye."""
+    """Edges along which the surface turns away from the eye.
+
+    An edge that turns by more than it takes to be grown twice on the outline itself counts no more:
+    on coarse meshes its points would pop out while the eye has hardly moved.
+    """
 
     def __init__(self, once: float = 0.005, twice: float = 0.03) -> None:
         """`once`, `twice`: 1 - the cosine between the normals at both ends."""
@@ -138,7 +144,8 @@ class Silhouette(_Seen):
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
         limits = self.thresholds
-        turns_at_silhouette(positions, normals, self._edges, self._looked()[0], need)
+        most = limits.once + (ONE + RAMP) * limits.width
+        turns_at_silhouette(positions, normals, self._edges, self._looked()[0], most, need)
         scale_needs(need, limits.once, limits.width, limits.most)
 
 
@@ -345,9 +352,17 @@ def arc_heights(
 
 @kernel
 def turns_at_silhouette(
-    positions: Doubles, normals: Floats, edges: Unsigned, eye: Doubles, turns: Floats
+    positions: Doubles,
+    normals: Floats,
+    edges: Unsigned,
+    eye: Doubles,
+    most: np.float32,
+    turns: Floats,
 ) -> None:
-    """Write 1 - the cosine of the normals of every edge, faded out aside of the silhouette."""
+    """Write 1 - the cosine of the normals of every edge, faded out aside of the silhouette.
+
+    What is above `most` counts as `most`.
+    """
     for e in range(edges.shape[0]):
         a, b = edges[e, 0], edges[e, 1]
         cosine = seen_a = seen_b = length_a = length_b = 0.0
@@ -361,7 +376,8 @@ def turns_at_silhouette(
         seen_a /= np.sqrt(max(length_a, 1e-30))
         seen_b /= np.sqrt(max(length_b, 1e-30))
         aside = 0.0 if seen_a * seen_b <= 0.0 else min(abs(seen_a), abs(seen_b))
-        turns[e] = (1.0 - cosine) * max(0.0, 1.0 - aside / BAND)
+        turn = min(np.float32(1.0 - cosine), most)
+        turns[e] = turn * max(0.0, 1.0 - aside / BAND)
 
 
 @kernel

@@ -10,7 +10,7 @@ nothing but that list:
     call()                                                           # every frame
 
 Several bound kernels can be put in `Turns`, which is one call again: a frame of the paper's refiner
-makes two in all.
+is one in all.
 
 Of every array the type, and every length but the first, are part of the code where they are small,
 so `rows[v, 2]` is one instruction. Where the code is kept and how it is made: machine_code.py.
