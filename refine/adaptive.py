@@ -34,7 +34,7 @@ from .criterion import (
     NormalDrop,
 )
 from .cubic import CubicScheme
-from .detail import FinerMesh
+from .detail import DetailScheme, FinerMesh
 from .native import Call, Turns
 from .output import (
     CENTRE,
@@ -154,8 +154,8 @@ class Kahler(BoundRefiner):
     def _bind_passes(self) -> None:
         """Bind the compiled passes of a frame to their arguments, and join what can be joined.
 
-        With the paper's criterion, and its scheme or `cubic`, a frame is one call of compiled code,
-        and another only where it needs more room than there is.
+        With the paper's criterion, and any scheme but `butterfly`, a frame is one call of compiled
+        code, and another only where it needs more room than there is.
         """
         mesh, frame, patterns = self.connectivity, self._frame, self._patterns
         self._drawn_to: Rows | None = None
@@ -213,7 +213,7 @@ class Kahler(BoundRefiner):
                     frame.rows,
                 )
             )
-        self._is_placed = type(self._scheme) in (LoopScheme, CubicScheme)
+        self._is_placed = type(self._scheme) in (LoopScheme, CubicScheme, DetailScheme)
         if self._is_placed:
             scheme = cast(LoopScheme | CubicScheme, self._scheme)
             draws = [*scheme.placing(frame), *draws]

@@ -66,7 +66,6 @@ class CurveScheme:
     def place(self, frame: Frame) -> None:
         """Write vertices as they are, and the points of split edges on their curves."""
         self._bulge(frame, self._bulges)
-        self._find_vertex_normals(frame)
         frame.bound(self._bind_pointing)()
 
     def _bind_pointing(self, frame: Frame) -> list[Call]:
@@ -128,9 +127,6 @@ class CurveScheme:
     def _vertex_normals(self, frame: Frame) -> Floats:
         """Return the array of the normals that vertices get in the output, shape (V, 3)."""
         return frame.normals
-
-    def _find_vertex_normals(self, frame: Frame) -> None:
-        """Fill this array, if what is in it is not known before bulges are."""
 
     def _bulge(self, frame: Frame, bulges: Floats) -> None:
         """Write the bulges of the split edges; of those split once the middle is enough."""

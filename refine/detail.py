@@ -36,8 +36,9 @@ from .closest import Surface
 from .connectivity import Connectivity
 from .cubic import CubicScheme
 from .fit import Points, fit, middles_of
-from .kernels import kernel
 from .local_frames import edge_axes, list_grown, slide_middles, triangle_axes, vertex_axes
+from .masks import unit, write_normal
+from .native import Call, native
 from .schemes import Frame
 
 Floats = npt.NDArray[np.float32]
@@ -58,7 +59,6 @@ FOUR_NINTHS = np.float32(4 / 9)
 QUARTER = np.float32(0.25)
 HALF = np.float32(0.5)
 ONE = np.float32(1.0)
-TINY = np.finfo(np.float32).tiny
 
 
 class DetailScheme(CubicScheme):
@@ -84,11 +84,12 @@ class DetailScheme(CubicScheme):
         super().bind(connectivity, rest_positions, rest_normals)
         assert self._surface is not None, "a scheme is bound once"
         edge_count = len(connectivity.edges)
-        self._axes = np.zeros((edge_count, 3, 3, 3), dtype=np.float32)
-        self._centre_axes = np.zeros((len(connectivity.faces), 3, 3), dtype=np.float32)
+        self._axes = np.zeros((9 * edge_count, 3), dtype=np.float32)
+        self._centre_axes = np.zeros((3 * len(connectivity.faces), 3), dtype=np.float32)
         self._middle_shares = np.zeros((len(connectivity.faces), 3), dtype=np.float32)
-        self._vertex_axes = np.zeros((len(rest_normals), 3, 3), dtype=np.float32)
+        self._vertex_axes = np.zeros((3 * len(rest_normals), 3), dtype=np.float32)
         self._shown = np.zeros_like(rest_normals)
+        self._count = np.array([len(connectivity.faces)], dtype=np.int64)
         self._towards = np.arange(connectivity.vertex_count, dtype=np.uint32)
         # The longest edge of a vertex, written last: no matter of the order of edges.
         both_ways = np.concatenate([connectivity.edges, connectivity.edges[:, ::-1]])
@@ -96,14 +97,17 @@ class DetailScheme(CubicScheme):
         squared = along[:, 0] ** 2 + along[:, 1] ** 2 + along[:, 2] ** 2
         start, end = both_ways[np.argsort(squared, kind="stable")].T
         self._towards[start] = end
-        super()._bulge(self._every_edge(rest_positions, rest_normals), self._bulges)
+        everything = self._every_edge(rest_positions, rest_normals)
+        for call in super()._bind_bulging(everything):
+            call()
         # All directions follow the normals that the cubic has, now as in every frame.
         rest_normals = self._normals.copy()
         self._grown = np.arange(len(connectivity.faces), dtype=np.uint32)
-        self._find_middles(rest_positions, rest_normals, len(self._grown))
+        for call in self._bind_middles(rest_positions, rest_normals):
+            call()
         points, ups = _points_on(self._bulges, connectivity, rest_positions, rest_normals)
         shares = self._middle_shares.astype(np.float64)
-        middles = shares, self._centre_axes[:, 0].astype(np.float64)
+        middles = shares, self._centre_axes[::3].astype(np.float64)
         places, looks, saved = fit(
             self._surface, connectivity, rest_positions, rest_normals, (points, ups), middles
         )
@@ -114,31 +118,40 @@ class DetailScheme(CubicScheme):
         self.turns = np.hypot(saved, self._turns_at(rest_positions, looks)).astype(np.float32)
         self._surface = None
 
-    def _find_middles(self, positions: Doubles, normals: Floats, count: int) -> None:
-        """Find where the middles of the first `count` grown triangles lie, and directions there."""
+    def _bind_middles(self, positions: Doubles, normals: Floats) -> list[Call]:
+        """Return the calls that find the middles of grown triangles, and directions there."""
         faces, listed, shares = self._connectivity.faces, self._grown, self._middle_shares
-        slide_middles(positions, normals, faces, listed, count, shares)
-        triangle_axes(positions, normals, faces, listed, count, shares, self._centre_axes)
+        axes = self._centre_axes
+        return [
+            slide_middles.bind(positions, normals, faces, listed, self._count, shares),
+            triangle_axes.bind(positions, normals, faces, listed, self._count, shares, axes),
+        ]
 
     def _remember(
         self, rest_positions: Doubles, rest_normals: Floats, offsets: Points, looks: Doubles
     ) -> None:
         """Store offsets and normals along the directions of edges, triangles and vertices."""
-        mesh, edge_count = self._connectivity, len(self._axes)
-        edges = np.arange(edge_count, dtype=np.uint32)
-        twice = np.full(edge_count, 2, dtype=np.uint8)
+        mesh, edge_count = self._connectivity, len(self._connectivity.edges)
         edge_axes(
-            rest_positions, rest_normals, mesh.edge_points, twice, edges, edge_count, self._axes
+            rest_positions,
+            rest_normals,
+            mesh.edge_points,
+            np.full(edge_count, 2, dtype=np.uint8),
+            np.arange(edge_count, dtype=np.uint32),
+            np.array([0, edge_count], dtype=np.int64),
+            self._axes,
         )
         vertex_axes(rest_positions, rest_normals, self._towards, self._vertex_axes)
         point_looks = Points.unstacked(looks, mesh)
-        point_axes, centre_axes = self._axes[:, AXES_OF], self._centre_axes[:, None]
+        point_axes = self._axes.reshape(-1, 3, 3, 3)[:, AXES_OF]
+        centre_axes = self._centre_axes.reshape(-1, 1, 3, 3)
         self._offsets = _along(point_axes, offsets.of_edges)
         self._looks = _along(point_axes, point_looks.of_edges)
         self._centre_offsets = _along(centre_axes, offsets.of_triangles)
         self._centre_looks = _along(centre_axes, point_looks.of_triangles)
         # A vertex without a normal has no frame: nothing to show there.
-        self._vertex_looks = _along(self._vertex_axes, looks[: mesh.vertex_count])
+        vertex_axes_at_rest = self._vertex_axes.reshape(-1, 3, 3)
+        self._vertex_looks = _along(vertex_axes_at_rest, looks[: mesh.vertex_count])
 
     def _turns_at(self, rest_positions: Doubles, looks: Doubles) -> Doubles:
         """How far the middle of each edge split once turns from between its ends, shape (E,).
@@ -156,80 +169,80 @@ class DetailScheme(CubicScheme):
         return turns
 
     def place(self, frame: Frame) -> None:
-        """Write vertices and points, then the normals of the finer mesh at points."""
-        super().place(frame)
-        show_points(
-            self._connectivity.edge_points,
-            self._connectivity.edge_wings,
-            self._connectivity.is_interior,
-            self._looks,
-            self._axes,
-            frame.splits,
-            frame.growth_once,
-            frame.growth_twice,
-            frame.first_points,
-            frame.split_once,
-            frame.once_count,
-            frame.rows,
-        )
+        """Write vertices and points, with the normals of the finer mesh."""
+        frame.bound(self.placing)()
+
+    def placing(self, frame: Frame) -> list[Call]:
+        """Return the calls that place points in the arrays of a frame; `vertices` are its rows."""
+        mesh = self._connectivity
+        return [
+            *self._bind_bulging(frame),
+            vertex_axes.bind(frame.positions, self._normals, self._towards, self._vertex_axes),
+            show_vertices.bind(self._normals, self._vertex_looks, self._vertex_axes, self._shown),
+            *self._bind_pointing(frame),
+            show_points.bind(
+                mesh.edge_points,
+                mesh.edge_wings,
+                mesh.is_interior,
+                self._looks,
+                self._axes,
+                frame.splits,
+                frame.growth_once,
+                frame.growth_twice,
+                frame.first_points,
+                frame.split_once,
+                frame.counts,
+                frame.rows,
+            ),
+        ]
+
+    def raising(self, frame: Frame) -> list[Call]:
+        """Return the calls that move points in the middle of triangles, when others are there."""
+        assert frame.centre_triangles is not None
+        mesh = self._connectivity
+        return [
+            list_grown.bind(
+                mesh.triangle_edges,
+                frame.growth_once,
+                frame.centre_triangles,
+                frame.counts,
+                self._grown,
+                self._count,
+            ),
+            *self._bind_middles(frame.positions, self._normals),
+            show_centres.bind(
+                mesh.faces,
+                self._middle_shares,
+                self._centre_offsets,
+                self._centre_looks,
+                self._centre_axes,
+                mesh.triangle_edges,
+                frame.splits,
+                frame.growth_once,
+                frame.growth_twice,
+                frame.first_points,
+                frame.centre_triangles,
+                frame.counts,
+                frame.rows,
+            ),
+        ]
 
     def _vertex_normals(self, frame: Frame) -> Floats:
         return self._shown
 
-    def _find_vertex_normals(self, frame: Frame) -> None:
-        axes = self._vertex_axes
-        vertex_axes(frame.positions, self._normals, self._towards, axes)
-        show_vertices(self._normals, self._vertex_looks, axes, self._shown)
-
-    def _bulge(self, frame: Frame, bulges: Floats) -> None:
-        super()._bulge(frame, bulges)
-        edge_axes(
-            frame.positions,
-            self._normals,
-            self._connectivity.edge_points,
-            frame.splits,
-            frame.split_once,
-            frame.once_count,
-            self._axes,
-        )
-        add_offsets(
-            self._offsets,
-            self._axes,
-            frame.splits,
-            frame.growth_twice,
-            frame.split_once,
-            frame.once_count,
-            bulges,
-        )
-
-    def place_centres(self, frame: Frame) -> None:
-        """Move the points in the middle of triangles as far as the edges around have grown."""
-        assert frame.centre_triangles is not None
-        mesh = self._connectivity
-        grown_count = list_grown(
-            mesh.triangle_edges,
-            frame.growth_once,
-            frame.centre_triangles,
-            frame.centre_count,
-            self._grown,
-        )
-        self._find_middles(frame.positions, self._normals, grown_count)
-        show_centres(
-            mesh.faces,
-            self._middle_shares,
-            self._centre_offsets,
-            self._centre_looks,
-            self._centre_axes,
-            mesh.triangle_edges,
-            frame.splits,
-            frame.growth_once,
-            frame.growth_twice,
-            frame.first_points,
-            frame.centre_triangles,
-            frame.centre_count,
-            frame.first_centre,
-            frame.rows,
-        )
+    def _bind_bulging(self, frame: Frame) -> list[Call]:
+        axes, counts = self._axes, frame.counts
+        points, splits, split_once = self._connectivity.edge_points, frame.splits, frame.split_once
+        twice = frame.growth_twice
+        return [
+            *super()._bind_bulging(frame),
+            edge_axes.bind(
+                frame.positions, self._normals, points, splits, split_once, counts, axes
+            ),
+            add_offsets.bind(
+                self._offsets, axes, splits, twice, split_once, counts, self._bulge_rows
+            ),
+        ]
 
 
 def _points_on(
@@ -249,63 +262,80 @@ def _along(axes: Floats, vectors: Doubles) -> Floats:
     return components.astype(np.float32)
 
 
-@kernel
+@native
 def add_offsets(
     offsets: Floats,
     axes: Floats,
     splits: npt.NDArray[np.uint8],
     growth_twice: Floats,
     split_once: Unsigned,
-    once_count: int,
+    counts: npt.NDArray[np.int64],
     bulges: Floats,
 ) -> None:
-    """Add the stored offsets of the split edges to their bulges."""
-    for k in range(once_count):
+    """Add the stored offsets of the split edges to their bulges.
+
+    `axes`: nine rows for each edge, `bulges`: three; `counts`: see schemes.Frame.
+    """
+    for k in range(counts[1]):
         e = split_once[k]
+        first, bulge = np.uint64(9) * np.uint64(e), np.uint64(3) * np.uint64(e)
+        middle = bulge + np.uint64(MIDDLE)
         twice = growth_twice[e] if splits[e] == 2 else ZERO
         for j in range(3):
             offset = between(offsets[e, ALONE, j], offsets[e, MIDDLE, j], twice)
+            axis = first + np.uint64(3 * MIDDLE + j)
             for i in range(3):
-                bulges[e, MIDDLE, i] += offset * axes[e, MIDDLE, j, i]
+                bulges[middle, i] += offset * axes[axis, i]
         if splits[e] < 2:
             continue
-        for point in (START, END):
+        for end in range(2):
+            point = START + (END - START) * end
             for j in range(3):
+                axis, quarter = first + np.uint64(3 * point + j), bulge + np.uint64(point)
                 for i in range(3):
-                    bulges[e, point, i] += offsets[e, point, j] * axes[e, point, j, i]
+                    bulges[quarter, i] += offsets[e, point, j] * axes[axis, i]
 
 
-@kernel
+@native
 def between(start: np.float32, end: np.float32, share: np.float32) -> np.float32:
     """A share of the way from one number to another, neither of which is lost at its end."""
     return (ONE - share) * start + share * end
 
 
-@kernel
-def turn(normal: Floats, look: Floats, axes: Floats, growth: np.float32) -> None:
-    """Turn a unit normal, as far as `growth` says, to the one that is stored along the axes."""
-    x = y = z = ZERO
-    for k in range(3):
-        x += look[k] * axes[k, 0]
-        y += look[k] * axes[k, 1]
-        z += look[k] * axes[k, 2]
-    x = normal[0] + growth * (x - normal[0])
-    y = normal[1] + growth * (y - normal[1])
-    z = normal[2] + growth * (z - normal[2])
-    scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
-    normal[0], normal[1], normal[2] = x * scale, y * scale, z * scale
+@native
+def turned(
+    x: np.float32,
+    y: np.float32,
+    z: np.float32,
+    u: np.float32,
+    v: np.float32,
+    w: np.float32,
+    axes: Floats,
+    k: np.uint64,
+    growth: np.float32,
+) -> tuple[np.float32, np.float32, np.float32]:
+    """Turn a unit normal (x y z) as far as `growth` says to (u v w), stored along rows k, .. k + 2.
+
+    The result has length one.
+    """
+    second, third = k + np.uint64(1), k + np.uint64(2)
+    along_x = u * axes[k, 0] + v * axes[second, 0] + w * axes[third, 0]
+    along_y = u * axes[k, 1] + v * axes[second, 1] + w * axes[third, 1]
+    along_z = u * axes[k, 2] + v * axes[second, 2] + w * axes[third, 2]
+    return unit(x + growth * (along_x - x), y + growth * (along_y - y), z + growth * (along_z - z))
 
 
-@kernel
+@native
 def show_vertices(normals: Floats, looks: Floats, axes: Floats, shown: Floats) -> None:
     """Write the finer normal of every vertex, turned with its surroundings."""
     for v in range(normals.shape[0]):
-        for i in range(3):
-            shown[v, i] = normals[v, i]
-        turn(shown[v], looks[v], axes[v], ONE)
+        x, y, z = normals[v, 0], normals[v, 1], normals[v, 2]
+        first = np.uint64(3 * v)
+        x, y, z = turned(x, y, z, looks[v, 0], looks[v, 1], looks[v, 2], axes, first, ONE)
+        shown[v, 0], shown[v, 1], shown[v, 2] = x, y, z
 
 
-@kernel
+@native
 def show_points(
     edge_points: Unsigned,
     edge_wings: Unsigned,
@@ -317,14 +347,16 @@ def show_points(
     growth_twice: Floats,
     first_points: Unsigned,
     split_once: Unsigned,
-    once_count: int,
+    counts: npt.NDArray[np.int64],
     vertices: Floats,
 ) -> None:
-    """Turn the normals of the points of split edges to those of the finer mesh."""
-    look = np.empty(3, np.float32)
-    for k in range(once_count):
+    """Turn the normals of the points of split edges to those of the finer mesh.
+
+    `axes`: nine rows for each edge; `counts`: see schemes.Frame.
+    """
+    for k in range(counts[1]):
         e = split_once[k]
-        row = first_points[e] + (splits[e] >> 1)
+        row, first = np.uint32(first_points[e] + (splits[e] >> 1)), np.uint64(9) * np.uint64(e)
         share = growth_once[e]
         if is_interior[e]:
             around = ZERO
@@ -333,25 +365,39 @@ def show_points(
                 around += QUARTER * growth_once[wing] if splits[wing] > 0 else ZERO
             share = min(share, around)
         twice = growth_twice[e] if splits[e] == 2 else ZERO
-        for j in range(3):
-            look[j] = between(looks[e, ALONE, j], looks[e, MIDDLE, j], twice)
-        turn(vertices[row, 3:6], look, axes[e, MIDDLE], share)
+        x, y, z = turned(
+            vertices[row, 3],
+            vertices[row, 4],
+            vertices[row, 5],
+            between(looks[e, ALONE, 0], looks[e, MIDDLE, 0], twice),
+            between(looks[e, ALONE, 1], looks[e, MIDDLE, 1], twice),
+            between(looks[e, ALONE, 2], looks[e, MIDDLE, 2], twice),
+            axes,
+            first + np.uint64(3 * MIDDLE),
+            share,
+        )
+        write_normal(vertices, row, x, y, z)
         if splits[e] < 2:
             continue
         for end in range(2):
             # Between its neighbours at first, of which the middle has just been turned.
-            vertex, point = edge_points[e, end], row - 1 + 2 * end
-            for i in range(3, 6):
-                vertices[point, i] = HALF * (vertices[vertex, i] + vertices[row, i])
-            turn(
-                vertices[point, 3:6],
-                looks[e, 2 * end],
-                axes[e, 2 * end],
+            a, point = edge_points[e, end], START + (END - START) * end
+            quarter = np.uint32(row - 1 + 2 * end)
+            u, v, w = turned(
+                HALF * (vertices[a, 3] + x),
+                HALF * (vertices[a, 4] + y),
+                HALF * (vertices[a, 5] + z),
+                looks[e, point, 0],
+                looks[e, point, 1],
+                looks[e, point, 2],
+                axes,
+                first + np.uint64(3 * point),
                 min(share, growth_twice[e]),
             )
+            write_normal(vertices, quarter, u, v, w)
 
 
-@kernel
+@native
 def show_centres(
     faces: Unsigned,
     shares: Floats,
@@ -364,17 +410,16 @@ def show_centres(
     growth_twice: Floats,
     first_points: Unsigned,
     centre_triangles: Unsigned,
-    centre_count: int,
-    first_centre: int,
+    counts: npt.NDArray[np.int64],
     vertices: Floats,
 ) -> None:
     """Slide, move and turn the points in the middle of triangles as the least grown edge allows.
 
-    They are where blending has them (blend.py): in the centroid.
+    They are where blending has them (blend.py): in the centroid. `axes`: three rows for each
+    triangle; `counts`: see schemes.Frame.
     """
-    look = np.empty(3, np.float32)
-    for k in range(centre_count):
-        t, row = centre_triangles[k], first_centre + k
+    for k in range(counts[4]):
+        t, row = centre_triangles[k], np.uint32(counts[0] + k)
         once = twice = ONE
         for i in range(3):
             e = triangle_edges[t, i]
@@ -382,6 +427,7 @@ def show_centres(
             twice = min(twice, growth_twice[e] if splits[e] == 2 else ZERO)
         if once == ZERO:
             continue
+        first = np.uint64(3) * np.uint64(t)
         for i in range(3):
             e, a, b = triangle_edges[t, i], faces[t, i], faces[t, (i + 1) % 3]
             middle = first_points[e] + (splits[e] >> 1)
@@ -391,8 +437,18 @@ def show_centres(
                 out = vertices[middle, j] - HALF * (vertices[a, j] + vertices[b, j])
                 vertices[row, j] += corner * vertices[a, j] + bulge * out
         for j in range(3):
-            look[j] = between(looks[t, 1, j], looks[t, 0, j], twice)
             offset = once * between(offsets[t, 1, j], offsets[t, 0, j], twice)
             for i in range(3):
-                vertices[row, i] += offset * axes[t, j, i]
-        turn(vertices[row, 3:6], look, axes[t], once)
+                vertices[row, i] += offset * axes[first + np.uint64(j), i]
+        x, y, z = turned(
+            vertices[row, 3],
+            vertices[row, 4],
+            vertices[row, 5],
+            between(looks[t, 1, 0], looks[t, 0, 0], twice),
+            between(looks[t, 1, 1], looks[t, 0, 1], twice),
+            between(looks[t, 1, 2], looks[t, 0, 2], twice),
+            axes,
+            first,
+            once,
+        )
+        write_normal(vertices, row, x, y, z)

@@ -13,7 +13,7 @@ or the other, every second triangle cut across the fold, and small teeth were se
 import numpy as np
 import numpy.typing as npt
 
-from .kernels import kernel
+from .native import native
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
@@ -34,7 +34,7 @@ FOUR = np.float32(4.0)
 TINY = np.finfo(np.float32).tiny
 
 
-@kernel
+@native
 def write_axes(
     x: np.float32,
     y: np.float32,
@@ -43,20 +43,25 @@ def write_axes(
     v: np.float32,
     w: np.float32,
     axes: Floats,
+    k: np.uint64,
 ) -> None:
-    """Write three orthogonal directions of length one: (x y z), then (u v w) made normal to it."""
+    """Write three orthogonal directions of length one: (x y z), then (u v w) made normal to it.
+
+    Into rows k, k + 1, k + 2 of `axes`.
+    """
     scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
     x, y, z = x * scale, y * scale, z * scale
     slope = x * u + y * v + z * w
     u, v, w = u - slope * x, v - slope * y, w - slope * z
     scale = ONE / np.sqrt(max(u * u + v * v + w * w, TINY))
     u, v, w = u * scale, v * scale, w * scale
-    axes[0, 0], axes[0, 1], axes[0, 2] = x, y, z
-    axes[1, 0], axes[1, 1], axes[1, 2] = u, v, w
-    axes[2, 0], axes[2, 1], axes[2, 2] = y * w - z * v, z * u - x * w, x * v - y * u
+    second, third = k + np.uint64(1), k + np.uint64(2)
+    axes[k, 0], axes[k, 1], axes[k, 2] = x, y, z
+    axes[second, 0], axes[second, 1], axes[second, 2] = u, v, w
+    axes[third, 0], axes[third, 1], axes[third, 2] = y * w - z * v, z * u - x * w, x * v - y * u
 
 
-@kernel
+@native
 def upright(
     positions: Doubles, normals: Floats, a: np.uint32, b: np.uint32
 ) -> tuple[np.float32, np.float32, np.float32]:
@@ -73,24 +78,25 @@ def upright(
     return u * scale, v * scale, w * scale
 
 
-@kernel
+@native
 def edge_axes(
     positions: Doubles,
     normals: Floats,
     edge_points: Unsigned,
     splits: npt.NDArray[np.uint8],
-    listed: Unsigned,
-    count: int,
+    split_once: Unsigned,
+    counts: npt.NDArray[np.int64],
     axes: Floats,
 ) -> None:
-    """Write the directions of the points of the listed edges: up, along the edge, across.
+    """Write the directions of the points of the split edges: up, along the edge, across.
 
+    `axes`: nine rows for each edge; `counts`: see schemes.Frame.
     Edges that are split once have a middle only. Up is upright on the edge there, and half way from
     there to the normal at the end at the quarters: a point near a vertex turns with it, not with
     the edge.
     """
-    for k in range(count):
-        e = listed[k]
+    for k in range(counts[1]):
+        e = split_once[k]
         a, b = edge_points[e, 0], edge_points[e, 1]
         u, v, w = upright(positions, normals, a, b)
         for point in range(3):
@@ -107,13 +113,14 @@ def edge_axes(
                 np.float32(positions[b, 0] - positions[a, 0]),
                 np.float32(positions[b, 1] - positions[a, 1]),
                 np.float32(positions[b, 2] - positions[a, 2]),
-                axes[e, point],
+                axes,
+                np.uint64(9) * np.uint64(e) + np.uint64(3 * point),
             )
 
 
-@kernel
+@native
 def vertex_axes(positions: Doubles, normals: Floats, towards: Unsigned, axes: Floats) -> None:
-    """Write the directions of all vertices: up, towards a neighbour, across."""
+    """Write the directions of all vertices, three rows each: up, towards a neighbour, across."""
     for v in range(positions.shape[0]):
         u = towards[v]
         write_axes(
@@ -123,26 +130,28 @@ def vertex_axes(positions: Doubles, normals: Floats, towards: Unsigned, axes: Fl
             np.float32(positions[u, 0] - positions[v, 0]),
             np.float32(positions[u, 1] - positions[v, 1]),
             np.float32(positions[u, 2] - positions[v, 2]),
-            axes[v],
+            axes,
+            np.uint64(3 * v),
         )
 
 
-@kernel
+@native
 def triangle_axes(
     positions: Doubles,
     normals: Floats,
     faces: Unsigned,
     listed: Unsigned,
-    count: int,
+    count: npt.NDArray[np.int64],
     shares: Floats,
     axes: Floats,
 ) -> None:
-    """Write the directions of the listed triangles: up, along edge 0, across.
+    """Write the directions of the listed triangles, three rows each: up, along edge 0, across.
 
-    `shares`: where in the triangles (slide_middles). Up is what the quadratic has there that has
-    the normals of the corners and those upright on the edges between them.
+    `count`: how many are listed, shape (1,); `shares`: where in the triangles (slide_middles). Up
+    is what the quadratic has there that has the normals of the corners and those upright on the
+    edges between them.
     """
-    for k in range(count):
+    for k in range(count[0]):
         t = listed[k]
         x = y = z = ZERO
         for i in range(3):
@@ -161,59 +170,69 @@ def triangle_axes(
             np.float32(positions[b, 0] - positions[a, 0]),
             np.float32(positions[b, 1] - positions[a, 1]),
             np.float32(positions[b, 2] - positions[a, 2]),
-            axes[t],
+            axes,
+            np.uint64(3) * np.uint64(t),
         )
 
 
-@kernel
+@native
 def list_grown(
     triangle_edges: npt.NDArray[np.int32],
     growth_once: Floats,
     centre_triangles: Unsigned,
-    centre_count: int,
+    counts: npt.NDArray[np.int64],
     grown: Unsigned,
-) -> int:
-    """List the triangles all of whose edges have grown; return how many: others show nothing."""
-    count = 0
-    for k in range(centre_count):
+    count: npt.NDArray[np.int64],
+) -> None:
+    """List the triangles all of whose edges have grown, and count them: others show nothing.
+
+    `counts`: see schemes.Frame; `count`, shape (1,), gets how many there are.
+    """
+    count[0] = 0
+    for k in range(counts[4]):
         t = centre_triangles[k]
         once = ONE
         for i in range(3):
             once = min(once, growth_once[triangle_edges[t, i]])
         if once > ZERO:
-            grown[count] = t
-            count += 1
-    return count
+            grown[count[0]] = t
+            count[0] += 1
 
 
-@kernel
+@native
+def bend_of(positions: Doubles, normals: Floats, a: np.uint32, b: np.uint32) -> np.float32:
+    """How far an edge bulges, squared, with a little for its length."""
+    length = height_a = height_b = cosine = ZERO
+    for j in range(3):
+        d = np.float32(positions[b, j] - positions[a, j])
+        length += d * d
+        height_a += d * normals[a, j]
+        height_b += d * normals[b, j]
+        cosine += normals[a, j] * normals[b, j]
+    # The bulge of the cubic times eight, squared.
+    bend = height_a * height_a + height_b * height_b - TWO * cosine * height_a * height_b
+    return np.float32(bend + FLAT * length)
+
+
+@native
 def slide_middles(
     positions: Doubles,
     normals: Floats,
     faces: Unsigned,
     listed: Unsigned,
-    count: int,
+    count: npt.NDArray[np.int64],
     shares: Floats,
 ) -> None:
-    """Write where the middles of the listed triangles lie: shares of the corners, shape (F, 3)."""
-    bends = np.empty(3, np.float32)
-    for k in range(count):
+    """Write where the middles of the listed triangles lie: shares of the corners, shape (F, 3).
+
+    `count`: how many are listed, shape (1,).
+    """
+    for k in range(count[0]):
         t = listed[k]
-        total = ZERO
-        for i in range(3):
-            a, b = faces[t, i], faces[t, (i + 1) % 3]
-            length = height_a = height_b = cosine = ZERO
-            for j in range(3):
-                d = np.float32(positions[b, j] - positions[a, j])
-                length += d * d
-                height_a += d * normals[a, j]
-                height_b += d * normals[b, j]
-                cosine += normals[a, j] * normals[b, j]
-            # The bulge of the cubic times eight, squared.
-            bend = height_a * height_a + height_b * height_b - TWO * cosine * height_a * height_b
-            bends[i] = bend + FLAT * length
-            total += bends[i]
-        scale = SLIDE * HALF / max(total, TINY)
-        for i in range(3):
-            bent = scale * (bends[i] + bends[(i + 2) % 3])
-            shares[t, i] = (ONE - SLIDE) * THIRD + bent
+        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        ab, bc = bend_of(positions, normals, a, b), bend_of(positions, normals, b, c)
+        ca = bend_of(positions, normals, c, a)
+        scale = SLIDE * HALF / max(ab + bc + ca, TINY)
+        shares[t, 0] = (ONE - SLIDE) * THIRD + scale * (ab + ca)
+        shares[t, 1] = (ONE - SLIDE) * THIRD + scale * (bc + ab)
+        shares[t, 2] = (ONE - SLIDE) * THIRD + scale * (ca + bc)
