@@ -50,7 +50,6 @@ from .patterns import (
     MAXIMUM_SUBTRIANGLES,
     MOST_SPLITS,
     POINTS_OF_EDGE,
-    Patterns,
 )
 from .plugin import Origins, Stream, View
 from .schemes import Frame, LoopScheme, Scheme
@@ -113,7 +112,16 @@ class Kahler(BoundRefiner):
         self._looks = hasattr(self._criterion, "look")
         self._is_foreign = not isinstance(self._criterion, NormalDrop)
         self._blend = blend
-        self._patterns = _patterns_of(blend, coherent, len(mesh.faces))
+        if blend and coherent:
+            raise ValueError(
+                "coherent=True continues the triangulations of the frame before; with blend=True "
+                "none ever turns a diagonal; ask for one of the two"
+            )
+        self.history = Coherent(len(mesh.faces)) if coherent else None
+        """What triangles remember of their splits, as they are walked; None unless `coherent`."""
+        self._patterns = FANS if blend else CONFIGURATIONS
+        if self.history is not None:
+            self._patterns = self.history.patterns
         if blend and not isinstance(self._criterion, Measured):
             raise ValueError(
                 f"blend=True needs a criterion that measures, but {type(self._criterion).__name__} "
@@ -172,13 +180,17 @@ class Kahler(BoundRefiner):
             frame.counts,
         )
         numbering = [number]
+        rows = self._triangle_configurations
+        if self.history is not None:
+            numbering.append(self.history.following(rows))
+            rows = self.history.states
         self._look_up_triangles = look_up_triangles.bind(
             self._output_corners,
             mesh.triangle_rims,
             self._rim_splits,
             frame.first_points,
             frame.counts,
-            self._configurations,
+            rows,
             patterns.counts,
             patterns.subtriangles,
             np.zeros(CENTRE + 1, dtype=np.uint32),
@@ -222,7 +234,7 @@ class Kahler(BoundRefiner):
         self._draw, self._number = Turns(*draws), Turns(*numbering)
         marking = self._bind_marking()
         self._is_marked = marking is not None
-        self._is_whole = self._is_marked and self._is_placed and self.history is None
+        self._is_whole = self._is_marked and self._is_placed
         if marking is not None:
             begin = [self._take_in, self._find_normals, *marking, *numbering]
             if self._is_whole:
@@ -237,11 +249,6 @@ class Kahler(BoundRefiner):
         self._grow = grow.bind(self._need, self._edge_splits, frame.growth_once, frame.growth_twice)
         measuring = measuring_of(self._criterion, self._normals, self._need)
         return None if measuring is None else [measuring, self._grow]
-
-    @property
-    def history(self) -> Coherent | None:
-        """What triangles remember of their splits, as they are walked; None unless `coherent`."""
-        return self._patterns if isinstance(self._patterns, Coherent) else None
 
     @property
     def splits(self) -> Small:
@@ -270,8 +277,6 @@ class Kahler(BoundRefiner):
         vertex_count += centre_count
         if self._is_whole and begun != NO_ROOM:
             return vertex_count, triangle_count
-        if self.history is not None:
-            self._look_up_triangles.put("rows", self.history.rows(self._triangle_configurations))
         self._draw_to(stream, self._reserve(stream, vertex_count, triangle_count))
         if not self._is_placed:
             self._scheme.place(frame)
@@ -340,15 +345,3 @@ class Kahler(BoundRefiner):
         return Origins(
             np.concatenate(vertices).astype(np.int32), np.concatenate(weights).astype(np.float32)
         )
-
-
-def _patterns_of(blend: bool, coherent: bool, face_count: int) -> Patterns:
-    """The table of a refiner: fans for blending, otherwise the paper's 27 patterns."""
-    if blend and coherent:
-        raise ValueError(
-            "coherent=True continues the triangulations of the frame before; with blend=True none "
-            "ever turns a diagonal; ask for one of the two"
-        )
-    if coherent:
-        return Coherent(face_count)
-    return FANS if blend else CONFIGURATIONS

@@ -9,53 +9,63 @@ import numpy as np
 import numpy.typing as npt
 
 from .coherence import sequence_tables
-from .kernels import kernel
+from .native import Call, native
+from .patterns import Patterns
 
 Numbers = npt.NDArray[np.uint16]
 
 
 class Coherent:
-    """Table rows by sequence of splits, for the triangles of one mesh (see patterns.Patterns)."""
+    """Table rows by sequence of splits, for the triangles of one mesh."""
 
     def __init__(self, face_count: int) -> None:
         """Start with no split anywhere in `face_count` triangles."""
         self._tables = sequence_tables()
-        self.counts = self._tables.subtriangle_counts
-        self.subtriangles = self._tables.subtriangles
+        self.patterns = Patterns(self._tables.subtriangle_counts, self._tables.subtriangles)
+        """A row for each sequence."""
         self.states: Numbers = np.zeros(face_count, dtype=np.uint16)
         """The sequence of each triangle, shape (F,): all that lives from frame to frame."""
-        self.removals_out_of_order = 0
+        self._removed = np.zeros(1, dtype=np.int64)
+
+    @property
+    def removals_out_of_order(self) -> int:
         """Splits taken back while a later one stayed, in all frames; each may turn lines."""
+        return int(self._removed[0])
 
-    def rows(self, configurations: Numbers) -> Numbers:
-        """Move every triangle from its sequence to the next one, given its splits in this frame.
+    def following(self, configurations: Numbers) -> Call:
+        """Return the call that moves every triangle from its sequence to the next one.
 
-        `configurations`: s0 + 3 s1 + 9 s2 of each triangle, shape (F,). Returns `states`.
+        `configurations`: s0 + 3 s1 + 9 s2 of each triangle in the frame, shape (F,).
         """
-        self.removals_out_of_order += follow_splits(
-            configurations, self._tables.transitions, self._tables.removals, self.states
+        return follow_splits.bind(
+            configurations,
+            self._tables.transitions,
+            self._tables.removals,
+            self.states,
+            self._removed,
         )
-        return self.states
 
     def forget(self) -> None:
         """Take up the next frame as if it were the first: after a cut, or a jump in time."""
         self.states[:] = 0
-        self.removals_out_of_order = 0
+        self._removed[:] = 0
 
 
-@kernel
+@native
 def follow_splits(
-    configurations: Numbers, transitions: Numbers, removals: npt.NDArray[np.uint8], states: Numbers
-) -> int:
+    configurations: Numbers,
+    transitions: Numbers,
+    removals: npt.NDArray[np.uint8],
+    states: Numbers,
+    removed: npt.NDArray[np.int64],
+) -> None:
     """Replace every sequence in `states`, shape (F,), by the next one for its configuration.
 
-    Returns how many splits were taken back out of order.
+    `removed`, shape (1,): goes up by the splits that were taken back out of order.
     """
-    removed = 0
     for t in range(states.shape[0]):
         if configurations[t] == 0:  # most triangles: nothing is left of what they remember
             states[t] = 0
             continue
-        removed += removals[states[t], configurations[t]]
+        removed[0] += removals[states[t], configurations[t]]
         states[t] = transitions[states[t], configurations[t]]
-    return removed

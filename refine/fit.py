@@ -25,7 +25,7 @@ import numpy.typing as npt
 
 from .closest import Surface
 from .connectivity import Connectivity
-from .patterns import CENTRE, CONFIGURATIONS, FANS, FixedPatterns
+from .patterns import CENTRE, CONFIGURATIONS, FANS, Patterns
 
 Doubles = npt.NDArray[np.float64]
 Wide = npt.NDArray[np.int64]
@@ -207,7 +207,7 @@ def saved_turns(
     return np.sqrt(saved * len(saved) / len(surface.positions)).astype(np.float32)
 
 
-def split_everywhere(mesh: Connectivity, patterns: FixedPatterns, row: int) -> Wide:
+def split_everywhere(mesh: Connectivity, patterns: Patterns, row: int) -> Wide:
     """All triangles cut like one row of a table, of stacked points, shape (K, 3)."""
     proper = np.flatnonzero(~mesh.is_degenerate)
     edges = mesh.triangle_edges[proper].astype(np.int64)

@@ -66,7 +66,6 @@ have positive area, cover the triangle exactly, use every point, and share inner
 """
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -204,37 +203,20 @@ def fan(splits: tuple[int, int, int]) -> list[Triangle]:
     return [(CENTRE, start, end) for start, end in pairs]
 
 
-class Patterns(Protocol):
-    """A table of subtriangles, and the row of it that each triangle takes in a frame."""
-
-    @property
-    def counts(self) -> npt.NDArray[np.uint8]:
-        """Subtriangles of each row, shape (K,)."""
-
-    @property
-    def subtriangles(self) -> npt.NDArray[np.uint8]:
-        """Their points, numbered as above, unused ones 0, shape (K, most, 3)."""
-
-    def rows(self, configurations: npt.NDArray[np.uint16]) -> npt.NDArray[np.uint16]:
-        """Return the row of each triangle, from s_0 + 3 s_1 + 9 s_2, both shape (F,).
-
-        Called once in every frame. Row 0 is the triangle as it is.
-        """
-
-
 @dataclass(frozen=True)
-class FixedPatterns:
-    """One row for each configuration, in their order: what the paper looks up (section 4.3)."""
+class Patterns:
+    """A table of subtriangles; row 0 is the triangle as it is.
+
+    The paper looks up the row s_0 + 3 s_1 + 9 s_2 (section 4.3).
+    """
 
     counts: npt.NDArray[np.uint8]
+    """Subtriangles of each row, shape (K,)."""
     subtriangles: npt.NDArray[np.uint8]
-
-    def rows(self, configurations: npt.NDArray[np.uint16]) -> npt.NDArray[np.uint16]:
-        """Return `configurations`."""
-        return configurations
+    """Their points, numbered as above, unused ones 0, shape (K, most, 3)."""
 
 
-def _build_table() -> FixedPatterns:
+def _build_table() -> Patterns:
     counts = np.zeros(27, dtype=np.uint8)
     table = np.zeros((27, MAXIMUM_SUBTRIANGLES, 3), dtype=np.uint8)
     for configuration in range(27):
@@ -245,10 +227,10 @@ def _build_table() -> FixedPatterns:
         table[configuration, : len(triangles)] = triangles
     counts.flags.writeable = False
     table.flags.writeable = False
-    return FixedPatterns(counts, table)
+    return Patterns(counts, table)
 
 
-def _build_fans() -> FixedPatterns:
+def _build_fans() -> Patterns:
     counts = np.zeros(27, dtype=np.uint8)
     table = np.zeros((27, MAXIMUM_FAN, 3), dtype=np.uint8)
     for configuration in range(27):
@@ -257,7 +239,7 @@ def _build_fans() -> FixedPatterns:
         table[configuration, : len(triangles)] = triangles
     counts.flags.writeable = False
     table.flags.writeable = False
-    return FixedPatterns(counts, table)
+    return Patterns(counts, table)
 
 
 CONFIGURATIONS = _build_table()

@@ -160,15 +160,16 @@ def test_states_follow_the_tables() -> None:
     generator = np.random.default_rng(1)
     face_count = 500
     coherent = Coherent(face_count)
+    configurations, rows = np.zeros(face_count, dtype=np.uint16), coherent.states
+    follow = coherent.following(configurations)
     states, removed = np.zeros(face_count, dtype=int), 0
     for _ in range(12):
-        configurations = generator.integers(0, 27, face_count).astype(np.uint16)
-        rows = coherent.rows(configurations)
+        configurations[:] = generator.integers(0, 27, face_count)
+        follow()
         removed += int(TABLES.removals[states, configurations].sum())
         states = TABLES.transitions[states, configurations]
-        assert rows is coherent.states
         assert (rows == states).all()
-        assert (coherent.counts[rows] == patterns.SUBTRIANGLE_COUNTS[configurations]).all()
+        assert (coherent.patterns.counts[rows] == patterns.SUBTRIANGLE_COUNTS[configurations]).all()
     assert coherent.removals_out_of_order == removed > 0
     coherent.forget()
     assert coherent.removals_out_of_order == coherent.states.max() == 0

@@ -176,11 +176,11 @@ def test_lifted_out_it_compiles_once(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "options",
-    [{"blend": True}, {"scheme": "cubic"}, {"scheme": "cubic", "blend": False}],
-    ids=["blend", "cubic", "cubic, no blend"],
+    [{"blend": True}, {"coherent": True}, {"scheme": "cubic"}, {"scheme": "cubic", "blend": False}],
+    ids=["blend", "coherent", "cubic", "cubic, no blend"],
 )
 def test_later_starts_need_no_numba(options: dict[str, Any]) -> None:
-    """Blending and cubic edges are native through and through, binding included."""
+    """Blending, coherence and cubic edges are native through and through, binding included."""
     root = Path(refine.__file__).parents[1]
     _, later = (_start("refine", options, root, dict(os.environ)) for _ in range(2))
     assert later[:2] == ["0", "False"]
