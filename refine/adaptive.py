@@ -23,7 +23,7 @@ import numpy.typing as npt
 from .arguments import AttributeLike
 from .binding import BoundRefiner, Rows
 from .blend import grow, number_centres, place_centres
-from .choices import marking_of, may_renumber, measuring_of, scheme_of
+from .choices import marking_of, may_renumber, measuring_of, placing_of, scheme_of
 from .coherence_pass import Coherent
 from .criteria import criterion_of
 from .criterion import (
@@ -33,8 +33,7 @@ from .criterion import (
     Measured,
     NormalDrop,
 )
-from .cubic import CubicScheme
-from .detail import DetailScheme, FinerMesh
+from .detail import FinerMesh
 from .native import Call, Turns
 from .output import (
     CENTRE,
@@ -52,7 +51,7 @@ from .patterns import (
     POINTS_OF_EDGE,
 )
 from .plugin import Origins, Stream, View
-from .schemes import Frame, LoopScheme, Scheme
+from .schemes import Frame, Scheme
 
 Floats = npt.NDArray[np.float32]
 Unsigned = npt.NDArray[np.uint32]
@@ -165,8 +164,25 @@ class Kahler(BoundRefiner):
         With the paper's criterion, and any scheme but `butterfly`, a frame is one call of compiled
         code, and another only where it needs more room than there is.
         """
-        mesh, frame, patterns = self.connectivity, self._frame, self._patterns
         self._drawn_to: Rows | None = None
+        marking, numbering, draws = (
+            self._bind_marking(),
+            self._bind_numbering(),
+            self._bind_drawing(),
+        )
+        self._writes = [call for call in draws if call.takes("vertices")]
+        self._draw, self._number = Turns(*draws), Turns(*numbering)
+        self._is_marked = marking is not None
+        self._is_whole = self._is_marked and self._is_placed
+        if marking is not None:
+            begin = [self._take_in, self._find_normals, *marking, *numbering]
+            if self._is_whole:
+                begin += [overflow.bind(self._frame.counts, self._room), *draws]
+            self._begin = Turns(*begin)
+
+    def _bind_numbering(self) -> list[Call]:
+        """Return the calls that list and count what a frame has, and find the rows of the table."""
+        mesh, frame, patterns = self.connectivity, self._frame, self._patterns
         number = number_points.bind(
             self._rim_splits,
             mesh.rim_edges,
@@ -179,67 +195,54 @@ class Kahler(BoundRefiner):
             self._configurations,
             frame.counts,
         )
-        numbering = [number]
-        rows = self._triangle_configurations
         if self.history is not None:
-            numbering.append(self.history.following(rows))
-            rows = self.history.states
+            return [number, self.history.following(self._triangle_configurations)]
+        if frame.centre_triangles is None:
+            return [number]
+        centres = number_centres.bind(
+            self._triangle_configurations,
+            patterns.counts,
+            patterns.subtriangles,
+            CENTRE,
+            frame.centre_triangles,
+            frame.counts,
+        )
+        return [number, centres]
+
+    def _bind_drawing(self) -> list[Call]:
+        """Return the calls that write points, if the scheme is compiled, and triangles."""
+        mesh, frame, patterns = self.connectivity, self._frame, self._patterns
         self._look_up_triangles = look_up_triangles.bind(
             self._output_corners,
             mesh.triangle_rims,
             self._rim_splits,
             frame.first_points,
             frame.counts,
-            rows,
+            self._triangle_configurations if self.history is None else self.history.states,
             patterns.counts,
             patterns.subtriangles,
             np.zeros(CENTRE + 1, dtype=np.uint32),
             np.zeros((0, 3), dtype=np.uint32),
             np.zeros(0, dtype=np.int32),
         )
-        draws = [
-            *self._bind_values(mesh, self._rim_splits, frame.first_points),
-            self._look_up_triangles,
-        ]
+        placing, raising = placing_of(self._scheme, frame) or ([], [])
+        self._is_placed = len(placing) > 0
+        values = self._bind_values(mesh, self._rim_splits, frame.first_points)
+        draws = [*placing, *values, self._look_up_triangles]
         if frame.centre_triangles is not None:
-            numbering.append(
-                number_centres.bind(
-                    self._triangle_configurations,
-                    patterns.counts,
-                    patterns.subtriangles,
-                    CENTRE,
-                    frame.centre_triangles,
-                    frame.counts,
-                )
+            centres = place_centres.bind(
+                mesh.faces,
+                mesh.corners,
+                mesh.triangle_edges,
+                self._rim_splits,
+                frame.growth_once,
+                frame.first_points,
+                frame.centre_triangles,
+                frame.counts,
+                frame.rows,
             )
-            draws.append(
-                place_centres.bind(
-                    mesh.faces,
-                    mesh.corners,
-                    mesh.triangle_edges,
-                    self._rim_splits,
-                    frame.growth_once,
-                    frame.first_points,
-                    frame.centre_triangles,
-                    frame.counts,
-                    frame.rows,
-                )
-            )
-        self._is_placed = type(self._scheme) in (LoopScheme, CubicScheme, DetailScheme)
-        if self._is_placed:
-            scheme = cast(LoopScheme | CubicScheme, self._scheme)
-            draws = [*scheme.placing(frame), *draws]
-            draws += scheme.raising(frame) if self._blend else []
-        self._writes = [call for call in draws if call.takes("vertices")]
-        self._draw, self._number = Turns(*draws), Turns(*numbering)
-        marking = self._bind_marking()
-        self._is_marked = marking is not None
-        self._is_whole = self._is_marked and self._is_placed
-        if marking is not None:
-            begin = [self._take_in, self._find_normals, *marking, *numbering]
-            if self._is_whole:
-                begin += [overflow.bind(frame.counts, self._room), *draws]
-            self._begin = Turns(*begin)
+            draws += [centres, *raising]
+        return draws
 
     def _bind_marking(self) -> list[Call] | None:
         """Return the calls that decide on splits and growth; None if the criterion is Python."""

@@ -31,6 +31,7 @@ import numpy.typing as npt
 
 from .lanes import four, write
 from .native import native
+from .normals import unit
 
 Floats = npt.NDArray[np.float32]
 Unsigned = npt.NDArray[np.uint32]
@@ -48,7 +49,6 @@ ZERO = np.float32(0.0)
 HALF = np.float32(0.5)
 ONE = np.float32(1.0)
 THIRD = np.float32(1 / 3)
-TINY = np.finfo(np.float32).tiny
 
 
 @native
@@ -137,9 +137,8 @@ def place_centres(
                 + THIRD * along_c
                 + w * (vertices[r, i] - HALF * (along_c + along_a))
             )
-        x, y, z = vertices[row, 3], vertices[row, 4], vertices[row, 5]
-        scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
-        vertices[row, 3], vertices[row, 4], vertices[row, 5] = x * scale, y * scale, z * scale
+        x, y, z = unit(vertices[row, 3], vertices[row, 4], vertices[row, 5])
+        vertices[row, 3], vertices[row, 4], vertices[row, 5] = x, y, z
         for i in range(6, vertices.shape[1]):
             vertices[row, i] = THIRD * (
                 vertices[corners[t, 0], i] + vertices[corners[t, 1], i] + vertices[corners[t, 2], i]

@@ -12,7 +12,7 @@ from .cubic import CubicScheme
 from .detail import DetailScheme, FinerMesh
 from .native import Call
 from .rest_curvature import RestCurvature
-from .schemes import LoopScheme, Scheme
+from .schemes import Frame, LoopScheme, Scheme
 
 Floats = npt.NDArray[np.float32]
 Small = npt.NDArray[np.uint8]
@@ -53,6 +53,17 @@ def may_renumber(scheme: Scheme, criterion: Criterion) -> bool:
         return all(may_renumber(scheme, one) for one in criterion.criteria)
     schemes = (LoopScheme, ButterflyScheme, CubicScheme, DetailScheme)
     return type(scheme) in schemes and type(criterion) in (NormalDrop, *CRITERIA.values())
+
+
+def placing_of(scheme: Scheme, frame: Frame) -> tuple[list[Call], list[Call]] | None:
+    """Return the compiled calls by which a built-in scheme places points, and those in triangles.
+
+    None for one that places in Python. Not asked of subclasses, which may place otherwise.
+    """
+    if type(scheme) not in (LoopScheme, CubicScheme, DetailScheme):
+        return None
+    known = cast(LoopScheme | CubicScheme, scheme)
+    return known.placing(frame), known.raising(frame) if frame.is_blended else []
 
 
 def measuring_of(criterion: Criterion, normals: Floats, need: Floats) -> Call | None:

@@ -35,9 +35,9 @@ import numpy.typing as npt
 
 from .connectivity import Connectivity
 from .curves import CurveScheme
-from .lanes import cross, four, single, write
-from .masks import unit
+from .lanes import four, single, write
 from .native import Call, has_room, native, with_room
+from .normals import clear, cross_product, normalise
 from .schemes import Frame
 
 Floats = npt.NDArray[np.float32]
@@ -227,19 +227,15 @@ def weighted_normals(
 
     `positions` have room (lanes.py); `sums`: scratch, shape (V, 4).
     """
-    for v in range(sums.shape[0]):
-        sums[v, 0] = sums[v, 1] = sums[v, 2] = sums[v, 3] = ZERO
+    clear(sums)
     for k in range(faces.shape[0]):
         t = np.uint64(k)
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        at_a = four(positions, a)
-        normal = cross(single(four(positions, b) - at_a), single(four(positions, c) - at_a))
+        normal = cross_product(positions, a, b, c)
         write(sums, a, four(sums, a) + weights[t, 0] * normal)
         write(sums, b, four(sums, b) + weights[t, 1] * normal)
         write(sums, c, four(sums, c) + weights[t, 2] * normal)
-    for v in range(sums.shape[0]):
-        x, y, z = unit(sums[v, 0], sums[v, 1], sums[v, 2])
-        normals[v, 0], normals[v, 1], normals[v, 2] = x, y, z
+    normalise(sums, normals)
 
 
 @native
@@ -250,20 +246,15 @@ def steepen_normals(
 
     `normals` have room (lanes.py); `sums`: scratch, shape (V, 4).
     """
-    for v in range(sums.shape[0]):
-        sums[v, 0] = sums[v, 1] = sums[v, 2] = sums[v, 3] = ZERO
+    clear(sums)
     for k in range(edges.shape[0]):
         e = np.uint64(k)
         a, b = edges[e, 0], edges[e, 1]
         write(sums, a, four(sums, a) + four(normals, b))
         write(sums, b, four(sums, b) + four(normals, a))
     for v in range(sums.shape[0]):
-        x, y, z = unit(
-            normals[v, 0] - off[v] * sums[v, 0],
-            normals[v, 1] - off[v] * sums[v, 1],
-            normals[v, 2] - off[v] * sums[v, 2],
-        )
-        steeper[v, 0], steeper[v, 1], steeper[v, 2] = x, y, z
+        write(sums, v, four(normals, v) - off[v] * four(sums, v))
+    normalise(sums, steeper)
 
 
 @native

@@ -22,8 +22,9 @@ import numpy.typing as npt
 
 from .connectivity import Connectivity
 from .lanes import four, write
-from .masks import grown, growth_of, unit, write_normal
+from .masks import grown, growth_of, write_normal
 from .native import Call, has_room, native, with_room
+from .normals import unit
 from .output import place_unmoved
 from .schemes import Frame
 

@@ -37,8 +37,9 @@ from .connectivity import Connectivity
 from .cubic import CubicScheme
 from .fit import Points, fit, middles_of
 from .local_frames import edge_axes, list_grown, slide_middles, triangle_axes, vertex_axes
-from .masks import unit, write_normal
+from .masks import write_normal
 from .native import Call, native
+from .normals import unit
 from .schemes import Frame
 
 Floats = npt.NDArray[np.float32]

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .native import native
+from .normals import unit
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
@@ -49,12 +50,9 @@ def write_axes(
 
     Into rows k, k + 1, k + 2 of `axes`.
     """
-    scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
-    x, y, z = x * scale, y * scale, z * scale
+    x, y, z = unit(x, y, z)
     slope = x * u + y * v + z * w
-    u, v, w = u - slope * x, v - slope * y, w - slope * z
-    scale = ONE / np.sqrt(max(u * u + v * v + w * w, TINY))
-    u, v, w = u * scale, v * scale, w * scale
+    u, v, w = unit(u - slope * x, v - slope * y, w - slope * z)
     second, third = k + np.uint64(1), k + np.uint64(2)
     axes[k, 0], axes[k, 1], axes[k, 2] = x, y, z
     axes[second, 0], axes[second, 1], axes[second, 2] = u, v, w
@@ -73,9 +71,7 @@ def upright(
     v = normals[a, 1] + normals[b, 1]
     w = normals[a, 2] + normals[b, 2]
     slope = (x * u + y * v + z * w) / max(x * x + y * y + z * z, TINY)
-    u, v, w = u - slope * x, v - slope * y, w - slope * z
-    scale = ONE / np.sqrt(max(u * u + v * v + w * w, TINY))
-    return u * scale, v * scale, w * scale
+    return unit(u - slope * x, v - slope * y, w - slope * z)
 
 
 @native

@@ -47,9 +47,9 @@ first and then, over the fourth number, its normal (half the time on an edge tha
 import numpy as np
 import numpy.typing as npt
 
-from .kernels import kernel
 from .lanes import Four, four, write
 from .native import native
+from .normals import unit
 
 Floats = npt.NDArray[np.float32]
 Unsigned = npt.NDArray[np.uint32]
@@ -76,15 +76,6 @@ HALF = np.float32(0.5)
 ONE = np.float32(1.0)
 ALL_GROWN = np.zeros((0, 0), dtype=np.float32)
 """Growth of edges where nothing is blended."""
-TINY = np.finfo(np.float32).tiny
-"""Squared length below which a vector is left as it is instead of being normalised."""
-
-
-@kernel
-def unit(x: np.float32, y: np.float32, z: np.float32) -> tuple[np.float32, np.float32, np.float32]:
-    """Normalise a vector; zero stays zero."""
-    scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
-    return x * scale, y * scale, z * scale
 
 
 @native

@@ -10,7 +10,7 @@ origin loses nothing. Normals at rest and in a frame come from the same code: se
 import numpy as np
 import numpy.typing as npt
 
-from .lanes import cross, four, single, write
+from .lanes import Four, cross, four, single, write
 from .native import Call, has_room, native
 
 Floats = npt.NDArray[np.float32]
@@ -33,6 +33,35 @@ def bind_normals(positions: Doubles, faces: Unsigned, normals: Floats) -> Call:
 
 
 @native
+def unit(x: np.float32, y: np.float32, z: np.float32) -> tuple[np.float32, np.float32, np.float32]:
+    """Normalise a vector; zero stays zero."""
+    scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
+    return x * scale, y * scale, z * scale
+
+
+@native
+def clear(sums: Floats) -> None:
+    """Set rows of four to zero."""
+    for v in range(sums.shape[0]):
+        sums[v, 0] = sums[v, 1] = sums[v, 2] = sums[v, 3] = ZERO
+
+
+@native
+def cross_product(positions: Doubles, a: np.uint32, b: np.uint32, c: np.uint32) -> Four:
+    """Normal of a triangle times twice its area; `positions` have room (lanes.py)."""
+    at_a = four(positions, a)
+    return cross(single(four(positions, b) - at_a), single(four(positions, c) - at_a))
+
+
+@native
+def normalise(sums: Floats, normals: Floats) -> None:
+    """Write vectors, shape (V, 4) of which three count, at length one into rows of three."""
+    for v in range(sums.shape[0]):
+        x, y, z = unit(sums[v, 0], sums[v, 1], sums[v, 2])
+        normals[v, 0], normals[v, 1], normals[v, 2] = x, y, z
+
+
+@native
 def vertex_normals(positions: Doubles, faces: Unsigned, sums: Floats, normals: Floats) -> None:
     """Write the area-weighted unit normal of every vertex into `normals`, shape (V, 3).
 
@@ -41,17 +70,12 @@ def vertex_normals(positions: Doubles, faces: Unsigned, sums: Floats, normals: F
     Three numbers are taken four at a time (lanes.py): behind each row of `positions` has to be
     something to read.
     """
-    for v in range(sums.shape[0]):
-        sums[v, 0] = sums[v, 1] = sums[v, 2] = sums[v, 3] = ZERO
+    clear(sums)
     for k in range(faces.shape[0]):
         t = np.uint64(k)
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        at_a = four(positions, a)
-        normal = cross(single(four(positions, b) - at_a), single(four(positions, c) - at_a))
+        normal = cross_product(positions, a, b, c)
         write(sums, a, four(sums, a) + normal)
         write(sums, b, four(sums, b) + normal)
         write(sums, c, four(sums, c) + normal)
-    for v in range(sums.shape[0]):
-        x, y, z = sums[v, 0], sums[v, 1], sums[v, 2]
-        scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
-        normals[v, 0], normals[v, 1], normals[v, 2] = x * scale, y * scale, z * scale
+    normalise(sums, normals)

@@ -179,7 +179,7 @@ def test_nothing_pops_on_rough_meshes(name: str, scheme: str) -> None:
 def test_outlines_do_not_pop(name: str, scheme: str) -> None:
     """A body whose edges all turn by 40 degrees and more rolls before the eye, and nothing jumps.
 
-    Without blending points go as far as 40 to 200 times in smaller steps, and 10 times in these.
+    Without blending points go 53 to 104 times as far in these steps, with it 1.7 to 3.5 times.
     """
     body = {
         "icosahedron": trimesh.creation.icosahedron,

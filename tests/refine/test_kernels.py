@@ -45,5 +45,5 @@ def test_there_are_kernels() -> None:
     """The rule above is not kept by there being nothing it applies to."""
     for kernel in (normals.vertex_normals, masks.place_quarters, output.number_points):
         assert isinstance(kernel, Compiled)
-    assert "ONE" in masks.unit.py_func.__code__.co_names
+    assert "ONE" in normals.unit.py_func.__code__.co_names
     assert masks.place_vertices.__module__ == "refine.masks"
