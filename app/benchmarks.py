@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import platform
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
@@ -12,7 +12,6 @@ import bench.gaps
 import bench.motion
 import bench.simulate
 import bench.soak
-import bench.strips
 import bench.tearing
 
 
@@ -122,26 +121,6 @@ def gaps_table(poses: Sequence[bench.gaps.Pose]) -> str:
 def gaps_json(poses: Sequence[bench.gaps.Pose]) -> str:
     """The same figures for programs."""
     return json.dumps([asdict(pose) for pose in poses], indent=1) + "\n"
-
-
-def strips_table(sizes: Sequence[str], rounds: int, progress: Callable[[str], object]) -> str:
-    """Draw refined meshes in several orders; the text to print."""
-    device, rows = bench.strips.run(sizes=sizes, rounds=rounds, progress=progress)
-    width, height = bench.strips.FRAME
-    lines = [
-        f"One frame is refined, put into an order and drawn at {width}x{height} by {device};",
-        f"medians of {rounds} interleaved rounds; one core of {processor()}.",
-        "Misses: vertices transformed per triangle by a cache of the last 16 or 32.",
-        "",
-        f"{'mesh':14} {'order':20} {'triangles':>9} {'16':>5} {'32':>5} {'index MB':>8} "
-        f"{'refine, order ms':>16} {'draw ms':>8}",
-    ]
-    for row in rows:
-        lines.append(
-            f"{row.mesh:14} {row.order:20} {row.triangles:9d} {row.misses[0]:5.2f} "
-            f"{row.misses[1]:5.2f} {row.megabytes:8.2f} {row.making:16.2f} {row.drawing:8.2f}"
-        )
-    return "\n".join(lines)
 
 
 def processor() -> str:

@@ -14,7 +14,8 @@ from typing import Any
 import click
 
 from . import __version__
-from .commands import bench_quality, bench_refine, bench_strips, reproduce
+from .commands import bench_quality, bench_refine, reproduce
+from .compiling import announce
 from .errors import OneLineGroup, UserError, told_in_one_line
 from .parameters import FiniteRange, Size
 
@@ -27,6 +28,7 @@ def main() -> None:
     """Physics-based facial animation with dynamically refined triangle meshes."""
     if sys.stderr is None:  # closed by whoever started us; progress bars ask it what it is
         sys.stderr = open(os.devnull, "w")
+    announce()
 
 
 def drawing_options(command: Command) -> Command:
@@ -240,7 +242,6 @@ def bench() -> None:
 
 bench.add_command(bench_refine)
 bench.add_command(bench_quality)
-bench.add_command(bench_strips)
 main.add_command(reproduce)
 
 
@@ -354,3 +355,13 @@ def open_viewer(
         path = settings_path()
         with Viewer(performance, size, chosen, head=brought, settings_path=path) as viewer:
             viewer.run(playing=playing, once=once)
+
+
+@main.command()
+@click.option("--quiet", is_flag=True, help="No progress bar.")
+def warm(quiet: bool) -> None:
+    """Compile everything once, so that no later start has to."""
+    from . import compiling
+
+    with told_in_one_line():
+        compiling.warm(quiet)

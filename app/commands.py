@@ -1,4 +1,4 @@
-"""Sub-commands about refinement: `bench refine`, `quality`, `strips` and the group `reproduce`.
+"""Sub-commands about refinement: `bench refine`, `quality` and the group `reproduce`.
 
 Each is joined to its group in cli.py. What is slow to import is imported inside.
 """
@@ -115,25 +115,6 @@ def bench_quality(reference: Path | None, finer: str, apart: bool, curves: Path 
                     curves.with_stem(name), error_curves(f"{title}, split by {rule}", scores, rule)
                 )
                 click.echo(f"{curves.with_stem(name)}: written", err=True)
-
-
-@click.command("strips")
-@click.option(
-    "--size",
-    "sizes",
-    type=click.Choice(SIZES),
-    multiple=True,
-    help="Only this mesh; may be given several times. Unless told: face, 200k in both orders, 1M.",
-)
-@click.option("--rounds", type=click.IntRange(1, 10_000), default=9, show_default=True)
-def bench_strips(sizes: tuple[str, ...], rounds: int) -> None:
-    """Draw refined meshes as they come, in an order for the vertex cache, and as strips."""
-    from bench.strips import SIZES as ALL_SIZES
-
-    from .benchmarks import strips_table
-
-    with told_in_one_line():
-        click.echo(strips_table(sizes or ALL_SIZES, rounds, _progress))
 
 
 @click.group()

@@ -19,9 +19,9 @@ from bench.quality import (
 from .charts import Axis, Series, chart
 from .outputs import Frame
 
-ADAPTIVE = {"loop": 1.6, "butterfly": 1.6, "cubic": 1.6, "detail": 2.0}
+ADAPTIVE = {"loop": 1.6, "cubic": 1.6, "detail": 2.0}
 """The budget of each scheme in the table: what the targets speak of."""
-ASKED = {"butterfly": (10, 35), "cubic": (10, 35), "detail": (40, 75)}
+ASKED = {"cubic": (10, 35), "detail": (40, 75)}
 """Per cent by which a scheme is to be better than the coarse mesh: adaptive, everything twice."""
 NORMALS_ASKED = 30
 """Per cent by which the normals of `detail` are to be better."""
@@ -33,7 +33,6 @@ COLUMNS: tuple[tuple[tuple[str, str], Key], ...] = (
     (("", "coarse"), (COARSE, "", 1.0)),
     (("drop", "loop 1.6x"), ("loop", "drop", 1.6)),
     (("drop", "cubic 1.6x"), ("cubic", "drop", 1.6)),
-    (("bulge", "butterfly 1.6x"), ("butterfly", "bulge", 1.6)),
     (("bulge", "cubic 1.6x"), ("cubic", "bulge", 1.6)),
     (("bulge", "detail 2x"), ("detail", "bulge", 2.0)),
     *((("all twice", method), (method, "", EVERYWHERE)) for method in SCHEMES),

@@ -7,7 +7,6 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import click
 import numpy as np
 import numpy.typing as npt
 
@@ -18,10 +17,6 @@ from .scenes import Scene
 
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
 WORDS = {"on": True, "true": True, "off": False, "false": False}
-
-refine.on_compile(
-    lambda: click.echo("Compiling the refinement, this once; it takes some seconds.", err=True)
-)
 
 
 def refiner_for(scene: Scene, name: str, options: Mapping[str, Any] | None) -> refine.Refiner:

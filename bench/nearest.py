@@ -7,9 +7,10 @@ triangle after Ericson, "Real-Time Collision Detection" (2005), section 5.1.5.
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 import numpy.typing as npt
+
+from refine.jit import njit
 
 Doubles = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -82,7 +83,7 @@ def _boxes(corners: Doubles) -> Doubles:
     return boxes
 
 
-@numba.njit(cache=True)
+@njit
 def _box_distance(box, x, y, z):  # type: ignore[no-untyped-def]
     """Squared distance to a box; infinite for an empty one."""
     dx = max(box[0] - x, 0.0, x - box[3])
@@ -91,7 +92,7 @@ def _box_distance(box, x, y, z):  # type: ignore[no-untyped-def]
     return dx * dx + dy * dy + dz * dz
 
 
-@numba.njit(cache=True)
+@njit
 def _on_triangle(corners, x, y, z):  # type: ignore[no-untyped-def]
     """Weights of the second and the third corner at the nearest point of a triangle."""
     ax, ay, az = corners[0, 0], corners[0, 1], corners[0, 2]
@@ -123,7 +124,7 @@ def _on_triangle(corners, x, y, z):  # type: ignore[no-untyped-def]
     return vb / total, vc / total
 
 
-@numba.njit(cache=True)
+@njit
 def _search(queries, corners, boxes, distance, triangle, weights):  # type: ignore[no-untyped-def]
     leaf_count = boxes.shape[0] // 2
     stack = np.empty(STACK, np.int64)

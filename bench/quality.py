@@ -38,7 +38,7 @@ from .subjects import Pose, Subject
 Array = npt.NDArray[np.float64]
 Narrow = npt.NDArray[np.float32]
 
-SCHEMES = ("loop", "butterfly", "cubic", "detail")
+SCHEMES = ("loop", "cubic", "detail")
 BUDGETS = (1.6, 2.0)
 """Triangles of a refined mesh over those of the coarse one, that the targets speak of."""
 CURVE_BUDGETS = (1.15, 1.3, 1.6, 2.0, 3.0, 5.0, 7.5)

@@ -47,8 +47,6 @@ METHODS: tuple[tuple[str, Mapping[str, Any]], ...] = (
     ("kahler", {}),
     ("kahler, blend", {"blend": True}),
     ("kahler, coherent", {"coherent": True}),
-    ("butterfly", {"scheme": "butterfly"}),
-    ("butterfly, no blend", {"scheme": "butterfly", "blend": False}),
     ("cubic", {"scheme": "cubic"}),
     ("cubic, no blend", {"scheme": "cubic", "blend": False}),
     ("detail", {"scheme": "detail"}),

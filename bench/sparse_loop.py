@@ -16,7 +16,7 @@ import numpy.typing as npt
 import scipy.sparse
 
 import refine
-from refine.kernels import kernel
+from refine.jit import njit
 from refine.rings import vertex_rings
 
 from .sheets import Load
@@ -118,7 +118,7 @@ def _quartered(mesh: refine.Connectivity) -> Wide:
     return np.array(four).transpose(2, 0, 1).reshape(-1, 3)
 
 
-@kernel
+@njit
 def _sum_normals(points: Narrow, faces: Unsigned, normals: Narrow) -> None:
     """Unit vertex normals weighted by area, as our refiners take them."""
     normals[:] = np.float32(0.0)
@@ -139,7 +139,7 @@ def _sum_normals(points: Narrow, faces: Unsigned, normals: Narrow) -> None:
         normals[v, 0], normals[v, 1], normals[v, 2] = x * scale, y * scale, z * scale
 
 
-@kernel
+@njit
 def _multiply(
     smooth_starts: Unsigned,
     smooth_columns: Unsigned,

@@ -16,10 +16,10 @@ relation that a refined mesh breaks.
 `criterion` which edges are split, `blend` that nothing pops, `coherent` that no triangulation
 turns, `attributes` what rides along.
 
-Read in this order: plugin.py (the border), adaptive.py (a frame), criterion.py, criteria.py and
-rest_curvature.py (which edges), schemes.py (where points go: masks.py, cubic.py, butterfly.py,
-detail.py), blend.py, patterns.py and coherence.py (the tables), output.py (rows and triangles),
-locality.py (large meshes). docs/refinement.md tells it all with pictures.
+Read in this order: plugin.py (the border), adaptive.py (a frame) and frame.py (what its passes hand
+on), criterion.py, criteria.py and rest_curvature.py (which edges), schemes.py (where points go:
+masks.py, cubic.py, detail.py), blend.py, patterns.py and coherence.py (the tables), output.py (rows
+and triangles), jit.py (how all this is compiled). docs/refinement.md tells it all with pictures.
 """
 
 from .adaptive import Kahler
@@ -28,11 +28,12 @@ from .coherence_pass import Coherent
 from .connectivity import Connectivity, connect, weld
 from .criteria import Bulge, Curvature, Maximum, ScreenEdge, Silhouette
 from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, Measured, NormalDrop
-from .kernels import on_compile
+from .frame import Frame
 from .passthrough import PassThrough
 from .plugin import Origins, RefinedMesh, Refiner, Stream, View, available, create, register
+from .reorder import Order, reorder
 from .rest_curvature import RestCurvature
-from .schemes import Frame, Scheme
+from .schemes import Scheme
 from .shortening import Shortening
 from .tension import Tension, TensionMap
 from .uniform import Loop
@@ -52,6 +53,7 @@ __all__ = [
     "Maximum",
     "Measured",
     "NormalDrop",
+    "Order",
     "Origins",
     "PassThrough",
     "RefinedMesh",
@@ -69,8 +71,8 @@ __all__ = [
     "check",
     "connect",
     "create",
-    "on_compile",
     "register",
+    "reorder",
     "weld",
 ]
 

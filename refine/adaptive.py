@@ -2,10 +2,11 @@
 
 Kähler, Haber, Seidel 2003, sections 4.1 to 4.3. One frame is:
 
-    normals and drops   how often each edge is split                (criterion.py, criteria.py)
-    numbering           lists of split edges, rows for new points                 (output.py)
-    points              moved vertices, first level, second level                (schemes.py)
-    table               subtriangles of each triangle               (patterns.py, output.py)
+    normals     of the deformed mesh                                       (normals.py)
+    mark        how often each edge is split                (criterion.py, criteria.py)
+    number      lists of split edges, rows for new points                   (output.py)
+    place       moved vertices, first level, second level                  (schemes.py)
+    look up     subtriangles of each triangle                 (patterns.py, output.py)
 
 By default this is the paper to the letter. Options put other criteria and smoothing schemes in
 place, and blend new points in (blend.py).
@@ -21,27 +22,16 @@ import numpy as np
 import numpy.typing as npt
 
 from .arguments import AttributeLike
-from .binding import BoundRefiner, Rows
+from .binding import BoundRefiner
 from .blend import grow, number_centres, place_centres
-from .choices import marking_of, may_renumber, measuring_of, placing_of, scheme_of
+from .choices import scheme_of
 from .coherence_pass import Coherent
 from .criteria import criterion_of
-from .criterion import (
-    THRESHOLD_ONCE,
-    THRESHOLD_TWICE,
-    Criterion,
-    Measured,
-    NormalDrop,
-)
+from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, Measured, NormalDrop
 from .detail import FinerMesh
-from .native import Call, Turns
-from .output import (
-    CENTRE,
-    NO_ROOM,
-    look_up_triangles,
-    number_points,
-    overflow,
-)
+from .frame import CENTRES, ROWS, TRIANGLES, Frame
+from .normals import vertex_normals
+from .output import look_up_triangles, number_points
 from .patterns import (
     CONFIGURATIONS,
     FANS,
@@ -51,10 +41,8 @@ from .patterns import (
     POINTS_OF_EDGE,
 )
 from .plugin import Origins, Stream, View
-from .schemes import Frame, Scheme
+from .schemes import Scheme
 
-Floats = npt.NDArray[np.float32]
-Unsigned = npt.NDArray[np.uint32]
 Small = npt.NDArray[np.uint8]
 
 
@@ -83,7 +71,7 @@ class Kahler(BoundRefiner):
         split once or twice, for the paper's criterion, "normal".
         `criterion`: "normal", "curvature", "rest", "silhouette", "screen", "bulge", an object, or a
         list of them, of which the one counts that asks for most; "normal+rest" is such a list.
-        `scheme`: "loop", the paper's, "butterfly", "cubic", "detail", or an object.
+        `scheme`: "loop", the paper's, "cubic", "detail", or an object.
         `detail`: for "detail" the finer mesh at rest, its positions and its triangles.
         `blend`: whether points grow out of their edges, so that nothing pops. None stands for what
         costs nothing in faithfulness: True for the schemes that interpolate, False for the paper's.
@@ -94,14 +82,7 @@ class Kahler(BoundRefiner):
                 raise ValueError(f"{name} must be True or False, got {flag!r}")
         self._scheme = scheme_of(scheme, detail)
         self._criterion = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))
-        super().__init__(
-            faces,
-            rest_positions,
-            uv=uv,
-            face_uv=face_uv,
-            attributes=attributes,
-            may_renumber=may_renumber(self._scheme, self._criterion),
-        )
+        super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv, attributes=attributes)
         mesh = self.connectivity
         if blend is None:
             blend = self._scheme.interpolates and not coherent
@@ -126,132 +107,34 @@ class Kahler(BoundRefiner):
                 f"blend=True needs a criterion that measures, but {type(self._criterion).__name__} "
                 "has no method measure(positions, normals, need)"
             )
-        self._make_buffers()
-        self._find_normals()
-        self._criterion.bind(mesh, self._rest_positions, self._normals)
-        self._scheme.bind(mesh, self._rest_positions, self._normals)
-        self._bind_passes()
-
-    def _make_buffers(self) -> None:
-        mesh = self.connectivity
-        edge_count, rim_count = len(mesh.edges), len(mesh.rim_edges)
-        # One row more than rims: triangles without edges refer to it and find zero splits.
-        self._rim_splits = np.zeros(rim_count + 1, dtype=np.uint8)
-        self._edge_splits = self._rim_splits[:edge_count]
+        self._frame = self._make_frame()
+        self._need = np.zeros(len(mesh.edges) if blend else 0, dtype=np.float32)
+        self._edge_splits = self._frame.splits[: len(mesh.edges)]
         self._splits = self._edge_splits.view()
         self._splits.flags.writeable = False
-        self._configurations = np.zeros(len(mesh.faces) + 1, dtype=np.uint16)
-        self._triangle_configurations = self._configurations[:-1]
-        self._need = np.zeros(edge_count if self._blend else 0, dtype=np.float32)
-        self._frame = Frame(
+        vertex_normals(self._positions, mesh.faces, self._normals)
+        self._criterion.bind(mesh, self._rest_positions, self._normals)
+        self._scheme.bind(mesh, self._rest_positions, self._normals)
+
+    def _make_frame(self) -> Frame:
+        mesh = self.connectivity
+        edge_count, rim_count, face_count = len(mesh.edges), len(mesh.rim_edges), len(mesh.faces)
+        return Frame(
             positions=self._positions,
             points=self._points,
             normals=self._normals,
-            splits=self._rim_splits,
+            # One more than rims: triangles without edges refer to it and find zero splits.
+            splits=np.zeros(rim_count + 1, dtype=np.uint8),
             growth_once=np.ones(edge_count, dtype=np.float32),
             growth_twice=np.ones(edge_count, dtype=np.float32),
             first_points=np.zeros(rim_count + 1, dtype=np.uint32),
             split_once=np.zeros(edge_count + 1, dtype=np.uint32),
             split_twice=np.zeros(edge_count + 1, dtype=np.uint32),
+            configurations=np.zeros(face_count + 1, dtype=np.uint16),
+            centre_triangles=np.zeros(face_count + 1 if self._blend else 0, dtype=np.uint32),
+            counts=np.zeros(5, dtype=np.int64),
             rows=np.zeros((0, self.vertex_columns), dtype=np.float32),
         )
-        if self._blend:
-            self._frame.centre_triangles = np.zeros(len(mesh.faces) + 1, dtype=np.uint32)
-
-    def _bind_passes(self) -> None:
-        """Bind the compiled passes of a frame to their arguments, and join what can be joined.
-
-        With the paper's criterion, and any scheme but `butterfly`, a frame is one call of compiled
-        code, and another only where it needs more room than there is.
-        """
-        self._drawn_to: Rows | None = None
-        marking, numbering, draws = (
-            self._bind_marking(),
-            self._bind_numbering(),
-            self._bind_drawing(),
-        )
-        self._writes = [call for call in draws if call.takes("vertices")]
-        self._draw, self._number = Turns(*draws), Turns(*numbering)
-        self._is_marked = marking is not None
-        self._is_whole = self._is_marked and self._is_placed
-        if marking is not None:
-            begin = [self._take_in, self._find_normals, *marking, *numbering]
-            if self._is_whole:
-                begin += [overflow.bind(self._frame.counts, self._room), *draws]
-            self._begin = Turns(*begin)
-
-    def _bind_numbering(self) -> list[Call]:
-        """Return the calls that list and count what a frame has, and find the rows of the table."""
-        mesh, frame, patterns = self.connectivity, self._frame, self._patterns
-        number = number_points.bind(
-            self._rim_splits,
-            mesh.rim_edges,
-            mesh.edge_sides,
-            mesh.more_sides,
-            len(mesh.wedge_vertices),
-            frame.first_points,
-            frame.split_once,
-            frame.split_twice,
-            self._configurations,
-            frame.counts,
-        )
-        if self.history is not None:
-            return [number, self.history.following(self._triangle_configurations)]
-        if frame.centre_triangles is None:
-            return [number]
-        centres = number_centres.bind(
-            self._triangle_configurations,
-            patterns.counts,
-            patterns.subtriangles,
-            CENTRE,
-            frame.centre_triangles,
-            frame.counts,
-        )
-        return [number, centres]
-
-    def _bind_drawing(self) -> list[Call]:
-        """Return the calls that write points, if the scheme is compiled, and triangles."""
-        mesh, frame, patterns = self.connectivity, self._frame, self._patterns
-        self._look_up_triangles = look_up_triangles.bind(
-            self._output_corners,
-            mesh.triangle_rims,
-            self._rim_splits,
-            frame.first_points,
-            frame.counts,
-            self._triangle_configurations if self.history is None else self.history.states,
-            patterns.counts,
-            patterns.subtriangles,
-            np.zeros(CENTRE + 1, dtype=np.uint32),
-            np.zeros((0, 3), dtype=np.uint32),
-            np.zeros(0, dtype=np.int32),
-        )
-        placing, raising = placing_of(self._scheme, frame) or ([], [])
-        self._is_placed = len(placing) > 0
-        values = self._bind_values(mesh, self._rim_splits, frame.first_points)
-        draws = [*placing, *values, self._look_up_triangles]
-        if frame.centre_triangles is not None:
-            centres = place_centres.bind(
-                mesh.faces,
-                mesh.corners,
-                mesh.triangle_edges,
-                self._rim_splits,
-                frame.growth_once,
-                frame.first_points,
-                frame.centre_triangles,
-                frame.counts,
-                frame.rows,
-            )
-            draws += [centres, *raising]
-        return draws
-
-    def _bind_marking(self) -> list[Call] | None:
-        """Return the calls that decide on splits and growth; None if the criterion is Python."""
-        if not self._blend:
-            return marking_of(self._criterion, self._normals, self._edge_splits)
-        frame = self._frame
-        self._grow = grow.bind(self._need, self._edge_splits, frame.growth_once, frame.growth_twice)
-        measuring = measuring_of(self._criterion, self._normals, self._need)
-        return None if measuring is None else [measuring, self._grow]
 
     @property
     def splits(self) -> Small:
@@ -271,52 +154,51 @@ class Kahler(BoundRefiner):
         most = MAXIMUM_FAN if self._blend else MAXIMUM_SUBTRIANGLES
         return most * len(self.connectivity.faces)
 
-    def _fill(self, stream: Stream, view: View | None, begun: int) -> tuple[int, int]:
-        frame = self._frame
-        if not self._is_marked:
-            self._mark(view)
-            self._number()
-        vertex_count, _, _, triangle_count, centre_count = frame.counts.tolist()
-        vertex_count += centre_count
-        if self._is_whole and begun != NO_ROOM:
-            return vertex_count, triangle_count
-        self._draw_to(stream, self._reserve(stream, vertex_count, triangle_count))
-        if not self._is_placed:
-            self._scheme.place(frame)
-        self._draw()
-        if self._blend and not self._is_placed:
-            self._scheme.place_centres(frame)
+    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        self._mark(view)
+        rows_of_table = self._number()
+        counts = self._frame.counts
+        vertex_count, triangle_count = int(counts[ROWS] + counts[CENTRES]), int(counts[TRIANGLES])
+        vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
+        if vertices is not self._frame.rows:
+            self._frame = self._frame._replace(rows=vertices)
+        self._place()
+        look_up_triangles(
+            self.connectivity, self._frame, self._patterns, rows_of_table, triangles, source
+        )
         return vertex_count, triangle_count
-
-    def _draw_to(self, stream: Stream, rows: Rows) -> None:
-        """Hand the rows of the output to the passes that write them.
-
-        Where nobody has to be asked for room in every frame, the next one may write there at once.
-        """
-        if stream is self._own_stream or not hasattr(stream, "reserve"):
-            self._written = stream, rows
-            self._room[:] = len(rows[0]), len(rows[1])
-        if rows is self._drawn_to:
-            return
-        self._drawn_to = rows
-        self._frame.rows, triangles, source = rows
-        self._look_up_triangles.put("triangles", triangles)
-        self._look_up_triangles.put("source", source)
-        for call in self._writes:
-            call.put("vertices", self._frame.rows)
 
     def _mark(self, view: View | None) -> None:
         """Decide on the splits of every edge, and how far their points have grown."""
-        criterion = self._criterion
+        criterion, frame = self._criterion, self._frame
         if self._looks:
             criterion.look(view)  # type: ignore[attr-defined]
         if self._blend:
-            cast(Measured, criterion).measure(self._positions, self._normals, self._need)
-            self._grow()
-            return
-        criterion.mark(self._positions, self._normals, self._edge_splits)
-        if self._is_foreign:
-            self._check_splits()
+            cast(Measured, criterion).measure(frame.positions, frame.normals, self._need)
+            grow(self._need, self._edge_splits, frame.growth_once, frame.growth_twice)
+        else:
+            criterion.mark(frame.positions, frame.normals, self._edge_splits)
+            if self._is_foreign:
+                self._check_splits()
+
+    def _number(self) -> npt.NDArray[np.uint16]:
+        """List and count what the frame has; return the row of the table for each triangle."""
+        frame = self._frame
+        number_points(self.connectivity, frame)
+        if self._blend:
+            number_centres(frame, self._patterns)
+        if self.history is not None:
+            return self.history.follow(frame.configurations)
+        return frame.configurations
+
+    def _place(self) -> None:
+        """Write the rows of the frame: positions, normals, attributes."""
+        frame = self._frame
+        self._scheme.place(frame)
+        self._write_values(frame)
+        if self._blend:
+            place_centres(self.connectivity, frame)
+            self._scheme.place_centres(frame)
 
     def _check_splits(self) -> None:
         """Raise ValueError if a criterion from outside asks for more than the table has."""
@@ -330,20 +212,20 @@ class Kahler(BoundRefiner):
     def origins(self) -> Origins:
         """Say for every vertex of the last frame where it lies on the input mesh."""
         mesh, frame = self.connectivity, self._frame
-        point_counts = np.array(POINTS_OF_EDGE)[self._rim_splits[:-1]]
+        point_counts = np.array(POINTS_OF_EDGE)[frame.splits[:-1]]
         # Place along the edge, in quarters, of the points of a block: x 2 x or 1 2 3.
         block_starts = np.cumsum(point_counts) - point_counts
         within = np.arange(point_counts.sum()) - np.repeat(block_starts, point_counts)
         place = np.where(np.repeat(point_counts, point_counts) == 1, 2, within + 1)
         ends = np.repeat(self.edges[mesh.rim_edges], point_counts, axis=0)
-        wedges = self._wedge_names()
+        wedges = mesh.wedge_vertices.astype(np.int32)
         vertices = [np.stack([wedges] * 3, axis=1), np.column_stack([ends, ends[:, 0]])]
         weights = [np.zeros((len(wedges), 3)), np.zeros((len(ends), 3))]
         weights[0][:, 0] = 1.0
         weights[1][:, 0], weights[1][:, 1] = (4 - place) / 4.0, place / 4.0
-        if frame.centre_triangles is not None:
+        if frame.is_blended:
             centres = frame.centre_triangles[: frame.centre_count]
-            vertices.append(wedges[self._output_corners[centres]])
+            vertices.append(wedges[mesh.corners[centres]])
             weights.append(np.full((frame.centre_count, 3), 1.0 / 3.0))
         return Origins(
             np.concatenate(vertices).astype(np.int32), np.concatenate(weights).astype(np.float32)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .native import Call, native
+from .jit import njit
 
 LARGEST = 1e15
 """No coordinate may be larger: cross products of edges have to stay finite in single precision."""
@@ -217,14 +217,6 @@ def _checked_values(
     return table, rows
 
 
-def bind_take_in(positions: npt.NDArray[np.float64], points: npt.NDArray[np.float32]) -> Call:
-    """Return a call that writes positions, shape (V, 3), as single precision into `points`.
-
-    It returns how many are no numbers below LARGEST, 0 unless what moves the mesh has blown up.
-    """
-    return round_finite.bind(positions.reshape(-1), points.reshape(-1))
-
-
 def not_finite(positions: npt.NDArray[np.floating]) -> str:
     """Say which of the positions of a frame are no numbers below LARGEST."""
     bad = np.flatnonzero(~(np.abs(positions) < LARGEST).all(axis=1))
@@ -234,11 +226,15 @@ def not_finite(positions: npt.NDArray[np.floating]) -> str:
     )
 
 
-@native
-def round_finite(numbers: npt.NDArray[np.float64], rounded: npt.NDArray[np.float32]) -> int:
-    """Write numbers as single precision; return how many are NaN or not below LARGEST."""
+@njit
+def round_finite(positions: npt.NDArray[np.float64], points: npt.NDArray[np.float32]) -> int:
+    """Write positions, shape (V, 3), as single precision; return how many numbers are too large.
+
+    That is NaN, or not below LARGEST: 0 unless what moves the mesh has blown up.
+    """
     finite = 0  # counted, not left early: so the loop takes several at a time
-    for k in range(numbers.shape[0]):
-        rounded[k] = numbers[k]
-        finite += abs(numbers[k]) < LARGEST
-    return int(numbers.shape[0] - finite)
+    for v in range(positions.shape[0]):
+        for i in range(3):
+            points[v, i] = positions[v, i]
+            finite += abs(positions[v, i]) < LARGEST
+    return int(3 * positions.shape[0] - finite)

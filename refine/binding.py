@@ -9,7 +9,6 @@ Source: the plug-in of Kähler, Haber, Seidel 2003, Fig. 1.
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
@@ -18,25 +17,28 @@ import numpy.typing as npt
 from .arguments import (
     AttributeLike,
     as_array,
-    bind_take_in,
     check_lent,
     checked_corner_values,
     checked_indices,
     checked_positions,
     not_finite,
+    round_finite,
 )
 from .connectivity import Connectivity, connect
-from .locality import Order, better_order
-from .native import Call, Turns, with_room
-from .normals import bind_normals
-from .output import GEOMETRY_COLUMNS, copy_rims, copy_wedges, place_attributes
+from .frame import Frame
+from .normals import vertex_normals
+from .output import (
+    GEOMETRY_COLUMNS,
+    copy_rims,
+    copy_wedges,
+    place_rim_attributes,
+    place_wedge_attributes,
+)
 from .plugin import Origins, RefinedMesh, Stream, View
 
 Floats = npt.NDArray[np.float32]
 Rows = tuple[Floats, npt.NDArray[np.uint32], npt.NDArray[np.int32]]
 
-NOTHING = -1
-"""Room for less than an empty frame."""
 SPARE = 1.25
 """How much more than it needs a stream of one's own takes when it has to grow."""
 
@@ -72,44 +74,24 @@ class BoundRefiner(ABC):
         uv: npt.ArrayLike | None = None,
         face_uv: npt.ArrayLike | None = None,
         attributes: Mapping[str, AttributeLike] | None = None,
-        may_renumber: bool = False,
     ) -> None:
-        """Check and connect; `may_renumber`: whether a mesh may be put into a better order."""
+        """Check and connect."""
         positions = checked_positions(rest_positions)
         triangles = checked_indices("faces", faces, len(positions), "rest_positions")
         self._values = checked_corner_values(uv, face_uv, attributes, triangles, len(positions))
-        renumbered = better_order(triangles, positions) if may_renumber else None
-        walked: npt.NDArray[np.integer] = triangles
-        self._order: Order | None = None
-        if renumbered is not None:
-            self._order, walked = renumbered
-            positions = positions[self._order.vertices]
-            self._values = self._order.sorted_values(self._values)
         corners = None if self._values is None else self._values.corners
-        self.connectivity: Connectivity = connect(walked, len(positions), corners)
-        """Of the mesh as it is walked; all arrays of a frame are in its order."""
-        self._output_corners = self.connectivity.corners
-        if self._order is not None:
-            self._output_corners = self._order.named(self._output_corners)
+        self.connectivity: Connectivity = connect(triangles, len(positions), corners)
         self._rest_positions = positions
-        self._positions = with_room(positions)
-        self._points = with_room(positions.astype(np.float32))
-        self._normals = with_room(np.zeros((len(positions), 3), dtype=np.float32))
-        self._take_in = bind_take_in(self._positions, self._points)
-        self._find_normals = bind_normals(self._positions, self.connectivity.faces, self._normals)
-        self._begin = Turns(self._take_in, self._find_normals)
-        """What every frame begins with; above 0 if positions are not numbers."""
-        self._room = np.full(2, NOTHING, dtype=np.int64)
-        """Rows and triangles that `_begin` may write at once, to where the last frame wrote."""
-        self._written: tuple[Stream | None, Rows] = (None, _NO_ROWS)
-        """Where that is."""
-        self._shape = self._positions.shape
+        self._positions = positions.copy()
+        self._points = positions.astype(np.float32)
+        self._normals = np.zeros_like(self._points)
+        self._shape = positions.shape
         self._own_stream: OwnStream | None = None
         self._accepted: Rows = _NO_ROWS
         self._geometry: tuple[Floats, Floats]
 
     def __reduce__(self) -> str:
-        """Raise TypeError: machine code and its arguments live in one process."""
+        """Raise TypeError: its arrays look into each other, which no copy would do."""
         raise TypeError(
             "a refiner cannot be copied, pickled or sent to another process; make one there with "
             "refine.create from the same faces and rest positions"
@@ -135,25 +117,22 @@ class BoundRefiner(ABC):
         """Say for every vertex of the last frame where it lies on the input mesh."""
 
     @abstractmethod
-    def _fill(self, stream: Stream, view: View | None, begun: int) -> tuple[int, int]:
+    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         """Write the frame for `self._positions` into the rows that `self._reserve` gives.
 
-        `self._begin` has been run and returned `begun`: normals are there.
-
-        Returns the numbers of vertices and triangles.
+        `self._points` and `self._normals` are there already. Returns the numbers of vertices and
+        triangles.
         """
 
-    @cached_property
+    @property
     def edges(self) -> npt.NDArray[np.int32]:
         """End points of each edge, shape (E, 2)."""
-        edges = self.connectivity.edges
-        return edges if self._order is None else self._order.named_edges(edges)
+        return self.connectivity.edges
 
-    @cached_property
+    @property
     def triangle_edges(self) -> npt.NDArray[np.int32]:
         """Edges of each triangle, shape (F, 3); -1 for a triangle that names a vertex twice."""
-        triangle_edges = self.connectivity.triangle_edges
-        return triangle_edges if self._order is None else self._order.given_faces(triangle_edges)
+        return self.connectivity.triangle_edges
 
     @property
     def vertex_columns(self) -> int:
@@ -188,19 +167,12 @@ class BoundRefiner(ABC):
         stream = self._lend_own_stream() if out is None else out
         if out is not None and not hasattr(out, "reserve"):
             self._accept(out, self.vertex_capacity, self.triangle_capacity)
-        if self._written[0] is not stream or self._written[1] is not self._accepted:
-            self._room[:] = NOTHING
-        if self._order is None:
-            self._positions[...] = positions
-        else:
-            self._order.gather(positions, self._positions)
-        begun = self._begin()
-        if begun > 0:
+        self._positions[...] = positions
+        if round_finite(self._positions, self._points) > 0:
             raise ValueError(not_finite(positions))
-        vertex_count, triangle_count = self._fill(stream, view, begun)
+        vertex_normals(self._positions, self.connectivity.faces, self._normals)
+        vertex_count, triangle_count = self._fill(stream, view)
         vertices, triangles, source = self._accepted
-        if self._order is not None:
-            self._order.give_back(vertices, source[:triangle_count])
         uv, attributes = None, _NO_ATTRIBUTES
         if self._values is not None:
             uv, attributes = self._attributes_in(vertices[:vertex_count])
@@ -213,15 +185,6 @@ class BoundRefiner(ABC):
             attributes,
         )
 
-    def _wedge_names(self) -> npt.NDArray[np.int32]:
-        """The caller's vertex of every wedge row of the output, shape (W,)."""
-        wedges = self.connectivity.wedge_vertices.astype(np.int32)
-        if self._order is not None:
-            # Rows of vertices have been brought into his order, copies along seams have not.
-            count = self.connectivity.vertex_count
-            wedges[count:] = self._order.vertices[wedges[count:]]
-        return wedges
-
     def _reserve(self, stream: Stream, vertex_count: int, triangle_count: int) -> Rows:
         """Let the stream grow if it can, and return its arrays, checked.
 
@@ -233,7 +196,7 @@ class BoundRefiner(ABC):
         return self._accepted
 
     def _accept(self, stream: Stream, vertex_count: int, triangle_count: int) -> None:
-        """Raise ValueError unless the arrays can take this much; seen ones need no second look."""
+        """Raise ValueError unless the arrays can take this much; seen ones are hardly looked at."""
         try:
             vertices, triangles, source = stream.vertices, stream.triangles, stream.source
         except AttributeError as error:
@@ -244,7 +207,8 @@ class BoundRefiner(ABC):
         accepted = self._accepted
         is_known = vertices is accepted[0] and triangles is accepted[1] and source is accepted[2]
         if is_known and len(vertices) >= vertex_count and len(triangles) >= triangle_count:
-            return
+            if all(array.flags.writeable for array in accepted):
+                return
         check_lent("vertices", vertices, np.float32, (vertex_count, self.vertex_columns))
         check_lent("triangles", triangles, np.uint32, (triangle_count, 3))
         check_lent("source", source, np.int32, (triangle_count,))
@@ -265,26 +229,16 @@ class BoundRefiner(ABC):
         uv = values[:, :2] if self._values.has_uv else None
         return uv, {name: values[:, columns] for name, columns in self._values.columns.items()}
 
-    def _bind_values(
-        self,
-        mesh: Connectivity,
-        rim_splits: npt.NDArray[np.uint8],
-        first_points: npt.NDArray[np.uint32],
-    ) -> list[Call]:
-        """Bind what follows the points in `vertices`: copies along seams, and attributes.
+    def _write_values(self, frame: Frame) -> None:
+        """Write what follows the points in the rows: copies along seams, and attributes.
 
         Nothing for a mesh without texture coordinates and attributes.
         """
-        if self._values is None:
-            return []
-        rows = np.zeros((0, self.vertex_columns), np.float32)
-        return [
-            copy_wedges.bind(mesh.vertex_count, mesh.wedge_vertices, rows),
-            copy_rims.bind(len(mesh.edges), mesh.rim_edges, rim_splits, first_points, rows),
-            place_attributes.bind(
-                self._values.values, mesh.wedge_uv, mesh.rim_uv, rim_splits, first_points, rows
-            ),
-        ]
+        if self._values is not None:
+            copy_wedges(self.connectivity, frame.rows)
+            copy_rims(self.connectivity, frame)
+            place_wedge_attributes(self.connectivity, self._values.values, frame.rows)
+            place_rim_attributes(self.connectivity, frame, self._values.values)
 
 
 _NO_ROWS: Rows = (
@@ -302,6 +256,8 @@ def _bytes_of(thing: object, seen: set[int]) -> int:
         new = id(owner) not in seen
         seen.add(id(owner))
         return owner.nbytes if new else 0
+    if isinstance(thing, tuple):  # what compiled code takes as it is
+        return sum(_bytes_of(value, seen) for value in thing)
     if id(thing) in seen or not hasattr(thing, "__dict__"):
         return 0
     seen.add(id(thing))

@@ -29,14 +29,14 @@ Differs from the paper: "We don't generate any new vertices in the interior" (se
 import numpy as np
 import numpy.typing as npt
 
-from .lanes import four, write
-from .native import native
+from .connectivity import Connectivity
+from .frame import CENTRES, ROWS, TRIANGLES, Frame
+from .jit import njit
 from .normals import unit
+from .patterns import CENTRE, Patterns
 
 Floats = npt.NDArray[np.float32]
-Unsigned = npt.NDArray[np.uint32]
 Small = npt.NDArray[np.uint8]
-Short = npt.NDArray[np.uint16]
 
 RAMP = np.float32(0.25)
 """Need over which a point grows, in what lies between the two thresholds. Chosen: points that are
@@ -51,7 +51,7 @@ ONE = np.float32(1.0)
 THIRD = np.float32(1 / 3)
 
 
-@native
+@njit
 def grow(need: Floats, splits: Small, growth_once: Floats, growth_twice: Floats) -> None:
     """Write splits and growth of every edge from its need, all of shape (E,)."""
     for e in range(need.shape[0]):
@@ -60,86 +60,52 @@ def grow(need: Floats, splits: Small, growth_once: Floats, growth_twice: Floats)
         growth_twice[e] = min(max((need[e] - ONE) / RAMP, ZERO), ONE)
 
 
-@native
-def number_centres(
-    rows: Short,
-    subtriangle_counts: Small,
-    subtriangles: Small,
-    centre: int,
-    centre_triangles: Unsigned,
-    counts: npt.NDArray[np.int64],
-) -> None:
-    """List the triangles that have a point in the middle; count them, and all subtriangles.
-
-    `rows`: of the table, shape (F,); `centre`: number of that point in it; `counts`: schemes.Frame.
-    """
+@njit
+def number_centres(frame: Frame, patterns: Patterns) -> None:
+    """List the triangles that have a point in the middle; count them, and all subtriangles."""
     centre_count = triangle_count = 0
-    for t in range(rows.shape[0]):
-        centre_triangles[centre_count] = t
-        centre_count += subtriangles[rows[t], 0, 0] == centre
-        triangle_count += subtriangle_counts[rows[t]]
-    counts[3], counts[4] = triangle_count, centre_count
+    for t in range(frame.configurations.shape[0] - 1):
+        row = frame.configurations[t]
+        frame.centre_triangles[centre_count] = t
+        centre_count += patterns.subtriangles[row, 0, 0] == CENTRE
+        triangle_count += patterns.counts[row]
+    frame.counts[TRIANGLES], frame.counts[CENTRES] = triangle_count, centre_count
 
 
-@native
-def middle_of(
-    edges: npt.NDArray[np.int32],
-    t: np.uint32,
-    i: int,
-    none: np.uint32,
-    splits: Small,
-    growth_once: Floats,
-    first_points: Unsigned,
-) -> tuple[np.float32, np.uint32]:
-    """Weight of the middle of edge i of a triangle, and its row; 0 and `none` where none is."""
-    e = edges[t, i]
-    if splits[e] == 0:
-        return ZERO, none
-    others = max(growth_once[edges[t, (i + 1) % 3]], growth_once[edges[t, (i + 2) % 3]])
-    return ALONE - SHARED * others, np.uint32(first_points[e] + (splits[e] >> 1))
+@njit
+def middle_of(mesh: Connectivity, frame: Frame, t: int, i: int) -> tuple[np.float32, np.uint32]:
+    """Weight of the middle of edge i of a triangle, and its row; 0 and any row where none is."""
+    e = mesh.triangle_edges[t, i]
+    if frame.splits[e] == 0:
+        return ZERO, mesh.faces[t, i]
+    growth = frame.growth_once
+    after, before = mesh.triangle_edges[t, (i + 1) % 3], mesh.triangle_edges[t, (i + 2) % 3]
+    weight = ALONE - SHARED * max(growth[after], growth[before])
+    return weight, np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
 
 
-@native
-def place_centres(
-    faces: Unsigned,
-    corners: Unsigned,
-    triangle_edges: npt.NDArray[np.int32],
-    splits: Small,
-    growth_once: Floats,
-    first_points: Unsigned,
-    centre_triangles: Unsigned,
-    counts: npt.NDArray[np.int64],
-    vertices: Floats,
-) -> None:
-    """Write the rows of the points in the middle of triangles, attributes too.
-
-    `counts`: the first of these rows at 0, their number at 4 (schemes.Frame).
-    """
-    for k in range(counts[4]):
-        t, row = centre_triangles[k], np.uint32(counts[0] + k)
-        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        u, p = middle_of(triangle_edges, t, 0, a, splits, growth_once, first_points)
-        v, q = middle_of(triangle_edges, t, 1, b, splits, growth_once, first_points)
-        w, r = middle_of(triangle_edges, t, 2, c, splits, growth_once, first_points)
-        at_a, at_b, at_c = four(vertices, a), four(vertices, b), four(vertices, c)
-        out_p = four(vertices, p) - HALF * (at_a + at_b)
-        out_q = four(vertices, q) - HALF * (at_b + at_c)
-        out_r = four(vertices, r) - HALF * (at_c + at_a)
-        side_a, side_b, side_c = THIRD * at_a, THIRD * at_b, THIRD * at_c
-        write(vertices, row, side_a + u * out_p + side_b + v * out_q + side_c + w * out_r)
-        for i in range(3, 6):
-            along_a, along_b, along_c = vertices[a, i], vertices[b, i], vertices[c, i]
+@njit
+def place_centres(mesh: Connectivity, frame: Frame) -> None:
+    """Write the rows of the points in the middle of triangles, attributes too."""
+    vertices = frame.rows
+    for k in range(frame.counts[CENTRES]):
+        t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
+        a, b, c = mesh.faces[t, 0], mesh.faces[t, 1], mesh.faces[t, 2]
+        u, p = middle_of(mesh, frame, t, 0)
+        v, q = middle_of(mesh, frame, t, 1)
+        w, r = middle_of(mesh, frame, t, 2)
+        for i in range(6):
+            at_a, at_b, at_c = vertices[a, i], vertices[b, i], vertices[c, i]
             vertices[row, i] = (
-                THIRD * along_a
-                + u * (vertices[p, i] - HALF * (along_a + along_b))
-                + THIRD * along_b
-                + v * (vertices[q, i] - HALF * (along_b + along_c))
-                + THIRD * along_c
-                + w * (vertices[r, i] - HALF * (along_c + along_a))
+                THIRD * at_a
+                + u * (vertices[p, i] - HALF * (at_a + at_b))
+                + THIRD * at_b
+                + v * (vertices[q, i] - HALF * (at_b + at_c))
+                + THIRD * at_c
+                + w * (vertices[r, i] - HALF * (at_c + at_a))
             )
         x, y, z = unit(vertices[row, 3], vertices[row, 4], vertices[row, 5])
         vertices[row, 3], vertices[row, 4], vertices[row, 5] = x, y, z
+        a, b, c = mesh.corners[t, 0], mesh.corners[t, 1], mesh.corners[t, 2]
         for i in range(6, vertices.shape[1]):
-            vertices[row, i] = THIRD * (
-                vertices[corners[t, 0], i] + vertices[corners[t, 1], i] + vertices[corners[t, 2], i]
-            )
+            vertices[row, i] = THIRD * (vertices[a, i] + vertices[b, i] + vertices[c, i])

@@ -11,9 +11,8 @@ After Ericson 2005, "Real-time collision detection", section 5.1.5, for one tria
 import numpy as np
 import numpy.typing as npt
 
-from .kernels import kernel
-from .native import with_room
-from .normals import bind_normals
+from .jit import njit
+from .normals import vertex_normals
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
@@ -35,7 +34,7 @@ class Surface:
         self.positions = positions
         self.faces = faces
         self.normals = np.zeros(positions.shape, dtype=np.float32)
-        bind_normals(with_room(positions), faces, self.normals)()
+        vertex_normals(positions, faces, self.normals)
         used = np.unique(faces)
         order = np.argsort(faces.ravel(), kind="stable")
         counts = np.bincount(faces.ravel(), minlength=len(positions))
@@ -86,7 +85,7 @@ class Surface:
         return corners
 
 
-@kernel
+@njit
 def closest_on_triangle(
     px: float, py: float, pz: float, a: Doubles, b: Doubles, c: Doubles
 ) -> tuple[float, float, float]:
@@ -123,7 +122,7 @@ def closest_on_triangle(
     return on_bc / total, on_ac / total, on_ab / total
 
 
-@kernel
+@njit
 def closest_vertex(
     point: Doubles,
     normal: Doubles,
@@ -175,7 +174,7 @@ def closest_vertex(
     return best if best >= 0 else any_best
 
 
-@kernel
+@njit
 def find_closest(
     points: Doubles,
     point_normals: Doubles,

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .coherence import sequence_tables
-from .native import Call, native
+from .jit import njit
 from .patterns import Patterns
 
 Numbers = npt.NDArray[np.uint16]
@@ -25,47 +25,42 @@ class Coherent:
         """A row for each sequence."""
         self.states: Numbers = np.zeros(face_count, dtype=np.uint16)
         """The sequence of each triangle, shape (F,): all that lives from frame to frame."""
-        self._removed = np.zeros(1, dtype=np.int64)
-
-    @property
-    def removals_out_of_order(self) -> int:
+        self.removals_out_of_order = 0
         """Splits taken back while a later one stayed, in all frames; each may turn lines."""
-        return int(self._removed[0])
 
-    def following(self, configurations: Numbers) -> Call:
-        """Return the call that moves every triangle from its sequence to the next one.
+    def follow(self, configurations: Numbers) -> Numbers:
+        """Move every triangle from its sequence to the next one; return these, shape (F,).
 
-        `configurations`: s0 + 3 s1 + 9 s2 of each triangle in the frame, shape (F,).
+        `configurations`: s0 + 3 s1 + 9 s2 of each triangle in the frame, shape (F + 1,).
         """
-        return follow_splits.bind(
-            configurations,
-            self._tables.transitions,
-            self._tables.removals,
-            self.states,
-            self._removed,
+        tables = self._tables
+        self.removals_out_of_order += follow_splits(
+            configurations, tables.transitions, tables.removals, self.states
         )
+        return self.states
 
     def forget(self) -> None:
         """Take up the next frame as if it were the first: after a cut, or a jump in time."""
         self.states[:] = 0
-        self._removed[:] = 0
+        self.removals_out_of_order = 0
 
 
-@native
+@njit
 def follow_splits(
     configurations: Numbers,
     transitions: Numbers,
     removals: npt.NDArray[np.uint8],
     states: Numbers,
-    removed: npt.NDArray[np.int64],
-) -> None:
+) -> int:
     """Replace every sequence in `states`, shape (F,), by the next one for its configuration.
 
-    `removed`, shape (1,): goes up by the splits that were taken back out of order.
+    Returns how many splits were taken back out of order.
     """
+    removed = 0
     for t in range(states.shape[0]):
         if configurations[t] == 0:  # most triangles: nothing is left of what they remember
             states[t] = 0
             continue
-        removed[0] += removals[states[t], configurations[t]]
+        removed += removals[states[t], configurations[t]]
         states[t] = transitions[states[t], configurations[t]]
+    return removed

@@ -26,14 +26,13 @@ A rim has its own output points, at the very positions of its edge, so a seam ca
 A triangle that names a vertex twice has no area and no edges: it is handed through as it is.
 """
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from .arguments import as_indices, checked_positions
-from .native import native
+from .jit import njit
 
 Indices = npt.NDArray[np.int32]
 Unsigned = npt.NDArray[np.uint32]
@@ -41,9 +40,11 @@ Flags = npt.NDArray[np.bool_]
 Wide = npt.NDArray[np.int64]
 
 
-@dataclass(frozen=True)
-class Connectivity:
-    """Index arrays of one mesh; V vertices, F triangles, E edges, W wedges, R rims."""
+class Connectivity(NamedTuple):
+    """Index arrays of one mesh; V vertices, F triangles, E edges, W wedges, R rims.
+
+    Compiled code takes it as it is.
+    """
 
     faces: Unsigned
     """Vertices of each triangle, shape (F, 3)."""
@@ -140,7 +141,7 @@ def connect(
     )
 
 
-@native
+@njit
 def find_edges(
     faces: Unsigned,
     edge_of: Indices,
@@ -183,7 +184,7 @@ def find_edges(
     return count
 
 
-@native
+@njit
 def look_around(
     faces: Unsigned,
     edge_of: Indices,
@@ -246,7 +247,7 @@ def _seams(
             "wedge_vertices": np.arange(vertex_count, dtype=np.uint32),
             "wedge_uv": np.arange(vertex_count, dtype=np.int32),
             "rim_edges": np.arange(edge_count, dtype=np.uint32),
-            "rim_uv": edges,
+            "rim_uv": edges.copy(),
         }
     corner_uv = np.asarray(face_uv, dtype=np.int64).reshape(-1, 3)
     proper = is_proper.reshape(-1, 3)[:, 0]

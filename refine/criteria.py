@@ -28,7 +28,7 @@ from .blend import RAMP
 from .connectivity import Connectivity
 from .criterion import Criterion, Measured, NormalDrop, Thresholds
 from .curves import CurveScheme
-from .kernels import kernel
+from .jit import njit
 from .plugin import View
 from .rest_curvature import RestCurvature
 
@@ -182,8 +182,8 @@ class Bulge(_Measuring):
         """Take the scheme of the refiner; raises ValueError for one without curves."""
         if not isinstance(scheme, CurveScheme):
             raise ValueError(
-                'criterion "bulge" measures curved edges: it goes with the schemes "butterfly", '
-                f'"cubic" and "detail", got {type(scheme).__name__}'
+                'criterion "bulge" measures curved edges: it goes with the schemes "cubic" and '
+                f'"detail", got {type(scheme).__name__}'
             )
         self._scheme = scheme
 
@@ -289,7 +289,7 @@ def _mean_length(connectivity: Connectivity, positions: Doubles) -> np.float32:
     return np.float32(lengths.mean() if len(lengths) else 1.0)
 
 
-@kernel
+@njit
 def bulge_sizes(bulges: Floats, sizes: Floats) -> None:
     """Write how far the middle of every edge bulges, shape (E,)."""
     for e in range(sizes.shape[0]):
@@ -297,7 +297,7 @@ def bulge_sizes(bulges: Floats, sizes: Floats) -> None:
         sizes[e] = np.sqrt(x * x + y * y + z * z)
 
 
-@kernel
+@njit
 def count_turns(sizes: Floats, turns: Floats, scale: np.float32) -> None:
     """Add what the turns of normals count to the sizes of edges, shape (E,), as squares."""
     for e in range(sizes.shape[0]):
@@ -305,7 +305,7 @@ def count_turns(sizes: Floats, turns: Floats, scale: np.float32) -> None:
         sizes[e] = np.sqrt(sizes[e] * sizes[e] + turn * turn)
 
 
-@kernel
+@njit
 def hasten(need: Floats, soon: np.float32, ramp: np.float32) -> None:
     """Stretch the needs, shape (E,), so that `soon` becomes `ramp`, where points have grown."""
     if soon >= ramp:
@@ -320,21 +320,21 @@ def hasten(need: Floats, soon: np.float32, ramp: np.float32) -> None:
             need[e] = np.float32(1.0) - (np.float32(1.0) - ramp) * rest
 
 
-@kernel
+@njit
 def splits_of_needs(need: Floats, splits: Small) -> None:
     """Write 0, 1 or 2 into `splits`, shape (E,): above 0 once, above 1 twice."""
     for e in range(need.shape[0]):
         splits[e] = np.uint8(need[e] > np.float32(0.0)) + np.uint8(need[e] > np.float32(1.0))
 
 
-@kernel
+@njit
 def scale_needs(need: Floats, once: np.float32, width: np.float32, most: np.float32) -> None:
     """Turn the measures in `need`, shape (E,), into needs."""
     for e in range(need.shape[0]):
         need[e] = min((need[e] - once) / width, most)
 
 
-@kernel
+@njit
 def arc_heights(
     positions: Doubles, normals: Floats, edges: Unsigned, rest: Floats, heights: Floats
 ) -> None:
@@ -350,7 +350,7 @@ def arc_heights(
         heights[e] = np.float32(0.125) * abs(at_a - at_b) - rest[e]
 
 
-@kernel
+@njit
 def turns_at_silhouette(
     positions: Doubles,
     normals: Floats,
@@ -380,7 +380,7 @@ def turns_at_silhouette(
         turns[e] = turn * max(0.0, 1.0 - aside / BAND)
 
 
-@kernel
+@njit
 def lengths_on_screen(
     positions: Doubles, edges: Unsigned, eye: Doubles, focal: np.float32, lengths: Floats
 ) -> None:

@@ -22,12 +22,12 @@ import numpy as np
 import numpy.typing as npt
 
 from .connectivity import Connectivity
-from .lanes import Four, above, four, spread, sums_of_three, write
-from .native import Call, has_room, native, with_room
+from .jit import njit
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
 Small = npt.NDArray[np.uint8]
+Unsigned = npt.NDArray[np.uint32]
 
 THRESHOLD_ONCE = 0.02
 """Default drop above which an edge is split once: a flat place bent by 11 degrees along an edge.
@@ -134,23 +134,10 @@ class NormalDrop:
     def __init__(
         self, threshold_once: float = THRESHOLD_ONCE, threshold_twice: float = THRESHOLD_TWICE
     ) -> None:
-        self._marking: Call | None = None
-        self._measuring: Call | None = None
-        self._joined: list[Call] = []
         self.thresholds = Thresholds(
             threshold_once, threshold_twice, "drops of a dot product", least=ROUNDING
         )
-
-    @property
-    def thresholds(self) -> Thresholds:
         """Drops above which an edge is split once and twice; may be replaced at any time."""
-        return self._thresholds
-
-    @thresholds.setter
-    def thresholds(self, thresholds: Thresholds) -> None:
-        self._thresholds = thresholds
-        for marking in self._joined:
-            marking.put("limits", thresholds.limits)
 
     def bind(
         self,
@@ -162,50 +149,23 @@ class NormalDrop:
         self._edges = connectivity.edges.view(np.uint32)
         self._rest_dots = np.empty(len(self._edges), dtype=np.float32)
         edge_dots(rest_normals, self._edges, self._rest_dots)
-        self._marking = self._measuring = None
-        self._joined = []
         # No direction to compare with at rest (all triangles around are slivers): never split.
         undefined = np.empty(len(rest_positions), dtype=np.bool_)
-        sums = np.zeros((len(rest_positions), 4))
-        find_undefined_normals(connectivity.faces, rest_positions, sums, undefined)
+        find_undefined_normals(connectivity.faces, rest_positions, undefined)
         if undefined.any():
-            self._rest_dots[undefined[self._edges].any(axis=1)] = -np.inf
+            self._rest_dots[undefined[connectivity.edges].any(axis=1)] = -np.inf
 
     def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write the number of splits of every edge into `splits`, shape (E,)."""
-        if not has_room(normals):
-            normals = with_room(normals)
-        self._marking = mark_drops.again(
-            self._marking, normals, self._edges, self._rest_dots, self.thresholds.limits, splits
-        )
-        self._marking()
-
-    def marking(self, normals: Floats, splits: Small) -> Call:
-        """Return a call that marks edges by these `normals`, whatever they are by then."""
-        assert has_room(normals)
-        limits = self.thresholds.limits
-        self._joined.append(mark_drops.bind(normals, self._edges, self._rest_dots, limits, splits))
-        return self._joined[-1]
+        mark_drops(normals, self._edges, self._rest_dots, self.thresholds.limits, splits)
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
-        if not has_room(normals):
-            normals = with_room(normals)
-        self._measuring = measure_drops.again(
-            self._measuring, normals, self._edges, self._rest_dots, self.thresholds.limits, need
-        )
-        self._measuring()
-
-    def measuring(self, normals: Floats, need: Floats) -> Call:
-        """Return a call that measures edges by these `normals`, whatever they are by then."""
-        assert has_room(normals)
-        limits = self.thresholds.limits
-        self._joined.append(measure_drops.bind(normals, self._edges, self._rest_dots, limits, need))
-        return self._joined[-1]
+        measure_drops(normals, self._edges, self._rest_dots, self.thresholds.limits, need)
 
 
-@native
-def dot_along(normals: Floats, edges: npt.NDArray[np.uint32], e: int | np.uint64) -> np.float32:
+@njit
+def dot_along(normals: Floats, edges: Unsigned, e: int) -> np.float32:
     """The dot product of the normals at both ends of an edge."""
     a, b = edges[e, 0], edges[e, 1]
     return np.float32(
@@ -215,92 +175,52 @@ def dot_along(normals: Floats, edges: npt.NDArray[np.uint32], e: int | np.uint64
     )
 
 
-@native
-def edge_dots(normals: Floats, edges: npt.NDArray[np.uint32], dots: Floats) -> None:
+@njit
+def edge_dots(normals: Floats, edges: Unsigned, dots: Floats) -> None:
     """Write the dot product of the normals at both ends of every edge into `dots`, shape (E,)."""
     for e in range(edges.shape[0]):
-        dots[e] = dot_along(normals, edges, np.uint64(e))
+        dots[e] = dot_along(normals, edges, e)
 
 
-@native
-def four_dots(normals: Floats, edges: npt.NDArray[np.uint32], e: np.uint64) -> Four:
-    """The dot products along four edges, from edge e on; `normals` have room (lanes.py)."""
-    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
-    p = four(normals, edges[e, 0]) * four(normals, edges[e, 1])
-    q = four(normals, edges[e + one, 0]) * four(normals, edges[e + one, 1])
-    r = four(normals, edges[e + two, 0]) * four(normals, edges[e + two, 1])
-    s = four(normals, edges[e + three, 0]) * four(normals, edges[e + three, 1])
-    return sums_of_three(p, q, r, s)
-
-
-@native
+@njit
 def mark_drops(
-    normals: Floats,
-    edges: npt.NDArray[np.uint32],
-    rest_dots: Floats,
-    limits: Floats,
-    splits: Small,
+    normals: Floats, edges: Unsigned, rest_dots: Floats, limits: Floats, splits: Small
 ) -> None:
     """Write 0, 1 or 2 into `splits`, shape (E,), by the drop of the dot product (as above).
 
-    `limits`: the two thresholds, shape (2,). Four edges at a time; `normals` have room (lanes.py).
+    `edges`: end points, shape (E, 2); `limits`: the two thresholds, shape (2,).
     """
-    once, twice = spread(limits[0]), spread(limits[1])
-    count = edges.shape[0]
-    for first in range(0, count - 3, 4):
-        e = np.uint64(first)
-        drops = four(rest_dots, e) - four_dots(normals, edges, e)
-        write(splits, e, above(drops, once) + above(drops, twice))
-    for last in range(count - count % 4, count):
-        drop = rest_dots[last] - dot_along(normals, edges, last)
-        splits[last] = np.uint8(drop > limits[0]) + np.uint8(drop > limits[1])
+    once, twice = limits[0], limits[1]
+    for e in range(edges.shape[0]):
+        drop = rest_dots[e] - dot_along(normals, edges, e)
+        splits[e] = np.uint8(drop > once) + np.uint8(drop > twice)
 
 
-@native
-def raise_splits(more: Small, splits: Small) -> None:
-    """Raise splits of edges, shape (E,), to those that are `more`."""
-    for e in range(splits.shape[0]):
-        splits[e] = max(splits[e], more[e])
-
-
-@native
+@njit
 def measure_drops(
-    normals: Floats,
-    edges: npt.NDArray[np.uint32],
-    rest_dots: Floats,
-    limits: Floats,
-    need: Floats,
+    normals: Floats, edges: Unsigned, rest_dots: Floats, limits: Floats, need: Floats
 ) -> None:
     """Write needs of edges, shape (E,), by the drop of the dot product (as above).
 
     `limits`: the two thresholds, shape (2,); need is 0 at the first, and 1 at the second (see
-    `Thresholds`). `normals` have room (lanes.py).
+    `Thresholds`).
     """
-    count = edges.shape[0]
-    for first in range(0, count - 3, 4):
-        write(need, first, four_dots(normals, edges, np.uint64(first)))
-    for last in range(count - count % 4, count):
-        need[last] = dot_along(normals, edges, last)
     once, most = limits[0], INFINITE
     width = np.float32(max(np.float64(limits[1] - once), NARROWEST))
     if limits[1] == INFINITE:
         most = ONE
         width = once if ZERO < once < INFINITE else ONE
-    for e in range(count):
-        need[e] = min((rest_dots[e] - need[e] - once) / width, most)
+    for e in range(edges.shape[0]):
+        drop = rest_dots[e] - dot_along(normals, edges, e)
+        need[e] = min((drop - once) / width, most)
 
 
-@native
+@njit
 def find_undefined_normals(
-    faces: npt.NDArray[np.uint32],
-    positions: Doubles,
-    sums: Doubles,
-    undefined: npt.NDArray[np.bool_],
+    faces: Unsigned, positions: Doubles, undefined: npt.NDArray[np.bool_]
 ) -> None:
-    """Flag the vertices, shape (V,), whose normal is nothing but rounding.
-
-    `sums`: zeros, shape (V, 4).
-    """
+    """Flag the vertices, shape (V,), whose normal is nothing but rounding."""
+    sums = np.zeros((positions.shape[0], 4))
     for t in range(faces.shape[0]):
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
         ux, vx = positions[b, 0] - positions[a, 0], positions[c, 0] - positions[a, 0]

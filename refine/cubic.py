@@ -30,15 +30,16 @@ Where normals and places agree, as on smooth surfaces, nothing is added. Where d
 folds the errors of one have little to do with those of the other, and both together are nearer.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
 from .connectivity import Connectivity
-from .curves import CurveScheme
-from .lanes import four, single, write
-from .native import Call, has_room, native, with_room
-from .normals import clear, cross_product, normalise
-from .schemes import Frame
+from .curves import MIDDLE, NEAR_END, NEAR_START, CurveScheme
+from .frame import CENTRES, ONCE, ROWS, Frame
+from .jit import njit
+from .normals import add, between, cross_product, normalise
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
@@ -70,13 +71,24 @@ NEAR, FAR = np.float32(9 / 64), np.float32(3 / 64)
 """Share of the nearer and of the farther tangent at a quarter of a cubic."""
 SLIVER = 1e-9
 """Sine of an angle below which a triangle has no direction."""
-MIDDLE, NEAR_END = 1, 2
-"""Rows of the middle and of the far quarter of an edge, behind that of the near one (curves.py)."""
 ZERO = np.float32(0.0)
 HALF = np.float32(0.5)
 THIRD = np.float32(1 / 3)
 ONE = np.float32(1.0)
 TINY = np.finfo(np.float32).tiny
+
+
+class Tangents(NamedTuple):
+    """What the ends of cubic edges go by; compiled code takes it as it is."""
+
+    normals: Floats
+    """Unit normals, each corner weighted as at rest, shape (V, 3)."""
+    steeper: Floats
+    """Unit normals that go further from those of their neighbours, shape (V, 3)."""
+    off: Floats
+    """How much of each neighbour's normal is taken off, shape (V,)."""
+    beyond: Unsigned
+    """The vertices before and after every border edge, shape (E, 2); of others no matter."""
 
 
 class CubicScheme(CurveScheme):
@@ -90,93 +102,38 @@ class CubicScheme(CurveScheme):
     ) -> None:
         """Weigh the corners of the mesh at rest, and follow its borders."""
         super().bind(connectivity, rest_positions, rest_normals)
-        self._weights = np.zeros(connectivity.faces.shape, dtype=np.float32)
-        weigh_corners(rest_positions, connectivity.faces, self._weights)
-        self._beyond = np.zeros((len(connectivity.edges), 2), dtype=np.uint32)
-        counts = np.zeros((2, len(rest_normals)), dtype=np.int64)
-        follow_borders(
-            connectivity.edges, connectivity.is_interior, counts[0], counts[1], self._beyond
+        mesh, valences = (
+            connectivity,
+            np.bincount(connectivity.edges.ravel(), minlength=len(rest_normals)),
         )
-        self._across = connectivity.faces.copy()
-        self._shares = np.zeros((len(connectivity.faces), 6), dtype=np.float32)
-        doubled, squared = np.zeros(len(self._shares)), np.zeros((len(self._shares), 3))
-        measure_triangles(rest_positions, connectivity.faces, doubled, squared)
-        weigh_neighbours(
-            connectivity.faces,
-            connectivity.triangle_edges,
-            connectivity.edge_sides,
-            connectivity.is_interior,
-            doubled,
-            squared,
-            self._across,
-            self._shares,
+        self._weights = np.zeros(mesh.faces.shape, dtype=np.float32)
+        weigh_corners(rest_positions, mesh.faces, self._weights)
+        self._tangents = Tangents(
+            normals=np.zeros_like(rest_normals),
+            steeper=np.zeros_like(rest_normals),
+            off=(STEEPER / np.maximum(valences, 1)).astype(np.float32),
+            beyond=np.zeros((len(mesh.edges), 2), dtype=np.uint32),
         )
-
-        self._normals = with_room(np.zeros_like(rest_normals))
-        valences = np.bincount(connectivity.edges.ravel(), minlength=len(rest_normals))
-        self._steeper_by = (STEEPER / np.maximum(valences, 1)).astype(np.float32)
-        self._steeper = with_room(np.zeros_like(rest_normals))
-        self._sums = np.zeros((2, len(rest_normals), 4), dtype=np.float32)
-
-    def placing(self, frame: Frame) -> list[Call]:
-        """Return the calls that place points in the arrays of a frame; `vertices` are its rows."""
-        return [*self._bind_bulging(frame), *self._bind_pointing(frame)]
-
-    def raising(self, frame: Frame) -> list[Call]:
-        """Return the call that raises points in the middle of triangles, when others are there."""
-        assert frame.centre_triangles is not None
-        mesh = self._connectivity
-        raising = raise_centres.bind(
-            mesh.faces,
-            mesh.triangle_edges,
-            frame.splits,
-            frame.growth_once,
-            frame.first_points,
-            self._across,
-            self._shares,
-            frame.centre_triangles,
-            frame.counts,
-            np.zeros((2, 3)),
-            np.zeros(3),
-            frame.rows,
-        )
-        return [raising]
-
-    def _bind_bulging(self, frame: Frame) -> list[Call]:
-        """Return the calls that find normals and bulges by the positions of a frame."""
-        assert has_room(frame.positions)
-        mesh = self._connectivity
-        find_normals = weighted_normals.bind(
-            frame.positions, mesh.faces, self._weights, self._sums[0], self._normals
-        )
-        bulge = bulge_cubic.bind(
-            frame.positions,
-            self._normals,
-            mesh.edges.view(np.uint32),
-            self._steeper_by,
-            self._sums[1],
-            self._steeper,
-            mesh.edge_points,
-            mesh.is_interior,
-            self._beyond,
-            frame.split_once,
-            frame.counts,
-            self._bulge_rows,
-        )
-        return [find_normals, bulge]
-
-    def _vertex_normals(self, frame: Frame) -> Floats:
-        return self._normals
-
-    def _bulge(self, frame: Frame, bulges: Floats) -> None:
-        frame.bound(self._bind_bulging)()
+        follow_borders(mesh, self._tangents.beyond)
+        self._across = mesh.faces.copy()
+        self._shares = np.zeros((len(mesh.faces), 6), dtype=np.float32)
+        weigh_neighbours(mesh, rest_positions, self._across, self._shares)
 
     def place_centres(self, frame: Frame) -> None:
         """Raise the points in the middle of triangles as far as the edges around have grown."""
-        frame.bound(self.raising)()
+        raise_centres(self._mesh, frame, self._across, self._shares)
+
+    def _vertex_normals(self, frame: Frame) -> Floats:
+        return self._tangents.normals
+
+    def _bulge(self, frame: Frame) -> Floats:
+        mesh, tangents = self._mesh, self._tangents
+        weighted_normals(frame.positions, mesh.faces, self._weights, tangents.normals)
+        bulge_cubic(mesh, frame, tangents, self._bulges)
+        return self._bulges
 
 
-@native
+@njit
 def weigh_corners(positions: Doubles, faces: Unsigned, weights: Floats) -> None:
     """Write sqrt(angle / |cross product|) of every corner, shape (F, 3); 0 without an area."""
     for t in range(faces.shape[0]):
@@ -193,138 +150,110 @@ def weigh_corners(positions: Doubles, faces: Unsigned, weights: Floats) -> None:
             )
 
 
-@native
-def follow_borders(
-    edges: npt.NDArray[np.int32],
-    is_interior: npt.NDArray[np.bool_],
-    border_count: npt.NDArray[np.int64],
-    sums: npt.NDArray[np.int64],
-    beyond: Unsigned,
-) -> None:
-    """Write the vertices before and after every border edge, or its ends where its border ends.
-
-    `border_count`, `sums`: zeros, shape (V,).
-    """
-    for e in range(edges.shape[0]):
-        if not is_interior[e]:
-            a, b = edges[e, 0], edges[e, 1]
+@njit
+def follow_borders(mesh: Connectivity, beyond: Unsigned) -> None:
+    """Write the vertices before and after every border edge, or its ends where its border ends."""
+    border_count = np.zeros(mesh.vertex_count, np.int64)
+    sums = np.zeros(mesh.vertex_count, np.int64)
+    for e in range(mesh.edges.shape[0]):
+        if not mesh.is_interior[e]:
+            a, b = mesh.edges[e, 0], mesh.edges[e, 1]
             border_count[a] += 1
             border_count[b] += 1
             sums[a] += b
             sums[b] += a
-    for e in range(edges.shape[0]):
-        a, b = edges[e, 0], edges[e, 1]
+    for e in range(mesh.edges.shape[0]):
+        a, b = mesh.edges[e, 0], mesh.edges[e, 1]
         # Of two neighbours along the border the sum less one is the other.
         beyond[e, 0] = sums[a] - b if border_count[a] == 2 else a
         beyond[e, 1] = sums[b] - a if border_count[b] == 2 else b
 
 
-@native
-def weighted_normals(
-    positions: Doubles, faces: Unsigned, weights: Floats, sums: Floats, normals: Floats
-) -> None:
-    """Write unit vertex normals, each corner weighted as at rest, shape (V, 3).
-
-    `positions` have room (lanes.py); `sums`: scratch, shape (V, 4).
-    """
-    clear(sums)
-    for k in range(faces.shape[0]):
-        t = np.uint64(k)
+@njit
+def weighted_normals(positions: Doubles, faces: Unsigned, weights: Floats, normals: Floats) -> None:
+    """Write unit vertex normals, each corner weighted as at rest, shape (V, 3)."""
+    normals[:] = ZERO
+    for t in range(faces.shape[0]):
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        normal = cross_product(positions, a, b, c)
-        write(sums, a, four(sums, a) + weights[t, 0] * normal)
-        write(sums, b, four(sums, b) + weights[t, 1] * normal)
-        write(sums, c, four(sums, c) + weights[t, 2] * normal)
-    normalise(sums, normals)
+        x, y, z = cross_product(positions, a, b, c)
+        at_a, at_b, at_c = weights[t, 0], weights[t, 1], weights[t, 2]
+        add(normals, a, at_a * x, at_a * y, at_a * z)
+        add(normals, b, at_b * x, at_b * y, at_b * z)
+        add(normals, c, at_c * x, at_c * y, at_c * z)
+    normalise(normals)
 
 
-@native
-def steepen_normals(
-    normals: Floats, edges: Unsigned, off: Floats, sums: Floats, steeper: Floats
-) -> None:
-    """Write unit normals less those of their neighbours, `off` of each, shape (V,).
-
-    `normals` have room (lanes.py); `sums`: scratch, shape (V, 4).
-    """
-    clear(sums)
-    for k in range(edges.shape[0]):
-        e = np.uint64(k)
-        a, b = edges[e, 0], edges[e, 1]
-        write(sums, a, four(sums, a) + four(normals, b))
-        write(sums, b, four(sums, b) + four(normals, a))
-    for v in range(sums.shape[0]):
-        write(sums, v, four(normals, v) - off[v] * four(sums, v))
-    normalise(sums, steeper)
+@njit
+def steepen_normals(mesh: Connectivity, tangents: Tangents) -> None:
+    """Write unit normals less those of their neighbours, `off` of each."""
+    normals, steeper = tangents.normals, tangents.steeper
+    steeper[:] = ZERO
+    for e in range(mesh.edges.shape[0]):
+        a, b = mesh.edge_points[e, 0], mesh.edge_points[e, 1]
+        add(steeper, a, normals[b, 0], normals[b, 1], normals[b, 2])
+        add(steeper, b, normals[a, 0], normals[a, 1], normals[a, 2])
+    for v in range(normals.shape[0]):
+        for i in range(3):
+            steeper[v, i] = normals[v, i] - tangents.off[v] * steeper[v, i]
+    normalise(steeper)
 
 
-@native
+@njit
 def along(d: Vector, normals: Floats, v: np.uint32) -> np.float32:
     """Height of an edge over the plane across a normal."""
     return np.float32(d[0] * normals[v, 0] + d[1] * normals[v, 1] + d[2] * normals[v, 2])
 
 
-@native
+@njit
 def length_of(d: Vector) -> np.float32:
     """Length of an edge."""
     return np.float32(np.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]))
 
 
-@native
-def between(positions: Doubles, a: np.uint32, b: np.uint32) -> Vector:
-    """The edge from a to b, rounded when it has been taken."""
-    return (
-        np.float32(positions[b, 0] - positions[a, 0]),
-        np.float32(positions[b, 1] - positions[a, 1]),
-        np.float32(positions[b, 2] - positions[a, 2]),
-    )
-
-
-@native
-def bulge_cubic(
-    positions: Doubles,
-    normals: Floats,
-    edges: Unsigned,
-    off: Floats,
-    sums: Floats,
-    steeper: Floats,
-    edge_points: Unsigned,
-    is_interior: npt.NDArray[np.bool_],
-    beyond: Unsigned,
-    split_once: Unsigned,
-    counts: npt.NDArray[np.int64],
-    bulges: Floats,
+@njit
+def write_cubic(
+    bulges: Floats, e: np.uint32, i: int, turn_a: np.float32, turn_b: np.float32
 ) -> None:
+    """Write coordinate i of the bulges of an edge.
+
+    `turn_a`, `turn_b`: how much the tangents at both ends turn away from the straight edge.
+    """
+    bulges[e, NEAR_START, i] = NEAR * turn_a - FAR * turn_b
+    bulges[e, MIDDLE, i] = EIGHTH * (turn_a - turn_b)
+    bulges[e, NEAR_END, i] = FAR * turn_a - NEAR * turn_b
+
+
+@njit
+def bulge_cubic(mesh: Connectivity, frame: Frame, tangents: Tangents, bulges: Floats) -> None:
     """Write the bulges of the split edges: those of the cubic with the tangents at both ends.
 
-    `bulges`: three rows of three for each edge, with room (lanes.py), in which edges are written in
-    their order; `counts`: see schemes.Frame; the others as for `steepen_normals`.
+    `bulges`: shape (E, 3, 3); with `tangents.normals` of this frame, the steeper ones follow.
     """
-    if counts[1] == 0:
+    if frame.counts[ONCE] == 0:
         return
-    steepen_normals(normals, edges, off, sums, steeper)
-    for k in range(counts[1]):
-        e = split_once[k]
-        a, b, row = edge_points[e, 0], edge_points[e, 1], np.uint64(3) * np.uint64(e)
-        if is_interior[e]:
-            d = between(positions, a, b)
-            # How much the tangents turn away from the straight edge.
-            turn_a = (-FULLNESS * along(d, steeper, a)) * four(steeper, a)
-            turn_b = (-FULLNESS * along(d, steeper, b)) * four(steeper, b)
-        else:
-            p, q = beyond[e, 0], beyond[e, 1]
-            at_a, at_b = four(positions, a), four(positions, b)
-            length = length_of(between(positions, a, b))
-            share_a = length / max(length + length_of(between(positions, p, a)), TINY)
-            share_b = length / max(length + length_of(between(positions, b, q)), TINY)
-            straight = single(at_b - at_a)
-            turn_a = share_a * single(at_b - four(positions, p)) - straight
-            turn_b = share_b * single(four(positions, q) - at_a) - straight
-        write(bulges, row, NEAR * turn_a - FAR * turn_b)
-        write(bulges, row + np.uint64(MIDDLE), EIGHTH * (turn_a - turn_b))
-        write(bulges, row + np.uint64(NEAR_END), FAR * turn_a - NEAR * turn_b)
+    steepen_normals(mesh, tangents)
+    positions, steeper = frame.positions, tangents.steeper
+    for k in range(frame.counts[ONCE]):
+        e = frame.split_once[k]
+        a, b = mesh.edge_points[e, 0], mesh.edge_points[e, 1]
+        d = between(positions, a, b)
+        if mesh.is_interior[e]:
+            height_a, height_b = -FULLNESS * along(d, steeper, a), -FULLNESS * along(d, steeper, b)
+            for i in range(3):
+                write_cubic(bulges, e, i, height_a * steeper[a, i], height_b * steeper[b, i])
+            continue
+        p, q = tangents.beyond[e, 0], tangents.beyond[e, 1]
+        length = length_of(d)
+        share_a = length / max(length + length_of(between(positions, p, a)), TINY)
+        share_b = length / max(length + length_of(between(positions, b, q)), TINY)
+        for i in range(3):
+            straight = np.float32(positions[b, i] - positions[a, i])
+            turn_a = share_a * np.float32(positions[b, i] - positions[p, i]) - straight
+            turn_b = share_b * np.float32(positions[q, i] - positions[a, i]) - straight
+            write_cubic(bulges, e, i, turn_a, turn_b)
 
 
-@native
+@njit
 def measure_triangles(
     positions: Doubles, faces: Unsigned, doubled: Doubles, squared: Doubles
 ) -> None:
@@ -344,29 +273,24 @@ def measure_triangles(
         doubled[t] = area if area > SLIVER * total else 0.0
 
 
-@native
+@njit
 def weigh_neighbours(
-    faces: Unsigned,
-    triangle_edges: npt.NDArray[np.int32],
-    edge_sides: Unsigned,
-    is_interior: npt.NDArray[np.bool_],
-    doubled: Doubles,
-    squared: Doubles,
-    across: Unsigned,
-    shares: Floats,
+    mesh: Connectivity, positions: Doubles, across: Unsigned, shares: Floats
 ) -> None:
     """Write the corners across the edges of each triangle, (F, 3), and weights, shape (F, 6).
 
-    `doubled`, `squared`: twice the areas, shape (F,), and squared edges, shape (F, 3).
     Weights: of the depths of these corners, then of the bulges of the edges, which say how deep the
     corners are expected. A border edge has no corner across it, and weight 0.
     """
+    faces, edge_sides = mesh.faces, mesh.edge_sides
+    doubled, squared = np.zeros(faces.shape[0]), np.zeros((faces.shape[0], 3))
+    measure_triangles(positions, faces, doubled, squared)
     for t in range(faces.shape[0]):
         size = 0.0
         for i in range(3):
-            e = triangle_edges[t, i]
+            e = mesh.triangle_edges[t, i]
             across[t, i] = faces[t, i]
-            if e < 0 or not is_interior[e] or doubled[t] == 0.0:
+            if e < 0 or not mesh.is_interior[e] or doubled[t] == 0.0:
                 continue
             side = edge_sides[e, 1 if edge_sides[e, 0] >> 2 == t else 0]
             u, j = side >> 2, side & 3
@@ -394,42 +318,32 @@ def weigh_neighbours(
             shares[t, 3 + i] *= gain
 
 
-@native
-def raise_centres(
-    faces: Unsigned,
-    triangle_edges: npt.NDArray[np.int32],
-    splits: npt.NDArray[np.uint8],
-    growth_once: Floats,
-    first_points: Unsigned,
-    across: Unsigned,
-    shares: Floats,
-    centre_triangles: Unsigned,
-    counts: npt.NDArray[np.int64],
-    sides: Doubles,
-    higher: Doubles,
-    vertices: Floats,
-) -> None:
+@njit
+def raise_centres(mesh: Connectivity, frame: Frame, across: Unsigned, shares: Floats) -> None:
     """Move the points in the middle of triangles to where edges and triangles around have them.
 
-    `counts`: see schemes.Frame. Scratch, `sides`, shape (2, 3), and `higher`, shape (3,), is in
-    double precision: the fourth power of a length is beyond single for many a unit of length.
+    What is worked out here is in double precision: the fourth power of a length is beyond single
+    for many a unit of length.
     """
-    for k in range(counts[4]):
-        t, row = centre_triangles[k], np.uint32(counts[0] + k)
+    vertices = frame.rows
+    sides, higher = np.zeros((2, 3)), np.zeros(3)
+    for k in range(frame.counts[CENTRES]):
+        t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
         growth = ONE
         for i in range(3):
-            growth = min(growth, growth_once[triangle_edges[t, i]])
+            growth = min(growth, frame.growth_once[mesh.triangle_edges[t, i]])
         if growth <= ZERO:
             continue  # not all edges have a middle
         higher[:] = 0.0
         for j in range(3):
-            a, b, c, e = faces[t, j], faces[t, (j + 1) % 3], across[t, j], triangle_edges[t, j]
-            m = first_points[e] + (splits[e] >> 1)
+            a, b, c = mesh.faces[t, j], mesh.faces[t, (j + 1) % 3], across[t, j]
+            e = mesh.triangle_edges[t, j]
+            m = frame.first_points[e] + (frame.splits[e] >> 1)
             for i in range(3):
                 bulge = vertices[m, i] - HALF * (vertices[a, i] + vertices[b, i])
                 depth = vertices[a, i] - vertices[c, i]
                 higher[i] += shares[t, j] * depth + shares[t, 3 + j] * bulge
-        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        a, b, c = mesh.faces[t, 0], mesh.faces[t, 1], mesh.faces[t, 2]
         squares = 0.0
         for i in range(3):
             at_a, at_b, at_c = vertices[a, i], vertices[b, i], vertices[c, i]

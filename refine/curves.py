@@ -21,16 +21,14 @@ import numpy as np
 import numpy.typing as npt
 
 from .connectivity import Connectivity
-from .lanes import four, write
-from .masks import grown, growth_of, write_normal
-from .native import Call, has_room, native, with_room
+from .frame import ONCE, Frame
+from .jit import njit
+from .masks import growth_of_split, mix, write_mean_normal, write_normal
 from .normals import unit
 from .output import place_unmoved
-from .schemes import Frame
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
 
 ZERO = np.float32(0.0)
 QUARTER = np.float32(0.25)
@@ -59,35 +57,13 @@ class CurveScheme:
         rest_normals: Floats,
     ) -> None:
         """Take the mesh; `rest_positions` and `rest_normals`, shape (V, 3)."""
-        self._connectivity = connectivity
-        self._bulge_rows = with_room(np.zeros((3 * len(connectivity.edges), 3), dtype=np.float32))
-        self._bulges = self._bulge_rows.reshape(-1, 3, 3)
-        self._everything: Frame | None = None
+        self._mesh = connectivity
+        self._bulges = np.zeros((len(connectivity.edges), 3, 3), dtype=np.float32)
+        self._every_edge = _frame_of_every_edge(connectivity)
 
     def place(self, frame: Frame) -> None:
         """Write vertices as they are, and the points of split edges on their curves."""
-        self._bulge(frame, self._bulges)
-        frame.bound(self._bind_pointing)()
-
-    def _bind_pointing(self, frame: Frame) -> list[Call]:
-        """Return the call that writes all rows of a frame when bulges and normals are there."""
-        assert has_room(frame.points)
-        mesh = self._connectivity
-        pointing = place_on_curves.bind(
-            frame.points,
-            self._vertex_normals(frame),
-            mesh.edge_points,
-            mesh.edge_wings,
-            mesh.is_interior,
-            frame.splits,
-            *frame.growth,
-            frame.first_points,
-            frame.split_once,
-            frame.counts,
-            self._bulge_rows,
-            frame.rows,
-        )
-        return [pointing]
+        place_on_curves(self._mesh, frame, self._vertex_normals(frame), self._bulge(frame))
 
     def all_bulges(self, positions: Doubles, normals: Floats) -> Floats:
         """Bulges of all edges as if each were split once, shape (E, 3, 3): middles are number 1.
@@ -95,123 +71,98 @@ class CurveScheme:
         For criteria that ask how far an edge is from where it should be. The array is the one that
         `place` uses.
         """
-        self._bulge(self._every_edge(positions, normals), self._bulges)
-        return self._bulges
-
-    def _every_edge(self, positions: Doubles, normals: Floats) -> Frame:
-        """Return a frame in which each edge is split once; the same for the same arrays."""
-        if not has_room(positions):
-            positions = with_room(positions)
-        frame = self._everything
-        if frame is None or frame.positions is not positions or frame.normals is not normals:
-            edge_count = len(self._bulges)
-            none = np.zeros(0, dtype=np.float32)
-            every_edge = np.arange(edge_count, dtype=np.uint32)
-            frame = self._everything = Frame(
-                positions=positions,
-                points=none,
-                normals=normals,
-                splits=np.ones(edge_count, dtype=np.uint8),
-                growth_once=none,
-                growth_twice=none,
-                first_points=every_edge,
-                split_once=every_edge,
-                split_twice=every_edge,
-                rows=none,
-                counts=np.array([0, edge_count, 0, 0, 0]),
-            )
-        return frame
+        return self._bulge(self._every_edge._replace(positions=positions, normals=normals))
 
     def place_centres(self, frame: Frame) -> None:
         """Leave them as blending has them."""
 
     def _vertex_normals(self, frame: Frame) -> Floats:
-        """Return the array of the normals that vertices get in the output, shape (V, 3)."""
+        """Return the normals that vertices get in the output, shape (V, 3)."""
         return frame.normals
 
-    def _bulge(self, frame: Frame, bulges: Floats) -> None:
-        """Write the bulges of the split edges; of those split once the middle is enough."""
+    def _bulge(self, frame: Frame) -> Floats:
+        """Return the bulges, shape (E, 3, 3); of edges split once only the middle, if split."""
         raise NotImplementedError
 
 
-@native
+def _frame_of_every_edge(mesh: Connectivity) -> Frame:
+    """A frame without output in which each edge is split once."""
+    edge_count = len(mesh.edges)
+    none, every = np.zeros(0, dtype=np.float32), np.arange(edge_count, dtype=np.uint32)
+    return Frame(
+        positions=np.zeros((0, 3)),
+        points=np.zeros((0, 3), dtype=np.float32),
+        normals=np.zeros((0, 3), dtype=np.float32),
+        splits=np.ones(edge_count, dtype=np.uint8),
+        growth_once=none,
+        growth_twice=none,
+        first_points=every,
+        split_once=every,
+        split_twice=every,
+        configurations=np.zeros(0, dtype=np.uint16),
+        centre_triangles=np.zeros(0, dtype=np.uint32),
+        counts=np.array([0, edge_count, 0, 0, 0]),
+        rows=np.zeros((0, 0), dtype=np.float32),
+    )
+
+
+@njit
 def stand_upright(
     vertices: Floats,
+    start: np.uint32,
+    end: np.uint32,
     a: np.uint32,
     b: np.uint32,
-    row: np.uint32,
-    has_quarters: bool,
     share: np.float32,
-) -> None:
-    """Write the normal of the middle of an edge: the mean, less a share of its slope."""
-    start = np.uint32(row - 1) if has_quarters else a
-    end = np.uint32(row + 1) if has_quarters else b
+) -> tuple[np.float32, np.float32, np.float32]:
+    """The mean normal of a and b, less a share of its slope on the way from start to end.
+
+    All four are rows of the output; the result has length one.
+    """
     along = slope = ZERO
     for i in range(3):
         d = vertices[end, i] - vertices[start, i]
         along += d * d
         slope += d * (vertices[a, 3 + i] + vertices[b, 3 + i])
     slope *= share / max(along, TINY)
-    x, y, z = unit(
+    return unit(
         vertices[a, 3] + vertices[b, 3] - slope * (vertices[end, 0] - vertices[start, 0]),
         vertices[a, 4] + vertices[b, 4] - slope * (vertices[end, 1] - vertices[start, 1]),
         vertices[a, 5] + vertices[b, 5] - slope * (vertices[end, 2] - vertices[start, 2]),
     )
-    write_normal(vertices, row, x, y, z)
 
 
-@native
-def turn_quarter(vertices: Floats, end: np.uint32, middle: np.uint32, row: np.uint32) -> None:
-    """Write the normal of a quarter point: the mean of its neighbours'."""
-    x, y, z = unit(
-        vertices[end, 3] + vertices[middle, 3],
-        vertices[end, 4] + vertices[middle, 4],
-        vertices[end, 5] + vertices[middle, 5],
-    )
-    write_normal(vertices, row, x, y, z)
-
-
-@native
-def place_on_curves(
-    points: Floats,
-    normals: Floats,
-    edge_points: Unsigned,
-    edge_wings: Unsigned,
-    is_interior: npt.NDArray[np.bool_],
-    splits: npt.NDArray[np.uint8],
-    growth_once: Floats,
-    growth_twice: Floats,
-    first_points: Unsigned,
-    split_once: Unsigned,
-    counts: npt.NDArray[np.int64],
-    bulges: Floats,
-    vertices: Floats,
-) -> None:
+@njit
+def place_on_curves(mesh: Connectivity, frame: Frame, normals: Floats, bulges: Floats) -> None:
     """Write vertices as they are, and the one or three points of every split edge.
 
-    `points` and `bulges`, rows of three, have room (lanes.py); `counts`: see schemes.Frame.
+    `normals`: of the vertices, shape (V, 3).
     """
+    points, vertices = frame.points, frame.rows
     place_unmoved(points, normals, vertices)
-    for k in range(counts[1]):
-        e = split_once[k]
-        a, b = edge_points[e, 0], edge_points[e, 1]
-        row, bulge = np.uint32(first_points[e] + (splits[e] >> 1)), np.uint64(3) * np.uint64(e)
-        at_a, at_b, share = four(points, a), four(points, b), growth_of(e, growth_once)
-        middle = HALF * (at_a + at_b) + share * four(bulges, bulge + np.uint64(MIDDLE))
-        write(vertices, row, middle)
-        if splits[e] == 2:
-            near_a = THREE_QUARTERS * at_a + QUARTER * at_b + four(bulges, bulge)
-            near_b = THREE_QUARTERS * at_b + QUARTER * at_a
-            near_b = near_b + four(bulges, bulge + np.uint64(NEAR_END))
-            near_a = grown(HALF * (at_a + middle), near_a, e, growth_twice)
-            near_b = grown(HALF * (at_b + middle), near_b, e, growth_twice)
-            write(vertices, np.uint32(row - 1), near_a)
-            write(vertices, np.uint32(row + 1), near_b)
-        if is_interior[e]:
+    for k in range(frame.counts[ONCE]):
+        e = frame.split_once[k]
+        a, b = mesh.edge_points[e, 0], mesh.edge_points[e, 1]
+        row = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
+        near_a, near_b = np.uint32(row - 1), np.uint32(row + 1)
+        is_twice = frame.splits[e] == 2
+        share, twice = frame.growth_once[e], frame.growth_twice[e]
+        for i in range(3):
+            at_a, at_b = points[a, i], points[b, i]
+            middle = HALF * (at_a + at_b) + share * bulges[e, MIDDLE, i]
+            vertices[row, i] = middle
+            if is_twice:
+                full_a = THREE_QUARTERS * at_a + QUARTER * at_b + bulges[e, NEAR_START, i]
+                full_b = THREE_QUARTERS * at_b + QUARTER * at_a + bulges[e, NEAR_END, i]
+                vertices[near_a, i] = mix(HALF * (at_a + middle), full_a, twice)
+                vertices[near_b, i] = mix(HALF * (at_b + middle), full_b, twice)
+        if mesh.is_interior[e]:
             for i in range(4):
-                wing = edge_wings[e, i]
-                share = min(share, growth_of(wing, growth_once) if splits[wing] > 0 else ZERO)
-        stand_upright(vertices, a, b, row, splits[e] == 2, UPRIGHT * share)
-        if splits[e] == 2:
-            turn_quarter(vertices, a, row, np.uint32(row - 1))
-            turn_quarter(vertices, b, row, np.uint32(row + 1))
+                wing = mesh.edge_wings[e, i]
+                share = min(share, growth_of_split(frame.splits, frame.growth_once, wing))
+        start, end = (near_a, near_b) if is_twice else (a, b)
+        x, y, z = stand_upright(vertices, start, end, a, b, UPRIGHT * share)
+        write_normal(vertices, row, x, y, z)
+        if is_twice:
+            write_mean_normal(vertices, a, row, near_a)
+            write_mean_normal(vertices, b, row, near_b)

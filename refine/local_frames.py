@@ -13,12 +13,15 @@ or the other, every second triangle cut across the fold, and small teeth were se
 import numpy as np
 import numpy.typing as npt
 
-from .native import native
-from .normals import unit
+from .connectivity import Connectivity
+from .frame import ONCE, Frame
+from .jit import njit
+from .normals import between, unit
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
 Unsigned = npt.NDArray[np.uint32]
+Vector = tuple[np.float32, np.float32, np.float32]
 
 SLIDE = np.float32(0.6)
 """How far the middle of a triangle goes from the centroid to the middle of what bends. Chosen: all
@@ -35,38 +38,25 @@ FOUR = np.float32(4.0)
 TINY = np.finfo(np.float32).tiny
 
 
-@native
-def write_axes(
-    x: np.float32,
-    y: np.float32,
-    z: np.float32,
-    u: np.float32,
-    v: np.float32,
-    w: np.float32,
-    axes: Floats,
-    k: np.uint64,
-) -> None:
-    """Write three orthogonal directions of length one: (x y z), then (u v w) made normal to it.
+@njit
+def write_axes(up: Vector, towards: Vector, axes: Floats) -> None:
+    """Write three orthogonal directions of length one as rows of `axes`, shape (3, 3).
 
-    Into rows k, k + 1, k + 2 of `axes`.
+    The first is `up`, the second is `towards` made normal to it.
     """
-    x, y, z = unit(x, y, z)
+    x, y, z = unit(up[0], up[1], up[2])
+    u, v, w = towards
     slope = x * u + y * v + z * w
     u, v, w = unit(u - slope * x, v - slope * y, w - slope * z)
-    second, third = k + np.uint64(1), k + np.uint64(2)
-    axes[k, 0], axes[k, 1], axes[k, 2] = x, y, z
-    axes[second, 0], axes[second, 1], axes[second, 2] = u, v, w
-    axes[third, 0], axes[third, 1], axes[third, 2] = y * w - z * v, z * u - x * w, x * v - y * u
+    axes[0, 0], axes[0, 1], axes[0, 2] = x, y, z
+    axes[1, 0], axes[1, 1], axes[1, 2] = u, v, w
+    axes[2, 0], axes[2, 1], axes[2, 2] = y * w - z * v, z * u - x * w, x * v - y * u
 
 
-@native
-def upright(
-    positions: Doubles, normals: Floats, a: np.uint32, b: np.uint32
-) -> tuple[np.float32, np.float32, np.float32]:
+@njit
+def upright(positions: Doubles, normals: Floats, a: np.uint32, b: np.uint32) -> Vector:
     """Return the mean of the normals at both ends of an edge, made normal to it, of length one."""
-    x = np.float32(positions[b, 0] - positions[a, 0])
-    y = np.float32(positions[b, 1] - positions[a, 1])
-    z = np.float32(positions[b, 2] - positions[a, 2])
+    x, y, z = between(positions, a, b)
     u = normals[a, 0] + normals[b, 0]
     v = normals[a, 1] + normals[b, 1]
     w = normals[a, 2] + normals[b, 2]
@@ -74,128 +64,58 @@ def upright(
     return unit(u - slope * x, v - slope * y, w - slope * z)
 
 
-@native
-def edge_axes(
-    positions: Doubles,
-    normals: Floats,
-    edge_points: Unsigned,
-    splits: npt.NDArray[np.uint8],
-    split_once: Unsigned,
-    counts: npt.NDArray[np.int64],
-    axes: Floats,
-) -> None:
+@njit
+def edge_axes(mesh: Connectivity, frame: Frame, normals: Floats, axes: Floats) -> None:
     """Write the directions of the points of the split edges: up, along the edge, across.
 
-    `axes`: nine rows for each edge; `counts`: see schemes.Frame.
+    `normals`: of vertices, shape (V, 3); `axes`: shape (E, 3, 3, 3), edge, point, direction.
     Edges that are split once have a middle only. Up is upright on the edge there, and half way from
     there to the normal at the end at the quarters: a point near a vertex turns with it, not with
     the edge.
     """
-    for k in range(counts[1]):
-        e = split_once[k]
-        a, b = edge_points[e, 0], edge_points[e, 1]
-        u, v, w = upright(positions, normals, a, b)
-        for point in range(3):
-            x, y, z = u, v, w
-            if point != 1:
-                if splits[e] < 2:
-                    continue
-                near = a if point == 0 else b
-                x, y, z = u + normals[near, 0], v + normals[near, 1], w + normals[near, 2]
-            write_axes(
-                x,
-                y,
-                z,
-                np.float32(positions[b, 0] - positions[a, 0]),
-                np.float32(positions[b, 1] - positions[a, 1]),
-                np.float32(positions[b, 2] - positions[a, 2]),
-                axes,
-                np.uint64(9) * np.uint64(e) + np.uint64(3 * point),
-            )
+    for k in range(frame.counts[ONCE]):
+        e = frame.split_once[k]
+        a, b = mesh.edge_points[e, 0], mesh.edge_points[e, 1]
+        u, v, w = upright(frame.positions, normals, a, b)
+        along = between(frame.positions, a, b)
+        write_axes((u, v, w), along, axes[e, 1])
+        if frame.splits[e] == 2:
+            near_a = u + normals[a, 0], v + normals[a, 1], w + normals[a, 2]
+            near_b = u + normals[b, 0], v + normals[b, 1], w + normals[b, 2]
+            write_axes(near_a, along, axes[e, 0])
+            write_axes(near_b, along, axes[e, 2])
 
 
-@native
+@njit
 def vertex_axes(positions: Doubles, normals: Floats, towards: Unsigned, axes: Floats) -> None:
-    """Write the directions of all vertices, three rows each: up, towards a neighbour, across."""
+    """Write the directions of all vertices, shape (V, 3, 3): up, towards a neighbour, across."""
     for v in range(positions.shape[0]):
-        u = towards[v]
-        write_axes(
-            normals[v, 0],
-            normals[v, 1],
-            normals[v, 2],
-            np.float32(positions[u, 0] - positions[v, 0]),
-            np.float32(positions[u, 1] - positions[v, 1]),
-            np.float32(positions[u, 2] - positions[v, 2]),
-            axes,
-            np.uint64(3 * v),
-        )
+        up = normals[v, 0], normals[v, 1], normals[v, 2]
+        write_axes(up, between(positions, v, towards[v]), axes[v])
 
 
-@native
+@njit
 def triangle_axes(
-    positions: Doubles,
-    normals: Floats,
-    faces: Unsigned,
-    listed: Unsigned,
-    count: npt.NDArray[np.int64],
-    shares: Floats,
-    axes: Floats,
+    positions: Doubles, normals: Floats, faces: Unsigned, t: int, shares: Floats, axes: Floats
 ) -> None:
-    """Write the directions of the listed triangles, three rows each: up, along edge 0, across.
+    """Write the directions of a triangle, shape (3, 3): up, along edge 0, across.
 
-    `count`: how many are listed, shape (1,); `shares`: where in the triangles (slide_middles). Up
-    is what the quadratic has there that has the normals of the corners and those upright on the
-    edges between them.
+    `shares`: where in it (slide_middle). Up is what the quadratic has there that has the normals of
+    the corners and those upright on the edges between them.
     """
-    for k in range(count[0]):
-        t = listed[k]
-        x = y = z = ZERO
-        for i in range(3):
-            a, b = faces[t, i], faces[t, (i + 1) % 3]
-            u, v, w = upright(positions, normals, a, b)
-            start, end = shares[t, i], shares[t, (i + 1) % 3]
-            middle, corner = FOUR * start * end, start * (TWO * start - ONE)
-            x += middle * u + corner * normals[a, 0]
-            y += middle * v + corner * normals[a, 1]
-            z += middle * w + corner * normals[a, 2]
-        a, b = faces[t, 0], faces[t, 1]
-        write_axes(
-            x,
-            y,
-            z,
-            np.float32(positions[b, 0] - positions[a, 0]),
-            np.float32(positions[b, 1] - positions[a, 1]),
-            np.float32(positions[b, 2] - positions[a, 2]),
-            axes,
-            np.uint64(3) * np.uint64(t),
-        )
+    x = y = z = ZERO
+    for i in range(3):
+        a, b = faces[t, i], faces[t, (i + 1) % 3]
+        u, v, w = upright(positions, normals, a, b)
+        start, end = shares[i], shares[(i + 1) % 3]
+        middle, corner = FOUR * start * end, start * (TWO * start - ONE)
+        x += middle * u + corner * normals[a, 0]
+        y += middle * v + corner * normals[a, 1]
+        z += middle * w + corner * normals[a, 2]
+    write_axes((x, y, z), between(positions, faces[t, 0], faces[t, 1]), axes)
 
 
-@native
-def list_grown(
-    triangle_edges: npt.NDArray[np.int32],
-    growth_once: Floats,
-    centre_triangles: Unsigned,
-    counts: npt.NDArray[np.int64],
-    grown: Unsigned,
-    count: npt.NDArray[np.int64],
-) -> None:
-    """List the triangles all of whose edges have grown, and count them: others show nothing.
-
-    `counts`: see schemes.Frame; `count`, shape (1,), gets how many there are.
-    """
-    count[0] = 0
-    for k in range(counts[4]):
-        t = centre_triangles[k]
-        once = ONE
-        for i in range(3):
-            once = min(once, growth_once[triangle_edges[t, i]])
-        if once > ZERO:
-            grown[count[0]] = t
-            count[0] += 1
-
-
-@native
+@njit
 def bend_of(positions: Doubles, normals: Floats, a: np.uint32, b: np.uint32) -> np.float32:
     """How far an edge bulges, squared, with a little for its length."""
     length = height_a = height_b = cosine = ZERO
@@ -210,25 +130,25 @@ def bend_of(positions: Doubles, normals: Floats, a: np.uint32, b: np.uint32) -> 
     return np.float32(bend + FLAT * length)
 
 
-@native
-def slide_middles(
-    positions: Doubles,
-    normals: Floats,
-    faces: Unsigned,
-    listed: Unsigned,
-    count: npt.NDArray[np.int64],
-    shares: Floats,
+@njit
+def slide_middle(
+    positions: Doubles, normals: Floats, faces: Unsigned, t: int, shares: Floats
 ) -> None:
-    """Write where the middles of the listed triangles lie: shares of the corners, shape (F, 3).
+    """Write where the middle of a triangle lies: shares of its corners, shape (3,)."""
+    a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+    ab, bc = bend_of(positions, normals, a, b), bend_of(positions, normals, b, c)
+    ca = bend_of(positions, normals, c, a)
+    scale = SLIDE * HALF / max(ab + bc + ca, TINY)
+    shares[0] = (ONE - SLIDE) * THIRD + scale * (ab + ca)
+    shares[1] = (ONE - SLIDE) * THIRD + scale * (bc + ab)
+    shares[2] = (ONE - SLIDE) * THIRD + scale * (ca + bc)
 
-    `count`: how many are listed, shape (1,).
-    """
-    for k in range(count[0]):
-        t = listed[k]
-        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        ab, bc = bend_of(positions, normals, a, b), bend_of(positions, normals, b, c)
-        ca = bend_of(positions, normals, c, a)
-        scale = SLIDE * HALF / max(ab + bc + ca, TINY)
-        shares[t, 0] = (ONE - SLIDE) * THIRD + scale * (ab + ca)
-        shares[t, 1] = (ONE - SLIDE) * THIRD + scale * (bc + ab)
-        shares[t, 2] = (ONE - SLIDE) * THIRD + scale * (ca + bc)
+
+@njit
+def find_middles(
+    positions: Doubles, normals: Floats, faces: Unsigned, shares: Floats, axes: Floats
+) -> None:
+    """Write shares of the corners, shape (F, 3), and directions, (F, 3, 3), of all triangles."""
+    for t in range(faces.shape[0]):
+        slide_middle(positions, normals, faces, t, shares[t])
+        triangle_axes(positions, normals, faces, t, shares[t], axes[t])

@@ -34,28 +34,27 @@ The paper leaves open, and we decide: m, p, q, r, s enter the second level as th
 them, so that the order of edges cannot matter.
 
 *Growth* is how much of its way from the straight edge a point has gone: 0 to 1, for each level of
-each edge, in arrays of one column; unless the frame is blended (blend.py) these have no column, and
-growth is 1. A mix with growth 0 or 1 returns one of its two sides to the last bit.
+each edge; 1 everywhere unless the frame is blended (blend.py). A mix with growth 0 or 1 returns one
+of its two sides to the last bit.
 
 Normals of new points are interpolated between their two neighbours on the edge and normalised
 (section 4.4, first paragraph).
-
-Positions are handled four numbers at a time (lanes.py). So a row of the output gets its position
-first and then, over the fourth number, its normal (half the time on an edge that is split twice).
 """
+
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from .lanes import Four, four, write
-from .native import native
-from .normals import unit
+from .connectivity import Connectivity
+from .frame import ONCE, TWICE, Frame
+from .jit import njit
+from .normals import Number, unit
+from .rings import NEAR, Rings
 
 Floats = npt.NDArray[np.float32]
-Unsigned = npt.NDArray[np.uint32]
+Small = npt.NDArray[np.uint8]
 
-NEAR = 8
-"""Neighbours that every vertex has in its table (rings.py)."""
 EDGE_END = np.float32(3 / 8)
 """First and second level, interior: end points of the edge or half-edge (Fig. 3, Fig. 4 left)."""
 EDGE_WING = np.float32(1 / 8)
@@ -74,224 +73,155 @@ MIDDLE_RING = np.float32(1 / 16)
 ZERO = np.float32(0.0)
 HALF = np.float32(0.5)
 ONE = np.float32(1.0)
-ALL_GROWN = np.zeros((0, 0), dtype=np.float32)
-"""Growth of edges where nothing is blended."""
 
 
-@native
-def mix(from_: Four, to: Four, growth: np.float32) -> Four:
-    """One side at growth 0, the other at growth 1, to the last bit."""
-    return (ONE - growth) * from_ + growth * to
+class FirstLevel(NamedTuple):
+    """What the second level needs of the first: scratch of a frame."""
+
+    vertex_growth: Floats
+    """How far the most grown edge at each vertex has grown, shape (V,); 0 where none is split."""
+    middles: Floats
+    """First-level points as they are when fully grown, shape (E, 3); only of edges split now."""
 
 
-@native
-def growth_of(e: int | np.uint32, growth: Floats) -> np.float32:
-    """How far a point of an edge has grown; without columns the compiler knows that it is 1."""
-    return growth[e, 0] if growth.shape[1] else ONE
+@njit
+def mix(start: np.float32, end: np.float32, share: np.float32) -> np.float32:
+    """A share of the way from one number to another; to the last bit one of them at 0 and at 1."""
+    return (ONE - share) * start + share * end
 
 
-@native
-def grown(from_: Four, to: Four, e: int | np.uint32, growth: Floats) -> Four:
-    """Mix as far as a point of an edge has grown."""
-    return mix(from_, to, growth[e, 0]) if growth.shape[1] else to
-
-
-@native
+@njit
 def write_normal(
-    vertices: Floats, row: int | np.uint32, x: np.float32, y: np.float32, z: np.float32
+    vertices: Floats, row: Number, x: np.float32, y: np.float32, z: np.float32
 ) -> None:
     """Write a normal, after its position."""
     vertices[row, 3], vertices[row, 4], vertices[row, 5] = x, y, z
 
 
-@native
-def grow_vertices(
-    edge_points: Unsigned,
-    growth_once: Floats,
-    split_once: Unsigned,
-    once_count: int,
-    vertex_growth: Floats,
-) -> None:
+@njit
+def write_mean_normal(vertices: Floats, p: np.uint32, q: np.uint32, row: np.uint32) -> None:
+    """Write the unit mean of the normals of two rows."""
+    x, y, z = unit(
+        vertices[p, 3] + vertices[q, 3],
+        vertices[p, 4] + vertices[q, 4],
+        vertices[p, 5] + vertices[q, 5],
+    )
+    write_normal(vertices, row, x, y, z)
+
+
+@njit
+def grow_vertices(mesh: Connectivity, frame: Frame, vertex_growth: Floats) -> None:
     """A vertex moves as much as the most grown edge at it: 0 where none is split."""
-    for v in range(vertex_growth.shape[0]):
-        vertex_growth[v] = ZERO
-    for k in range(once_count):
-        e = split_once[k]
-        a, b, growth = edge_points[e, 0], edge_points[e, 1], growth_of(e, growth_once)
-        if growth == ONE:  # there is no more: nothing has to be read, and nothing waits for it
-            vertex_growth[a] = vertex_growth[b] = ONE
-        else:
-            vertex_growth[a] = max(vertex_growth[a], growth)
-            vertex_growth[b] = max(vertex_growth[b], growth)
+    vertex_growth[:] = ZERO
+    for k in range(frame.counts[ONCE]):
+        e = frame.split_once[k]
+        a, b, growth = mesh.edge_points[e, 0], mesh.edge_points[e, 1], frame.growth_once[e]
+        vertex_growth[a] = max(vertex_growth[a], growth)
+        vertex_growth[b] = max(vertex_growth[b], growth)
 
 
-@native
+@njit
 def place_vertices(
-    points: Floats,
-    normals: Floats,
-    vertex_growth: Floats,
-    own: Floats,
-    ring: Floats,
-    near: Unsigned,
-    starts: Unsigned,
-    others: Unsigned,
-    vertices: Floats,
+    points: Floats, normals: Floats, rings: Rings, growth: Floats, vertices: Floats
 ) -> None:
-    """Write the original vertices, those at split edges moved by the vertex rule (Fig. 3)."""
+    """Write the original vertices, those at split edges moved by the vertex rule (Fig. 3).
+
+    `growth`: of each vertex, shape (V,).
+    """
     for v in range(points.shape[0]):
-        point = four(points, v)
-        if vertex_growth[v] > ZERO:
-            total = four(points, near[v, 0])
-            for k in range(1, NEAR):
-                total = total + four(points, near[v, k])
-            for k in range(starts[v], starts[v + 1]):
-                total = total + four(points, others[k])
-            point = mix(point, own[v] * point + ring[v] * total, vertex_growth[v])
-        write(vertices, v, point)
         write_normal(vertices, v, normals[v, 0], normals[v, 1], normals[v, 2])
+        if growth[v] == ZERO:
+            for i in range(3):
+                vertices[v, i] = points[v, i]
+            continue
+        for i in range(3):
+            total = points[rings.near[v, 0], i]
+            for k in range(1, NEAR):
+                total += points[rings.near[v, k], i]
+            for k in range(rings.starts[v], rings.starts[v + 1]):
+                total += points[rings.others[k], i]
+            moved = rings.own[v] * points[v, i] + rings.ring[v] * total
+            vertices[v, i] = mix(points[v, i], moved, growth[v])
 
 
-@native
-def place_middles(
-    points: Floats,
-    normals: Floats,
-    edge_points: Unsigned,
-    is_interior: npt.NDArray[np.bool_],
-    splits: npt.NDArray[np.uint8],
-    growth_once: Floats,
-    first_points: Unsigned,
-    split_once: Unsigned,
-    once_count: int,
-    middles: Floats,
-    vertices: Floats,
-) -> None:
+@njit
+def place_middles(mesh: Connectivity, frame: Frame, middles: Floats) -> None:
     """Write the first-level point of every split edge (Fig. 3), and keep it in `middles`."""
-    for k in range(once_count):
-        e = split_once[k]
-        a, b, c, d = edge_points[e, 0], edge_points[e, 1], edge_points[e, 2], edge_points[e, 3]
-        row = np.uint32(first_points[e] + (splits[e] >> 1))
-        ends = four(points, a) + four(points, b)
-        if is_interior[e]:
-            middle = EDGE_END * ends + EDGE_WING * (four(points, c) + four(points, d))
-        else:
+    points, vertices = frame.points, frame.rows
+    for k in range(frame.counts[ONCE]):
+        e = frame.split_once[k]
+        a, b = mesh.edge_points[e, 0], mesh.edge_points[e, 1]
+        c, d = mesh.edge_points[e, 2], mesh.edge_points[e, 3]
+        row = frame.first_points[e] + (frame.splits[e] >> 1)
+        growth = frame.growth_once[e]
+        for i in range(3):
+            ends = points[a, i] + points[b, i]
             middle = BORDER_EDGE_END * ends
-        write(middles, e, middle)
-        if growth_of(e, growth_once) < ONE:
-            straight = HALF * (four(vertices, a) + four(vertices, b))
-            middle = grown(straight, middle, e, growth_once)
-        write(vertices, row, middle)
+            if mesh.is_interior[e]:
+                middle = EDGE_END * ends + EDGE_WING * (points[c, i] + points[d, i])
+            middles[e, i] = middle
+            if growth < ONE:
+                middle = mix(HALF * (vertices[a, i] + vertices[b, i]), middle, growth)
+            vertices[row, i] = middle
         x, y, z = unit(
-            normals[a, 0] + normals[b, 0],
-            normals[a, 1] + normals[b, 1],
-            normals[a, 2] + normals[b, 2],
+            frame.normals[a, 0] + frame.normals[b, 0],
+            frame.normals[a, 1] + frame.normals[b, 1],
+            frame.normals[a, 2] + frame.normals[b, 2],
         )
         write_normal(vertices, row, x, y, z)
 
 
-@native
-def wing(
-    straight: Four,
-    e: np.uint32,
-    splits: npt.NDArray[np.uint8],
-    growth_once: Floats,
-    middles: Floats,
-) -> Four:
-    """The first-level point of a neighbour edge, its middle where it has none."""
-    middle = four(middles, e)
-    is_split = splits[e] > 0
-    if growth_once.shape[1]:
-        return mix(straight, middle, growth_once[e, 0] * np.float32(is_split))  # no branch
-    return middle if is_split else straight
+@njit
+def growth_of_split(splits: Small, growth: Floats, e: np.uint32) -> np.float32:
+    """How far the middle of an edge has grown; 0 where it has none."""
+    return growth[e] if splits[e] > 0 else ZERO
 
 
-@native
-def place_quarters(
-    points: Floats,
-    edge_points: Unsigned,
-    edge_wings: Unsigned,
-    is_interior: npt.NDArray[np.bool_],
-    splits: npt.NDArray[np.uint8],
-    growth_once: Floats,
-    growth_twice: Floats,
-    first_points: Unsigned,
-    split_twice: Unsigned,
-    twice_count: int,
-    middles: Floats,
-    vertices: Floats,
-) -> None:
+@njit
+def place_quarters(mesh: Connectivity, frame: Frame, middles: Floats) -> None:
     """Write the quarter points of every edge that is split twice, and move its middle (Fig. 4)."""
-    for k in range(twice_count):
-        e = split_twice[k]
-        near_a = first_points[e]
+    points, vertices = frame.points, frame.rows
+    splits, once = frame.splits, frame.growth_once
+    for k in range(frame.counts[TWICE]):
+        e = frame.split_twice[k]
+        near_a = frame.first_points[e]
         centre, near_b = np.uint32(near_a + 1), np.uint32(near_a + 2)
-        a, b = edge_points[e, 0], edge_points[e, 1]
-        m, moved_a, moved_b = four(middles, e), four(vertices, a), four(vertices, b)
-        ends_a, ends_b = moved_a + m, moved_b + m
-        if is_interior[e]:
-            at_a, at_b = four(points, a), four(points, b)
-            at_c, at_d = four(points, edge_points[e, 2]), four(points, edge_points[e, 3])
-            wing_p, wing_q = edge_wings[e, 0], edge_wings[e, 1]
-            wing_r, wing_s = edge_wings[e, 2], edge_wings[e, 3]
-            p = wing(HALF * (at_a + at_c), wing_p, splits, growth_once, middles)
-            q = wing(HALF * (at_b + at_c), wing_q, splits, growth_once, middles)
-            r = wing(HALF * (at_a + at_d), wing_r, splits, growth_once, middles)
-            s = wing(HALF * (at_b + at_d), wing_s, splits, growth_once, middles)
-            wings_a, wings_b = p + r, q + s
-            ring = (moved_a + moved_b) + (wings_a + wings_b)
-            beside_a = EDGE_END * ends_a + EDGE_WING * wings_a
-            beside_b = EDGE_END * ends_b + EDGE_WING * wings_b
-            middle = MIDDLE_OWN * m + MIDDLE_RING * ring
-        else:
-            beside_a, beside_b = BORDER_EDGE_END * ends_a, BORDER_EDGE_END * ends_b
-            middle = BORDER_MIDDLE_OWN * m + BORDER_MIDDLE_RING * (moved_a + moved_b)
-        x, y, z = vertices[centre, 3], vertices[centre, 4], vertices[centre, 5]
-        write(vertices, near_a, grown(HALF * ends_a, beside_a, e, growth_twice))
-        write(vertices, centre, grown(m, middle, e, growth_twice))
-        write(vertices, near_b, grown(HALF * ends_b, beside_b, e, growth_twice))
-        x_a, y_a, z_a = unit(vertices[a, 3] + x, vertices[a, 4] + y, vertices[a, 5] + z)
-        x_b, y_b, z_b = unit(vertices[b, 3] + x, vertices[b, 4] + y, vertices[b, 5] + z)
-        write_normal(vertices, near_a, x_a, y_a, z_a)
-        write_normal(vertices, centre, x, y, z)
-        write_normal(vertices, near_b, x_b, y_b, z_b)
+        a, b = mesh.edge_points[e, 0], mesh.edge_points[e, 1]
+        c, d = mesh.edge_points[e, 2], mesh.edge_points[e, 3]
+        # p, q, r, s: the edges ac, bc, ad, bd
+        p, q = mesh.edge_wings[e, 0], mesh.edge_wings[e, 1]
+        r, s = mesh.edge_wings[e, 2], mesh.edge_wings[e, 3]
+        grown_p, grown_q = growth_of_split(splits, once, p), growth_of_split(splits, once, q)
+        grown_r, grown_s = growth_of_split(splits, once, r), growth_of_split(splits, once, s)
+        growth = frame.growth_twice[e]
+        for i in range(3):
+            m, moved_a, moved_b = middles[e, i], vertices[a, i], vertices[b, i]
+            ends_a, ends_b = moved_a + m, moved_b + m
+            if mesh.is_interior[e]:
+                at_a, at_b, at_c, at_d = points[a, i], points[b, i], points[c, i], points[d, i]
+                at_p = mix(HALF * (at_a + at_c), middles[p, i], grown_p)
+                at_q = mix(HALF * (at_b + at_c), middles[q, i], grown_q)
+                at_r = mix(HALF * (at_a + at_d), middles[r, i], grown_r)
+                at_s = mix(HALF * (at_b + at_d), middles[s, i], grown_s)
+                wings_a, wings_b = at_p + at_r, at_q + at_s
+                ring = (moved_a + moved_b) + (wings_a + wings_b)
+                beside_a = EDGE_END * ends_a + EDGE_WING * wings_a
+                beside_b = EDGE_END * ends_b + EDGE_WING * wings_b
+                middle = MIDDLE_OWN * m + MIDDLE_RING * ring
+            else:
+                beside_a, beside_b = BORDER_EDGE_END * ends_a, BORDER_EDGE_END * ends_b
+                middle = BORDER_MIDDLE_OWN * m + BORDER_MIDDLE_RING * (moved_a + moved_b)
+            vertices[near_a, i] = mix(HALF * ends_a, beside_a, growth)
+            vertices[near_b, i] = mix(HALF * ends_b, beside_b, growth)
+            vertices[centre, i] = mix(m, middle, growth)
+        write_mean_normal(vertices, a, centre, near_a)
+        write_mean_normal(vertices, b, centre, near_b)
 
 
-@native
-def place_points(
-    points: Floats,
-    normals: Floats,
-    edge_points: Unsigned,
-    edge_wings: Unsigned,
-    is_interior: npt.NDArray[np.bool_],
-    own: Floats,
-    ring: Floats,
-    near: Unsigned,
-    starts: Unsigned,
-    others: Unsigned,
-    splits: npt.NDArray[np.uint8],
-    growth_once: Floats,
-    growth_twice: Floats,
-    first_points: Unsigned,
-    split_once: Unsigned,
-    split_twice: Unsigned,
-    counts: npt.NDArray[np.int64],
-    vertex_growth: Floats,
-    middles: Floats,
-    vertices: Floats,
-) -> None:
-    """Write moved vertices, first level, second level: all passes in one call of compiled code.
-
-    `counts`: of edges split once and twice at 1 and 2 (schemes.Frame).
-    """
-    once_count, twice_count = counts[1], counts[2]
-    grow_vertices(edge_points, growth_once, split_once, once_count, vertex_growth)
-    place_vertices(
-        points, normals, vertex_growth, own, ring, near, starts, others, vertices
-    )  # fmt: skip
-    place_middles(
-        points, normals, edge_points, is_interior, splits, growth_once, first_points, split_once,
-        once_count, middles, vertices,
-    )  # fmt: skip
-    place_quarters(
-        points, edge_points, edge_wings, is_interior, splits, growth_once, growth_twice,
-        first_points, split_twice, twice_count, middles, vertices,
-    )  # fmt: skip
+@njit
+def place_points(mesh: Connectivity, frame: Frame, rings: Rings, first: FirstLevel) -> None:
+    """Write moved vertices, the first level and the second."""
+    grow_vertices(mesh, frame, first.vertex_growth)
+    place_vertices(frame.points, frame.normals, rings, first.vertex_growth, frame.rows)
+    place_middles(mesh, frame, first.middles)
+    place_quarters(mesh, frame, first.middles)

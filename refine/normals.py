@@ -10,72 +10,84 @@ origin loses nothing. Normals at rest and in a frame come from the same code: se
 import numpy as np
 import numpy.typing as npt
 
-from .lanes import Four, cross, four, single, write
-from .native import Call, has_room, native
+from .jit import njit
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
 Unsigned = npt.NDArray[np.uint32]
+Number = int | np.uint32
+Vector = tuple[np.float32, np.float32, np.float32]
 
 ZERO = np.float32(0.0)
 ONE = np.float32(1.0)
-TINY = np.finfo(np.float32).tiny
-"""Squared length below which a vector is left as it is instead of being normalised."""
+SHORT, LONG = np.float32(1e-30), np.float32(1e37)
+"""Squares of lengths between which single precision tells a length to the last bit."""
 
 
-def bind_normals(positions: Doubles, faces: Unsigned, normals: Floats) -> Call:
-    """Return a call that writes the unit normals of `positions` into `normals`, both (V, 3).
-
-    `positions` are made by `with_room`; `faces`: vertices of each triangle, shape (F, 3).
-    """
-    assert has_room(positions)
-    return vertex_normals.bind(positions, faces, np.empty((len(positions), 4), np.float32), normals)
-
-
-@native
-def unit(x: np.float32, y: np.float32, z: np.float32) -> tuple[np.float32, np.float32, np.float32]:
+@njit
+def unit(x: np.float32, y: np.float32, z: np.float32) -> Vector:
     """Normalise a vector; zero stays zero."""
-    scale = ONE / np.sqrt(max(x * x + y * y + z * z, TINY))
-    return x * scale, y * scale, z * scale
+    squared = x * x + y * y + z * z
+    if SHORT < squared < LONG:
+        scale = ONE / np.sqrt(squared)
+        return x * scale, y * scale, z * scale
+    return unit_of_extreme(np.float64(x), np.float64(y), np.float64(z))
 
 
-@native
-def clear(sums: Floats) -> None:
-    """Set rows of four to zero."""
-    for v in range(sums.shape[0]):
-        sums[v, 0] = sums[v, 1] = sums[v, 2] = sums[v, 3] = ZERO
+@njit
+def unit_of_extreme(x: float, y: float, z: float) -> Vector:
+    """Normalise a vector whose square single precision cannot hold; zero stays zero."""
+    length = np.sqrt(x * x + y * y + z * z)
+    if length == 0.0:
+        return ZERO, ZERO, ZERO
+    return np.float32(x / length), np.float32(y / length), np.float32(z / length)
 
 
-@native
-def cross_product(positions: Doubles, a: np.uint32, b: np.uint32, c: np.uint32) -> Four:
-    """Normal of a triangle times twice its area; `positions` have room (lanes.py)."""
-    at_a = four(positions, a)
-    return cross(single(four(positions, b) - at_a), single(four(positions, c) - at_a))
+@njit
+def between(positions: Doubles, a: Number, b: Number) -> Vector:
+    """The vector from a to b, rounded when it has been taken."""
+    return (
+        np.float32(positions[b, 0] - positions[a, 0]),
+        np.float32(positions[b, 1] - positions[a, 1]),
+        np.float32(positions[b, 2] - positions[a, 2]),
+    )
 
 
-@native
-def normalise(sums: Floats, normals: Floats) -> None:
-    """Write vectors, shape (V, 4) of which three count, at length one into rows of three."""
-    for v in range(sums.shape[0]):
-        x, y, z = unit(sums[v, 0], sums[v, 1], sums[v, 2])
-        normals[v, 0], normals[v, 1], normals[v, 2] = x, y, z
+@njit
+def cross_product(positions: Doubles, a: np.uint32, b: np.uint32, c: np.uint32) -> Vector:
+    """Normal of a triangle times twice its area."""
+    ux, uy, uz = between(positions, a, b)
+    vx, vy, vz = between(positions, a, c)
+    return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
 
 
-@native
-def vertex_normals(positions: Doubles, faces: Unsigned, sums: Floats, normals: Floats) -> None:
+@njit
+def add(vectors: Floats, v: np.uint32, x: np.float32, y: np.float32, z: np.float32) -> None:
+    """Add a vector to row v."""
+    vectors[v, 0] += x
+    vectors[v, 1] += y
+    vectors[v, 2] += z
+
+
+@njit
+def normalise(vectors: Floats) -> None:
+    """Bring vectors, shape (V, 3), to length one; those that are zero stay zero."""
+    for v in range(vectors.shape[0]):
+        x, y, z = unit(vectors[v, 0], vectors[v, 1], vectors[v, 2])
+        vectors[v, 0], vectors[v, 1], vectors[v, 2] = x, y, z
+
+
+@njit
+def vertex_normals(positions: Doubles, faces: Unsigned, normals: Floats) -> None:
     """Write the area-weighted unit normal of every vertex into `normals`, shape (V, 3).
 
-    Zero where a vertex has no triangle with an area. `sums`: scratch, shape (V, 4).
-
-    Three numbers are taken four at a time (lanes.py): behind each row of `positions` has to be
-    something to read.
+    Zero where a vertex has no triangle with an area. `faces`: vertices of triangles, shape (F, 3).
     """
-    clear(sums)
-    for k in range(faces.shape[0]):
-        t = np.uint64(k)
+    normals[:] = ZERO
+    for t in range(faces.shape[0]):
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        normal = cross_product(positions, a, b, c)
-        write(sums, a, four(sums, a) + normal)
-        write(sums, b, four(sums, b) + normal)
-        write(sums, c, four(sums, c) + normal)
-    normalise(sums, normals)
+        x, y, z = cross_product(positions, a, b, c)
+        add(normals, a, x, y, z)
+        add(normals, b, x, y, z)
+        add(normals, c, x, y, z)
+    normalise(normals)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from .arguments import AttributeLike
 from .binding import BoundRefiner
-from .output import place_unmoved
+from .output import copy_wedges, place_unmoved, place_wedge_attributes
 from .plugin import Origins, Stream, View
 
 
@@ -29,19 +29,11 @@ class PassThrough(BoundRefiner):
         attributes: Mapping[str, AttributeLike] | None = None,
     ) -> None:
         """Bind to a mesh (see `plugin.create`); there are no options."""
-        super().__init__(
-            faces, rest_positions, uv=uv, face_uv=face_uv, attributes=attributes, may_renumber=True
-        )
-        self._splits = np.zeros(len(self.connectivity.edges), dtype=np.uint8)
+        super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv, attributes=attributes)
+        mesh = self.connectivity
+        self._splits = np.zeros(len(mesh.edges), dtype=np.uint8)
         self._splits.flags.writeable = False
-        self._source = np.arange(len(self.connectivity.faces), dtype=np.int32)
-        # No rim is split, so attributes only need a row of zeros for each.
-        rim_count = len(self.connectivity.rim_edges)
-        values = self._bind_values(
-            self.connectivity, np.zeros(rim_count, np.uint8), np.zeros(rim_count, np.uint32)
-        )
-        no_rows = np.zeros((0, self.vertex_columns), dtype=np.float32)
-        self._writes = [place_unmoved.bind(self._points, self._normals, no_rows), *values]
+        self._source = np.arange(len(mesh.faces), dtype=np.int32)
 
     @property
     def splits(self) -> npt.NDArray[np.uint8]:
@@ -58,19 +50,24 @@ class PassThrough(BoundRefiner):
         """The triangles of the input."""
         return len(self.connectivity.faces)
 
-    def _fill(self, stream: Stream, view: View | None, begun: int) -> tuple[int, int]:
-        vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
+    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        mesh, vertex_count, triangle_count = (
+            self.connectivity,
+            self.vertex_capacity,
+            self.triangle_capacity,
+        )
         vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
-        for call in self._writes:
-            call.put("vertices", vertices)
-            call()
-        triangles[:triangle_count] = self._output_corners
+        place_unmoved(self._points, self._normals, vertices)
+        if self._values is not None:
+            copy_wedges(mesh, vertices)
+            place_wedge_attributes(mesh, self._values.values, vertices)
+        triangles[:triangle_count] = mesh.corners
         source[:triangle_count] = self._source
         return vertex_count, triangle_count
 
     def origins(self) -> Origins:
         """Say for every output vertex which input vertex it is."""
-        wedges = self._wedge_names()
+        wedges = self.connectivity.wedge_vertices.astype(np.int32)
         weights = np.zeros((len(wedges), 3), dtype=np.float32)
         weights[:, 0] = 1.0
         return Origins(np.stack([wedges] * 3, axis=1), weights)

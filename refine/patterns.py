@@ -65,7 +65,7 @@ The table is built at import, in a few milliseconds, and every entry is verified
 have positive area, cover the triangle exactly, use every point, and share inner edges in pairs.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -203,8 +203,7 @@ def fan(splits: tuple[int, int, int]) -> list[Triangle]:
     return [(CENTRE, start, end) for start, end in pairs]
 
 
-@dataclass(frozen=True)
-class Patterns:
+class Patterns(NamedTuple):
     """A table of subtriangles; row 0 is the triangle as it is.
 
     The paper looks up the row s_0 + 3 s_1 + 9 s_2 (section 4.3).

@@ -173,9 +173,6 @@ def create(
     `options`: what the method takes; see `refine.Kahler` and `refine.Loop`. The built-in ones all
     take `attributes`: by name, values of each vertex, shape (V, k), or a pair of values, shape
     (A, k), and the row of each corner, shape (F, 3), for values that part along seams.
-    A large mesh whose vertices or triangles lie about is walked in a better order (locality.py):
-    row v stays vertex v, `source` and `edges` keep the caller's numbers, but triangles come in
-    another order, and so do edges, of which `edges` and `triangle_edges` tell.
     Raises ValueError for an unknown name or option, for arrays that do not fit together, and for a
     refiner of an installed package that cannot be imported.
     """

@@ -16,7 +16,6 @@ import numpy.typing as npt
 from .blend import RAMP
 from .connectivity import Connectivity
 from .criterion import Thresholds
-from .native import Call, native
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
@@ -61,20 +60,9 @@ class RestCurvature:
         """Write the number of splits of every edge into `splits`, shape (E,)."""
         splits[:] = self._splits
 
-    def marking(self, normals: Floats, splits: Small) -> Call:
-        """Return the call that writes these splits again, over those of other criteria."""
-        return copy_splits.bind(self._splits, splits)
-
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
         need[:] = self._need
-
-
-@native
-def copy_splits(decided: Small, splits: Small) -> None:
-    """Write what has been decided, shape (E,)."""
-    for e in range(splits.shape[0]):
-        splits[e] = decided[e]
 
 
 def _diagonal(positions: Doubles) -> float:

@@ -12,7 +12,7 @@ The paper leaves open, and we decide: a vertex moves when any of its edges is sp
 one border edge or with more than two (a corner where surfaces meet) stays in place.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -27,13 +27,13 @@ BORDER_RING = 1 / 8
 """Its two neighbours on the curve (Fig. 3, bottom right)."""
 
 
-@dataclass(frozen=True)
-class Rings:
+class Rings(NamedTuple):
     """Rings and weights of the vertex rule: own x itself + ring x (sum over its ring).
 
     A ring is the neighbours along all edges, or along the border only for a vertex on a border
     curve. Most have eight vertices or less and are filled up to eight with the vertex itself, which
-    its own weight makes up for: a loop of always eight is three times as fast.
+    its own weight makes up for: a loop of always eight is three times as fast. Compiled code takes
+    it as it is.
     """
 
     own: npt.NDArray[np.float32]

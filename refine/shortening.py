@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .arguments import checked_indices, checked_positions
-from .kernels import kernel
+from .jit import njit
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
@@ -104,7 +104,7 @@ def _weights(rest: Doubles, faces: npt.NDArray[np.int64], directions: Doubles) -
     return np.ascontiguousarray(share[..., None] * sides, dtype=np.float32)
 
 
-@kernel
+@njit
 def _square_length(positions: Doubles, a: int, b: int) -> float:
     """The squared length of the edge between two vertices."""
     x = positions[b, 0] - positions[a, 0]
@@ -113,7 +113,7 @@ def _square_length(positions: Doubles, a: int, b: int) -> float:
     return float(x * x + y * y + z * z)
 
 
-@kernel
+@njit
 def _square_lengths(positions: Doubles, faces: Unsigned, squares: Doubles) -> None:
     """Write the squared lengths of the edges 01, 12, 20 of each triangle, shape (F, 3)."""
     for t in range(faces.shape[0]):
@@ -121,7 +121,7 @@ def _square_lengths(positions: Doubles, faces: Unsigned, squares: Doubles) -> No
             squares[t, i] = _square_length(positions, faces[t, i], faces[t, (i + 1) % 3])
 
 
-@kernel
+@njit
 def _shorten(
     positions: Doubles, faces: Unsigned, rest: Doubles, weights: Floats, lost: Floats
 ) -> None:

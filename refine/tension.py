@@ -22,10 +22,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .arguments import bind_take_in, checked_indices, checked_positions, not_finite
-from .kernels import kernel
-from .native import with_room
-from .normals import bind_normals
+from .arguments import checked_indices, checked_positions, not_finite, round_finite
+from .jit import njit
+from .normals import vertex_normals
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
@@ -78,10 +77,9 @@ class Tension:
             np.add.at(totals, self._faces[:, k], weights)
         self._weights = weights.astype(np.float32)
         self._shares = (1.0 / np.where(totals > 0.0, totals, np.inf)).astype(np.float32)
-        self._positions = with_room(rest)
+        self._positions = rest
+        self._points = np.zeros(rest.shape, dtype=np.float32)
         self._normals = np.zeros((len(rest), 3), dtype=np.float32)
-        self._take_in = bind_take_in(self._positions, np.empty(rest.shape, dtype=np.float32))
-        self._find_normals = bind_normals(self._positions, self._faces, self._normals)
         self._sums = np.zeros((len(rest), 6), dtype=np.float32)
         self._stretch = np.zeros(len(rest), dtype=np.float32)
         self._compression = np.zeros(len(rest), dtype=np.float32)
@@ -99,9 +97,9 @@ class Tension:
                 f"positions, got {positions.dtype} of shape {positions.shape}"
             )
         np.copyto(self._positions, positions)
-        if self._take_in():
+        if round_finite(self._positions, self._points) > 0:
             raise ValueError(not_finite(positions))
-        self._find_normals()
+        vertex_normals(self._positions, self._faces, self._normals)
         sum_tensors(
             self._positions, self._faces, self._inverses, self._weights, self._normals, self._sums
         )
@@ -135,7 +133,7 @@ def _rest_frames(rest: Doubles, faces: Unsigned) -> tuple[Floats, Doubles]:
     return inverses.astype(np.float32), np.where(is_proper, area, 0.0)
 
 
-@kernel
+@njit
 def sum_tensors(
     positions: Doubles,
     faces: Unsigned,
@@ -179,7 +177,7 @@ def sum_tensors(
             sums[v, 5] += weights[t] * (gz * gz + hz * hz)
 
 
-@kernel
+@njit
 def find_principal(
     sums: Floats,
     shares: Floats,

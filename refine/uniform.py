@@ -22,11 +22,11 @@ import numpy.typing as npt
 from .arguments import AttributeLike
 from .binding import BoundRefiner
 from .connectivity import Connectivity, connect
-from .masks import ALL_GROWN, place_middles, place_vertices
-from .native import Call, has_room, with_room
+from .frame import ONCE, ROWS, Frame
+from .masks import place_middles, place_vertices
 from .output import GEOMETRY_COLUMNS, copy_wedges
 from .plugin import Origins, Stream, View
-from .rings import Rings, vertex_rings
+from .rings import vertex_rings
 
 Floats = npt.NDArray[np.float32]
 Wide = npt.NDArray[np.int64]
@@ -40,51 +40,35 @@ class Level:
         vertex_count, edge_count = connectivity.vertex_count, len(connectivity.edges)
         self.points = points
         self.normals = normals
-        self._connectivity = connectivity
-        self._rings: Rings = vertex_rings(connectivity)
+        self._mesh = connectivity
+        self._rings = vertex_rings(connectivity)
         self._all_move = np.ones(vertex_count, dtype=np.float32)
-        self._all_once = np.ones(edge_count, dtype=np.uint8)
-        self._all_edges = np.arange(edge_count, dtype=np.uint32)
-        self._first_points = self._all_edges + np.uint32(vertex_count)
-        self._middles = np.zeros((edge_count, 4), dtype=np.float32)
-        self._place_vertices: Call | None = None
-        self._place_middles: Call | None = None
+        self._middles = np.zeros((edge_count, 3), dtype=np.float32)
+        every_edge = np.arange(edge_count, dtype=np.uint32)
+        counts = np.zeros(5, dtype=np.int64)
+        counts[ROWS], counts[ONCE] = vertex_count + edge_count, edge_count
+        self._frame = Frame(
+            positions=np.zeros((0, 3)),
+            points=points,
+            normals=normals,
+            splits=np.ones(edge_count, dtype=np.uint8),
+            growth_once=np.ones(edge_count, dtype=np.float32),
+            growth_twice=np.zeros(0, dtype=np.float32),
+            first_points=every_edge + np.uint32(vertex_count),
+            split_once=every_edge,
+            split_twice=every_edge[:0],
+            configurations=np.zeros(0, dtype=np.uint16),
+            centre_triangles=every_edge[:0],
+            counts=counts,
+            rows=np.zeros((0, GEOMETRY_COLUMNS), dtype=np.float32),
+        )
 
     def subdivide(self, rows: Floats) -> None:
         """Write the moved vertices, then one point per edge, into the first V + E `rows`."""
-        if self._place_vertices is None or self._place_middles is None:
-            self._place_vertices, self._place_middles = self._bind_to(rows)
-        self._place_vertices.put("vertices", rows)
-        self._place_vertices()
-        self._place_middles.put("vertices", rows)
-        self._place_middles()
-
-    def _bind_to(self, rows: Floats) -> tuple[Call, Call]:
-        rings = self._rings
-        assert has_room(self.points) and has_room(self.normals)
-        return place_vertices.bind(
-            self.points,
-            self.normals,
-            self._all_move,
-            rings.own,
-            rings.ring,
-            rings.near,
-            rings.starts,
-            rings.others,
-            rows,
-        ), place_middles.bind(
-            self.points,
-            self.normals,
-            self._connectivity.edge_points,
-            self._connectivity.is_interior,
-            self._all_once,
-            ALL_GROWN,
-            self._first_points,
-            self._all_edges,
-            len(self._all_edges),
-            self._middles,
-            rows,
-        )
+        if rows is not self._frame.rows:
+            self._frame = self._frame._replace(rows=rows)
+        place_vertices(self.points, self.normals, self._rings, self._all_move, rows)
+        place_middles(self._mesh, self._frame, self._middles)
 
 
 class Loop(BoundRefiner):
@@ -114,10 +98,9 @@ class Loop(BoundRefiner):
         for _ in range(levels - 1):
             finest = finest.subdivided()
             rest = np.zeros((finest.connectivity.vertex_count, 3), dtype=np.float32)
-            self._levels.append(Level(finest.connectivity, with_room(rest), with_room(rest)))
+            self._levels.append(Level(finest.connectivity, rest, rest.copy()))
         self._rows = np.zeros((len(self._levels[-1].points), GEOMETRY_COLUMNS), np.float32)
         self._finest = finest.subdivided()
-        self._copy_wedges: Call | None = None
         self._triangles = self._finest.connectivity.corners
         self._wedge_values = self._finest.wedge_values()
 
@@ -136,7 +119,7 @@ class Loop(BoundRefiner):
         """Triangles of the finest level: 4 or 16 for each."""
         return len(self._triangles)
 
-    def _fill(self, stream: Stream, view: View | None, begun: int) -> tuple[int, int]:
+    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
         vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
         for level, finer in pairwise(self._levels):
@@ -147,10 +130,7 @@ class Loop(BoundRefiner):
 
         finest = self._finest.connectivity
         if self._values is not None:
-            self._copy_wedges = copy_wedges.again(
-                self._copy_wedges, finest.vertex_count, finest.wedge_vertices, vertices
-            )
-            self._copy_wedges()
+            copy_wedges(finest, vertices)
             vertices[:vertex_count, GEOMETRY_COLUMNS:] = self._wedge_values
         triangles[:triangle_count] = self._triangles
         source[:triangle_count] = self._finest.source

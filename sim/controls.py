@@ -19,9 +19,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-import numba
 import numpy as np
 
+from .jit import njit
 from .landmarks import Array
 from .layers import NO_LAYERS, Layers
 
@@ -126,7 +126,7 @@ class Controls:
             array[:] = 0.0
 
 
-@numba.njit(cache=True)
+@njit
 def follow(wanted, activation, speed, rate, dt):  # type: ignore[no-untyped-def]
     """Advance critically damped oscillators of angular frequency `rate` [rad/s] by `dt` [s]."""
     for n in range(len(wanted)):

@@ -21,10 +21,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from .jit import njit
 from .landmarks import Array, Side
 from .rig import Fibre, LinearMuscle
 from .surface import Surface
@@ -129,7 +129,7 @@ def attach(points: Array, positions: Array, *, width: float, beyond: float) -> A
 CUT = 2.2  # widths at which the Gaussian (0.8 %) is cut to zero
 
 
-@numba.njit(cache=True)
+@njit
 def move_lines(  # type: ignore[no-untyped-def]
     bundle, riding, activation, turn, shift, ride, rides, table
 ):
@@ -159,7 +159,7 @@ def move_lines(  # type: ignore[no-untyped-def]
             contract(moved, contraction[b] * a, bundle.fixed_at[b], table[b])
 
 
-@numba.njit(cache=True)
+@njit
 def be_carried(  # type: ignore[no-untyped-def]
     bundle, riding, first, last, activation, turn, ride, rides, table, b
 ):
@@ -192,7 +192,7 @@ def be_carried(  # type: ignore[no-untyped-def]
                 own[p, k] += near * ride[c, s, k] + far * ride[c, s + 1, k]
 
 
-@numba.njit(cache=True)
+@njit
 def follow(points, mandible, turn, shift, moved):  # type: ignore[no-untyped-def]
     """Carry the points of a line by its bones."""
     for p in range(len(points)):
@@ -202,7 +202,7 @@ def follow(points, mandible, turn, shift, moved):  # type: ignore[no-untyped-def
             moved[p, k] = points[p, k] + mandible[p] * (to - points[p, k])
 
 
-@numba.njit(cache=True)
+@njit
 def contract(moved, lost, fixed_at, table):  # type: ignore[no-untyped-def]
     """Fill `table` (SAMPLES, 3) with displacements along a fibre that loses a share of itself."""
     samples, count = len(table), len(moved)

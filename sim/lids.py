@@ -19,10 +19,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from .jit import njit
 from .landmarks import EYE_LANDMARKS, Array, polyline_distance, select, smoothstep
 from .openings import lid_side
 from .rig import LIDS, Eyes, LidMuscle, Rig
@@ -206,7 +206,7 @@ def _lid_muscles(
     return tuple(found)
 
 
-@numba.njit(cache=True)
+@njit
 def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
     """Turn the far ends of the tissue springs of all lid vertices, and their normals.
 

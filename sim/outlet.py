@@ -7,11 +7,12 @@ Source: own.
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
+from .jit import njit
 
-@numba.njit(cache=True)
+
+@njit
 def place(x, rest, axes, head_rest, turn, share, out):  # type: ignore[no-untyped-def]
     """Fill `out` (V, 3) [head units]; return how many vertices are not finite and left out.
 

@@ -21,11 +21,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
 from .fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, FibreBundle, Riding, move_lines, over_skin
+from .jit import njit
 from .landmarks import Array
 from .muscles import Line, Placed
 from .riding import from_below, lay_on_each_other, points_along
@@ -245,7 +245,7 @@ def _attachments(parts: list[tuple[Array, Array]], least: Array, empty: Array) -
     )
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@njit(fastmath={"contract"})
 def gather_holds(  # type: ignore[no-untyped-def]
     activation, passive, holds, turn, mandible, steady, hold, force
 ):
@@ -273,7 +273,7 @@ def gather_holds(  # type: ignore[no-untyped-def]
             force[i, k] += steady[i, k] + mandible[i] * (turned - steady[i, k])
 
 
-@numba.njit(cache=True)
+@njit
 def gather_lines(  # type: ignore[no-untyped-def]
     activation, passive, muscle, pulls, table, carries, ride, rides, force
 ):
@@ -287,7 +287,7 @@ def gather_lines(  # type: ignore[no-untyped-def]
             add_pull(carries, b, scale, ride[b], force)
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@njit(fastmath={"contract"})
 def add_pull(attached, b, scale, along, force):  # type: ignore[no-untyped-def]
     """Add the displacement `along` a line, between two of its rows, times each attachment."""
     last = along.shape[0] - 2

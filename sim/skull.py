@@ -15,9 +15,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
+from .jit import njit
 from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Array, FaceFrame, Side, select
 from .rig import Eyes, Head, Jaw
 from .surface import Surface
@@ -113,7 +113,7 @@ class Skull:
 # numbers as these kernels do.
 
 
-@numba.njit(cache=True)
+@njit
 def rotation(axis, angle):  # type: ignore[no-untyped-def]
     """Rotation matrix (3, 3) by `angle` [rad] about `axis` (Rodrigues)."""
     length = math.sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2])
@@ -127,7 +127,7 @@ def rotation(axis, angle):  # type: ignore[no-untyped-def]
     return turn
 
 
-@numba.njit(cache=True)
+@njit
 def times(a, b):  # type: ignore[no-untyped-def]
     """Product of two matrices (3, 3)."""
     product = np.zeros((3, 3))
@@ -138,7 +138,7 @@ def times(a, b):  # type: ignore[no-untyped-def]
     return product
 
 
-@numba.njit(cache=True)
+@njit
 def turned(turn, point):  # type: ignore[no-untyped-def]
     """A point (3,) turned."""
     to = np.zeros(3)
@@ -148,7 +148,7 @@ def turned(turn, point):  # type: ignore[no-untyped-def]
     return to
 
 
-@numba.njit(cache=True)
+@njit
 def turn_head(condyles, joint, angles):  # type: ignore[no-untyped-def]
     """Rotation and shift of the head; `joint`: off the middle of the condyles; see head_pose."""
     turn = times(rotation(UP, angles[0]), rotation(LATERAL, angles[1]))
@@ -159,7 +159,7 @@ def turn_head(condyles, joint, angles):  # type: ignore[no-untyped-def]
     return turn, pivot - turned(turn, pivot)
 
 
-@numba.njit(cache=True)
+@njit
 def move_mandible(condyles, ways, angles, values):  # type: ignore[no-untyped-def]
     """Rotation and shift of the mandible; `ways`: glides [mm] of its `values`; see mandible_pose.
 
@@ -179,7 +179,7 @@ def move_mandible(condyles, ways, angles, values):  # type: ignore[no-untyped-de
     return turn, shift
 
 
-@numba.njit(cache=True)
+@njit
 def in_head(turn, shift, axes, origin, scale):  # type: ignore[no-untyped-def]
     """A motion of the standard frame in head coordinates, as a (4, 4) matrix."""
     there = times(times(axes.T, turn), axes)

@@ -10,8 +10,9 @@ Source: Kähler et al. 2001, section 3 (mass-spring skin); semi-implicit Euler i
 
 from __future__ import annotations
 
-import numba
 import numpy as np
+
+from .jit import njit
 
 LIP_PASSES = 5  # averaged projections need a second pass where lips are pressed hard
 FASTEST = 5000.0  # mm/s per axis; a face never reaches it, a vertex thrown by the caller may
@@ -23,7 +24,7 @@ TOOTH_FADE = 3.0  # mm above and below the teeth over which they cease to be fel
 LEAST_SHARE = 0.1  # of an arch: nearer to its axis the way out is uncertain
 
 
-@numba.njit(cache=True)
+@njit
 def advance(  # type: ignore[no-untyped-def]
     state, substeps, h, rest, mass, tissue, edges, lips, grip, eyes, teeth, turn, shift
 ):
@@ -41,7 +42,7 @@ def advance(  # type: ignore[no-untyped-def]
         keep_out_of_teeth(state, teeth, turn, shift)
 
 
-@numba.njit(cache=True)
+@njit
 def damp(state, h, mass, tissue):  # type: ignore[no-untyped-def]
     """Prepare what damping leaves of a velocity, and what a force adds to it, for this tick."""
     for i in range(len(mass)):
@@ -51,7 +52,7 @@ def damp(state, h, mass, tissue):  # type: ignore[no-untyped-def]
         state.gain[i] = state.kept[i] * h / mass[i]
 
 
-@numba.njit(cache=True)
+@njit
 def tissue_forces(state, springs):  # type: ignore[no-untyped-def]
     """Set `state.force` to the pull of bone and of muscles, and `state.offset` on the way."""
     x, carried, normals = state.x, state.carried, state.normals
@@ -70,7 +71,7 @@ def tissue_forces(state, springs):  # type: ignore[no-untyped-def]
         force[i, 2] = pull[i, 2] - along * dz - across * nz
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@njit(fastmath={"contract"})
 def edge_forces(state, springs):  # type: ignore[no-untyped-def]
     """Add the pull of all edges to `state.force`; `state.offset` must be up to date.
 
@@ -113,7 +114,7 @@ def edge_forces(state, springs):  # type: ignore[no-untyped-def]
         force[i, 2] += sz
 
 
-@numba.njit(cache=True)
+@njit
 def accelerate(state):  # type: ignore[no-untyped-def]
     """First half of semi-implicit Euler: velocities from forces and damping."""
     v, force = state.v, state.force
@@ -123,7 +124,7 @@ def accelerate(state):  # type: ignore[no-untyped-def]
             v[i, k] = kept * v[i, k] + gain * force[i, k]
 
 
-@numba.njit(cache=True)
+@njit
 def hold_lips(state, rest, mass, lips, grip, h):  # type: ignore[no-untyped-def]
     """Change velocities by the seal's pull over a substep of `h` [s], as if it had already acted.
 
@@ -156,7 +157,7 @@ def hold_lips(state, rest, mass, lips, grip, h):  # type: ignore[no-untyped-def]
             v[i, k] += change[i, k]
 
 
-@numba.njit(cache=True)
+@njit
 def move(state, h):  # type: ignore[no-untyped-def]
     """Second half: positions from the new velocities."""
     x, v = state.x, state.v
@@ -166,7 +167,7 @@ def move(state, h):  # type: ignore[no-untyped-def]
             x[i, k] += h * v[i, k]
 
 
-@numba.njit(cache=True)
+@njit
 def keep_lips_apart(state, rest, mass, lips, overlap):  # type: ignore[no-untyped-def]
     """Project lips that cross by more than `overlap` [mm] back and stop their approach."""
     x, v, move = state.x, state.v, state.move
@@ -203,7 +204,7 @@ def keep_lips_apart(state, rest, mass, lips, overlap):  # type: ignore[no-untype
             v[i, 1] += move[i, 1]
 
 
-@numba.njit(cache=True)
+@njit
 def keep_out_of_teeth(state, teeth, turn, shift):  # type: ignore[no-untyped-def]
     """Project skin out of the dental arches, away from their axes, and stop its approach.
 
@@ -244,7 +245,7 @@ def keep_out_of_teeth(state, teeth, turn, shift):  # type: ignore[no-untyped-def
             v[i, 2] -= approach * dz
 
 
-@numba.njit(cache=True)
+@njit
 def keep_out_of_eyeballs(state, eyes):  # type: ignore[no-untyped-def]
     """Project skin out of the eyeballs and stop its approach."""
     x, v = state.x, state.v

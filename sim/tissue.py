@@ -20,9 +20,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
+from .jit import njit
 from .landmarks import Array
 from .rig import Tissue
 from .state import State
@@ -61,7 +61,7 @@ def masses_for_step(areas: Array, stiffness: Array, step: float) -> Array:
     return result
 
 
-@numba.njit(cache=True)
+@njit
 def carry(rest, normals, weight, turn, shift, state):  # type: ignore[no-untyped-def]
     """Move the far ends of the tissue springs with the mandible, each vertex by its share."""
     carried, carried_normals = state.carried, state.normals

@@ -321,14 +321,6 @@ def test_bench_refine(tmp_path: Path) -> None:
     assert figures["bindings"][0]["triangles"] == figures["rows"][0]["triangles_in"]
 
 
-def test_bench_strips() -> None:
-    """`bench strips` prints every order of a mesh with what it costs, and names what draws."""
-    result = risorius("bench", "strips", "--size", "2k", "--rounds", "1")
-    assert result.exit_code == 0, result.output
-    for words in ("as refined", "input in cache order", "strips", "at random", "drawn at 1280x720"):
-        assert words in result.output
-
-
 def test_bench_quality_needs_a_subject(tmp_path: Path) -> None:
     """Without anything to measure, and with a folder that is no reference, one line tells."""
     result = risorius("bench", "quality", "--finer", "none")

@@ -6,7 +6,7 @@ Each is a function from an edge (low, high) and a number of quarters to a point,
 from __future__ import annotations
 
 import math
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -18,10 +18,8 @@ from tests.refine.plain_twin import (
     Surroundings,
     Vector,
     edge_name,
-    is_proper,
     mix,
     unit,
-    vertex_normals,
 )
 
 Curve = Callable[[EdgeName, int], Vector]
@@ -208,76 +206,3 @@ def cubic_middle(
         return mix((gain * dot(surprise, up) / max(area, 1e-38), up))
 
     return middle
-
-
-def ring_weights(n: int) -> list[float]:
-    """Weights of a ring of n, the first one at the other end of the edge."""
-    if n == 3:
-        return [5 / 12, -1 / 12, -1 / 12]
-    if n == 4:
-        return [3 / 8, 0, -1 / 8, 0]
-    if n == 6:
-        return [1 / 2, 1 / 8, -1 / 8, 0, -1 / 8, 1 / 8]
-    turns = [2 * math.pi * j / n for j in range(n)]
-    return [(0.25 + math.cos(t) + 0.5 * math.cos(2 * t)) / n for t in turns]
-
-
-def from_ring(centre: Vector, points: list[Vector]) -> Vector:
-    """The point that a vertex and its ring give."""
-    parts = ring_weights(len(points))
-    return mix((1 - sum(parts), centre), *zip(parts, points, strict=True))
-
-
-def butterfly(positions: list[Vector], faces: list[Face]) -> CurveRules:
-    """Modified butterfly subdivision, two levels."""
-    around = Surroundings(faces)
-    following: dict[int, dict[int, int]] = defaultdict(dict)
-    for face in filter(is_proper, faces):
-        for i in range(3):
-            following[face[i]][face[(i + 1) % 3]] = face[(i + 2) % 3]
-
-    def ring(v: int, start: int) -> list[int]:
-        """Neighbours in order, or nothing where they are not one ring of inner edges."""
-        neighbours = set(around.ring[v])
-        if around.border_ring[v] or not 3 <= len(neighbours) <= 64:
-            return []
-        found = [start]
-        while (after := following[v][found[-1]]) != start:
-            found.append(after)
-        return found if len(found) == len(neighbours) else []
-
-    def middle(a: int, b: int) -> Vector:
-        straight = mix((0.5, positions[a]), (0.5, positions[b]))
-        if edge_name(a, b) not in around.inner:
-            rings = [around.border_ring[v] for v in (a, b)]
-            if any(len(r) != 2 for r in rings):
-                return straight
-            p, q = (next(v for v in r if v not in (a, b)) for r in rings)
-            others = mix((1, positions[p]), (1, positions[q]))
-            return mix((9 / 8, straight), (-1 / 16, others))
-        rings = {v: ring(v, u) for v, u in ((a, b), (b, a))}
-        rings = {v: r for v, r in rings.items() if r}
-        if len({len(r) == 6 for r in rings.values()}) == 2:
-            rings = {v: r for v, r in rings.items() if len(r) != 6}
-        if not rings:
-            return straight
-        found = [from_ring(positions[v], [positions[u] for u in r]) for v, r in rings.items()]
-        return mix(*((1 / len(found), point) for point in found))
-
-    def curve(edge: EdgeName, quarters: int) -> Vector:
-        m = middle(*edge)
-        if quarters == 2:
-            return m
-        near, far = edge if quarters == 1 else edge[::-1]
-        if edge not in around.inner:
-            return mix((3 / 8, positions[near]), (3 / 4, m), (-1 / 8, positions[far]))
-        c, d = around.opposite[edge]
-        p, r, q, s = (middle(u, v) for u in (near, far) for v in (c, d))
-        from_middle = from_ring(m, [positions[near], p, q, positions[far], s, r])
-        around_near = ring(near, far)
-        if not around_near:
-            return from_middle
-        from_near = from_ring(positions[near], [middle(near, u) for u in around_near])
-        return mix((0.5, from_near), (0.5, from_middle)) if len(around_near) == 6 else from_near
-
-    return CurveRules(positions, faces, curve, vertex_normals(positions, faces))

@@ -13,7 +13,7 @@ from bench.quality import vertex_normals
 from tests import meshes
 from tests.refine.cases import Forced, Needed
 
-SCHEMES = ("loop", "butterfly", "cubic", "detail")
+SCHEMES = ("loop", "cubic", "detail")
 BOUND = 12.0
 """No point of the surface moves more than this many times the largest motion of the input.
 
@@ -246,7 +246,7 @@ def test_defaults() -> None:
     for options, expected in (
         ({}, 10),
         ({"scheme": "cubic"}, 12),
-        ({"scheme": "butterfly", "blend": False}, 10),
+        ({"scheme": "cubic", "blend": False}, 10),
         ({"scheme": "cubic", "criterion": Forced(np.zeros(12))}, 10),
         ({"scheme": "cubic", "coherent": True}, 10),
         ({"blend": True}, 12),

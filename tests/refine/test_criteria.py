@@ -301,7 +301,7 @@ def test_bad_thresholds(kind: type) -> None:
         kind(0.3, 0.2)
 
 
-@pytest.mark.parametrize("scheme", ["butterfly", "cubic", "detail"])
+@pytest.mark.parametrize("scheme", ["cubic", "detail"])
 def test_bulge(scheme: str) -> None:
     """An edge is split where its full middle lies farther than the threshold from the straight."""
     mesh = meshes.irregular(2)
@@ -334,15 +334,14 @@ def test_bulge_needs_curves() -> None:
 
 
 @pytest.mark.parametrize("names", ["normal+rest", "rest+normal", "normal+normal", "rest", "normal"])
-def test_joined_marking(names: str) -> None:
-    """What built-in criteria mark within the frame is what they mark when they are asked.
+def test_several_criteria_mark(names: str) -> None:
+    """Several criteria together mark what the one marks that asks for most.
 
     Also after their thresholds have been replaced, or moved.
     """
     mesh = meshes.irregular(4)
     deformed = meshes.wrinkled(mesh, 5)
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=names)
-    assert refiner._is_whole
     parts = [refine.NormalDrop() if name == "normal" else RestCurvature()
              for name in names.split("+")]  # fmt: skip
     plain = refine.create("none", mesh.faces, mesh.vertices)

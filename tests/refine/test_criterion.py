@@ -7,8 +7,7 @@ import pytest
 
 import refine
 from refine.criterion import ROUNDING
-from refine.native import with_room
-from refine.normals import bind_normals
+from refine.normals import vertex_normals
 from tests import meshes
 from tests.refine.cases import Forced
 from tests.refine.plain_twin import edge_dots, edge_name
@@ -134,7 +133,7 @@ def test_normals_are_weighted_by_area() -> None:
     mesh = meshes.with_debris()
     positions = meshes.wrinkled(mesh, 7)
     normals = np.zeros(positions.shape, dtype=np.float32)
-    bind_normals(with_room(positions), mesh.faces.astype(np.uint32), normals)()
+    vertex_normals(positions, mesh.faces.astype(np.uint32), normals)
     expected = plain_normals(
         [tuple(p) for p in positions], [tuple(int(v) for v in face) for face in mesh.faces]
     )

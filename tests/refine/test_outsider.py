@@ -36,7 +36,7 @@ INDEX_TYPES = ("i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", ">i4")
 @st.composite
 def options(draw: st.DrawFn) -> dict[str, Any]:
     """Options that go together."""
-    scheme = draw(st.sampled_from(["loop", "butterfly", "cubic", "detail"]))
+    scheme = draw(st.sampled_from(["loop", "cubic", "detail"]))
     blend = draw(st.sampled_from([None, False, True]))
     return {
         "scheme": scheme,

@@ -14,7 +14,7 @@ from tests.refine.cases import Needed, as_lists, assert_equals_twin, soups
 from tests.refine.plain_twin import Rules, Twin, edge_name
 from tests.refine.plain_twin import refine as refine_plainly
 
-SCHEMES = ("loop", "butterfly", "cubic")
+SCHEMES = ("loop", "cubic")
 EVERY_SCHEME = (*SCHEMES, "detail")
 VALENCES = {f"fan of {n}": lambda n=n: meshes.double_cone(n) for n in (3, 4, 5, 7, 60, 90)}
 MESHES = {**meshes.NAMED, **VALENCES, "irregular": lambda: meshes.irregular(3, 6, 5, 1)}
@@ -47,8 +47,6 @@ def twin_of(mesh: meshes.Mesh, deformed: np.ndarray, scheme: str, blend: bool, n
     rules: Rules | None = None
     if scheme == "cubic":
         rules = plain_schemes.cubic(rest, points, faces)
-    if scheme == "butterfly":
-        rules = plain_schemes.butterfly(points, faces)
     growth = needed.growth(edges)
     splits = {
         edge_name(int(a), int(b)): int(n > 0) + int(n > 1)
@@ -133,7 +131,7 @@ def _has_normals(refined: refine.RefinedMesh) -> bool:
 
 
 @pytest.mark.parametrize("blend", [False, True])
-@pytest.mark.parametrize("scheme", ["butterfly", "cubic", "detail"])
+@pytest.mark.parametrize("scheme", ["cubic", "detail"])
 def test_vertices_stay(scheme: str, blend: bool) -> None:
     """Schemes that interpolate leave every original vertex where it is, to the last bit."""
     mesh = meshes.irregular(5)
@@ -156,8 +154,7 @@ def test_flat_stays_flat(scheme: str) -> None:
     np.testing.assert_allclose(refined.positions[:, 2], heights, rtol=0, atol=1e-5)
 
 
-@pytest.mark.parametrize(("scheme", "least_gain"), [("butterfly", 4.0), ("cubic", 4.0)])
-def test_sphere_is_approached(scheme: str, least_gain: float) -> None:
+def test_sphere_is_approached() -> None:
     """On a sphere the points of split edges are much nearer to it than the edges' middles."""
     octahedron = meshes.octahedron()
     finer = refine.create("loop", octahedron.faces, octahedron.vertices, levels=2)
@@ -165,12 +162,12 @@ def test_sphere_is_approached(scheme: str, least_gain: float) -> None:
     positions = ball.positions / np.linalg.norm(ball.positions, axis=1, keepdims=True)
     mesh = meshes.Mesh(positions.astype(np.float64), ball.triangles.astype(np.int32))
     edge_count = len(refine.connect(mesh.faces, len(positions)).edges)
-    refiner = bound(mesh, scheme, False, np.full(edge_count, 2.0))
+    refiner = bound(mesh, "cubic", False, np.full(edge_count, 2.0))
     refined = refiner.refine(mesh.vertices)
     straight = 0.5 * mesh.vertices[refiner.edges].sum(axis=1)
     before = abs(np.linalg.norm(straight, axis=1) - 1.0).mean()
     after = abs(np.linalg.norm(refined.positions[len(positions) :], axis=1) - 1.0).mean()
-    assert after * least_gain < before
+    assert after * 4.0 < before
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,258 @@
+"""`njit`: numba's decorator, with one set of options and a cache on disk that can be relied on.
+
+Numba can keep machine code itself (`cache=True`), but its cache looks at one file at a time: when a
+kernel changes that is called from another file, old code goes on running. It also trusts whatever
+lies in its folder, and gives up where no folder can be written, where the disk is full, or where a
+file was torn. So here numba compiles, and this file keeps what it made:
+
+    valid    for all source files of this package together, these options, the versions of numba
+             and Python, and the processor; each file has a check sum
+    where    the first of: the folder named by NUMBA_CACHE_DIR, beside the code, the user's cache
+    trusted  only a folder that belongs to this user and that nobody else may write
+    else     code is compiled in each process anew, and a warning in the log says so once
+    waiting  processes that start together let one compile, kernel by kernel, and read what it wrote
+
+Results do not depend on how a loop was vectorised: there is no fast-math unless a kernel asks for
+it. With NUMBA_DISABLE_JIT=1 all kernels run as the Python that they are written in, slowly, for
+debuggers and coverage.
+
+`refine` and `sim` do not know each other, so each has this file; a test holds that they are equal.
+"""
+
+import functools
+import hashlib
+import logging
+import os
+import pickle
+import platform
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, TypeVar, overload
+
+import numba
+from numba.core.caching import _Cache
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
+
+try:
+    import fcntl
+except ImportError:  # Windows: nobody waits, and two processes may do the same work
+    fcntl = None  # type: ignore[assignment]
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
+"""Of all kernels: other threads may run meanwhile, and 1 / 0 is infinite as it is in numpy."""
+PATIENCE = 30.0
+"""Seconds to wait for another process that compiles; the slowest kernel takes a few."""
+PAUSE = 0.02
+"""Seconds between two looks at whether it is done."""
+DIGEST = 32
+"""Bytes of a check sum; a file begins with what it is valid for, and that of the code."""
+
+log = logging.getLogger(__name__)
+
+
+@overload
+def njit(function: Function, /) -> Function: ...
+
+
+@overload
+def njit(*, fastmath: set[str]) -> Callable[[Function], Function]: ...
+
+
+def njit(function: Any = None, /, **options: Any) -> Any:
+    """Compile a function with numba when it is first called with new types of arguments.
+
+    `fastmath`: liberties that the compiler may take, as in numba; none if it is left out.
+    """
+    if function is None:
+        return functools.partial(_compiled, **options)
+    return _compiled(function)
+
+
+def _compiled(function: Callable[..., Any], **options: Any) -> Any:
+    dispatcher = numba.njit(**OPTIONS, **options)(function)
+    if not getattr(numba.config, "DISABLE_JIT", 0):
+        dispatcher._cache = KeptCode(function, repr(sorted(options.items())))
+    return dispatcher
+
+
+class KeptCode(_Cache):
+    """The machine code of one kernel on disk, in the form in which numba asks for a cache.
+
+    Numba calls it while it holds the lock of its compiler, so one thread at a time.
+    """
+
+    def __init__(self, function: Callable[..., Any], options: str) -> None:
+        name = f"{function.__module__}.{function.__qualname__}"
+        self._name = name.replace("<", "").replace(">", "")  # Windows allows no file of such a name
+        self._options = options
+
+    @property
+    def cache_path(self) -> str:
+        """The folder; empty if there is none."""
+        return str(kept_in() or "")
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return compiled code for these types of arguments, None if it has to be made."""
+        target_context.refresh()
+        kept = self._read(sig, target_context)
+        if kept is None:
+            log.info("compiling %s", self._name)
+            if _wait_to_compile(self._name):
+                kept = self._read(sig, target_context)  # which the other process has made
+                if kept is not None:
+                    _done(self._name)
+        return kept
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Write compiled code; other processes see the whole file or none."""
+        folder = kept_in()
+        if folder is None:
+            _say_not_kept("there is no folder that belongs to this user alone")
+            return
+        code = dumps(data._reduce())
+        content = self._stamp(sig, data.codegen) + hashlib.sha256(code).digest() + code
+        try:
+            _write(folder / self._file(sig), content)
+        except OSError as error:
+            _say_not_kept(f"{folder}: {error.strerror}")
+        _done(self._name)
+
+    def _read(self, sig: Any, target_context: Any) -> Any:
+        folder = kept_in()
+        if folder is None:
+            return None
+        try:
+            content = (folder / self._file(sig)).read_bytes()
+        except OSError:
+            return None
+        stamp, check, code = content[:DIGEST], content[DIGEST : 2 * DIGEST], content[2 * DIGEST :]
+        if stamp != self._stamp(sig, target_context.codegen()):
+            return None
+        if check != hashlib.sha256(code).digest():
+            return None
+        return CompileResult._rebuild(target_context, *pickle.loads(code))
+
+    def _file(self, sig: Any) -> str:
+        return f"{self._name}.{hashlib.sha256(str(sig).encode()).hexdigest()[:16]}.code"
+
+    def _stamp(self, sig: Any, codegen: Any) -> bytes:
+        made_of = f"{sig} {self._options} {codegen.magic_tuple()} {_package()}"
+        return hashlib.sha256(made_of.encode()).digest()
+
+    def enable(self) -> None:
+        """Part of numba's interface; this cache is always on."""
+
+    def disable(self) -> None:
+        """Part of numba's interface; this cache is always on."""
+
+    def flush(self) -> None:
+        """Part of numba's interface; files that are not valid any more are written over."""
+
+
+@functools.cache
+def _package() -> str:
+    """Digest of everything that code depends on but its kernel: sources, options, versions."""
+    digest = hashlib.sha256(repr(sorted(OPTIONS.items())).encode())
+    digest.update(f"{numba.__version__} {sys.version} {platform.machine()}".encode())
+    here = Path(__file__).parent
+    for file in sorted(here.rglob("*.py")):
+        digest.update(str(file.relative_to(here)).encode())
+        digest.update(file.read_bytes())
+    return digest.hexdigest()
+
+
+@functools.cache
+def kept_in() -> Path | None:
+    """The folder that machine code is kept in; None if there is none that can be trusted."""
+    here = Path(__file__).resolve().parent
+    own = f"{here.name}-{hashlib.sha256(str(here).encode()).hexdigest()[:12]}"
+    folders = [here / "__pycache__" / "machine_code"]
+    if os.environ.get("NUMBA_CACHE_DIR"):
+        folders.insert(0, Path(os.environ["NUMBA_CACHE_DIR"]) / own)
+    users = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    if os.path.isabs(users):  # a user without a home has none
+        folders.append(Path(users) / "risorius" / own)
+    return next((folder for folder in folders if _is_ours(folder)), None)
+
+
+def _is_ours(folder: Path) -> bool:
+    """Whether a folder, made if need be, is this user's, closed to others, and can be written."""
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if hasattr(os, "geteuid"):
+            found = folder.lstat()
+            if found.st_uid != os.geteuid() or found.st_mode & 0o022:
+                return False
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
+
+
+def _write(file: Path, content: bytes) -> None:
+    """Write a file in one step; nothing is left behind where that fails."""
+    number, name = tempfile.mkstemp(dir=file.parent, prefix=".", suffix=".part")
+    try:
+        with os.fdopen(number, "wb") as part:
+            part.write(content)
+        os.replace(name, file)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(name)
+        raise
+
+
+@functools.cache
+def _say_not_kept(why: str) -> None:
+    log.warning(
+        "compiled code is not kept (%s), so every start compiles again; "
+        "name a folder of your own in NUMBA_CACHE_DIR",
+        why,
+    )
+
+
+_lock: Any = None
+"""The open file by which this process keeps others from compiling the same."""
+_compiling = ""
+"""The kernel it was taken for; those that this one calls are compiled under the same lock."""
+
+
+def _wait_to_compile(name: str) -> bool:
+    """Wait until no other process compiles code for this folder; whether there was one."""
+    global _lock, _compiling
+    folder = kept_in()
+    if folder is None or fcntl is None or _compiling:
+        return False
+    try:
+        if _lock is None:
+            _lock = (folder / "lock").open("wb")
+        has_waited, patience = False, PATIENCE
+        while True:
+            try:
+                fcntl.flock(_lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                _compiling = name
+                return has_waited
+            except BlockingIOError:
+                has_waited = True
+            if patience <= 0.0:
+                return True
+            time.sleep(PAUSE)
+            patience -= PAUSE
+    except OSError:
+        return False  # a file system without locks: both compile
+
+
+def _done(name: str) -> None:
+    """Let others compile, if `name` is what they wait for."""
+    global _compiling
+    if name == _compiling:
+        _compiling = ""
+        with suppress(OSError):
+            fcntl.flock(_lock, fcntl.LOCK_UN)
