@@ -1,0 +1,272 @@
+"""Compiled code: kept on disk where that can be trusted, made again where it cannot."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+KERNELS = """
+import numpy as np
+from .jit import njit
+from .other import FACTOR
+
+@njit
+def scale(numbers, scaled):
+    for k in range(numbers.shape[0]):
+        scaled[k] = FACTOR * numbers[k]
+"""
+PROGRAM = """
+import logging, sys
+import numpy as np
+import kernels_package.jit as jit
+
+class Count(logging.Handler):
+    def emit(self, record):
+        print(record.levelname, record.getMessage(), flush=True)
+
+jit.log.addHandler(Count())
+jit.log.setLevel(logging.INFO)
+jit.log.propagate = False
+from kernels_package.kernels import scale
+scaled = np.zeros(3)
+scale(np.arange(3.0), scaled)
+scale(np.arange(3.0), scaled)
+print(scaled.tolist())
+"""
+COMPILED = "INFO compiling kernels_package.kernels.scale"
+RESULT = "[0.0, 2.0, 4.0]"
+
+Run = Callable[..., list[str]]
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """A package of one kernel that uses a number of another file."""
+    folder = tmp_path / "kernels_package"
+    folder.mkdir()
+    shutil.copy(ROOT / "refine" / "jit.py", folder)
+    (folder / "__init__.py").write_text("")
+    (folder / "other.py").write_text("FACTOR = 2.0\n")
+    (folder / "kernels.py").write_text(KERNELS)
+    return folder
+
+
+@pytest.fixture
+def run(package: Path, tmp_path: Path) -> Run:
+    """A function that calls the kernel in a new process and returns what was told."""
+
+    def run_once(**environment: str) -> list[str]:
+        return start(package, tmp_path, **environment)
+
+    return run_once
+
+
+def start(package: Path, home: Path, **environment: str) -> list[str]:
+    """Lines of a process that calls the kernel; it must end well."""
+    clean = {k: v for k, v in os.environ.items() if not k.startswith(("NUMBA_", "XDG_"))}
+    result = subprocess.run(
+        [sys.executable, "-c", PROGRAM],
+        cwd=package.parent,
+        env={**clean, "HOME": str(home), "PYTHONDONTWRITEBYTECODE": "1", **environment},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert result.returncode == 0, result.stderr
+    return result.stdout.splitlines()
+
+
+def kept(folder: Path) -> list[Path]:
+    """Files of machine code anywhere below a folder."""
+    return sorted(folder.rglob("*.code"))
+
+
+def test_both_packages_have_the_same() -> None:
+    """`refine` and `sim` must not import each other, so each has this file; it must not part."""
+    texts = [(ROOT / package / "jit.py").read_bytes() for package in ("refine", "sim")]
+    assert texts[0] == texts[1]
+
+
+def test_second_start_compiles_nothing(run: Run, package: Path) -> None:
+    """Code lies beside the package, closed to others, and is read the next time."""
+    assert run() == [COMPILED, RESULT]
+    (file,) = kept(package)
+    assert file.parent.stat().st_mode & 0o077 == 0
+    assert run() == [RESULT]
+
+
+def test_change_in_another_file_counts(run: Run, package: Path) -> None:
+    """What a kernel takes from another file of its package is part of its code."""
+    run()
+    (package / "other.py").write_text("FACTOR = 3.0\n")
+    assert run() == [COMPILED, "[0.0, 3.0, 6.0]"]
+    assert len(kept(package)) == 1  # the old code was written over
+
+
+def test_changed_options_count(run: Run, package: Path) -> None:
+    """Options that are the same for all kernels are part of the code."""
+    run()
+    text = (package / "jit.py").read_text()
+    (package / "jit.py").write_text(text.replace('"error_model": "numpy"', '"boundscheck": True'))
+    assert run() == [COMPILED, RESULT]
+
+
+def test_damaged_file_is_made_again(run: Run, package: Path) -> None:
+    """A file that is empty, foreign or cut off costs a compilation, nothing else."""
+    run()
+    (file,) = kept(package)
+    whole = file.read_bytes()
+    for damaged in (b"", b"torn", whole[: len(whole) // 2]):
+        file.write_bytes(damaged)
+        assert run() == [COMPILED, RESULT]
+    assert file.read_bytes() == whole
+
+
+def read_only(folder: Path) -> None:
+    """Close a folder for a user who may write anywhere, too: a file takes its place."""
+    (folder / "__pycache__").write_text("")
+
+
+def test_code_goes_to_the_user_where_the_package_is_read_only(
+    run: Run, package: Path, tmp_path: Path
+) -> None:
+    """An installation that belongs to somebody else is left alone."""
+    read_only(package)
+    assert run() == [COMPILED, RESULT]
+    (file,) = kept(tmp_path / ".cache")
+    assert "kernels_package" in str(file.parent.name)
+    assert run() == [RESULT]
+
+
+@pytest.mark.parametrize("home", ["/nonexistent/home", "/dev/null", ""])
+def test_without_a_folder_code_is_compiled_each_time(run: Run, package: Path, home: str) -> None:
+    """No home, none that can be written, none at all: it runs, and one line says what it costs."""
+    read_only(package)
+    environment = {"HOME": home or "relative", "XDG_CACHE_HOME": home}
+    if os.access("/", os.W_OK) and home.startswith("/nonexistent"):
+        environment["XDG_CACHE_HOME"] = "/proc/none"  # root may make any other folder
+    compiled, warned, result = run(**environment)
+    assert (compiled, result) == (COMPILED, RESULT)
+    assert warned.startswith("WARNING compiled code is not kept (there is no folder")
+    assert "NUMBA_CACHE_DIR" in warned
+
+
+def test_full_disk(run: Run, package: Path) -> None:
+    """A file that cannot be written whole is not left behind, and one line says why."""
+    text = (package / "jit.py").read_text()
+    limited = text.replace(
+        "import functools\n",
+        "import functools\nimport resource, signal\n"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n",
+    )
+    (package / "jit.py").write_text(limited)
+    compiled, warned, result = run()
+    assert (compiled, result) == (COMPILED, RESULT)
+    assert "File too large" in warned
+    assert [file.name for file in (package / "__pycache__" / "machine_code").iterdir()] == ["lock"]
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid"), reason="no owners of files here")
+@pytest.mark.parametrize("fault", ["open to others", "a link", "of somebody else"])
+def test_folders_of_others_are_not_trusted(
+    run: Run, package: Path, tmp_path: Path, fault: str
+) -> None:
+    """What others could have written is neither run nor written over."""
+    run(NUMBA_CACHE_DIR=str(tmp_path / "shared"))
+    (file,) = kept(tmp_path / "shared")
+    if fault == "open to others":
+        file.parent.chmod(0o777)
+    elif fault == "a link":
+        file.parent.rename(tmp_path / "elsewhere")
+        file.parent.symlink_to(tmp_path / "elsewhere")
+    elif os.geteuid() == 0:
+        os.chown(file.parent, 12345, 12345)
+    else:
+        pytest.skip("only root can give a folder away")
+    assert run(NUMBA_CACHE_DIR=str(tmp_path / "shared")) == [COMPILED, RESULT]
+    assert kept(package)  # beside the code instead
+
+
+def test_processes_wait_for_the_one_that_compiles(package: Path, tmp_path: Path) -> None:
+    """Of several that start together on nothing, one compiles and the others read."""
+    told: list[list[str]] = []
+    slow = (package / "jit.py").read_text().replace(
+        "        code = dumps(data._reduce())\n",
+        "        time.sleep(1.0)\n        code = dumps(data._reduce())\n        print('MADE')\n",
+    )  # fmt: skip
+    (package / "jit.py").write_text(slow)
+    threads = [
+        threading.Thread(target=lambda: told.append(start(package, tmp_path))) for _ in range(4)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(told) == 4
+    assert all(lines[-1] == RESULT for lines in told)
+    assert sum("MADE" in lines for lines in told) == 1
+
+
+def test_a_lock_that_is_never_given_back(package: Path, tmp_path: Path) -> None:
+    """Patience ends: a process that hangs does not keep others from working."""
+    fcntl = pytest.importorskip("fcntl")
+    start(package, tmp_path)
+    (file,) = kept(package)
+    file.unlink()
+    text = (package / "jit.py").read_text()
+    (package / "jit.py").write_text(text.replace("PATIENCE = 30.0", "PATIENCE = 0.5"))
+    with (file.parent / "lock").open("wb") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        begun = time.monotonic()
+        assert start(package, tmp_path)[-1] == RESULT
+        assert time.monotonic() - begun > 0.5
+
+
+def test_runs_as_python(package: Path, run: Run) -> None:
+    """With NUMBA_DISABLE_JIT=1 kernels are the functions that are written, and nothing is kept."""
+    assert run(NUMBA_DISABLE_JIT="1") == [RESULT]
+    assert not kept(package)
+
+
+REFINE = """
+import numpy as np, threading, refine
+faces = np.array([[0, 1, 2], [2, 1, 3]])
+rest = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
+bent = rest + rest[:, :1] * rest[:, 1:2] * [0, 0, 1]
+counts = []
+def work(options):
+    refiner = refine.create("kahler", faces, rest, **options)
+    counts.append(len(refiner.refine(bent).triangles))
+choices = [{}, {"scheme": "cubic"}, {"blend": True}, {"coherent": True},
+           {"scheme": "detail", "detail": (rest, faces)}] * 2
+threads = [threading.Thread(target=work, args=[each]) for each in choices]
+[thread.start() for thread in threads]
+[thread.join() for thread in threads]
+print(sorted(counts))
+"""
+
+
+@pytest.mark.parametrize("variable", ["NUMBA_DISABLE_JIT", "NONE"])
+def test_threads_make_their_first_refiners(variable: str) -> None:
+    """Each thread a refiner of its own, all at once in a new process; and all of it as Python."""
+    for _ in range(3 if variable == "NONE" else 1):
+        result = subprocess.run(
+            [sys.executable, "-c", REFINE],
+            cwd=ROOT,
+            env={**os.environ, variable: "1"},
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+        assert result.returncode == 0, result.stderr
+        assert len(result.stdout.split(",")) == 10
