@@ -2,6 +2,7 @@
 #
 #   make demo     set up everything and render the built-in head to out/demo.mp4 and out/demo.png
 #   make test     set up everything, check the code and pass the tests
+#   make test-slow  what takes minutes: continuous integration runs it, too
 #   make setup    only make .venv with everything in it
 #   make check    ruff, mypy and the import rules alone
 #   make clean    remove .venv and what was rendered
@@ -26,13 +27,16 @@ define debian_packages
 	fi
 endef
 
-.PHONY: demo test setup check opengl screen clean
+.PHONY: demo test test-slow setup check opengl screen clean
 
 demo: setup opengl
 	@$(BIN)/risorius demo
 
 test: setup opengl screen check
 	@xvfb-run -a -s "-screen 0 1600x1000x24" $(BIN)/python -m pytest
+
+test-slow: setup opengl screen
+	@xvfb-run -a -s "-screen 0 1600x1000x24" $(BIN)/python -m pytest -m slow
 
 check: setup
 	@$(BIN)/ruff check .
@@ -41,6 +45,7 @@ check: setup
 	@PATH="$(CURDIR)/$(BIN):$$PATH" lint-imports
 
 setup: $(READY)
+	@$(BIN)/risorius warm
 
 $(READY): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

@@ -53,12 +53,14 @@ def warm(quiet: bool) -> None:
     """Compile everything that the application runs, with a bar; what is there already is read."""
     from tqdm import tqdm
 
+    for name in LOGS:
+        logging.getLogger(name).setLevel(logging.WARNING)  # the bar tells of the rest
     jobs = list(_jobs())
     with tqdm(jobs, disable=quiet, unit="part", bar_format="{l_bar}{bar}| {postfix}") as bar:
         for name, run in bar:
             bar.set_postfix_str(name)
             run()
-        bar.set_postfix_str("all compiled")
+        bar.set_postfix_str("everything is compiled", refresh=True)
 
 
 def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
@@ -72,9 +74,10 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     def simulate() -> None:
         face.pose(dict.fromkeys(face.limits, 0.1))
         face.step(1 / 60)
-        face.simulation.pull([0], [[0.0, 0.0, 1.0]], 1.0)
+        face.simulation.pull([0], face.positions[:1] + 1.0, [1.0])
         face.step(1 / 60)
         face.simulation.let_go()
+        face.simulation.fibres()
         face.reset()
 
     yield "muscles and springs", simulate
@@ -84,6 +87,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
         {"scheme": "cubic"},
         {"scheme": "cubic", "criterion": "bulge"},
         {"scheme": "detail"},
+        {"scheme": "detail", "criterion": "bulge"},
         {"coherent": True},
         *({"criterion": name} for name in ("curvature", "silhouette", "screen")),
     )

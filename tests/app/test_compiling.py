@@ -1,0 +1,62 @@
+"""What is said while kernels are compiled, and that `risorius warm` compiles all of them."""
+
+from __future__ import annotations
+
+import logging
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from app import compiling
+
+COMMANDS = (
+    "capture --set joy",
+    "capture --set joy --option scheme=detail --option criterion=bulge",
+    "capture --set joy --option criterion=silhouette+screen+curvature",
+    "capture --set joy --option coherent=on",
+    "capture --set joy --option blend=on --option criterion=normal",
+    "capture --set joy --refiner loop --option levels=2",
+    "capture --set amplitude=1 --scene plane --compare",
+)
+
+
+def test_each_kind_is_told_once(capsys: pytest.CaptureFixture[str]) -> None:
+    """Thirty kernels are compiled in a row, and both packages warn of the same folder."""
+    compiling.announce()
+    for name in compiling.LOGS:
+        log = logging.getLogger(name)
+        for kernel in ("one", "two"):
+            log.info("compiling %s", kernel)
+            log.warning("compiled code is not kept (%s)", name)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines == [
+        "Compiling, this once; it takes half a minute (risorius warm: all at once).",
+        "risorius: compiled code is not kept (refine.jit)",
+    ]
+
+
+@pytest.mark.slow
+def test_nothing_is_left_to_compile_after_warm(tmp_path: Path) -> None:
+    """Whatever is drawn afterwards finds its machine code on disk."""
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+
+    def run(command: str) -> None:
+        result = subprocess.run(
+            [sys.executable, "-m", "app", *command.split()],
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=600,
+        )
+        assert result.returncode == 0, result.stderr
+        assert "Compiling" not in result.stderr
+
+    run("warm --quiet")
+    compiled = sorted((tmp_path / "cache").rglob("*.code"))
+    assert len(compiled) > 50
+    for k, command in enumerate(COMMANDS):
+        run(f"{command} --quiet --size 64x64 -o {tmp_path}/{k}.png")
+    assert sorted((tmp_path / "cache").rglob("*.code")) == compiled
