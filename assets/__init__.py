@@ -2,7 +2,7 @@
 
     head = assets.load("head")
     plane = assets.load("plane")
-    mesh = assets.read_mesh("cloth.ply")  # anything that trimesh reads
+    mesh = assets.read_mesh("cloth.ply")  # or OBJ, STL, OFF, GLB
     picture = assets.paint(tone="dark")  # another skin for the head than `head.albedo`
     head = assets.fitting.fit_head("anna.obj", "anna.json")  # import assets.fitting, for any head
 

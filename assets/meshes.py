@@ -1,20 +1,33 @@
-"""Read a triangle mesh that somebody brings, in any format that trimesh reads.
+"""Read a triangle mesh that somebody brings: OBJ, PLY, STL, OFF or GLB, its surface alone.
 
-trimesh likes to merge, split and reorder vertices on loading; here every vertex and triangle stays
-where the file has it, because landmarks and animation caches count on their numbers.
+trimesh reads all but OBJ. It likes to merge, split and reorder vertices on loading, and to open the
+pictures and materials that a file names; here every vertex and triangle stays where the file has
+it, because landmarks and animation caches count on their numbers, and no other file is opened.
 """
 
+import io
+import logging
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from .brought import MOST_VERTICES, named, read_file
+from .mesh_claims import CHECKS
 from .model import AssetError
+from .wavefront import read_obj
 
+FORMATS = ("obj", "ply", "stl", "off", "glb")  # ends of names
+MOST_BYTES = 100_000_000
 FARTHEST = (
     1e9  # of a coordinate, in any unit: far beyond all meshes, and its cube is still a number
 )
+
+# What trimesh warns of is told by our one line, or does not concern the surface.
+logging.getLogger("trimesh").addHandler(logging.NullHandler())
 
 
 @dataclass(frozen=True)
@@ -32,35 +45,93 @@ class Mesh:
 def read_mesh(path: str | Path) -> Mesh:
     """Read one triangle mesh; several in one file become one, polygons become triangles.
 
-    Raises AssetError for a file that is missing, of an unknown format, broken, or has no triangles.
+    STL has no vertex numbers: there, corners in the same place become one vertex.
+
+    Raises AssetError for a file that is missing, of an unknown format, too large, broken, or has no
+    triangles.
     """
+    suffix = Path(path).suffix.lower().lstrip(".")
+    try:
+        if suffix not in FORMATS:
+            known = ", ".join(f".{name}" for name in FORMATS)
+            raise AssetError(f"its name must end in {known}: save the mesh in one of these formats")
+        content = read_file(
+            path,
+            kind="mesh",
+            most_bytes=MOST_BYTES,
+            cure="reduce it in a modelling program, or save it without pictures",
+        )
+        if suffix == "obj":
+            vertices, faces = read_obj(content, most=MOST_VERTICES)
+        else:
+            vertices, faces = _read_by_trimesh(CHECKS[suffix](content), suffix)
+        if suffix == "stl":
+            vertices, faces = _welded(vertices, faces)
+        _check(vertices, faces)
+    except AssetError as error:
+        raise AssetError(f"{named(path)}: {error}") from None
+    return Mesh(vertices.astype(np.float64), faces.astype(np.int32))
+
+
+def _read_by_trimesh(content: bytes, suffix: str) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+    """Vertices and triangles; AssetError for whatever trimesh may raise."""
     import trimesh  # half a second, needed by nothing else here
 
-    path = Path(path)
-    if not path.is_file():
-        raise AssetError(f"{path}: no such mesh file")
-    suffix = path.suffix.lower().lstrip(".")
-    if suffix not in trimesh.available_formats():
-        known = ", ".join(sorted(name for name in ("glb", "obj", "off", "ply", "stl")))
-        raise AssetError(f"{path}: cannot read '.{suffix}' files; among those it can are {known}")
     try:
-        loaded = trimesh.load_scene(path, process=False, maintain_order=True)
-        mesh = loaded.to_mesh() if len(loaded.geometry) else None
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            # numpy's way to say that a number is none, after which it would read no further
+            warnings.filterwarnings("error", category=DeprecationWarning, message="string or file")
+            scene = trimesh.load_scene(
+                io.BytesIO(content),
+                file_type=suffix,
+                process=False,
+                maintain_order=True,
+                skip_materials=True,
+                fix_texture=False,
+            )
+            mesh = scene.to_mesh() if len(scene.geometry) else None
     except Exception as error:  # every reader of trimesh has its own kinds
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise AssetError(f"{path}: broken or not what its name says: {reason}") from None
-    if mesh is None or not len(mesh.faces):
-        raise AssetError(f"{path}: holds no triangles")
-    vertices = np.array(mesh.vertices, np.float64)
-    if vertices.shape[1] != 3:
+        reason = " ".join(str(error).split())[:200]
         raise AssetError(
-            f"{path}: its vertices have {vertices.shape[1]} coordinates; they must have 3"
+            f"broken, or not what its name says ({type(error).__name__}: {reason}); open it in a "
+            "modelling program, triangulate it and save it anew"
+        ) from None
+    if mesh is None:
+        return np.zeros((0, 3)), np.zeros((0, 3), np.int64)
+    return np.array(mesh.vertices), np.array(mesh.faces)
+
+
+def _welded(
+    vertices: npt.NDArray[Any], faces: npt.NDArray[Any]
+) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+    """The same triangles with one vertex for each place, in the order of the file."""
+    places, first, place = np.unique(vertices + 0.0, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    number = np.empty_like(order)
+    number[order] = np.arange(len(order))
+    return places[order], number[place.reshape(-1)][faces]
+
+
+def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:
+    """AssetError unless there are triangles between vertices that are numbers within range."""
+    if not len(faces):
+        raise AssetError("holds no triangles; it must hold the surface of a head, as polygons")
+    if max(len(faces), len(vertices)) > MOST_VERTICES:
+        raise AssetError(
+            f"has {len(vertices)} vertices and {len(faces)} triangles; allowed are "
+            f"{MOST_VERTICES}: reduce it in a modelling program"
+        )
+    is_there = ((faces >= 0) & (faces < len(vertices))).all(axis=1)
+    if not is_there.all():
+        where = int(np.argmin(is_there))
+        raise AssetError(
+            f"triangle {where} (counted from 0) has the vertices {faces[where].tolist()}; there "
+            f"are 0 to {len(vertices) - 1}: save the mesh anew"
         )
     is_near = (np.abs(vertices) <= FARTHEST).all(axis=1)  # not so where a number is none
     if not is_near.all():
         where = int(np.argmin(is_near))
         raise AssetError(
-            f"{path}: vertex {where} (counted from 0) is at {vertices[where].tolist()}; it must "
-            f"be finite numbers up to {FARTHEST:g}"
+            f"vertex {where} (counted from 0) is at {vertices[where].tolist()}; it must be finite "
+            f"numbers up to {FARTHEST:g}: remove it, or choose another unit"
         )
-    return Mesh(vertices, np.array(mesh.faces, np.int32))

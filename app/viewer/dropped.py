@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import assets
+from assets.meshes import FORMATS
 
 from ..choices import head_for
 from ..errors import UserError
@@ -17,7 +18,7 @@ from . import commands
 if TYPE_CHECKING:
     from .window import Viewer
 
-MESHES = (".obj", ".ply", ".stl", ".off", ".glb")
+MESHES = tuple(f".{name}" for name in FORMATS)
 LANDMARKS = ".json"
 
 

@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from ..brought import named
 from ..loading import load
 from ..meshes import Mesh, read_mesh
 from ..model import (
@@ -40,6 +41,11 @@ from .soundness import Skin, check_manifold, check_openings, skin_of
 from .warp import Similarity, Warp, nearest_on
 
 ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere
+SMALLEST = 1e-9  # between the outermost landmarks: below it, squares leave too few digits
+LARGEST = 10_000.0  # [mm] from the middle of the face: farther off, a vertex is a mistake
+# Landmarks so far apart on the built-in head cannot be one place: no muscle spans no way.
+APART = 30.0  # [mm]
+ONE_PLACE = 1.0  # [mm]
 FARTHEST_FROM_A_FACE = 14.0  # [mm] mean distance of landmarks from those of the built-in head
 
 
@@ -81,7 +87,7 @@ def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
     try:
         return fit(found, numbers, points=points)
     except AssetError as error:
-        raise AssetError(f"{mesh}: {error}") from None
+        raise AssetError(f"{named(mesh)}: {error}") from None
 
 
 def fit(
@@ -102,6 +108,7 @@ def fit(
     check_manifold(mesh.faces)
     similarity = _placed(points, known)
     skin = replace(skin, vertices=similarity.points(skin.vertices))
+    _check_size(skin)
     skin = _facing_outward(skin)
     check_openings(skin)
     normals = _normals(skin.vertices, skin.faces)
@@ -135,8 +142,14 @@ def fit(
 def _placed(points: FloatArray, known: Head) -> Similarity:
     """The similarity to millimetres and the face frame; AssetError if this is no face."""
     template = known.vertices[known.landmarks]
-    if np.ptp(points[ORIENTING], axis=0).max() == 0.0:
+    extent = np.ptp(points[ORIENTING], axis=0).max()
+    if extent == 0.0:
         raise AssetError("all landmarks are one point; give 68 different ones")
+    if extent < SMALLEST:
+        raise AssetError(
+            f"the landmarks lie within {extent:.3g} units; allowed are {SMALLEST:g} and more: "
+            "save the mesh in metres or millimetres"
+        )
     similarity = Similarity.between(points[ORIENTING], template[ORIENTING])
     off = np.linalg.norm(similarity.points(points) - template, axis=1)
     if off[ORIENTING].mean() > FARTHEST_FROM_A_FACE:
@@ -149,7 +162,30 @@ def _placed(points: FloatArray, known: Head) -> Similarity:
             "left and right are swapped in the landmarks, or the mesh is mirrored; landmarks 0-16 "
             "run from the subject's right ear to the left one, 36-41 are the right eye"
         )
+    _check_different(similarity.points(points), template)
     return similarity
+
+
+def _check_size(skin: Skin) -> None:
+    """AssetError for a vertex [mm] that is nowhere near the face."""
+    off = np.linalg.norm(skin.vertices, axis=1)
+    if off.max() > LARGEST:
+        where = int(off.argmax())
+        raise AssetError(
+            f"vertex {skin.kept[where]} lies {off[where] / 1000.0:.3g} m off the face; allowed are "
+            f"{LARGEST / 1000.0:g} m: remove stray vertices and whatever is not the head"
+        )
+
+
+def _check_different(points: FloatArray, template: FloatArray) -> None:
+    """AssetError where landmarks [mm] that are far apart on any face are one place."""
+    ways, known = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (points, template))
+    a, b = np.unravel_index((ways + np.where(known > APART, 0.0, np.inf)).argmin(), ways.shape)
+    if ways[a, b] < ONE_PLACE:
+        raise AssetError(
+            f"landmarks {a} and {b} are {ways[a, b]:.2g} mm apart, on the built-in head "
+            f"{known[a, b]:.0f} mm; give each its own place"
+        )
 
 
 def _facing_outward(skin: Skin) -> Skin:

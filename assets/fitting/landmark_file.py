@@ -11,19 +11,24 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from reprlib import repr as shortened
 from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..meshes import Mesh
+from ..brought import named, read_file
+from ..meshes import FARTHEST, Mesh
 from ..model import AssetError, FloatArray, IndexArray
 from .soundness import ways
 from .warp import nearest_on
 
 COUNT = 68
-LONGEST_FILE = 2**24  # [bytes] that are read
-FARTHEST = 0.05  # of the distance between the outer eye corners: a point off the mesh is a mistake
+MOST_BYTES = 1_000_000
+KEY = "landmarks"  # the list to take where there are several
+FARTHEST_OFF = (
+    0.05  # of the distance between the outer eye corners: a point off the mesh is a mistake
+)
 OUTER_EYE_CORNERS = [36, 45]
 OUTER_LIPS = ((50, 51, 52), (56, 57, 58))  # upper, lower
 INNER_LIPS = ((61, 62, 63), (65, 66, 67))
@@ -34,64 +39,89 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray]:
 
     Where the file holds points, they lie between vertices and the numbers are the nearest ones.
 
-    Raises AssetError for a file that is missing or no JSON, another count, and a point that is not
-    on the mesh.
+    Raises AssetError for a file that is missing, too long or no JSON, another count, numbers out of
+    range, and a point that is not on the mesh.
     """
     try:
-        with path.open("rb") as file:
-            document = json.loads(file.read(LONGEST_FILE).decode("utf-8-sig"))
-    except FileNotFoundError:
-        raise AssetError(f"{path}: no such landmark file") from None
-    except (OSError, ValueError, RecursionError) as error:
-        raise AssetError(f"{path}: not readable as JSON: {error}") from None
-    found = _list_in(document)
-    if found is None:
-        raise AssetError(
-            f'{path}: holds no list; it must be {{"landmarks": [...]}} with {COUNT} vertex numbers '
-            "or points [x, y, z]"
-        )
-    if len(found) != COUNT:
-        raise AssetError(f"{path}: {len(found)} landmarks; it must be the {COUNT} iBug points")
-    if all(isinstance(entry, int) and not isinstance(entry, bool) for entry in found):
-        numbers = _numbers(path, found, len(mesh.vertices))
-        return numbers, mesh.vertices[numbers]
-    points = _points(path, found)
-    return _nearest(path, points, mesh), points
+        found = _list_in(_document(path))
+        if len(found) != COUNT:
+            raise AssetError(
+                f"{len(found)} landmarks; it must be the {COUNT} iBug points in their order"
+            )
+        if all(isinstance(entry, int) and not isinstance(entry, bool) for entry in found):
+            numbers = _numbers(found, len(mesh.vertices))
+            return numbers, mesh.vertices[numbers]
+        points = _points(found)
+        return _nearest(points, mesh), points
+    except AssetError as error:
+        raise AssetError(f"{named(path)}: {error}") from None
 
 
-def _list_in(document: Any) -> list[Any] | None:
-    """The list of landmarks: the document itself, or the longest list in it."""
+def _document(path: Path) -> Any:
+    content = read_file(
+        path, kind="landmark", most_bytes=MOST_BYTES, cure="keep the list of landmarks alone"
+    )
+    try:
+        return json.loads(content)  # in UTF-8, 16 or 32, with a byte order mark or without
+    except RecursionError:
+        reason = "brackets are nested too deep"
+    except ValueError as error:
+        reason = str(error)
+    raise AssetError(
+        f'not readable as JSON: {reason}; it must be {{"{KEY}": [...]}} with {COUNT} entries'
+    )
+
+
+def _list_in(document: Any) -> list[Any]:
+    """The list of landmarks: the document itself, or the list in it that can be meant."""
     if isinstance(document, list):
         return document
-    if not isinstance(document, dict):
-        return None
-    lists = [entry for entry in document.values() if isinstance(entry, list)]
-    return max(lists, key=len, default=None)
+    entries = document if isinstance(document, dict) else {}
+    lists = {key: entry for key, entry in entries.items() if isinstance(entry, list)}
+    if not lists:
+        raise AssetError(
+            f'holds no list; it must be {{"{KEY}": [...]}} with {COUNT} vertex numbers or points '
+            "[x, y, z]"
+        )
+    fitting = [entry for entry in lists.values() if len(entry) == COUNT]
+    if KEY in lists or not fitting:
+        return lists[KEY] if KEY in lists else max(lists.values(), key=len)
+    if len(fitting) > 1:
+        raise AssetError(f"holds {len(fitting)} lists of {COUNT}; call the right one '{KEY}'")
+    return fitting[0]
 
 
-def _numbers(path: Path, found: list[Any], count: int) -> IndexArray:
+def _numbers(found: list[int], count: int) -> IndexArray:
     for place, number in enumerate(found):
         if not 0 <= number < count:
             raise AssetError(
-                f"{path}: landmark {place} is vertex {number}; the mesh has vertices "
-                f"0 to {count - 1}"
+                f"landmark {place} is vertex {shortened(number)}; the mesh has vertices 0 to "
+                f"{count - 1}: count from 0, in the mesh that is given"
             )
     return np.array(found, dtype=np.int32)
 
 
-def _points(path: Path, found: list[Any]) -> FloatArray:
-    try:
-        points = np.array(found, dtype=np.float64)
-    except (TypeError, ValueError):
-        points = np.zeros(0)
-    if points.shape != (COUNT, 3) or not np.isfinite(points).all():
-        raise AssetError(
-            f"{path}: every landmark must be a vertex number, or every one a point [x, y, z]"
-        )
-    return points
+def _points(found: list[Any]) -> FloatArray:
+    for place, entry in enumerate(found):
+        is_point = isinstance(entry, list) and len(entry) == 3 and all(map(_is_number, entry))
+        if not is_point:
+            raise AssetError(
+                f"landmark {place} is {shortened(entry)}; every landmark must be a vertex number, "
+                "or every one a point [x, y, z]"
+            )
+        if not all(-FARTHEST <= number <= FARTHEST for number in entry):
+            raise AssetError(
+                f"landmark {place} is at {shortened(entry)}; it must be finite numbers up to "
+                f"{FARTHEST:g}, a point on the mesh"
+            )
+    return np.array(found, dtype=np.float64)
 
 
-def _nearest(path: Path, points: FloatArray, mesh: Mesh) -> IndexArray:
+def _is_number(entry: Any) -> bool:
+    return isinstance(entry, int | float) and not isinstance(entry, bool)
+
+
+def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:
     """The vertices nearest to points; each point must be near the mesh.
 
     Where lips touch, the nearest vertex may be on the other lip. So a point inside of the lips goes
@@ -99,11 +129,11 @@ def _nearest(path: Path, points: FloatArray, mesh: Mesh) -> IndexArray:
     """
     on_mesh = nearest_on(points, np.zeros_like(points), mesh.vertices, mesh.faces)
     distance = np.linalg.norm(on_mesh.carry(mesh.vertices) - points, axis=1)
-    allowed = FARTHEST * float(np.linalg.norm(np.diff(points[OUTER_EYE_CORNERS], axis=0)))
+    allowed = FARTHEST_OFF * float(np.linalg.norm(np.diff(points[OUTER_EYE_CORNERS], axis=0)))
     if distance.max() > allowed:
         place = int(distance.argmax())
         raise AssetError(
-            f"{path}: landmark {place} lies {distance[place]:.3g} units off the mesh; allowed are "
+            f"landmark {place} lies {distance[place]:.3g} units off the mesh; allowed are "
             f"{allowed:.3g} (a twentieth of the eyes' distance): are unit and axes the mesh's?"
         )
     numbers: IndexArray = cKDTree(mesh.vertices).query(points)[1].astype(np.int32)

@@ -49,16 +49,39 @@ def test_polygons_become_triangles(tmp_path: Path) -> None:
     assert assets.read_mesh(path).faces.shape == (2, 3)
 
 
+def test_seams_and_materials_keep_vertices_together(tmp_path: Path) -> None:
+    """Two materials and a seam of the texture cut nothing: a vertex keeps its number."""
+    path = tmp_path / "seam.obj"
+    path.write_text(
+        "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+        "usemtl skin\nf 1/1 2/2 3/3\nusemtl lips\nf -4/2 -2/3 -1/4\n"
+    )
+    mesh = assets.read_mesh(path)
+    assert mesh.vertices.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+
+
+def test_corners_of_stl_become_vertices(tmp_path: Path) -> None:
+    """STL repeats each corner; what lies in one place is one vertex, in the order of the file."""
+    path = tmp_path / "ball.stl"
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    ball.export(path)
+    mesh = assets.read_mesh(path)
+    assert len(mesh.vertices) == len(ball.vertices)
+    assert np.abs(mesh.vertices[mesh.faces] - ball.triangles).max() < 1e-6
+    assert mesh.faces[0].tolist() == [0, 1, 2]
+
+
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
         ("absent.obj", None, r"absent\.obj: no such mesh file"),
-        ("mesh.doc", "hello", r"cannot read '\.doc' files; among those it can are glb, obj"),
+        ("mesh.doc", "hello", r"its name must end in \.obj, \.ply, \.stl"),
         ("points.obj", "v 0 0 0\nv 1 1 1\n", "holds no triangles"),
-        ("mesh.ply", "ply\nformat nonsense\n", "broken or not what its name says"),
+        ("mesh.ply", "ply\nformat nonsense\n", "is no PLY file"),
         ("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", r"vertex 1 .* at \[nan, 0"),
         ("far.obj", "v 0 0 0\nv 1e300 0 0\nv 0 1 0\nf 1 2 3\n", "must be finite numbers up to 1e"),
-        ("flat.obj", "v 0 0\nv 1 0\nv 0 1\nf 1 2 3\n", "vertices have 2 coordinates"),
+        ("flat.obj", "v 0 0\nv 1 0\nv 0 1\nf 1 2 3\n", "line 1: a vertex has 2 coordinates"),
     ],
 )
 def test_mistakes_are_told(tmp_path: Path, name: str, content: str | None, message: str) -> None:
