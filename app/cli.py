@@ -15,7 +15,7 @@ import click
 
 from . import __version__
 from .commands import bench_quality, bench_refine, bench_strips, reproduce
-from .errors import OneLineGroup, UserError, told_in_one_line
+from .errors import OneLineGroup, UserError, in_one_line, told_in_one_line
 from .parameters import FiniteRange, Size
 
 Command = Callable[..., Any]
@@ -158,7 +158,7 @@ def capture(
             overwrite=overwrite,
             progress=not quiet,
         )
-        written = " and ".join(str(path) for path in (output, sheet) if path)
+        written = in_one_line(" and ".join(str(path) for path in (output, sheet) if path))
         click.echo(f"{written}: {most} triangles at most")
 
 
@@ -300,7 +300,7 @@ def bench_gaps(json_file: Path | None) -> None:
         click.echo(gaps_table(poses))
         if json_file is not None:
             save_text(json_file, gaps_json(poses))
-            click.echo(f"{json_file}: written", err=True)
+            click.echo(f"{in_one_line(json_file)}: written", err=True)
 
 
 @bench.command("tearing")

@@ -31,7 +31,7 @@ def written_aside(target: Path) -> Iterator[Path]:
 
     A link stays one: what it points to is written. UserError where that cannot be.
     """
-    whole = Path(os.path.realpath(target))
+    whole = _behind_links(target)
     with cannot_be_written(target):
         whole.parent.mkdir(parents=True, exist_ok=True)
     with _folder_aside(target, whole.parent) as aside:
@@ -67,15 +67,24 @@ def cannot_be_written(target: Path) -> Iterator[None]:
         raise UserError(f"{target}: cannot be written: {error.strerror or error}") from None
 
 
+def _behind_links(target: Path) -> Path:
+    """The file that `target` stands for; UserError where its links go round in a circle."""
+    whole = Path(os.path.realpath(target))
+    with cannot_be_written(target):
+        if whole.is_symlink():
+            raise UserError(f"{target}: is a link that leads back to itself; choose another name")
+    return whole
+
+
 def check_file(target: Path) -> None:
     """Raise UserError, before any work is done, where no file of this name can be written."""
-    whole = Path(os.path.realpath(target))
+    whole = _behind_links(target)
     with cannot_be_written(target):
         if whole.is_dir():
             raise UserError(f"{target}: is a folder; choose another name for the file")
         if whole.exists() and not whole.is_file():
             raise UserError(f"{target}: is a device, not a file; choose another name")
-        folder = next(parent for parent in whole.parents if parent.exists())
+        folder = next(parent for parent in whole.parents if os.path.lexists(parent))
         with _folder_aside(target, folder) as aside:
             (aside / whole.name).touch()
 
@@ -129,6 +138,7 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
 
     overwrite: frames of an earlier film give way to these; whatever else is there stays.
     """
+    _behind_links(target)
     is_new = not target.exists()
     with cannot_be_written(target):
         if not is_new and any(target.iterdir()) and not overwrite:
