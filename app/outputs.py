@@ -5,8 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-import secrets
-import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -14,11 +12,12 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+from assets.aside import Aside, is_aside
+
 from .errors import UserError
 from .ffmpeg import Encoder
 from .stopping import cleaned_up_if_stopped, done_whole
 
-ASIDE = ".risorius-"  # what the name of a folder begins with in which something is being written
 FILM_SUFFIXES = (".mp4", ".mov", ".mkv")
 FRAME_NAME = re.compile(r"frame_\d{5,}\.png")
 Frame = npt.NDArray[np.uint8]  # (H, W, 3), top row first
@@ -44,18 +43,11 @@ def written_aside(target: Path) -> Iterator[Path]:
 @contextlib.contextmanager
 def _folder_aside(target: Path, parent: Path) -> Iterator[Path]:
     """A folder in `parent` that is gone after the block, however it ends."""
-    aside = parent / f"{ASIDE}{secrets.token_hex(6)}"
-
-    def remove() -> None:
-        shutil.rmtree(aside, ignore_errors=True)
-
-    with cleaned_up_if_stopped(remove):
-        try:
-            with cannot_be_written(target):
-                aside.mkdir(mode=0o700)
-            yield aside
-        finally:
-            remove()
+    aside = Aside(parent)
+    with cleaned_up_if_stopped(aside.remove), contextlib.ExitStack() as stack:
+        with cannot_be_written(target):
+            folder = stack.enter_context(aside)
+        yield folder
 
 
 @contextlib.contextmanager
@@ -141,7 +133,8 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
     _behind_links(target)
     is_new = not target.exists()
     with cannot_be_written(target):
-        if not is_new and any(target.iterdir()) and not overwrite:
+        is_empty = is_new or all(is_aside(item) for item in target.iterdir())
+        if not is_empty and not overwrite:
             raise UserError(
                 f"{target}: is there and not empty; name another folder, or add --overwrite"
             )

@@ -14,12 +14,13 @@ import contextlib
 import json
 import re
 import secrets
-import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
+
+from assets.aside import locked
 
 from ..errors import UserError
 from ..outputs import cannot_be_written, save_text
@@ -77,7 +78,7 @@ class Place:
         name = f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(3)}"
         with cannot_be_written(folder):
             folder.mkdir(parents=True, exist_ok=True)
-            lock = _locked(folder / f"{name}.lock")
+            lock = locked(folder / f"{name}.lock")
         assert lock is not None
         return cls(folder, name, lock)
 
@@ -137,7 +138,7 @@ def left_behind(folder: Path) -> Iterator[tuple[Place, Work]]:
     names = {file.name.split(".")[0] for file in folder.glob("*.toml")}
     for name in sorted(names, reverse=True):
         try:
-            lock = _locked(folder / f"{name}.lock")
+            lock = locked(folder / f"{name}.lock")
             if lock is None:
                 continue
             place = Place(folder, name, lock)
@@ -148,23 +149,3 @@ def left_behind(folder: Path) -> Iterator[tuple[Place, Work]]:
             yield place, work
         else:
             place.remove()
-
-
-def _locked(path: Path) -> IO[Any] | None:
-    """The file, which nobody else can lock until it is closed; None where somebody has."""
-    file = path.open("ab")
-    try:
-        if sys.platform == "win32":
-            import msvcrt
-
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-        else:
-            import fcntl
-
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except (BlockingIOError, PermissionError):
-        file.close()
-        return None
-    except OSError:
-        pass  # a file system without locks: better offered twice than never
-    return file

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -88,6 +91,26 @@ def test_broken_frames_leave_the_folder_as_it_was(tmp_path: Path) -> None:
             raise RuntimeError("in the middle")
     left = sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*"))
     assert left == ["old", "old/frame_00000.png"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
+def test_a_run_after_one_that_was_killed(tmp_path: Path) -> None:
+    """Its frames go into the same folder as if that was empty; what was left goes the day after."""
+    code = (
+        "import os, pathlib, signal, sys\nfrom app import outputs\n"
+        "with outputs.folder(pathlib.Path(sys.argv[1]), overwrite=False):\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)"
+    )
+    target = tmp_path / "frames"
+    subprocess.run([sys.executable, "-c", code, str(target)], check=False)
+    [left] = target.iterdir()
+    with outputs.folder(target, overwrite=False) as add:
+        add(GREY)
+    assert sorted(target.iterdir()) == [left, target / "frame_00000.png"]
+    for path in (*left.iterdir(), left):
+        os.utime(path, (0.0, 0.0))
+    outputs.save_png(target / "x.png", GREY)
+    assert {path.name for path in target.iterdir()} == {"frame_00000.png", "x.png"}
 
 
 def test_a_place_that_cannot_be_written(tmp_path: Path) -> None:
