@@ -61,7 +61,7 @@ class Encoder:
 
     def add(self, frame: npt.NDArray[np.uint8]) -> None:
         """Hand over a frame, (H, W, 3); UserError where ffmpeg has given up, or hangs."""
-        left = memoryview(np.ascontiguousarray(frame)).cast("B")
+        left = np.ascontiguousarray(frame).data.cast("B")
         try:
             while left:
                 self._wait_until(self._takes_more)

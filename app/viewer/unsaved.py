@@ -14,6 +14,7 @@ import contextlib
 import json
 import re
 import secrets
+import stat
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -23,8 +24,9 @@ from typing import IO, Any
 from assets.aside import locked
 
 from ..errors import UserError
+from ..inputs import read_text
 from ..outputs import cannot_be_written, save_text
-from ..script import Limits, Script, parse_script
+from ..script import LONGEST_FILE, Limits, Script, parse_script
 from ..script_writer import script_text
 
 KINDS = ("script", "recording", "pose")  # the files of one window, in the order of opening
@@ -96,10 +98,12 @@ class Place:
                 save_text(self._file(kind), text)
 
     def read(self) -> Work:
-        """What is kept here; UserError, ValueError or OSError where a file is damaged."""
-        texts = {kind: file.read_text(encoding="utf-8") for kind, file in self._files().items()}
-        lines = _FILE_LINE.findall(texts.get("script", ""))
-        path = Path(json.loads(lines[-1])) if lines else None
+        """What is kept here; UserError or OSError where a file is damaged."""
+        texts = {
+            kind: read_text(file, what="script", longest=LONGEST_FILE)
+            for kind, file in self._files().items()
+        }
+        path = _path_in(texts.get("script", ""))
         # Named as its own file is, for error texts and as a title where it has none.
         sources = {"script": str(path or "Untitled")}
         scripts = {
@@ -135,7 +139,10 @@ def left_behind(folder: Path) -> Iterator[tuple[Place, Work]]:
 
     What cannot be read stays there and is passed by. Whoever does not want a place leaves it.
     """
-    names = {file.name.split(".")[0] for file in folder.glob("*.toml")}
+    try:
+        names = {file.name.split(".")[0] for file in folder.iterdir() if file.suffix == ".toml"}
+    except OSError:
+        return
     for name in sorted(names, reverse=True):
         try:
             lock = locked(folder / f"{name}.lock")
@@ -143,9 +150,23 @@ def left_behind(folder: Path) -> Iterator[tuple[Place, Work]]:
                 continue
             place = Place(folder, name, lock)
             work = place.read()
-        except (OSError, UserError, ValueError):
+        except (OSError, UserError):
             continue
         if work:
             yield place, work
         else:
             place.remove()
+
+
+def _path_in(text: str) -> Path | None:
+    """The file of a script by the last line that names it; None for what can be none."""
+    lines = _FILE_LINE.findall(text)
+    if not lines:
+        return None
+    try:
+        path = Path(json.loads(lines[-1]))
+        return path if stat.S_ISREG(path.stat().st_mode) else None
+    except FileNotFoundError:  # it went away since; saving makes it anew
+        return path
+    except (OSError, ValueError):
+        return None
