@@ -220,14 +220,17 @@ def controls(scene: str) -> None:
 @click.option("--offscreen", is_flag=True, help="Only ask for offscreen OpenGL.")
 @click.option("--quiet", is_flag=True, help="Say nothing; the exit code tells.")
 def doctor(offscreen: bool, quiet: bool) -> None:
-    """Say what OpenGL there is, and what is missing with the command that cures it."""
+    """Say what there is, what works because of it, and the cure for what is missing.
+
+    Exit code 0: everything is there. 1: some commands work. 2: nothing can be drawn.
+    """
     from .doctor import examine
 
-    healthy, lines = examine(offscreen_only=offscreen)
+    health, lines = examine(offscreen_only=offscreen)
     if not quiet:
         for line in lines:
             click.echo(line)
-    sys.exit(0 if healthy else 2)
+    sys.exit(int(health))
 
 
 REFERENCE_FILES = "a folder with face.npz: vertices, triangles, landmarks68, displacement fields"

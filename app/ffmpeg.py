@@ -42,18 +42,18 @@ class Encoder:
         self._target, self._part = target, part
         rate = Fraction(frames_per_second).limit_denominator()
         frames = f"-f rawvideo -pix_fmt rgb24 -s {size[0]}x{size[1]} -r {rate} -i -"
-        program = _program()
+        name = program()
         self._words = tempfile.TemporaryFile()
         try:  # in a session of its own: Ctrl-C is for us alone
             self._process = subprocess.Popen(
-                [program, "-v", "error", *frames.split(), *CODING.split(), f"file:{part}"],
+                [name, "-v", "error", *frames.split(), *CODING.split(), f"file:{part}"],
                 stdin=subprocess.PIPE,
                 stderr=self._words,
                 bufsize=0,
                 start_new_session=True,
             )
         except OSError as error:
-            raise UserError(f"no film without ffmpeg: {program}: {error.strerror}") from None
+            raise UserError(f"no film without ffmpeg: {name}: {error.strerror}") from None
         assert self._process.stdin is not None
         self._frames = self._process.stdin
         if sys.platform != "win32":  # there a pipe cannot be waited for
@@ -138,7 +138,8 @@ class Encoder:
         return UserError(f"{self._target}: cannot be written: ffmpeg: {why}")
 
 
-def _program() -> str:
+def program() -> str:
+    """The ffmpeg that writes films here; UserError where there is none."""
     try:
         return str(imageio_ffmpeg.get_ffmpeg_exe())
     except RuntimeError:
