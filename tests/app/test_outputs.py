@@ -143,7 +143,7 @@ def fake_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[st
         fake.chmod(0o755)
         return fake
 
-    monkeypatch.setattr(ffmpeg, "PATIENCE", 0.5)
+    monkeypatch.setattr(ffmpeg, "PATIENCE", 0.8)
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(tmp_path / "ffmpeg"))
     return make
 
@@ -157,7 +157,7 @@ def old_film(tmp_path: Path) -> Path:
     return target
 
 
-HANGS = r"film.mp4: cannot be written: ffmpeg hangs, it did nothing for 0.5 s; try again, or write"
+HANGS = r"film.mp4: cannot be written: ffmpeg hangs, it did nothing for 0.8 s; try again, or write"
 
 
 @pytest.mark.parametrize(
@@ -199,11 +199,11 @@ def test_an_ffmpeg_that_is_slow_is_waited_for(
     """As long as the film grows, it may take longer to finish it than patience lasts."""
     fake_ffmpeg(
         "for last; do :; done\ncat > /dev/null\n"
-        'for part in 1 2 3 4 5 6; do sleep 0.2; printf $part >> "${last#file:}"; done'
+        'for part in 1 2 3 4 5 6 7 8; do sleep 0.15; printf $part >> "${last#file:}"; done'
     )
     with outputs.film(old_film, (96, 64), 25.0) as add:
         add(GREY)
-    assert old_film.read_bytes() == b"123456"
+    assert old_film.read_bytes() == b"12345678"
 
 
 def test_an_ffmpeg_that_hangs_ends_the_command(
