@@ -45,7 +45,6 @@ check: setup
 	@PATH="$(CURDIR)/$(BIN):$$PATH" lint-imports
 
 setup: $(READY)
-	@$(BIN)/risorius warm
 
 $(READY): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -54,6 +53,8 @@ $(READY): pyproject.toml constraints.txt
 	@[ -x $(BIN)/python ] || $(PYTHON) -m venv .venv
 	@echo "Installing Risorius and what it needs into .venv"
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --constraint constraints.txt --editable ".[dev]"
+	@echo "Compiling what is compiled, half a minute"
+	@$(BIN)/risorius warm
 	@touch $(READY)
 
 opengl: setup

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import replace
 from importlib.resources import files
@@ -44,16 +45,17 @@ def head_for(head: Path | None, landmarks: Path | None) -> FittedHead | None:
 
 def check_apart(outputs: Sequence[Path | None], inputs: Sequence[Path | None]) -> None:
     """UserError where two outputs are one file, or one would take the place of an input."""
-    written: set[Path] = set()
-    read = {path.resolve() for path in inputs if path is not None}
+    written: set[str] = set()
+    read = {os.path.realpath(path) for path in inputs if path is not None}
     for path in outputs:
         if path is None:
             continue
-        if path.resolve() in read:
+        real = os.path.realpath(path)  # unlike `resolve` it bears links that lead to themselves
+        if real in read:
             raise UserError(f"{path}: is read and would be written; choose another name")
-        if path.resolve() in written:
+        if real in written:
             raise UserError(f"{path}: is to be two outputs at once; choose another name for one")
-        written.add(path.resolve())
+        written.add(real)
 
 
 def held_pose(settings: Sequence[str]) -> Script:

@@ -16,7 +16,7 @@ import click
 from . import __version__
 from .commands import bench_quality, bench_refine, reproduce
 from .compiling import announce
-from .errors import OneLineGroup, UserError, told_in_one_line
+from .errors import OneLineGroup, UserError, in_one_line, told_in_one_line
 from .parameters import FiniteRange, Size
 
 Command = Callable[..., Any]
@@ -160,7 +160,7 @@ def capture(
             overwrite=overwrite,
             progress=not quiet,
         )
-        written = " and ".join(str(path) for path in (output, sheet) if path)
+        written = in_one_line(" and ".join(str(path) for path in (output, sheet) if path))
         click.echo(f"{written}: {most} triangles at most")
 
 
@@ -222,14 +222,17 @@ def controls(scene: str) -> None:
 @click.option("--offscreen", is_flag=True, help="Only ask for offscreen OpenGL.")
 @click.option("--quiet", is_flag=True, help="Say nothing; the exit code tells.")
 def doctor(offscreen: bool, quiet: bool) -> None:
-    """Say what OpenGL there is, and what is missing with the command that cures it."""
+    """Say what there is, what works because of it, and the cure for what is missing.
+
+    Exit code 0: everything is there. 1: some commands work. 2: nothing can be drawn.
+    """
     from .doctor import examine
 
-    healthy, lines = examine(offscreen_only=offscreen)
+    health, lines = examine(offscreen_only=offscreen)
     if not quiet:
         for line in lines:
             click.echo(line)
-    sys.exit(0 if healthy else 2)
+    sys.exit(int(health))
 
 
 REFERENCE_FILES = "a folder with face.npz: vertices, triangles, landmarks68, displacement fields"
@@ -301,7 +304,7 @@ def bench_gaps(json_file: Path | None) -> None:
         click.echo(gaps_table(poses))
         if json_file is not None:
             save_text(json_file, gaps_json(poses))
-            click.echo(f"{json_file}: written", err=True)
+            click.echo(f"{in_one_line(json_file)}: written", err=True)
 
 
 @bench.command("tearing")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .errors import UserError, told_in_one_line
+from .errors import UserError, in_one_line, told_in_one_line
 from .parameters import FiniteRange
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None)
         click.echo(refine_text(report))
         if json_file is not None:
             save_text(json_file, refine_json(report))
-            click.echo(f"{json_file}: written", err=True)
+            click.echo(f"{in_one_line(json_file)}: written", err=True)
 
 
 @click.command("quality")
@@ -111,10 +111,9 @@ def bench_quality(reference: Path | None, finer: str, apart: bool, curves: Path 
                 continue
             for rule in quality.RULES:
                 name = f"{curves.stem}_{subject.name}_{rule}".replace(" ", "_").replace(",", "")
-                save_png(
-                    curves.with_stem(name), error_curves(f"{title}, split by {rule}", scores, rule)
-                )
-                click.echo(f"{curves.with_stem(name)}: written", err=True)
+                target = curves.with_stem(name)
+                save_png(target, error_curves(f"{title}, split by {rule}", scores, rule))
+                click.echo(f"{in_one_line(target)}: written", err=True)
 
 
 @click.group()
@@ -177,7 +176,7 @@ def _draw(output: Path, picture: Callable[[], Frame]) -> None:
     with told_in_one_line():
         check_picture(output)
         save_png(output, picture())
-        click.echo(f"{output}: written")
+        click.echo(f"{in_one_line(output)}: written")
 
 
 def _progress(name: str) -> None:

@@ -56,7 +56,9 @@ def warm(quiet: bool) -> None:
     for name in LOGS:
         logging.getLogger(name).setLevel(logging.WARNING)  # the bar tells of the rest
     jobs = list(_jobs())
-    with tqdm(jobs, disable=quiet, unit="part", bar_format="{l_bar}{bar}| {postfix}") as bar:
+    with tqdm(
+        jobs, disable=quiet or None, unit="part", bar_format="{l_bar}{bar}| {postfix}"
+    ) as bar:
         for name, run in bar:
             bar.set_postfix_str(name)
             run()

@@ -11,9 +11,26 @@ import click
 
 from .stopping import listen
 
+LONGEST_LINE = 2000  # [characters] of a message; the middle of a longer one is left out
+
+
+def in_one_line(words: object) -> str:
+    """Words for the user, in which whatever a terminal would not show as a character is escaped.
+
+    Names come from files and command lines: a line end in one must not begin a line of ours, nor
+    may it steer the terminal.
+    """
+    text = str(words)
+    if len(text) > LONGEST_LINE:
+        text = f"{text[: LONGEST_LINE // 2]} ... {text[-LONGEST_LINE // 2 :]}"
+    return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
+
 
 class UserError(Exception):
     """Something the user gave cannot be used; the text says what, where, what is allowed."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(in_one_line(text))
 
 
 @contextlib.contextmanager
@@ -30,7 +47,7 @@ def told_in_one_line() -> Iterator[None]:
         click.echo("risorius: there is not enough memory for this; take a smaller size", err=True)
         sys.exit(2)
     except (UserError, render.GLError, assets.AssetError, OSError) as error:
-        click.echo(f"risorius: {error}", err=True)
+        click.echo(f"risorius: {in_one_line(error)}", err=True)
         sys.exit(2)
 
 
@@ -59,7 +76,7 @@ class OneLineGroup(click.Group):
             click.echo(error.format_message(), err=True)
             sys.exit(2)
         except click.ClickException as error:
-            line = " ".join(error.format_message().split())
+            line = in_one_line(" ".join(error.format_message().split()))
             context = getattr(error, "ctx", None)
             where = f"; see {context.command_path} --help" if context else ""
             click.echo(f"risorius: {line.rstrip('.')}{where}", err=True)

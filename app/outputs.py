@@ -5,8 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-import secrets
-import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -14,11 +12,12 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+from assets.aside import Aside, is_aside
+
 from .errors import UserError
 from .ffmpeg import Encoder
 from .stopping import cleaned_up_if_stopped, done_whole
 
-ASIDE = ".risorius-"  # what the name of a folder begins with in which something is being written
 FILM_SUFFIXES = (".mp4", ".mov", ".mkv")
 FRAME_NAME = re.compile(r"frame_\d{5,}\.png")
 Frame = npt.NDArray[np.uint8]  # (H, W, 3), top row first
@@ -31,7 +30,7 @@ def written_aside(target: Path) -> Iterator[Path]:
 
     A link stays one: what it points to is written. UserError where that cannot be.
     """
-    whole = Path(os.path.realpath(target))
+    whole = _behind_links(target)
     with cannot_be_written(target):
         whole.parent.mkdir(parents=True, exist_ok=True)
     with _folder_aside(target, whole.parent) as aside:
@@ -44,18 +43,11 @@ def written_aside(target: Path) -> Iterator[Path]:
 @contextlib.contextmanager
 def _folder_aside(target: Path, parent: Path) -> Iterator[Path]:
     """A folder in `parent` that is gone after the block, however it ends."""
-    aside = parent / f"{ASIDE}{secrets.token_hex(6)}"
-
-    def remove() -> None:
-        shutil.rmtree(aside, ignore_errors=True)
-
-    with cleaned_up_if_stopped(remove):
-        try:
-            with cannot_be_written(target):
-                aside.mkdir(mode=0o700)
-            yield aside
-        finally:
-            remove()
+    aside = Aside(parent)
+    with cleaned_up_if_stopped(aside.remove), contextlib.ExitStack() as stack:
+        with cannot_be_written(target):
+            folder = stack.enter_context(aside)
+        yield folder
 
 
 @contextlib.contextmanager
@@ -67,15 +59,24 @@ def cannot_be_written(target: Path) -> Iterator[None]:
         raise UserError(f"{target}: cannot be written: {error.strerror or error}") from None
 
 
+def _behind_links(target: Path) -> Path:
+    """The file that `target` stands for; UserError where its links go round in a circle."""
+    whole = Path(os.path.realpath(target))
+    with cannot_be_written(target):
+        if whole.is_symlink():
+            raise UserError(f"{target}: is a link that leads back to itself; choose another name")
+    return whole
+
+
 def check_file(target: Path) -> None:
     """Raise UserError, before any work is done, where no file of this name can be written."""
-    whole = Path(os.path.realpath(target))
+    whole = _behind_links(target)
     with cannot_be_written(target):
         if whole.is_dir():
             raise UserError(f"{target}: is a folder; choose another name for the file")
         if whole.exists() and not whole.is_file():
             raise UserError(f"{target}: is a device, not a file; choose another name")
-        folder = next(parent for parent in whole.parents if parent.exists())
+        folder = next(parent for parent in whole.parents if os.path.lexists(parent))
         with _folder_aside(target, folder) as aside:
             (aside / whole.name).touch()
 
@@ -129,9 +130,11 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
 
     overwrite: frames of an earlier film give way to these; whatever else is there stays.
     """
+    _behind_links(target)
     is_new = not target.exists()
     with cannot_be_written(target):
-        if not is_new and any(target.iterdir()) and not overwrite:
+        is_empty = is_new or all(is_aside(item) for item in target.iterdir())
+        if not is_empty and not overwrite:
             raise UserError(
                 f"{target}: is there and not empty; name another folder, or add --overwrite"
             )

@@ -34,18 +34,25 @@ import bisect
 import difflib
 import functools
 import itertools
+import sys
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from operator import attrgetter
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+import click
 
 from .easing import EASINGS
-from .errors import UserError
+from .errors import UserError, in_one_line
+from .inputs import read_text
+from .script_bounds import excess_in
 
 Limits = Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
 
 LONGEST_FILE = 2**24  # [bytes]; a day of speech has less, and /dev/zero has no end
+SOON_READ = 2**20  # [bytes]; a longer script is said to be read, about a second for each megabyte
 LARGEST = 86_400.0  # of any number in a script; as a time [s] it is a day
 DECIMALS = 6  # of numbers that come from sliders and clocks
 TOP_LEVEL_KEYS = ("title", "scene", "camera", "duration", "pose", "tracks")
@@ -70,15 +77,8 @@ class Channel:
 
     def value(self, time: float) -> float:
         """The eased value at `time` [s]; constant before the first and after the last key."""
-        after = bisect.bisect_right([key.time for key in self.keys], time)
-        if after == 0:
-            return self.keys[0].value
-        if after == len(self.keys):
-            return self.keys[-1].value
-        previous, following = self.keys[after - 1], self.keys[after]
-        fraction = (time - previous.time) / (following.time - previous.time)
-        eased = EASINGS[following.easing](fraction)
-        return previous.value + (following.value - previous.value) * eased
+        previous, following, share = _between(self.keys, time)
+        return previous.value + (following.value - previous.value) * share
 
 
 @dataclass(frozen=True)
@@ -105,13 +105,19 @@ class Script:
     preface: str = ""  # the lines of comment with which the file begins
 
     @functools.cached_property
-    def channels(self) -> dict[str, Channel]:
-        """What the poses make together, control by control."""
-        names = sorted({name for pose in self.poses for name in pose.values})
-        return {
-            name: Channel(tuple(Key(p.time, p.values.get(name, 0.0), p.easing) for p in self.poses))
-            for name in names
-        }
+    def posed_names(self) -> tuple[str, ...]:
+        """The controls that any pose names."""
+        return tuple(sorted({name for pose in self.poses for name in pose.values}))
+
+    def posed(self, time: float) -> dict[str, float]:
+        """What the poses alone make of each control that they name, at `time` [s]."""
+        values = dict.fromkeys(self.posed_names, 0.0)
+        if self.poses:
+            previous, following, share = _between(self.poses, time)
+            for name in {**previous.values, **following.values}:
+                before = previous.values.get(name, 0.0)
+                values[name] = before + (following.values.get(name, 0.0) - before) * share
+        return values
 
     @property
     def key_poses(self) -> tuple[Pose, ...]:
@@ -120,7 +126,7 @@ class Script:
 
     def at(self, time: float) -> dict[str, float]:
         """The value of every channel that the script names, at `time` [s]."""
-        values = {name: channel.value(time) for name, channel in self.channels.items()}
+        values = self.posed(time)
         for name, channel in self.tracks.items():
             values[name] = values.get(name, 0.0) + channel.value(time)
         return values
@@ -131,24 +137,42 @@ class Script:
         What tracks add to poses may be negative, and is cut off with them; no single key may be
         further from 0 than can have an effect.
         """
-        for name in (*self.channels, *self.tracks):
+        for name in (*self.posed_names, *self.tracks):
             if name not in limits:
                 hint = suggestion(name, limits, self.scene)
                 raise UserError(f"{self.source}: unknown name '{name}'; {hint}")
-        for name, channel in self.channels.items():
-            self._check_values(name, channel, *limits[name])
+        for pose in self.poses:
+            when = f" at {pose.time:g} s" if len(self.poses) > 1 else ""
+            for name, value in pose.values.items():
+                self._check_value(name, value, when, *limits[name])
         for name, channel in self.tracks.items():
             low, high = limits[name]
-            self._check_values(f"track '{name}'", channel, low - high, high - low)
-
-    def _check_values(self, what: str, channel: Channel, low: float, high: float) -> None:
-        for key in channel.keys:
-            if not low <= key.value <= high:
+            for key in channel.keys:
                 when = f" at {key.time:g} s" if len(channel.keys) > 1 else ""
-                raise UserError(
-                    f"{self.source}: {what} is {key.value:g}{when}; "
-                    f"it must be from {low:g} to {high:g}"
-                )
+                self._check_value(f"track '{name}'", key.value, when, low - high, high - low)
+
+    def _check_value(self, what: str, value: float, when: str, low: float, high: float) -> None:
+        if not low <= value <= high:
+            raise UserError(
+                f"{self.source}: {what} is {value:g}{when}; it must be from {low:g} to {high:g}"
+            )
+
+
+Timed = TypeVar("Timed", Key, Pose)
+
+
+def _between(keys: Sequence[Timed], time: float) -> tuple[Timed, Timed, float]:
+    """The keys before and after `time` [s], and the eased share of the way between them.
+
+    Before the first and after the last key both are that one.
+    """
+    after = bisect.bisect_right(keys, time, key=attrgetter("time"))
+    if after in (0, len(keys)):
+        outermost = keys[0 if after == 0 else -1]
+        return outermost, outermost, 0.0
+    previous, following = keys[after - 1], keys[after]
+    share = (time - previous.time) / (following.time - previous.time)
+    return previous, following, EASINGS[following.easing](share)
 
 
 def rounded(number: float) -> float:
@@ -168,20 +192,19 @@ def suggestion(name: str, allowed: Iterable[str], scene: str) -> str:
 def load_script(path: Path) -> Script:
     """Read a script file. Raises UserError with the file and the line or key that is wrong."""
     try:
-        with path.open("rb") as file:
-            content = file.read(LONGEST_FILE + 1)
-        text = content.decode("utf-8-sig")
+        text = read_text(path, what="script", longest=LONGEST_FILE)
     except FileNotFoundError:
         raise UserError(f"{path}: no such script") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise UserError(f"{path}: cannot be read as a text file: {error}") from None
-    if len(content) > LONGEST_FILE:
-        raise UserError(f"{path}: is longer than a script may be, {LONGEST_FILE >> 20} MB")
+    if len(text) > SOON_READ and sys.stderr.isatty():
+        click.echo(f"... reading {in_one_line(path)}, {len(text) >> 20} MB", err=True)
     return parse_script(text, source=str(path))
 
 
 def parse_script(text: str, *, source: str) -> Script:
     """Turn the TOML text of a script into a Script; `source` names it in error texts."""
+    excess = excess_in(text)
+    if excess:
+        raise UserError(f"{source}: {excess}; no script needs that")
     try:
         document = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # numbers too long, lists too deep, too

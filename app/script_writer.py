@@ -47,7 +47,7 @@ def pose_script(values: Mapping[str, float], *, title: str, scene: str) -> Scrip
 def is_pose(script: Script) -> bool:
     """Whether a script holds one pose and no motion."""
     is_still = all(len(channel.keys) == 1 for channel in script.tracks.values())
-    is_something = bool(script.channels or script.tracks)
+    is_something = bool(script.posed_names or script.tracks)
     return is_something and is_still and len(script.poses) <= 1
 
 

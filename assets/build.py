@@ -9,12 +9,12 @@ import errno
 import os
 import signal
 import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
+from .aside import Aside
 from .generator.bones import bone_depth, jaw_axis, mandible_weight
 from .generator.dentition import LOWER_ARCH, UPPER_ARCH, gums, teeth
 from .generator.eyeballs import IRIS_RADIUS, corner_flesh, eyeball
@@ -31,7 +31,6 @@ from .loading import HEAD_FILE, fingerprint, load_head
 from .model import AssetError, Head, Tone
 from .pictures import write_picture
 
-ASIDE = ".risorius-"  # what the name of a folder begins with in which files are made
 SMALLEST, LARGEST = 64, 8192  # [texels] of picture and wrinkles
 MIRROR = np.array([-1.0, 1.0, 1.0])
 
@@ -148,9 +147,9 @@ def main(arguments: list[str]) -> None:
     if given.file.is_dir():
         raise IsADirectoryError(errno.EISDIR, "is a folder; name a file", str(given.file))
     given.file.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=given.file.parent, prefix=ASIDE) as aside:
-        _write(Path(aside) / given.file.name, tone=Tone(given.tone), size=given.size)
-        for made in Path(aside).iterdir():
+    with Aside(given.file.parent) as aside:
+        _write(aside / given.file.name, tone=Tone(given.tone), size=given.size)
+        for made in aside.iterdir():
             os.replace(made, given.file.parent / made.name)
 
 

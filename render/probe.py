@@ -20,13 +20,12 @@ _PATIENCE = 60.0  # [s] software drivers need a few seconds on a loaded machine
 class Finding:
     """One way to draw, and whether it works here.
 
-    name: "offscreen" or "window". is_needed: whether Risorius is of no use without it.
+    name: "offscreen" or "window".
     message: the GLError's text where it failed, "" where it works.
     """
 
     name: str
     is_ok: bool
-    is_needed: bool
     message: str = ""
     vendor: str = ""
     renderer: str = ""
@@ -46,15 +45,13 @@ class Finding:
 
 def probe(*, offscreen_only: bool = False) -> list[Finding]:
     """Return what was found for offscreen frames and for windows; never raises."""
-    findings = [_probe_in_process("offscreen", is_needed=True)]
-    if not offscreen_only:
-        findings.append(_probe_in_process("window", is_needed=False))
-    return findings
+    names = ("offscreen",) if offscreen_only else ("offscreen", "window")
+    return [_probe_in_process(name) for name in names]
 
 
-def _probe_in_process(name: str, *, is_needed: bool) -> Finding:
+def _probe_in_process(name: str) -> Finding:
     def failed(message: str) -> Finding:
-        return Finding(name, is_ok=False, is_needed=is_needed, message=message)
+        return Finding(name, is_ok=False, message=message)
 
     code = f"from {__package__}.probe import write_finding; write_finding({name!r})"
     root = str(Path(__file__).resolve().parents[1])
@@ -80,7 +77,7 @@ def _probe_in_process(name: str, *, is_needed: bool) -> Finding:
             f"{lines[-1] if lines else 'no message'}). Cure: set LIBGL_ALWAYS_SOFTWARE=1"
         )
     found = json.loads(process.stdout.strip().splitlines()[-1])
-    return Finding(name, is_needed=is_needed, **found)
+    return Finding(name, **found)
 
 
 def write_finding(name: str) -> None:

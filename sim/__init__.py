@@ -10,6 +10,7 @@ Knows nothing of rendering or refinement. Start reading at face.py; rig.py defin
 
 from typing import Any
 
+from . import checked
 from .anatomy import build_anatomy
 from .face import Simulation, SimulationUnstable
 from .rig import Rig
@@ -25,4 +26,5 @@ def create(head: Any, *, gravity: bool = False, inertia: bool = False) -> Simula
     see anatomy.py. gravity: soft tissue hangs when the head is tilted; inertia: it follows when the
     head moves, see weight.py. Raises ValueError naming what is wrong with the head or its rig.
     """
-    return Simulation(build_anatomy(head), gravity=gravity, inertia=inertia)
+    weighs, follows = checked.flag("gravity", gravity), checked.flag("inertia", inertia)
+    return Simulation(build_anatomy(head), gravity=weighs, inertia=follows)

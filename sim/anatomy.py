@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from . import checked
 from .contact import EyeContact, Grip, LipPairs, pair_lips, watch_eyeballs
 from .controls import GAZE_RATE, Control
 from .integrator import LONGEST_SUBSTEP, ROUNDING
@@ -156,21 +157,12 @@ def _mesh(head: Any) -> tuple[Array, npt.NDArray[np.int32]]:
                 f"head: {type(head).__name__} has no attribute '{name}'; give any object with "
                 "vertices (V, 3) and faces (F, 3), such as assets.load('head') or a trimesh.Trimesh"
             )
-    vertices = np.array(head.vertices, dtype=np.float64)
-    faces = np.array(head.faces)
-    if vertices.ndim != 2 or vertices.shape[1] != 3 or len(vertices) == 0:
-        raise ValueError(f"head.vertices: shape was {vertices.shape}, must be (V, 3) with V > 0")
-    if not np.isfinite(vertices).all():
-        raise ValueError("head.vertices: must all be finite numbers, but some are NaN or infinite")
-    if faces.ndim != 2 or faces.shape[1] != 3 or not np.issubdtype(faces.dtype, np.integer):
-        raise ValueError(
-            f"head.faces: was {faces.dtype} of shape {faces.shape}, must be integers (F, 3)"
-        )
-    if len(faces) and (faces.min() < 0 or faces.max() >= len(vertices)):
-        raise ValueError(
-            f"head.faces: vertex numbers run from {faces.min()} to {faces.max()}, "
-            f"allowed are 0 to {len(vertices) - 1}"
-        )
+    wanted = "(V, 3) with V > 0"
+    vertices = checked.numbers("head.vertices", head.vertices, (None, 3), wanted)
+    if len(vertices) == 0:
+        raise ValueError(f"head.vertices: shape was {vertices.shape}, must be {wanted}")
+    wanted = "integers (F, 3)"
+    faces = checked.vertex_numbers("head.faces", head.faces, (None, 3), len(vertices), wanted)
     return vertices, faces.astype(np.int32)
 
 
@@ -179,29 +171,15 @@ def _landmark_numbers(head: Any, vertex_count: int) -> npt.NDArray[np.int64] | N
     given = getattr(head, "landmarks", None)
     if given is None:
         return None
-    numbers = np.asarray(given)
-    if numbers.shape != (LANDMARK_COUNT,) or not np.issubdtype(numbers.dtype, np.integer):
-        raise ValueError(
-            f"head.landmarks: was {numbers.dtype} of shape {numbers.shape}, "
-            f"must be {LANDMARK_COUNT} vertex numbers"
-        )
-    if numbers.min() < 0 or numbers.max() >= vertex_count:
-        raise ValueError(
-            f"head.landmarks: vertex numbers run from {numbers.min()} to {numbers.max()}, "
-            f"allowed are 0 to {vertex_count - 1}"
-        )
-    return numbers.astype(np.int64)
+    wanted = f"{LANDMARK_COUNT} vertex numbers"
+    shape = (LANDMARK_COUNT,)
+    return checked.vertex_numbers("head.landmarks", given, shape, vertex_count, wanted)
 
 
 def _optional(head: Any, name: str, shape: tuple[int, ...]) -> Array | None:
     """A checked optional array of the head."""
     given = getattr(head, name, None)
-    if given is None:
-        return None
-    array = np.array(given, dtype=np.float64)
-    if array.shape != shape or not np.isfinite(array).all():
-        raise ValueError(f"head.{name}: shape was {array.shape}, must be {shape} and finite")
-    return array
+    return None if given is None else checked.numbers(f"head.{name}", given, shape)
 
 
 def _skull(
@@ -230,11 +208,15 @@ def _eyeballs(head: Any, frame: FaceFrame, landmarks: Array | None) -> tuple[Eye
     if given is None:
         return () if landmarks is None else eyeballs_from_landmarks(landmarks)
     balls = []
-    for eye in given:
+    for eye in checked.several("head.eyes", given, ("name", "centre", "radius")):
         if eye.name not in ("right", "left"):
-            raise ValueError(f"head.eyes: name was {eye.name!r}, allowed are 'right' and 'left'")
-        centre = frame.to_standard(eye.centre)
-        balls.append(Eyeball(Side(eye.name), centre, float(eye.radius) / frame.scale))
+            name = checked.shown(eye.name)
+            raise ValueError(f"head.eyes: name was {name}, allowed are 'right' and 'left'")
+        centre = frame.to_standard(checked.numbers("head.eyes: centre", eye.centre, (3,)))
+        radius = checked.number("head.eyes: radius", eye.radius)
+        if radius <= 0.0:
+            raise ValueError(f"head.eyes: radius was {radius:g}, must be above 0")
+        balls.append(Eyeball(Side(eye.name), centre, radius / frame.scale))
     return tuple(balls)
 
 

@@ -14,13 +14,14 @@ Source: time constants of facial muscle, measured on the model (45 rad/s gives t
 from __future__ import annotations
 
 import difflib
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 
+from .checked import number as finite
+from .checked import shown
 from .jit import njit
 from .landmarks import Array
 from .layers import NO_LAYERS, Layers
@@ -75,10 +76,12 @@ class Controls:
 
         ValueError offers near names.
         """
+        if not isinstance(name, str):
+            raise ValueError(f"control: was {shown(name)}, must be a name; see .limits for all")
         if name not in self._index:
-            near = difflib.get_close_matches(str(name), self.names, n=3, cutoff=0.4)
+            near = difflib.get_close_matches(name, self.names, n=3, cutoff=0.4)
             hint = f"did you mean {', '.join(near)}?" if near else "see .limits for all names"
-            raise ValueError(f"there is no control called {name!r}; {hint}")
+            raise ValueError(f"there is no control called {shown(name)}; {hint}")
         return self._index[name]
 
     def value(self, name: str) -> float:
@@ -94,9 +97,7 @@ class Controls:
         """Place and value of a setting; ValueError if unknown, not finite or out of limits."""
         index = self.index(name)
         low, high = self.limits[name]
-        number = float(value)
-        if not math.isfinite(number):
-            raise ValueError(f"control '{name}': was {value!r}, must be a finite number")
+        number = finite(f"control '{name}'", value)
         if not low - SLACK <= number <= high + SLACK:
             raise ValueError(
                 f"control '{name}': was {number:g}, allowed is {low:g} to {high:g}; clamp it first"
@@ -105,6 +106,8 @@ class Controls:
 
     def set_all(self, values: Mapping[str, float], *, others_to_zero: bool = False) -> None:
         """Set several values at once; nothing is changed if one is refused."""
+        if not isinstance(values, Mapping):
+            raise ValueError(f"values: was {shown(values)}, must be a mapping of name to number")
         checked = [self.checked(name, value) for name, value in values.items()]
         if others_to_zero:
             self._values[:] = 0.0

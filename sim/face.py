@@ -27,7 +27,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from . import integrator
+from . import checked, integrator
 from .anatomy import Anatomy
 from .contact import SEALED
 from .controls import Controls
@@ -137,6 +137,7 @@ class Simulation:
 
     def set(self, name: str, value: float) -> None:
         """Set one control; ValueError for an unknown name, a value not finite or out of limits."""
+        self._controls.index(name)  # what is no name may not even be a key
         self._controls.set_all({name: value})
 
     def set_all(self, values: Mapping[str, float]) -> None:
@@ -162,11 +163,7 @@ class Simulation:
 
         Raises ValueError for another shape, and for what is not finite.
         """
-        added = np.asarray(velocities, dtype=np.float64)
-        if added.shape != self._state.v.shape or not np.isfinite(added).all():
-            raise ValueError(
-                f"velocities: shape was {added.shape}, must be {self._state.v.shape} and finite"
-            )
+        added = checked.numbers("velocities", velocities, self._state.v.shape)
         self._state.v[:] += self._anatomy.frame.vectors_to_standard(added) @ self._head.rotation
 
     def pull(
@@ -178,19 +175,16 @@ class Simulation:
         units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),
         shape (n,). Raises ValueError where they do not fit together.
         """
-        numbers = np.asarray(vertices, dtype=np.int64)
-        points = np.asarray(targets, dtype=np.float64)
-        share = np.asarray(firmness, dtype=np.float64)
-        count = len(self._rest)
-        if points.shape != (len(numbers), 3) or share.shape != numbers.shape:
+        wanted = "different vertex numbers, shape (n,)"
+        numbers = checked.vertex_numbers("vertices", vertices, (None,), len(self._rest), wanted)
+        points = checked.numbers("targets", targets, (len(numbers), 3))
+        share = checked.numbers("firmness", firmness, (len(numbers),))
+        if not ((share >= 0.0) & (share <= 1.0)).all():
             raise ValueError(
-                f"pull of {numbers.shape} vertices: targets has shape {points.shape} and firmness "
-                f"{share.shape}; they must be (n, 3) and (n,) for vertices (n,)"
+                f"firmness: runs from {share.min():g} to {share.max():g}, must be from 0 to 1"
             )
-        if not np.isfinite(points).all() or not ((share >= 0.0) & (share <= 1.0)).all():
-            raise ValueError("targets must be finite, and firmness from 0 to 1")
-        if len(np.unique(numbers)) < len(numbers) or ((numbers < 0) | (numbers >= count)).any():
-            raise ValueError(f"vertices must be different numbers from 0 to {count - 1}")
+        if len(np.unique(numbers)) < len(numbers):
+            raise ValueError(f"vertices: some are there twice, must be {wanted}")
         away = self._anatomy.frame.vectors_to_standard(points - self._positions[numbers])
         self._pulled = numbers
         self._pulled_to = self._state.x[numbers] + away @ self._head.rotation
@@ -209,6 +203,7 @@ class Simulation:
 
         Raises SimulationUnstable if a position is no longer finite.
         """
+        dt = checked.number("dt", dt)
         if not 0.0 < dt <= integrator.LONGEST_FRAME + 1e-9:
             raise ValueError(
                 f"dt: was {dt!r} s, must be above 0 and at most {integrator.LONGEST_FRAME:g} s; "

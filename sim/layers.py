@@ -25,7 +25,6 @@ Differs from FACS: units add, where some of theirs exclude each other.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -33,6 +32,7 @@ from typing import Any
 
 import numpy as np
 
+from .checked import several, shown
 from .landmarks import Array
 from .rig_reader import question
 
@@ -70,7 +70,9 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
     reader = _Reader(lowest)
     paired = [n.removesuffix("_left") for n in lowest if n.endswith("_left")]
     reader.add(BOTH_SIDES, (base for base in paired if f"{base}_right" in reader.shares))
-    for layer in given:
+    for layer in several("head.layers", given, ("title", "source", "rows")):
+        if not isinstance(layer.rows, Mapping):
+            raise ValueError(f"{layer.source}: was {shown(layer.rows)}, must be a table of rows")
         below = reader.everything()
         names: list[str] = []
         for row, table in layer.rows.items():
@@ -107,13 +109,13 @@ class _Reader:
     def row(self, where: str, name: str, table: Any, below: Mapping[str, Array]) -> list[str]:
         """Take in one row; the names of the controls that it makes."""
         if not isinstance(table, Mapping):
-            raise ValueError(f"{where}: was {table!r}, must be a table of control = share")
+            raise ValueError(f"{where}: was {shown(table)}, must be a table of control = share")
         entries = dict(table)
         action, is_pair = entries.pop("action", ""), entries.pop("pair", False)
         if not isinstance(action, str):
-            raise ValueError(f"{where}: 'action' was {action!r}, must be a text")
+            raise ValueError(f"{where}: 'action' was {shown(action)}, must be a text")
         if not isinstance(is_pair, bool):
-            raise ValueError(f"{where}: 'pair' was {is_pair!r}, must be true or false")
+            raise ValueError(f"{where}: 'pair' was {shown(is_pair)}, must be true or false")
         if is_pair and name.endswith(SIDES):
             raise ValueError(f"{where}: a pair adds the sides by itself; leave '_left' away")
         sides = SIDES if is_pair else ("",)
@@ -140,9 +142,9 @@ class _Reader:
 def _share(where: str, control: str, value: Any) -> float:
     """A checked share."""
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not is_number or not math.isfinite(value) or abs(value) > GREATEST_SHARE:
+    if not is_number or not -GREATEST_SHARE <= value <= GREATEST_SHARE:  # NaN is not
         raise ValueError(
-            f"{where}, '{control}': was {value!r}, must be a number "
+            f"{where}, '{control}': was {shown(value)}, must be a number "
             f"from {-GREATEST_SHARE:g} to {GREATEST_SHARE:g}"
         )
     return float(value)

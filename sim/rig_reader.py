@@ -9,11 +9,12 @@ Source: our own file format; the paper's rigs are drawn by hand in an editor.
 from __future__ import annotations
 
 import difflib
-import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields
 from typing import Any, TypeVar, cast
 
+from .checked import shown
 from .landmarks import LANDMARK_COUNT, LandmarkPoint
 from .rig import (
     FORMAT,
@@ -40,14 +41,16 @@ KINDS: dict[str, type[Muscle]] = {
 
 def read_rig(document: Mapping[str, Any]) -> Rig:
     """Read a rig from the parsed rig file; ValueError names the muscle and key that is wrong."""
+    if not isinstance(document, Mapping):
+        raise ValueError(f"rig: was {shown(document)}, must be the table of a rig file")
     _known_keys(document, ("format", "tissue", "jaw", "eyes", "head", "muscle"), "rig")
     version = document.get("format", FORMAT)
-    if version != FORMAT:
-        raise ValueError(f"rig, key 'format': was {version!r}, this version reads {FORMAT}")
+    if not isinstance(version, int) or version != FORMAT:
+        raise ValueError(f"rig, key 'format': was {shown(version)}, this version reads {FORMAT}")
     muscles = []
     for name, table in _table(document, "muscle", "rig").items():
         where = f"rig, muscle '{name}'"
-        if not name.isidentifier() or name != name.lower():
+        if not isinstance(name, str) or not name.isidentifier() or name != name.lower():
             raise ValueError(
                 f"{where}: a muscle name is lower case letters, digits and underscores"
             )
@@ -67,10 +70,10 @@ def read_rig(document: Mapping[str, Any]) -> Rig:
 def _read_muscle(name: str, table: Any, where: str) -> Muscle:
     """Read one muscle table by its kind."""
     if not isinstance(table, Mapping):
-        raise ValueError(f"{where}: was {table!r}, must be a table [muscle.{name}]")
+        raise ValueError(f"{where}: was {shown(table)}, must be a table [muscle.{name}]")
     kind = table.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
-        raise ValueError(f"{where}, key 'kind': was {kind!r}, allowed are {', '.join(KINDS)}")
+        raise ValueError(f"{where}, key 'kind': was {shown(kind)}, allowed are {', '.join(KINDS)}")
     rest = {("fibres" if key == "fibre" else key): v for key, v in table.items() if key != "kind"}
     muscle = _read(KINDS[kind], rest, where, name=name)
     if isinstance(muscle, LinearMuscle) and not muscle.fibres:
@@ -126,24 +129,24 @@ def _value(value: Any, rule: Field[Any], where: str) -> Any:
         case "vector":
             return _check_vector(value, meta["size"], meta["low"], meta["high"], where)
         case "choice":
-            if value not in meta["allowed"]:
+            if not isinstance(value, str) or value not in meta["allowed"]:
                 allowed = ", ".join(meta["allowed"])
-                raise ValueError(f"{where}: was {value!r}, allowed are {allowed}")
+                raise ValueError(f"{where}: was {shown(value)}, allowed are {allowed}")
             return value
         case "text" | "boolean":
             wanted = str if meta["rule"] == "text" else bool
             if not isinstance(value, wanted):
-                raise ValueError(f"{where}: was {value!r}, must be a {meta['rule']}")
+                raise ValueError(f"{where}: was {shown(value)}, must be a {meta['rule']}")
             return value
         case "names":
             if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
-                raise ValueError(f"{where}: was {value!r}, must be a list of muscle names")
+                raise ValueError(f"{where}: was {shown(value)}, must be a list of muscle names")
             return tuple(value)
         case "seeds":
             return _read_mix(value, where, low=-2.0, high=2.0)
         case "fibres":
             if not isinstance(value, list):
-                raise ValueError(f"{where}: was {value!r}, must be a list of fibre tables")
+                raise ValueError(f"{where}: was {shown(value)}, must be a list of fibre tables")
             read = (_read(Fibre, f, f"{where} {i + 1}") for i, f in enumerate(value))
             return tuple(read)
         case _:
@@ -154,7 +157,8 @@ def _read_point(value: Any, where: str) -> LandmarkPoint:
     """Read {landmark = 54} or {landmarks = {45 = 0.6, 14 = 0.4}}, with an optional offset."""
     if not isinstance(value, Mapping):
         raise ValueError(
-            f"{where}: was {value!r}, must be a table such as {{landmark = 54, offset = [0, 0, 0]}}"
+            f"{where}: was {shown(value)}, must be a table such as "
+            "{landmark = 54, offset = [0, 0, 0]}"
         )
     _known_keys(value, ("landmark", "landmarks", "offset"), where)
     if ("landmark" in value) == ("landmarks" in value):
@@ -171,12 +175,14 @@ def _read_point(value: Any, where: str) -> LandmarkPoint:
 def _read_mix(value: Any, where: str, *, low: float, high: float) -> tuple[tuple[int, float], ...]:
     """Read a table landmark number -> weight."""
     if not isinstance(value, Mapping) or not value:
-        raise ValueError(f"{where}: was {value!r}, must be a table landmark number = weight")
+        raise ValueError(f"{where}: was {shown(value)}, must be a table landmark number = weight")
     mix = []
     for key, weight in value.items():
         text = str(key)
-        if not text.isdigit() or int(text) >= LANDMARK_COUNT:
-            raise ValueError(f"{where}: landmark {text!r}, allowed are 0 to {LANDMARK_COUNT - 1}")
+        if not re.fullmatch("[0-9]{1,2}", text) or int(text) >= LANDMARK_COUNT:
+            raise ValueError(
+                f"{where}: landmark {shown(text)}, allowed are 0 to {LANDMARK_COUNT - 1}"
+            )
         mix.append((int(text), _check_number(weight, low, high, f"{where}, landmark {text}")))
     return tuple(mix)
 
@@ -184,15 +190,15 @@ def _read_mix(value: Any, where: str, *, low: float, high: float) -> tuple[tuple
 def _check_number(value: Any, low: float, high: float, where: str) -> float:
     """A finite number inside [low, high]."""
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not number or not math.isfinite(value) or not low <= value <= high:
-        raise ValueError(f"{where}: was {value!r}, must be a number from {low:g} to {high:g}")
+    if not number or not low <= value <= high:  # NaN is not
+        raise ValueError(f"{where}: was {shown(value)}, must be a number from {low:g} to {high:g}")
     return float(value)
 
 
 def _check_vector(value: Any, size: int, low: float, high: float, where: str) -> tuple[float, ...]:
     """A list of `size` finite numbers inside [low, high]."""
     if not isinstance(value, list | tuple) or len(value) != size:
-        raise ValueError(f"{where}: was {value!r}, must be a list of {size} numbers")
+        raise ValueError(f"{where}: was {shown(value)}, must be a list of {size} numbers")
     return tuple(_check_number(v, low, high, f"{where}[{i}]") for i, v in enumerate(value))
 
 
@@ -200,7 +206,7 @@ def _table(document: Mapping[str, Any], key: str, where: str) -> Mapping[str, An
     """The sub-table `key`, empty if it is not there."""
     table = document.get(key, {})
     if not isinstance(table, Mapping):
-        raise ValueError(f"{where}, key '{key}': was {table!r}, must be a table [{key}]")
+        raise ValueError(f"{where}, key '{key}': was {shown(table)}, must be a table [{key}]")
     return table
 
 
@@ -214,5 +220,5 @@ def _known_keys(table: Mapping[str, Any], known: tuple[str, ...], where: str) ->
 
 def question(name: str, known: Iterable[str]) -> str:
     """The nearest known name, as a question at the end of an error; nothing if none is near."""
-    near = difflib.get_close_matches(name, list(known), n=1)
+    near = difflib.get_close_matches(str(name), list(known), n=1)
     return f"; did you mean '{near[0]}'?" if near else ""

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from . import checked
 from .landmarks import Array, FaceFrame
 from .skull import Pose
 from .surface import Surface
@@ -40,9 +41,13 @@ def watch_teeth(parts: Any, surface: Surface, frame: FaceFrame) -> Teeth:
     Skin that starts inside an arch may not sink deeper.
     """
     rows: list[tuple[npt.NDArray[np.int64], bool, Array, Array]] = []
-    for part in parts or ():
+    given = () if parts is None else parts
+    for part in checked.several("head.parts", given, ("name", "bone", "vertices")):
         if str(part.name).startswith("teeth_") and part.bone in BONES:
-            arch = _arch(frame.to_standard(part.vertices))
+            found = checked.numbers(f"head.parts: {part.name}", part.vertices, (None, 3), "(n, 3)")
+            if not len(found):
+                continue
+            arch = _arch(frame.to_standard(found))
             inside = _inside(surface.positions, arch)
             off = surface.positions - (0.0, 0.0, arch[2])
             near = inside < 1.0 + REACH / min(arch[0], arch[1])

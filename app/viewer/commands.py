@@ -13,13 +13,12 @@ import render
 from .. import outputs
 from ..cameras import whole_scene
 from ..script_writer import is_pose
+from .setting_rules import ZOOMS
 from .settings import save_settings
 from .take import Film, free_name
 
 if TYPE_CHECKING:
     from .window import Viewer
-
-ZOOMS = (0.6, 3.0)  # least and most of the size of words
 
 
 # Files

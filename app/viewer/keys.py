@@ -124,7 +124,7 @@ def keyed(script: Script, time: float, values: Mapping[str, float], limits: Limi
     recordings are, those get keys that differ; all of them where nothing does.
     """
     time = rounded(time)
-    plain = {name: channel.value(time) for name, channel in script.channels.items()}
+    plain = script.posed(time)
     added = {name: track.value(time) for name, track in script.tracks.items()}
     shown = within(limits, script.at(time))
     changed = [name for name in values if abs(values[name] - shown.get(name, 0.0)) > SAME]

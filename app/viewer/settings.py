@@ -1,22 +1,41 @@
 """What the window remembers: its size, how things are shown, where the camera stood.
 
-One JSON file in the user's configuration folder, replaced whole or not at all. A file that cannot
-be read is as good as none: the window says so in one line and opens as it was first.
+One JSON file in the user's configuration folder, replaced whole or not at all. Every value stands
+for itself: one that is of no use gives way to what it is at first, the others stay, and the window
+names it in one line. The file as it was is kept beside it then.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import reprlib
 import sys
+import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ..errors import UserError, in_one_line
+from ..inputs import read_text
 from ..outputs import written_aside
+from ..refining import refiner_for
+from ..scenes import Scene
+from .setting_rules import (
+    LOOK,
+    SETTINGS,
+    Refused,
+    camera,
+    flag,
+    option,
+    table_of_refiner,
+    whole_number,
+)
 
 FILE_NAME = "viewer.json"
+LONGEST_FILE = 2**20  # [bytes]; those that we write have two thousand
 
 
 @dataclass
@@ -87,41 +106,77 @@ def settings_path() -> Path:
 
 
 def load_settings(path: Path) -> tuple[Settings, str]:
-    """What is remembered, and a line to say where the file is there but of no use."""
+    """What is remembered, and a line that names what is in the file and of no use, "" for nothing.
+
+    In that case the file is set aside, and what is of use of it written anew.
+    """
+    settings, refused = Settings(), Refused()
     try:
-        stored = json.loads(path.read_text(encoding="utf-8"))
-        look = _like(Look(), stored.pop("look", {}))
-        settings = _like(Settings(), stored)
-        settings.look = look
-        settings.folds = {title: bool(is_open) for title, is_open in settings.folds.items()}
-        if settings.size is not None:
-            width, height = settings.size
-            settings.size = int(width), int(height)
-            if not all(200 <= side <= 16384 for side in settings.size):
-                settings.size = None
-        return settings, ""
+        text = read_text(path, what="file of settings", longest=LONGEST_FILE)
+        stored = json.loads(text, parse_int=whole_number)
     except FileNotFoundError:
-        return Settings(), ""
-    except (OSError, ValueError, TypeError, AttributeError) as error:
-        return Settings(), f"{path}: not read, and written anew on closing ({error})"
+        return settings, ""
+    except UserError as error:
+        return settings, f"{error}; all is as at first; {_set_aside(path)}"
+    except (ValueError, RecursionError) as error:
+        return settings, f"{path}: not valid JSON: {error}; all is as at first; {_set_aside(path)}"
+    kept = refused.table("", stored, SETTINGS.get)
+    look = refused.table("look.", kept.pop("look", {}), LOOK.get)
+    options = refused.table("look.options.", look.pop("options", {}), table_of_refiner)
+    look["options"] = {
+        name: refused.table(f"look.options.{name}.", found, lambda _: option)
+        for name, found in options.items()
+    }
+    kept["folds"] = refused.table("folds.", kept.pop("folds", {}), lambda _: flag)
+    kept["cameras"] = refused.table("cameras.", kept.pop("cameras", {}), lambda _: camera)
+    settings, told = Settings(**kept, look=Look(**look)), str(refused)
+    if not told:
+        return settings, ""
+    kept_as = _set_aside(path)
+    with contextlib.suppress(UserError):  # of a full disk others speak
+        save_settings(path, settings)
+    return settings, in_one_line(f"{path}: of no use and as at first: {told}; {kept_as}")
+
+
+def _set_aside(path: Path) -> str:
+    """Give a file of no use another name, and say which; it is written anew on closing."""
+    aside = path.with_name(f"{path.stem}-{time.strftime('%Y%m%d-%H%M%S')}.unusable{path.suffix}")
+    try:
+        path.rename(aside)
+    except OSError as error:
+        return f"it cannot be set aside ({error.strerror}), and is written anew on closing"
+    return f"the file is kept as {aside.name}"
+
+
+def drop_refused_options(look: Look, scene: Scene) -> str:
+    """Take what refiners refuse for this scene out of a look; a line names it, "" for nothing."""
+    refused = []
+    for refiner, options in look.options.items():
+        if not options or _suits(scene, refiner, options):
+            continue
+        kept: dict[str, Any] = {}
+        for name, value in options.items():
+            if _suits(scene, refiner, {**kept, name: value}):
+                kept[name] = value
+            else:
+                refused.append(f"{refiner} {name} = {reprlib.repr(value)}")
+        look.options[refiner] = kept
+    if not _suits(scene, look.refiner, None):
+        refused.append(look.refiner)
+        look.refiner = Look().refiner
+    words = f"of no use and as at first: refiner {', '.join(refused)}"
+    return in_one_line(words) if refused else ""
+
+
+def _suits(scene: Scene, refiner: str, options: Mapping[str, Any] | None) -> bool:
+    try:
+        refiner_for(scene, refiner, options)
+    except UserError:
+        return False
+    return True
 
 
 def save_settings(path: Path, settings: Settings) -> None:
     """Write the file; UserError where that cannot be."""
     with written_aside(path) as part:
         part.write_text(json.dumps(asdict(settings), indent=1), encoding="utf-8")
-
-
-def _like(default: Any, stored: Any) -> Any:
-    """The default with the stored values that are of the same kind; anything else is passed by."""
-    if not isinstance(stored, dict):
-        raise ValueError("a table was expected")
-    for entry in fields(default):
-        value, known = stored.get(entry.name), getattr(default, entry.name)
-        if value is None:
-            continue
-        if isinstance(known, float) and isinstance(value, int) and not isinstance(value, bool):
-            value = float(value)
-        if known is None or isinstance(value, type(known)):
-            setattr(default, entry.name, value)
-    return default

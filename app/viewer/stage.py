@@ -23,16 +23,11 @@ from ..wrinkling import wrinkling_of
 from .colours import COLOURS
 from .overlays import OVERLAYS, Lines, pointed_lines
 from .quality import FULL
+from .setting_rules import SKINS
 from .settings import Look
 
 STAGES = ("simulation", "refinement", "upload", "draw")
 KEPT_TIMES = 180  # frames in the plot
-SKINS = {
-    "textured": (True, render.SKIN),
-    "plain": (False, render.SKIN),
-    "clay": (False, render.CLAY),
-}
-COMPARISONS = ("off", "wipe", "side by side")
 LEAST_SHARE = 0.08  # of the picture that each side of a comparison keeps
 
 
@@ -234,19 +229,7 @@ def style_of(look: Look, background: render.Background) -> render.Style:
 
 
 def checked(look: Look, refiners: Sequence[str], overlays: Sequence[str]) -> Look:
-    """A remembered look without anything that this program or this scene does not know."""
-    choices: dict[str, Sequence[str]] = {
-        "refiner": [name for name in refiners if name != "none"],
-        "compare": COMPARISONS,
-        "shading": [shading.value for shading in render.Shading],
-        "colours": tuple(COLOURS),
-        "skin": tuple(SKINS),
-    }
-    for name, allowed in choices.items():
-        if getattr(look, name) not in allowed:
-            setattr(look, name, getattr(Look(), name))
+    """A look without anything that there is none of for this scene."""
     look.overlays = [name for name in look.overlays if name in overlays]
-    look.wrinkles = look.wrinkles if 0.0 <= look.wrinkles <= 1.0 else 1.0
-    look.divider = look.divider if 0.0 <= look.divider <= 1.0 else 0.5
     look.options = {name: dict(found) for name, found in look.options.items() if name in refiners}
     return look

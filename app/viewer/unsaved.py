@@ -14,16 +14,19 @@ import contextlib
 import json
 import re
 import secrets
-import sys
+import stat
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
+from assets.aside import locked
+
 from ..errors import UserError
+from ..inputs import read_text
 from ..outputs import cannot_be_written, save_text
-from ..script import Limits, Script, parse_script
+from ..script import LONGEST_FILE, Limits, Script, parse_script
 from ..script_writer import script_text
 
 KINDS = ("script", "recording", "pose")  # the files of one window, in the order of opening
@@ -77,7 +80,7 @@ class Place:
         name = f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(3)}"
         with cannot_be_written(folder):
             folder.mkdir(parents=True, exist_ok=True)
-            lock = _locked(folder / f"{name}.lock")
+            lock = locked(folder / f"{name}.lock")
         assert lock is not None
         return cls(folder, name, lock)
 
@@ -95,10 +98,12 @@ class Place:
                 save_text(self._file(kind), text)
 
     def read(self) -> Work:
-        """What is kept here; UserError, ValueError or OSError where a file is damaged."""
-        texts = {kind: file.read_text(encoding="utf-8") for kind, file in self._files().items()}
-        lines = _FILE_LINE.findall(texts.get("script", ""))
-        path = Path(json.loads(lines[-1])) if lines else None
+        """What is kept here; UserError or OSError where a file is damaged."""
+        texts = {
+            kind: read_text(file, what="script", longest=LONGEST_FILE)
+            for kind, file in self._files().items()
+        }
+        path = _path_in(texts.get("script", ""))
         # Named as its own file is, for error texts and as a title where it has none.
         sources = {"script": str(path or "Untitled")}
         scripts = {
@@ -134,15 +139,18 @@ def left_behind(folder: Path) -> Iterator[tuple[Place, Work]]:
 
     What cannot be read stays there and is passed by. Whoever does not want a place leaves it.
     """
-    names = {file.name.split(".")[0] for file in folder.glob("*.toml")}
+    try:
+        names = {file.name.split(".")[0] for file in folder.iterdir() if file.suffix == ".toml"}
+    except OSError:
+        return
     for name in sorted(names, reverse=True):
         try:
-            lock = _locked(folder / f"{name}.lock")
+            lock = locked(folder / f"{name}.lock")
             if lock is None:
                 continue
             place = Place(folder, name, lock)
             work = place.read()
-        except (OSError, UserError, ValueError):
+        except (OSError, UserError):
             continue
         if work:
             yield place, work
@@ -150,21 +158,15 @@ def left_behind(folder: Path) -> Iterator[tuple[Place, Work]]:
             place.remove()
 
 
-def _locked(path: Path) -> IO[Any] | None:
-    """The file, which nobody else can lock until it is closed; None where somebody has."""
-    file = path.open("ab")
-    try:
-        if sys.platform == "win32":
-            import msvcrt
-
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-        else:
-            import fcntl
-
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except (BlockingIOError, PermissionError):
-        file.close()
+def _path_in(text: str) -> Path | None:
+    """The file of a script by the last line that names it; None for what can be none."""
+    lines = _FILE_LINE.findall(text)
+    if not lines:
         return None
-    except OSError:
-        pass  # a file system without locks: better offered twice than never
-    return file
+    try:
+        path = Path(json.loads(lines[-1]))
+        return path if stat.S_ISREG(path.stat().st_mode) else None
+    except FileNotFoundError:  # it went away since; saving makes it anew
+        return path
+    except (OSError, ValueError):
+        return None

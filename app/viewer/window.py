@@ -46,7 +46,7 @@ from .placement import Placement, first_size
 from .quality import FULL, Quality
 from .recovery import Recovery
 from .session import Session
-from .settings import Look, Settings, load_settings
+from .settings import Look, Settings, drop_refused_options, load_settings
 from .stage import SceneView, Stage, checked
 from .take import FRAMES_PER_SECOND, Film
 from .touch import Touch
@@ -96,6 +96,9 @@ class Viewer:
         self.recovery.look(self.session)
         known = overlays_of(self.scene)
         self.look = checked(look or self.settings.look, refine.available(), known)
+        if look is None:
+            refused = drop_refused_options(self.look, self.scene)
+            complaint = "; ".join(filter(None, (complaint, refused)))
         with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
             title = f"Risorius: {self.session.name}"
             self.surface = render.open_window(size or first_size(self.settings.size), title)

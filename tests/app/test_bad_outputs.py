@@ -57,7 +57,11 @@ def test_a_place_that_cannot_be_written(command: str, tmp_path: Path) -> None:
     *arguments, name = WRITERS[command]
     Path("file").write_text("mine")
     os.mkfifo("pipe" + Path(name).suffix)
+    for loop in (Path("loop"), Path("circle" + Path(name).suffix)):
+        loop.symlink_to(loop)
     for target, words in (
+        (f"loop/{name}", "cannot be written: Too many levels of symbolic links"),
+        (f"circle{Path(name).suffix}", "is a link that leads back to itself; choose another name"),
         (f"file/{name}", "cannot be written: Not a directory"),
         (f"{'x' * 300}{name}", "cannot be written: File name too long"),
         (f"pipe{Path(name).suffix}", "is a device, not a file"),
@@ -65,7 +69,7 @@ def test_a_place_that_cannot_be_written(command: str, tmp_path: Path) -> None:
         line = told(risorius(*arguments, target))
         assert line.startswith(f"risorius: {target}: ") and words in line
     assert Path("file").read_text() == "mine"
-    assert len(list(tmp_path.iterdir())) == 2
+    assert len(list(tmp_path.iterdir())) == 4
 
 
 @pytest.mark.parametrize(
@@ -84,3 +88,20 @@ def test_outputs_are_apart(outputs: tuple[str, ...], message: str, tmp_path: Pat
     named = [word.format(folder=tmp_path.name) for word in outputs]
     assert message in told(risorius("capture", "smile.png", *named))
     assert script.read_text().startswith("[[pose]]")
+
+
+@pytest.mark.parametrize("arguments", [("capture", "circle", "-o", "x.png"), ("replay", "circle")])
+def test_a_script_that_is_a_circle_of_links(arguments: tuple[str, ...]) -> None:
+    """A link to itself is one line, as is a name that would break the line."""
+    Path("circle").symlink_to("circle")
+    assert "circle: cannot be read: Too many levels" in told(risorius(*arguments))
+    line = told(risorius(*(word.replace("circle", "no\nscript\x1b[31m") for word in arguments)))
+    assert line == r"risorius: no\nscript\x1b[31m: no such script"
+
+
+def test_a_folder_for_frames_that_is_a_circle_of_links() -> None:
+    """Nothing is replaced."""
+    Path("circle").symlink_to("circle")
+    line = told(risorius("capture", "--set", "joy", "-o", "circle", "--quiet"))
+    assert line == "risorius: circle: is a link that leads back to itself; choose another name"
+    assert Path("circle").is_symlink()

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
-from app import outputs
+from app import ffmpeg, outputs
+from app.cli import main
 from app.errors import UserError
 
 GREY = np.full((64, 96, 3), 128, np.uint8)
@@ -86,6 +93,26 @@ def test_broken_frames_leave_the_folder_as_it_was(tmp_path: Path) -> None:
     assert left == ["old", "old/frame_00000.png"]
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
+def test_a_run_after_one_that_was_killed(tmp_path: Path) -> None:
+    """Its frames go into the same folder as if that was empty; what was left goes the day after."""
+    code = (
+        "import os, pathlib, signal, sys\nfrom app import outputs\n"
+        "with outputs.folder(pathlib.Path(sys.argv[1]), overwrite=False):\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)"
+    )
+    target = tmp_path / "frames"
+    subprocess.run([sys.executable, "-c", code, str(target)], check=False)
+    [left] = target.iterdir()
+    with outputs.folder(target, overwrite=False) as add:
+        add(GREY)
+    assert sorted(target.iterdir()) == [left, target / "frame_00000.png"]
+    for path in (*left.iterdir(), left):
+        os.utime(path, (0.0, 0.0))
+    outputs.save_png(target / "x.png", GREY)
+    assert {path.name for path in target.iterdir()} == {"frame_00000.png", "x.png"}
+
+
 def test_a_place_that_cannot_be_written(tmp_path: Path) -> None:
     """A parent that is a file is one clear line."""
     (tmp_path / "file").write_text("x")
@@ -103,11 +130,46 @@ def test_a_link_stays_a_link(tmp_path: Path) -> None:
     assert list((tmp_path / "disk").iterdir()) == [real]
 
 
+ALIVE = "(while :; do echo >> {0}.alive; sleep 0.02; done)"  # a process that one can see live
+
+
+@pytest.fixture
+def fake_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], Path]:
+    """Makes a shell script that is taken for ffmpeg; patience with it is short."""
+
+    def make(program: str) -> Path:
+        fake = tmp_path / "ffmpeg"
+        fake.write_text(f"#!/bin/sh\n{program.replace('ALIVE', ALIVE.format(fake))}\n")
+        fake.chmod(0o755)
+        return fake
+
+    monkeypatch.setattr(ffmpeg, "PATIENCE", 0.8)
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(tmp_path / "ffmpeg"))
+    return make
+
+
+@pytest.fixture
+def old_film(tmp_path: Path) -> Path:
+    """A film of the user's, alone in its folder."""
+    target = tmp_path / "films" / "film.mp4"
+    target.parent.mkdir()
+    target.write_bytes(b"mine")
+    return target
+
+
+HANGS = r"film.mp4: cannot be written: ffmpeg hangs, it did nothing for 0.8 s; try again, or write"
+
+
 @pytest.mark.parametrize(
     ("program", "message"),
     [
         (None, r"no film without ffmpeg: .*/ffmpeg: No such file or directory"),
         ("exit 3", r"film.mp4: cannot be written: ffmpeg: it ended with code 3"),
+        ("ALIVE &\nexit 3", r"film.mp4: cannot be written: ffmpeg: it ended with code 3"),
+        ("ALIVE", HANGS),
+        ("cat >/dev/null; ALIVE", HANGS),
+        ("exec <&-; ALIVE", HANGS),
+        ("trap '' TERM INT HUP; ALIVE", HANGS),
         (
             "cat >/dev/null; echo '[mp4 @ 0x55] No space left on device' >&2; exit 1",
             r"film.mp4: cannot be written: ffmpeg: No space left on device",
@@ -115,18 +177,43 @@ def test_a_link_stays_a_link(tmp_path: Path) -> None:
     ],
 )
 def test_a_film_that_ffmpeg_does_not_finish(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str | None, message: str
+    fake_ffmpeg: Callable[[str], Path], old_film: Path, program: str | None, message: str
 ) -> None:
-    """No ffmpeg, one that gives up, one that fails at the end: told, and the old film stays."""
-    fake, target = tmp_path / "ffmpeg", tmp_path / "films" / "film.mp4"
+    """No ffmpeg, one that gives up, hangs, fails at the end: told, the old film stays, it ends."""
     if program is not None:
-        fake.write_text(f"#!/bin/sh\n{program}\n")
-        fake.chmod(0o755)
-    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(fake))
-    target.parent.mkdir()
-    target.write_bytes(b"mine")
-    with pytest.raises(UserError, match=message), outputs.film(target, (96, 64), 25.0) as add:
+        fake_ffmpeg(program)
+    with pytest.raises(UserError, match=message), outputs.film(old_film, (96, 64), 25.0) as add:
         for _ in range(20):
             add(GREY)
-    assert target.read_bytes() == b"mine"
-    assert list(target.parent.iterdir()) == [target]
+    assert old_film.read_bytes() == b"mine"
+    assert list(old_film.parent.iterdir()) == [old_film]
+    alive = Path(f"{old_film.parents[1]}/ffmpeg.alive")
+    lines = len(alive.read_bytes()) if alive.exists() else 0
+    time.sleep(0.1)
+    assert lines == (len(alive.read_bytes()) if alive.exists() else 0)
+
+
+def test_an_ffmpeg_that_is_slow_is_waited_for(
+    fake_ffmpeg: Callable[[str], Path], old_film: Path
+) -> None:
+    """As long as the film grows, it may take longer to finish it than patience lasts."""
+    fake_ffmpeg(
+        "for last; do :; done\ncat > /dev/null\n"
+        'for part in 1 2 3 4 5 6 7 8; do sleep 0.15; printf $part >> "${last#file:}"; done'
+    )
+    with outputs.film(old_film, (96, 64), 25.0) as add:
+        add(GREY)
+    assert old_film.read_bytes() == b"12345678"
+
+
+def test_an_ffmpeg_that_hangs_ends_the_command(
+    fake_ffmpeg: Callable[[str], Path], old_film: Path
+) -> None:
+    """`capture` says so in one line, with exit code 2."""
+    fake_ffmpeg("ALIVE")
+    film = ("--scene", "plane", "-o", str(old_film), "--size", "96x64", "--samples", "0", "--quiet")
+    result = CliRunner().invoke(main, ["capture", *film])
+    assert result.exit_code == 2 and "Traceback" not in result.output
+    [line] = [each for each in result.output.splitlines() if not each.startswith("Compiling")]
+    assert "film.mp4: cannot be written: ffmpeg hangs" in line
+    assert list(old_film.parent.iterdir()) == [old_film]

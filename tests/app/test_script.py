@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import sys
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -60,7 +63,11 @@ def test_easings_stay_between_the_keys(fraction: float, name: str) -> None:
     ("text", "message"),
     [
         ("pose = = 3", r"bad.toml: not valid TOML: .*line 1"),
-        ("a = " + 5000 * "[", r"bad.toml: not valid TOML"),
+        ("x=1\na = " + 5000 * "[", r"bad.toml: line 2: more than 8 brackets are open at once"),
+        ("a" + 30_000 * ".a" + "=1", r"bad.toml: line 1: a key has more than 3 parts with dots"),
+        ("[a" + 30_000 * ' . "a"' + "]", r"bad.toml: line 1: a key has more than 3 parts"),
+        ("".join(f"[a{n}]\n" for n in range(100_001)), r"more than 100000 headers other than"),
+        ("".join(f"a{n}.b=1\n" for n in range(100_001)), r"more than 100000 headers other than"),
         ("a = " + 5000 * "9", r"bad.toml: not valid TOML"),
         ("", r"bad.toml: no \[\[pose\]\] and no \[tracks\]"),
         ("durration = 1\n[[pose]]\ntime=1", r"unknown key 'durration'; allowed are title"),
@@ -133,8 +140,73 @@ def test_missing_and_unreadable_files(tmp_path: Path) -> None:
     binary.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(UserError, match="cannot be read as a text file"):
         load_script(binary)
+    long = tmp_path / "long.toml"
+    with long.open("wb") as file:
+        file.truncate(2**24 + 1)
     with pytest.raises(UserError, match="is longer than a script may be, 16 MB"):
-        load_script(Path("/dev/zero"))
+        load_script(long)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes, devices and links of POSIX systems")
+def test_what_is_no_plain_file_is_not_opened(tmp_path: Path) -> None:
+    """A pipe would keep us waiting, a device has no end; folders and circles of links are told."""
+    pipe, circle = tmp_path / "pipe.toml", tmp_path / "circle.toml"
+    os.mkfifo(pipe)
+    circle.symlink_to(circle)
+    for path, words in (
+        (pipe, "is a pipe or a device, not a file; a script is a plain file"),
+        (Path("/dev/zero"), "is a pipe or a device"),
+        (tmp_path, "is a folder, not a file"),
+        (circle, "cannot be read: Too many levels of symbolic links"),
+    ):
+        with pytest.raises(UserError, match=words):
+            load_script(path)
+
+
+def test_dots_and_brackets_in_words_are_none(tmp_path: Path) -> None:
+    """Strings and comments may hold anything; numbers have points."""
+    text = (
+        "# e.g. a.b.c.d.e [[[[[[[[[[ it's fine\ntitle = 'a.b.c.d.e [[[[[[[[[[[['\n"
+        'camera = """a.b.c.d\ne = f.g.h.i.j\n[[[[[[[[[[[[ \\""" """\n'
+        '[[pose]]\ntime = 1.5 # "\n"joy.a.b.c.d" = 0.5\n[["pose"]]\ntime = 2.5\n'
+    )
+    script = parse_script(text, source="x")
+    assert script.at(1.5) == {"joy.a.b.c.d": 0.5} and len(script.poses) == 2
+
+
+def test_long_scripts_are_quick() -> None:
+    """Many poses that name different controls: neither time nor memory grows with both."""
+    names = [f"control_{number}" for number in range(200)]
+    text = "".join(
+        f"[[pose]]\ntime={number}\n{names[number % 200]}=0.5\n" for number in range(20_000)
+    )
+    script = parse_script(text, source="long.toml")
+    tracemalloc.start()
+    script.check(dict.fromkeys(names, (0.0, 1.0)))
+    for time in range(0, 20_000, 100):
+        assert sum(script.at(time + 0.25).values()) == pytest.approx(0.5)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 2**20  # a key for each name in each pose would take 500 times as much
+
+
+def test_names_are_told_on_one_line() -> None:
+    """What a terminal would obey, or break the line at, is escaped; long names are cut."""
+    for name, shown in (
+        ("a\\nrisorius: b", r"a\nrisorius: b"),
+        ("\\u001b[2J", r"\x1b[2J"),
+        ("\\u202eyoj", r"\u202eyoj"),
+        ("é ü", "é ü"),
+    ):
+        script = parse_script(f'[[pose]]\ntime=1\n"{name}"=1', source="x.toml")
+        with pytest.raises(UserError) as told:
+            script.check({"joy": (0.0, 1.0)})
+        assert f"x.toml: unknown name '{shown}'; `risorius controls`" in str(told.value)
+    with pytest.raises(
+        UserError, match=r"x.toml: unknown name 'aaaa.* \.\.\. aaa.*lists every"
+    ) as told:
+        parse_script(f"[[pose]]\ntime=1\n{10**6 * 'a'}=1", source="x.toml").check({})
+    assert len(str(told.value)) < 2100
 
 
 def test_scripts_of_other_editors(tmp_path: Path) -> None:

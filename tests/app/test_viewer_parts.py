@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +20,6 @@ from app.viewer.quality import FULL, LEVELS, PATIENCE, Quality
 from app.viewer.recorder import TOLERANCE, Recorder
 from app.viewer.rows import found, mirrored, rows_of
 from app.viewer.session import Session
-from app.viewer.settings import Look, Settings, load_settings, save_settings
 from app.viewer.tour import STOPS
 from assets.fitting import fit_head
 from tests.heads import stranger
@@ -192,32 +190,6 @@ def test_rows_join_sides() -> None:
     assert [row.label for row in found(rows, "smile au", group="", actions={"AU12": "Smile"})] == [
         "AU12"
     ]
-
-
-def test_settings_come_back(tmp_path: Path) -> None:
-    """What is written is read again."""
-    path = tmp_path / "deep" / "viewer.json"
-    settings = Settings(size=(900, 700), theme="dark", cameras={"face": [1.0, 2.0]})
-    settings.look.overlays = ["muscles"]
-    settings.look.options = {"kahler": {"threshold_once": 0.1}}
-    save_settings(path, settings)
-    read, complaint = load_settings(path)
-    assert complaint == "" and json.dumps(read.__dict__, default=vars) == json.dumps(
-        settings.__dict__, default=vars
-    )
-
-
-@pytest.mark.parametrize(
-    "text",
-    ["", "not json", "[]", '{"look": 3}', '{"size": "big"}', '{"size": [1, "x"]}', "\x00\x01"],
-)
-def test_broken_settings_are_passed_by(tmp_path: Path, text: str) -> None:
-    """A file that is damaged gives the first settings, and a line that says so where it is."""
-    path = tmp_path / "viewer.json"
-    path.write_text(text)
-    settings, complaint = load_settings(path)
-    assert settings.look == Look() and (settings.size is None or min(settings.size) >= 200)
-    assert complaint == "" or str(path) in complaint
 
 
 def test_clock_steps_at_its_own_rate() -> None:

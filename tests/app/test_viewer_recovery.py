@@ -229,6 +229,52 @@ def test_what_is_thrown_away_is_gone(session: Session, tmp_path: Path) -> None:
     assert {file.name[:8] for file in folder.glob("*.toml")} == {"20270101"}
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes and links of POSIX systems")
+def test_damaged_work_hides_no_other(session: Session, recovery: Recovery, tmp_path: Path) -> None:
+    """Pipes, folders, circles of links, monsters among the files: passed by, none is waited for."""
+    session.set("jaw_open", 0.4)
+    recovery.keep(session)
+    recovery.close()
+    folder = tmp_path / "unsaved"
+    os.mkfifo(folder / "20270101-000000-aaa.pose.toml")
+    (folder / "20270101-000000-bbb.pose.toml").mkdir()
+    (folder / "20270101-000000-ccc.pose.toml").symlink_to("20270101-000000-ccc.pose.toml")
+    (folder / "20270101-000000-ddd.pose.toml").write_text("a" + 30_000 * ".a" + "=1")
+    (folder / "20270101-000000-eee.pose.toml").write_text("a=" + 30_000 * "[")
+    with (folder / "20270101-000000-fff.pose.toml").open("wb") as file:
+        file.truncate(2**34)
+    (folder / "20270101-000000-ggg.pose.toml").write_text(SCRIPT)
+    os.mkfifo(folder / "20270101-000000-ggg.lock")
+    found = found_by_next(tmp_path, session)
+    assert found is not None and found.pose is not None
+    assert found.pose.at(0.0)["jaw_open"] == 0.4
+    file = tmp_path / "not_a_folder"
+    file.touch()
+    other = Recovery(file)
+    other.look(session)
+    assert other.found is None
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes of POSIX systems")
+@pytest.mark.parametrize("name", ['"PIPE"', '"a\\u0000b"', '"\\x"', "", f'"{5000 * "x"}"'])
+def test_a_damaged_name_of_its_file_loses_no_script(
+    session: Session, recovery: Recovery, tmp_path: Path, name: str
+) -> None:
+    """Where the file of a script cannot be that, the script is offered without one."""
+    session.set("jaw_open", 0.25)
+    session.set_key()
+    recovery.keep(session)
+    recovery.close()
+    os.mkfifo(tmp_path / "pipe")
+    [kept_script] = (tmp_path / "unsaved").glob("*.script.toml")
+    lines = kept_script.read_text().splitlines()
+    lines[-1] = "# Its file: " + name.replace("PIPE", str(tmp_path / "pipe"))
+    kept_script.write_text("\n".join(lines) + "\n")
+    found = found_by_next(tmp_path, session)
+    assert found is not None and found.script is not None
+    assert found.path is None
+
+
 def test_only_what_fits_the_scene_is_offered(
     session: Session, recovery: Recovery, tmp_path: Path
 ) -> None:

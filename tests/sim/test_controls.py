@@ -61,7 +61,7 @@ def test_set_all_is_all_or_nothing(simulation: sim.Simulation) -> None:
 @pytest.mark.parametrize("dt", [0.0, -0.01, 0.06, float("nan"), float("inf")])
 def test_step_length_is_checked(simulation: sim.Simulation, dt: float) -> None:
     """A step must be longer than nothing and at most a twentieth of a second."""
-    with pytest.raises(ValueError, match=r"dt: was .* at most 0.05 s"):
+    with pytest.raises(ValueError, match=r"dt: was .* (at most 0.05 s|a finite number)"):
         simulation.step(dt)
 
 

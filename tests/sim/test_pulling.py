@@ -66,11 +66,11 @@ def test_a_mad_finger_breaks_nothing(
 @pytest.mark.parametrize(
     ("vertices", "targets", "firmness", "message"),
     [
-        ([1, 2], np.zeros((1, 3)), [1.0, 1.0], r"must be \(n, 3\)"),
-        ([1], np.full((1, 3), np.nan), [1.0], "must be finite"),
+        ([1, 2], np.zeros((1, 3)), [1.0, 1.0], r"targets: shape was \(1, 3\), must be \(2, 3\)"),
+        ([1], np.full((1, 3), np.nan), [1.0], "must all be finite"),
         ([1], np.zeros((1, 3)), [2.0], "from 0 to 1"),
-        ([1, 1], np.zeros((2, 3)), [1.0, 1.0], "different numbers"),
-        ([-1], np.zeros((1, 3)), [1.0], "different numbers"),
+        ([1, 1], np.zeros((2, 3)), [1.0, 1.0], "twice, must be different"),
+        ([-1], np.zeros((1, 3)), [1.0], "vertex numbers run from -1 to -1, allowed are 0 to"),
     ],
 )
 def test_pulls_that_do_not_fit(

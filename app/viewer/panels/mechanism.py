@@ -17,7 +17,8 @@ from .. import commands
 from ..colours import COLOURS
 from ..gui import colour, em
 from ..overlays import overlays_of
-from ..stage import COMPARISONS, SKINS, STAGES
+from ..setting_rules import COMPARISONS, SKINS
+from ..stage import STAGES
 from .folds import fold
 from .sliders import Sliders
 from .words import hint

@@ -1,0 +1,105 @@
+"""What callers hand in, checked at the door: numbers, arrays and names, or a ValueError.
+
+Every text says which argument it was, what it was, and what is allowed. numpy alone would take
+strings for numbers, cut 0.7 down to vertex 0, and raise one of three other errors.
+"""
+
+from __future__ import annotations
+
+import math
+import reprlib
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .landmarks import Array
+
+Shape = tuple[int | None, ...]  # None: any length
+
+
+def shown(value: object) -> str:
+    """A value in the text of an error, cut where it is long."""
+    try:
+        return reprlib.repr(value)
+    except ValueError:  # Python writes no number of thousands of digits
+        return f"a very long {type(value).__name__}"
+
+
+def number(what: str, value: Any) -> float:
+    """A finite number."""
+    try:
+        is_one = isinstance(value, int | float)  # by far the most, and quickly found
+        is_one = is_one or (not isinstance(value, str | bytes) and np.ndim(value) == 0)
+        result = float(value) if is_one else math.nan
+    except (TypeError, ValueError, OverflowError):
+        result = math.nan
+    if not math.isfinite(result):
+        raise ValueError(f"{what}: was {shown(value)}, must be a finite number")
+    return result
+
+
+def flag(what: str, value: Any) -> bool:
+    """True or False, and nothing that only counts as such."""
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"{what}: was {shown(value)}, must be True or False")
+    return bool(value)
+
+
+def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Array:
+    """Finite numbers of a shape, a copy in rows; wanted: the shape in words."""
+    wanted = wanted or str(shape)
+    array = _array(what, given, "fiub", f"numbers, shape {wanted}")
+    if not _fits(array, shape):
+        raise ValueError(f"{what}: shape was {array.shape}, must be {wanted} and finite")
+    with np.errstate(all="ignore"):  # wider kinds of numbers become infinite
+        result: Array = np.array(array, dtype=np.float64, order="C")
+    if not np.isfinite(result).all():
+        raise ValueError(f"{what}: must all be finite numbers, but some are NaN or infinite")
+    return result
+
+
+def vertex_numbers(
+    what: str, given: Any, shape: Shape, vertex_count: int, wanted: str
+) -> npt.NDArray[np.int64]:
+    """Numbers of vertices, a copy in rows; wanted: what they must be, in words."""
+    array = _array(what, given, "fiub", wanted)
+    is_whole = array.dtype.kind in "iu" or array.size == 0  # an empty list has no kind
+    if not is_whole or not _fits(array, shape):
+        raise ValueError(f"{what}: was {array.dtype} of shape {array.shape}, must be {wanted}")
+    if array.size and (array.min() < 0 or array.max() >= vertex_count):
+        raise ValueError(
+            f"{what}: vertex numbers run from {array.min()} to {array.max()}, "
+            f"allowed are 0 to {vertex_count - 1}"
+        )
+    return np.array(array, dtype=np.int64, order="C")
+
+
+def several(what: str, given: Any, attributes: tuple[str, ...]) -> list[Any]:
+    """Objects that have these attributes, in a list."""
+    names = ", ".join(attributes)
+    try:
+        found = list(given)
+    except TypeError:
+        raise ValueError(
+            f"{what}: was {shown(given)}, must be a list of objects with {names}"
+        ) from None
+    for each in found:
+        if not all(hasattr(each, name) for name in attributes):
+            raise ValueError(f"{what}: holds {shown(each)}, must be objects with {names}")
+    return found
+
+
+def _array(what: str, given: Any, kinds: str, wanted: str) -> npt.NDArray[Any]:
+    try:
+        array = np.asarray(given)
+    except (TypeError, ValueError, OverflowError):  # rows of different lengths
+        raise ValueError(f"{what}: was {shown(given)}, must be {wanted}") from None
+    if array.dtype.kind not in kinds:
+        raise ValueError(f"{what}: was {shown(given)}, must be {wanted}")
+    return array
+
+
+def _fits(array: npt.NDArray[Any], shape: Shape) -> bool:
+    pairs = zip(array.shape, shape, strict=False)
+    return array.ndim == len(shape) and all(want in (None, has) for has, want in pairs)

@@ -1,0 +1,88 @@
+"""`risorius doctor`: its verdict is what works, for every way in which something may be missing."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+import render
+from app import doctor
+from app.cli import main
+
+
+@pytest.fixture
+def ill(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> object:
+    """Makes a machine that lacks what it is told; the rest is there."""
+
+    def make(*missing: str) -> None:
+        def probe(*, offscreen_only: bool = False) -> list[render.Finding]:
+            names = ["offscreen"] if offscreen_only else ["offscreen", "window"]
+            return [
+                render.Finding(name, name not in missing, "" if name not in missing else "Cure: x")
+                for name in names
+            ]
+
+        fake = tmp_path / "ffmpeg"
+        fake.write_text(f"#!/bin/sh\necho ffmpeg version 7\nexit {int('films' in missing)}\n")
+        fake.chmod(0o755)
+        monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(fake))
+        monkeypatch.setattr(render, "probe", probe)
+
+    return make
+
+
+def ask(*options: str) -> Result:
+    """Run the command."""
+    return CliRunner().invoke(main, ["doctor", *options])
+
+
+PARTS = ("offscreen", "window", "films")
+
+
+@pytest.mark.parametrize(
+    "missing", [each for count in range(4) for each in itertools.combinations(PARTS, count)]
+)
+def test_the_verdict_is_what_works(ill: object, missing: tuple[str, ...]) -> None:
+    """Each part, each command, the summary and the exit code agree."""
+    ill(*missing)  # type: ignore[operator]
+    result = ask()
+    lines = dict(line.split(": ", 1) for line in result.output.splitlines() if ": " in line)
+    for part in PARTS:
+        assert lines[part].startswith("no." if part in missing else "yes.")
+    assert lines["view, replay"].startswith("no" if "window" in missing else "works")
+    frames = lines["capture, demo, reproduce"]
+    assert frames.startswith("no" if "offscreen" in missing else "works")
+    if "offscreen" not in missing:
+        assert ("films need ffmpeg" in frames) == ("films" in missing)
+    assert ("Everything is there." in result.output) == (not missing)
+    assert lines.get("Missing", "").startswith(", ".join(missing))
+    draws = not {"offscreen", "window"} <= set(missing)
+    assert result.exit_code == (0 if not missing else 1 if draws else 2)
+    assert ask("--quiet").output == "" and ask("--quiet").exit_code == result.exit_code
+
+
+@pytest.mark.parametrize("missing", [(), ("offscreen",), ("window", "films")])
+def test_offscreen_alone(ill: object, missing: tuple[str, ...]) -> None:
+    """What is not asked for is neither missing nor there."""
+    ill(*missing)  # type: ignore[operator]
+    result = ask("--offscreen")
+    assert result.exit_code == (2 if "offscreen" in missing else 0)
+    assert "window" not in result.output and "films" not in result.output
+    assert ("Everything is there." in result.output) == ("offscreen" not in missing)
+
+
+@pytest.mark.parametrize("program", ["exec sleep 100", "exec >&-; exit 3", None])
+def test_an_ffmpeg_that_does_not_answer(
+    ill: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str | None
+) -> None:
+    """One that hangs, fails or is not there is missing, and nobody waits for long."""
+    ill()  # type: ignore[operator]
+    monkeypatch.setattr(doctor, "PATIENCE", 0.3)
+    fake = tmp_path / "ffmpeg"
+    fake.unlink() if program is None else fake.write_text(f"#!/bin/sh\n{program}\n")
+    result = ask()
+    assert result.exit_code == 1 and f"films: no. {fake} d" in result.output
+    assert "Cure: unset IMAGEIO_FFMPEG_EXE" in result.output

@@ -1,0 +1,202 @@
+"""What the window remembers: what is of no use gives way alone, and nothing keeps it shut."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.choices import script_for
+from app.scenes import FaceScene
+from app.viewer import Viewer
+from app.viewer.settings import (
+    Look,
+    Settings,
+    drop_refused_options,
+    load_settings,
+    save_settings,
+)
+
+from .driving import NEEDS_A_SCREEN, SIZE, settle
+
+GOOD = {"theme": "dark", "zoom": 1.5, "folds": {"Jaw": True}, "look": {"wireframe": True}}
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    """Where settings are, alone in a folder."""
+    return tmp_path / "viewer.json"
+
+
+def test_settings_come_back(tmp_path: Path) -> None:
+    """What is written is read again."""
+    path = tmp_path / "deep" / "viewer.json"
+    settings = Settings(size=(900, 700), theme="dark", cameras={"face": [1.0, 2, 900, 0, 0, 0.5]})
+    settings.look.overlays = ["muscles"]
+    settings.look.options = {"kahler": {"threshold_once": 0.1, "blend": True, "scheme": "cubic"}}
+    save_settings(path, settings)
+    assert load_settings(path) == (settings, "")
+    assert [file.name for file in path.parent.iterdir()] == ["viewer.json"]
+
+
+@pytest.mark.parametrize(
+    ("where", "value"),
+    [
+        ("theme", "zzz"),
+        ("theme", ["light"]),
+        ("theme", {}),
+        ("zoom", -5),
+        ("zoom", "big"),
+        ("zoom", True),
+        ("zoom", float("nan")),
+        ("zoom", "HUGE"),
+        ("size", [float("inf"), 5]),
+        ("size", [900]),
+        ("size", [900, None]),
+        ("size", [1e300, 1e300]),
+        ("size", "900x700"),
+        ("panel_width", float("nan")),
+        ("panel_width", None),
+        ("is_linked", "yes"),
+        ("tab", "Nose"),
+        ("folds", []),
+        ("folds.Eyes", 3),
+        ("cameras", 5),
+        ("cameras.face", [1, 2, 3]),
+        ("cameras.face", [1, 2, 3, 4, 5, float("inf")]),
+        ("cameras.face", [[[]]] * 6),
+        ("look", 3),
+        ("look.refiner", "none"),
+        ("look.refiner", {"a": 1}),
+        ("look.compare", "both"),
+        ("look.divider", 7),
+        ("look.shading", ""),
+        ("look.colours", 1),
+        ("look.skin", "fur"),
+        ("look.wrinkles", 10**400),
+        ("look.overlays", ["muscles", "zzz"]),
+        ("look.overlays", "muscles"),
+        ("look.options", 1),
+        ("look.options.kahler", 1),
+        ("look.options.kahler.threshold_once", float("nan")),
+        ("look.options.kahler.threshold_once", [0.1]),
+        ("look.options.kahler.threshold_once", 10**400),
+    ],
+)
+def test_one_value_gives_way_alone(path: Path, where: str, value: Any) -> None:
+    """It is told with its name, and is as at first; all others stay; the file is kept."""
+    stored = json.loads(json.dumps(GOOD))
+    *tables, name = where.split(".")
+    table = stored
+    for each in tables:
+        table = table.setdefault(each, {})
+    table[name] = value
+    path.write_text(json.dumps(stored).replace('"HUGE"', 5000 * "9"))
+    before = path.read_bytes()
+    settings, complaint = load_settings(path)
+    expected = Settings(theme="dark", zoom=1.5, folds={"Jaw": True}, look=Look(wireframe=True))
+    if len(tables) == 0 and name in GOOD:
+        setattr(expected, name, getattr(Settings(), name))
+    if tables[:2] == ["look", "options"] or where == "look.options.kahler":
+        expected.look.options = {"kahler": {}}
+    assert settings == expected
+    assert complaint.startswith(f"{path}: of no use and as at first: {where} = ")
+    [kept] = path.parent.glob("*.unusable.json")
+    assert kept.name in complaint and kept.read_bytes() == before
+    assert load_settings(path) == (settings, "")  # told once
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"not json",
+        b"[]",
+        b"3",
+        b"\xff\xfe\x00",
+        b"\x00\x01",
+        b'{"zoom": ' + 100_000 * b"[",
+        100_000 * b'{"look":',
+        b" " * (2**20 + 1),
+    ],
+)
+def test_a_file_of_no_use_is_set_aside(path: Path, content: bytes) -> None:
+    """All is as at first; a line says so, and where the file is now; the next window is quiet."""
+    path.write_bytes(content)
+    settings, complaint = load_settings(path)
+    assert settings == Settings()
+    assert complaint.startswith(f"{path}: ") and len(complaint) < 500 and "\n" not in complaint
+    [kept] = path.parent.glob("*.unusable.json")
+    assert kept.name in complaint and kept.read_bytes() == content
+    save_settings(path, settings)
+    assert load_settings(path) == (Settings(), "")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes and links of POSIX systems")
+def test_what_is_no_file_is_set_aside(path: Path) -> None:
+    """A folder, a pipe for which one would wait, a circle of links."""
+    for make in (path.mkdir, lambda: os.mkfifo(path), lambda: path.symlink_to(path)):
+        make()
+        settings, complaint = load_settings(path)
+        assert settings == Settings() and "the file is kept as viewer-" in complaint
+        save_settings(path, settings)
+        assert load_settings(path) == (Settings(), "")
+        for file in path.parent.iterdir():
+            file.rmdir() if file.is_dir() else file.unlink()
+
+
+def test_a_file_that_may_not_be_read(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is told, and not replaced without a word where it cannot be set aside either."""
+    path.write_text("{}")
+
+    def refuse(*_: object, **__: object) -> None:
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr(Path, "open", refuse)
+    monkeypatch.setattr(Path, "rename", refuse)
+    settings, complaint = load_settings(path)
+    assert settings == Settings()
+    assert re.search(r"Permission denied.*cannot be set aside \(.*written anew", complaint)
+
+
+def test_of_many_values_the_first_are_told(path: Path) -> None:
+    """One line has no room for more; it holds no line ends of the file's."""
+    folds = {f"a\nb{number}": number for number in range(1000)}
+    path.write_text(json.dumps({"folds": folds}))
+    _, complaint = load_settings(path)
+    assert r"folds.a\nb0 = 0" in complaint and "994 more" in complaint and "\n" not in complaint
+
+
+def test_options_that_a_refiner_refuses_give_way_alone() -> None:
+    """Unknown ones, other kinds, too much: named; what remains is taken by the refiner."""
+    look = Look(
+        options={
+            "kahler": {"threshold_once": "x", "scheme": "cubic", "foo": 3, "blend": True},
+            "loop": {"levels": 50},
+        }
+    )
+    told = drop_refused_options(look, FaceScene())
+    assert look.options == {"kahler": {"scheme": "cubic", "blend": True}, "loop": {}}
+    for words in ("kahler threshold_once = 'x'", "kahler foo = 3", "loop levels = 50"):
+        assert words in told
+    assert drop_refused_options(look, FaceScene()) == ""
+
+
+@pytest.mark.window
+@NEEDS_A_SCREEN[1]
+def test_no_settings_keep_the_window_shut(path: Path) -> None:
+    """Everything wrong at once: it opens, and says so."""
+    wrong: dict[str, Any] = {name: "zzz" for name in vars(Settings())}
+    wrong["look"] = {name: -1 for name in vars(Look())}
+    wrong["look"]["options"] = {"kahler": {"threshold_once": "x"}}
+    path.write_text(json.dumps(wrong))
+    with Viewer(script_for(None, "face"), SIZE, settings_path=path) as viewer:
+        settle(viewer, 3)
+        assert viewer.messages.is_error and "theme = 'zzz'" in viewer.messages.text
+        assert "kahler threshold_once = 'x'" in viewer.messages.text

@@ -1,0 +1,236 @@
+"""The doors of `sim`: whatever is handed in wrongly is a ValueError that says what is allowed."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import sim
+from sim.checked import numbers, vertex_numbers
+from sim.layers import read_layers
+
+HUGE = 10**400
+NAN, INF = float("nan"), float("inf")
+# What is no number, no array of numbers and no name at any of the doors.
+NONSENSE = (None, "0.5", b"1", [], [[1], [1, 2]], object(), 1j, [None], "x" * 10**6, len, {1: 2})
+NO_NUMBER = (*NONSENSE, NAN, INF, -INF, HUGE, -HUGE, 10**5000, [0.5], np.array([0.5]))
+COUNT = 9
+MAY_BE = r"must|allowed|did you mean|see \.limits|Allowed|is lower case|leave|give|reads"
+POINTS = np.zeros((2, 3))
+IS_WIDER = np.finfo(np.longdouble).max > np.finfo(np.float64).max
+WIDE = [np.full((2, 3), np.finfo(np.longdouble).max)] if IS_WIDER else []
+ARRAYS = (  # that are not (2, 3) finite numbers
+    *NONSENSE, *WIDE, 3, HUGE, np.zeros(3), np.zeros((3, 2)), np.zeros((2, 3, 1)), POINTS + NAN,
+    POINTS - INF, [[HUGE] * 3] * 2, POINTS.astype(str), POINTS.astype(object),
+    POINTS.astype(complex), POINTS.astype("M8[s]"),
+)  # fmt: skip
+NUMBERS = (  # that are not two different vertices of nine
+    *NONSENSE, [0.7], [0.7, 1.0], [1, 1], [0, -1], [0, COUNT], [0, HUGE], [2**63, 1], 1, [[0, 1]],
+    [True, False], [NAN, 1.0], np.array(["0", "1"]), np.array([0, 2**64 - 1], np.uint64),
+)  # fmt: skip
+SHARES = (*NONSENSE, [0.5], [0.5, 1.1], [-0.1, 0.5], [NAN, 0.5], [HUGE, 0.5], 0.5, [[0.5], [0.5]])
+NAMES = (None, 3, "", "nonsense", b"jaw_open", NAN, HUGE, ("jaw_open",), "x" * 10**6, "\n")
+TABLES = (*NONSENSE[:-1], 3, NAN, ["jaw_open"], np.zeros(3))
+
+# Method, the argument that is wrong, what it is called in the text, and what it is in turn.
+WRONG: list[tuple[str, str, str, tuple[Any, ...]]] = [
+    ("set", "name", "control", (*NAMES, [], {})),
+    ("set", "value", "control 'jaw_open'", (*NO_NUMBER, -1, 2)),
+    ("set_all", "values", "values", TABLES),
+    ("set_all", "values", "control", tuple({name: 1.0} for name in NAMES)),
+    ("set_all", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
+    ("pose", "values", "values", TABLES),
+    ("pose", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
+    ("kick", "velocities", "velocities", ARRAYS),
+    ("pull", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # none is as many as any
+    ("pull", "targets", "targets", ARRAYS),
+    ("pull", "firmness", "firmness", SHARES),
+    ("step", "dt", "dt", (*NO_NUMBER, 0, -1, 1, True)),
+]
+RIGHT: dict[str, dict[str, Any]] = {
+    "set": {"name": "jaw_open", "value": 0.5},
+    "set_all": {"values": {"jaw_open": 0.5}},
+    "pose": {"values": {"jaw_open": 0.5}},
+    "pull": {"vertices": [0, 1], "targets": POINTS, "firmness": [0.5, 1.0]},
+    "kick": {"velocities": np.zeros((COUNT, 3))},
+    "step": {"dt": 1 / 60},
+}
+
+
+def grid() -> SimpleNamespace:
+    """A small mesh without anything else."""
+    x, y = np.meshgrid(np.arange(3.0), np.arange(3.0))
+    vertices = np.stack([10.0 * x.ravel(), 10.0 * y.ravel(), np.zeros(COUNT)], axis=1)
+    faces = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [3, 4, 7], [3, 7, 6], [4, 5, 8], [4, 8, 7]]
+    return SimpleNamespace(vertices=vertices, faces=np.array(faces))
+
+
+@pytest.fixture(scope="module")
+def small() -> sim.Simulation:
+    """A mesh with a jaw and nothing else."""
+    mesh = grid()
+    mesh.mandible_weight = np.linspace(0.0, 1.0, COUNT)
+    mesh.jaw_axis = [[-10.0, 10.0, -5.0], [10.0, 10.0, -5.0]]
+    return sim.create(mesh)
+
+
+def refused(call: Callable[[], object], begins: str) -> None:
+    """The call is a ValueError with a text of ours: what was wrong, in short, and what may be."""
+    with pytest.raises(ValueError, match=MAY_BE) as error:
+        call()
+    text = str(error.value)
+    assert text.startswith((begins, "there is no control called")) and len(text) < 500, text
+
+
+@pytest.mark.parametrize(("method", "argument", "begins", "values"), WRONG)
+def test_wrong_arguments_are_told(
+    small: sim.Simulation, method: str, argument: str, begins: str, values: tuple[Any, ...]
+) -> None:
+    """Each is a ValueError with the argument's name, and nothing has changed by it."""
+    small.reset()
+    for value in values:
+        wrong = {**RIGHT[method], argument: value}
+        refused(lambda wrong=wrong: getattr(small, method)(**wrong), begins)  # type: ignore[misc]
+    assert not any(small.values.values())
+    small.step(1 / 60)
+    assert np.array_equal(small.positions, small.rest_positions)
+
+
+def test_every_method_that_takes_something_is_tried() -> None:
+    """A new public method, or a new argument, needs rows above."""
+    for name, method in inspect.getmembers(sim.Simulation, inspect.isfunction):
+        if not name.startswith("_"):
+            given = set(inspect.signature(method).parameters) - {"self"}
+            assert given == {row[1] for row in WRONG if row[0] == name}, name
+            assert given == set(RIGHT.get(name, {})), name
+    made = {name for name in sim.__all__ if inspect.isfunction(getattr(sim, name))}
+    assert made == {"create", "read_rig"}
+
+
+EYE = SimpleNamespace(name="left", centre=[0.0, 0.0, 0.0], radius=1.0)
+PART = SimpleNamespace(name="teeth_upper", bone="cranium", vertices=np.zeros((2, 3)))
+LISTS = (*NONSENSE[1:3], object(), 3, NAN, [3], [None], [[]])  # that hold no such things
+
+
+def with_(thing: SimpleNamespace, name: str, *values: Any) -> tuple[list[SimpleNamespace], ...]:
+    """Lists of a thing that is wrong in one attribute."""
+    return tuple([SimpleNamespace(**{**vars(thing), name: value})] for value in values)
+
+
+def under(*keys: str) -> Callable[..., tuple[dict[str, Any], ...]]:
+    """Makes rigs that are wrong at one place."""
+
+    def rigs(*values: Any) -> tuple[dict[str, Any], ...]:
+        return tuple({keys[0]: {keys[1]: value}} for value in values)
+
+    return rigs
+
+
+HEADS: list[tuple[str, str, tuple[Any, ...]]] = [
+    ("vertices", "head.vertices", (*ARRAYS, np.zeros((0, 3)))),
+    ("faces", "head.faces", NONSENSE[:3] + NONSENSE[4:]),
+    ("faces", "head.faces", ([[0, 1, COUNT]], [[0, 1, -1]], [[0.0, 1, 2]], [[0, 1, HUGE]])),
+    ("faces", "head.faces", ([[0, 1]], [0, 1, 2], [[NAN] * 3], [["0", "1", "2"]])),
+    ("landmarks", "head.landmarks", (*NONSENSE[1:], 3, np.zeros(68), np.full(68, COUNT))),
+    ("mandible_weight", "head.mandible_weight", (*NONSENSE[1:], 3, [NAN] * COUNT, [HUGE] * COUNT)),
+    ("jaw_axis", "head.jaw_axis", ARRAYS[1:]),
+    ("rig", "rig", (3, "rig", b"rig", object(), [1], {"muscle": 3}, {3: 4}, {None: 1})),
+    ("rig", "rig", ({"format": [1]}, {"format": HUGE}, {"format": np.ones(2)}, {"tissue": "x"})),
+    ("rig", "rig, tissue", under("tissue", "shear")(*NO_NUMBER)),
+    ("rig", "rig, jaw", under("jaw", "opening_glide")(*ARRAYS, [HUGE] * 3)),
+    ("rig", "rig, jaw", under("jaw", "seeds")(3, [], {"²": 1.0}, {"9" * 5000: 1.0}, {"1": HUGE})),
+    ("eyes", "head.eyes", (*LISTS, *with_(EYE, "name", *NAMES))),
+    ("eyes", "head.eyes", with_(EYE, "centre", *NONSENSE, 3, POINTS, [NAN] * 3, [HUGE] * 3)),
+    ("eyes", "head.eyes", with_(EYE, "radius", *NO_NUMBER, 0, -1)),
+    ("parts", "head.parts", (*LISTS, *with_(PART, "vertices", 3, [NAN], "x", [[HUGE] * 3]))),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("attribute", "begins", "values"), HEADS)
+def test_wrong_heads_are_told(attribute: str, begins: str, values: tuple[Any, ...]) -> None:
+    """Whatever is wrong with a head, `create` names the attribute."""
+    for value in values:
+        head = grid()
+        setattr(head, attribute, value)
+        refused(lambda head=head: sim.create(head), begins)  # type: ignore[misc]
+
+
+@pytest.mark.parametrize("name", [3, None, "", "A", "a b", ("a",), "left_left", HUGE])
+def test_names_of_muscles_are_words(name: object) -> None:
+    """Lower case, without side."""
+    refused(lambda: sim.read_rig({"muscle": {name: {"kind": "lid"}}}), "rig, muscle")  # type: ignore[dict-item]
+
+
+@pytest.mark.parametrize("given", LISTS)
+def test_what_is_no_layer_is_told(given: Any) -> None:
+    """A head's layers are a list of objects with titles and rows."""
+    refused(lambda: read_layers(given, ["a"]), "head.layers")
+
+
+@pytest.mark.parametrize("rows", [*TABLES, {"A": 3}, {"A": {"a": HUGE}}, {"A": {3: 1.0}}])
+def test_wrong_rows_are_told(rows: Any) -> None:
+    """With the layer's file."""
+    layer = SimpleNamespace(title="Layer", source="layer.toml", rows=rows)
+    with pytest.raises(ValueError, match=r"^layer\.toml.*(must be|no layer below)"):
+        read_layers([layer], ["a"])
+
+
+@pytest.mark.parametrize("head", [None, 3, "head", [], {}, object(), SimpleNamespace(vertices=1)])
+def test_what_is_no_head_is_told(head: object) -> None:
+    """Without vertices and faces there is nothing to simulate."""
+    with pytest.raises(ValueError, match=r"head: .* has no attribute '(vertices|faces)'; give any"):
+        sim.create(head)
+
+
+@pytest.mark.parametrize("name", ["gravity", "inertia"])
+@pytest.mark.parametrize("value", [None, "no", 0, 1.0, [], NAN])
+def test_switches_are_true_or_false(name: str, value: Any) -> None:
+    """The word "no" does not switch gravity on."""
+    with pytest.raises(ValueError, match=f"{name}: was .*, must be True or False"):
+        sim.create(grid(), **{name: value})
+
+
+@pytest.mark.parametrize("document", [*TABLES, {"format": 2}, {"muscle": {"a": HUGE}}])
+def test_what_is_no_rig_is_told(document: Any) -> None:
+    """`read_rig` on its own."""
+    with pytest.raises(ValueError, match=r"^rig.*(must be|reads 1)"):
+        sim.read_rig(document)
+
+
+@pytest.mark.parametrize(
+    "layout",
+    [
+        np.asfortranarray,
+        lambda array: np.repeat(array, 2, axis=0)[::2],
+        lambda array: array.astype(array.dtype.newbyteorder()),
+        lambda array: array.astype(np.int16),
+        lambda array: array.tolist(),
+    ],
+)
+def test_arrays_of_any_layout_are_taken(layout: Callable[[Any], Any]) -> None:
+    """Columns first, every second row, another byte order, small whole numbers, lists: the same."""
+    plain, mesh = sim.create(grid()), grid()
+    mesh.vertices, mesh.faces = layout(mesh.vertices), layout(mesh.faces)
+    other = sim.create(mesh)
+    push, rows = np.arange(3.0 * COUNT).reshape(COUNT, 3), np.array([1, 2])
+    plain.kick(push)
+    other.kick(layout(push))
+    plain.pull(rows, push[:2], [1.0, 1.0])
+    other.pull(layout(rows), layout(push[:2]), layout(np.ones(2)))
+    for each in (plain, other):
+        each.step(1 / 60)
+    assert np.array_equal(plain.positions, other.positions)
+    assert not np.array_equal(plain.positions, plain.rest_positions)
+
+
+def test_nothing_handed_in_is_kept() -> None:
+    """What a caller does with its arrays afterwards is its own affair."""
+    points, rows = np.ones((2, 3)), np.array([0, 1], np.int64)
+    kept = numbers("x", points, (2, 3)), vertex_numbers("x", rows, (2,), 2, "")
+    points[:], rows[:] = 5.0, 5
+    assert np.array_equal(kept[0], np.ones((2, 3))) and kept[1].tolist() == [0, 1]
