@@ -1,12 +1,17 @@
 """Closest points on a triangle mesh, for binding a coarse mesh to a finer one.
 
-A search in two steps: the closest vertex that looks the same way, found in a grid of cells; from
+A search in two steps: the closest vertex that looks the same way, found in a tree of boxes; from
 its triangles downhill over neighbouring triangles until none is closer. On a surface that is finer
 than the distances that are asked for this is the closest point; and lips that touch at rest do not
 take each other's points, which the very closest point would.
 
-After Ericson 2005, "Real-time collision detection", section 5.1.5, for one triangle.
+The tree halves vertices, not space, so that it is as deep where they cluster as where they do not.
+
+After Bentley 1975, "Multidimensional binary search trees used for associative searching"; Ericson
+2005, "Real-time collision detection", section 5.1.5, for one triangle.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -23,8 +28,33 @@ SAME_WAY = 0.2
 """Cosine between normals above which two surfaces look the same way. Chosen: 78 degrees."""
 GIVE_UP = 100.0
 """Ten times as far as the closest vertex nothing is searched for any more (squared)."""
+MOST_SEEN = 4096
+"""Vertices that are looked at for one that looks the same way, before the closest of all counts: a
+bound for thousands of vertices in one place."""
+LEAF = 8
+"""Most vertices in a box that is not halved."""
 MOST_STEPS = 64
 """Steps downhill; a handful are taken, this only ends circles of equals."""
+
+
+class Incidence(NamedTuple):
+    """The triangles around each vertex v: `triangles[starts[v]:starts[v + 1]]`."""
+
+    starts: Wide
+    triangles: Wide
+
+
+class Tree(NamedTuple):
+    """Boxes around vertices, each halved into numbers 2 k + 1 and 2 k + 2 while it is large."""
+
+    lows: Doubles
+    """Lowest corner of each box, shape (K, 3)."""
+    highs: Doubles
+    """Its highest corner, shape (K, 3)."""
+    ranges: Wide
+    """The vertices in it, first and end, among `members`, shape (K, 2)."""
+    members: Wide
+    """Numbers of vertices."""
 
 
 class Surface:
@@ -35,24 +65,12 @@ class Surface:
         self.faces = faces
         self.normals = np.zeros(positions.shape, dtype=np.float32)
         vertex_normals(positions, faces, self.normals)
-        used = np.unique(faces)
         order = np.argsort(faces.ravel(), kind="stable")
         counts = np.bincount(faces.ravel(), minlength=len(positions))
-        self._starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-        self._triangles = (order // 3).astype(np.int64)
-        self._lowest = positions[used].min(axis=0)
-        extent = positions[used].max(axis=0) - self._lowest
-        # Two vertices or so in each cell that the surface passes through.
-        self._cell = max(float(np.sqrt((extent**2).sum() / max(len(used), 1))), 1e-12)
-        self._shape = np.minimum(extent // self._cell + 1, 512).astype(np.int64)
-        cells = np.minimum((positions[used] - self._lowest) // self._cell, self._shape - 1)
-        number = cells.astype(np.int64) @ np.array(
-            [1, self._shape[0], self._shape[0] * self._shape[1]]
+        self._around = Incidence(
+            np.concatenate([[0], np.cumsum(counts)]).astype(np.int64), (order // 3).astype(np.int64)
         )
-        by_cell = np.argsort(number, kind="stable")
-        self._members = used[by_cell].astype(np.int64)
-        sizes = np.bincount(number, minlength=int(self._shape.prod()))
-        self._cell_starts = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
+        self._tree = tree_of(positions, np.unique(faces).astype(np.int64))
 
     def closest(self, points: Doubles, normals: Doubles) -> tuple[Wide, Doubles]:
         """Return triangle, shape (N,), and barycentric coordinates, shape (N, 3), for each point.
@@ -62,18 +80,10 @@ class Surface:
         triangles = np.zeros(len(points), dtype=np.int64)
         weights = np.zeros((len(points), 3))
         find_closest(
-            np.ascontiguousarray(points),
-            np.ascontiguousarray(normals),
-            self.positions,
-            self.normals,
-            self.faces,
-            self._starts,
-            self._triangles,
-            self._lowest,
-            self._cell,
-            self._shape,
-            self._cell_starts,
-            self._members,
+            (np.ascontiguousarray(points), np.ascontiguousarray(normals)),
+            (self.positions, self.normals, self.faces),
+            self._around,
+            self._tree,
             triangles,
             weights,
         )
@@ -122,98 +132,117 @@ def closest_on_triangle(
     return on_bc / total, on_ac / total, on_ab / total
 
 
+def tree_of(positions: Doubles, members: Wide) -> Tree:
+    """Halve vertices, across the longest side of their box, until there are few in each."""
+    levels = max(0, int(np.ceil(np.log2(max(len(members), 1) / LEAF))))
+    count = 2 ** (levels + 1) - 1
+    tree = Tree(np.zeros((count, 3)), np.zeros((count, 3)), np.zeros((count, 2), np.int64), members)
+    halve(positions, tree)
+    return tree
+
+
+@njit
+def halve(positions: Doubles, tree: Tree) -> None:
+    """Sort the members of a tree, and measure its boxes."""
+    count = tree.lows.shape[0]
+    tree.ranges[0, 1] = tree.members.shape[0]
+    for k in range(count):
+        first, end = tree.ranges[k]
+        inside = tree.members[first:end]
+        longest, axis = -1.0, 0
+        for i in range(3):
+            low, high = np.inf, -np.inf
+            for v in inside:
+                low, high = min(low, positions[v, i]), max(high, positions[v, i])
+            tree.lows[k, i], tree.highs[k, i] = low, high
+            if high - low > longest:
+                longest, axis = high - low, i
+        if 2 * k + 2 < count:
+            along = np.empty(end - first)
+            for n in range(end - first):
+                along[n] = positions[inside[n], axis]
+            tree.members[first:end] = inside[np.argsort(along, kind="mergesort")]
+            middle = (first + end) // 2
+            tree.ranges[2 * k + 1] = first, middle
+            tree.ranges[2 * k + 2] = middle, end
+
+
+@njit
+def away_from(point: Doubles, tree: Tree, k: int) -> float:
+    """Squared distance of a point from a box; infinite if nothing is in it."""
+    squared = 0.0
+    for i in range(3):
+        beside = max(tree.lows[k, i] - point[i], 0.0, point[i] - tree.highs[k, i])
+        squared += beside * beside
+    return squared
+
+
 @njit
 def closest_vertex(
-    point: Doubles,
-    normal: Doubles,
-    positions: Doubles,
-    normals: Floats,
-    lowest: Doubles,
-    cell: float,
-    shape: Wide,
-    cell_starts: Wide,
-    members: Wide,
+    point: Doubles, normal: Doubles, positions: Doubles, normals: Floats, tree: Tree
 ) -> int:
     """Return the closest vertex that looks the same way, or the closest of all if none does."""
-    centre = np.empty(3, np.int64)
-    for i in range(3):
-        inside = np.floor((point[i] - lowest[i]) / cell)
-        centre[i] = np.int64(min(max(inside, 0.0), shape[i] - 1.0))
-    outside = 0.0
-    for i in range(3):
-        low, high = lowest[i], lowest[i] + cell * shape[i]
-        outside = max(outside, low - point[i], point[i] - high)
+    waiting, distances = np.empty(128, np.int64), np.empty(128)
+    waiting[0], distances[0], count, seen = 0, 0.0, 1, 0
     best, any_best = -1, -1
     distance, any_distance = np.inf, np.inf
-    for reach in range(max(shape[0], max(shape[1], shape[2])) + 1):
-        # Everything nearer than this has been seen.
-        seen = (reach - 1) * cell
-        if best >= 0 and distance < seen * seen and seen > outside:
-            break
-        if any_best >= 0 and seen * seen > GIVE_UP * any_distance and seen > outside:
-            break
-        for x in range(max(centre[0] - reach, 0), min(centre[0] + reach + 1, shape[0])):
-            for y in range(max(centre[1] - reach, 0), min(centre[1] + reach + 1, shape[1])):
-                shell = max(abs(x - centre[0]), abs(y - centre[1])) == reach
-                step = 1 if shell else max(2 * reach, 1)
-                for z in range(centre[2] - reach, centre[2] + reach + 1, step):
-                    if z < 0 or z >= shape[2]:
-                        continue
-                    number = x + shape[0] * (y + shape[1] * z)
-                    for k in range(cell_starts[number], cell_starts[number + 1]):
-                        v = members[k]
-                        square = same = size = 0.0
-                        for i in range(3):
-                            square += (positions[v, i] - point[i]) ** 2
-                            same += normals[v, i] * normal[i]
-                            size += normal[i] * normal[i]
-                        if square < any_distance:
-                            any_distance, any_best = square, v
-                        if square < distance and (same > SAME_WAY or size == 0.0):
-                            distance, best = square, v
+    while count > 0 and (best >= 0 or seen < MOST_SEEN):
+        count -= 1
+        k = waiting[count]
+        if distances[count] > min(distance, GIVE_UP * any_distance):
+            continue
+        if 2 * k + 2 < tree.lows.shape[0]:
+            # The nearer half is looked at first.
+            left, right = away_from(point, tree, 2 * k + 1), away_from(point, tree, 2 * k + 2)
+            near, far = (0, 1) if right < left else (1, 0)
+            waiting[count + near], distances[count + near] = 2 * k + 1, left
+            waiting[count + far], distances[count + far] = 2 * k + 2, right
+            count += 2
+            continue
+        for n in range(tree.ranges[k, 0], tree.ranges[k, 1]):
+            v = tree.members[n]
+            square = same = size = 0.0
+            for i in range(3):
+                square += (positions[v, i] - point[i]) ** 2
+                same += normals[v, i] * normal[i]
+                size += normal[i] * normal[i]
+            seen += 1
+            if square < any_distance:
+                any_distance, any_best = square, v
+            if square < distance and (same > SAME_WAY or size == 0.0):
+                distance, best = square, v
     return best if best >= 0 else any_best
 
 
 @njit
 def find_closest(
-    points: Doubles,
-    point_normals: Doubles,
-    positions: Doubles,
-    normals: Floats,
-    faces: Unsigned,
-    starts: Wide,
-    incident: Wide,
-    lowest: Doubles,
-    cell: float,
-    shape: Wide,
-    cell_starts: Wide,
-    members: Wide,
+    asked: tuple[Doubles, Doubles],
+    surface: tuple[Doubles, Floats, Unsigned],
+    around: Incidence,
+    tree: Tree,
     triangles: Wide,
     weights: Doubles,
 ) -> None:
-    """Write the triangle and the place on it that is closest to each point."""
-    vertices = np.empty(3, np.int64)
+    """Write the triangle and the place on it that is closest to each point.
+
+    `asked`: points and normals there; `surface`: positions, normals and triangles.
+    """
+    points, point_normals = asked
+    positions, normals, faces = surface
+    vertices, before = np.empty(3, np.int64), np.empty(3, np.int64)
     for n in range(points.shape[0]):
         px, py, pz = points[n, 0], points[n, 1], points[n, 2]
-        v = closest_vertex(
-            points[n],
-            point_normals[n],
-            positions,
-            normals,
-            lowest,
-            cell,
-            shape,
-            cell_starts,
-            members,
-        )
-        vertices[:] = v
+        vertices[:] = closest_vertex(points[n], point_normals[n], positions, normals, tree)
         best, best_triangle = np.inf, -1
+        before[:] = -1
         for _ in range(MOST_STEPS):
             has_improved = False
             for corner in range(3):
                 v = vertices[corner]
-                for k in range(starts[v], starts[v + 1]):
-                    t = incident[k]
+                if v == before[0] or v == before[1] or v == before[2]:
+                    continue  # its triangles have been looked at
+                for k in range(around.starts[v], around.starts[v + 1]):
+                    t = around.triangles[k]
                     a, b, c = positions[faces[t, 0]], positions[faces[t, 1]], positions[faces[t, 2]]
                     x, y, z = closest_on_triangle(px, py, pz, a, b, c)
                     square = 0.0
@@ -222,8 +251,11 @@ def find_closest(
                     if square < best:
                         best, best_triangle, has_improved = square, t, True
                         weights[n, 0], weights[n, 1], weights[n, 2] = x, y, z
+                if corner == 0 and vertices[1] == v:
+                    break  # the search begins in one vertex
             if not has_improved:
                 break
             for corner in range(3):
+                before[corner] = vertices[corner]
                 vertices[corner] = faces[best_triangle, corner]
         triangles[n] = best_triangle

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -229,3 +231,51 @@ def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, blend: bool) -> None:
     )
     # Short edges make long levers: directions are single precision, twice over.
     assert_equals_twin(refiner, refined, twin, tolerance=(2e-5, 2e-4))
+
+
+def test_binding_takes_no_square_of_time_where_vertices_cluster() -> None:
+    """One vertex far away must not throw all others into one cell of a search."""
+    coarse, fine = meshes.tube(24, 20), meshes.tube(96, 80)
+
+    def clustered(mesh: meshes.Mesh) -> np.ndarray:
+        positions = 1e-4 * mesh.vertices
+        positions[0] = 1.0
+        return positions
+
+    refiner = refine.create(
+        "kahler",
+        coarse.faces,
+        clustered(coarse),
+        scheme="detail",
+        detail=(clustered(fine), fine.faces),
+    )
+    begun = time.process_time()
+    for _ in range(3):
+        refine.create(
+            "kahler",
+            coarse.faces,
+            clustered(coarse),
+            scheme="detail",
+            detail=(clustered(fine), fine.faces),
+        )
+    clustered_time = time.process_time() - begun
+    begun = time.process_time()
+    for _ in range(3):
+        refine.create(
+            "kahler", coarse.faces, coarse.vertices, scheme="detail",
+            detail=(fine.vertices, fine.faces),
+        )  # fmt: skip
+    assert clustered_time < 5.0 * (time.process_time() - begun)
+    assert refiner.triangle_capacity == 12 * len(coarse.faces)
+
+
+def test_many_vertices_in_one_place() -> None:
+    """Thousands of vertices in one place are searched in bounded time, and give finite detail."""
+    random = np.random.default_rng(3)
+    positions = np.zeros((3000, 3))
+    positions[:3] = np.eye(3)
+    faces = random.integers(0, 3000, (4000, 3))
+    refiner = refine.create(
+        "kahler", faces[:500], positions, scheme="detail", detail=(positions, faces)
+    )
+    assert np.isfinite(refiner.refine(positions).positions).all()

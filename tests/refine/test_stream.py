@@ -105,6 +105,21 @@ def test_read_only_stream() -> None:
         refiner.refine(mesh.vertices, out=stream)
 
 
+@pytest.mark.parametrize("name", ["vertices", "triangles", "source"])
+def test_stream_that_becomes_read_only(name: str) -> None:
+    """Arrays that are closed between two frames are not written any more."""
+    mesh = meshes.irregular(2)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    stream = stream_for(refiner)
+    refiner.refine(mesh.vertices, out=stream)
+    array = getattr(stream, name)
+    before = array.copy()
+    array.flags.writeable = False
+    with pytest.raises(ValueError, match=rf"stream.{name} .* read-only"):
+        refiner.refine(meshes.wrinkled(mesh, 1), out=stream)
+    assert (array == before).all()
+
+
 class Growing:
     """A stream that is asked for room in every frame, and hands out new arrays each time."""
 

@@ -1,0 +1,56 @@
+"""Normals are of length one or exactly zero, whatever is done to a mesh."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import refine
+from tests import meshes
+
+OPTIONS: dict[str, dict[str, Any]] = {
+    "paper": {},
+    "blended": {"blend": True},
+    "cubic": {"scheme": "cubic"},
+    "cubic, not blended": {"scheme": "cubic", "blend": False},
+    "detail": {"scheme": "detail"},
+    "detail, not blended": {"scheme": "detail", "blend": False},
+}
+SCALES = (1e-300, 1e-44, 1e-38, 1e-22, 1e-12, 3e-10, 1e-6, 1.0, 5e9, 5e13)
+FLATTENED = (1.0, 1e-7, 1e-20, 0.0)
+
+
+def lengths(normals: npt.NDArray[np.float32]) -> npt.NDArray[np.float64]:
+    """Lengths of normals, shape (N,)."""
+    return np.linalg.norm(normals.astype(np.float64), axis=1)
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_unit_or_zero(name: str) -> None:
+    """Tiny, huge, pressed flat: no normal is half long, and nothing is infinite."""
+    mesh, options = meshes.irregular(3), dict(OPTIONS[name])
+    if options.get("scheme") == "detail":
+        finer = refine.create("loop", mesh.faces, mesh.vertices).refine(mesh.vertices)
+        options["detail"] = (finer.positions, finer.triangles)
+    refiner = refine.create(
+        "kahler", mesh.faces, mesh.vertices, threshold_once=0.0, threshold_twice=0.01, **options
+    )
+    for scale in SCALES:
+        for flattened in FLATTENED:
+            deformed = scale * meshes.wrinkled(mesh, 2, 0.3) * [1.0, 1.0, flattened]
+            refined = refiner.refine(deformed)
+            found = lengths(refined.normals)
+            assert np.isfinite(refined.positions).all()
+            assert ((found == 0.0) | (abs(found - 1.0) < 2e-6)).all(), (scale, flattened)
+
+
+@pytest.mark.parametrize("edge", [3e-10, 1e-6, 1.0, 5e9, 1e14])
+def test_small_and_large_triangles_have_normals(edge: float) -> None:
+    """A square faces the way it does, however long its edges are."""
+    square = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
+    refiner = refine.create("kahler", [[0, 1, 2], [2, 1, 3]], square)
+    normals = refiner.refine(edge * square).normals
+    np.testing.assert_allclose(normals, [[0, 0, 1]] * 4, rtol=0, atol=1e-6)
