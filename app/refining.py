@@ -5,7 +5,8 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from types import NoneType
+from typing import Any, get_args
 
 import click
 import numpy as np
@@ -50,13 +51,25 @@ def options_of(refiner: refine.Refiner) -> dict[str, Any]:
 
     An option whose default is None is left out, unless it may be on or off.
     """
-    parameters = inspect.signature(type(refiner)).parameters.values()
     return {
         each.name: each.default
-        for each in parameters
+        for each in _signature(type(refiner)).parameters.values()
         if each.kind is each.KEYWORD_ONLY
-        and (isinstance(each.default, bool | int | float | str) or "bool" in str(each.annotation))
+        and (isinstance(each.default, bool | int | float | str) or _is_switch(each.annotation))
     }
+
+
+def _signature(refiner: type[refine.Refiner]) -> inspect.Signature:
+    """Its annotations as types, where they are written as text and can be looked up."""
+    try:
+        return inspect.signature(refiner, eval_str=True)
+    except (NameError, AttributeError, SyntaxError, TypeError):  # of imports for type checkers only
+        return inspect.signature(refiner)
+
+
+def _is_switch(annotation: object) -> bool:
+    """Whether it is `bool | None`. Not any union with bool: numpy's ArrayLike may be one, too."""
+    return set(get_args(annotation)) == {bool, NoneType}
 
 
 def _check(name: str, offered: Mapping[str, Any], options: Mapping[str, Any]) -> None:
