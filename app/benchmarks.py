@@ -9,6 +9,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 import bench.gaps
+import bench.meshes
 import bench.motion
 import bench.simulate
 import bench.soak
@@ -141,6 +142,28 @@ def strips_table(sizes: Sequence[str], rounds: int, progress: Callable[[str], ob
             f"{row.mesh:14} {row.order:20} {row.triangles:9d} {row.misses[0]:5.2f} "
             f"{row.misses[1]:5.2f} {row.megabytes:8.2f} {row.making:16.2f} {row.drawing:8.2f}"
         )
+    return "\n".join(lines)
+
+
+def meshes_table(seen: Sequence[bench.meshes.Seen]) -> str:
+    """What became of the meshes of a folder; the text to print."""
+    refined = [each for each in seen if not each.left_out]
+    lines = [f"{'triangles':>9} {'frames':>6} {'broken':>6}  mesh"]
+    for each in seen:
+        note = f": left out, {each.left_out}" if each.left_out else ""
+        note += ": cut short" if each.is_cut_short else ""
+        lines.append(
+            f"{each.triangles:9d} {each.frames:6d} {len(each.broken):6d}  {each.name}{note}"
+        )
+        lines += [f"{'':25}{line}" for line in each.broken]
+    lines += [
+        "",
+        f"{len(seen)} files: {len(refined)} refined, {len(seen) - len(refined)} left out, "
+        f"{sum(each.is_cut_short for each in seen)} cut short;",
+        f"{sum(each.triangles for each in refined)} triangles, "
+        f"{sum(each.frames for each in seen)} frames, "
+        f"{sum(len(each.broken) for each in seen)} of them broken",
+    ]
     return "\n".join(lines)
 
 

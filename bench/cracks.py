@@ -23,6 +23,7 @@ Wide = npt.NDArray[np.int64]
 WHOLE = 3 * 2**10
 """Of a barycentric coordinate: halves, quarters, sixteenths and thirds of it are whole numbers."""
 LENGTH_ERROR = 1e-4  # of a normal
+MOST_VERTICES = 2**31  # so that the numbers of two fit into one
 
 
 def cracks(
@@ -56,7 +57,9 @@ def cracks(
     return _wrong_cover(corners, source, flat) or _wrong_edges(corners, source, given)
 
 
-def _wrong_numbers(mesh: refine.RefinedMesh, triangles: Wide, source: Wide, count: int) -> str | None:
+def _wrong_numbers(
+    mesh: refine.RefinedMesh, triangles: Wide, source: Wide, count: int
+) -> str | None:
     if not (np.isfinite(mesh.positions).all() and np.isfinite(mesh.normals).all()):
         return "a position or normal is not finite"
     length = np.linalg.norm(mesh.normals.astype(np.float64), axis=1)
@@ -144,14 +147,18 @@ def _wrong_sides(pieces: Wide, faces: Wide) -> str | None:
     b = faces[pieces[:, 0], (pieces[:, 1] + 1) % 3]
     is_forward = (a < b)[:, None]
     span = np.where(is_forward, pieces[:, 2:], WHOLE - pieces[:, :1:-1])
-    seen = np.column_stack([np.minimum(a, b), np.maximum(a, b), span])
+    seen = np.column_stack([_edge_numbers(a, b), span])
     unique, counts = np.unique(seen, axis=0, return_counts=True)
     proper = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
-    ends = np.sort(np.stack([proper, np.roll(proper, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    edges, sides = np.unique(ends, axis=0, return_counts=True)
-    place = {(int(low), int(high)): int(n) for (low, high), n in zip(edges, sides, strict=True)}
-    wanted = np.array([place[int(low), int(high)] for low, high in unique[:, :2]], dtype=np.int64)
-    if (counts != wanted).any():
-        low, high = unique[int((counts != wanted).argmax()), :2]
+    edges, sides = np.unique(_edge_numbers(proper, np.roll(proper, -1, axis=1)), return_counts=True)
+    is_different = counts != sides[np.searchsorted(edges, unique[:, 0])]
+    if is_different.any():
+        low, high = divmod(int(unique[is_different.argmax(), 0]), MOST_VERTICES)
         return f"the triangles at edge {low}-{high} split it differently (crack)"
     return None
+
+
+def _edge_numbers(a: Wide, b: Wide) -> Wide:
+    """The same number for an edge from both sides."""
+    numbers: Wide = np.minimum(a, b) * MOST_VERTICES + np.maximum(a, b)
+    return numbers
