@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import math
 from collections.abc import Mapping, Sequence
 from types import NoneType
 from typing import Any, get_args
@@ -17,6 +16,7 @@ import refine
 from .errors import UserError
 from .scenes import Scene
 
+LARGEST = 1e30  # of a number in an option: in single precision it is still one
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
 WORDS = {"on": True, "true": True, "off": False, "false": False}
 
@@ -118,8 +118,9 @@ def options_in_words(name: str, settings: Sequence[str]) -> dict[str, Any] | Non
         if not (name and equals and text):
             raise UserError(f"--option {setting}: write NAME=VALUE, as in scheme=cubic")
         options[name] = _value(text)
-        if isinstance(options[name], float) and not math.isfinite(options[name]):
-            raise UserError(f"--option {setting}: {text} is not a finite number")
+        value = options[name]
+        if isinstance(value, int | float) and not -LARGEST <= value <= LARGEST:
+            raise UserError(f"--option {setting}: {text} is not a finite number up to {LARGEST:g}")
     return options or None
 
 

@@ -3,10 +3,10 @@
 Asked is only what a refiner hands out and its account of where rows come from (`origins`), in whole
 numbers, so that nothing is a matter of tolerance:
 
-    cover     within an input triangle every piece has the triangle's orientation, every line between
-              two pieces has both of them, in opposite directions, and their areas add up
-    edges     what remains are the pieces of its three edges; they follow one another from corner to
-              corner, and all triangles at an edge have the same: no T-junction
+    cover     within an input triangle every piece has the triangle's orientation, every line
+              between two pieces has both of them, in opposite directions, and their areas add up
+    edges     what remains are the pieces of its three edges; they follow one another from corner
+              to corner, and all triangles at an edge have the same: no T-junction
     places    rows at one place of the input have one position and one normal, to the last bit
     numbers   positions are finite, normals have length one or zero
 """

@@ -88,7 +88,8 @@ def refined(
 
     create: in place of `refine.create`. Raises ValueError where it refuses the mesh.
     """
-    frames, broken, end = 0, [], time.perf_counter() + seconds
+    frames, end = 0, time.perf_counter() + seconds
+    broken: list[str] = []
     poses = _poses(vertices, faces, np.random.default_rng(seed))
     for method, (name, options) in METHODS.items():
         generator = np.random.default_rng(seed)

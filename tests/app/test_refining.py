@@ -1,4 +1,4 @@
-"""What refiners can be told: by their declarations, whatever the version of numpy says of arrays."""
+"""What refiners can be told: read from their declarations, with any version of numpy."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ import numpy.typing as npt
 import pytest
 
 import refine
-from app.refining import options_of
+from app.errors import UserError
+from app.refining import options_in_words, options_of
 from tests.meshes import triangle
 
 
@@ -65,3 +66,11 @@ def test_options_of_the_papers_refiner() -> None:
     assert set(offered) == {
         "threshold_once", "threshold_twice", "criterion", "scheme", "blend", "coherent",
     }  # fmt: skip
+
+
+@pytest.mark.parametrize("text", ["9" * 400, "-1e31", "1e400", "nan"])
+def test_numbers_beyond_single_precision(text: str) -> None:
+    """No number gets to a refiner that is none in the precision in which that computes."""
+    with pytest.raises(UserError, match="is not a finite number up to 1e\\+30"):
+        options_in_words("kahler", [f"threshold_twice={text}"])
+    assert options_in_words("kahler", ["threshold_twice=1e30"]) == {"threshold_twice": 1e30}
