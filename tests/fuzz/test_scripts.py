@@ -26,7 +26,8 @@ SEED = int(os.environ.get("FUZZ_SEED", "20030214"))  # another one, other damage
 ROUNDS = 400
 TOKENS = (
     b"nan", b"inf", b"-1", b"1e400", b"9" * 400, b"true", b"''", b'"\\n"', b"[]", b"{}", b"[",
-    b"\xef\xbb\xbf", b"[[pose]]", b"[tracks]", b"time = 0", b"=", b"\n", b"#", b"\x00", b"\xff", b"\r",
+    b"\xef\xbb\xbf",
+    b"[[pose]]", b"[tracks]", b"time = 0", b"=", b"\n", b"#", b"\x00", b"\xff", b"\r",
 )  # fmt: skip
 
 
