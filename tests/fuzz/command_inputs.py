@@ -98,7 +98,6 @@ REFUSED = {
     "bench tearing --mixtures -1": "is not in the range",
     "bench refine --seconds nan": "nan is not a finite number",
     "bench refine --size 3k": "'3k' is not one of",
-    "bench strips --rounds 10001": "is not in the range",
     "bench quality --finer 8": "'8' is not one of",
     "bench window --seconds 0.1": "is not in the range",
     "bench window --size 9x9": "each 16 to 8192",
