@@ -163,7 +163,7 @@ class Meddler(refine.PassThrough):
 
 def test_a_broken_refiner_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A crack ends the command with exit code 1, and a line names the edge."""
-    mesh = fan()
+    mesh = irregular(3)  # large enough that every pose splits one edge of some triangle
     whole = refine.Kahler.refine
 
     def cracked(self: refine.Kahler, *arguments: Any) -> refine.RefinedMesh:
@@ -172,7 +172,7 @@ def test_a_broken_refiner_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Pat
         return _whole_again(frame, mesh.faces) if is_split else frame
 
     monkeypatch.setattr(refine.Kahler, "refine", cracked)
-    write(tmp_path / "fan.obj", mesh.vertices, mesh.faces)
+    write(tmp_path / "sheet.obj", mesh.vertices, mesh.faces)
     result = CliRunner().invoke(main, ["bench", "meshes", str(tmp_path), *CALM])
     assert result.exit_code == 1, result.output
     assert ": the triangles at edge" in result.output
