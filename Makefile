@@ -2,14 +2,21 @@
 #
 #   make demo     set up everything and render the built-in head to out/demo.mp4 and out/demo.png
 #   make test     set up everything, check the code and pass the tests
-#   make test-slow  what takes minutes: continuous integration runs it, too
 #   make setup    only make .venv with everything in it
 #   make check    ruff, mypy and the import rules alone
 #   make clean    remove .venv and what was rendered
+#
+# Slower ones, before a release:
+#
+#   make test-slow    pass the tests that take minutes
+#   make fuzz         give every door hundreds of wrong inputs
+#   make test-lowest  pass the tests with the oldest versions that pyproject.toml allows
 
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready
+LOWEST := .venv-lowest
+SCREEN := xvfb-run -a -s "-screen 0 1600x1000x24"
 SUDO := $(shell [ "$$(id -u)" = 0 ] || { command -v sudo >/dev/null && sudo -n true 2>/dev/null && echo "sudo -n"; })
 OPENGL_PACKAGES := libegl1 libgl1 libgl1-mesa-dri
 SCREEN_PACKAGES := xvfb xauth xdotool
@@ -27,16 +34,32 @@ define debian_packages
 	fi
 endef
 
-.PHONY: demo test test-slow setup check opengl screen clean
+.PHONY: demo test test-slow test-lowest fuzz setup check opengl screen clean
 
 demo: setup opengl
 	@$(BIN)/risorius demo
 
 test: setup opengl screen check
-	@xvfb-run -a -s "-screen 0 1600x1000x24" $(BIN)/python -m pytest
+	@$(SCREEN) $(BIN)/python -m pytest
+
+# Compiled code is kept apart: the other numba could not read it.
+test-lowest: $(LOWEST)/.ready screen
+	@NUMBA_CACHE_DIR=$(CURDIR)/$(LOWEST)/compiled $(SCREEN) $(LOWEST)/bin/python -m pytest
+
+$(LOWEST)/.ready: pyproject.toml tests/lowest.py
+	@rm -rf $(LOWEST)
+	@$(PYTHON) -m venv $(LOWEST)
+	@$(LOWEST)/bin/python tests/lowest.py > $(LOWEST)/constraints.txt
+	@echo "Installing Risorius and the oldest of what it needs into $(LOWEST)"
+	@$(LOWEST)/bin/python -m pip install -qq --disable-pip-version-check \
+		--constraint $(LOWEST)/constraints.txt --editable ".[dev]"
+	@touch $@
+
+fuzz: setup opengl
+	@$(BIN)/python -m pytest -q -m 'not slow' tests/fuzz
 
 test-slow: setup opengl screen
-	@xvfb-run -a -s "-screen 0 1600x1000x24" $(BIN)/python -m pytest -m slow
+	@$(SCREEN) $(BIN)/python -m pytest -m slow
 
 check: setup
 	@$(BIN)/ruff check .
@@ -66,4 +89,4 @@ screen:
 		{ $(call debian_packages,A virtual screen for the window tests,$(SCREEN_PACKAGES)); }
 
 clean:
-	rm -rf .venv out
+	rm -rf .venv $(LOWEST) out

@@ -9,6 +9,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 import bench.gaps
+import bench.meshes
 import bench.motion
 import bench.simulate
 import bench.soak
@@ -121,6 +122,28 @@ def gaps_table(poses: Sequence[bench.gaps.Pose]) -> str:
 def gaps_json(poses: Sequence[bench.gaps.Pose]) -> str:
     """The same figures for programs."""
     return json.dumps([asdict(pose) for pose in poses], indent=1) + "\n"
+
+
+def meshes_table(seen: Sequence[bench.meshes.Seen]) -> str:
+    """What became of the meshes of a folder; the text to print."""
+    refined = [each for each in seen if not each.left_out]
+    lines = [f"{'triangles':>9} {'frames':>6} {'broken':>6}  mesh"]
+    for each in seen:
+        note = f": left out, {each.left_out}" if each.left_out else ""
+        note += ": cut short" if each.is_cut_short else ""
+        lines.append(
+            f"{each.triangles:9d} {each.frames:6d} {len(each.broken):6d}  {each.name}{note}"
+        )
+        lines += [f"{'':25}{line}" for line in each.broken]
+    lines += [
+        "",
+        f"{len(seen)} files: {len(refined)} refined, {len(seen) - len(refined)} left out, "
+        f"{sum(each.is_cut_short for each in seen)} cut short;",
+        f"{sum(each.triangles for each in refined)} triangles, "
+        f"{sum(each.frames for each in seen)} frames, "
+        f"{sum(len(each.broken) for each in seen)} of them broken",
+    ]
+    return "\n".join(lines)
 
 
 def processor() -> str:

@@ -317,6 +317,37 @@ def bench_tearing(mixtures: int) -> None:
         click.echo(tearing_table(mixtures))
 
 
+@bench.command("meshes")
+@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=2003, show_default=True)
+@click.option(
+    "--seconds", type=FiniteRange(0.1, 3600.0), default=20.0, show_default=True, help="Of a mesh."
+)
+@click.option(
+    "--most",
+    type=click.IntRange(1, 10_000_000),
+    default=200_000,
+    show_default=True,
+    help="Triangles; larger meshes are left out.",
+)
+def bench_meshes(folder: Path, seed: int, seconds: float, most: int) -> None:
+    """Refine every mesh in FOLDER and below, in noisy poses, and look for cracks: 1 if any."""
+    from bench import meshes
+
+    from .benchmarks import meshes_table
+    from .commands import progress
+
+    with told_in_one_line():
+        try:
+            seen = meshes.run(
+                folder, seed=seed, seconds=seconds, most_triangles=most, progress=progress
+            )
+        except ValueError as error:
+            raise UserError(str(error)) from None
+        click.echo(meshes_table(seen))
+        sys.exit(1 if any(each.broken for each in seen) else 0)
+
+
 @bench.command("window")
 @click.option("--size", type=Size(), default=(1280, 720), show_default="1280x720")
 @click.option(

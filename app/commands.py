@@ -49,9 +49,7 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None)
     with told_in_one_line():
         if json_file is not None:
             check_file(json_file)
-        report = run(
-            sizes=sizes or ALL_SIZES, seconds=seconds, starts=not sizes, progress=_progress
-        )
+        report = run(sizes=sizes or ALL_SIZES, seconds=seconds, starts=not sizes, progress=progress)
         click.echo(refine_text(report))
         if json_file is not None:
             save_text(json_file, refine_json(report))
@@ -100,7 +98,7 @@ def bench_quality(reference: Path | None, finer: str, apart: bool, curves: Path 
             raise UserError("nothing to measure: give --reference FOLDER, or --finer 4 or 16")
         for subject in subjects:
             budgets = quality.CURVE_BUDGETS if curves is not None else quality.BUDGETS
-            scores = quality.run(subject, budgets=budgets, progress=_progress)
+            scores = quality.run(subject, budgets=budgets, progress=progress)
             title = (
                 f"{subject.name}: {len(subject.coarse_faces)} triangles against "
                 f"{len(subject.dense_faces)}"
@@ -179,7 +177,7 @@ def _draw(output: Path, picture: Callable[[], Frame]) -> None:
         click.echo(f"{in_one_line(output)}: written")
 
 
-def _progress(name: str) -> None:
+def progress(name: str) -> None:
     """Say on the error stream what is at work, where a person looks on."""
     if sys.stderr.isatty():
         click.echo(f"... {name}", err=True)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import inspect
-import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from types import NoneType
+from typing import Any, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,7 @@ import refine
 from .errors import UserError
 from .scenes import Scene
 
+LARGEST = 1e30  # of a number in an option: in single precision it is still one
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
 WORDS = {"on": True, "true": True, "off": False, "false": False}
 
@@ -45,13 +46,25 @@ def options_of(refiner: refine.Refiner) -> dict[str, Any]:
 
     An option whose default is None is left out, unless it may be on or off.
     """
-    parameters = inspect.signature(type(refiner)).parameters.values()
     return {
         each.name: each.default
-        for each in parameters
+        for each in _signature(type(refiner)).parameters.values()
         if each.kind is each.KEYWORD_ONLY
-        and (isinstance(each.default, bool | int | float | str) or "bool" in str(each.annotation))
+        and (isinstance(each.default, bool | int | float | str) or _is_switch(each.annotation))
     }
+
+
+def _signature(refiner: type[refine.Refiner]) -> inspect.Signature:
+    """Its annotations as types, where they are written as text and can be looked up."""
+    try:
+        return inspect.signature(refiner, eval_str=True)
+    except (NameError, AttributeError, SyntaxError, TypeError):  # of imports for type checkers only
+        return inspect.signature(refiner)
+
+
+def _is_switch(annotation: object) -> bool:
+    """Whether it is `bool | None`. Not any union with bool: numpy's ArrayLike may be one, too."""
+    return set(get_args(annotation)) == {bool, NoneType}
 
 
 def _check(name: str, offered: Mapping[str, Any], options: Mapping[str, Any]) -> None:
@@ -100,8 +113,9 @@ def options_in_words(name: str, settings: Sequence[str]) -> dict[str, Any] | Non
         if not (name and equals and text):
             raise UserError(f"--option {setting}: write NAME=VALUE, as in scheme=cubic")
         options[name] = _value(text)
-        if isinstance(options[name], float) and not math.isfinite(options[name]):
-            raise UserError(f"--option {setting}: {text} is not a finite number")
+        value = options[name]
+        if isinstance(value, int | float) and not -LARGEST <= value <= LARGEST:
+            raise UserError(f"--option {setting}: {text} is not a finite number up to {LARGEST:g}")
     return options or None
 
 

@@ -164,7 +164,7 @@ class DetailScheme(CubicScheme):
         middles = Points.unstacked(looks, mesh).of_edges[:, ALONE]
         angles = np.arccos(np.clip((mean * middles).sum(axis=1), -1.0, 1.0))
         lengths = np.linalg.norm(np.diff(rest_positions[mesh.edges], axis=1)[:, 0], axis=1)
-        share: Doubles = np.sqrt(lengths / lengths.mean()) if len(lengths) else lengths
+        share = np.sqrt(lengths / max(float(lengths.mean()), 1e-300)) if len(lengths) else lengths
         turns: Doubles = angles * share
         return turns
 

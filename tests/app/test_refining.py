@@ -1,0 +1,76 @@
+"""What refiners can be told: read from their declarations, with any version of numpy."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import refine
+from app.errors import UserError
+from app.refining import options_in_words, options_of
+from tests.meshes import triangle
+
+
+class Told(refine.PassThrough):
+    """A refiner of somebody else, whose annotations are text."""
+
+    def __init__(
+        self,
+        faces: npt.ArrayLike,
+        rest_positions: npt.ArrayLike,
+        *,
+        uv: bool | int | float | str | list[float] | None = None,
+        face_uv: None = None,
+        grown: bool | None = None,
+        share: float = 0.5,
+    ) -> None:
+        super().__init__(faces, rest_positions)
+
+
+class Unknown(Told):
+    """Another, with an annotation that only a type checker can look up."""
+
+    def __init__(
+        self,
+        faces: npt.ArrayLike,
+        rest_positions: npt.ArrayLike,
+        *,
+        levels: int = 1,
+        detail: Surface | None = None,  # type: ignore[name-defined]  # noqa: F821
+    ) -> None:
+        super().__init__(faces, rest_positions)
+
+
+@pytest.mark.parametrize(
+    ("kind", "offered"),
+    [
+        (Told, {"grown": None, "share": 0.5}),
+        (Unknown, {"levels": 1}),
+        (refine.Loop, {"levels": 1}),
+        (refine.PassThrough, {}),
+    ],
+)
+def test_only_switches_numbers_and_words_are_options(
+    kind: type[refine.PassThrough], offered: dict[str, object]
+) -> None:
+    """An array that may also be a bool, as numpy 2.2 declares them, is no switch."""
+    mesh = triangle()
+    assert options_of(kind(mesh.faces, np.array(mesh.vertices))) == offered
+
+
+def test_options_of_the_papers_refiner() -> None:
+    """Its thresholds, words and switches, and no arrays."""
+    mesh = triangle()
+    offered = options_of(refine.create("kahler", mesh.faces, mesh.vertices))
+    assert set(offered) == {
+        "threshold_once", "threshold_twice", "criterion", "scheme", "blend", "coherent",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("text", ["9" * 400, "-1e31", "1e400", "nan"])
+def test_numbers_beyond_single_precision(text: str) -> None:
+    """No number gets to a refiner that is none in the precision in which that computes."""
+    with pytest.raises(UserError, match="is not a finite number up to 1e\\+30"):
+        options_in_words("kahler", [f"threshold_twice={text}"])
+    assert options_in_words("kahler", ["threshold_twice=1e30"]) == {"threshold_twice": 1e30}

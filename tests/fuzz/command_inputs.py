@@ -1,0 +1,331 @@
+"""Inputs of the command line: a table of mistakes with the words they are told in, and hostile
+values for every option of every command."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import click
+
+from app.cli import main
+
+PICTURE = "capture good.toml -o x.png --size 16x16 --samples 0 --fps 5 --quiet"
+
+ACCEPTED = (
+    "--help",
+    "--version",
+    "capture --help",
+    "bench --help",
+    "reproduce figure9",
+    "reproduce figure10 -o new/folder/x.png",
+    "bench simulate --rounds 1",
+    "bench meshes folder",
+    "controls --scene plane",
+    "doctor --offscreen --quiet",
+    "view --size 320x200",
+    "replay good.toml --once",
+    PICTURE,
+    f"{PICTURE} --time 0",
+    f"{PICTURE} --time 0.1 --camera 1e3,-1e3,1e-3",
+    f"{PICTURE} --camera=-720,90,0.5",
+    f"{PICTURE} --camera front",
+    f"{PICTURE} --wrinkles 0 --skin clay --splits --wireframe --shading flat",
+    f"{PICTURE} --refiner none",
+    f"{PICTURE} --refiner loop --option levels=2",
+    f"{PICTURE} --option scheme=cubic --option blend=OFF",
+    f"{PICTURE} --option scheme=cubic --option scheme=loop",
+    f"{PICTURE} --option criterion=bulge+normal+rest --option scheme=cubic",
+    f"{PICTURE} --option criterion={'+'.join(['normal'] * 500)}",
+    f"{PICTURE} --option threshold_once=0 --option threshold_twice=1",
+    f"{PICTURE} --option threshold_twice=1e30",
+    f"{PICTURE} --option threshold_once=1e-300 --option coherent=true",
+    "capture --set AU12 -o x.png --size 16x16 --quiet",
+    "capture --set AU12=1e-300 --set AU12=0 -o x.png --size 16x16 --quiet",
+    "capture good.toml -o frames --size 17x17 --fps 5 --quiet",
+    "capture good.toml -o full --overwrite --size 16x16 --fps 5 --quiet",
+    "capture good.toml -o x.mp4 --size 16x16 --fps 5 --quiet",
+    "capture good.toml --sheet new/x.png --size 16x16 --fps 5 --quiet",
+    "capture --scene plane --set amplitude=1 -o x.png --size 16x16 --quiet",
+)
+
+REFUSED = {
+    # Commands and options that are not there.
+    "captur good.toml": "No such command 'captur'",
+    "''": "No such command ''",
+    "'capture\ngood.toml'": "No such command",
+    "--wrong": "No such option '--wrong'",
+    "-o": "No such option '-o'",
+    "bench nothing": "No such command 'nothing'",
+    "bench --rounds 3": "No such option",
+    "reproduce table2": "No such command 'table2'",
+    "demo --size 64x64": "No such option",
+    "demo x": "unexpected extra argument",
+    "doctor --offscreen x": "unexpected extra argument",
+    "controls --scene moon": "'moon' is not one of",
+    "controls --scene ''": "'' is not one of",
+    "capture a.toml b.toml": "unexpected extra argument",
+    "replay": "Missing argument 'SCRIPT'",
+    "replay good.toml --once=yes": "does not take a value",
+    "view --script": "requires an argument",
+    "bench meshes": "Missing argument 'FOLDER'",
+    "bench motion": "Missing option '--reference'",
+    "bench motion --reference notes.txt": "is a file",
+    "bench motion --reference loop": "does not exist",
+    "bench meshes notes.txt": "is a file",
+    "bench meshes nowhere": "does not exist",
+    "bench meshes folder --seed -1": "-1 is not in the range",
+    "bench meshes folder --seed 4294967296": "is not in the range",
+    "bench meshes folder --seconds nan": "not a finite number",
+    "bench meshes folder --most 0": "is not in the range",
+    # Numbers.
+    f"{PICTURE} --fps 0": "is not in the range",
+    f"{PICTURE} --fps nan": "nan is not a finite number",
+    f"{PICTURE} --fps inf": "not in the range",
+    f"{PICTURE} --fps 1e400": "not in the range",
+    f"{PICTURE} --fps ''": "'' is not a valid float",
+    f"{PICTURE} --time -0.1": "is not in the range",
+    f"{PICTURE} --time nan": "nan is not a finite number",
+    f"{PICTURE} --wrinkles 1.01": "is not in the range",
+    f"{PICTURE} --wrinkles nan": "nan is not a finite number",
+    f"{PICTURE} --samples 17": "is not in the range",
+    f"{PICTURE} --samples 1.5": "is not a valid integer",
+    f"{PICTURE} --samples {'9' * 5000}": "is not",
+    "bench simulate --rounds 0": "is not in the range",
+    "bench soak --minutes 0": "is not in the range",
+    "bench soak --minutes inf": "is not in the range",
+    "bench tearing --mixtures -1": "is not in the range",
+    "bench refine --seconds nan": "nan is not a finite number",
+    "bench refine --size 3k": "'3k' is not one of",
+    "bench quality --finer 8": "'8' is not one of",
+    "bench window --seconds 0.1": "is not in the range",
+    "bench window --size 9x9": "each 16 to 8192",
+    "reproduce table1 --rounds 2": "is not in the range",
+    # Sizes.
+    "capture good.toml -o x.png --size 15x16": "each 16 to 8192",
+    "capture good.toml -o x.png --size 16x8193": "each 16 to 8192",
+    "capture good.toml -o x.png --size 0x0": "each 16 to 8192",
+    "capture good.toml -o x.png --size=-16x16": "'-16x16' is no size",
+    "capture good.toml -o x.png --size 16": "'16' is no size",
+    "capture good.toml -o x.png --size 16x16x16": "is no size",
+    "capture good.toml -o x.png --size 16×16": "is no size",
+    "capture good.toml -o x.png --size '16 x 16'": "is no size",
+    "capture good.toml -o x.png --size ''": "is no size",
+    "capture good.toml -o x.png --size 1e2x1e2": "is no size",
+    "capture good.toml -o x.png --size 9999999x16": "is no size",
+    "capture good.toml -o x.png --size '16x16\n'": "is no size",
+    "capture good.toml -o x.png --size ١٦x١٦": "is no size",
+    "capture good.toml -o x.mp4 --size 17x16": "take 18x16",
+    # Cameras.
+    f"{PICTURE} --camera behind": "camera 'behind': allowed are",
+    f"{PICTURE} --camera ,": "camera ',': allowed are",
+    f"{PICTURE} --camera 1": "camera '1': allowed are",
+    f"{PICTURE} --camera 1,2,3,4": "allowed are",
+    f"{PICTURE} --camera nan,0": "allowed are",
+    f"{PICTURE} --camera 0,inf": "allowed are",
+    f"{PICTURE} --camera 1e400,0": "allowed are",
+    f"{PICTURE} --camera 0,0,0": "zoom above 0",
+    f"{PICTURE} --camera 0,0,-1": "zoom above 0",
+    f"{PICTURE} --camera 0,0,nan": "zoom above 0",
+    f"{PICTURE} --camera Front": "allowed are",
+    f"{PICTURE} --camera 'fro\nnt'": "allowed are",
+    f"{PICTURE} --camera {'9' * 5000},0": "allowed are",
+    # Options of refiners.
+    f"{PICTURE} --refiner magic": "refiner 'magic' is unknown; there are",
+    f"{PICTURE} --refiner ''": "refiner '' is unknown",
+    f"{PICTURE} --refiner Kahler": "refiner 'Kahler' is unknown",
+    f"{PICTURE} --refiner 'kah\nler'": "is unknown; there are",
+    f"{PICTURE} --option ''": "write NAME=VALUE",
+    f"{PICTURE} --option =": "write NAME=VALUE",
+    f"{PICTURE} --option scheme=": "write NAME=VALUE",
+    f"{PICTURE} --option =cubic": "write NAME=VALUE",
+    f"{PICTURE} --option scheme": "write NAME=VALUE",
+    f"{PICTURE} --option scheme==cubic": "scheme '=cubic' is unknown",
+    f"{PICTURE} --option scheme=Cubic": "scheme 'Cubic' is unknown",
+    f"{PICTURE} --option 'scheme=cu\nbic'": "is unknown; there are",
+    f"{PICTURE} --option 'sche\nme=cubic'": "unknown option",
+    f"{PICTURE} --option \x1b[31mred=1": "unknown option",
+    f"{PICTURE} --option scheme=1": "option scheme was 1, must be a word",
+    f"{PICTURE} --option scheme=on": "option scheme was True, must be a word",
+    f"{PICTURE} --option criterion=": "write NAME=VALUE",
+    f"{PICTURE} --option criterion=+": "criterion '' is unknown",
+    f"{PICTURE} --option criterion=normal+": "criterion '' is unknown",
+    f"{PICTURE} --option criterion=all": "criterion 'all' is unknown",
+    f"{PICTURE} --option criterion=bulge": "goes with the schemes",
+    f"{PICTURE} --option criterion={'+'.join(['normals'] * 5000)}": "'normals' is unknown",
+    f"{PICTURE} --option threshold_once=nan": "not a finite number",
+    f"{PICTURE} --option threshold_once=1e400": "not a finite number",
+    f"{PICTURE} --option threshold_once={'9' * 400}": "not a finite number",
+    f"{PICTURE} --option threshold_twice={'9' * 400}": "not a finite number",
+    f"{PICTURE} --option threshold_twice=1e300": "not a finite number up to 1e+30",
+    f"{PICTURE} --option threshold_once={'9' * 5000}": "not a finite number",
+    f"{PICTURE} --option threshold_once=-1": "threshold_once",
+    f"{PICTURE} --option threshold_once=0.5": "threshold_once",
+    f"{PICTURE} --option threshold_once=on": "must be a number",
+    f"{PICTURE} --option threshold_once=0x1": "must be a number",
+    f"{PICTURE} --option uv=1": "unknown option uv; it takes",
+    f"{PICTURE} --option detail=1": "unknown option detail; it takes",
+    f"{PICTURE} --option attributes=on": "unknown option attributes; it takes",
+    f"{PICTURE} --option self=1": "unknown option self; it takes",
+    f"{PICTURE} --option faces=1": "unknown option faces; it takes",
+    f"{PICTURE} --option __class__=1": "unknown option __class__; it takes",
+    f"{PICTURE} --option blend=None": "must be on or off",
+    f"{PICTURE} --option blend=1": "must be on or off",
+    f"{PICTURE} --option coherent=yes": "must be on or off",
+    f"{PICTURE} --option coherent=on --option blend=on": "coherent",
+    f"{PICTURE} --refiner loop --option levels=0": "levels",
+    f"{PICTURE} --refiner loop --option levels=3": "levels",
+    f"{PICTURE} --refiner loop --option levels=-1": "levels",
+    f"{PICTURE} --refiner loop --option levels=1.5": "levels",
+    f"{PICTURE} --refiner loop --option levels={'9' * 400}": "not a finite number",
+    f"{PICTURE} --refiner loop --option levels=on": "must be a number",
+    f"{PICTURE} --refiner loop --option scheme=cubic": "unknown option scheme; it takes levels",
+    f"{PICTURE} --refiner none --option levels=1": "has no options",
+    f"{PICTURE} --compare --refiner none": "other than none",
+    # What is asked for does not go together.
+    "capture": "nothing to write",
+    "capture good.toml": "nothing to write",
+    "capture good.toml -o x.mp4 --time 1": "--time says when a picture is taken",
+    "capture good.toml -o frames --time 1": "--time says when a picture is taken",
+    "capture good.toml --set joy -o x.png": "a script and --set exclude each other",
+    "capture --head head.obj -o x.png": "go together",
+    "capture --landmarks marks.json -o x.png": "go together",
+    "view --head head.obj": "go together",
+    "replay good.toml --landmarks marks.json": "go together",
+    "view --refiner none --option levels=1": "has no options",
+    "view --refiner magic": "is unknown; there are",
+    "view --option blend": "write NAME=VALUE",
+    "view --script nowhere.toml": "no such script",
+    "replay nowhere.toml": "no such script",
+    "replay good.toml --option '\x07\x1b]0;x'": "write NAME=VALUE",
+    # Poses.
+    "capture --set '' -o x.png": "--set",
+    "capture --set = -o x.png": "is no number",
+    "capture --set joy= -o x.png": "'' is no number",
+    "capture --set joy=nan -o x.png": "'nan' is no number",
+    "capture --set joy=inf -o x.png": "'inf' is no number",
+    "capture --set joy=1e400 -o x.png": "is no number",
+    "capture --set joy=2 -o x.png": "must be from 0 to 1",
+    "capture --set joy=-0.001 -o x.png": "must be from 0 to 1",
+    "capture --set joy=1,5 -o x.png": "'1,5' is no number",
+    "capture --set Joy=1 -o x.png": "unknown name 'Joy'; did you mean joy",
+    "capture --set 'jo\ny=1' -o x.png": "unknown name",
+    "capture --set 'joy=1\n' --set 'joy\x1b[2J' -o x.png": "unknown name",
+    "capture --set joy=1 --scene plane -o x.png": "unknown name 'joy'",
+    # Outputs.
+    "capture good.toml -o x.avi": "what is '.avi'",
+    "capture good.toml -o x.toml": "what is '.toml'",
+    "capture good.toml -o good.toml": "is read and would be written",
+    "capture good.toml -o ./folder/../good.toml": "is read and would be written",
+    "capture good.toml -o full": "is there and not empty",
+    "capture good.toml -o folder.png": "is a folder",
+    "capture good.toml --sheet folder.png": "is a folder",
+    "capture good.toml --sheet x": "pictures are written as .png",
+    "capture good.toml --sheet ''": "pictures are written as .png",
+    "capture good.toml -o x.png --sheet x.png": "two outputs at once",
+    "capture good.toml -o pipe.png": "is a device",
+    "capture good.toml -o /dev/full": "/dev/full",
+    "capture good.toml -o /dev/null --overwrite": "/dev/null",
+    "capture good.toml -o notes.txt/x.png": "cannot be written",
+    "capture good.toml -o /proc/x.png": "cannot be written",
+    "capture good.toml -o /sys/x.mp4": "cannot be written",
+    "capture good.toml -o /proc/frames": "cannot be written",
+    "capture good.toml -o loop.png": "loop.png",
+    "capture good.toml -o loop.mp4": "loop.mp4",
+    "capture good.toml -o loop/x.png": "loop/x.png",
+    "capture good.toml -o loop": "loop",
+    f"capture good.toml -o {'x' * 300}.png": "File name too long",
+    f"capture good.toml -o {'x/' * 3000}.png": "File name too long",
+    f"capture good.toml -o {'x' * 300}": "File name too long",
+    "capture good.toml -o 'a\nb.avi'": "what is '.avi'",
+    "capture good.toml -o notes.txt": "what is '.txt'",
+    "reproduce figure9 -o x.jpg": "pictures are written as .png",
+    "reproduce figure10 -o folder.png": "is a folder",
+    "reproduce coherence -o notes.txt/x.png": "cannot be written",
+    "bench refine --json folder": "is a folder",
+    "bench gaps --json pipe": "is a device",
+    "bench gaps --json notes.txt/x": "cannot be written",
+    "bench quality --curves x.pdf": "pictures are written as .png",
+    "bench quality --finer none": "nothing to measure",
+    "bench quality --reference folder": "face.npz: is not there",
+}
+
+HOSTILE = {
+    "empty": "",
+    "blank": " ",
+    "nan": "nan",
+    "inf": "-inf",
+    "minus": "-1",
+    "zero": "0",
+    "huge": "1e400",
+    "long_number": "9" * 5000,
+    "underscore": "1_0",
+    "hexadecimal": "0x10",
+    "superscript": "²",
+    "line_end": "a\nb",
+    "control": "\x1b[31mred\x07",
+    "right_to_left": "\u202egnp.x",
+    "no_unicode": "x\udcff",
+    "dash": "-",
+    "dashes": "--",
+    "equals": "=",
+    "name": "joy=1",
+    "format": "%s%n{}{0}",
+    "long": "x" * 5000,
+    "true": "true",
+    "above": "../..",
+    "full": "/dev/full",
+    "pipe": "pipe.png",
+    "loop": "loop.png",
+    "folder": "folder",
+    "comma": "1,,2",
+}
+
+GIVEN = {  # what else a command needs to come as far as the option
+    "capture": "good.toml -o x.png --size 16x16 --samples 0 --fps 5 --time 0 --quiet",
+    "replay": "good.toml",
+    "bench motion": "--reference folder",
+    "bench meshes": "folder",
+}
+INSTEAD = {  # where one option excludes what is given
+    ("capture", "--set"): "-o x.png --size 16x16 --samples 0 --fps 5 --time 0 --quiet",
+    ("capture", "--head"): f"{GIVEN['capture']} --landmarks marks.json",
+    ("capture", "--landmarks"): f"{GIVEN['capture']} --head head.obj",
+}
+
+
+@dataclass(frozen=True)
+class HostileValue:
+    """One value of one option."""
+
+    name: str
+    arguments: tuple[str, ...]
+
+
+def hostile_values() -> Iterator[HostileValue]:
+    """Each hostile value for every option of every command that takes one."""
+    for path, command in commands(main, ()):
+        words = " ".join(path)
+        for option in command.params:
+            is_option = isinstance(option, click.Option)
+            if is_option and (option.is_flag or option.name == "help"):
+                continue
+            for name, value in HOSTILE.items():
+                if is_option:
+                    given = INSTEAD.get((words, option.opts[-1]), GIVEN.get(words, ""))
+                    arguments = (*path, *shlex.split(given), f"{option.opts[-1]}={value}")
+                else:  # the first word that is given
+                    arguments = (*path, *shlex.split(GIVEN.get(words, ""))[1:], "--", value)
+                yield HostileValue(f"{'-'.join(path)}-{option.name}-{name}", arguments)
+
+
+def commands(
+    command: click.Command, path: tuple[str, ...]
+) -> Iterator[tuple[tuple[str, ...], click.Command]]:
+    """Every command that is no group, with the words that call it."""
+    if isinstance(command, click.Group):
+        for name, below in command.commands.items():
+            yield from commands(below, (*path, name))
+    else:
+        yield path, command

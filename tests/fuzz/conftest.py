@@ -1,0 +1,99 @@
+"""Wrong inputs at every door: what all of them need, and how many of each went well."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+import pytest
+
+from app.scenes import SCENES, FaceScene
+
+from .sandbox import furnish
+
+DOORS = pytest.StashKey[dict[str, Counter[str]]]()
+
+LONG_WORK = (
+    "app.benchmarks.simulate_table",
+    "app.benchmarks.motion_table",
+    "app.benchmarks.soak_table",
+    "app.benchmarks.tearing_table",
+    "app.paper_figures.figure_10",
+    "app.paper_figures.figure_9",
+    "app.strip.coherence_strip",
+    "app.table1.table_1",
+    "app.viewer.Viewer",
+    "app.window_report.window_table",
+    "bench.gaps.run",
+    "bench.meshes.run",
+    "bench.quality.run",
+    "bench.refine.run",
+)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item):  # type: ignore[no-untyped-def]
+    """Count by door: each test knocks at one."""
+    report = yield
+    if report.when == "call":
+        door = item.originalname.removeprefix("test_").replace("_", " ")
+        counts = item.config.stash.setdefault(DOORS, {}).setdefault(door, Counter())
+        counts[report.outcome] += 1
+    return report
+
+
+def pytest_terminal_summary(
+    terminalreporter: pytest.TerminalReporter, config: pytest.Config
+) -> None:
+    """Say how many inputs each door was given, and how many of them ended badly."""
+    counts = config.stash.get(DOORS, None)
+    if counts is None:  # none was asked for
+        return
+    terminalreporter.section("inputs by door")
+    for door, outcome in counts.items():
+        total, good = sum(outcome.values()), outcome["passed"]
+        terminalreporter.line(f"{door:28} {total:5d} inputs, {total - good} ended badly")
+    total = sum(sum(outcome.values()) for outcome in counts.values())
+    terminalreporter.line(f"{'all doors':28} {total:5d} inputs")
+
+
+@pytest.fixture(scope="session")
+def face() -> FaceScene:
+    """The built-in face, with its light already baked."""
+    scene = FaceScene()
+    picture = scene.openness()
+    scene.openness = lambda: picture  # type: ignore[method-assign]
+    return scene
+
+
+@pytest.fixture
+def sandbox(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with files of every kind, which is the current one; no screen, no own settings."""
+    furnish(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "folder"))
+    return tmp_path
+
+
+@pytest.fixture
+def ready_face(face: FaceScene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every command that needs the built-in face gets the same."""
+    monkeypatch.setitem(SCENES, "face", lambda *_: face)
+
+
+@pytest.fixture
+def no_long_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What takes long ends well at once: an input that comes so far was accepted."""
+    for name in LONG_WORK:
+        monkeypatch.setattr(name, _accepted(name), raising=False)
+
+
+def _accepted(name: str) -> Callable[..., object]:
+    def work(*_: object, **__: object) -> object:
+        raise click.exceptions.Exit(0)
+
+    work.__name__ = name.rpartition(".")[2]
+    return work

@@ -1,0 +1,150 @@
+"""A folder full of traps, and the rules by which every input must end."""
+
+from __future__ import annotations
+
+import os
+import re
+import resource
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from click.testing import CliRunner
+
+from app.cli import main
+
+LONGEST = 60.0  # [s] on a busy machine, compiling; the slowest takes 2 s otherwise
+MOST_MEMORY = 600 << 20  # [bytes] more than before
+ROOM = 8 << 30  # [bytes] of addresses: what asks for more is refused by the system
+LONGEST_LINE = 2200  # [characters]; names are cut, explanations need no more
+STATUS = Path("/proc/self/status")
+
+GOOD = """
+[[pose]]
+time = 0.0
+[[pose]]
+time = 0.2
+name = "joy"
+joy = 1.0
+"""
+
+
+class TookTooLong(BaseException):
+    """An input kept the program busy, or waiting, for too long.
+
+    No Exception: nobody on the way may catch it.
+    """
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a command ended."""
+
+    code: int
+    out: str
+    err: str
+
+
+def furnish(folder: Path) -> None:
+    """Put files of every kind there: good ones, and traps."""
+    (folder / "good.toml").write_text(GOOD)
+    (folder / "notes.txt").write_text("mine")
+    (folder / "keep.png").write_text("mine")
+    (folder / "head.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (folder / "marks.json").write_text('{"landmarks": [0, 1, 2]}')
+    (folder / "folder").mkdir()
+    (folder / "folder.png").mkdir()
+    (folder / "full").mkdir()
+    (folder / "full" / "mine.txt").write_text("mine")
+    for name in ("pipe", "pipe.png", "pipe.toml"):
+        os.mkfifo(folder / name)
+    for name in ("loop", "loop.png", "loop.toml", "loop.mp4"):
+        (folder / name).symlink_to(name)
+    (folder / "dangling.png").symlink_to("nowhere/at/all.png")
+    (folder / "zeros.toml").symlink_to("/dev/zero")
+
+
+def contents(folder: Path) -> dict[str, str]:
+    """Every name in a folder with what it is: bytes, link or kind."""
+    found = {}
+    for parent, folders, names in os.walk(folder):
+        for name in (*folders, *names):
+            path = Path(parent) / name
+            if path.is_symlink():
+                what = f"link to {os.readlink(path)}"
+            elif path.is_file():
+                what = path.read_bytes().hex()
+            else:
+                what = "folder" if path.is_dir() else "device"
+            found[str(path.relative_to(folder))] = what
+    return found
+
+
+@contextmanager
+def bounded(seconds: float = LONGEST, memory: int = MOST_MEMORY) -> Iterator[None]:
+    """A failure where what is done takes too long, waits for ever, or takes too much memory."""
+
+    def stop(*_: object) -> None:
+        raise TookTooLong(f"more than {seconds:g} s")
+
+    if STATUS.exists():
+        Path("/proc/self/clear_refs").write_text("5")  # the peak starts anew
+    before = _kilobytes("VmHWM")
+    limits = resource.getrlimit(resource.RLIMIT_AS)
+    handler = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, seconds, 1.0)
+    start = time.monotonic()
+    try:
+        if STATUS.exists():
+            resource.setrlimit(resource.RLIMIT_AS, (1024 * _kilobytes("VmSize") + ROOM, limits[1]))
+        yield
+    except TookTooLong as error:
+        raise AssertionError(str(error)) from None
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, handler)
+        resource.setrlimit(resource.RLIMIT_AS, limits)
+    assert time.monotonic() - start < seconds
+    assert 1024 * (_kilobytes("VmHWM") - before) < memory
+
+
+def _kilobytes(name: str) -> int:
+    """A figure of this process, 0 where the system does not tell."""
+    if not STATUS.exists():
+        return 0
+    found = re.search(rf"{name}:\s+(\d+) kB", STATUS.read_text())
+    return int(found[1]) if found else 0
+
+
+def run_command(arguments: tuple[str, ...]) -> Ended:
+    """Run the command in this process, within bounds; whatever it does not catch comes through."""
+    with bounded():
+        result = CliRunner(catch_exceptions=False).invoke(main, arguments)
+    return Ended(result.exit_code, result.stdout, result.stderr)
+
+
+def check_line(text: str) -> None:
+    """A message is one line without tricks, and not endless."""
+    assert text.isprintable(), text
+    assert 10 < len(text) < LONGEST_LINE, len(text)
+
+
+def check_end(ended: Ended, folder: Path, before: dict[str, str]) -> None:
+    """Success, or one clear line and code 2, with everything as it was before."""
+    assert "Traceback" not in ended.err
+    after = contents(folder)
+    assert not [name for name in after if ".risorius-" in name]
+    assert {name: after.get(name) for name in before} == before
+    if ended.code == 0:
+        return
+    assert ended.code == 2, ended
+    assert after == before, "something is left behind"
+    lines = [line for line in ended.err.splitlines() if not line.startswith("Compiling")]
+    if "Usage: " in ended.err:  # a group without a command shows its help
+        return
+    assert len(lines) == 1, ended.err
+    assert lines[0].startswith("risorius: ")
+    check_line(lines[0])

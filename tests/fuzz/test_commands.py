@@ -1,0 +1,43 @@
+"""The command line: every command and option, given what nobody should give it."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+
+import pytest
+
+from .command_inputs import ACCEPTED, REFUSED, HostileValue, hostile_values
+from .sandbox import check_end, contents, run_command
+
+pytestmark = [pytest.mark.fuzz, pytest.mark.usefixtures("ready_face", "no_long_work")]
+
+
+def _short(words: str) -> str:
+    return words if len(words) < 120 else f"{words[:100]}...{len(words)}"
+
+
+@pytest.mark.parametrize("line", ACCEPTED, ids=_short)
+def test_good_commands(line: str, sandbox: Path) -> None:
+    """They end well, and leave nothing but their outputs."""
+    before = contents(sandbox)
+    ended = run_command(tuple(shlex.split(line)))
+    assert ended.code == 0, ended.err
+    check_end(ended, sandbox, before)
+
+
+@pytest.mark.parametrize("line", REFUSED, ids=_short)
+def test_mistakes(line: str, sandbox: Path) -> None:
+    """Each is told in one line, in the words of the table."""
+    before = contents(sandbox)
+    ended = run_command(tuple(shlex.split(line)))
+    assert ended.code == 2, ended
+    check_end(ended, sandbox, before)
+    assert REFUSED[line] in ended.err
+
+
+@pytest.mark.parametrize("hostile", list(hostile_values()), ids=lambda each: each.name)
+def test_hostile_values(hostile: HostileValue, sandbox: Path) -> None:
+    """Whatever an option is given: success, or one line."""
+    before = contents(sandbox)
+    check_end(run_command(hostile.arguments), sandbox, before)

@@ -1,0 +1,111 @@
+"""Scripts: a table of odd ones, and hundreds that chance has damaged."""
+
+from __future__ import annotations
+
+import os
+import random
+from pathlib import Path
+
+import pytest
+
+from app.cameras import camera_for
+from app.choices import script_for
+from app.errors import UserError
+from app.scenes import SCENES, FaceScene, Scene
+from app.script import Script, parse_script
+from app.script_writer import script_text
+
+from .sandbox import bounded, check_line
+from .script_inputs import ACCEPTED, REFUSED
+
+pytestmark = pytest.mark.fuzz
+
+ROOT = Path(__file__).parents[2]
+GOOD = sorted((ROOT / "assets" / "scripts").glob("*.toml"))
+SEED = int(os.environ.get("FUZZ_SEED", "20030214"))  # another one, other damages
+ROUNDS = 400
+TOKENS = (
+    b"nan", b"inf", b"-1", b"1e400", b"9" * 400, b"true", b"''", b'"\\n"', b"[]", b"{}", b"[",
+    b"\xef\xbb\xbf",
+    b"[[pose]]", b"[tracks]", b"time = 0", b"=", b"\n", b"#", b"\x00", b"\xff", b"\r",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def scenes(face: FaceScene) -> dict[str, Scene]:
+    """One of each kind."""
+    return {"face": face, "plane": SCENES["plane"]()}
+
+
+def opened(path: Path, scenes: dict[str, Scene]) -> Script:
+    """Read a script and look at all that is asked of it before anything is drawn."""
+    with bounded():
+        script = script_for(path, None)
+        script.check(scenes[script.scene].limits)
+        camera_for(scenes[script.scene], script.camera)
+    return script
+
+
+@pytest.mark.parametrize("name", ACCEPTED)
+def test_odd_scripts(name: str, tmp_path: Path, scenes: dict[str, Scene]) -> None:
+    """They are read."""
+    path = tmp_path / "odd.toml"
+    path.write_bytes(ACCEPTED[name])
+    assert opened(path, scenes).duration > 0.0
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_wrong_scripts(name: str, tmp_path: Path, scenes: dict[str, Scene]) -> None:
+    """One line says what is wrong."""
+    path = tmp_path / "wrong.toml"
+    path.write_bytes(REFUSED[name][0])
+    with pytest.raises(UserError) as refusal:
+        opened(path, scenes)
+    check_line(str(refusal.value))
+    assert REFUSED[name][1] in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    "name", ["pipe.toml", "zeros.toml", "loop.toml", "folder", "nowhere.toml", "notes.txt/x"]
+)
+def test_no_files(name: str, sandbox: Path, scenes: dict[str, Scene]) -> None:
+    """What is no file, or not there, is told at once."""
+    with pytest.raises(UserError) as refusal:
+        opened(sandbox / name, scenes)
+    check_line(str(refusal.value))
+
+
+def damaged(chance: random.Random) -> bytes:
+    """A good script with a few places changed."""
+    content = bytearray(chance.choice(GOOD).read_bytes())
+    start = chance.randrange(len(content))
+    content = content[start if chance.random() < 0.2 else 0 :][: chance.choice((200, 2000, 20000))]
+    for _ in range(chance.randint(1, 6)):
+        place = chance.randrange(len(content) + 1)
+        end = min(len(content), place + chance.choice((0, 1, 1, 3, 20)))
+        kind = chance.random()
+        if kind < 0.5:
+            content[place:end] = chance.choice(TOKENS)
+        elif kind < 0.7:
+            content[place:end] = bytes([chance.randrange(256)])
+        elif kind < 0.85:
+            content[place:end] = b""
+        else:
+            content[place:place] = content[place : place + chance.randrange(60)]
+    return bytes(content)
+
+
+@pytest.mark.parametrize("number", range(ROUNDS))
+def test_damaged_scripts(number: int, tmp_path: Path, scenes: dict[str, Scene]) -> None:
+    """Read or refused in one line; what is read has values, and is written back as it was."""
+    seed = SEED + number
+    path = tmp_path / "damaged.toml"
+    path.write_bytes(damaged(random.Random(seed)))
+    try:
+        script = opened(path, scenes)
+    except UserError as error:
+        check_line(str(error))
+        return
+    for time in (0.0, 0.3, script.duration, 1e5):
+        assert all(abs(value) < 1e4 for value in script.at(time).values()), seed
+    assert parse_script(script_text(script), source=str(path)) == script, seed
