@@ -56,7 +56,8 @@ class Aside:
     def remove(self) -> None:
         """Take it away with all that is in it; nothing the second time."""
         if self._lock is not None:
-            self._lock.close()
+            with contextlib.suppress(OSError):  # on a full disk the mark cannot be written out
+                self._lock.close()
         shutil.rmtree(self._folder, ignore_errors=True)
 
 

@@ -33,7 +33,6 @@ LARGEST_FILE = 2**26  # [bytes]
 METHODS: Mapping[str, tuple[str, Mapping[str, Any]]] = {
     "kahler": ("kahler", {}),
     "cubic": ("kahler", {"scheme": "cubic", "blend": False}),
-    "butterfly": ("kahler", {"scheme": "butterfly", "blend": False}),
     "blend": ("kahler", {"scheme": "cubic", "blend": True}),
     "coherent": ("kahler", {"coherent": True}),
     "seams": ("kahler", {"criterion": "normal+rest"}),

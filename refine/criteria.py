@@ -18,6 +18,7 @@ Each has two thresholds, above which an edge is split once and twice, and says h
 needs a split, so that all of them can be blended (blend.py) and any of them combined.
 """
 
+import reprlib
 from collections.abc import Callable, Sequence
 from typing import cast
 
@@ -115,12 +116,12 @@ class _Seen(_Measuring):
             )
         try:
             eye, focal = np.asarray(view.eye, dtype=np.float64), float(view.focal)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             eye, focal = np.zeros(0), 0.0
         if eye.shape != (3,) or not np.isfinite(eye).all() or not 0.0 < focal < np.inf:
             raise ValueError(
                 "view must have an eye of shape (3,) and a focal length in pixels above 0, all "
-                f"finite, got {view!r}"
+                f"finite, got {reprlib.repr(view.eye)} and {reprlib.repr(view.focal)}"
             )
         self._view = View(eye, focal)
 
@@ -275,6 +276,8 @@ def criterion_of(
             )
         return CRITERIA[chosen]()
     if isinstance(chosen, Sequence):
+        if any(isinstance(one, Sequence) and not isinstance(one, str) for one in chosen):
+            raise ValueError("criterion: a list must hold names and objects, not other lists")
         return Maximum([criterion_of(one, normal_drop) for one in chosen])
     if isinstance(chosen, type) or not (hasattr(chosen, "bind") and hasattr(chosen, "mark")):
         raise ValueError(

@@ -15,6 +15,7 @@ wherever they are; float32 positions lose bits before they arrive here, 8e-6 aro
 one metre away, still far below the default thresholds.
 """
 
+import reprlib
 from numbers import Real
 from typing import Protocol, runtime_checkable
 
@@ -41,6 +42,8 @@ ROUNDING = 1e-5
 """Drops up to this size are rounding (measured, see above)."""
 NARROWEST = 1e-6
 """Least distance of two thresholds; where they are equal there is nothing to blend over."""
+LARGEST_LIMIT = 1e30
+"""Largest threshold but infinity: single precision holds what is measured."""
 ZERO, ONE, INFINITE = np.float32(0.0), np.float32(1.0), np.float32(np.inf)
 UNDEFINED_NORMAL = 1e-6
 """A normal shorter than this fraction of the lengths that made it is rounding, not a direction."""
@@ -89,11 +92,12 @@ class Thresholds:
 
         Raises ValueError if the two are out of order.
         """
-        if not (_is_number(once) and _is_number(twice) and 0.0 <= once <= twice):
+        is_right = _is_number(once) and _is_number(twice) and 0.0 <= once <= twice
+        if not is_right or any(LARGEST_LIMIT < limit < np.inf for limit in (once, twice)):
             raise ValueError(
                 f"threshold_once and threshold_twice are {meaning} with "
-                "0 <= threshold_once <= threshold_twice (inf switches a level off), "
-                f"got {once!r} and {twice!r}"
+                f"0 <= threshold_once <= threshold_twice <= {LARGEST_LIMIT:g} (or inf, which "
+                f"switches a level off), got {reprlib.repr(once)} and {reprlib.repr(twice)}"
             )
         self.limits = np.array([max(float(once), least), max(float(twice), least)], np.float32)
 

@@ -64,6 +64,7 @@ NECK = 45.0  # mm below the chin; the turn of the head fades evenly, or the thro
 LIPS_MEET_AT = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
 LIPS_WHOLE, LIPS_END = 7.0, 32.0  # mm from the mouth line: skin that goes along, in full and at all
 LEAST_MANDIBLE = 1e-4  # share of the jaw's motion that is none
+LARGEST = 1e9  # [head units] of a coordinate; squares and cubes of lengths stay finite
 STEP_MARGIN = 1.0 + ROUNDING  # a substep may be this much longer than LONGEST_SUBSTEP
 
 
@@ -159,6 +160,8 @@ def _mesh(head: Any) -> tuple[Array, npt.NDArray[np.int32]]:
             )
     wanted = "(V, 3) with V > 0"
     vertices = checked.numbers("head.vertices", head.vertices, (None, 3), wanted)
+    if (np.abs(vertices) > LARGEST).any():
+        raise ValueError(f"head.vertices: some are beyond {LARGEST:g}; take another unit of length")
     if len(vertices) == 0:
         raise ValueError(f"head.vertices: shape was {vertices.shape}, must be {wanted}")
     wanted = "integers (F, 3)"

@@ -40,7 +40,7 @@ def test_a_folder_of_meshes(tmp_path: Path) -> None:
     (tmp_path / "words.md").write_text("no mesh either, and not called one")
     result = CliRunner().invoke(main, ["bench", "meshes", str(tmp_path), *CALM])
     assert result.exit_code == 0, result.output
-    assert "broken.ply: left out, broken or not what its name says" in result.output
+    assert "broken.ply: left out, is no PLY file" in result.output
     assert "words.md" not in result.output
     assert "5 files: 4 refined, 1 left out, 0 cut short" in result.output
     assert f"{4 * FRAMES} frames, 0 of them broken" in result.output
