@@ -139,7 +139,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "threshold_once: a huge whole": {"threshold_once": 10**400},
     "threshold_twice: a huge whole": {"threshold_twice": 10**400},
     "threshold_twice: NaN": {"threshold_twice": np.nan},
-    "*threshold_twice: 1e300": {"threshold_twice": 1e300},
+    "threshold_twice: 1e300": {"threshold_twice": 1e300},
     "criterion: unknown": {"criterion": "bend"},
     "criterion: empty": {"criterion": ""},
     "criterion: no list": {"criterion": []},
