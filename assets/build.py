@@ -1,7 +1,8 @@
 """Rebuild the head's data files and picture: `python -m assets.build [FILE] [--tone TONE]`.
 
-Deterministic: seeds are fixed. Other versions of scipy may order a triangulation differently; the
-shipped file is therefore part of the package, and a test compares it with a fresh build.
+Seeds are fixed: one machine makes the same files each time. Other processors round differently in
+the last digits, other versions of scipy may order a triangulation differently; the shipped files
+are therefore part of the package, and a test compares them with a fresh build.
 """
 
 import argparse
