@@ -90,9 +90,11 @@ def test_tone_and_size_are_options(
 ) -> None:
     """A dark skin of 96 texels on request; an unknown tone is refused with the known ones."""
     monkeypatch.setattr(build, "build_head", lambda: shipped)
+    light = tmp_path / "dark_openness.npz"
+    light.write_bytes(b"baked for a larger picture")
     build.main([str(tmp_path / "dark.npz"), "--tone", "dark", "--size", "96"])
     picture = load_head(tmp_path / "dark.npz").albedo
-    assert picture.shape == (96, 96, 3)
+    assert picture.shape == (96, 96, 3) and not light.exists()
     assert picture.mean() < load("head").albedo.mean() - 30
     with pytest.raises(SystemExit):
         build.main([str(tmp_path / "pink.npz"), "--tone", "pink"])
