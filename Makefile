@@ -3,6 +3,7 @@
 #   make demo     set up everything and render the built-in head to out/demo.mp4 and out/demo.png
 #   make test     set up everything, check the code and pass the tests
 #   make setup    only make .venv with everything in it
+#   make test-processors  the tests once for each of several kinds of processor, in turn
 #   make check    ruff, mypy and the import rules alone
 #   make clean    remove .venv and what was rendered
 
@@ -26,13 +27,25 @@ define debian_packages
 	fi
 endef
 
-.PHONY: demo test setup check opengl screen clean
+.PHONY: demo test test-processors setup check opengl screen clean
 
 demo: setup opengl
 	@$(BIN)/risorius demo
 
 test: setup opengl screen check
 	@xvfb-run -a -s "-screen 0 1600x1000x24" $(BIN)/python -m pytest
+
+# Rounds as other processors do, as far as this one can: OpenBLAS, numpy and numba each choose code
+# by the processor, and can be told. The last needs AVX-512. TESTS=tests/assets passes a part alone.
+OLD_PROCESSOR := OPENBLAS_CORETYPE=Nehalem NUMBA_CPU_NAME=generic \
+	NPY_DISABLE_CPU_FEATURES=X86_V3,X86_V4,AVX512_ICL,AVX512_SPR
+
+test-processors: setup opengl screen
+	@for variant in OPENBLAS_CORETYPE=Haswell OPENBLAS_CORETYPE=Zen "$(OLD_PROCESSOR)" \
+			OPENBLAS_CORETYPE=SkylakeX; do \
+		echo "$$variant"; \
+		env $$variant xvfb-run -a -s "-screen 0 1600x1000x24" $(BIN)/python -m pytest $(TESTS) || exit; \
+	done
 
 check: setup
 	@$(BIN)/ruff check .
