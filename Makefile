@@ -8,9 +8,10 @@
 #
 # Slower ones, before a release:
 #
-#   make test-slow    pass the tests that take minutes
-#   make fuzz         give every door hundreds of wrong inputs
-#   make test-lowest  pass the tests with the oldest versions that pyproject.toml allows
+#   make test-slow        pass the tests that take minutes
+#   make fuzz             give every door hundreds of wrong inputs
+#   make test-lowest      pass the tests with the oldest versions that pyproject.toml allows
+#   make test-processors  pass the tests as other processors round
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -34,7 +35,7 @@ define debian_packages
 	fi
 endef
 
-.PHONY: demo test test-slow test-lowest fuzz setup check opengl screen clean
+.PHONY: demo test test-slow test-lowest test-processors fuzz setup check opengl screen clean
 
 demo: setup opengl
 	@$(BIN)/risorius demo
@@ -60,6 +61,18 @@ fuzz: setup opengl
 
 test-slow: setup opengl screen
 	@$(SCREEN) $(BIN)/python -m pytest -m slow
+
+# Rounds as other processors do, as far as this one can: OpenBLAS, numpy and numba each choose code
+# by the processor, and can be told. The last needs AVX-512. TESTS=tests/assets passes a part alone.
+OLD_PROCESSOR := OPENBLAS_CORETYPE=Nehalem NUMBA_CPU_NAME=generic \
+	NPY_DISABLE_CPU_FEATURES=X86_V3,X86_V4,AVX512_ICL,AVX512_SPR
+
+test-processors: setup opengl screen
+	@for variant in OPENBLAS_CORETYPE=Haswell OPENBLAS_CORETYPE=Zen "$(OLD_PROCESSOR)" \
+			OPENBLAS_CORETYPE=SkylakeX; do \
+		echo "$$variant"; \
+		env $$variant $(SCREEN) $(BIN)/python -m pytest $(TESTS) || exit; \
+	done
 
 check: setup
 	@$(BIN)/ruff check .

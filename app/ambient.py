@@ -1,10 +1,13 @@
 """How open the skin is to light from all around: ambient occlusion, baked once for a head.
 
+That of the built-in head is shipped: `python -m app.ambient [FILE]` bakes it anew, after
+`python -m assets.build`. A head of one's own is baked when it is loaded.
+
 From each vertex rays go out over its normal, more of them the closer they are to it, as light that
 comes from everywhere counts. What a ray meets within REACH takes its part of the light away, less
 the farther it is. A face moves: what touches at rest, lips or the folds of lids, may come to light
 later. So two poses are looked at, at rest and with mouth open and eyes shut, and the more open one
-counts. Teeth, gums and tongue only get darker toward the back.
+counts.
 
 Sources: Zhukov, Iones, Kronin 1998, "An ambient light illumination model" (obscurance that fades
 with distance); Möller and Trumbore 1997 (ray and triangle).
@@ -12,15 +15,21 @@ with distance); Möller and Trumbore 1997 (ray and triangle).
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Sequence
-from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+import assets
 import sim
+from assets.loading import HEAD_FILE, fingerprint, load_head
+from sim.jit import njit
+
+from .errors import run_alone
+from .outputs import cannot_be_written, check_file, written_aside
 
 REACH = 45.0  # [mm] beyond which nothing shades
 RAYS = 48  # from each vertex
@@ -30,9 +39,6 @@ STEEP, LONG = 0.15, 8.0  # change along an edge, and its length [mm]: beyond the
 START = 0.4  # [mm] above the skin, lest it shade itself
 REVEALING = ("yawn", "jaw_open")  # the first of these that a head knows opens mouth and shuts eyes
 SETTLED = 60  # steps of 1/60 s
-IN_MOUTH = ("teeth", "gums", "tongue")  # names begin so; the cavity is painted dark
-LIT, DARK = 2.0, 34.0  # [mm] behind the front teeth, where it begins to get dark and no darker
-DIMMED = 0.4  # of the colour (sRGB) that is lost there
 MARGIN = 3.0  # [texels] painted beyond a triangle, for texels between patches
 
 Points = npt.NDArray[np.float64]
@@ -81,20 +87,6 @@ def openness(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
     return np.round(255.0 * picture).astype(np.uint8)
 
 
-def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
-    """The parts, those of the mouth the darker the farther back they are."""
-    front = max((part.vertices[:, 2].max() for part in parts if "teeth" in part.name), default=0.0)
-
-    def shaded(part: Any) -> Any:
-        if not part.name.startswith(IN_MOUTH):
-            return part
-        share = np.clip((front - part.vertices[:, 2] - LIT) / (DARK - LIT), 0.0, 1.0)
-        light = 1.0 - DIMMED * share * share * (3.0 - 2.0 * share)
-        return replace(part, colours=(part.colours * light[:, None]).astype(np.float32))
-
-    return tuple(shaded(part) for part in parts)
-
-
 def open_to_light(positions: Points, faces: Triangles, ends: npt.NDArray[np.intp]) -> Values:
     """The share of the light from all around that reaches the middles between `ends`, 0..1.
 
@@ -127,7 +119,7 @@ def _hemisphere() -> Points:
     return np.stack([outward * np.cos(turn), outward * np.sin(turn), up], axis=1)
 
 
-@numba.njit(cache=True)
+@njit
 def _cast(
     positions: Points,
     normals: Points,
@@ -165,7 +157,7 @@ def _cast(
         values[v] = 1.0 - lost / len(directions)
 
 
-@numba.njit(cache=True)
+@njit
 def _nearest(ray: Values, near: Values, count: int) -> float:
     """How far a ray goes before it meets a triangle, at most REACH.
 
@@ -191,7 +183,7 @@ def _nearest(ray: Values, near: Values, count: int) -> float:
     return float(nearest)
 
 
-@numba.njit(cache=True)
+@njit
 def _paint(
     corners: Points,
     middles: Points,
@@ -214,7 +206,7 @@ def _paint(
         )  # fmt: skip
 
 
-@numba.njit(cache=True)
+@njit
 def _paint_triangle(
     a: Points,
     b: Points,
@@ -247,3 +239,29 @@ def _paint_triangle(
             if of_a > -slack_a and of_b > -slack_b and of_c > -slack_c:
                 value = of_a * at_a + of_b * at_b + of_c * at_c
                 picture[y, x] = min(max(value, least), most)
+
+
+def bake(head: assets.Head) -> dict[str, npt.NDArray[np.generic]]:
+    """Make everything that `head.openness_file` holds, array name -> array."""
+    return {
+        "openness": openness(head, sim.create(head)),
+        "made_from": np.array(fingerprint(head), dtype=np.uint32),
+    }
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Bake the light on a head made by `assets.build` into the file beside its data file."""
+    parser = argparse.ArgumentParser(
+        prog="python -m app.ambient", description=(__doc__ or "").splitlines()[0]
+    )
+    parser.add_argument("file", nargs="?", type=Path, default=HEAD_FILE, help="the data file")
+    head = load_head(parser.parse_args(arguments).file)
+    target = head.openness_file
+    check_file(target)
+    arrays = bake(head)
+    with written_aside(target) as part, cannot_be_written(target):
+        np.savez_compressed(part, allow_pickle=False, **arrays)
+
+
+if __name__ == "__main__":
+    run_alone(main)

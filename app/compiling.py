@@ -69,6 +69,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     """Everything that compiles kernels of its own, by name."""
     import refine
 
+    from .ambient import openness
     from .scenes import FaceScene, PlaneScene
 
     face, plane = FaceScene(), PlaneScene()
@@ -83,6 +84,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
         face.reset()
 
     yield "muscles and springs", simulate
+    yield "light", partial(openness, face.head, face.simulation)
     choices: tuple[dict[str, Any], ...] = (
         {},
         {"criterion": "normal", "blend": True},

@@ -17,8 +17,8 @@ import assets
 import sim
 from assets.fitting import FittedHead
 
-from .ambient import openness, shaded_mouth
 from .errors import UserError
+from .mouth import shaded_mouth
 
 MOST_BAKED = 3000  # vertices; a larger head would take seconds, and takes the built-in one's light
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
@@ -62,7 +62,7 @@ class Scene(Protocol):
     def openness(self) -> npt.NDArray[np.uint8] | None:
         """How open the skin is to light from all around, over the texture (H, W); None: all.
 
-        Baked anew each time; the scene stays as it is.
+        The scene stays as it is.
         """
 
     def pose(self, channels: Mapping[str, float]) -> None:
@@ -130,9 +130,13 @@ class FaceScene:
     def openness(self) -> npt.NDArray[np.uint8] | None:
         head, simulation = self.head, self.simulation
         if len(head.vertices) > MOST_BAKED:  # it wears the same texture, laid out alike
-            head = assets.load("head")
+            return assets.load("head").openness
+        if isinstance(head, assets.Head) and head.openness_file.exists():
+            return head.openness
+        from .ambient import openness  # only who brings a head waits for it to be compiled
+
         is_at_rest = np.array_equal(self.positions, self.rest_positions)
-        if head is not self.head or any(self.values.values()) or not is_at_rest:
+        if any(self.values.values()) or not is_at_rest:
             simulation = sim.create(head)  # baking moves it
         return openness(head, simulation)
 

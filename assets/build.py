@@ -1,7 +1,11 @@
 """Rebuild the head's data files and picture: `python -m assets.build [FILE] [--tone TONE]`.
 
-Deterministic: seeds are fixed. Other versions of scipy may order a triangulation differently; the
-shipped file is therefore part of the package, and a test compares it with a fresh build.
+Seeds are fixed: one machine makes the same files each time. Other processors round differently in
+the last digits, other versions of scipy may order a triangulation differently; the shipped files
+are therefore part of the package, and a test compares them with a fresh build.
+
+The light on the skin takes the simulation, which nothing here may import: `python -m app.ambient`
+bakes it for the head that is made here, and until then it is baked wherever the head is shown.
 """
 
 import argparse
@@ -135,6 +139,7 @@ def main(arguments: list[str]) -> None:
     """Write data files and picture, to the place where `load` looks or to the one given.
 
     They are made in a folder beside it and moved when all are whole. OSError where that cannot be.
+    Light that was baked for what lay there before is removed.
     """
     parser = argparse.ArgumentParser(
         prog="python -m assets.build", description=(__doc__ or "").splitlines()[0]
@@ -151,6 +156,7 @@ def main(arguments: list[str]) -> None:
         _write(aside / given.file.name, tone=Tone(given.tone), size=given.size)
         for made in aside.iterdir():
             os.replace(made, given.file.parent / made.name)
+    load_head(given.file).openness_file.unlink(missing_ok=True)
 
 
 def _write(file: Path, *, tone: Tone, size: int) -> None:

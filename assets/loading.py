@@ -15,7 +15,7 @@ from typing import Any, Literal, overload
 import numpy as np
 import numpy.typing as npt
 
-from .model import AssetError, Eye, FineMesh, Head, Layer, Part, Plane, Wrinkles
+from .model import AssetError, Eye, FineMesh, Head, Layer, Part, Picture, Plane, Wrinkles
 from .plane import make_plane
 from .subdivision import coarse_places, quarter
 
@@ -30,6 +30,7 @@ LAYER_FILES = MappingProxyType(  # title -> file, from the lowest layer up
     }
 )
 FINER_LEVELS = (1, 2)
+PROGRAM = "assets.build"  # makes the files
 
 
 def available() -> tuple[str, ...]:
@@ -64,8 +65,8 @@ def load_head(
     """Read a head from its data file, its rig file and the files of its layers of controls.
 
     The picture of the skin lies beside the data file, as a PNG file of the same name; so do the
-    files of its wrinkles (`_wrinkles.npz`) and of the finer meshes (`_finer.npz`). All three are
-    read only when they are asked for.
+    files of its wrinkles (`_wrinkles.npz`), of the light on it (`_openness.npz`) and of the finer
+    meshes (`_finer.npz`). All four are read only when they are asked for.
 
     Raises AssetError when the data file is missing or incomplete, or a text file is not TOML.
     """
@@ -93,7 +94,7 @@ def read_finer(head: Head, level: int) -> FineMesh:
         raise ValueError(
             f"level was {level!r}; allowed are 1 (4 triangles for each one) and 2 (16)"
         )
-    arrays = _made_for(head, head.finer_file)
+    arrays = _made_for(head, head.finer_file, ("added_vertices", "normals"))
     faces, count = head.faces, len(head.vertices)
     for _ in range(level):
         cut = quarter(faces, count)
@@ -110,22 +111,25 @@ def read_finer(head: Head, level: int) -> FineMesh:
 
 def read_wrinkles(head: Head) -> Wrinkles:
     """Read where the head's skin wrinkles; see `Head.wrinkles`."""
-    arrays = _made_for(head, head.wrinkles_file)
-    try:
-        return Wrinkles(arrays["map"], float(arrays["steepest"]), arrays["across"])
-    except KeyError as error:
-        raise AssetError(
-            f"{head.wrinkles_file} has no array {error}; rebuild it with 'python -m assets.build'"
-        ) from error
+    arrays = _made_for(head, head.wrinkles_file, ("map", "steepest", "across"))
+    return Wrinkles(arrays["map"], float(arrays["steepest"]), arrays["across"])
 
 
-def _made_for(head: Head, path: Path) -> dict[str, npt.NDArray[Any]]:
+def read_openness(head: Head) -> Picture:
+    """Read how open the head's skin is to light; see `Head.openness`."""
+    return _made_for(head, head.openness_file, ("openness",), "app.ambient")["openness"]
+
+
+def _made_for(
+    head: Head, path: Path, names: tuple[str, ...], program: str = PROGRAM
+) -> dict[str, npt.NDArray[Any]]:
     """The arrays of a file that belongs to a head; AssetError if it belongs to another."""
-    arrays = _read_arrays(path)
+    arrays = _read_arrays(path, program)
     if int(arrays.get("made_from", -1)) != fingerprint(head):
-        raise AssetError(
-            f"{path} was made for another head; rebuild it with 'python -m assets.build'"
-        )
+        raise AssetError(f"{path} was made for another head; rebuild it with 'python -m {program}'")
+    for name in names:
+        if name not in arrays:
+            raise AssetError(f"{path} has no array '{name}'; rebuild it with 'python -m {program}'")
     return arrays
 
 
@@ -162,6 +166,7 @@ def _assemble(
         face_uv=arrays["faces"],  # one piece without seams: a corner is a vertex
         albedo_file=head_file.with_suffix(".png"),
         wrinkles_file=head_file.with_name(f"{head_file.stem}_wrinkles.npz"),
+        openness_file=head_file.with_name(f"{head_file.stem}_openness.npz"),
         finer_file=head_file.with_name(f"{head_file.stem}_finer.npz"),
         rig=rig,
         layers=layers,
@@ -198,18 +203,18 @@ def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
     return tuple(parts)
 
 
-def _read_arrays(path: Path) -> dict[str, npt.NDArray[Any]]:
+def _read_arrays(path: Path, program: str = PROGRAM) -> dict[str, npt.NDArray[Any]]:
     try:
         with np.load(path, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
     except FileNotFoundError as error:
         raise AssetError(
-            f"the data file {path} is missing; build it with 'python -m assets.build'"
+            f"the data file {path} is missing; build it with 'python -m {program}'"
         ) from error
     except Exception as error:  # zip, its compression and numpy have their own kinds each
         raise AssetError(
             f"the data file {path} is not a readable npz file ({error}); "
-            "rebuild it with 'python -m assets.build'"
+            f"rebuild it with 'python -m {program}'"
         ) from error
     for array in arrays.values():
         array.flags.writeable = False

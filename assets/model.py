@@ -165,6 +165,7 @@ class Head:
         same numbers as `faces`.
     albedo_file: the picture of the skin.
     wrinkles_file: the map of its wrinkles.
+    openness_file: how open it is to light from all around; app/ambient.py makes it.
     finer_file: what the finer meshes of the same form need; read by `finer`.
     rig: the parsed rig file, {} where there is none.
     layers: action units, expressions and visemes, from the lowest up; () where there are no files.
@@ -185,6 +186,7 @@ class Head:
     face_uv: IndexArray
     albedo_file: Path
     wrinkles_file: Path
+    openness_file: Path
     finer_file: Path
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
@@ -219,6 +221,17 @@ class Head:
         from .loading import read_wrinkles  # which imports this module
 
         return read_wrinkles(self)
+
+    @cached_property
+    def openness(self) -> Picture:
+        """How open the skin is to light from all around, 255 = wholly; shape (H, W), uint8.
+
+        Texel by texel that of `albedo`. Read from `openness_file` when it is first asked for.
+        Raises AssetError when the file is missing, broken or that of another head.
+        """
+        from .loading import read_openness  # which imports this module
+
+        return read_openness(self)
 
     def finer(self, level: int) -> FineMesh:
         """The same form with 4 (level 1) or 16 (level 2) triangles for each one; arrays read-only.

@@ -210,7 +210,9 @@ def _sheet_cases(
         if load.name in SHUFFLED:
             order = refine.reorder(load.faces, load.rest)
             frames = [frame[order.vertices] for frame in load.frames]
-            sorted_load = Load(load.name, order.faces, load.rest[order.vertices], frames)
+            sorted_load = Load(
+                load.name, order.faces.astype(np.int32), load.rest[order.vertices], frames
+            )
             refiner = refine.create("kahler", sorted_load.faces, sorted_load.rest, **options)
             cases.append(_own(f"kahler {share} %, reordered", refiner, sorted_load))
     return cases + _peer_cases(load, report, cases[0].triangles)

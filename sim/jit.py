@@ -5,8 +5,8 @@ kernel changes that is called from another file, old code goes on running. It al
 lies in its folder, and gives up where no folder can be written, where the disk is full, or where a
 file was torn. So here numba compiles, and this file keeps what it made:
 
-    valid    for all source files of this package together, these options, the versions of numba
-             and Python, and the processor; each file has a check sum
+    valid    for all source files of this package together and the kernel's own, these options, the
+             versions of numba and Python, and the processor; each file has a check sum
     where    the first of: the folder named by NUMBA_CACHE_DIR, beside the code, the user's cache
     trusted  only a folder that belongs to this user and that nobody else may write
     else     code is compiled in each process anew, and a warning in the log says so once
@@ -92,6 +92,7 @@ class KeptCode(_Cache):
         name = f"{function.__module__}.{function.__qualname__}"
         self._name = name.replace("<", "").replace(">", "")  # Windows allows no file of such a name
         self._options = options
+        self._file_of_kernel = function.__code__.co_filename
 
     @property
     def cache_path(self) -> str:
@@ -143,7 +144,8 @@ class KeptCode(_Cache):
         return f"{self._name}.{hashlib.sha256(str(sig).encode()).hexdigest()[:16]}.code"
 
     def _stamp(self, sig: Any, codegen: Any) -> bytes:
-        made_of = f"{sig} {self._options} {codegen.magic_tuple()} {_package()}"
+        sources = f"{_package()} {_digest(self._file_of_kernel)}"
+        made_of = f"{sig} {self._options} {codegen.magic_tuple()} {sources}"
         return hashlib.sha256(made_of.encode()).digest()
 
     def enable(self) -> None:
@@ -157,8 +159,14 @@ class KeptCode(_Cache):
 
 
 @functools.cache
+def _digest(file: str) -> str:
+    """Digest of a kernel's own file, which need not be in this package."""
+    return hashlib.sha256(Path(file).read_bytes()).hexdigest()
+
+
+@functools.cache
 def _package() -> str:
-    """Digest of everything that code depends on but its kernel: sources, options, versions."""
+    """Digest of all that code depends on but its own file: sources, options, versions."""
     digest = hashlib.sha256(repr(sorted(OPTIONS.items())).encode())
     digest.update(f"{numba.__version__} {sys.version} {platform.machine()}".encode())
     here = Path(__file__).parent

@@ -112,6 +112,21 @@ def test_change_in_another_file_counts(run: Run, package: Path) -> None:
     assert len(kept(package)) == 1  # the old code was written over
 
 
+def test_change_in_a_file_outside_the_package_counts(tmp_path: Path, package: Path) -> None:
+    """A kernel elsewhere may use the decorator: its own file is part of its code, too."""
+    program = tmp_path / "program.py"
+    for factor in (2.0, 5.0):
+        program.write_text(
+            "from kernels_package.jit import njit\n"
+            f"@njit\ndef double(x):\n    return {factor} * x\nprint(double(1.0))\n"
+        )
+        result = subprocess.run(
+            [sys.executable, program], cwd=tmp_path, capture_output=True, text=True, timeout=120
+        )
+        assert result.stdout == f"{factor}\n", result.stderr
+    assert len(kept(package)) == 1
+
+
 def test_changed_options_count(run: Run, package: Path) -> None:
     """Options that are the same for all kernels are part of the code."""
     run()

@@ -44,11 +44,8 @@ def smile(tmp_path: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def face() -> FaceScene:
-    """The built-in face, with its light already baked."""
-    scene = FaceScene()
-    picture = scene.openness()
-    scene.openness = lambda: picture
-    return scene
+    """The built-in face."""
+    return FaceScene()
 
 
 @pytest.fixture

@@ -119,6 +119,31 @@ def test_start_is_valid_and_relaxing_improves_it(head: Head) -> None:
     assert np.all(relaxed[patch.on_midline, 0] == 0.0)
 
 
+def test_rounding_does_not_decide_where_the_descent_ends(head: Head) -> None:
+    """A start that differs in its last digits leads to the same layout: no force is left there."""
+    patch = unwrap.fill_holes(head.vertices, head.faces, head.rings)
+    start = unwrap.tutte(patch)
+    random = np.random.default_rng(5)
+    shaken = start * (1.0 + 1e-9 * random.normal(size=start.shape))
+    relaxed = unwrap.relax(patch, start)
+    _, gradient = unwrap._energy(relaxed, patch.faces, *unwrap._shapes(patch))
+    gradient[patch.on_midline, 0] = 0.0
+    assert np.linalg.norm(gradient) < 1e-5
+    moved = unwrap.relax(patch, shaken) - relaxed
+    moved[:, 1] -= moved[:, 1].mean()  # `unwrap` centres it
+    assert np.abs(moved).max() < 1e-3  # [mm], of some 450
+
+
+def test_a_descent_that_does_not_arrive_is_told(
+    head: Head, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Better no head than one whose layout hangs on the processor."""
+    monkeypatch.setattr(unwrap, "ROUNDS", 3)
+    patch = unwrap.fill_holes(head.vertices, head.faces, head.rings)
+    with pytest.raises(assets.AssetError, match="could not be laid flat: after 3 rounds"):
+        unwrap.relax(patch, unwrap.tutte(patch))
+
+
 def test_energy_gradient_is_that_of_finite_differences(head: Head) -> None:
     """On a few triangles that are stretched at random."""
     random = np.random.default_rng(4)
@@ -134,6 +159,22 @@ def test_energy_gradient_is_that_of_finite_differences(head: Head) -> None:
         above, _ = unwrap._energy(flat + step, faces, inverse, weights)
         below, _ = unwrap._energy(flat - step, faces, inverse, weights)
         assert gradient[index] == pytest.approx((above - below) / 2e-6, rel=1e-4, abs=1e-4)
+
+
+def test_curvature_is_that_of_finite_differences() -> None:
+    """Where triangles are stretched evenly every curvature is positive, so none is changed."""
+    faces = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+    flat = 1.5 * np.array([[0.0, 0.0], [1.0, 0.1], [0.9, 1.0], [-0.1, 1.1]])
+    corner = flat[faces] / 1.5
+    inverse = np.linalg.inv((corner[:, 1:] - corner[:, :1]).transpose(0, 2, 1))
+    weights = np.array([1.0, 2.0])
+    curvature = unwrap._curvature(flat, faces, inverse, weights).toarray()
+    for row in range(flat.size):
+        step = np.zeros_like(flat)
+        step.flat[row] = 1e-6
+        _, above = unwrap._energy(flat + step, faces, inverse, weights)
+        _, below = unwrap._energy(flat - step, faces, inverse, weights)
+        np.testing.assert_allclose(curvature[row], ((above - below) / 2e-6).ravel(), atol=1e-4)
 
 
 def test_turned_triangle_costs_infinitely_much() -> None:
