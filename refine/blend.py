@@ -73,27 +73,30 @@ def number_centres(frame: Frame, patterns: Patterns) -> None:
 
 
 @njit
-def middle_of(mesh: Connectivity, frame: Frame, t: int, i: int) -> tuple[np.float32, np.uint32]:
-    """Weight of the middle of edge i of a triangle, and its row; 0 and any row where none is."""
-    e = mesh.triangle_edges[t, i]
-    if frame.splits[e] == 0:
-        return ZERO, mesh.faces[t, i]
-    growth = frame.growth_once
-    after, before = mesh.triangle_edges[t, (i + 1) % 3], mesh.triangle_edges[t, (i + 2) % 3]
-    weight = ALONE - SHARED * max(growth[after], growth[before])
-    return weight, np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
+def weight_of_middle(splits: Small, growth: Floats, e: int, after: int, before: int) -> np.float32:
+    """Weight of the middle of edge e in a point C; 0 where the edge has none.
+
+    `after`, `before`: the other two edges of the triangle.
+    """
+    return ALONE - SHARED * max(growth[after], growth[before]) if splits[e] > 0 else ZERO
 
 
 @njit
 def place_centres(mesh: Connectivity, frame: Frame) -> None:
     """Write the rows of the points in the middle of triangles, attributes too."""
-    vertices = frame.rows
+    vertices, splits, growth = frame.rows, frame.splits, frame.growth_once
+    first_points, edges = frame.first_points, mesh.triangle_edges
     for k in range(frame.counts[CENTRES]):
         t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
         a, b, c = mesh.faces[t, 0], mesh.faces[t, 1], mesh.faces[t, 2]
-        u, p = middle_of(mesh, frame, t, 0)
-        v, q = middle_of(mesh, frame, t, 1)
-        w, r = middle_of(mesh, frame, t, 2)
+        ab, bc, ca = edges[t, 0], edges[t, 1], edges[t, 2]
+        u = weight_of_middle(splits, growth, ab, bc, ca)
+        v = weight_of_middle(splits, growth, bc, ca, ab)
+        w = weight_of_middle(splits, growth, ca, ab, bc)
+        # Where there is no middle its weight is 0 and any row will do.
+        p = first_points[ab] + (splits[ab] >> 1) if splits[ab] > 0 else a
+        q = first_points[bc] + (splits[bc] >> 1) if splits[bc] > 0 else b
+        r = first_points[ca] + (splits[ca] >> 1) if splits[ca] > 0 else c
         for i in range(6):
             at_a, at_b, at_c = vertices[a, i], vertices[b, i], vertices[c, i]
             vertices[row, i] = (
