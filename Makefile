@@ -40,8 +40,13 @@ endef
 demo: setup opengl
 	@$(BIN)/risorius demo
 
+# Two processes, each with a screen of its own: real windows, whose keyboard nobody else may touch,
+# and all the rest. What the windows' tests say is shown when both have ended.
 test: setup opengl screen check
-	@$(SCREEN) $(BIN)/python -m pytest
+	@$(SCREEN) -n 199 $(BIN)/python -m pytest -m "window and not slow" >.venv/windows.log 2>&1 & \
+		windows=$$!; code=0; \
+		$(SCREEN) $(BIN)/python -m pytest -m "not window and not slow and not fuzz" || code=1; \
+		wait $$windows || code=1; cat .venv/windows.log; exit $$code
 
 # Compiled code is kept apart: the other numba could not read it.
 test-lowest: $(LOWEST)/.ready screen
