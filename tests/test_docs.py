@@ -13,7 +13,7 @@ import pytest
 from app.cli import main
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 COMMAND = re.compile(r"(?:`|^    (?:xvfb-run -a )?)(risorius [a-z][^`#\n]*)", re.MULTILINE)
 
 
