@@ -68,7 +68,7 @@ def number_centres(frame: Frame, patterns: Patterns) -> None:
         row = frame.configurations[t]
         frame.centre_triangles[centre_count] = t
         centre_count += patterns.subtriangles[row, 0, 0] == CENTRE
-        triangle_count += patterns.counts[row]
+        triangle_count += int(patterns.counts[row])
     frame.counts[TRIANGLES], frame.counts[CENTRES] = triangle_count, centre_count
 
 

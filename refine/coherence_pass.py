@@ -61,6 +61,6 @@ def follow_splits(
         if configurations[t] == 0:  # most triangles: nothing is left of what they remember
             states[t] = 0
             continue
-        removed += removals[states[t], configurations[t]]
+        removed += int(removals[states[t], configurations[t]])
         states[t] = transitions[states[t], configurations[t]]
     return removed

@@ -39,7 +39,7 @@ PLACE_VALUES = np.array([1, 3, 9], dtype=np.uint16)
 @njit
 def points_on(split: int) -> int:
     """New points on an edge that was split 0, 1 or 2 times: 0, 1 or 3."""
-    return split + (split >> 1)
+    return int(split + (split >> 1))
 
 
 @njit

@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).parents[1]
@@ -259,34 +260,60 @@ def test_runs_as_python(package: Path, run: Run) -> None:
 
 
 REFINE = """
-import numpy as np, threading, refine
-faces = np.array([[0, 1, 2], [2, 1, 3]])
-rest = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
-bent = rest + rest[:, :1] * rest[:, 1:2] * [0, 0, 1]
-counts = []
-def work(options):
-    refiner = refine.create("kahler", faces, rest, **options)
-    counts.append(len(refiner.refine(bent).triangles))
-choices = [{}, {"scheme": "cubic"}, {"blend": True}, {"coherent": True},
-           {"scheme": "detail", "detail": (rest, faces)}] * 2
-threads = [threading.Thread(target=work, args=[each]) for each in choices]
+import sys, threading
+import numpy as np
+import refine
+from tests import meshes
+mesh = meshes.irregular(3)
+deformed = meshes.wrinkled(mesh, 5)
+finer = refine.create("loop", mesh.faces, mesh.vertices).refine(mesh.vertices)
+detail = {"scheme": "detail", "detail": (finer.positions.copy(), finer.triangles.copy())}
+choices = [{}, {"scheme": "cubic"}, {"blend": True}, {"coherent": True}, detail,
+           {**detail, "blend": False}, {"criterion": "curvature+rest"},
+           {"criterion": "silhouette+screen"}, {"scheme": "cubic", "criterion": "bulge"}]
+found = {}
+def work(k):
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, **choices[k % len(choices)])
+    frame = refiner.refine(deformed, view=refine.View((3.0, 2.0, 9.0)))
+    found[f"{k} rows"] = np.hstack([frame.positions, frame.normals])
+    found[f"{k} triangles"] = frame.triangles.copy()
+threads = [threading.Thread(target=work, args=[k]) for k in range(2 * len(choices))]
 [thread.start() for thread in threads]
 [thread.join() for thread in threads]
-print(sorted(counts))
+np.savez(sys.argv[1], **found)
 """
 
 
-@pytest.mark.parametrize("variable", ["NUMBA_DISABLE_JIT", "NONE"])
-def test_threads_make_their_first_refiners(variable: str) -> None:
-    """Each thread a refiner of its own, all at once in a new process; and all of it as Python."""
-    for _ in range(3 if variable == "NONE" else 1):
-        result = subprocess.run(
-            [sys.executable, "-c", REFINE],
-            cwd=ROOT,
-            env={**os.environ, variable: "1"},
-            capture_output=True,
-            text=True,
-            timeout=300,
-        )
-        assert result.returncode == 0, result.stderr
-        assert len(result.stdout.split(",")) == 10
+def frames_of_threads(file: Path, **environment: str) -> dict[str, np.ndarray]:
+    """Frames of refiners that threads make all at once, in a new process."""
+    result = subprocess.run(
+        [sys.executable, "-c", REFINE, file],
+        cwd=ROOT,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=500,
+    )
+    assert result.returncode == 0, result.stderr
+    return dict(np.load(file))
+
+
+def test_threads_and_python_agree(tmp_path: Path) -> None:
+    """Each thread a refiner of its own, all at once; and all of it as the Python it is written in.
+
+    The second half of the threads makes the same refiners as the first.
+    """
+    compiled = frames_of_threads(tmp_path / "compiled.npz")
+    plain = frames_of_threads(tmp_path / "plain.npz", NUMBA_DISABLE_JIT="1")
+    assert len(compiled) == len(plain) == 36
+    for name, array in compiled.items():
+        np.testing.assert_allclose(plain[name], array, rtol=0, atol=1e-5, err_msg=name)
+        k, what = name.split()
+        assert np.array_equal(compiled[f"{(int(k) + 9) % 18} {what}"], array)
+
+
+@pytest.mark.slow
+def test_threads_on_nothing_compiled(tmp_path: Path) -> None:
+    """The same where every thread has to compile first."""
+    for k in range(3):
+        frames_of_threads(tmp_path / f"{k}.npz", NUMBA_CACHE_DIR=str(tmp_path / str(k)))
