@@ -72,6 +72,8 @@ def is_aside(path: Path) -> bool:
         mark = (path / MARK).lstat()
         if not (names <= {MARK, INSIDE} and stat.S_ISREG(mark.st_mode)):
             return False
+        if INSIDE in names and not stat.S_ISDIR((path / INSIDE).lstat().st_mode):
+            return False
         return mark.st_size == len(_WORDS) and (path / MARK).read_bytes() == _WORDS
     except OSError:
         return False

@@ -127,7 +127,9 @@ class Refiner(Protocol):
         """Turn deformed `positions`, shape (V, 3), any float type, into triangles; never writes it.
 
         The result views the arrays of `out`, or of the refiner's own stream without it. `view`:
-        for criteria that ask where the eye is. One frame at a time: threads take a refiner each.
+        for criteria that ask where the eye is. One frame at a time: threads take a refiner each. A
+        process must not be forked while one of its threads compiles: numba's lock stays shut in the
+        child. (`risorius warm`, or a first frame before the fork, and there is nothing to compile.)
         """
 
     def origins(self) -> Origins:

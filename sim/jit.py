@@ -8,7 +8,7 @@ file was torn. So here numba compiles, and this file keeps what it made:
     valid    for all source files of this package together and the kernel's own, these options, the
              versions of numba and Python, and the processor; each file has a check sum
     where    the first of: the folder named by NUMBA_CACHE_DIR, beside the code, the user's cache
-    trusted  only a folder that belongs to this user and that nobody else may write
+    trusted  only a folder that belongs to this user, that nobody else may write, move or replace
     else     code is compiled in each process anew, and a warning in the log says so once
     waiting  processes that start together let one compile, kernel by kernel, and read what it wrote
 
@@ -25,6 +25,7 @@ import logging
 import os
 import pickle
 import platform
+import stat
 import sys
 import tempfile
 import time
@@ -91,8 +92,8 @@ class KeptCode(_Cache):
     def __init__(self, function: Callable[..., Any], options: str) -> None:
         name = f"{function.__module__}.{function.__qualname__}"
         self._name = name.replace("<", "").replace(">", "")  # Windows allows no file of such a name
-        self._options = options
-        self._file_of_kernel = function.__code__.co_filename
+        # Of the sources as they are now: what is edited later is not what gets compiled.
+        self._made_of = f"{options} {_PACKAGE} {_digest(function.__code__.co_filename)}"
 
     @property
     def cache_path(self) -> str:
@@ -122,7 +123,7 @@ class KeptCode(_Cache):
         try:
             _write(folder / self._file(sig), content)
         except OSError as error:
-            _say_not_kept(f"{folder}: {error.strerror}")
+            _say_not_kept(f"{error.filename2 or error.filename or folder}: {error.strerror}")
         _done(self._name)
 
     def _read(self, sig: Any, target_context: Any) -> Any:
@@ -130,7 +131,7 @@ class KeptCode(_Cache):
         if folder is None:
             return None
         try:
-            content = (folder / self._file(sig)).read_bytes()
+            content = _content(folder / self._file(sig))
         except OSError:
             return None
         stamp, check, code = content[:DIGEST], content[DIGEST : 2 * DIGEST], content[2 * DIGEST :]
@@ -144,9 +145,7 @@ class KeptCode(_Cache):
         return f"{self._name}.{hashlib.sha256(str(sig).encode()).hexdigest()[:16]}.code"
 
     def _stamp(self, sig: Any, codegen: Any) -> bytes:
-        sources = f"{_package()} {_digest(self._file_of_kernel)}"
-        made_of = f"{sig} {self._options} {codegen.magic_tuple()} {sources}"
-        return hashlib.sha256(made_of.encode()).digest()
+        return hashlib.sha256(f"{sig} {codegen.magic_tuple()} {self._made_of}".encode()).digest()
 
     def enable(self) -> None:
         """Part of numba's interface; this cache is always on."""
@@ -164,7 +163,6 @@ def _digest(file: str) -> str:
     return hashlib.sha256(Path(file).read_bytes()).hexdigest()
 
 
-@functools.cache
 def _package() -> str:
     """Digest of all that code depends on but its own file: sources, options, versions."""
     digest = hashlib.sha256(repr(sorted(OPTIONS.items())).encode())
@@ -174,6 +172,9 @@ def _package() -> str:
         digest.update(str(file.relative_to(here)).encode())
         digest.update(file.read_bytes())
     return digest.hexdigest()
+
+
+_PACKAGE = _package()
 
 
 @functools.cache
@@ -191,17 +192,38 @@ def kept_in() -> Path | None:
 
 
 def _is_ours(folder: Path) -> bool:
-    """Whether a folder, made if need be, is this user's, closed to others, and can be written."""
+    """Whether a folder, made if need be, is this user's, closed to others, and can be written.
+
+    Nobody else may be able to put another in its place, either: in folders above that others may
+    write, only the owner of a thing may move it (the sticky bit, as /tmp has it).
+    """
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         if hasattr(os, "geteuid"):
-            found = folder.lstat()
-            if found.st_uid != os.geteuid() or found.st_mode & 0o022:
+            found, user = folder.lstat(), os.geteuid()
+            if not stat.S_ISDIR(found.st_mode) or found.st_uid != user or found.st_mode & 0o022:
                 return False
+            for above in (each.stat() for each in folder.resolve().parents):
+                if above.st_uid not in (user, 0):
+                    return False
+                if above.st_mode & 0o022 and not above.st_mode & stat.S_ISVTX:
+                    return False
         with tempfile.TemporaryFile(dir=folder):
             return True
     except OSError:
         return False
+
+
+def _content(file: Path) -> bytes:
+    """What is in a file of this user's; OSError for anything else, like a pipe that never ends."""
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOFOLLOW", 0)
+    with open(os.open(file, flags | getattr(os, "O_BINARY", 0)), "rb") as opened:
+        found = os.fstat(opened.fileno())
+        if not stat.S_ISREG(found.st_mode):
+            raise OSError(f"{file}: is no plain file")
+        if hasattr(os, "geteuid") and found.st_uid != os.geteuid():
+            raise OSError(f"{file}: belongs to somebody else")
+        return opened.read()
 
 
 def _write(file: Path, content: bytes) -> None:
@@ -240,7 +262,8 @@ def _wait_to_compile(name: str) -> bool:
         return False
     try:
         if _lock is None:
-            _lock = (folder / "lock").open("wb")
+            flags = os.O_RDWR | os.O_CREAT | os.O_NONBLOCK | os.O_NOFOLLOW
+            _lock = open(os.open(folder / "lock", flags, 0o600), "rb")
         has_waited, patience = False, PATIENCE
         while True:
             try:

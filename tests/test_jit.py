@@ -198,15 +198,17 @@ def test_full_disk(run: Run, package: Path) -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="no owners of files here")
-@pytest.mark.parametrize("fault", ["open to others", "a link", "of somebody else"])
+@pytest.mark.parametrize("fault", ["open", "open above", "a link", "of somebody else"])
 def test_folders_of_others_are_not_trusted(
     run: Run, package: Path, tmp_path: Path, fault: str
 ) -> None:
     """What others could have written is neither run nor written over."""
     run(NUMBA_CACHE_DIR=str(tmp_path / "shared"))
     (file,) = kept(tmp_path / "shared")
-    if fault == "open to others":
+    if fault == "open":
         file.parent.chmod(0o777)
+    elif fault == "open above":  # where others could move it away and put their own in its place
+        file.parent.parent.chmod(0o777)
     elif fault == "a link":
         file.parent.rename(tmp_path / "elsewhere")
         file.parent.symlink_to(tmp_path / "elsewhere")
@@ -216,6 +218,44 @@ def test_folders_of_others_are_not_trusted(
         pytest.skip("only root can give a folder away")
     assert run(NUMBA_CACHE_DIR=str(tmp_path / "shared")) == [COMPILED, RESULT]
     assert kept(package)  # beside the code instead
+
+
+@pytest.mark.parametrize("name", ["code", "lock"])
+def test_pipes_in_the_folder_do_not_hang(run: Run, package: Path, name: str) -> None:
+    """A pipe in the place of a file is no code, and nothing waits for what it will say."""
+    run()
+    (file,) = kept(package)
+    pipe = file if name == "code" else file.with_name("lock")
+    pipe.unlink()
+    if name == "lock":
+        file.unlink()
+    os.mkfifo(pipe)
+    assert run() == [COMPILED, RESULT]
+
+
+@pytest.mark.skipif(getattr(os, "geteuid", lambda: 1)() != 0, reason="only root gives files away")
+def test_files_of_others_are_not_trusted(run: Run, package: Path) -> None:
+    """Nor is a file in a folder of ours that somebody else owns."""
+    run()
+    (file,) = kept(package)
+    os.chown(file, 12345, 12345)
+    assert run() == [COMPILED, RESULT]
+
+
+def test_edited_after_import(package: Path, run: Run) -> None:
+    """Code is kept under the sources that it was made of, not those that lie there by now."""
+    edit = "(open('kernels_package/other.py', 'w').write('FACTOR = 7.0\\n'))\n"
+    program = PROGRAM.replace("scaled = np.zeros(3)\n", f"scaled = np.zeros(3)\n{edit}")
+    result = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=package.parent,
+        env={k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert result.stdout.splitlines() == [COMPILED, RESULT], result.stderr
+    assert run() == [COMPILED, "[0.0, 7.0, 14.0]"]
 
 
 def test_processes_wait_for_the_one_that_compiles(package: Path, tmp_path: Path) -> None:
