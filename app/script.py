@@ -208,7 +208,9 @@ def parse_script(text: str, *, source: str) -> Script:
     try:
         document = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # numbers too long, lists too deep, too
-        raise UserError(f"{source}: not valid TOML: {error}") from None
+        is_long = "set_int_max_str_digits" in str(error)  # advice for programmers
+        why = "a number has thousands of digits" if is_long else error
+        raise UserError(f"{source}: not valid TOML: {why}") from None
     reader = _Reader(source)
     reader.only(document, TOP_LEVEL_KEYS, where="top level")
     poses = reader.poses(document.get("pose", []))

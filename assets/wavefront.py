@@ -93,9 +93,10 @@ def _add_fan(corners: array[int], words: list[bytes], vertex_count: int) -> None
         ) from None
     for place, number in enumerate(found):
         if number == 0 or number < -vertex_count or number >= 2**31:
+            back = f"-1 to -{vertex_count}" if vertex_count else "no number below 0"
             raise AssetError(
                 f"no vertex has the number {words[place + 1][:SHOWN].decode()}; allowed are 1 to "
-                f"the number of vertices, and -1 to -{vertex_count} at this line"
+                f"the number of vertices, and {back} at this line"
             )
         found[place] = number - 1 if number > 0 else vertex_count + number
     first = found[0]

@@ -66,7 +66,8 @@ def _document(path: Path) -> Any:
     except RecursionError:
         reason = "brackets are nested too deep"
     except ValueError as error:
-        reason = str(error)
+        is_long = "set_int_max_str_digits" in str(error)  # advice for programmers
+        reason = "a number has thousands of digits" if is_long else str(error)
     raise AssetError(
         f'not readable as JSON: {reason}; it must be {{"{KEY}": [...]}} with {COUNT} entries'
     )
