@@ -14,7 +14,7 @@ from typing import Any
 import click
 
 from . import __version__
-from .commands import bench_quality, bench_refine, reproduce
+from .commands import bench_quality, bench_refine, reproduce, warm
 from .compiling import announce
 from .errors import OneLineGroup, UserError, in_one_line, told_in_one_line
 from .parameters import FiniteRange, Size
@@ -246,6 +246,7 @@ def bench() -> None:
 bench.add_command(bench_refine)
 bench.add_command(bench_quality)
 main.add_command(reproduce)
+main.add_command(warm)
 
 
 @bench.command("simulate")
@@ -389,13 +390,3 @@ def open_viewer(
         path = settings_path()
         with Viewer(performance, size, chosen, head=brought, settings_path=path) as viewer:
             viewer.run(playing=playing, once=once)
-
-
-@main.command()
-@click.option("--quiet", is_flag=True, help="No progress bar.")
-def warm(quiet: bool) -> None:
-    """Compile everything once, so that no later start has to."""
-    from . import compiling
-
-    with told_in_one_line():
-        compiling.warm(quiet)

@@ -1,4 +1,4 @@
-"""Sub-commands about refinement: `bench refine`, `quality` and the group `reproduce`.
+"""Sub-commands about refinement: `bench refine`, `quality`, the group `reproduce`, and `warm`.
 
 Each is joined to its group in cli.py. What is slow to import is imported inside.
 """
@@ -181,3 +181,13 @@ def progress(name: str) -> None:
     """Say on the error stream what is at work, where a person looks on."""
     if sys.stderr.isatty():
         click.echo(f"... {name}", err=True)
+
+
+@click.command()
+@click.option("--quiet", is_flag=True, help="No progress bar.")
+def warm(quiet: bool) -> None:
+    """Compile everything once, so that no later start has to."""
+    from .compiling import warm as compile_all
+
+    with told_in_one_line():
+        compile_all(quiet)

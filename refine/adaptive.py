@@ -77,44 +77,48 @@ class Kahler(BoundRefiner):
         costs nothing in faithfulness: True for the schemes that interpolate, False for the paper's.
         `coherent`: whether triangulations continue those of the frame before (section 4.4).
         """
-        for name, flag in (("blend", blend), ("coherent", coherent)):
-            if flag not in (None, True, False):
-                raise ValueError(f"{name} must be True or False, got {flag!r}")
         self._scheme = scheme_of(scheme, detail)
         self._criterion = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))
         super().__init__(faces, rest_positions, uv=uv, face_uv=face_uv, attributes=attributes)
         mesh = self.connectivity
-        if blend is None:
-            blend = self._scheme.interpolates and not coherent
-            blend = blend and isinstance(self._criterion, Measured)
+        self._blend = self._is_blended(blend, coherent)
         if hasattr(self._criterion, "use"):
             self._criterion.use(self._scheme)
         self._looks = hasattr(self._criterion, "look")
         self._is_foreign = not isinstance(self._criterion, NormalDrop)
-        self._blend = blend
-        if blend and coherent:
-            raise ValueError(
-                "coherent=True continues the triangulations of the frame before; with blend=True "
-                "none ever turns a diagonal; ask for one of the two"
-            )
         self.history = Coherent(len(mesh.faces)) if coherent else None
         """What triangles remember of their splits, as they are walked; None unless `coherent`."""
-        self._patterns = FANS if blend else CONFIGURATIONS
+        self._patterns = FANS if self._blend else CONFIGURATIONS
         if self.history is not None:
             self._patterns = self.history.patterns
-        if blend and not isinstance(self._criterion, Measured):
-            raise ValueError(
-                f"blend=True needs a criterion that measures, but {type(self._criterion).__name__} "
-                "has no method measure(positions, normals, need)"
-            )
         self._frame = self._make_frame()
-        self._need = np.zeros(len(mesh.edges) if blend else 0, dtype=np.float32)
+        self._need = np.zeros(len(mesh.edges) if self._blend else 0, dtype=np.float32)
         self._edge_splits = self._frame.splits[: len(mesh.edges)]
         self._splits = self._edge_splits.view()
         self._splits.flags.writeable = False
         vertex_normals(self._positions, mesh.faces, self._normals)
         self._criterion.bind(mesh, self._rest_positions, self._normals)
         self._scheme.bind(mesh, self._rest_positions, self._normals)
+
+    def _is_blended(self, blend: bool | None, coherent: bool) -> bool:
+        """Whether frames are blended; ValueError for what does not go together."""
+        for name, flag in (("blend", blend), ("coherent", coherent)):
+            if flag not in (None, True, False):
+                raise ValueError(f"{name} must be True or False, got {flag!r}")
+        measures = isinstance(self._criterion, Measured)
+        if blend is None:
+            return self._scheme.interpolates and not coherent and measures
+        if blend and coherent:
+            raise ValueError(
+                "coherent=True continues the triangulations of the frame before; with blend=True "
+                "none ever turns a diagonal; ask for one of the two"
+            )
+        if blend and not measures:
+            raise ValueError(
+                f"blend=True needs a criterion that measures, but {type(self._criterion).__name__} "
+                "has no method measure(positions, normals, need)"
+            )
+        return bool(blend)
 
     def _make_frame(self) -> Frame:
         mesh = self.connectivity
