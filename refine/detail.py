@@ -98,8 +98,6 @@ class DetailScheme(CubicScheme):
         faces = checked_indices("detail[1]", finer[1], len(positions), "detail[0]")
         if len(faces) == 0:
             raise ValueError("detail[1] must have triangles, got none")
-        if not np.ptp(positions[faces.ravel()], axis=0).any():
-            raise ValueError("detail must be a surface, but all its triangles lie at one place")
         self._surface: Surface | None = Surface(positions, faces.astype(np.uint32))
 
     def bind(

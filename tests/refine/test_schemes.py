@@ -183,7 +183,6 @@ def test_sphere_is_approached() -> None:
             r"detail\[1\] must hold indices",
         ),
         ({"scheme": "detail", "detail": (np.eye(3), np.zeros((0, 3), int))}, "must have triangles"),
-        ({"scheme": "detail", "detail": (np.ones((3, 3)), [[0, 1, 2]])}, "lie at one place"),
         ({"blend": True, "coherent": True}, "ask for one of the two"),
     ],
 )
