@@ -79,7 +79,8 @@ def njit(function: Any = None, /, **options: Any) -> Any:
 def _compiled(function: Callable[..., Any], **options: Any) -> Any:
     dispatcher = numba.njit(**OPTIONS, **options)(function)
     if not getattr(numba.config, "DISABLE_JIT", 0):
-        dispatcher._cache = KeptCode(function, repr(sorted(options.items())))
+        with suppress(OSError):  # without a source nothing tells when kept code has become old
+            dispatcher._cache = KeptCode(function, repr(sorted(options.items())))
     return dispatcher
 
 

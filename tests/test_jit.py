@@ -242,6 +242,18 @@ def test_files_of_others_are_not_trusted(run: Run, package: Path) -> None:
     assert run() == [COMPILED, RESULT]
 
 
+def test_function_without_a_source(tmp_path: Path, package: Path) -> None:
+    """What is typed in by hand is compiled, and not kept."""
+    program = (
+        "from kernels_package.jit import njit\n@njit\ndef one(x):\n    return x\nprint(one(1))"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=120
+    )
+    assert result.stdout == "1\n", result.stderr
+    assert not kept(package)
+
+
 def test_edited_after_import(package: Path, run: Run) -> None:
     """Code is kept under the sources that it was made of, not those that lie there by now."""
     edit = "(open('kernels_package/other.py', 'w').write('FACTOR = 7.0\\n'))\n"
