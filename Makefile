@@ -80,10 +80,11 @@ test-processors: setup opengl screen
 	done
 
 check: setup
+	@$(BIN)/python tests/as_installed.py .venv/as_installed
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
-	@PATH="$(CURDIR)/$(BIN):$$PATH" lint-imports
+	@cd .venv/as_installed && ../bin/lint-imports --config ../../pyproject.toml
 
 setup: $(READY)
 

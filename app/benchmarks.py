@@ -8,15 +8,10 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-import bench.gaps
-import bench.meshes
-import bench.motion
-import bench.simulate
-import bench.soak
-import bench.tearing
+from risorius.bench import gaps, meshes, motion, simulate, soak, tearing
 
 
-def simulate_table(rounds: int, sizes: Sequence[int] = bench.simulate.SIZES) -> str:
+def simulate_table(rounds: int, sizes: Sequence[int] = simulate.SIZES) -> str:
     """Time a 60 Hz frame of the simulation on meshes of several sizes; the text to print."""
     lines = [
         f"One frame of 1/60 s, serial, one core of {processor()}: medians of {rounds}",
@@ -24,7 +19,7 @@ def simulate_table(rounds: int, sizes: Sequence[int] = bench.simulate.SIZES) -> 
         "",
         f"{'motion':28} {'vertices':>8} {'triangles':>9} {'ms':>8} {'best':>8} {'ns/vertex':>9}",
     ]
-    for row in bench.simulate.run(rounds=rounds, sizes=sizes):
+    for row in simulate.run(rounds=rounds, sizes=sizes):
         lines.append(
             f"{row.motion:28} {row.vertices:8d} {row.triangles:9d} {row.milliseconds:8.3f} "
             f"{row.best_milliseconds:8.3f} {row.nanoseconds_per_vertex:9.0f}"
@@ -34,7 +29,7 @@ def simulate_table(rounds: int, sizes: Sequence[int] = bench.simulate.SIZES) -> 
 
 def motion_table(reference: Path) -> str:
     """Score simulated against scanned skin motion; the text to print."""
-    rows, left_out = bench.motion.run(reference)
+    rows, left_out = motion.run(reference)
     lines = [
         "Simulated against scanned displacement, area weighted: cosine 1 and magnitude 1 are equal",
         "fields, residual is the squared difference over the squared scan, half is the share of",
@@ -44,7 +39,7 @@ def motion_table(reference: Path) -> str:
         f"{'shape':20} {'cosine':>7} {'magnitude':>9} {'residual':>8} {'half':>5} "
         f"{'blob':>6} {'Waters':>6}",
     ]
-    for row in [*rows, bench.motion.mean_row(rows)]:
+    for row in [*rows, motion.mean_row(rows)]:
         lines.append(
             f"{row.shape:20} {row.cosine:7.3f} {row.magnitude:9.2f} {row.residual:8.3f} "
             f"{row.half:5.2f} {row.blob:6.3f} {row.waters:6.3f}"
@@ -57,7 +52,7 @@ def motion_table(reference: Path) -> str:
 
 def soak_table(minutes: float) -> str:
     """Drive the face with random input for a long time; the text to print."""
-    seen = bench.soak.run(minutes=minutes)
+    seen = soak.run(minutes=minutes)
     return "\n".join(
         [
             f"{seen.seconds / 60.0:.1f} simulated minutes, {seen.frames} frames of 1/240 to",
@@ -74,7 +69,7 @@ def soak_table(minutes: float) -> str:
 
 def tearing_table(mixtures: int) -> str:
     """Look for torn skin in all expressions and in random mixtures; the text to print."""
-    poses = bench.tearing.run(mixtures=mixtures)
+    poses = tearing.run(mixtures=mixtures)
     lines = [
         f"{len(poses)} poses: every row of the layers and {mixtures} random mixtures of muscles.",
         f"triangles turned by more than a right angle: {sum(pose.inverted for pose in poses)} "
@@ -92,7 +87,7 @@ def tearing_table(mixtures: int) -> str:
     return "\n".join(lines)
 
 
-def gaps_table(poses: Sequence[bench.gaps.Pose]) -> str:
+def gaps_table(poses: Sequence[gaps.Pose]) -> str:
     """What stays open in poses that ought to be shut; the text to print."""
 
     def millimetres(value: float | None) -> str:
@@ -110,21 +105,21 @@ def gaps_table(poses: Sequence[bench.gaps.Pose]) -> str:
         values = (millimetres(value) for value in (pose.lips, pose.lids, pose.sunk))
         lines.append(f"{pose.name:14} {' '.join(values)}")
     lines += ["", "worst      mm  asked"]
-    for title, most in (("lips", bench.gaps.LIPS_MOST), ("lids", bench.gaps.LIDS_MOST)):
-        value, pose = bench.gaps.worst(poses, title)
+    for title, most in (("lips", gaps.LIPS_MOST), ("lids", gaps.LIDS_MOST)):
+        value, pose = gaps.worst(poses, title)
         verdict = "met" if value < most else "MISSED"
         lines.append(f"{title:6} {value:6.2f}  {most} {verdict:6}  {pose.name}")
-    value, pose = bench.gaps.worst(poses, "sunk")
+    value, pose = gaps.worst(poses, "sunk")
     lines.append(f"{'sunk':6} {value:6.2f}              {pose.name}")
     return "\n".join(lines)
 
 
-def gaps_json(poses: Sequence[bench.gaps.Pose]) -> str:
+def gaps_json(poses: Sequence[gaps.Pose]) -> str:
     """The same figures for programs."""
     return json.dumps([asdict(pose) for pose in poses], indent=1) + "\n"
 
 
-def meshes_table(seen: Sequence[bench.meshes.Seen]) -> str:
+def meshes_table(seen: Sequence[meshes.Seen]) -> str:
     """What became of the meshes of a folder; the text to print."""
     refined = [each for each in seen if not each.left_out]
     lines = [f"{'triangles':>9} {'frames':>6} {'broken':>6}  mesh"]

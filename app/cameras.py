@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-import render
+from risorius import render
 
 from .errors import UserError
 from .scenes import Scene

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-import render
-from assets.fitting import FittedHead
+from risorius import render
+from risorius.assets.fitting import FittedHead
 
 from . import outputs
 from .cameras import camera_for

@@ -9,9 +9,8 @@ from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 
-import refine
-import render
-from assets.fitting import FittedHead, fit_head
+from risorius import refine, render
+from risorius.assets.fitting import FittedHead, fit_head
 
 from .errors import UserError
 from .scenes import SCENES
@@ -25,7 +24,7 @@ def script_for(path: Path | None, scene: str | None, settings: Sequence[str] = (
     if settings and path is not None:
         raise UserError(f"{path}: a script and --set exclude each other")
     if path is None:
-        path = Path(str(files("assets") / "scripts" / f"{scene or 'face'}.toml"))
+        path = Path(str(files("risorius.assets") / "scripts" / f"{scene or 'face'}.toml"))
     script = held_pose(settings) if settings else load_script(path)
     if scene is not None:
         script = replace(script, scene=scene)

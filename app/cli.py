@@ -13,7 +13,8 @@ from typing import Any
 
 import click
 
-from . import __version__
+from risorius import __version__
+
 from .commands import bench_quality, bench_refine, reproduce, warm
 from .compiling import announce
 from .errors import OneLineGroup, UserError, in_one_line, told_in_one_line
@@ -293,7 +294,7 @@ def bench_soak(minutes: float) -> None:
 @click.option("--json", "json_file", type=click.Path(path_type=Path), help="Figures for programs.")
 def bench_gaps(json_file: Path | None) -> None:
     """Look through lips and lids that ought to be shut, in every action unit."""
-    from bench import gaps
+    from risorius.bench import gaps
 
     from .benchmarks import gaps_json, gaps_table
     from .outputs import check_file, save_text
@@ -333,7 +334,7 @@ def bench_tearing(mixtures: int) -> None:
 )
 def bench_meshes(folder: Path, seed: int, seconds: float, most: int) -> None:
     """Refine every mesh in FOLDER and below, in noisy poses, and look for cracks: 1 if any."""
-    from bench import meshes
+    from risorius.bench import meshes
 
     from .benchmarks import meshes_table
     from .commands import progress

@@ -40,8 +40,8 @@ Command = Callable[..., Any]
 @click.option("--json", "json_file", type=click.Path(path_type=Path), help="Figures for programs.")
 def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None) -> None:
     """Time refinement on the face and on sheets of up to a million triangles, beside peers."""
-    from bench.refine import SIZES as ALL_SIZES
-    from bench.refine import run
+    from risorius.bench.refine import SIZES as ALL_SIZES
+    from risorius.bench.refine import run
 
     from .outputs import check_file, save_text
     from .refine_report import refine_json, refine_text
@@ -77,8 +77,8 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None)
 )
 def bench_quality(reference: Path | None, finer: str, apart: bool, curves: Path | None) -> None:
     """Measure how near every scheme comes to a dense face, for the triangles it spends."""
-    from bench import quality
-    from bench.subjects import Subject, built_in, scanned
+    from risorius.bench import quality
+    from risorius.bench.subjects import Subject, built_in, scanned
 
     from .outputs import check_picture, save_png
     from .quality_report import error_curves, quality_table, rules_table, targets_text

@@ -1,6 +1,6 @@
 """Compiled code: what is said while it is made, and `risorius warm`, which makes all of it.
 
-Kernels are compiled by numba when they are first called, and kept on disk (`refine/jit.py`). That
+Kernels are compiled by numba when they are first called, and kept on disk (`risorius/jit.py`). That
 takes half a minute once, for which a user wants to know the reason.
 """
 
@@ -17,7 +17,7 @@ import numpy as np
 if TYPE_CHECKING:
     from .scenes import Scene
 
-LOGS = ("refine.jit", "sim.jit")  # where the packages tell what they compile
+LOG = logging.getLogger("risorius.jit")  # where it is told what is compiled
 
 
 class Announcer(logging.Handler):
@@ -29,7 +29,6 @@ class Announcer(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Say a line on the error stream."""
-        # Once for each level: the packages keep code in the same places and complain of the same.
         if record.levelno in self._said:
             return
         self._said.add(record.levelno)
@@ -41,20 +40,16 @@ class Announcer(logging.Handler):
 
 def announce() -> None:
     """From here on tell the user when something is compiled, or cannot be kept."""
-    announcer = Announcer()
-    for name in LOGS:
-        log = logging.getLogger(name)
-        log.handlers = [announcer]
-        log.setLevel(logging.INFO)
-        log.propagate = False
+    LOG.handlers = [Announcer()]
+    LOG.setLevel(logging.INFO)
+    LOG.propagate = False
 
 
 def warm(quiet: bool) -> None:
     """Compile everything that the application runs, with a bar; what is there already is read."""
     from tqdm import tqdm
 
-    for name in LOGS:
-        logging.getLogger(name).setLevel(logging.WARNING)  # the bar tells of the rest
+    LOG.setLevel(logging.WARNING)  # the bar tells of the rest
     jobs = list(_jobs())
     with tqdm(
         jobs, disable=quiet or None, unit="part", bar_format="{l_bar}{bar}| {postfix}"
@@ -67,7 +62,7 @@ def warm(quiet: bool) -> None:
 
 def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     """Everything that compiles kernels of its own, by name."""
-    import refine
+    from risorius import refine
 
     from .ambient import openness
     from .scenes import FaceScene, PlaneScene
@@ -109,7 +104,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
 
 
 def _refine(scene: Scene, name: str, options: dict[str, Any]) -> None:
-    import refine
+    from risorius import refine
 
     from .refining import refiner_for
 

@@ -7,9 +7,9 @@ import os
 import platform
 import subprocess
 
-import render
+from risorius import __version__, render
 
-from . import __version__, ffmpeg
+from . import ffmpeg
 from .errors import UserError, in_one_line
 
 PATIENCE = 20.0  # [s] for ffmpeg to say which it is

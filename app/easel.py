@@ -10,8 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageDraw
 
-import refine
-import render
+from risorius import refine, render
 
 from .labels import INK, SHADE, font
 from .outputs import Frame

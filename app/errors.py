@@ -36,8 +36,7 @@ class UserError(Exception):
 @contextlib.contextmanager
 def told_in_one_line() -> Iterator[None]:
     """Turn what the user can mend into one line on the error stream and exit code 2."""
-    import assets
-    import render
+    from risorius import assets, render
 
     try:
         yield
@@ -52,7 +51,7 @@ def told_in_one_line() -> Iterator[None]:
 
 
 def run_alone(main: Callable[[Sequence[str]], None]) -> None:
-    """Run a program beside the command, `python -m app.sheet` and its like, by the same rules."""
+    """Run a program beside the command, like `risorius.app.sheet`, by the same rules."""
     listen()
     with told_in_one_line():
         main(sys.argv[1:])

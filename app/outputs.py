@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
-from assets.aside import Aside, is_aside
+from risorius.assets.aside import Aside, is_aside
 
 from .errors import UserError
 from .ffmpeg import Encoder

@@ -8,8 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import refine
-import render
+from risorius import refine, render
 
 from .cameras import camera_for
 from .easel import Drawing, Easel, table_of_pictures

@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-import refine
-import render
+from risorius import refine, render
 
 from .refining import refiner_for
 from .scenes import Scene

@@ -1,4 +1,4 @@
-"""The pictures of docs/head.md: `python -m app.portraits [FOLDER]` draws them anew.
+"""The pictures of docs/head.md: `python -m risorius.app.portraits [FOLDER]` draws them anew.
 
 Two contact sheets, always from the same views and under the same light, so that two states of the
 head can be laid side by side: `head_views.png` (the head at rest, as painted skin, as clay, as flat
@@ -13,10 +13,7 @@ from types import TracebackType
 import numpy as np
 import numpy.typing as npt
 
-import assets
-import refine
-import render
-import sim
+from risorius import assets, refine, render, sim
 
 from .errors import run_alone
 from .labels import contact_sheet
@@ -127,7 +124,7 @@ def details(studio: Studio) -> list[tuple[str, Frame]]:
 def main(arguments: Sequence[str]) -> None:
     """Draw both sheets into the folder given."""
     parser = argparse.ArgumentParser(
-        prog="python -m app.portraits", description=(__doc__ or "").splitlines()[0]
+        prog="python -m risorius.app.portraits", description=(__doc__ or "").splitlines()[0]
     )
     parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
     parser.add_argument("--width", type=pixels, default=CELL[0], help="of one portrait [pixels]")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from bench.quality import (
+from risorius.bench.quality import (
     COARSE,
     EVERYWHERE,
     IDEAL,

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from itertools import groupby
 
-from bench.refine import Report, Row
+from risorius.bench.refine import Report, Row
 
 from .benchmarks import processor
 

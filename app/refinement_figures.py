@@ -1,4 +1,4 @@
-"""The figures of docs/refinement.md: `python -m app.refinement_figures [FOLDER]` draws them anew.
+"""The figures of docs/refinement.md, drawn by `python -m risorius.app.refinement_figures`.
 
 refine_cases.png      the 27 split configurations and their triangulations
 refine_masks.png      weights of the smoothing rules, first and second level
@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from refine.coherence import sequence_tables
-from refine.patterns import POINTS, splits_of, subdivide
+from risorius.refine.coherence import sequence_tables
+from risorius.refine.patterns import POINTS, splits_of, subdivide
 
 from .diagrams import FAINT, FILL, INK, MOVED, NEW, SECOND, Sheet, equilateral
 from .errors import run_alone
@@ -256,7 +256,8 @@ FIGURES = {
 def main(arguments: Sequence[str]) -> None:
     """Draw all figures into the folder given."""
     parser = argparse.ArgumentParser(
-        prog="python -m app.refinement_figures", description=(__doc__ or "").splitlines()[0]
+        prog="python -m risorius.app.refinement_figures",
+        description=(__doc__ or "").splitlines()[0],
     )
     parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
     given = parser.parse_args(arguments)

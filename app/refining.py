@@ -10,7 +10,7 @@ from typing import Any, get_args
 import numpy as np
 import numpy.typing as npt
 
-import refine
+from risorius import refine
 
 from .errors import UserError
 from .scenes import Scene

@@ -13,9 +13,8 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-import assets
-import sim
-from assets.fitting import FittedHead
+from risorius import assets, sim
+from risorius.assets.fitting import FittedHead
 
 from .errors import UserError
 from .mouth import shaded_mouth

@@ -1,4 +1,4 @@
-"""The pictures of docs/controls.md: `python -m app.sheet [FOLDER]` draws them anew.
+"""The pictures of docs/controls.md: `python -m risorius.app.sheet [FOLDER]` draws them anew.
 
 One contact sheet for each layer of controls: every action unit, expression and viseme at full
 value, settled and refined, from the front and in three-quarter view. `--only AU12 joy` draws
@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-import render
+from risorius import render
 
 from .cameras import camera_for
 from .errors import run_alone
@@ -107,7 +107,7 @@ def save(target: Path, sheet: Frame) -> None:
 def main(arguments: Sequence[str]) -> None:
     """Draw the sheets into the folder given."""
     parser = argparse.ArgumentParser(
-        prog="python -m app.sheet", description=(__doc__ or "").splitlines()[0]
+        prog="python -m risorius.app.sheet", description=(__doc__ or "").splitlines()[0]
     )
     parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
     parser.add_argument("--width", type=pixels, default=CELL[0], help="of one view [pixels]")

@@ -12,8 +12,8 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-import refine
-from bench.turned_lines import Line, inner_lines, point_rows, turned
+from risorius import refine
+from risorius.bench.turned_lines import Line, inner_lines, point_rows, turned
 
 from .cameras import camera_for
 from .easel import Drawing, Easel, table_of_pictures

@@ -17,9 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-import refine
-import render
-from bench.timing import interleaved
+from risorius import refine, render
+from risorius.bench.timing import interleaved
 
 from .cameras import camera_for
 from .choices import script_for

@@ -8,9 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import numpy.typing as npt
 
-import refine
-import render
-from refine.tension import Tension, TensionMap
+from risorius import refine, render
+from risorius.refine.tension import Tension, TensionMap
 
 from .cameras import camera_for
 from .easel import table_of_pictures

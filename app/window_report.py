@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-import render
+from risorius import render
 
 from .benchmarks import processor
 from .choices import script_for

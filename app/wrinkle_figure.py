@@ -1,4 +1,4 @@
-"""The picture of wrinkles in docs/viewer.md: `python -m app.wrinkle_figure [FILE]` draws it anew.
+"""The picture of wrinkles in docs/viewer.md, drawn by `python -m risorius.app.wrinkle_figure`.
 
 Some poses of the built-in head from near, without and with the wrinkles that the simulation makes.
 """
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-import render
+from risorius import render
 
 from .capture import Capture, CaptureOptions
 from .errors import run_alone
@@ -54,7 +54,7 @@ def wrinkles(size: tuple[int, int] = CELL) -> Frame:
 def main(arguments: Sequence[str]) -> None:
     """Draw the picture into the file given."""
     parser = argparse.ArgumentParser(
-        prog="python -m app.wrinkle_figure", description=(__doc__ or "").splitlines()[0]
+        prog="python -m risorius.app.wrinkle_figure", description=(__doc__ or "").splitlines()[0]
     )
     parser.add_argument("file", nargs="?", type=Path, default=FILE)
     save_png(parser.parse_args(arguments).file, wrinkles())

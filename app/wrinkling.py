@@ -12,8 +12,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-import refine
-import render
+from risorius import refine, render
 
 from .scenes import Scene
 

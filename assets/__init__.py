@@ -4,9 +4,9 @@
     plane = assets.load("plane")
     mesh = assets.read_mesh("cloth.ply")  # or OBJ, STL, OFF, GLB
     picture = assets.paint(tone="dark")  # another skin for the head than `head.albedo`
-    head = assets.fitting.fit_head("anna.obj", "anna.json")  # import assets.fitting, for any head
+    head = fitting.fit_head("anna.obj", "anna.json")  # from risorius.assets import fitting
 
-The programs that generate them are in this package too; `python -m assets.build` runs them.
+The programs that generate them are in this package, too: `python -m risorius.assets.build`.
 """
 
 from .loading import available, load

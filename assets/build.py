@@ -1,11 +1,12 @@
-"""Rebuild the head's data files and picture: `python -m assets.build [FILE] [--tone TONE]`.
+"""Rebuild the head's data files and picture: `python -m risorius.assets.build`.
 
 Seeds are fixed: one machine makes the same files each time. Other processors round differently in
 the last digits, other versions of scipy may order a triangulation differently; the shipped files
 are therefore part of the package, and a test compares them with a fresh build.
 
-The light on the skin takes the simulation, which nothing here may import: `python -m app.ambient`
-bakes it for the head that is made here, and until then it is baked wherever the head is shown.
+The light on the skin takes the simulation, which nothing here may import:
+`python -m risorius.app.ambient` bakes it for the head that is made here, and until then it is baked
+wherever the head is shown.
 """
 
 import argparse
@@ -142,7 +143,7 @@ def main(arguments: list[str]) -> None:
     Light that was baked for what lay there before is removed.
     """
     parser = argparse.ArgumentParser(
-        prog="python -m assets.build", description=(__doc__ or "").splitlines()[0]
+        prog="python -m risorius.assets.build", description=(__doc__ or "").splitlines()[0]
     )
     parser.add_argument("file", nargs="?", type=Path, default=HEAD_FILE, help="the data file")
     tones = [tone.value for tone in Tone]

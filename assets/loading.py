@@ -1,7 +1,7 @@
 """Load an asset by name: the built-in head or the paper's plane.
 
-The head's numbers lie in `data/head.npz`, written by `python -m assets.build`; its rig and the
-layers of controls above the muscles are text files, written by hand (`rigs/face.toml`,
+The head's numbers lie in `data/head.npz`, written by `python -m risorius.assets.build`; its rig and
+the layers of controls above the muscles are text files, written by hand (`rigs/face.toml`,
 `action_units.toml`, `expressions.toml`, `visemes.toml`).
 """
 
@@ -75,7 +75,7 @@ def load_head(
         return _assemble(arrays, head_file, _read_toml(rig_file), read_layers(layer_files))
     except KeyError as error:
         raise AssetError(
-            f"{head_file} has no array {error}; rebuild it with 'python -m assets.build'"
+            f"{head_file} has no array {error}; rebuild it with 'python -m risorius.assets.build'"
         ) from error
 
 
@@ -126,10 +126,14 @@ def _made_for(
     """The arrays of a file that belongs to a head; AssetError if it belongs to another."""
     arrays = _read_arrays(path, program)
     if int(arrays.get("made_from", -1)) != fingerprint(head):
-        raise AssetError(f"{path} was made for another head; rebuild it with 'python -m {program}'")
+        raise AssetError(
+            f"{path} was made for another head; rebuild it with 'python -m risorius.{program}'"
+        )
     for name in names:
         if name not in arrays:
-            raise AssetError(f"{path} has no array '{name}'; rebuild it with 'python -m {program}'")
+            raise AssetError(
+                f"{path} has no array '{name}'; rebuild it with 'python -m risorius.{program}'"
+            )
     return arrays
 
 
@@ -209,12 +213,12 @@ def _read_arrays(path: Path, program: str = PROGRAM) -> dict[str, npt.NDArray[An
             arrays = {name: file[name] for name in file.files}
     except FileNotFoundError as error:
         raise AssetError(
-            f"the data file {path} is missing; build it with 'python -m {program}'"
+            f"the data file {path} is missing; build it with 'python -m risorius.{program}'"
         ) from error
     except Exception as error:  # zip, its compression and numpy have their own kinds each
         raise AssetError(
             f"the data file {path} is not a readable npz file ({error}); "
-            f"rebuild it with 'python -m {program}'"
+            f"rebuild it with 'python -m risorius.{program}'"
         ) from error
     for array in arrays.values():
         array.flags.writeable = False

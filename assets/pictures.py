@@ -15,11 +15,12 @@ def read_picture(path: Path) -> Picture:
             picture: Picture = np.array(image.convert("RGB"), dtype=np.uint8)
     except FileNotFoundError as error:
         raise AssetError(
-            f"the picture {path} is missing; paint it with 'python -m assets.build'"
+            f"the picture {path} is missing; paint it with 'python -m risorius.assets.build'"
         ) from error
     except (OSError, ValueError, SyntaxError, UnidentifiedImageError) as error:
         raise AssetError(
-            f"{path} is not a readable picture ({error}); paint it with 'python -m assets.build'"
+            f"{path} is not a readable picture ({error}); "
+            "paint it with 'python -m risorius.assets.build'"
         ) from error
     picture.flags.writeable = False
     return picture

@@ -1,4 +1,4 @@
-"""Mesh report of the built-in head: `python -m assets.report` writes it to standard output.
+"""Mesh report of the built-in head, printed by `python -m risorius.assets.report`.
 
 Distances are measured between vertices, straight, with the names of anthropometry. Beside them
 stand the published means of adults, where there are such (`norms`), and how many deviations the
@@ -190,7 +190,7 @@ def depth_table(head: Head) -> list[str]:
 def main(arguments: list[str]) -> None:
     """Write the report of the built-in head, or only its distances and depths as tables."""
     parser = argparse.ArgumentParser(
-        prog="python -m assets.report", description=(__doc__ or "").splitlines()[0]
+        prog="python -m risorius.assets.report", description=(__doc__ or "").splitlines()[0]
     )
     parser.add_argument("--table", action="store_true", help="both tables only, in Markdown")
     head = load("head")

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-import refine
+from risorius import refine
 
 Wide = npt.NDArray[np.int64]
 

@@ -13,9 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-import assets
-import refine
-import sim
+from risorius import assets, refine, sim
 
 from .sight import lid_gaps, shown_meshes, sunk_in_eyeballs, widest_slit
 

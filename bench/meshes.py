@@ -18,8 +18,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-import assets
-import refine
+from risorius import assets, refine
 
 from .cracks import cracks
 

@@ -27,12 +27,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-import sim
-from assets.fitting import fit
-from assets.meshes import Mesh
-from bench.subjects import DENSE, read_arrays
-from sim.landmarks import FaceFrame, Side
-from sim.rig import LinearMuscle, RingMuscle
+from risorius import sim
+from risorius.assets.fitting import fit
+from risorius.assets.meshes import Mesh
+from risorius.bench.subjects import DENSE, read_arrays
+from risorius.sim.landmarks import FaceFrame, Side
+from risorius.sim.rig import LinearMuscle, RingMuscle
 
 Array = npt.NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from refine.jit import njit
+from risorius.jit import njit
 
 Doubles = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]

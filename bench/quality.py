@@ -28,8 +28,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-import refine
-from refine.criterion import Thresholds
+from risorius import refine
+from risorius.refine.criterion import Thresholds
 
 from .nearest import nearest_points
 from .pn import tessellate

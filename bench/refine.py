@@ -20,9 +20,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-import assets
-import refine
-import sim
+from risorius import assets, refine, sim
 
 from .peers import peers_for
 from .sheets import Load, sheet

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-import refine
-import sim
+from risorius import refine, sim
 
 Array = npt.NDArray[np.float64]
 Triangles = npt.NDArray[Any]

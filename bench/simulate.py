@@ -20,8 +20,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-import assets
-import sim
+from risorius import assets, sim
 
 from .timing import interleaved
 

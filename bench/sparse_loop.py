@@ -15,9 +15,9 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-import refine
-from refine.jit import njit
-from refine.rings import vertex_rings
+from risorius import refine
+from risorius.jit import njit
+from risorius.refine.rings import vertex_rings
 
 from .sheets import Load
 

@@ -22,7 +22,7 @@ PROGRAM = """
 import time
 import numpy
 start = time.perf_counter()
-import refine
+from risorius import refine
 faces = numpy.array([[0, 1, 2], [2, 1, 3]])
 rest = numpy.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
 refine.create("kahler", faces, rest).refine(rest + rest[:, :1] * rest[:, 1:2])
@@ -30,7 +30,8 @@ print(time.perf_counter() - start)
 """
 PEAK_PROGRAM = """
 import sys
-import numpy, refine
+import numpy
+from risorius import refine
 def kilobytes(name):
     with open("/proc/self/status") as file:
         return next(int(line.split()[1]) for line in file if line.startswith(name))
@@ -46,7 +47,6 @@ refiner.refine(positions)
 print(kilobytes("VmHWM") - before)
 """
 REPEATS = 5
-ROOT = Path(__file__).parents[1]
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,6 @@ def _run(program: str, *arguments: str, cache: str | None = None) -> str:
     result = subprocess.run(
         [sys.executable, "-c", program, *arguments],
         env=dict(os.environ) if cache is None else {**os.environ, "NUMBA_CACHE_DIR": cache},
-        cwd=ROOT,
         capture_output=True,
         text=True,
         check=True,

@@ -19,8 +19,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-import assets
-import sim
+from risorius import assets, sim
 
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]

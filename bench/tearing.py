@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-import assets
-import sim
+from risorius import assets, sim
 
 Array = npt.NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 import numpy as np
 import numpy.typing as npt
 
-import refine
+from risorius import refine
 
 Positions = npt.NDArray[np.floating]
 Point = tuple[int, int, int]

@@ -12,8 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import pyvista
 
-import assets
-import refine
+from risorius import assets, refine
 
 Points = npt.NDArray[np.float64]
 

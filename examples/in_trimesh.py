@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import trimesh
 
-import refine
+from risorius import refine
 
 Points = npt.NDArray[np.float64]
 

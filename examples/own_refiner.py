@@ -19,7 +19,7 @@ from types import SimpleNamespace
 import numpy as np
 import numpy.typing as npt
 
-from refine import (
+from risorius.refine import (
     Origins,
     RefinedMesh,
     Stream,

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-import refine
+from risorius import refine
 
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .jit import njit
+from ..jit import njit
 
 LARGEST = 1e15
 """No coordinate may be larger: cross products of edges have to stay finite in single precision."""

@@ -29,9 +29,9 @@ Differs from the paper: "We don't generate any new vertices in the interior" (se
 import numpy as np
 import numpy.typing as npt
 
+from ..jit import njit
 from .connectivity import Connectivity
 from .frame import CENTRES, ROWS, TRIANGLES, Frame
-from .jit import njit
 from .normals import unit
 from .patterns import CENTRE, Patterns
 

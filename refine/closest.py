@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .jit import njit
+from ..jit import njit
 from .normals import vertex_normals
 
 Floats = npt.NDArray[np.float32]

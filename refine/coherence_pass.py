@@ -8,8 +8,8 @@ edge, so no crack can open.
 import numpy as np
 import numpy.typing as npt
 
+from ..jit import njit
 from .coherence import sequence_tables
-from .jit import njit
 from .patterns import Patterns
 
 Numbers = npt.NDArray[np.uint16]

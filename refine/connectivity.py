@@ -31,8 +31,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..jit import njit
 from .arguments import as_indices, checked_positions
-from .jit import njit
 
 Indices = npt.NDArray[np.int32]
 Unsigned = npt.NDArray[np.uint32]

@@ -25,11 +25,11 @@ from typing import cast
 import numpy as np
 import numpy.typing as npt
 
+from ..jit import njit
 from .blend import RAMP
 from .connectivity import Connectivity
 from .criterion import Criterion, Measured, NormalDrop, Thresholds
 from .curves import CurveScheme
-from .jit import njit
 from .plugin import View
 from .rest_curvature import RestCurvature
 

@@ -35,10 +35,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..jit import njit
 from .connectivity import Connectivity
 from .curves import MIDDLE, NEAR_END, NEAR_START, CurveScheme
 from .frame import CENTRES, ONCE, ROWS, Frame
-from .jit import njit
 from .normals import add, between, cross_product, normalise
 
 Floats = npt.NDArray[np.float32]

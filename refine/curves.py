@@ -20,9 +20,9 @@ mesh, and correct at borders; these are all, and leave every vertex where the si
 import numpy as np
 import numpy.typing as npt
 
+from ..jit import njit
 from .connectivity import Connectivity
 from .frame import ONCE, Frame
-from .jit import njit
 from .masks import growth_of_split, mix, write_mean_normal, write_normal
 from .normals import unit
 from .output import place_unmoved

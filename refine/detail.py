@@ -33,6 +33,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..jit import njit
 from .arguments import checked_indices, checked_positions
 from .closest import Surface
 from .connectivity import Connectivity
@@ -40,7 +41,6 @@ from .cubic import CubicScheme
 from .curves import place_on_curves
 from .fit import Points, fit, middles_of
 from .frame import CENTRES, ONCE, ROWS, Frame
-from .jit import njit
 from .local_frames import edge_axes, find_middles, slide_middle, triangle_axes, vertex_axes
 from .masks import growth_of_split, mix, write_normal
 from .normals import Vector, unit

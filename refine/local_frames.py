@@ -13,9 +13,9 @@ or the other, every second triangle cut across the fold, and small teeth were se
 import numpy as np
 import numpy.typing as npt
 
+from ..jit import njit
 from .connectivity import Connectivity
 from .frame import ONCE, Frame
-from .jit import njit
 from .normals import between, unit
 
 Floats = npt.NDArray[np.float32]

@@ -46,9 +46,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..jit import njit
 from .connectivity import Connectivity
 from .frame import ONCE, TWICE, Frame
-from .jit import njit
 from .normals import Number, unit
 from .rings import NEAR, Rings
 

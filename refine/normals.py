@@ -10,7 +10,7 @@ origin loses nothing. Normals at rest and in a frame come from the same code: se
 import numpy as np
 import numpy.typing as npt
 
-from .jit import njit
+from ..jit import njit
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]

@@ -15,9 +15,9 @@ Everything here goes from the edges that are split, not from the triangles: most
 import numpy as np
 import numpy.typing as npt
 
+from ..jit import njit
 from .connectivity import Connectivity
 from .frame import ONCE, ROWS, TRIANGLES, TWICE, Frame
-from .jit import njit
 from .patterns import CENTRE, Patterns
 
 Floats = npt.NDArray[np.float32]

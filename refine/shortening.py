@@ -18,8 +18,8 @@ weighted by area, is a sum with weights that never change. At rest it is 0 to th
 import numpy as np
 import numpy.typing as npt
 
+from ..jit import njit
 from .arguments import checked_indices, checked_positions
-from .jit import njit
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]

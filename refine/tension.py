@@ -22,8 +22,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..jit import njit
 from .arguments import checked_indices, checked_positions, not_finite, round_finite
-from .jit import njit
 from .normals import vertex_normals
 
 Floats = npt.NDArray[np.float32]

@@ -5,11 +5,9 @@ writes one JSON object.
 """
 
 import json
-import os
 import subprocess
 import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 from .errors import GLError
 
@@ -54,8 +52,6 @@ def _probe_in_process(name: str) -> Finding:
         return Finding(name, is_ok=False, message=message)
 
     code = f"from {__package__}.probe import write_finding; write_finding({name!r})"
-    root = str(Path(__file__).resolve().parents[1])
-    search_path = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
     try:
         process = subprocess.run(
             [sys.executable, "-c", code],
@@ -63,7 +59,6 @@ def _probe_in_process(name: str) -> Finding:
             text=True,
             errors="replace",
             timeout=_PATIENCE,
-            env={**os.environ, "PYTHONPATH": search_path},
             check=False,
         )
     except subprocess.TimeoutExpired:

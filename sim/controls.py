@@ -20,9 +20,9 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ..jit import njit
 from .checked import number as finite
 from .checked import shown
-from .jit import njit
 from .landmarks import Array
 from .layers import NO_LAYERS, Layers
 

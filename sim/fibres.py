@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .jit import njit
+from ..jit import njit
 from .landmarks import Array, Side
 from .rig import Fibre, LinearMuscle
 from .surface import Surface

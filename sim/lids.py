@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .jit import njit
+from ..jit import njit
 from .landmarks import EYE_LANDMARKS, Array, polyline_distance, select, smoothstep
 from .openings import lid_side
 from .rig import LIDS, Eyes, LidMuscle, Rig

@@ -24,8 +24,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..jit import njit
 from .fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, FibreBundle, Riding, move_lines, over_skin
-from .jit import njit
 from .landmarks import Array
 from .muscles import Line, Placed
 from .riding import from_below, lay_on_each_other, points_along

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .jit import njit
+from ..jit import njit
 from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Array, FaceFrame, Side, select
 from .rig import Eyes, Head, Jaw
 from .surface import Surface

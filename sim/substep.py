@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .jit import njit
+from ..jit import njit
 
 LIP_PASSES = 5  # averaged projections need a second pass where lips are pressed hard
 FASTEST = 5000.0  # mm/s per axis; a face never reaches it, a vertex thrown by the caller may

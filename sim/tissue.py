@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .jit import njit
+from ..jit import njit
 from .landmarks import Array
 from .rig import Tissue
 from .state import State

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-import assets
-from assets.meshes import Mesh
+from risorius import assets
+from risorius.assets.meshes import Mesh
 
 Array = npt.NDArray[np.float64]
 TURN = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])  # z up, looking along y

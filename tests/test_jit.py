@@ -17,7 +17,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 KERNELS = """
 import numpy as np
-from .jit import njit
+from risorius.jit import njit
 from .other import FACTOR
 
 @njit
@@ -28,7 +28,7 @@ def scale(numbers, scaled):
 PROGRAM = """
 import logging, sys
 import numpy as np
-import kernels_package.jit as jit
+from risorius import jit
 
 class Count(logging.Handler):
     def emit(self, record):
@@ -37,13 +37,13 @@ class Count(logging.Handler):
 jit.log.addHandler(Count())
 jit.log.setLevel(logging.INFO)
 jit.log.propagate = False
-from kernels_package.kernels import scale
+from risorius.refine.kernels import scale
 scaled = np.zeros(3)
 scale(np.arange(3.0), scaled)
 scale(np.arange(3.0), scaled)
 print(scaled.tolist())
 """
-COMPILED = "INFO compiling kernels_package.kernels.scale"
+COMPILED = "INFO compiling risorius.refine.kernels.scale"
 RESULT = "[0.0, 2.0, 4.0]"
 
 Run = Callable[..., list[str]]
@@ -52,12 +52,13 @@ Run = Callable[..., list[str]]
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
     """A package of one kernel that uses a number of another file."""
-    folder = tmp_path / "kernels_package"
-    folder.mkdir()
-    shutil.copy(ROOT / "refine" / "jit.py", folder)
+    folder = tmp_path / "risorius"
+    (folder / "refine").mkdir(parents=True)
+    shutil.copy(ROOT / "risorius" / "jit.py", folder)
     (folder / "__init__.py").write_text("")
-    (folder / "other.py").write_text("FACTOR = 2.0\n")
-    (folder / "kernels.py").write_text(KERNELS)
+    (folder / "refine" / "__init__.py").write_text("")
+    (folder / "refine" / "other.py").write_text("FACTOR = 2.0\n")
+    (folder / "refine" / "kernels.py").write_text(KERNELS)
     return folder
 
 
@@ -91,12 +92,6 @@ def kept(folder: Path) -> list[Path]:
     return sorted(folder.rglob("*.code"))
 
 
-def test_both_packages_have_the_same() -> None:
-    """`refine` and `sim` must not import each other, so each has this file; it must not part."""
-    texts = [(ROOT / package / "jit.py").read_bytes() for package in ("refine", "sim")]
-    assert texts[0] == texts[1]
-
-
 def test_second_start_compiles_nothing(run: Run, package: Path) -> None:
     """Code lies beside the package, closed to others, and is read the next time."""
     assert run() == [COMPILED, RESULT]
@@ -108,7 +103,7 @@ def test_second_start_compiles_nothing(run: Run, package: Path) -> None:
 def test_change_in_another_file_counts(run: Run, package: Path) -> None:
     """What a kernel takes from another file of its package is part of its code."""
     run()
-    (package / "other.py").write_text("FACTOR = 3.0\n")
+    (package / "refine" / "other.py").write_text("FACTOR = 3.0\n")
     assert run() == [COMPILED, "[0.0, 3.0, 6.0]"]
     assert len(kept(package)) == 1  # the old code was written over
 
@@ -118,7 +113,7 @@ def test_change_in_a_file_outside_the_package_counts(tmp_path: Path, package: Pa
     program = tmp_path / "program.py"
     for factor in (2.0, 5.0):
         program.write_text(
-            "from kernels_package.jit import njit\n"
+            "from risorius.jit import njit\n"
             f"@njit\ndef double(x):\n    return {factor} * x\nprint(double(1.0))\n"
         )
         result = subprocess.run(
@@ -164,7 +159,7 @@ def test_code_goes_to_the_user_where_the_package_is_read_only(
     read_only(package)
     assert run() == [COMPILED, RESULT]
     (file,) = kept(tmp_path / ".cache")
-    assert "kernels_package" in str(file.parent.name)
+    assert "risorius" in str(file.parent.name)
     assert run() == [RESULT]
 
 
@@ -244,9 +239,7 @@ def test_files_of_others_are_not_trusted(run: Run, package: Path) -> None:
 
 def test_function_without_a_source(tmp_path: Path, package: Path) -> None:
     """What is typed in by hand is compiled, and not kept."""
-    program = (
-        "from kernels_package.jit import njit\n@njit\ndef one(x):\n    return x\nprint(one(1))"
-    )
+    program = "from risorius.jit import njit\n@njit\ndef one(x):\n    return x\nprint(one(1))"
     result = subprocess.run(
         [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=120
     )
@@ -256,7 +249,7 @@ def test_function_without_a_source(tmp_path: Path, package: Path) -> None:
 
 def test_edited_after_import(package: Path, run: Run) -> None:
     """Code is kept under the sources that it was made of, not those that lie there by now."""
-    edit = "(open('kernels_package/other.py', 'w').write('FACTOR = 7.0\\n'))\n"
+    edit = "(open('risorius/refine/other.py', 'w').write('FACTOR = 7.0\\n'))\n"
     program = PROGRAM.replace("scaled = np.zeros(3)\n", f"scaled = np.zeros(3)\n{edit}")
     result = subprocess.run(
         [sys.executable, "-c", program],
@@ -317,7 +310,7 @@ def test_runs_as_python(package: Path, run: Run) -> None:
 REFINE = """
 import sys, threading
 import numpy as np
-import refine
+from risorius import refine
 from tests import meshes
 mesh = meshes.irregular(3)
 deformed = meshes.wrinkled(mesh, 5)

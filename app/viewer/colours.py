@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-import refine
-import render
+from risorius import refine, render
 
 from ..pipeline import Picture, splits_of_source
 from ..scenes import Scene

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-import render
+from risorius import render
 
 from .. import outputs
 from ..cameras import whole_scene

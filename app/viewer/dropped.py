@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import assets
-from assets.meshes import FORMATS
+from risorius import assets
+from risorius.assets.meshes import FORMATS
 
 from ..choices import head_for
 from ..errors import UserError

@@ -18,7 +18,7 @@ from typing import Any
 import imgui_bundle
 from imgui_bundle import imgui
 
-import render
+from risorius import render
 
 import glfw  # isort: skip - after imgui_bundle, see above
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-import render
+from risorius import render
 
 from ..scenes import Scene
 from .colours import edge_strains, vertex_normals

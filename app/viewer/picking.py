@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-import render
+from risorius import render
 
 from ..pipeline import Viewport
 

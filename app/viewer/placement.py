@@ -6,7 +6,7 @@ from typing import Any
 
 import glfw  # the GUI library's: the package imports that first
 
-import render
+from risorius import render
 
 FIRST_SIZE = 1280, 800  # [units of a screen of ordinary density]
 

@@ -7,7 +7,7 @@ new motion begins, if there was ample time left. So it never swings to and fro.
 
 from __future__ import annotations
 
-import render
+from risorius import render
 
 FULL = render.Detail(samples=4, scale=1.0)
 # One sample, outlines smoothed by strips (render/outline.py); then a little blurred, too.

@@ -27,7 +27,7 @@ class ScriptFile:
     def of(cls, script: Script) -> ScriptFile:
         """The file that a script was read from; the program's own examples are nobody's file."""
         path = Path(script.source)
-        is_own = path.is_file() and not path.resolve().is_relative_to(str(files("assets")))
+        is_own = path.is_file() and not path.resolve().is_relative_to(str(files("risorius.assets")))
         return cls(path if is_own else None, script)
 
     @classmethod

@@ -8,8 +8,7 @@ import sys
 from collections.abc import Callable, Collection
 from typing import Any
 
-import refine
-import render
+from risorius import refine, render
 
 from .colours import COLOURS
 from .gui import THEMES

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-import render
+from risorius import render
 
 from ..labels import caption
 from ..outputs import Frame

@@ -1,4 +1,4 @@
-"""The pictures of docs/viewer.md: `xvfb-run -a python -m app.viewer.tour [FOLDER]` draws them anew.
+"""The pictures of docs/viewer.md, drawn by `xvfb-run -a python -m risorius.app.viewer.tour`.
 
 Each is a window as a user would see it, brought there by the same commands that menus use.
 """

@@ -17,10 +17,8 @@ from pathlib import Path
 import numpy as np
 from imgui_bundle import imgui
 
-import refine
-import render
-import sim
-from assets.fitting import FittedHead
+from risorius import refine, render, sim
+from risorius.assets.fitting import FittedHead
 
 from ..cameras import whole_scene
 from ..errors import UserError

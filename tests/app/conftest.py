@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from imgui_bundle import imgui
 
-from app.choices import script_for
-from app.viewer import Viewer
-from app.viewer.files import Files
-from app.viewer.settings import Look
+from risorius.app.choices import script_for
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.files import Files
+from risorius.app.viewer.settings import Look
 
 from .driving import SIZE, settle, xdotool
 

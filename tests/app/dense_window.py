@@ -13,9 +13,9 @@ from collections.abc import Iterator
 
 from Xlib import Xatom, display
 
-from app.choices import script_for
-from app.viewer import Viewer
-from app.viewer.files import Files
+from risorius.app.choices import script_for
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.files import Files
 
 from .driving import click, drag, middle, moved, nose, settle, show_controls, until, xdotool
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.viewer import Viewer
+from risorius.app.viewer import Viewer
 
 NEEDS_A_SCREEN = [
     pytest.mark.window,

@@ -11,11 +11,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import assets
-from app.ambient import bake, main, open_to_light, openness
-from app.mouth import shaded_mouth
-from app.scenes import FaceScene
-from assets.loading import HEAD_FILE, load_head
+from risorius import assets
+from risorius.app.ambient import bake, main, open_to_light, openness
+from risorius.app.mouth import shaded_mouth
+from risorius.app.scenes import FaceScene
+from risorius.assets.loading import HEAD_FILE, load_head
 from tests import meshes
 
 
@@ -88,10 +88,14 @@ def test_program_writes_the_light_of_a_head(unbaked: FaceScene) -> None:
     main([str(head.openness_file.with_name("head.npz"))])
     assert np.array_equal(unbaked.openness(), head.openness)
     np.savez(head.openness_file, openness=head.openness, made_from=np.array(1))
-    with pytest.raises(assets.AssetError, match=r"another head; .* 'python -m app.ambient'"):
+    with pytest.raises(
+        assets.AssetError, match=r"another head; .* 'python -m risorius.app.ambient'"
+    ):
         _ = load_head(head.openness_file.with_name("head.npz")).openness
     head.openness_file.write_bytes(b"nothing")
-    with pytest.raises(assets.AssetError, match=r"not a readable npz .* 'python -m app.ambient'"):
+    with pytest.raises(
+        assets.AssetError, match=r"not a readable npz .* 'python -m risorius.app.ambient'"
+    ):
         _ = load_head(head.openness_file.with_name("head.npz")).openness
 
 
@@ -99,8 +103,8 @@ def test_the_built_in_head_waits_for_no_baking(tmp_path: Path) -> None:
     """A picture of it is drawn without the code that bakes, let alone its compiling."""
     words = ["capture", "--set", "joy", "--size", "64x48", "-o", str(tmp_path / "joy.png")]
     code = (
-        "import sys; from app.cli import main; "
-        f"main({words}, standalone_mode=False); assert 'app.ambient' not in sys.modules"
+        "import sys; from risorius.app.cli import main; "
+        f"main({words}, standalone_mode=False); assert 'risorius.app.ambient' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
     assert (tmp_path / "joy.png").exists()

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
-from app.cli import main
+from risorius.app.cli import main
 
 WRITERS = {
     "film": ("capture", "--set", "joy", "-o", "x.mp4"),
@@ -42,10 +42,10 @@ def idle(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
         raise AssertionError("it was begun")
 
     for name in (
-        "app.capture.Capture.play",
-        "app.paper_figures.figure_9",
-        "bench.refine.run",
-        "bench.quality.run",
+        "risorius.app.capture.Capture.play",
+        "risorius.app.paper_figures.figure_9",
+        "risorius.bench.refine.run",
+        "risorius.bench.quality.run",
     ):
         monkeypatch.setattr(name, work)
     monkeypatch.chdir(tmp_path)

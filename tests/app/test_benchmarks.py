@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-import assets
-from app.benchmarks import motion_table, simulate_table, soak_table, tearing_table
+from risorius import assets
+from risorius.app.benchmarks import motion_table, simulate_table, soak_table, tearing_table
 
 
 def test_simulate_table() -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.cameras import camera_for, whole_scene
-from app.errors import UserError
-from app.scenes import FaceScene
+from risorius.app.cameras import camera_for, whole_scene
+from risorius.app.errors import UserError
+from risorius.app.scenes import FaceScene
 
 
 @pytest.fixture(scope="module")

@@ -14,8 +14,8 @@ import pytest
 from click.testing import CliRunner, Result
 from PIL import Image
 
-from app.cli import main
-from app.scenes import SCENES, FaceScene
+from risorius.app.cli import main
+from risorius.app.scenes import SCENES, FaceScene
 from tests.heads import stranger
 
 SMILE = """
@@ -216,7 +216,15 @@ def test_no_opengl_is_one_line(smile: Path) -> None:
     environment = {**os.environ, "GLCONTEXT_LINUX_LIBEGL": "libEGL-not-there.so"}
     environment.pop("DISPLAY", None)
     result = subprocess.run(
-        [sys.executable, "-m", "app", "capture", str(smile), "-o", str(smile.parent / "x.mp4")],
+        [
+            sys.executable,
+            "-m",
+            "risorius",
+            "capture",
+            str(smile),
+            "-o",
+            str(smile.parent / "x.mp4"),
+        ],
         capture_output=True,
         text=True,
         env=environment,

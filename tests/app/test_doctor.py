@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-import render
-from app import doctor
-from app.cli import main
+from risorius import render
+from risorius.app import doctor
+from risorius.app.cli import main
 
 
 @pytest.fixture

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.labels import caption, contact_sheet
-from app.pipeline import side_by_side
+from risorius.app.labels import caption, contact_sheet
+from risorius.app.pipeline import side_by_side
 
 GREY = np.full((200, 400, 3), 128, np.uint8)
 

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from app import ffmpeg, outputs
-from app.cli import main
-from app.errors import UserError
+from risorius.app import ffmpeg, outputs
+from risorius.app.cli import main
+from risorius.app.errors import UserError
 
 GREY = np.full((64, 96, 3), 128, np.uint8)
 

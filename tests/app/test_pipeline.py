@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-import refine
-import render
-from app.capture import SETTLING, Capture, CaptureOptions
-from app.pipeline import Pipeline, side_by_side, splits_of_source
-from app.scenes import FaceScene, PlaneScene
-from app.script import parse_script
+from risorius import refine, render
+from risorius.app.capture import SETTLING, Capture, CaptureOptions
+from risorius.app.pipeline import Pipeline, side_by_side, splits_of_source
+from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.app.script import parse_script
 
 SIZE = (320, 240)
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from app import portraits
+from risorius.app import portraits
 
 MOST_PICTURE = 600_000  # bytes, at full size
 

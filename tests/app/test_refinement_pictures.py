@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app import paper_figures, refinement_figures, strip
-from app.charts import Axis, Series, chart
+from risorius.app import paper_figures, refinement_figures, strip
+from risorius.app.charts import Axis, Series, chart
 
 PICTURES = Path(__file__).parents[2] / "docs" / "pictures"
 MOST_PICTURE = 450_000  # bytes

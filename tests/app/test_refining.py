@@ -6,9 +6,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import refine
-from app.errors import UserError
-from app.refining import options_in_words, options_of
+from risorius import refine
+from risorius.app.errors import UserError
+from risorius.app.refining import options_in_words, options_of
 from tests.meshes import triangle
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import refine
-from app.errors import UserError
-from app.refining import refiner_for
-from app.scenes import FaceScene, PlaneScene, within
-from bench.sight import shown_meshes, widest_slit
+from risorius import refine
+from risorius.app.errors import UserError
+from risorius.app.refining import refiner_for
+from risorius.app.scenes import FaceScene, PlaneScene, within
+from risorius.bench.sight import shown_meshes, widest_slit
 
 LIMITS = {"a": (0.0, 1.0), "b": (-1.0, 1.0)}
 

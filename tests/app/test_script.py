@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.easing import EASINGS
-from app.errors import UserError
-from app.script import load_script, parse_script
+from risorius.app.easing import EASINGS
+from risorius.app.errors import UserError
+from risorius.app.script import load_script, parse_script
 
 HELLO = """
 title = "Hello"

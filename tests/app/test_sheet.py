@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app import sheet
-from app.errors import UserError
-from app.scenes import FaceScene
+from risorius.app import sheet
+from risorius.app.errors import UserError
+from risorius.app.scenes import FaceScene
 
 MOST_PICTURE = 1_500_000  # bytes, at full size
 

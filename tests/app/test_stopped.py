@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-COMMAND = (sys.executable, "-m", "app")
+COMMAND = (sys.executable, "-m", "risorius")
 SLOW = ("capture", "--scene", "face", "--size", "320x240", "--samples", "0")
 
 
@@ -124,7 +124,7 @@ def test_frames_give_way_whole(tmp_path: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell")
 def test_missing_streams_are_no_error(tmp_path: Path) -> None:
     """Nobody reads the output, or there is no stream at all: no traceback, and the picture."""
-    python = f"{sys.executable} -m app"
+    python = f"{sys.executable} -m risorius"
     piped = subprocess.run(
         f"{python} controls | true", shell=True, capture_output=True, text=True, check=False
     )

@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.viewer import Viewer
-from app.viewer.clock import MOST_STEPS
-from app.viewer.settings import load_settings
-from app.viewer.window import FULL
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.clock import MOST_STEPS
+from risorius.app.viewer.settings import load_settings
+from risorius.app.viewer.window import FULL
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -335,7 +335,7 @@ def test_the_window_remembers(tmp_path: Path) -> None:
     remembered = tmp_path / "risorius" / "viewer.json"
     remembered.parent.mkdir()
     remembered.write_text('{"size": ')
-    command = [sys.executable, "-m", "app", "replay", str(script), "--once"]
+    command = [sys.executable, "-m", "risorius", "replay", str(script), "--once"]
     command += ["--size", "500x400", "--wireframe"]
     start = time.monotonic()
     result = subprocess.run(

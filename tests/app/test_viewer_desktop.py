@@ -20,10 +20,10 @@ import pytest
 from Xlib import X, display
 from Xlib.protocol import event
 
-from app.choices import script_for
-from app.viewer import Viewer
-from app.viewer.placement import FIRST_SIZE
-from app.viewer.settings import load_settings
+from risorius.app.choices import script_for
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.placement import FIRST_SIZE
+from risorius.app.viewer.settings import load_settings
 
 from .driving import NEEDS_A_SCREEN, SIZE, click, nose, settle, show_controls, until, xdotool
 
@@ -150,7 +150,7 @@ def test_a_minimised_window_rests_and_comes_back(tmp_path: Path) -> None:
     script.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 600.0\njaw_open = 1.0\n")
     settings = tmp_path / "risorius" / "viewer.json"
     program = subprocess.Popen(
-        [sys.executable, "-m", "app", "replay", str(script), "--size", "700x500"],
+        [sys.executable, "-m", "risorius", "replay", str(script), "--size", "700x500"],
         stderr=subprocess.PIPE, text=True, cwd=ROOT,
         env={**os.environ, "XDG_CONFIG_HOME": str(tmp_path)},
     )  # fmt: skip

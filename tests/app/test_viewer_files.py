@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from app.scenes import build_scene
-from app.script import load_script
-from app.viewer import Viewer
-from app.viewer.files import UNSEEN, Files
+from risorius.app.scenes import build_scene
+from risorius.app.script import load_script
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.files import UNSEEN, Files
 from tests.heads import stranger
 from tests.render.test_release import counting
 
@@ -225,7 +225,9 @@ def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> No
     xdotool(viewer, "key", "Return")
     assert viewer.files.is_waiting and taken.read_text() == "precious"
     xdotool(viewer, "key", "Escape")
-    viewer.session.take(viewer.session.read(Path(str(resources.files("assets"))) / EXAMPLE))
+    viewer.session.take(
+        viewer.session.read(Path(str(resources.files("risorius.assets"))) / EXAMPLE)
+    )
     xdotool(viewer, "key", "ctrl+s")
     assert viewer.files.is_waiting
     xdotool(viewer, "key", "Escape")

@@ -10,10 +10,10 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from app.choices import script_for
-from app.viewer import Viewer
-from app.viewer.kept import REFRESH
-from app.viewer.window import FULL
+from risorius.app.choices import script_for
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.kept import REFRESH
+from risorius.app.viewer.window import FULL
 
 from .driving import clear_search, drag, middle, settle, show_controls, until, xdotool
 

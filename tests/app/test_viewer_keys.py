@@ -8,16 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.choices import script_for
-from app.errors import UserError
-from app.scenes import FaceScene
-from app.script import Script, load_script, parse_script
-from app.script_writer import save_script, script_text
-from app.viewer import keys
-from app.viewer.keys import FRAME, POSES, KeyPlace
-from app.viewer.lanes import described, lanes_shown
-from app.viewer.session import Session
-from app.viewer.time_view import LEAST_SPAN, TimeView
+from risorius.app.choices import script_for
+from risorius.app.errors import UserError
+from risorius.app.scenes import FaceScene
+from risorius.app.script import Script, load_script, parse_script
+from risorius.app.script_writer import save_script, script_text
+from risorius.app.viewer import keys
+from risorius.app.viewer.keys import FRAME, POSES, KeyPlace
+from risorius.app.viewer.lanes import described, lanes_shown
+from risorius.app.viewer.session import Session
+from risorius.app.viewer.time_view import LEAST_SPAN, TimeView
 
 HELLO = Path("docs/hello.toml")
 JOY = KeyPlace(POSES, 1.0)

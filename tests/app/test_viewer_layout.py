@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from app.choices import script_for
-from app.viewer import Viewer
-from app.viewer.keys import places_of
+from risorius.app.choices import script_for
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.keys import places_of
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -126,7 +126,7 @@ def test_a_window_that_was_stopped_goes_on_calmly(tmp_path: Path) -> None:
     script = tmp_path / "short.toml"
     script.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.5\njoy = 1.0\njaw_open = 1.0\n")
     program = subprocess.Popen(
-        [sys.executable, "-m", "app", "replay", str(script), "--once", "--size", "400x300"],
+        [sys.executable, "-m", "risorius", "replay", str(script), "--once", "--size", "400x300"],
         stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2],
         env={**os.environ, "XDG_CONFIG_HOME": str(tmp_path)},
     )  # fmt: skip

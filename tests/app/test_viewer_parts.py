@@ -7,24 +7,24 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.choices import script_for
-from app.errors import UserError
-from app.scenes import FaceScene
-from app.script import load_script, parse_script
-from app.script_writer import is_pose, pose_script, save_script, script_text
-from app.viewer import picking
-from app.viewer.clock import MOST_STEPS, STEP, Clock
-from app.viewer.history import History
-from app.viewer.overlays import OVERLAYS, overlays_of
-from app.viewer.quality import FULL, LEVELS, PATIENCE, Quality
-from app.viewer.recorder import TOLERANCE, Recorder
-from app.viewer.rows import found, mirrored, rows_of
-from app.viewer.session import Session
-from app.viewer.tour import STOPS
-from assets.fitting import fit_head
+from risorius.app.choices import script_for
+from risorius.app.errors import UserError
+from risorius.app.scenes import FaceScene
+from risorius.app.script import load_script, parse_script
+from risorius.app.script_writer import is_pose, pose_script, save_script, script_text
+from risorius.app.viewer import picking
+from risorius.app.viewer.clock import MOST_STEPS, STEP, Clock
+from risorius.app.viewer.history import History
+from risorius.app.viewer.overlays import OVERLAYS, overlays_of
+from risorius.app.viewer.quality import FULL, LEVELS, PATIENCE, Quality
+from risorius.app.viewer.recorder import TOLERANCE, Recorder
+from risorius.app.viewer.rows import found, mirrored, rows_of
+from risorius.app.viewer.session import Session
+from risorius.app.viewer.tour import STOPS
+from risorius.assets.fitting import fit_head
 from tests.heads import stranger
 
-import render  # isort: skip - after the viewer, see app/viewer/gui.py
+from risorius import render  # isort: skip - after the viewer, see app/viewer/gui.py
 
 SMILE = "zygomaticus_major"
 STEPS = 90

@@ -13,15 +13,15 @@ from pathlib import Path
 
 import pytest
 
-from app.choices import script_for
-from app.errors import UserError
-from app.scenes import FaceScene, PlaneScene
-from app.script import load_script
-from app.viewer import Viewer
-from app.viewer.clock import STEP
-from app.viewer.recovery import LONGEST, QUIET, Recovery
-from app.viewer.session import Session
-from app.viewer.unsaved import Place, Work
+from risorius.app.choices import script_for
+from risorius.app.errors import UserError
+from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.app.script import load_script
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.clock import STEP
+from risorius.app.viewer.recovery import LONGEST, QUIET, Recovery
+from risorius.app.viewer.session import Session
+from risorius.app.viewer.unsaved import Place, Work
 
 from .driving import NEEDS_A_SCREEN, SIZE, click, settle, xdotool
 
@@ -328,7 +328,7 @@ def test_work_that_fails_to_be_written_leaves_what_was_kept(
 def windows_process(folder: Path) -> subprocess.Popen[str]:
     """`risorius view`, with settings of its own; its window has been drawn."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "app", "view", "--size", "700x500"],
+        [sys.executable, "-m", "risorius", "view", "--size", "700x500"],
         cwd=ROOT, stderr=subprocess.PIPE, text=True,
         env={**os.environ, "XDG_CONFIG_HOME": str(folder)}, start_new_session=True,
         # Tests that run behind an `&` or `nohup` have signals ignored, and pass that on.

@@ -12,10 +12,10 @@ from typing import Any
 
 import pytest
 
-from app.choices import script_for
-from app.scenes import FaceScene
-from app.viewer import Viewer
-from app.viewer.settings import (
+from risorius.app.choices import script_for
+from risorius.app.scenes import FaceScene
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.settings import (
     Look,
     Settings,
     drop_refused_options,

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from imgui_bundle import imgui
 
-from app.script import load_script
-from app.viewer import Viewer
-from app.viewer.kept import REFRESH
-from app.viewer.keys import POSES, KeyPlace, on_frame, places_of
+from risorius.app.script import load_script
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.kept import REFRESH
+from risorius.app.viewer.keys import POSES, KeyPlace, on_frame, places_of
 
 from .driving import (
     NEEDS_A_SCREEN,

@@ -6,8 +6,8 @@ import os
 
 import pytest
 
-from app import window_report
-from app.viewer.quality import LEVELS
+from risorius.app import window_report
+from risorius.app.viewer.quality import LEVELS
 
 pytestmark = [
     pytest.mark.window,

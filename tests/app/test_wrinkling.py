@@ -12,12 +12,11 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import assets
-import render
-from app.capture import Capture, CaptureOptions
-from app.scenes import FaceScene, PlaneScene
-from app.wrinkling import Wrinkling, on_rows, wrinkling_of
-from assets.fitting import fit_head
+from risorius import assets, render
+from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.app.wrinkling import Wrinkling, on_rows, wrinkling_of
+from risorius.assets.fitting import fit_head
 from tests.heads import stranger
 
 Array = npt.NDArray[np.float64]

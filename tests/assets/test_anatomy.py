@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-import assets
-from assets.model import Head
+from risorius import assets
+from risorius.assets.model import Head
 
 # The right-hand partner of every left-hand landmark, read from the iBug figure.
 PAIRS = (

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from assets import aside
-from assets.aside import Aside, is_aside, sweep
+from risorius.assets import aside
+from risorius.assets.aside import Aside, is_aside, sweep
 
 KILLED = (
     "import os, pathlib, signal, sys\nfrom assets.aside import Aside\n"

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from assets import build
-from assets.loading import HEAD_FILE, load, load_head
+from risorius.assets import build
+from risorius.assets.loading import HEAD_FILE, load, load_head
 
 # Processors round differently; nobody could see so little.
 TOLERANCE = 1e-3  # [mm]

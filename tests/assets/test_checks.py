@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from assets import checks
+from risorius.assets import checks
 
 
 def test_large_and_small_triangles_are_compared() -> None:

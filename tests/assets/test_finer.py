@@ -10,13 +10,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import assets
-from assets import checks
-from assets.generator import form
-from assets.generator.topology import boundary_loops, cross_products
-from assets.loading import HEAD_FILE, load_head
-from assets.model import FineMesh, Head
-from assets.subdivision import coarse_places, quarter
+from risorius import assets
+from risorius.assets import checks
+from risorius.assets.generator import form
+from risorius.assets.generator.topology import boundary_loops, cross_products
+from risorius.assets.loading import HEAD_FILE, load_head
+from risorius.assets.model import FineMesh, Head
+from risorius.assets.subdivision import coarse_places, quarter
 
 MOST_FINER_DATA = 1_500_000  # bytes
 
@@ -205,7 +205,7 @@ def test_finer_data_stay_small(head: Head) -> None:
 def test_finer_meshes_need_no_generator() -> None:
     """Only a build imports scipy."""
     code = (
-        "import sys, assets; assets.load('head').finer(2);"
-        "assert not any(n.startswith(('scipy', 'assets.generator')) for n in sys.modules)"
+        "import sys; from risorius import assets; assets.load('head').finer(2);"
+        "assert not any(n.startswith(('scipy', 'risorius.assets.generator')) for n in sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 import trimesh
 
-import assets
-import sim
-from assets import AssetError
-from assets.fitting import FittedHead, fit, fit_head
-from assets.fitting.warp import Similarity, Warp, nearest_on
-from assets.meshes import Mesh
-from bench.sight import lid_gaps
-from sim.landmarks import MIRRORED
+from risorius import assets, sim
+from risorius.assets import AssetError
+from risorius.assets.fitting import FittedHead, fit, fit_head
+from risorius.assets.fitting.warp import Similarity, Warp, nearest_on
+from risorius.assets.meshes import Mesh
+from risorius.bench.sight import lid_gaps
+from risorius.sim.landmarks import MIRRORED
 from tests.heads import Stranger, closed, stranger
 from tests.sim.poses import inverted_triangles, lip_gap, moved_landmarks, settle
 

@@ -4,10 +4,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from assets.generator import form, lips
-from assets.generator.eye_rows import COLUMNS as EYE_COLUMNS
-from assets.generator.eye_rows import eye_rows
-from assets.generator.fields import (
+from risorius.assets.generator import form, lips
+from risorius.assets.generator.eye_rows import COLUMNS as EYE_COLUMNS
+from risorius.assets.generator.eye_rows import eye_rows
+from risorius.assets.generator.fields import (
     cast,
     ellipsoid,
     gradient,
@@ -17,13 +17,19 @@ from assets.generator.fields import (
     sphere,
     tapered_capsule,
 )
-from assets.generator.mouth_rows import SEAM_ROW, mouth_rows
-from assets.generator.outline import midline_curve, resampled, rim_curve
-from assets.generator.remesh import Freedom, Sheet, collapse_edges, flip_edges, split_edges
-from assets.generator.sections import base_radius, direction_coordinates, rays
-from assets.generator.sheet import Domain, inside_polygon, layout, triangulate, wanted_length
-from assets.generator.solids import Solid, grid_faces, joined, mix, welded
-from assets.generator.topology import (
+from risorius.assets.generator.mouth_rows import SEAM_ROW, mouth_rows
+from risorius.assets.generator.outline import midline_curve, resampled, rim_curve
+from risorius.assets.generator.remesh import Freedom, Sheet, collapse_edges, flip_edges, split_edges
+from risorius.assets.generator.sections import base_radius, direction_coordinates, rays
+from risorius.assets.generator.sheet import (
+    Domain,
+    inside_polygon,
+    layout,
+    triangulate,
+    wanted_length,
+)
+from risorius.assets.generator.solids import Solid, grid_faces, joined, mix, welded
+from risorius.assets.generator.topology import (
     boundary_loops,
     cross_products,
     edge_faces,

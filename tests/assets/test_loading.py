@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import assets
-from assets.loading import HEAD_FILE, load_head
+from risorius import assets
+from risorius.assets.loading import HEAD_FILE, load_head
 
 MOST_DATA = 2_000_000  # bytes of all data files together
 
@@ -62,7 +62,9 @@ def test_arrays_cannot_be_written() -> None:
 
 def test_missing_data_file_says_how_to_build_it(tmp_path: Path) -> None:
     """The cure is in the message."""
-    with pytest.raises(assets.AssetError, match=r"missing; build it with 'python -m assets.build'"):
+    with pytest.raises(
+        assets.AssetError, match=r"missing; build it with 'python -m risorius.assets.build'"
+    ):
         load_head(tmp_path / "head.npz")
 
 
@@ -118,7 +120,7 @@ def test_data_stay_small() -> None:
 def test_loading_needs_no_generator() -> None:
     """Only a build imports scipy: `load` must stay fast."""
     code = (
-        "import sys, assets; assets.load('head');"
-        "assert not any(n.startswith(('scipy', 'assets.generator')) for n in sys.modules)"
+        "import sys; from risorius import assets; assets.load('head');"
+        "assert not any(n.startswith(('scipy', 'risorius.assets.generator')) for n in sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

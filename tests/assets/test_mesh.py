@@ -7,13 +7,13 @@ import numpy.typing as npt
 import pytest
 from scipy.spatial import cKDTree
 
-import assets
-from assets import checks
-from assets.generator import form
-from assets.generator.fields import gradient
-from assets.generator.topology import boundary_loops, cross_products, smallest_angles
-from assets.model import Head
-from assets.report import report
+from risorius import assets
+from risorius.assets import checks
+from risorius.assets.generator import form
+from risorius.assets.generator.fields import gradient
+from risorius.assets.generator.topology import boundary_loops, cross_products, smallest_angles
+from risorius.assets.model import Head
+from risorius.assets.report import report
 
 TUCKED_ROWS = ("eye_0", "eye_1", "mouth_0", "mouth_1", "mouth_2", "nostril")
 

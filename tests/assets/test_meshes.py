@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-import assets
+from risorius import assets
 
 # Vertices 1 and 3 lie in the same place, vertex 4 is used by nothing: both have to stay.
 OBJ = """v 0 0 0

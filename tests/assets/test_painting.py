@@ -10,13 +10,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import assets
-from assets.generator import brows, form
-from assets.generator.noise import noise, speckle
-from assets.generator.pigments import reflectance, to_linear, to_screen
-from assets.generator.texels import Texels, corner_values, left_texels, rasterise
-from assets.loading import HEAD_FILE, load_head
-from assets.model import Head
+from risorius import assets
+from risorius.assets.generator import brows, form
+from risorius.assets.generator.noise import noise, speckle
+from risorius.assets.generator.pigments import reflectance, to_linear, to_screen
+from risorius.assets.generator.texels import Texels, corner_values, left_texels, rasterise
+from risorius.assets.loading import HEAD_FILE, load_head
+from risorius.assets.model import Head
 
 Colours = npt.NDArray[np.float64]
 MOST_PICTURE = 1_000_000  # bytes
@@ -136,7 +136,9 @@ def test_missing_or_broken_picture_is_told_when_it_is_asked_for(tmp_path: Path) 
     """A head without its picture can still be simulated."""
     shutil.copy(HEAD_FILE, tmp_path / "head.npz")
     head = load_head(tmp_path / "head.npz")
-    with pytest.raises(assets.AssetError, match=r"missing; paint it with 'python -m assets.build'"):
+    with pytest.raises(
+        assets.AssetError, match=r"missing; paint it with 'python -m risorius.assets.build'"
+    ):
         _ = head.albedo
     head.albedo_file.write_bytes(b"no picture")
     with pytest.raises(assets.AssetError, match="not a readable picture"):
@@ -148,7 +150,10 @@ def test_missing_or_broken_picture_is_told_when_it_is_asked_for(tmp_path: Path) 
 
 def test_loading_reads_no_picture() -> None:
     """Who only simulates waits for no PNG."""
-    code = "import sys, assets; assets.load('head'); assert 'PIL' not in sys.modules"
+    code = (
+        "import sys; from risorius import assets; assets.load('head');"
+        "assert 'PIL' not in sys.modules"
+    )
     subprocess.run([sys.executable, "-c", code], check=True)
 
 

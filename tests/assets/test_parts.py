@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import assets
-from assets.generator import form
-from assets.generator.topology import cross_products
-from assets.model import Head, Part
+from risorius import assets
+from risorius.assets.generator import form
+from risorius.assets.generator.topology import cross_products
+from risorius.assets.model import Head, Part
 
 BONES = {"cranium", "mandible", "eye_left", "eye_right"}
 IN_MOUTH = ("teeth", "gums", "tongue", "oral_cavity")

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import assets
-from assets.model import Head
-from assets.norms import DEPTHS, NORMS, Norm, Sample
-from assets.report import (
+from risorius import assets
+from risorius.assets.model import Head
+from risorius.assets.norms import DEPTHS, NORMS, Norm, Sample
+from risorius.assets.report import (
     Row,
     depth_table,
     distance_rows,
@@ -79,7 +79,7 @@ def test_lines_show_norms_where_there_are_some() -> None:
 def test_command_writes_every_row_and_the_sources(
     head: Head, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """What `python -m assets.report` prints."""
+    """What `python -m risorius.assets.report` prints."""
     main([])
     written = capsys.readouterr().out.splitlines()
     rows = text_lines(report(head))
@@ -89,7 +89,7 @@ def test_command_writes_every_row_and_the_sources(
 
 
 def test_page_shows_the_table(head: Head, capsys: pytest.CaptureFixture[str]) -> None:
-    """The documentation holds both tables that `python -m assets.report --table` prints."""
+    """The documentation holds both tables that the program prints for it."""
     main(["--table"])
     written = capsys.readouterr().out.splitlines()
     tables = [table(distance_rows(head)), depth_table(head)]

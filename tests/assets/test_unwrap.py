@@ -4,9 +4,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import assets
-from assets.generator import unwrap
-from assets.model import Head
+from risorius import assets
+from risorius.assets.generator import unwrap
+from risorius.assets.model import Head
 
 Points = npt.NDArray[np.float64]
 TUCKED_ROWS = ("mouth_0", "mouth_1", "eye_0")  # behind lips and lids: never seen at rest

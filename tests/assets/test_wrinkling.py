@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import assets
-from assets.loading import HEAD_FILE, load_head
+from risorius import assets
+from risorius.assets.loading import HEAD_FILE, load_head
 
 STEEPEST_FURROW = 0.7  # slope: about 35 degrees
 

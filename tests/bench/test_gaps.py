@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-import assets
-from app.benchmarks import gaps_json, gaps_table
-from bench.gaps import LIDS_MOST, LIPS_MOST, Pose, run, worst
-from bench.sight import sunk_in_eyeballs
+from risorius import assets
+from risorius.app.benchmarks import gaps_json, gaps_table
+from risorius.bench.gaps import LIDS_MOST, LIPS_MOST, Pose, run, worst
+from risorius.bench.sight import sunk_in_eyeballs
 
 
 @pytest.fixture(scope="module")

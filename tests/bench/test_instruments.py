@@ -8,10 +8,9 @@ import time
 import numpy as np
 import pytest
 
-import assets
-import sim
-from bench import soak, tearing
-from bench.timing import interleaved
+from risorius import assets, sim
+from risorius.bench import soak, tearing
+from risorius.bench.timing import interleaved
 
 
 def test_a_folded_triangle_is_counted() -> None:

@@ -12,10 +12,10 @@ import numpy.typing as npt
 import pytest
 from click.testing import CliRunner
 
-import refine
-from app.cli import main
-from bench.cracks import cracks
-from bench.meshes import METHODS, NOISE, refined
+from risorius import refine
+from risorius.app.cli import main
+from risorius.bench.cracks import cracks
+from risorius.bench.meshes import METHODS, NOISE, refined
 from tests.meshes import NAMED, Mesh, double_cone, fan, irregular, tube, wrinkled
 
 FRAMES = len(METHODS) * len(NOISE)

@@ -7,9 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import assets
-import sim
-from bench.motion import Row, run
+from risorius import assets, sim
+from risorius.bench.motion import Row, run
 from tests.heads import METRES, SHIFT, TURN, shape
 from tests.sim.poses import both_sides, settle
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from bench.nearest import nearest_points
+from risorius.bench.nearest import nearest_points
 from tests import meshes
 
 

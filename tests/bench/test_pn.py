@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from bench.pn import tessellate
+from risorius.bench.pn import tessellate
 from tests import meshes
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import assets
-from app.quality_report import error_curves, quality_table, rules_table, targets_text
-from bench import quality, subjects
-from bench.subjects import Pose, Subject
+from risorius import assets
+from risorius.app.quality_report import error_curves, quality_table, rules_table, targets_text
+from risorius.bench import quality, subjects
+from risorius.bench.subjects import Pose, Subject
 
 Points = npt.NDArray[np.float64]
 

@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-import bench.refine
-from bench.peers import peers_for
-from bench.sheets import sheet
-from bench.sparse_loop import sparse_loop
-from refine import connect, create
+from risorius.bench import refine
+from risorius.bench.peers import peers_for
+from risorius.bench.sheets import sheet
+from risorius.bench.sparse_loop import sparse_loop
+from risorius.refine import connect, create
 
 
 def test_rows() -> None:
     """Ours with the share of edges that was asked for, a copy, and peers; times that fit."""
-    report = bench.refine.run(sizes=["2k"], seconds=0.05, starts=False)
+    report = refine.run(sizes=["2k"], seconds=0.05, starts=False)
     rows = {row.method: row for row in report.rows}
     count = rows["kahler 10 %"].triangles_in
     assert abs(count - 2_000) < 100
@@ -41,7 +41,7 @@ def test_rows() -> None:
 def test_unknown_size() -> None:
     """A size that there is not is refused with those that there are."""
     with pytest.raises(ValueError, match="unknown size '3k'; there are face, 2k, 20k"):
-        bench.refine.run(sizes=["3k"])
+        refine.run(sizes=["3k"])
 
 
 @pytest.mark.parametrize("shuffled", [False, True])

@@ -11,7 +11,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-import refine
+from risorius import refine
 
 FOLDER = Path(__file__).parents[2] / "examples"
 
@@ -69,7 +69,7 @@ def test_in_pyvista(tmp_path: Path) -> None:
 
 def test_own_refiner(monkeypatch: pytest.MonkeyPatch) -> None:
     """A refiner from outside is registered, known by name, passes the checker, and cuts in four."""
-    from refine import plugin
+    from risorius.refine import plugin
 
     monkeypatch.setattr(plugin, "_factories", dict(plugin._factories))
     assert "quarters" not in refine.available()

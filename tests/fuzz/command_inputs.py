@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import click
 
-from app.cli import main
+from risorius.app.cli import main
 
 PICTURE = "capture good.toml -o x.png --size 16x16 --samples 0 --fps 5 --quiet"
 

@@ -9,27 +9,27 @@ from pathlib import Path
 import click
 import pytest
 
-from app.scenes import SCENES, FaceScene
+from risorius.app.scenes import SCENES, FaceScene
 
 from .sandbox import furnish
 
 DOORS = pytest.StashKey[dict[str, Counter[str]]]()
 
 LONG_WORK = (
-    "app.benchmarks.simulate_table",
-    "app.benchmarks.motion_table",
-    "app.benchmarks.soak_table",
-    "app.benchmarks.tearing_table",
-    "app.paper_figures.figure_10",
-    "app.paper_figures.figure_9",
-    "app.strip.coherence_strip",
-    "app.table1.table_1",
-    "app.viewer.Viewer",
-    "app.window_report.window_table",
-    "bench.gaps.run",
-    "bench.meshes.run",
-    "bench.quality.run",
-    "bench.refine.run",
+    "risorius.app.benchmarks.simulate_table",
+    "risorius.app.benchmarks.motion_table",
+    "risorius.app.benchmarks.soak_table",
+    "risorius.app.benchmarks.tearing_table",
+    "risorius.app.paper_figures.figure_10",
+    "risorius.app.paper_figures.figure_9",
+    "risorius.app.strip.coherence_strip",
+    "risorius.app.table1.table_1",
+    "risorius.app.viewer.Viewer",
+    "risorius.app.window_report.window_table",
+    "risorius.bench.gaps.run",
+    "risorius.bench.meshes.run",
+    "risorius.bench.quality.run",
+    "risorius.bench.refine.run",
 )
 
 

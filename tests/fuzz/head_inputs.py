@@ -14,9 +14,9 @@ from enum import Enum
 from pathlib import Path
 from typing import NamedTuple
 
-import assets
-from assets.fitting import FittedHead, fit_head
-from assets.meshes import Mesh
+from risorius import assets
+from risorius.assets.fitting import FittedHead, fit_head
+from risorius.assets.meshes import Mesh
 
 
 class Kind(Enum):

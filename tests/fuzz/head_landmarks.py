@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-import assets
+from risorius import assets
 
 from .head_inputs import Brought, Kind, OddHead
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-import refine
+from risorius import refine
 from tests.meshes import irregular
 
 MESH = irregular(1, columns=5, rows=4, holes=1)

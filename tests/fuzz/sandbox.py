@@ -14,7 +14,7 @@ from pathlib import Path
 
 from click.testing import CliRunner
 
-from app.cli import main
+from risorius.app.cli import main
 
 LONGEST = 60.0  # [s] on a busy machine, compiling; the slowest takes 2 s otherwise
 MOST_MEMORY = 600 << 20  # [bytes] more than before

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-import assets
-from sim import Simulation
+from risorius import assets
+from risorius.sim import Simulation
 
 HEAD = assets.load("head")
 V = len(HEAD.vertices)

@@ -8,8 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-import refine
-import sim
+from risorius import refine, sim
 
 from .refine_inputs import (
     FACES,

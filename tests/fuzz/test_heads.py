@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from assets import AssetError
-from assets.fitting import FittedHead
-from assets.meshes import Mesh
+from risorius.assets import AssetError
+from risorius.assets.fitting import FittedHead
+from risorius.assets.meshes import Mesh
 
 from .head_inputs import Kind, OddHead, head_inputs, open_brought
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from app.viewer.settings import Settings, load_settings, save_settings, settings_path
+from risorius.app.viewer.settings import Settings, load_settings, save_settings, settings_path
 
 from .sandbox import LONGEST, bounded, check_end, check_line, contents
 from .sandbox import Ended as End
@@ -148,7 +148,7 @@ STREAMS = {
 def test_streams_of_the_shell(name: str, sandbox: Path) -> None:
     """Closed and full streams, and a folder that is gone: no traceback, nothing left."""
     before = contents(sandbox)
-    command = STREAMS[name].format(risorius=f"{shlex.quote(sys.executable)} -m app")
+    command = STREAMS[name].format(risorius=f"{shlex.quote(sys.executable)} -m risorius")
     process = subprocess.run(
         ["sh", "-c", command],
         cwd=sandbox,

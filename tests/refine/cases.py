@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 from hypothesis import strategies as st
 
-import refine
-from refine.blend import RAMP
+from risorius import refine
+from risorius.refine.blend import RAMP
 from tests.refine import plain_twin
 
 

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import refine
-from refine.patterns import SUBTRIANGLE_COUNTS
+from risorius import refine
+from risorius.refine.patterns import SUBTRIANGLE_COUNTS
 from tests import meshes
 from tests.refine.cases import Forced, as_lists, assert_equals_twin, soups
 from tests.refine.plain_twin import edge_name

@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-import refine
+from risorius import refine
 from tests import meshes
 from tests.refine.cases import Needed
 

@@ -8,8 +8,8 @@ import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
 
-import refine
-from bench.quality import vertex_normals
+from risorius import refine
+from risorius.bench.quality import vertex_normals
 from tests import meshes
 from tests.refine.cases import Forced, Needed
 

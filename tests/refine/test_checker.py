@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-import refine
+from risorius import refine
 from tests import meshes
 
 Mutation = Callable[[refine.RefinedMesh], refine.RefinedMesh]

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from refine import coherence, patterns
-from refine.coherence_pass import Coherent
+from risorius.refine import coherence, patterns
+from risorius.refine.coherence_pass import Coherent
 
 TABLES = coherence.sequence_tables()
 NUMBER = {sequence: k for k, sequence in enumerate(TABLES.sequences)}

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import refine
-from bench.turned_lines import turned_per_frame
+from risorius import refine
+from risorius.bench.turned_lines import turned_per_frame
 from tests import meshes
 from tests.refine.cases import Forced
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-import refine
+from risorius import refine
 from tests import meshes
 from tests.refine.cases import soups
 from tests.refine.plain_twin import Surroundings, edge_name

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-import refine
-from refine.criterion import Thresholds
-from refine.rest_curvature import RestCurvature
+from risorius import refine
+from risorius.refine.criterion import Thresholds
+from risorius.refine.rest_curvature import RestCurvature
 from tests import meshes
 from tests.refine.cases import Forced, Needed
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import refine
-from refine.criterion import ROUNDING
-from refine.normals import vertex_normals
+from risorius import refine
+from risorius.refine.criterion import ROUNDING
+from risorius.refine.normals import vertex_normals
 from tests import meshes
 from tests.refine.cases import Forced
 from tests.refine.plain_twin import edge_dots, edge_name

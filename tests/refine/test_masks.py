@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import refine
-from refine.rings import Rings, vertex_rings, warren_weight
+from risorius import refine
+from risorius.refine.rings import Rings, vertex_rings, warren_weight
 from tests import meshes
 from tests.refine.cases import Forced
 

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import refine
+from risorius import refine
 from tests import meshes
 
 OPTIONS: dict[str, dict[str, Any]] = {

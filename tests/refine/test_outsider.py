@@ -15,7 +15,7 @@ import numpy.typing as npt
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import refine
+from risorius import refine
 from tests import meshes
 from tests.refine.cases import soups
 

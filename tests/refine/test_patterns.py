@@ -7,8 +7,8 @@ import itertools
 import numpy as np
 import pytest
 
-import refine
-from refine import patterns
+from risorius import refine
+from risorius.refine import patterns
 from tests import meshes
 from tests.refine.cases import Forced, as_lists, assert_equals_twin
 from tests.refine.plain_twin import refine as refine_plainly

@@ -10,9 +10,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import refine
-from refine import plugin
-from refine.schemes import LoopScheme
+from risorius import refine
+from risorius.refine import plugin
+from risorius.refine.schemes import LoopScheme
 from tests import meshes
 
 FINE = meshes.octahedron()

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import refine
+from risorius import refine
 from tests import meshes
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import refine
+from risorius import refine
 from tests import meshes
 from tests.refine.cases import Forced
 

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 from scipy.spatial.transform import Rotation
 
-import refine
+from risorius import refine
 from tests import meshes
 
 Array = npt.NDArray[np.float64]

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 from scipy.spatial.transform import Rotation
 
-from refine.tension import Tension
+from risorius.refine.tension import Tension
 from tests import meshes
 
 Array = npt.NDArray[np.float64]

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 
-import render
+from risorius import render
 
 
 @pytest.fixture

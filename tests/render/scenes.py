@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-import render
+from risorius import render
 
 Floats = npt.NDArray[np.float32]
 Frame = npt.NDArray[np.int32]  # a picture that can be subtracted from another, (H, W, 3)

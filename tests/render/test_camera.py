@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 from pyrr import Vector4
 
-import render
+from risorius import render
 
 HEAD = np.random.default_rng(7).normal(size=(400, 3)) * (60.0, 90.0, 50.0) + (3.0, -20.0, 60.0)
 

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import render
+from risorius import render
 
 from .scenes import PLAIN, at, picture, sphere, square
 

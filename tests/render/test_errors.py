@@ -10,9 +10,9 @@ from pathlib import Path
 import moderngl
 import pytest
 
-import render
-from render import programs
-from render.errors import diagnose
+from risorius import render
+from risorius.render import programs
+from risorius.render.errors import diagnose
 
 ROOT = Path(__file__).parents[2]
 on_linux = pytest.mark.skipif(
@@ -70,7 +70,7 @@ def test_a_frame_that_does_not_fit_is_one_line(monkeypatch: pytest.MonkeyPatch) 
     def refused(*_: object) -> None:
         raise moderngl.Error("the framebuffer is not complete (INCOMPLETE_ATTACHMENT)")
 
-    monkeypatch.setattr("render.surface.Layers", refused)
+    monkeypatch.setattr("risorius.render.surface.Layers", refused)
     with pytest.raises(render.GLError, match=r"64 x 48 pixels .* Cure: ask for a smaller frame"):
         render.open_offscreen((64, 48))
 
@@ -78,7 +78,7 @@ def test_a_frame_that_does_not_fit_is_one_line(monkeypatch: pytest.MonkeyPatch) 
 def test_no_screen_is_one_line_without_warnings() -> None:
     """Without a screen a window fails with a GLError; GLFW's Python warnings stay away."""
     output = run_python(
-        "import render\n"
+        "from risorius import render\n"
         "try: render.open_window((8, 8), 'test')\n"
         "except render.GLError as error: print(error)"
     )

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-import render
+from risorius import render
 
 from .scenes import Ball, joined, lent, sphere, square
 

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import render
-from render.occlusion import BLOCK, FarthestDepths, ProjectedFaces
+from risorius import render
+from risorius.render.occlusion import BLOCK, FarthestDepths, ProjectedFaces
 
 from .scenes import PLAIN, Ball, Shape, facing, joined, lent, sphere, square
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import render
-from render.outline import contours, strips
-from render.sight import Sight
+from risorius import render
+from risorius.render.outline import contours, strips
+from risorius.render.sight import Sight
 
 from .scenes import PLAIN, facing, joined, lent, sphere, square
 

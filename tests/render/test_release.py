@@ -11,7 +11,7 @@ import moderngl
 import numpy as np
 import pytest
 
-import render
+from risorius import render
 
 from .scenes import PLAIN, STILL, Ball, facing, lent, sphere
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-import render
+from risorius import render
 
 from .scenes import PLAIN, Shape, at, drawn, picture, sphere, square
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import render
+from risorius import render
 
 from .scenes import PLAIN, Frame, Shape, at, facing, joined, picture, sphere, square
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import render
+from risorius import render
 
 from .scenes import PLAIN, facing, lent, picture, sphere, square
 

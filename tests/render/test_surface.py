@@ -9,8 +9,8 @@ import sys
 import numpy as np
 import pytest
 
-import render
-from render.surface import clamp_samples
+from risorius import render
+from risorius.render.surface import clamp_samples
 
 from .scenes import PLAIN, Shape, drawn, picture, sphere, square
 
@@ -135,7 +135,7 @@ def test_size_is_that_of_the_frame(surface: render.Surface) -> None:
 def test_without_egl_a_screen_will_do() -> None:
     """Where EGL is missing but a screen is there, frames come from X11 and closing is safe."""
     code = (
-        "import render\n"
+        "from risorius import render\n"
         "for _ in range(2):\n"
         "    with render.open_offscreen((32, 32)) as surface:\n"
         "        surface.begin(); surface.end(); print(surface.read().shape)\n"

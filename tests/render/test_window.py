@@ -7,7 +7,7 @@ import inspect
 import numpy as np
 import pytest
 
-import render
+from risorius import render
 
 from .scenes import picture, sphere
 

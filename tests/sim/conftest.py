@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-import assets
-import sim
-from assets.model import Head
+from risorius import assets, sim
+from risorius.assets.model import Head
 
 
 @pytest.fixture(scope="session")

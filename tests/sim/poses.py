@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-import sim
+from risorius import sim
 
 FRAME = 1.0 / 60.0
 Array = npt.NDArray[np.float64]

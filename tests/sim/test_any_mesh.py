@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import trimesh
 
-import sim
-from assets.model import Head
+from risorius import sim
+from risorius.assets.model import Head
 from tests.sim.poses import FRAME, both_sides, moved_landmarks, settle, without
 
 

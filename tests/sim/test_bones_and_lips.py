@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import sim
-from assets.model import Head
+from risorius import sim
+from risorius.assets.model import Head
 from tests.sim.poses import FRAME, lip_gap, moved_landmarks, settle
 
 NOSE_TIP, CHIN, INNER_LIPS = 30, 8, (62, 66)

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-import sim
-from sim.checked import numbers, vertex_numbers
-from sim.layers import read_layers
+from risorius import sim
+from risorius.sim.checked import numbers, vertex_numbers
+from risorius.sim.layers import read_layers
 
 HUGE = 10**400
 NAN, INF = float("nan"), float("inf")

@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import sim
-from assets.model import Head
-from sim.contact import watch_eyeballs
+from risorius import sim
+from risorius.assets.model import Head
+from risorius.sim.contact import watch_eyeballs
 from tests.sim.poses import settle
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import sim
-from sim.controls import Control, Controls
+from risorius import sim
+from risorius.sim.controls import Control, Controls
 from tests.sim.poses import settle
 
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import refine
-import sim
-from assets.model import Head
-from bench.sight import lid_gaps, shown_meshes
-from sim.contact import PRESSED_OVERLAP
+from risorius import refine, sim
+from risorius.assets.model import Head
+from risorius.bench.sight import lid_gaps, shown_meshes
+from risorius.sim.contact import PRESSED_OVERLAP
 from tests.sim.poses import (
     FRAME,
     both_sides,

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-import sim
-from assets.model import Head
-from sim.controls import Control, Controls
-from sim.layers import read_layers
+from risorius import sim
+from risorius.assets.model import Head
+from risorius.sim.controls import Control, Controls
+from risorius.sim.layers import read_layers
 from tests.sim.poses import FRAME, inverted_triangles, settle
 
 LOWEST = ("puller_left", "puller_right", "middle", "slide")

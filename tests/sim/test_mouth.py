@@ -11,10 +11,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-import refine
-import sim
-from assets.model import Head
-from bench.sight import shown_meshes, widest_slit
+from risorius import refine, sim
+from risorius.assets.model import Head
+from risorius.bench.sight import shown_meshes, widest_slit
 from tests.sim.poses import both_sides, settle
 
 SHUT = 0.3  # mm: less than a pixel of a full-screen close-up

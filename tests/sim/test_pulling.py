@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import sim
+from risorius import sim
 from tests.sim.poses import FRAME
 
 

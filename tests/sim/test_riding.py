@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import sim
-from assets.model import Head
-from sim.fibres import FIBRE_POINTS, SAMPLES
+from risorius import sim
+from risorius.assets.model import Head
+from risorius.sim.fibres import FIBRE_POINTS, SAMPLES
 from tests.sim.poses import both_sides, settle, without
 
 Array = npt.NDArray[np.float64]

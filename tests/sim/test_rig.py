@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-import sim
-from assets.model import Head
-from sim.landmarks import MIRRORED, LandmarkPoint, Side
-from sim.rig import LinearMuscle, RingMuscle, Tissue
-from sim.rig_reader import read_rig
+from risorius import sim
+from risorius.assets.model import Head
+from risorius.sim.landmarks import MIRRORED, LandmarkPoint, Side
+from risorius.sim.rig import LinearMuscle, RingMuscle, Tissue
+from risorius.sim.rig_reader import read_rig
 from tests.sim.poses import both_sides, moved_landmarks, settle, without
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import sim
-from assets.model import Head
+from risorius import sim
+from risorius.assets.model import Head
 from tests.sim.poses import FRAME, both_sides, settle
 
 

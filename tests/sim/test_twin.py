@@ -8,14 +8,14 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-import sim
-from assets.model import Head
-from sim.contact import Grip, watch_eyeballs
-from sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
-from sim.integrator import substeps_in
-from sim.lids import turn_lids
-from sim.substep import SEAL_AXES, edge_forces, hold_lips, tissue_forces
-from sim.tissue import carry, tissue_energy
+from risorius import sim
+from risorius.assets.model import Head
+from risorius.sim.contact import Grip, watch_eyeballs
+from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
+from risorius.sim.integrator import substeps_in
+from risorius.sim.lids import turn_lids
+from risorius.sim.substep import SEAL_AXES, edge_forces, hold_lips, tissue_forces
+from risorius.sim.tissue import carry, tissue_energy
 from tests.sim.poses import FRAME, settle
 
 Array = npt.NDArray[np.float64]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.integrator import substeps_in, ticks_in
-from sim.skull import REST, Pose
-from sim.tissue import AREAL_MASS
-from sim.weight import Weight
+from risorius.sim.integrator import substeps_in, ticks_in
+from risorius.sim.skull import REST, Pose
+from risorius.sim.tissue import AREAL_MASS
+from risorius.sim.weight import Weight
 
 TICK = 1.0 / 60.0
 AREA, HEAVINESS = 2.0, 0.25

@@ -82,7 +82,7 @@ class Chooser:
         """Where one may want to go, and where one is."""
         places = {"Up": self.folder.parent, "Home": Path.home()}
         if not self._is_saving and SUFFIX in self._suffixes:
-            places["Examples"] = Path(str(files("assets") / "scripts"))
+            places["Examples"] = Path(str(files("risorius.assets") / "scripts"))
         for label, place in places.items():
             if imgui.button(label):
                 self._enter(place)

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from imgui_bundle import imgui
 
-import refine
-import render
-from refine import choices, criteria
+from risorius import refine, render
+from risorius.refine import choices, criteria
 
 from ...refining import DETAIL, can_detail, options_of
 from .. import commands

@@ -1,12 +1,12 @@
-"""`python -m app` is the same as the command `risorius`."""
+"""`python -m risorius` is the same as the command `risorius`."""
 
-from .stopping import listen
+from risorius.app.stopping import listen
 
 
 def run() -> None:
     """Run the command; whoever stops it is heard before anything else is loaded."""
     listen()
-    from .cli import main
+    from risorius.app.cli import main
 
     main()
 

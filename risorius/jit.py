@@ -5,8 +5,8 @@ kernel changes that is called from another file, old code goes on running. It al
 lies in its folder, and gives up where no folder can be written, where the disk is full, or where a
 file was torn. So here numba compiles, and this file keeps what it made:
 
-    valid    for all source files of this package together and the kernel's own, these options, the
-             versions of numba and Python, and the processor; each file has a check sum
+    valid    for all source files of the kernel's package together, these options, the versions of
+             numba and Python, and the processor; each file has a check sum
     where    the first of: the folder named by NUMBA_CACHE_DIR, beside the code, the user's cache
     trusted  only a folder that belongs to this user, that nobody else may write, move or replace
     else     code is compiled in each process anew, and a warning in the log says so once
@@ -16,11 +16,12 @@ Results do not depend on how a loop was vectorised: there is no fast-math unless
 it. With NUMBA_DISABLE_JIT=1 all kernels run as the Python that they are written in, slowly, for
 debuggers and coverage.
 
-`refine` and `sim` do not know each other, so each has this file; a test holds that they are equal.
+This file knows nothing of what it compiles. Somebody who lifts `refine/` out takes it along.
 """
 
 import functools
 import hashlib
+import importlib.util
 import logging
 import os
 import pickle
@@ -48,6 +49,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 """Of all kernels: other threads may run meanwhile, and 1 / 0 is infinite as it is in numpy."""
+PACKAGES = (f"{__package__}.refine", f"{__package__}.sim")
+"""Where kernels lie that call one another. One from elsewhere may call any of them."""
 PATIENCE = 30.0
 """Seconds to wait for another process that compiles; the slowest kernel takes a few."""
 PAUSE = 0.02
@@ -94,7 +97,8 @@ class KeptCode(_Cache):
         name = f"{function.__module__}.{function.__qualname__}"
         self._name = name.replace("<", "").replace(">", "")  # Windows allows no file of such a name
         # Of the sources as they are now: what is edited later is not what gets compiled.
-        self._made_of = f"{options} {_PACKAGE} {_digest(function.__code__.co_filename)}"
+        sources = (_digest_of_packages(function.__module__), _digest(function.__code__.co_filename))
+        self._made_of = f"{options} {sources}"
 
     @property
     def cache_path(self) -> str:
@@ -164,18 +168,24 @@ def _digest(file: str) -> str:
     return hashlib.sha256(Path(file).read_bytes()).hexdigest()
 
 
-def _package() -> str:
-    """Digest of all that code depends on but its own file: sources, options, versions."""
+def _digest_of_packages(module: str) -> str:
+    """Digest of all that code of a module depends on but its file: sources, options, versions."""
+    own = ".".join(module.split(".")[:2])
+    return _digest_of_sources(*([own] if own in PACKAGES else PACKAGES))
+
+
+@functools.cache
+def _digest_of_sources(*packages: str) -> str:
     digest = hashlib.sha256(repr(sorted(OPTIONS.items())).encode())
     digest.update(f"{numba.__version__} {sys.version} {platform.machine()}".encode())
-    here = Path(__file__).parent
-    for file in sorted(here.rglob("*.py")):
-        digest.update(str(file.relative_to(here)).encode())
-        digest.update(file.read_bytes())
+    digest.update(Path(__file__).read_bytes())
+    for package in packages:
+        found = importlib.util.find_spec(package)
+        for folder in (found and found.submodule_search_locations) or ():
+            for file in sorted(Path(folder).rglob("*.py")):
+                digest.update(str(file.relative_to(folder)).encode())
+                digest.update(file.read_bytes())
     return digest.hexdigest()
-
-
-_PACKAGE = _package()
 
 
 @functools.cache
