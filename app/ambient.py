@@ -24,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, sim
-from risorius.assets.loading import HEAD_FILE, fingerprint, load_head
+from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.jit import njit
 
 from .errors import run_alone
@@ -244,7 +244,7 @@ def bake(head: assets.Head) -> dict[str, npt.NDArray[np.generic]]:
     """Make everything that `head.openness_file` holds, array name -> array."""
     return {
         "openness": openness(head, sim.create(head)),
-        "made_from": np.array(fingerprint(head), dtype=np.uint32),
+        "made_from": np.array(head.fingerprint, dtype=np.uint32),
     }
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
-from risorius.assets.aside import Aside, is_aside
+from risorius.assets.staging import StagingFolder, is_staging_folder
 
 from .errors import UserError
 from .ffmpeg import Encoder
@@ -43,7 +43,7 @@ def written_aside(target: Path) -> Iterator[Path]:
 @contextlib.contextmanager
 def _folder_aside(target: Path, parent: Path) -> Iterator[Path]:
     """A folder in `parent` that is gone after the block, however it ends."""
-    aside = Aside(parent)
+    aside = StagingFolder(parent)
     with cleaned_up_if_stopped(aside.remove), contextlib.ExitStack() as stack:
         with cannot_be_written(target):
             folder = stack.enter_context(aside)
@@ -133,7 +133,7 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
     _behind_links(target)
     is_new = not target.exists()
     with cannot_be_written(target):
-        is_empty = is_new or all(is_aside(item) for item in target.iterdir())
+        is_empty = is_new or all(is_staging_folder(item) for item in target.iterdir())
         if not is_empty and not overwrite:
             raise UserError(
                 f"{target}: is there and not empty; name another folder, or add --overwrite"

@@ -13,9 +13,9 @@ import struct
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from .brought import MOST_VERTICES, plain_text, size_text
+from .errors import AssetError
 from .glb_claims import check_glb
-from .model import AssetError
+from .user_files import MOST_VERTICES, plain_text, size_text
 
 MOST_SOLIDS = 1000  # of one STL file
 LONGEST_HEADER = 2**16  # [bytes] of a PLY file

@@ -20,10 +20,10 @@ from .checks import (
     mirror_error,
     self_intersections,
 )
-from .generator.topology import boundary_loops, cross_products, smallest_angles
 from .loading import load
 from .model import Head
 from .norms import DEPTHS, NORMS, Norm, Sample
+from .topology import boundary_loops, cross_products, smallest_angles
 
 DISTANCES = (
     ("face height, n-gn", "nasion", "gnathion"),

@@ -18,8 +18,8 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from .brought import LONGEST_LINE, plain_text
-from .model import AssetError
+from .errors import AssetError
+from .user_files import LONGEST_LINE, plain_text
 
 SHOWN = 30  # bytes of what is wrong in a line, at most
 

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
-from risorius.assets.aside import locked
+from risorius.assets.staging import locked
 
 from ..errors import UserError
 from ..inputs import read_text

@@ -20,21 +20,22 @@ from typing import Any
 
 import numpy as np
 
-from ..brought import named
+from ..errors import AssetError
+from ..files import Image
 from ..loading import load
 from ..meshes import Mesh, read_mesh
 from ..model import (
-    AssetError,
     Eye,
     FloatArray,
     Head,
     IndexArray,
     Layer,
     Part,
-    Picture,
     SingleArray,
     Wrinkles,
 )
+from ..topology import vertex_normals
+from ..user_files import named
 from .landmark_file import COUNT, read_landmarks
 from .organs import Place, place_eyes, place_parts
 from .soundness import Skin, check_manifold, check_openings, skin_of
@@ -69,7 +70,7 @@ class FittedHead:
     parts: tuple[Part, ...]
     uv: SingleArray
     face_uv: IndexArray
-    albedo: Picture
+    albedo: Image
     wrinkles: Wrinkles
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
@@ -111,7 +112,7 @@ def fit(
     _check_size(skin)
     skin = _facing_outward(skin)
     check_openings(skin)
-    normals = _normals(skin.vertices, skin.faces)
+    normals = vertex_normals(skin.vertices, skin.faces)
     target = similarity.points(points)
     warp = Warp(*_distinct(known.vertices[known.landmarks], target))
     warped = warp.points(known.vertices)
@@ -190,22 +191,10 @@ def _check_different(points: FloatArray, template: FloatArray) -> None:
 
 def _facing_outward(skin: Skin) -> Skin:
     """The same skin with its triangles counter-clockwise seen from outside."""
-    normals = _normals(skin.vertices, skin.faces)
+    normals = vertex_normals(skin.vertices, skin.faces)
     if normals[skin.landmarks[ORIENTING], 2].mean() > 0.0:
         return skin
     return replace(skin, faces=np.ascontiguousarray(skin.faces[:, ::-1]))
-
-
-def _normals(vertices: FloatArray, faces: IndexArray) -> FloatArray:
-    """Unit vertex normals, shape (V, 3)."""
-    corners = vertices[faces]
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals = np.zeros_like(vertices)
-    for corner in range(3):
-        np.add.at(normals, faces[:, corner], cross)
-    length = np.linalg.norm(normals, axis=1, keepdims=True)
-    normals /= np.maximum(length, 1e-12)
-    return normals
 
 
 def _distinct(source: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:

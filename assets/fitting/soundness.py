@@ -14,7 +14,8 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from ..model import AssetError, FloatArray, IndexArray
+from ..errors import AssetError
+from ..model import FloatArray, IndexArray
 
 MOST_TRIANGLES = 50_000
 FEWEST_TRIANGLES = 300  # below it eyes and mouth have no shape (chosen)

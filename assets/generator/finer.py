@@ -20,10 +20,10 @@ import numpy.typing as npt
 
 from ..checks import self_intersections
 from ..subdivision import quarter
+from ..topology import Faces, cross_products, edge_faces, edge_key, vertex_normals
 from .fields import Points, Values, gradient, project, unit
 from .form import distance
 from .skin import Skin
-from .topology import Faces, cross_products, edge_faces, edge_key
 
 LEVELS = 2
 ON_FORM = 0.03  # [mm] such a vertex lies on the form
@@ -157,7 +157,7 @@ def _values_between(first: Values, second: Values) -> Values:
 
 
 def _form_values(skin: Skin) -> Values:
-    normal = _vertex_normals(skin.vertices, skin.faces)
+    normal = vertex_normals(skin.vertices, skin.faces)
     along = (normal * unit(gradient(distance, skin.vertices))).sum(axis=1)
     away = _miss(skin.vertices, 0.0)
     is_on = (away < ON_FORM) & (along > ALONG_FORM)
@@ -165,18 +165,9 @@ def _form_values(skin: Skin) -> Values:
     return np.where(is_on | is_near, distance(skin.vertices), np.nan)
 
 
-def _vertex_normals(vertices: Points, faces: Faces) -> Points:
-    """Unit normals, faces weighted by area, shape (n, 3)."""
-    cross = cross_products(vertices, faces)
-    total = np.zeros_like(vertices)
-    for corner in range(3):
-        np.add.at(total, faces[:, corner], cross)
-    return unit(total)
-
-
 def _normals(level: Level) -> Points:
     """Unit normals: of the form where the mesh lies on it, else of the mesh, shape (n, 3)."""
-    normals = _vertex_normals(level.vertices, level.faces)
+    normals = vertex_normals(level.vertices, level.faces)
     on_form = np.abs(level.value) < ON_FORM
     normals[on_form] = unit(gradient(distance, level.vertices[on_form]))
     return normals

@@ -8,7 +8,8 @@ import numpy.typing as npt
 from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
-from ..model import Head, Picture, Tone
+from ..files import Image
+from ..model import Head, Tone
 from . import lips
 from .brows import brow_cover
 from .fields import Points, Values, bump, smooth_step
@@ -33,7 +34,7 @@ PADDING = 24.0  # texels
 FRECKLE_RADII = (0.3, 0.8)  # [mm]
 
 
-def paint_skin(head: Head, *, tone: Tone, size: int = SIZE) -> Picture:
+def paint_skin(head: Head, *, tone: Tone, size: int = SIZE) -> Image:
     """Paint the skin of a head, shape (size, size, 3), uint8, sRGB; row 0 is v = 1."""
     texels = left_texels(head, size)
     complexion = COMPLEXIONS[tone]

@@ -22,9 +22,9 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from ..model import AssetError
+from ..errors import AssetError
+from ..topology import Faces, boundary_loops, edge_faces
 from .fields import Points, Values, smooth_step
-from .topology import Faces, boundary_loops, edge_faces
 
 Flat = npt.NDArray[np.float64]
 Rings = Mapping[str, npt.NDArray[np.integer]]

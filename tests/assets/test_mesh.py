@@ -11,9 +11,9 @@ from risorius import assets
 from risorius.assets import checks
 from risorius.assets.generator import form
 from risorius.assets.generator.fields import gradient
-from risorius.assets.generator.topology import boundary_loops, cross_products, smallest_angles
 from risorius.assets.model import Head
 from risorius.assets.report import report
+from risorius.assets.topology import boundary_loops, cross_products, smallest_angles
 
 TUCKED_ROWS = ("eye_0", "eye_1", "mouth_0", "mouth_1", "mouth_2", "nostril")
 

@@ -1,9 +1,11 @@
 """Small questions about triangle lists: edges, boundary loops, angles."""
 
+from itertools import pairwise
+
 import numpy as np
 import numpy.typing as npt
 
-from .fields import Points, Values
+from .model import FloatArray
 
 Faces = npt.NDArray[np.int32]
 Edge = tuple[int, int]
@@ -49,13 +51,23 @@ def boundary_loops(faces: Faces) -> list[list[int]]:
     return sorted(loops, key=len, reverse=True)
 
 
-def cross_products(vertices: Points, faces: Faces) -> Points:
+def cross_products(vertices: FloatArray, faces: Faces) -> FloatArray:
     """Face normals times twice the area, shape (F, 3)."""
     corner = vertices[faces]
     return np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
 
 
-def smallest_angles(vertices: Points, faces: Faces) -> Values:
+def vertex_normals(vertices: FloatArray, faces: Faces) -> FloatArray:
+    """Unit normals of the vertices, faces weighted by area, shape (V, 3); zero where none is."""
+    cross = cross_products(vertices, faces)
+    total = np.zeros_like(vertices)
+    for corner in range(3):
+        np.add.at(total, faces[:, corner], cross)
+    normals: FloatArray = total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
+    return normals
+
+
+def smallest_angles(vertices: FloatArray, faces: Faces) -> FloatArray:
     """Smallest inner angle of each face [deg], shape (F,)."""
     corner = vertices[faces]
     angles = []
@@ -64,21 +76,22 @@ def smallest_angles(vertices: Points, faces: Faces) -> Values:
         second = corner[:, (k + 2) % 3] - corner[:, k]
         height = np.linalg.norm(np.cross(first, second), axis=1)
         angles.append(np.degrees(np.arctan2(height, (first * second).sum(axis=1))))
-    smallest: Values = np.min(angles, axis=0)
+    smallest: FloatArray = np.min(angles, axis=0)
     return smallest
 
 
-def strip(first_row: list[int], second_row: list[int], *, closed: bool) -> list[list[int]]:
-    """Quadrilaterals between two rows of equal length, each as four vertex numbers."""
-    count = len(first_row)
+def quads_between(rows: list[list[int]], *, closed: bool) -> list[list[int]]:
+    """Quadrilaterals between neighbouring rows of equal length, each as four vertex numbers."""
     quads = []
-    for i in range(count if closed else count - 1):
-        j = (i + 1) % count
-        quads.append([first_row[i], second_row[i], second_row[j], first_row[j]])
+    for first, second in pairwise(rows):
+        count = len(first)
+        for i in range(count if closed else count - 1):
+            j = (i + 1) % count
+            quads.append([first[i], second[i], second[j], first[j]])
     return quads
 
 
-def halved(vertices: Points, quads: list[list[int]]) -> Faces:
+def halved(vertices: FloatArray, quads: list[list[int]]) -> Faces:
     """Cut each quadrilateral along the diagonal with the better smallest angle."""
     a, b, c, d = np.array(quads, dtype=np.int32).T
     one = np.stack([np.stack([a, b, c], 1), np.stack([a, c, d], 1)], axis=1)

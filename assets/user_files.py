@@ -13,7 +13,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from .model import AssetError
+from .errors import AssetError
 
 # Of text: numbers take five times as much memory while they are read. The largest head as text STL,
 # the longest there is, has a quarter of it.

@@ -12,17 +12,17 @@ from pathlib import Path
 
 import pytest
 
-from risorius.assets import aside
-from risorius.assets.aside import Aside, is_aside, sweep
+from risorius.assets import staging
+from risorius.assets.staging import StagingFolder, is_staging_folder, sweep
 
 KILLED = (
-    "import os, pathlib, signal, sys\nfrom assets.aside import Aside\n"
-    "made = Aside(pathlib.Path(sys.argv[1])).__enter__()\n"
+    "import os, pathlib, signal, sys\nfrom risorius.assets.staging import StagingFolder\n"
+    "made = StagingFolder(pathlib.Path(sys.argv[1])).__enter__()\n"
     "(made / 'film.mp4').write_bytes(b'half')\nos.kill(os.getpid(), signal.SIGKILL)"
 )
 
 
-def made_old(folder: Path, seconds: float = aside.OLD + 60.0) -> Path:
+def made_old(folder: Path, seconds: float = staging.OLD + 60.0) -> Path:
     """Let the last change in a folder be so long ago."""
     when = time.time() - seconds
     for path in (*folder.rglob("*"), folder):
@@ -33,7 +33,7 @@ def made_old(folder: Path, seconds: float = aside.OLD + 60.0) -> Path:
 @pytest.fixture
 def killed(tmp_path: Path) -> Path:
     """What a process left that was killed while it made a film."""
-    made = Aside(tmp_path)
+    made = StagingFolder(tmp_path)
     (made.__enter__() / "film.mp4").write_bytes(b"half")
     [path] = tmp_path.iterdir()
     assert made._lock is not None
@@ -43,11 +43,11 @@ def killed(tmp_path: Path) -> Path:
 
 def test_a_folder_is_gone_after_the_work(tmp_path: Path) -> None:
     """However the work ends."""
-    with Aside(tmp_path) as folder:
+    with StagingFolder(tmp_path) as folder:
         (folder / "x").touch()
         [path] = tmp_path.iterdir()
-        assert is_aside(path) and folder.parent == path
-    with pytest.raises(RuntimeError, match="in the middle"), Aside(tmp_path):
+        assert is_staging_folder(path) and folder.parent == path
+    with pytest.raises(RuntimeError, match="in the middle"), StagingFolder(tmp_path):
         raise RuntimeError("in the middle")
     assert list(tmp_path.iterdir()) == []
 
@@ -58,9 +58,9 @@ def test_what_a_killed_process_leaves_is_swept_away_when_old(tmp_path: Path) -> 
     ended = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], check=False)
     assert ended.returncode == -signal.SIGKILL
     [left] = tmp_path.iterdir()
-    for age, names in ((0.0, [left]), (0.9 * aside.OLD, [left]), (1.1 * aside.OLD, [])):
+    for age, names in ((0.0, [left]), (0.9 * staging.OLD, [left]), (1.1 * staging.OLD, [])):
         made_old(tmp_path, age)
-        with Aside(tmp_path):
+        with StagingFolder(tmp_path):
             pass
         assert list(tmp_path.iterdir()) == names
 
@@ -68,7 +68,7 @@ def test_what_a_killed_process_leaves_is_swept_away_when_old(tmp_path: Path) -> 
 @pytest.mark.skipif(sys.platform == "win32", reason="a file that is open is not removed there")
 def test_a_folder_in_use_stays(killed: Path, tmp_path: Path) -> None:
     """Locked by a process that lives, however long nothing has changed."""
-    with Aside(tmp_path) as folder:
+    with StagingFolder(tmp_path) as folder:
         made_old(tmp_path)
         sweep(tmp_path)
         assert list(tmp_path.iterdir()) == [folder.parent]  # the other one is gone
@@ -102,7 +102,7 @@ def test_a_film_that_still_grows_stays(killed: Path) -> None:
 def test_nothing_else_is_swept_away(killed: Path, change: object) -> None:
     """Another name, no mark or another one, something else in it, a link, a file: all stay."""
     folder = killed.parent
-    assert is_aside(killed)
+    assert is_staging_folder(killed)
     change(killed)  # type: ignore[operator]
     made_old(folder)
     before = sorted(folder.rglob("*"))

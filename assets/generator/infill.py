@@ -1,6 +1,6 @@
-"""The irregular sheet between the rows: darts on the surface, joined by a Delaunay triangulation.
+"""The irregular mesh between the rows of vertices: darts on the surface and their triangulation.
 
-The sheet is laid out flat as seen from inside the head, stereographically from the opening of the
+The infill is laid out flat as seen from inside the head, stereographically from the opening of the
 neck: so every point is seen exactly once, the underside of the nose and the back of the head
 included, and no angle is distorted. The triangulation is only a start: `remesh` works on it in
 space.
@@ -13,9 +13,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import Delaunay, cKDTree
 
+from ..topology import Edge, Faces, cross_products, edge_faces, edge_key
 from .fields import Points, Values, smooth_step, unit
 from .form import from_axis, from_below, from_front
-from .topology import Edge, Faces, cross_products, edge_faces, edge_key
 
 VIEWPOINT = np.array([0.0, 10.0, 15.0])  # [mm]; sees the underside of nose and chin
 NECK_DEG = 5.0  # from straight down backward: the middle of the neck's opening as seen from there
@@ -84,10 +84,10 @@ def inside_polygon(
 
 @dataclass
 class Domain:
-    """What the sheet must respect.
+    """What the infill must respect.
 
     points: all given points, shape (n, 3).
-    outline: numbers of the points around the sheet.
+    outline: numbers of the points around the infill.
     holes: numbers of the points around each hole.
     chains: rows of points whose edges must be in the mesh.
     """

@@ -26,7 +26,7 @@ _NAME = re.compile(re.escape(PREFIX) + "[0-9a-f]{12}")
 _WORDS = b"Risorius makes files here, and takes this folder away when they are made.\n"
 
 
-class Aside:
+class StagingFolder:
     """A folder in `parent` to make files in; a context manager that gives and removes it.
 
     Raises OSError where it cannot be made.
@@ -61,7 +61,7 @@ class Aside:
         shutil.rmtree(self._folder, ignore_errors=True)
 
 
-def is_aside(path: Path) -> bool:
+def is_staging_folder(path: Path) -> bool:
     """Whether a path is such a folder, made by this user, with nothing else in it."""
     try:
         found = path.lstat()
@@ -84,7 +84,7 @@ def sweep(parent: Path) -> None:
     with contextlib.suppress(OSError):
         for path in [item for item in parent.iterdir() if item.name.startswith(PREFIX)]:
             with contextlib.suppress(OSError):
-                if is_aside(path) and _last_change(path) < time.time() - OLD:
+                if is_staging_folder(path) and _last_change(path) < time.time() - OLD:
                     lock = locked(path / MARK)
                     if lock is not None:
                         lock.close()
