@@ -31,7 +31,8 @@ from risorius import sim
 from risorius.assets.fitting import fit
 from risorius.assets.meshes import Mesh
 from risorius.bench.subjects import DENSE, read_arrays
-from risorius.sim.landmarks import FaceFrame, Side
+from risorius.sim.coordinates import FaceSpace
+from risorius.sim.landmarks import Side
 from risorius.sim.rig import LinearMuscle, RingMuscle
 
 Array = npt.NDArray[np.float64]
@@ -183,8 +184,8 @@ class _Ruler:
     def __init__(
         self, vertices: Array, landmarks: npt.NDArray[np.int32], areas: Array, rig: dict[str, Any]
     ) -> None:
-        self._frame = FaceFrame.from_landmarks(vertices[landmarks])
-        self._x = self._frame.to_standard(vertices)
+        self._space = FaceSpace.from_landmarks(vertices[landmarks])
+        self._x = self._space.to_standard(vertices)
         self._landmarks = self._x[landmarks]
         self._areas = areas
         self._muscles = {muscle.name: muscle for muscle in sim.read_rig(rig).muscles}
@@ -250,7 +251,7 @@ class _Ruler:
                 for control, value in values.items():
                     moved += value * self._drawn(control, cone, reach)
                 if moved.any():
-                    field = self._frame.vectors_to_head(moved)
+                    field = self._space.vectors_to_head(moved)
                     best = float(np.fmax(best, self._cosine(field, scanned)))
         return best
 

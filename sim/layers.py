@@ -32,7 +32,7 @@ from typing import Any
 
 import numpy as np
 
-from .checked import several, shown
+from .checked import quoted, several
 from .landmarks import Array
 from .rig_reader import question
 
@@ -72,7 +72,7 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
     reader.add(BOTH_SIDES, (base for base in paired if f"{base}_right" in reader.shares))
     for layer in several("head.layers", given, ("title", "source", "rows")):
         if not isinstance(layer.rows, Mapping):
-            raise ValueError(f"{layer.source}: was {shown(layer.rows)}, must be a table of rows")
+            raise ValueError(f"{layer.source}: was {quoted(layer.rows)}, must be a table of rows")
         below = reader.everything()
         names: list[str] = []
         for row, table in layer.rows.items():
@@ -109,13 +109,13 @@ class _Reader:
     def row(self, where: str, name: str, table: Any, below: Mapping[str, Array]) -> list[str]:
         """Take in one row; the names of the controls that it makes."""
         if not isinstance(table, Mapping):
-            raise ValueError(f"{where}: was {shown(table)}, must be a table of control = share")
+            raise ValueError(f"{where}: was {quoted(table)}, must be a table of control = share")
         entries = dict(table)
         action, is_pair = entries.pop("action", ""), entries.pop("pair", False)
         if not isinstance(action, str):
-            raise ValueError(f"{where}: 'action' was {shown(action)}, must be a text")
+            raise ValueError(f"{where}: 'action' was {quoted(action)}, must be a text")
         if not isinstance(is_pair, bool):
-            raise ValueError(f"{where}: 'pair' was {shown(is_pair)}, must be true or false")
+            raise ValueError(f"{where}: 'pair' was {quoted(is_pair)}, must be true or false")
         if is_pair and name.endswith(SIDES):
             raise ValueError(f"{where}: a pair adds the sides by itself; leave '_left' away")
         sides = SIDES if is_pair else ("",)
@@ -144,7 +144,7 @@ def _share(where: str, control: str, value: Any) -> float:
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     if not is_number or not -GREATEST_SHARE <= value <= GREATEST_SHARE:  # NaN is not
         raise ValueError(
-            f"{where}, '{control}': was {shown(value)}, must be a number "
+            f"{where}, '{control}': was {quoted(value)}, must be a number "
             f"from {-GREATEST_SHARE:g} to {GREATEST_SHARE:g}"
         )
     return float(value)

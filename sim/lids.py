@@ -24,7 +24,7 @@ import numpy.typing as npt
 
 from ..jit import njit
 from .landmarks import EYE_LANDMARKS, Array, polyline_distance, select, smoothstep
-from .openings import lid_side
+from .lip_lid_sides import lid_side
 from .rig import LIDS, Eyes, LidMuscle, Rig
 from .skull import Eyeball
 from .surface import Surface

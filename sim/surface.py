@@ -2,7 +2,7 @@
 on it.
 
 Everything here is computed once when a simulation is built; nothing runs per frame. Coordinates
-are the standard frame of landmarks.py in millimetres.
+are the standard space of coordinates.py in millimetres.
 
 Source: Van Gelder 1998 for edge stiffness from triangle areas; Kähler et al. 2001 for one mass
 per vertex and one spring per edge.

@@ -62,9 +62,10 @@ def masses_for_step(areas: Array, stiffness: Array, step: float) -> Array:
 
 
 @njit
-def carry(rest, normals, weight, turn, shift, state):  # type: ignore[no-untyped-def]
+def carry(state, rest, normals, weight, mandible):  # type: ignore[no-untyped-def]
     """Move the far ends of the tissue springs with the mandible, each vertex by its share."""
     carried, carried_normals = state.carried, state.normals
+    turn, shift = mandible.rotation, mandible.shift
     for i in range(len(rest)):
         w = weight[i]
         x, y, z = rest[i, 0], rest[i, 1], rest[i, 2]

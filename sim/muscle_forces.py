@@ -8,9 +8,9 @@ and its far end is displaced:
 
 r is the vertex at rest carried by the bones, u_f the pull of fibre f at the vertex (fibres.py), d
 what is linear in a (rings, bulge, convergence to the fibre line). Where a muscle lies on others, r
-is also carried by them: by the mean of what carries its fibres, w_f their weights (riding.py). A
-tick sums this into one stiffness and one pull per vertex, so substeps cost the same for one muscle
-and for fifty.
+is also carried by them: by the mean of what carries its fibres, w_f their weights
+(muscle_stack.py). A tick sums this into one stiffness and one pull per vertex, so substeps cost the
+same for one muscle and for fifty.
 
 Source: Kähler et al. 2001, section 4; the passive share is our own, fitted to half activations.
 """
@@ -25,12 +25,22 @@ import numpy as np
 import numpy.typing as npt
 
 from ..jit import njit
-from .fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, FibreBundle, Riding, move_lines, over_skin
+from .fibres import (
+    FIBRE_POINTS,
+    LEAST_ARC,
+    SAMPLES,
+    FibreBundle,
+    LineMotion,
+    Stack,
+    move_lines,
+    over_skin,
+)
 from .landmarks import Array
-from .muscles import Line, Placed
-from .riding import from_below, lay_on_each_other, points_along
+from .muscle_stack import bottom_up, points_along, stack_muscles
+from .muscles import Line, PlacedMuscle
 from .rig import LinearMuscle, Rig
 from .skull import Pose
+from .state import State
 from .surface import Surface
 
 Indices = npt.NDArray[np.int32]
@@ -49,120 +59,110 @@ class Attachments(NamedTuple):
     value: Array  # (n, 3) steady displacement x k A, or (n,) place along the line
 
 
+class SkinAttachments(NamedTuple):
+    """How the skin hangs on M muscles and on their B lines."""
+
+    muscle: Indices  # (B,) number of each line's muscle
+    passive: Array  # (M,) share of the stiffness that is there at rest
+    holds: Attachments  # by muscle
+    pulls: Attachments  # by line, places in samples
+    carries: Attachments  # by line, places in points
+
+
 @dataclass(frozen=True)
-class MusclePull:
+class MuscleForces:
     """All muscles of a face, ready to pull."""
 
     names: tuple[str, ...]  # M control names
-    passive: Array  # (M,) share of the stiffness that is there at rest
     opens_lips: Array  # (M,)
     reaches_lips: Array  # (M,) greatest attachment to the edge of a lip, 0..1
-    holds: Attachments  # by muscle
     bundle: FibreBundle
-    pulls: Attachments  # by line, places in samples
-    table: Array  # (B, SAMPLES, 3) displacement along each fibre, rewritten each tick
-    riding: Riding
-    carries: Attachments  # by line, places in points
-    ride: Array  # (B, FIBRE_POINTS, 3) displacement by the muscles beneath, rewritten each tick
-    rides: npt.NDArray[np.bool_]  # (B,) whether there is one
-    steady: Array  # (V, 3) work space
+    stack: Stack
+    skin: SkinAttachments
+    motion: LineMotion
     rings: tuple[tuple[int, Indices], ...]  # muscle, skin vertices along its ring
 
     def hold_of(self, share: Array, vertex_count: int) -> Array:
         """Stiffness per vertex, shape (V,), with each muscle's scaled by `share` (M,)."""
-        rows = self.holds.rows.astype(np.int64)
-        weight = self.holds.weight * np.repeat(share, rows[1:] - rows[:-1])
-        hold = np.bincount(self.holds.vertex, weight, minlength=vertex_count)
+        holds = self.skin.holds
+        weight = holds.weight * np.repeat(share, holds.rows[1:] - holds.rows[:-1])
+        hold = np.bincount(holds.vertex, weight, minlength=vertex_count)
         result: Array = hold.astype(np.float64)
         return result
 
-    def add(
-        self, activation: Array, mandible: Pose, weight: Array, hold: Array, force: Array
-    ) -> None:
-        """Add the active muscles' stiffness to `hold` (V,) and their pull to `force` (V, 3).
+    def add(self, activation: Array, mandible: Pose, weight: Array, state: State) -> None:
+        """Add the active muscles' stiffness to `state.hold` and their pull to `state.pull`.
 
         activation: of each muscle, shape (M,); weight: mandible's share of each vertex, shape (V,).
         """
-        self._move(activation, mandible)
-        gather_holds(
-            activation, self.passive, self.holds, mandible.rotation, weight, self.steady, hold,
-            force,
-        )  # fmt: skip
-        gather_lines(
-            activation, self.passive, self.bundle.muscle, self.pulls, self.table, self.carries,
-            self.ride, self.rides, force,
-        )  # fmt: skip
-
-    def _move(self, activation: Array, mandible: Pose) -> None:
-        """Bring `table`, `ride` and `rides` up to date."""
-        move_lines(
-            self.bundle, self.riding, activation, mandible.rotation, mandible.shift, self.ride,
-            self.rides, self.table,
-        )  # fmt: skip
+        move_lines(self.bundle, self.stack, activation, mandible, self.motion)
+        gather(state, activation, self.skin, self.motion, mandible.rotation, weight)
 
     def lines(self, activation: Array, mandible: Pose, x: Array) -> dict[str, list[Array]]:
         """Polylines [mm] to draw: contracted fibres of linear muscles, skin rows of rings."""
         lines: dict[str, list[Array]] = {name: [] for name in self.names}
-        self._move(activation, mandible)
+        move_lines(self.bundle, self.stack, activation, mandible, self.motion)
         rings = dict(self.rings)
         for b, muscle in enumerate(self.bundle.muscle):
             if muscle in rings:
                 continue
             points = self.bundle.points[b]
             moved = points + self.bundle.mandible[b][:, None] * mandible.displacements(points)
-            if self.rides[b]:
-                moved += self.ride[b]
+            if self.motion.is_carried[b]:
+                moved += self.motion.carried[b]
             arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))])
-            kept = max(1.0 - self.bundle.contraction[b] * activation[muscle], LEAST_ARC)
+            remaining = max(1.0 - self.bundle.contraction[b] * activation[muscle], LEAST_ARC)
             fixed = self.bundle.fixed_at[b] * arc[-1]
-            line = [np.interp(fixed + kept * (arc - fixed), arc, moved[:, k]) for k in range(3)]
+            line = [
+                np.interp(fixed + remaining * (arc - fixed), arc, moved[:, k]) for k in range(3)
+            ]
             lines[self.names[muscle]].append(np.stack(line, axis=1))
         for muscle, row in self.rings:
             lines[self.names[muscle]].append(x[row])
         return lines
 
 
-def prepare_pull(
-    placed: Sequence[Placed],
+def build_muscle_forces(
+    placed: Sequence[PlacedMuscle],
     rig: Rig,
     surface: Surface,
     mandible_weight: Array,
     lips: Indices,
     landmarks: Array,
     lip_side: Array,
-) -> MusclePull:
+) -> MuscleForces:
     """Turn placed muscles into the flat arrays of the kernels; `lips`: vertices that can touch."""
     strength = rig.tissue.stiffness_scale * surface.areas
-    order = from_below(placed)
-    riding = lay_on_each_other(placed, order, surface, landmarks, lip_side)
+    order = bottom_up(placed)
+    stack = stack_muscles(placed, order, surface, landmarks, lip_side)
     bundle = _bundle(placed, order, surface, mandible_weight)
     holds = []
     for at in placed:
         k = at.muscle.stiffness * strength
         holds.append((k * at.weight, k[:, None] * at.steady))
     least = LEAST_STIFFNESS * strength
-    return MusclePull(
+    return MuscleForces(
         names=tuple(at.name for at in placed),
-        passive=np.array([rig.tissue.passive * at.muscle.tone for at in placed], dtype=np.float64),
         opens_lips=np.array([at.muscle.opens_lips for at in placed], dtype=np.float64),
         reaches_lips=np.array(
             [min(float(at.weight[lips].max(initial=0.0)), 1.0) for at in placed], dtype=np.float64
         ),
-        holds=_attachments(holds, least, np.zeros((0, 3))),
         bundle=bundle,
-        pulls=_attachments(_pulls(placed, order, strength), least, np.zeros(0)),
-        table=np.zeros((len(bundle.muscle), SAMPLES, 3)),
-        riding=riding,
-        carries=_attachments(_carries(placed, order, strength, riding), least, np.zeros(0)),
-        ride=np.zeros(bundle.points.shape),
-        rides=np.zeros(len(bundle.muscle), dtype=np.bool_),
-        steady=np.zeros((surface.vertex_count, 3)),
+        stack=stack,
+        skin=SkinAttachments(
+            muscle=bundle.muscle,
+            passive=np.array([rig.tissue.passive * at.muscle.tone for at in placed], np.float64),
+            holds=_attachments(holds, least, np.zeros((0, 3))),
+            pulls=_attachments(_pulls(placed, order, strength), least, np.zeros(0)),
+            carries=_attachments(_carries(placed, order, strength, stack), least, np.zeros(0)),
+        ),
+        motion=LineMotion.of(len(bundle.muscle)),
         rings=tuple((n, at.ring) for n, at in enumerate(placed) if at.ring is not None),
     )
 
 
 def _bundle(
-    placed: Sequence[Placed], order: Sequence[int], surface: Surface, mandible_weight: Array
+    placed: Sequence[PlacedMuscle], order: Sequence[int], surface: Surface, mandible_weight: Array
 ) -> FibreBundle:
     """All lines, muscle by muscle in `order`.
 
@@ -196,7 +196,7 @@ def _gain(line: Line) -> float:
 Part = tuple[Array, Array]  # weight k w A and value of each vertex of the skin
 
 
-def _pulls(placed: Sequence[Placed], order: Sequence[int], strength: Array) -> list[Part]:
+def _pulls(placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Array) -> list[Part]:
     """How skin hangs on each line that pulls, gain included, places in samples."""
     return [
         (
@@ -209,14 +209,14 @@ def _pulls(placed: Sequence[Placed], order: Sequence[int], strength: Array) -> l
 
 
 def _carries(
-    placed: Sequence[Placed], order: Sequence[int], strength: Array, riding: Riding
+    placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Array, stack: Stack
 ) -> list[Part]:
     """How skin hangs on each line where it lies on others, places in points.
 
     A vertex is carried by the line of a muscle that it hangs on most.
     """
-    lies = np.zeros((len(riding.rows) - 1, FIBRE_POINTS), dtype=np.bool_)
-    lies[np.repeat(np.arange(len(lies)), np.diff(riding.rows)), riding.point] = True
+    lies = np.zeros((len(stack.rows) - 1, FIBRE_POINTS), dtype=np.bool_)
+    lies[np.repeat(np.arange(len(lies)), np.diff(stack.rows)), stack.point] = True
     parts: list[Part] = []
     for n in order:
         k = placed[n].muscle.stiffness * strength
@@ -245,14 +245,18 @@ def _attachments(parts: list[tuple[Array, Array]], least: Array, empty: Array) -
     )
 
 
-@njit(fastmath={"contract"})
-def gather_holds(  # type: ignore[no-untyped-def]
-    activation, passive, holds, turn, mandible, steady, hold, force
-):
-    """Sum what is linear in the activation into one stiffness and one force per vertex.
+@njit
+def gather(state, activation, skin, motion, turn, weight):  # type: ignore[no-untyped-def]
+    """Add what all active muscles do to `state.hold` and `state.pull`."""
+    gather_holds(state, activation, skin, turn, weight)
+    gather_lines(state.pull, activation, skin, motion)
 
-    `steady`: work space.
-    """
+
+@njit(fastmath={"contract"})
+def gather_holds(state, activation, skin, turn, mandible):  # type: ignore[no-untyped-def]
+    """Sum what is linear in the activation into one stiffness and one force per vertex."""
+    passive, holds = skin.passive, skin.holds
+    hold, force, steady = state.hold, state.pull, state.work
     steady[:] = 0.0
     for m in range(len(activation)):
         a = activation[m]
@@ -274,17 +278,17 @@ def gather_holds(  # type: ignore[no-untyped-def]
 
 
 @njit
-def gather_lines(  # type: ignore[no-untyped-def]
-    activation, passive, muscle, pulls, table, carries, ride, rides, force
-):
+def gather_lines(force, activation, skin, motion):  # type: ignore[no-untyped-def]
     """Add the pull of all lines that contract, and of all that others carry, to `force` (V, 3)."""
+    muscle, passive, pulls, carries = skin.muscle, skin.passive, skin.pulls, skin.carries
+    contracted, carried, is_carried = motion.contracted, motion.carried, motion.is_carried
     for b in range(len(muscle)):
         a = max(activation[muscle[b]], 0.0)
         scale = passive[muscle[b]] + (1.0 - passive[muscle[b]]) * a
         if a > 0.0:
-            add_pull(pulls, b, scale, table[b], force)
-        if rides[b]:
-            add_pull(carries, b, scale, ride[b], force)
+            add_pull(pulls, b, scale, contracted[b], force)
+        if is_carried[b]:
+            add_pull(carries, b, scale, carried[b], force)
 
 
 @njit(fastmath={"contract"})

@@ -9,9 +9,9 @@ what else is linear in the activation a, and o' what the line is itself carried 
 
 so a point on one muscle goes all the way with it, and one on the border of two goes between them.
 The fibre contracts along its points so moved, and skin that hangs on it, contracting or not, is
-carried by o (pull.py): the relaxed zygomaticus does not hold the cheek back while the buccinator
-bulges under it. A muscle at rest carries nothing. Lines are moved from below, each after those
-that it lies on; rig_reader.py refuses circles.
+carried by o (muscle_forces.py): the relaxed zygomaticus does not hold the cheek back while the
+buccinator bulges under it. A muscle at rest carries nothing. Lines are moved from below, each after
+those that it lies on; rig_reader.py refuses circles.
 
 Source: Kähler et al. 2001, section 4 (muscles attached to muscles). Who lies on whom: the four
 layers of Freilinger et al. 1987, "Surgical anatomy of the mimic muscle system".
@@ -24,17 +24,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .fibres import FIBRE_POINTS, SAMPLES, Riding, over_skin
+from .fibres import FIBRE_POINTS, SAMPLES, Stack, over_skin
 from .landmarks import Array
-from .muscles import Line, Placed, Places, hang_on
+from .muscles import AttachedPoints, Line, PlacedMuscle, attach
 from .surface import Surface
 
 LEAST_SHARE = 0.02  # of a displacement: less carries nothing
 
-Entry = tuple[int, int, float, float, float, Array]  # a row of Riding, in its order
+Entry = tuple[int, int, float, float, float, Array]  # a row of Stack, in its order
 
 
-def from_below(placed: Sequence[Placed]) -> list[int]:
+def bottom_up(placed: Sequence[PlacedMuscle]) -> list[int]:
     """Numbers of the muscles in an order in which each comes after those that it lies on."""
     muscles = {at.muscle.name: at.muscle for at in placed}
     heights: dict[str, int] = {}
@@ -47,13 +47,13 @@ def from_below(placed: Sequence[Placed]) -> list[int]:
     return sorted(range(len(placed)), key=lambda n: height(placed[n].muscle.name))
 
 
-def lay_on_each_other(
-    placed: Sequence[Placed],
+def stack_muscles(
+    placed: Sequence[PlacedMuscle],
     order: Sequence[int],
     surface: Surface,
     landmarks: Array,
     lip_side: Array,
-) -> Riding:
+) -> Stack:
     """Find what each point of each line lies on; lines are numbered muscle by muscle in `order`."""
     numbers, count = {}, 0
     for n in order:
@@ -66,7 +66,7 @@ def lay_on_each_other(
             if not beneath:
                 rows.append(len(found))
                 continue
-            places = Places(
+            places = AttachedPoints(
                 line.points,
                 over_skin(line.points, surface, surface.normals),
                 over_skin(line.points, surface, lip_side),
@@ -76,20 +76,22 @@ def lay_on_each_other(
     return _riding(rows, found)
 
 
-def _is_under(below: Placed, above: Placed) -> bool:
+def _is_under(below: PlacedMuscle, above: PlacedMuscle) -> bool:
     """Whether one lies on the other: a muscle of a pair on that of its own side."""
     is_beside = below.muscle.pair and above.muscle.pair and below.side is not above.side
     return below.muscle.name in above.muscle.lies_on and not is_beside
 
 
-def _entries(beneath: dict[int, Placed], landmarks: Array, places: Places) -> list[Entry]:
+def _entries(
+    beneath: dict[int, PlacedMuscle], landmarks: Array, places: AttachedPoints
+) -> list[Entry]:
     """What the points of a line lie on, with shares that are at most 1 in all for each point.
 
     beneath: the muscles, by the number of their first line.
     """
     entries, held = list[Entry](), np.zeros(FIBRE_POINTS)
     for first, placed in beneath.items():
-        holds = [hang_on(placed, line, landmarks, places) for line in placed.lines]
+        holds = [attach(placed, line, landmarks, places) for line in placed.lines]
         strongest = np.argmax([hold.weight for hold in holds], axis=0)
         for f, hold in enumerate(holds):
             sample, place = hold.arc * (SAMPLES - 1), points_along(placed.lines[f], hold.arc)
@@ -111,10 +113,10 @@ def points_along(line: Line, arc: Array) -> Array:
     return places
 
 
-def _riding(rows: Sequence[int], found: Sequence[Entry]) -> Riding:
+def _riding(rows: Sequence[int], found: Sequence[Entry]) -> Stack:
     """Arrays of what was found."""
     point, line, sample, place, share, steady = zip(*found, strict=True) if found else [()] * 6
-    return Riding(
+    return Stack(
         rows=np.array(rows, dtype=np.uint32),
         point=np.array(point, dtype=np.uint32),
         line=np.array(line, dtype=np.uint32),

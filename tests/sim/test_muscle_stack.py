@@ -12,7 +12,7 @@ import pytest
 
 from risorius import sim
 from risorius.assets.model import Head
-from risorius.sim.fibres import FIBRE_POINTS, SAMPLES
+from risorius.sim.fibres import FIBRE_POINTS, SAMPLES, move_lines
 from tests.sim.poses import both_sides, settle, without
 
 Array = npt.NDArray[np.float64]
@@ -65,9 +65,9 @@ def test_at_rest_what_lies_beneath_changes_nothing(simulation: sim.Simulation, h
     carriers = {name for row in head.rig["muscle"].values() for name in row.get("lies_on", ())}
     assert len(carriers) > 6
     anatomy = simulation._anatomy
-    nothing = anatomy.muscles.riding._replace(rows=np.zeros_like(anatomy.muscles.riding.rows))
+    nothing = anatomy.muscles.stack._replace(rows=np.zeros_like(anatomy.muscles.stack.rows))
     plain = sim.Simulation(
-        replace(anatomy, muscles=replace(anatomy.muscles, riding=nothing)),
+        replace(anatomy, muscles=replace(anatomy.muscles, stack=nothing)),
     )
     on_top = [name for name in head.rig["muscle"] if name not in carriers]
     values = both_sides(plain, dict.fromkeys(on_top, 0.8))
@@ -113,25 +113,25 @@ def test_carrying_is_the_formula(simulation: sim.Simulation) -> None:
     muscles, mandible = simulation._anatomy.muscles, simulation._anatomy.skull.mandible_pose
     pose = mandible(0.5, 0.3, 0.2)
     activation = np.linspace(-0.2, 1.0, len(muscles.names))
-    muscles._move(activation, pose)
-    riding, bundle = muscles.riding, muscles.bundle
+    stack, bundle, motion = muscles.stack, muscles.bundle, muscles.motion
+    move_lines(bundle, stack, activation, pose, motion)
     active = np.maximum(activation, 0.0)[bundle.muscle]
-    ride = np.zeros_like(muscles.ride)
+    ride = np.zeros_like(motion.carried)
     shares = np.zeros(ride.shape[:2])
-    owner = np.repeat(np.arange(len(ride)), np.diff(riding.rows))
+    owner = np.repeat(np.arange(len(ride)), np.diff(stack.rows))
     for row, b in enumerate(owner):
-        p, c = int(riding.point[row]), int(riding.line[row])
+        p, c = int(stack.point[row]), int(stack.line[row])
         assert c < b
-        steady = active[c] * riding.steady[row]
+        steady = active[c] * stack.steady[row]
         steady = steady + bundle.mandible[b, p] * (pose.rotation @ steady - steady)
         beneath = np.zeros(3)
         for k in range(3):
             if active[c] > 0.0:
-                along = muscles.table[c, :, k]
-                beneath[k] += np.interp(riding.sample[row], np.arange(SAMPLES), along)
-            beneath[k] += np.interp(riding.place[row], np.arange(FIBRE_POINTS), ride[c, :, k])
-        ride[b, p] += steady + riding.share[row] * beneath
-        shares[b, p] += riding.share[row]
+                along = motion.contracted[c, :, k]
+                beneath[k] += np.interp(stack.sample[row], np.arange(SAMPLES), along)
+            beneath[k] += np.interp(stack.place[row], np.arange(FIBRE_POINTS), ride[c, :, k])
+        ride[b, p] += steady + stack.share[row] * beneath
+        shares[b, p] += stack.share[row]
     assert 0.9 < shares.max() < 1.0 + 1e-9
-    assert np.array_equal(muscles.rides, np.abs(ride).max(axis=(1, 2)) > 0.0)
-    assert np.allclose(muscles.ride[muscles.rides], ride[muscles.rides], atol=1e-9)
+    assert np.array_equal(motion.is_carried, np.abs(ride).max(axis=(1, 2)) > 0.0)
+    assert np.allclose(motion.carried[motion.is_carried], ride[motion.is_carried], atol=1e-9)
