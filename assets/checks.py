@@ -48,6 +48,7 @@ def is_mirrored(faces: IndexArray, mirror: IndexArray) -> bool:
     """Whether the mirror image of every face is a face, turned over."""
 
     def normalised(triangles: IndexArray) -> set[tuple[int, ...]]:
+        """Each triangle from its lowest vertex on."""
         start = triangles.argmin(axis=1)
         order = (start[:, None] + np.arange(3)) % 3
         return set(map(tuple, np.take_along_axis(triangles, order, axis=1).tolist()))

@@ -130,6 +130,7 @@ def line(row: Row) -> str:
         return text
 
     def beside(sample: Sample) -> str:
+        """Mean, deviation and score."""
         mean = f"{sample.mean:6.1f} +- {sample.deviation:.1f}"
         return f"{mean:>15s} {sample.score(row.value):+5.1f}"
 

@@ -130,10 +130,12 @@ def _one_eye(
     corner, axis = landmarks[outer], landmarks[inner] - landmarks[outer]
 
     def angle_of(points: Array) -> Array:
+        """Angle [rad] about the axis of the lids, 0 straight forward."""
         angle: Array = np.arctan2((points - ball.centre) @ up, (points - ball.centre) @ forward)
         return angle
 
     def column_of(points: Array) -> Array:
+        """Place from the outer corner of the eye, 0, to the inner one, 1."""
         column: Array = ((points - corner) @ axis) / (axis @ axis)
         return column
 

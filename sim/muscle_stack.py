@@ -40,6 +40,7 @@ def bottom_up(placed: Sequence[PlacedMuscle]) -> list[int]:
     heights: dict[str, int] = {}
 
     def height(name: str) -> int:
+        """How many muscles lie above each other up to this one."""
         if name not in heights:
             heights[name] = 1 + max((height(n) for n in muscles[name].lies_on), default=0)
         return heights[name]

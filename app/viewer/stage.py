@@ -149,7 +149,7 @@ class Stage:
                         width=lines.width,
                         hidden_opacity=lines.hidden_opacity,
                     )
-            self.surface.layers.flush()
+            self.surface.target.flush()
             self.surface.gl.finish()
 
     def _draw(

@@ -170,6 +170,7 @@ def _join(half: Skin, faces: Faces, outer_edge: tuple[int, int]) -> None:
     """Append faces, turned so that they run along the outer edge against the infill."""
 
     def runs_along(triangles: Faces) -> bool:
+        """Whether one of them runs along the outer edge in its direction."""
         turned = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
         return bool((turned == outer_edge).all(axis=1).any())
 

@@ -140,6 +140,7 @@ def tutte(patch: Patch) -> Flat:
         straight, arc = straight[::-1], arc[::-1]
 
     def along(row: npt.NDArray[np.integer]) -> Values:
+        """How far along a row each of its vertices lies, 0 to 1."""
         steps = np.linalg.norm(np.diff(patch.rest[row], axis=0), axis=1)
         return np.asarray(np.r_[0.0, np.cumsum(steps)] / steps.sum(), dtype=np.float64)
 

@@ -7,18 +7,18 @@ import numpy as np
 import numpy.typing as npt
 
 from .camera import OrbitCamera
-from .layers import Rectangle, common
+from .render_target import Rectangle, common
 
 FloatArray = npt.NDArray[np.float64]
 
 _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float64)
 
 
-class Sight:
+class CameraView:
     """The matrices of one camera in one viewport, for row vectors, computed once.
 
     clip: the part of the viewport outside which nothing is drawn.
-    view: world -> view space; projection: view -> clip space; shape (4, 4), float64.
+    world_to_view: world -> view space; projection: view -> clip space; shape (4, 4), float64.
     """
 
     def __init__(
@@ -27,7 +27,7 @@ class Sight:
         self.camera = camera
         self.viewport = viewport
         self.clip = viewport if clip is None else common(viewport, clip)
-        self.view: FloatArray = np.asarray(camera.view_matrix())
+        self.world_to_view: FloatArray = np.asarray(camera.view_matrix())
         self.projection: FloatArray = np.asarray(
             camera.projection_matrix(viewport[2] / viewport[3])
         )
@@ -35,12 +35,12 @@ class Sight:
     @cached_property
     def world_to_clip(self) -> FloatArray:
         """World -> clip space, shape (4, 4)."""
-        matrix: FloatArray = self.view @ self.projection
+        matrix: FloatArray = self.world_to_view @ self.projection
         return matrix
 
     @cached_property
     def fingerprint(self) -> bytes:
-        """The same for sights of the same, whoever made them."""
+        """The same for views of the same, whoever made them."""
         return self.world_to_clip.tobytes()
 
     def touched_pixels(

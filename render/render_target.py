@@ -1,4 +1,4 @@
-"""The pixels of a surface: a plain frame, and a multisampled layer that is averaged onto it.
+"""Where a scene is drawn: a plain frame, and a multisampled layer that is averaged onto it.
 
 Backgrounds and panels go straight to the plain frame, geometry goes to the layer. Only the
 rectangles that geometry touched are averaged: on software OpenGL, where a head fills a third of a
@@ -18,7 +18,7 @@ Rectangle = tuple[int, int, int, int]  # x, y, width, height [pixels], from the 
 _UNIT = 1  # texture unit of the layer; 0 belongs to the meshes
 
 
-class Layers:
+class RenderTarget:
     """Frame and layer of `size` pixels; with samples 0 the frame is the layer."""
 
     def __init__(self, gl: moderngl.Context, size: tuple[int, int], samples: int) -> None:
@@ -31,7 +31,7 @@ class Layers:
         self.size = size
         self.samples = samples
         self._gl = gl
-        self.frame_number = 0  # counts the frames since the layers were made
+        self.frame_number = 0  # counts the frames since the target was made
         self.is_empty = False  # nothing was drawn since `start`
         self._touched: list[Rectangle] = []  # apart from each other
         self._is_worn = False

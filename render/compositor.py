@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import moderngl
 
-from .layers import Layers, Rectangle
 from .programs import compile_program
+from .render_target import Rectangle, RenderTarget
 
 _UNIT = 4  # texture unit while enlarging
 
@@ -30,8 +30,8 @@ class Detail:
         return max(round(self.scale * size[0]), 1), max(round(self.scale * size[1]), 1)
 
 
-class Shown:
-    """A frame of the window's size, apart from the scene's layers; panels are drawn on it."""
+class Compositor:
+    """A frame of the window's size, apart from the scene's target; panels are drawn on it."""
 
     def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
         self.size = size
@@ -43,21 +43,24 @@ class Shown:
         self._triangle = gl.vertex_array(self._program, [])
 
     def lay(
-        self, layers: Layers, area: Rectangle | None, target: moderngl.Framebuffer | None = None
+        self,
+        scene: RenderTarget,
+        area: Rectangle | None,
+        target: moderngl.Framebuffer | None = None,
     ) -> None:
         """Lay the scene into all of this frame, or of another `target` of its size, or an area.
 
         The target stays bound.
         """
         gl, target = self._gl, target or self.frame
-        layers.flush()
+        scene.flush()
         target.use()
         gl.viewport, gl.scissor = (0, 0, *self.size), area  # of what is bound
-        if layers.size == self.size:
-            gl.copy_framebuffer(target, layers.frame)
+        if scene.size == self.size:
+            gl.copy_framebuffer(target, scene.frame)
         else:
             gl.disable(moderngl.DEPTH_TEST)
-            layers.colour.use(_UNIT)
+            scene.colour.use(_UNIT)
             self._triangle.render(moderngl.TRIANGLES, vertices=3)
             gl.enable(moderngl.DEPTH_TEST)
         gl.scissor = None
