@@ -35,8 +35,7 @@ class CameraView:
     @cached_property
     def world_to_clip(self) -> FloatArray:
         """World -> clip space, shape (4, 4)."""
-        matrix: FloatArray = self.world_to_view @ self.projection
-        return matrix
+        return self.world_to_view @ self.projection
 
     @cached_property
     def fingerprint(self) -> bytes:

@@ -251,8 +251,7 @@ def _closed_weight(surface: Surface, landmarks: Array, weight: Array, lips: LipP
         return weight.copy()
     line = (select(landmarks, UPPER_INNER) + select(landmarks, LOWER_INNER)) / 2.0
     reach = (LIPS_END - polyline_distance(surface.positions, line)) / (LIPS_END - LIPS_WHOLE)
-    closed: Array = weight + smoothstep(reach) * (LIPS_MEET_AT - weight)
-    return closed
+    return weight + smoothstep(reach) * (LIPS_MEET_AT - weight)
 
 
 def _controls(rig: Rig, skull: Skull, lips: LipPairs, is_face: bool) -> tuple[Control, ...]:

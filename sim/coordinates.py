@@ -67,10 +67,7 @@ class FaceSpace:
 
     def to_standard(self, points: npt.ArrayLike) -> Array:
         """Points [head units], shape (..., 3), in the standard space [mm]."""
-        result: Array = (
-            (np.asarray(points, dtype=np.float64) - self.origin) @ self.axes.T / self.scale
-        )
-        return result
+        return (np.asarray(points, dtype=np.float64) - self.origin) @ self.axes.T / self.scale
 
     def to_head(self, points: npt.ArrayLike) -> Array:
         """Points [mm, standard space], shape (..., 3), in head coordinates."""
@@ -78,13 +75,11 @@ class FaceSpace:
 
     def vectors_to_head(self, vectors: npt.ArrayLike) -> Array:
         """Displacements [mm, standard space], shape (..., 3), in head units and axes."""
-        result: Array = np.asarray(vectors, dtype=np.float64) @ self.axes * self.scale
-        return result
+        return np.asarray(vectors, dtype=np.float64) @ self.axes * self.scale
 
     def vectors_to_standard(self, vectors: npt.ArrayLike) -> Array:
         """Displacements [head units], shape (..., 3), in the standard space [mm]."""
-        result: Array = np.asarray(vectors, dtype=np.float64) @ self.axes.T / self.scale
-        return result
+        return np.asarray(vectors, dtype=np.float64) @ self.axes.T / self.scale
 
 
 @njit

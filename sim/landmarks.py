@@ -97,12 +97,10 @@ def polyline_distance(points: Array, corners: Array) -> Array:
 
 def select(landmarks: Array, numbers: Sequence[int]) -> Array:
     """Positions of the numbered landmarks, shape (len(numbers), 3)."""
-    chosen: Array = landmarks[np.asarray(numbers, dtype=np.int64)]
-    return chosen
+    return landmarks[np.asarray(numbers, dtype=np.int64)]
 
 
 def smoothstep(x: npt.ArrayLike) -> Array:
     """0 below 0, 1 above 1, 3x^2 - 2x^3 between."""
     t = np.clip(np.asarray(x, dtype=np.float64), 0.0, 1.0)
-    result: Array = t * t * (3.0 - 2.0 * t)
-    return result
+    return t * t * (3.0 - 2.0 * t)

@@ -162,5 +162,4 @@ def _side_of(where: str, control: str, side: str, below: Mapping[str, Array]) ->
         raise ValueError(f"{where}: in a pair leave the side of '{control}' away")
     if control + side in below:
         return below[control + side]
-    half: Array = 0.5 * below[control]
-    return half
+    return 0.5 * below[control]

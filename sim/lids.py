@@ -131,8 +131,7 @@ def _one_eye(
 
     def angle_of(points: Array) -> Array:
         """Angle [rad] about the axis of the lids, 0 straight forward."""
-        angle: Array = np.arctan2((points - ball.centre) @ up, (points - ball.centre) @ forward)
-        return angle
+        return np.arctan2((points - ball.centre) @ up, (points - ball.centre) @ forward)
 
     def column_of(points: Array) -> Array:
         """Place from the outer corner of the eye, 0, to the inner one, 1."""

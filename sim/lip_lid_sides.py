@@ -63,5 +63,4 @@ def lid_side(surface: Surface, landmarks: Array, side: Side) -> Array:
 def _distance(surface: Surface, landmarks: Array, numbers: tuple[int, ...]) -> Array:
     """Way along the skin [mm] to the nearest of some landmarks; far where there is none."""
     start = surface.nearest(select(landmarks, numbers)).astype(np.int64)
-    distance: Array = np.minimum(surface.distances_from(start), 1e3)
-    return distance
+    return np.minimum(surface.distances_from(start), 1e3)

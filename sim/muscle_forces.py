@@ -87,8 +87,7 @@ class MuscleForces:
         holds = self.skin.holds
         weight = holds.weight * np.repeat(share, holds.rows[1:] - holds.rows[:-1])
         hold = np.bincount(holds.vertex, weight, minlength=vertex_count)
-        result: Array = hold.astype(np.float64)
-        return result
+        return hold.astype(np.float64)
 
     def add(self, activation: Array, mandible: Pose, weight: Array, state: State) -> None:
         """Add the active muscles' stiffness to `state.hold` and their pull to `state.pull`.

@@ -47,8 +47,7 @@ class Pose(NamedTuple):
 
     def displacements(self, points: Array) -> Array:
         """How far points (..., 3) move."""
-        moved: Array = points @ self.rotation.T + self.shift - points
-        return moved
+        return points @ self.rotation.T + self.shift - points
 
     def after(self, first: Pose) -> Pose:
         """This motion done after another."""
@@ -233,5 +232,4 @@ def mandible_weight_from_landmarks(
     seeds = np.concatenate([vertices, np.flatnonzero(fixed), np.flatnonzero(lips)])
     wanted = np.concatenate([values, np.zeros(fixed.sum()), (lip_side[lips] < 0.0) * 1.0])
     weight = np.clip(surface.harmonic(seeds.astype(np.int64), wanted, hold=SEED_HOLD), 0.0, 1.0)
-    result: Array = weight
-    return result
+    return weight

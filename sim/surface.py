@@ -64,8 +64,7 @@ class Surface:
         i, j = self.edges.T
         graph = sparse.csr_array((self.lengths, (i, j)), shape=(self.vertex_count,) * 2)
         distance = csgraph.dijkstra(graph, directed=False, indices=vertices, min_only=True)
-        result: Array = np.asarray(distance, dtype=np.float64)
-        return result
+        return np.asarray(distance, dtype=np.float64)
 
     def smoothed(self, field: Array, extent: float) -> Array:
         """A field (V,) without details smaller than about sqrt(`extent`) [mm2]."""

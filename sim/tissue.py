@@ -57,8 +57,7 @@ def masses_for_step(areas: Array, stiffness: Array, step: float) -> Array:
     heavier.
     """
     needed = stiffness * step**2 / (4.0 * STABLE_STEP_SHARE)
-    result: Array = np.maximum(areas * AREAL_MASS, needed)
-    return result
+    return np.maximum(areas * AREAL_MASS, needed)
 
 
 @njit

@@ -152,8 +152,7 @@ def _miss(points: Points, value: float | Values) -> Values:
 def _values_between(first: Values, second: Values) -> Values:
     """Values of the form between ends: the mean, or less where one end lies on the form."""
     runs_out = (np.abs(first) < ON_FORM) != (np.abs(second) < ON_FORM)
-    values: Values = np.where(runs_out, RUN_OUT, 0.5) * (first + second)
-    return values
+    return np.where(runs_out, RUN_OUT, 0.5) * (first + second)
 
 
 def _form_values(skin: Skin) -> Values:
@@ -273,5 +272,4 @@ def _row_steps(vertices: Points, row: Row) -> Points:
     # straight on.
     before = np.where(goes_on_before[:, None], before, along)
     after = np.where(goes_on_after[:, None], after, along)
-    steps: Points = (before - after) / 16.0
-    return steps
+    return (before - after) / 16.0

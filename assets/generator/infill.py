@@ -56,8 +56,7 @@ def wanted_length(points: Points) -> Values:
     for centre, radius, length, growth in SIZES:
         away = np.linalg.norm(half - np.array(centre), axis=1) - radius
         result = np.minimum(result, length + growth * np.maximum(away, 0.0))
-    lengths: Values = result
-    return lengths
+    return result
 
 
 def layout(points: Points) -> npt.NDArray[np.float64]:
