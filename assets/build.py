@@ -190,10 +190,10 @@ def run(arguments: list[str]) -> None:
     try:
         main(arguments)
     except (OSError, AssetError) as error:
-        words = [str(error)]
+        parts = [str(error)]
         if isinstance(error, OSError) and error.strerror:
-            words = [*([str(error.filename)] if error.filename else []), error.strerror]
-        print(f"assets.build: {': '.join(words)}", file=sys.stderr)
+            parts = [*([str(error.filename)] if error.filename else []), error.strerror]
+        print(f"assets.build: {': '.join(parts)}", file=sys.stderr)
         sys.exit(2)
     except KeyboardInterrupt:
         print("assets.build: stopped", file=sys.stderr)

@@ -113,10 +113,10 @@ def _check_polygons(rows: list[bytes]) -> None:
     for place, row in enumerate(rows):
         said, *corners = row.split()
         if not said.isdigit() or not 3 <= int(said[:12]) <= len(corners):
-            shown = b" ".join([said, *corners])[:30].decode()
+            excerpt = b" ".join([said, *corners])[:30].decode()
             raise AssetError(
-                f"face {place} (counted from 0) is '{shown}'; it must be a count from 3 up and as "
-                "many vertex numbers: save it anew"
+                f"face {place} (counted from 0) is '{excerpt}'; it must be a count from 3 up and "
+                "as many vertex numbers: save it anew"
             )
         triangle_count += int(said) - 2
         if triangle_count > MOST_VERTICES:

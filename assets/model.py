@@ -87,7 +87,7 @@ class Layer:
         sim/layers.py says what they mean.
     """
 
-    WORDS: ClassVar[tuple[str, ...]] = ("action", "pair")  # keys of a row that are no shares
+    NOT_SHARES: ClassVar[tuple[str, ...]] = ("action", "pair")  # keys of a row that are no shares
     title: str
     source: str
     rows: Mapping[str, Mapping[str, Any]]
@@ -197,7 +197,7 @@ class Head:
         """The shares of each expression, without words: a pose of action units and muscles."""
         rows = next((layer.rows for layer in self.layers if layer.title == "Expressions"), {})
         return {
-            name: {key: float(value) for key, value in row.items() if key not in Layer.WORDS}
+            name: {key: float(value) for key, value in row.items() if key not in Layer.NOT_SHARES}
             for name, row in rows.items()
         }
 

@@ -103,7 +103,7 @@ def run(directory: str | Path) -> tuple[list[Row], list[str]]:
             raise ValueError(
                 f"{directory}: {name} in {DENSE} must be finite displacements of all vertices"
             )
-        scanned = head.to_millimetres.vectors(fields[name][head.kept])
+        scanned = head.to_millimetres.vectors(fields[name][head.file_vertices])
         if scanned.any():
             rows.append(ruler.row(simulation, shape, scanned))
         else:

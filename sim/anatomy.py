@@ -29,12 +29,10 @@ from .integrator import LONGEST_SUBSTEP, ROUNDING
 from .landmarks import (
     INNER_CORNERS,
     LANDMARK_COUNT,
-    LOWER_INNER,
-    UPPER_INNER,
     Array,
     Side,
+    mouth_line,
     polyline_distance,
-    select,
     smoothstep,
 )
 from .layers import NO_LAYERS, Layers, read_layers
@@ -130,7 +128,7 @@ def build_anatomy(head: Any) -> Anatomy:
     if landmarks is not None and skull.eyeballs:
         names = [control.name for control in controls]
         lids = place_lids(rig, surface, landmarks, skull.eyeballs, names)
-    corners = np.zeros((0, 3)) if landmarks is None else select(landmarks, INNER_CORNERS)
+    corners = np.zeros((0, 3)) if landmarks is None else landmarks[list(INNER_CORNERS)]
     springs = TissueSprings.under(surface, rig.tissue)
     edges = EdgeSprings.along(surface, rig.tissue, corners)
     passive, greatest = _holds(muscles, lids, surface.vertex_count)
@@ -249,8 +247,8 @@ def _closed_weight(surface: Surface, landmarks: Array, weight: Array, lips: LipP
     """The mandible's weight where both lips meet although the jaw is open, shape (V,)."""
     if not len(lips.lower):
         return weight.copy()
-    line = (select(landmarks, UPPER_INNER) + select(landmarks, LOWER_INNER)) / 2.0
-    reach = (LIPS_END - polyline_distance(surface.positions, line)) / (LIPS_END - LIPS_WHOLE)
+    distance = polyline_distance(surface.positions, mouth_line(landmarks))
+    reach = (LIPS_END - distance) / (LIPS_END - LIPS_WHOLE)
     return weight + smoothstep(reach) * (LIPS_MEET_AT - weight)
 
 

@@ -39,6 +39,14 @@ def number(what: str, value: Any) -> float:
     return result
 
 
+def number_within(where: str, value: Any, low: float, high: float) -> float:
+    """A finite number from `low` to `high`, and no True or False."""
+    is_one = isinstance(value, int | float) and not isinstance(value, bool)
+    if not is_one or not low <= value <= high:  # NaN is not
+        raise ValueError(f"{where}: was {quoted(value)}, must be a number from {low:g} to {high:g}")
+    return float(value)
+
+
 def flag(what: str, value: Any) -> bool:
     """True or False, and nothing that only counts as such."""
     if not isinstance(value, bool | np.bool_):

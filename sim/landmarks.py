@@ -14,7 +14,6 @@ head.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -95,9 +94,10 @@ def polyline_distance(points: Array, corners: Array) -> Array:
     return distance
 
 
-def select(landmarks: Array, numbers: Sequence[int]) -> Array:
-    """Positions of the numbered landmarks, shape (len(numbers), 3)."""
-    return landmarks[np.asarray(numbers, dtype=np.int64)]
+def mouth_line(landmarks: Array) -> Array:
+    """Where the inner lips meet, from corner to corner, of landmarks (68, 3), shape (5, 3)."""
+    line: Array = (landmarks[list(UPPER_INNER)] + landmarks[list(LOWER_INNER)]) / 2.0
+    return line
 
 
 def smoothstep(x: npt.ArrayLike) -> Array:

@@ -32,7 +32,7 @@ from typing import Any
 
 import numpy as np
 
-from .checked import quoted, several
+from .checked import number_within, quoted, several
 from .landmarks import Array
 from .rig_reader import question
 
@@ -124,7 +124,10 @@ class _Reader:
             self._new(where, full)
             share = np.zeros(len(next(iter(below.values()), ())))
             for control, value in entries.items():
-                share += _share(where, control, value) * _side_of(where, control, side, below)
+                part = number_within(
+                    f"{where}, '{control}'", value, -GREATEST_SHARE, GREATEST_SHARE
+                )
+                share += part * _side_of(where, control, side, below)
             self.shares[full] = share
             self.actions[full] = action
         if is_pair:
@@ -137,17 +140,6 @@ class _Reader:
     def _new(self, where: str, name: str) -> None:
         if name in self.shares:
             raise ValueError(f"{where}: there is a control called '{name}' already; rename the row")
-
-
-def _share(where: str, control: str, value: Any) -> float:
-    """A checked share."""
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not is_number or not -GREATEST_SHARE <= value <= GREATEST_SHARE:  # NaN is not
-        raise ValueError(
-            f"{where}, '{control}': was {quoted(value)}, must be a number "
-            f"from {-GREATEST_SHARE:g} to {GREATEST_SHARE:g}"
-        )
-    return float(value)
 
 
 def _side_of(where: str, control: str, side: str, below: Mapping[str, Array]) -> Array:

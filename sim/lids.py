@@ -23,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..jit import njit
-from .landmarks import EYE_LANDMARKS, Array, polyline_distance, select, smoothstep
+from .landmarks import EYE_LANDMARKS, Array, polyline_distance, smoothstep
 from .lip_lid_sides import lid_side
 from .rig import LIDS, Eyes, LidMuscle, Rig
 from .skull import Eyeball
@@ -140,8 +140,8 @@ def _one_eye(
 
     column, angle = column_of(x), angle_of(x)
     rows = {
-        True: select(landmarks, (outer, upper_outer, upper_inner, inner)),
-        False: select(landmarks, (outer, lower_outer, lower_inner, inner)),
+        True: landmarks[[outer, upper_outer, upper_inner, inner]],
+        False: landmarks[[outer, lower_outer, lower_inner, inner]],
     }
     edges, weight, slide = {}, np.zeros(surface.vertex_count), np.zeros(surface.vertex_count)
     for upper, line in rows.items():

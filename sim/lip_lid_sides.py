@@ -18,7 +18,6 @@ from .landmarks import (
     UPPER_LIP,
     Array,
     Side,
-    select,
     smoothstep,
 )
 from .surface import Surface
@@ -37,9 +36,9 @@ def lip_side(surface: Surface, landmarks: Array) -> Array:
     # On a lip the two ways differ by twice the distance to the mouth corner, where they are alike
     # but for the lips' shape.
     longer = lower - upper
-    longer = longer - longer[surface.nearest(select(landmarks, INNER_CORNERS))].mean()
+    longer = longer - longer[surface.nearest(landmarks[list(INNER_CORNERS)])].mean()
     ramp = np.clip(longer[inside] / (2.0 * CORNER_FADE), -1.0, 1.0)
-    ends = surface.nearest(select(landmarks, (33, 30, 8)))
+    ends = surface.nearest(landmarks[[33, 30, 8]])
     vertices = np.concatenate([inside, ends])
     values = np.concatenate([ramp, [1.0, 1.0, -1.0]])
     return np.clip(surface.harmonic(vertices, values), -1.0, 1.0)
@@ -62,5 +61,5 @@ def lid_side(surface: Surface, landmarks: Array, side: Side) -> Array:
 
 def _distance(surface: Surface, landmarks: Array, numbers: tuple[int, ...]) -> Array:
     """Way along the skin [mm] to the nearest of some landmarks; far where there is none."""
-    start = surface.nearest(select(landmarks, numbers)).astype(np.int64)
+    start = surface.nearest(landmarks[list(numbers)]).astype(np.int64)
     return np.minimum(surface.distances_from(start), 1e3)

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields
 from typing import Any, TypeVar, cast
 
-from .checked import quoted
+from .checked import number_within, quoted
 from .landmarks import LANDMARK_COUNT, LandmarkPoint
 from .rig import (
     FORMAT,
@@ -125,7 +125,7 @@ def _value(value: Any, rule: Field[Any], where: str) -> Any:
     meta = rule.metadata
     match meta["rule"]:
         case "number":
-            return _check_number(value, meta["low"], meta["high"], where)
+            return number_within(where, value, meta["low"], meta["high"])
         case "vector":
             return _check_vector(value, meta["size"], meta["low"], meta["high"], where)
         case "choice":
@@ -183,23 +183,15 @@ def _read_mix(value: Any, where: str, *, low: float, high: float) -> tuple[tuple
             raise ValueError(
                 f"{where}: landmark {quoted(text)}, allowed are 0 to {LANDMARK_COUNT - 1}"
             )
-        mix.append((int(text), _check_number(weight, low, high, f"{where}, landmark {text}")))
+        mix.append((int(text), number_within(f"{where}, landmark {text}", weight, low, high)))
     return tuple(mix)
-
-
-def _check_number(value: Any, low: float, high: float, where: str) -> float:
-    """A finite number inside [low, high]."""
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not number or not low <= value <= high:  # NaN is not
-        raise ValueError(f"{where}: was {quoted(value)}, must be a number from {low:g} to {high:g}")
-    return float(value)
 
 
 def _check_vector(value: Any, size: int, low: float, high: float, where: str) -> tuple[float, ...]:
     """A list of `size` finite numbers inside [low, high]."""
     if not isinstance(value, list | tuple) or len(value) != size:
         raise ValueError(f"{where}: was {quoted(value)}, must be a list of {size} numbers")
-    return tuple(_check_number(v, low, high, f"{where}[{i}]") for i, v in enumerate(value))
+    return tuple(number_within(f"{where}[{i}]", v, low, high) for i, v in enumerate(value))
 
 
 def _table(document: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:

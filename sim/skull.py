@@ -20,7 +20,7 @@ import numpy as np
 
 from ..jit import njit
 from .coordinates import FaceSpace
-from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Array, Side, select
+from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Array, Side
 from .rig import Eyes, Head, Jaw
 from .surface import Surface
 
@@ -226,10 +226,9 @@ def mandible_weight_from_landmarks(
     fixed = (y < landmarks[8, 1] - NECK_BELOW_CHIN) | (y > landmarks[29, 1])
     fixed |= z < min(landmarks[0, 2], landmarks[16, 2]) - BEHIND_EARS
     half_mouth = 0.9 * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
-    middle = select(landmarks, UPPER_LIP).mean(axis=0)
+    middle = landmarks[list(UPPER_LIP)].mean(axis=0)
     lips = (np.abs(lip_side) > 0.9) & (np.abs(x - middle[0]) < half_mouth)
     lips &= np.linalg.norm(surface.positions - middle, axis=1) < half_mouth
     seeds = np.concatenate([vertices, np.flatnonzero(fixed), np.flatnonzero(lips)])
     wanted = np.concatenate([values, np.zeros(fixed.sum()), (lip_side[lips] < 0.0) * 1.0])
-    weight = np.clip(surface.harmonic(seeds.astype(np.int64), wanted, hold=SEED_HOLD), 0.0, 1.0)
-    return weight
+    return np.clip(surface.harmonic(seeds.astype(np.int64), wanted, hold=SEED_HOLD), 0.0, 1.0)

@@ -111,13 +111,13 @@ def refined(level: Level) -> Level:
 
     image = _edge_numbers(edges, level.mirror[edges], count)
     step = 0.5 * (step + step[image] * [-1.0, 1.0, 1.0])  # symmetric to the last bit
-    kept = _free_of_cuts(level.vertices, cut.faces, middle, step, image)
-    point = (middle + kept[:, None] * step).astype(np.float32)
+    share = _free_of_cuts(level.vertices, cut.faces, middle, step, image)
+    point = (middle + share[:, None] * step).astype(np.float32)
     return Level(
         np.vstack([level.vertices, point]),
         cut.faces,
         np.r_[level.mirror, count + image].astype(np.int32),
-        np.r_[level.value, np.where(kept == 1.0, 0.5 * (value + value[image]), np.nan)],
+        np.r_[level.value, np.where(share == 1.0, 0.5 * (value + value[image]), np.nan)],
         [_finer_row(row, edges, count) for row in level.rows],
     )
 

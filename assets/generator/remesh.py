@@ -165,13 +165,13 @@ def split_edges(
         used |= set(pair)
         for index in pair:
             new_faces += _halves(mesh.faces[index].tolist(), edge, middle)
-    kept = [face for i, face in enumerate(mesh.faces.tolist()) if i not in used]
+    unsplit = [face for i, face in enumerate(mesh.faces.tolist()) if i not in used]
     mesh.vertices = np.array(vertices)
     mesh.freedom = np.array(freedom, dtype=np.int8)
     if new_vertices:
         mesh.vertices[new_vertices] = project(distance, mesh.vertices[new_vertices])
         mesh.vertices[mesh.freedom == Freedom.MIDLINE, 0] = 0.0
-    mesh.faces = np.array(kept + new_faces, dtype=np.int32)
+    mesh.faces = np.array(unsplit + new_faces, dtype=np.int32)
     return len(new_vertices)
 
 
