@@ -16,6 +16,7 @@ with distance); Möller and Trumbore 1997 (ray and triangle).
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -27,8 +28,9 @@ from risorius import assets, sim
 from risorius.assets.loading import HEAD_FILE, fingerprint, load_head
 from risorius.jit import njit
 
-from .errors import run_alone
-from .outputs import cannot_be_written, check_file, written_aside
+from .errors import told_in_one_line
+from .files import cannot_be_written, check_file, written_atomically
+from .stopping import listen
 
 REACH = 45.0  # [mm] beyond which nothing shades
 RAYS = 48  # from each vertex
@@ -258,9 +260,11 @@ def main(arguments: Sequence[str]) -> None:
     target = head.openness_file
     check_file(target)
     arrays = bake(head)
-    with written_aside(target) as part, cannot_be_written(target):
+    with written_atomically(target) as part, cannot_be_written(target):
         np.savez_compressed(part, allow_pickle=False, **arrays)
 
 
 if __name__ == "__main__":
-    run_alone(main)
+    listen()
+    with told_in_one_line():
+        main(sys.argv[1:])

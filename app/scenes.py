@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, sim
-from risorius.assets.fitting import FittedHead
+from risorius.assets.fitting import FittedHead, fit_head
 
 from .errors import UserError
 from .mouth import shaded_mouth
@@ -240,3 +241,12 @@ def build_scene(name: str, head: FittedHead | None = None) -> Scene:
         return FaceScene(head)
     except ValueError as error:
         raise UserError(f"this head cannot be simulated: {error}") from None
+
+
+def head_for(head: Path | None, landmarks: Path | None) -> FittedHead | None:
+    """The head that somebody brought, fitted; None for the built-in one."""
+    if head is None and landmarks is None:
+        return None
+    if head is None or landmarks is None:
+        raise UserError("--head HEAD.obj and --landmarks LANDMARKS.json go together")
+    return fit_head(head, landmarks)

@@ -20,11 +20,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .sheets import Load
 from .sparse_loop import sparse_loop
+from .waving_meshes import Load
 
-Frame = npt.NDArray[np.floating]
-Call = Callable[[Frame], object]
+Positions = npt.NDArray[np.floating]
+Call = Callable[[Positions], object]
 
 SEARCH_STEPS = 14
 LARGEST_FOR_FILTERS = 30_000  # triangles; above, a call of these takes seconds
@@ -74,7 +74,7 @@ def peers_for(load: Load, target: int) -> Peers:
 def _trimesh(load: Load) -> Peer:
     import trimesh.remesh
 
-    def frame(positions: Frame) -> Any:
+    def frame(positions: Positions) -> Any:
         return trimesh.remesh.subdivide_loop(positions, load.faces, iterations=1)
 
     return Peer("trimesh Loop 1x", frame, len(frame(load.frames[0])[1]))
@@ -113,7 +113,7 @@ def _vtk(load: Load, target: int, *, is_whole: bool = False) -> Peer:
     rows = np.zeros((len(load.rest) + 9 * len(load.faces), 6), np.float32)
     triangles = np.zeros((16 * len(load.faces), 3), np.uint32)
 
-    def frame(positions: Frame) -> int:
+    def frame(positions: Positions) -> int:
         points.SetData(numpy_to_vtk(np.ascontiguousarray(positions)))
         points.Modified()
         refiner.Update()

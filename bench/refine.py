@@ -3,7 +3,8 @@
 Kähler, Haber, Seidel 2003, Table 1 compares the static with the refined mesh. Here the time of the
 refiner is taken, from positions to a filled stream, everything counted: normals, criterion, points,
 table, output and the call from Python. Meshes: the built-in face in six full expressions with the
-default thresholds, and sheets (sheets.py) with thresholds that split 10, 50 or 100 % of the edges.
+default thresholds, and sheets (waving_meshes.py) with thresholds that split 10, 50 or 100 % of the
+edges.
 
 The methods of a mesh are run interleaved, forwards and backwards in turn, with garbage collection
 off, and medians are reported: on a shared machine times drift by a third within a run, and so only
@@ -23,9 +24,9 @@ import numpy.typing as npt
 from risorius import assets, refine, sim
 
 from .peers import peers_for
-from .sheets import Load, sheet
 from .starts import Starts, measure_peak, measure_starts
 from .timing import interleaved
+from .waving_meshes import Load, waving_mesh
 
 FULL_EXPRESSIONS = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
 SETTLED = 90  # steps of 1/60 s after which the face stands still
@@ -152,7 +153,7 @@ def load_of(size: str) -> Load:
         return face_load()
     count = SHEETS[size.partition(" ")[0]]
     frame_count = 4 if count < LARGE else 2
-    return sheet(size, count, frame_count=frame_count, shuffled=size in SHUFFLED)
+    return waving_mesh(size, count, frame_count=frame_count, shuffled=size in SHUFFLED)
 
 
 def face_load() -> Load:

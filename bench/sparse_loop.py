@@ -19,9 +19,9 @@ from risorius import refine
 from risorius.jit import njit
 from risorius.refine.rings import vertex_rings
 
-from .sheets import Load
+from .waving_meshes import Load
 
-Frame = npt.NDArray[np.floating]
+Positions = npt.NDArray[np.floating]
 Wide = npt.NDArray[np.int64]
 Narrow = npt.NDArray[np.float32]
 Unsigned = npt.NDArray[np.uint32]
@@ -32,8 +32,8 @@ class SparseLoop:
     """The matrices of one mesh, and a frame by either product."""
 
     triangles: int
-    by_scipy: Callable[[Frame], Narrow]
-    by_numba: Callable[[Frame], Narrow]
+    by_scipy: Callable[[Positions], Narrow]
+    by_numba: Callable[[Positions], Narrow]
 
 
 def sparse_loop(load: Load, *, levels: int) -> SparseLoop:
@@ -53,7 +53,7 @@ def sparse_loop(load: Load, *, levels: int) -> SparseLoop:
     rows = np.zeros((smooth.shape[0], 6), dtype=np.float32)
     smooth_rows, spread_rows = _plain_arrays(smooth), _plain_arrays(spread)
 
-    def by_scipy(positions: Frame) -> Narrow:
+    def by_scipy(positions: Positions) -> Narrow:
         np.copyto(points, positions)
         _sum_normals(points, corners, normals)
         rows[:, :3] = smooth @ points
@@ -62,7 +62,7 @@ def sparse_loop(load: Load, *, levels: int) -> SparseLoop:
         rows[:, 3:] = mixed * (1.0 / np.sqrt(np.maximum(squared, 1e-30)))[:, None]
         return rows
 
-    def by_numba(positions: Frame) -> Narrow:
+    def by_numba(positions: Positions) -> Narrow:
         np.copyto(points, positions)
         _sum_normals(points, corners, normals)
         _multiply(*smooth_rows, *spread_rows, points, normals, rows)
