@@ -48,7 +48,7 @@ Values = npt.NDArray[np.float32]
 
 
 def openness(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
-    """A picture over the head's texture: 255 where all light comes in, 0 where none; (H, W).
+    """An image over the head's texture: 255 where all light comes in, 0 where none; (H, W).
 
     head: with texture coordinates `uv`, `face_uv` and `albedo` (H, W, 3).
     simulation: of that head, at rest; it is moved, and at rest again at the end.
@@ -80,12 +80,12 @@ def openness(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
     height, width = head.albedo.shape[:2]
     corners = (head.uv * [width, -height] + [-0.5, height - 0.5])[head.face_uv]
     middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
-    picture = np.ones((height, width), np.float32)
+    image = np.ones((height, width), np.float32)
     shades = values**DEPTH
     at_corners, at_middles = shades[faces], shades[count + edge_of_side.reshape(-1, 3)]
     for margin in (MARGIN, 0.0):  # first what overlaps, then what is meant
-        _paint(corners, middles, at_corners, at_middles, margin, picture)
-    return np.round(255.0 * picture).astype(np.uint8)
+        _paint(corners, middles, at_corners, at_middles, margin, image)
+    return np.round(255.0 * image).astype(np.uint8)
 
 
 def open_to_light(positions: Points, faces: Triangles, ends: npt.NDArray[np.intp]) -> Values:
@@ -191,7 +191,7 @@ def _paint(
     at_corners: Values,
     at_middles: Values,
     margin: float,
-    picture: Values,
+    image: Values,
 ) -> None:
     """Paint each triangle in four, straight between values at corners and middles of its sides."""
     for t in range(len(corners)):
@@ -199,11 +199,11 @@ def _paint(
             before = (i + 2) % 3
             _paint_triangle(
                 corners[t, i], middles[t, i], middles[t, before],
-                at_corners[t, i], at_middles[t, i], at_middles[t, before], margin, picture,
+                at_corners[t, i], at_middles[t, i], at_middles[t, before], margin, image,
             )  # fmt: skip
         _paint_triangle(
             middles[t, 0], middles[t, 1], middles[t, 2],
-            at_middles[t, 0], at_middles[t, 1], at_middles[t, 2], 0.0, picture,
+            at_middles[t, 0], at_middles[t, 1], at_middles[t, 2], 0.0, image,
         )  # fmt: skip
 
 
@@ -216,10 +216,10 @@ def _paint_triangle(
     at_b: float,
     at_c: float,
     margin: float,
-    picture: Values,
+    image: Values,
 ) -> None:
     """Paint texels in a triangle and `margin` beside it."""
-    height, width = picture.shape
+    height, width = image.shape
     area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     if abs(area) < 1e-9:
         return
@@ -239,7 +239,7 @@ def _paint_triangle(
             of_a = 1.0 - of_b - of_c
             if of_a > -slack_a and of_b > -slack_b and of_c > -slack_c:
                 value = of_a * at_a + of_b * at_b + of_c * at_c
-                picture[y, x] = min(max(value, least), most)
+                image[y, x] = min(max(value, least), most)
 
 
 def bake(head: assets.Head) -> dict[str, npt.NDArray[np.generic]]:

@@ -16,14 +16,14 @@ Figure = Callable[[], Image]
 FOLDER = Path("docs/pictures")
 
 
-def parse(words: Sequence[str], about: str | None, *, width: int = 0) -> argparse.Namespace:
+def parse(arguments: Sequence[str], about: str | None, *, width: int = 0) -> argparse.Namespace:
     """Read `folder` and `only` from the command line, and `width` where there is one to choose."""
     parser = argparse.ArgumentParser(description=(about or "").partition("\n")[0])
     parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
     parser.add_argument("--only", nargs="+", metavar="NAME", default=[], help="these alone")
     if width:
         parser.add_argument("--width", type=_pixels, default=width, help="of a picture in it")
-    return parser.parse_args(words)
+    return parser.parse_args(arguments)
 
 
 def _pixels(text: str) -> int:

@@ -17,9 +17,9 @@ from risorius import assets, refine, sim
 
 from .lines_of_sight import lid_gaps, meshes_of, sunk_in_eyeballs, widest_slit
 from .report import table
+from .subjects import settled
 
-FRAME = 1.0 / 60.0
-SETTLE = 45  # frames until a pose is still
+SETTLE = 45  # frames of 1/60 s until a pose is still
 UNITS = "Action units"
 # FACS: these part the lips themselves. All others leave the mouth as it is.
 LIP_PARTING = ("AU9", "AU10", "AU16", "AU22", "AU25", "AU26", "AU27")
@@ -47,11 +47,7 @@ def run() -> list[Pose]:
     refiner = refine.create("kahler", head.faces, head.vertices, criterion="normal+rest")
     poses = []
     for name, is_shut in _rows(simulation):
-        simulation.reset()
-        simulation.set(name, 1.0)
-        for _ in range(SETTLE):
-            simulation.step(FRAME)
-        landmarks = simulation.positions[head.landmarks]
+        landmarks = settled(simulation, {name: 1.0}, SETTLE)[head.landmarks]
         shut = [side for side in ("right", "left") if simulation.sums[f"{CLOSER}_{side}"] >= SHUT]
         lips, lids = [], []
         for positions, triangles in meshes_of(simulation, refiner).values():

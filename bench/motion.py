@@ -34,13 +34,12 @@ from risorius.sim.landmarks import FaceFrame, Side
 from risorius.sim.rig import LinearMuscle, RingMuscle
 
 from .report import table
-from .subjects import DENSE, read_arrays
+from .subjects import DENSE, read_arrays, settled
 
 Array = npt.NDArray[np.float64]
 
 SHAPES = Path(__file__).parent / "shapes.toml"
-FRAME = 1.0 / 60.0
-SETTLE = 60  # frames until a pose is still
+SETTLE = 60  # frames of 1/60 s until a pose is still
 NOT_SHAPES = ("vertices", "triangles", "landmarks68")
 SIDES = {"left": ("_left", "_l", "left"), "right": ("_right", "_r", "right")}  # endings of names
 SEAM = 10.0  # mm beside the midline over which a one-sided shape fades, where we have but one whole
@@ -171,12 +170,7 @@ def _controls(
 
 def _posed(simulation: sim.Simulation, values: Mapping[str, float]) -> Array:
     """Displacement [mm] of the settled pose, shape (V, 3)."""
-    simulation.reset()
-    simulation.set_all(values)
-    for _ in range(SETTLE):
-        simulation.step(FRAME)
-    moved: Array = simulation.positions - simulation.rest_positions
-    return moved
+    return settled(simulation, values, SETTLE) - simulation.rest_positions
 
 
 class _Ruler:

@@ -1,7 +1,7 @@
 """What others offer for the same work, ready to be timed beside us in one run.
 
 - *sparse Loop*: the strongest, see sparse_loop.py: one or two uniform levels as matrices that are
-  built once, with scipy's product and with a compiled one.
+  built once.
 - *trimesh*: `trimesh.remesh.subdivide_loop`, one level.
 - *VTK*: `vtkAdaptiveSubdivisionFilter`, two passes at most, its edge length chosen so that the mesh
   of the first frame gets as many triangles as ours. Alone, which computes no normals; and with what
@@ -53,9 +53,9 @@ def peers_for(load: Load, target: int) -> Peers:
     peers = Peers()
     for levels in (1, 2) if len(load.faces) <= LARGEST_FOR_TWO_LEVELS else (1,):
         matrices = sparse_loop(load, levels=levels)
-        for product, call in (("numba", matrices.by_numba), ("scipy", matrices.by_scipy)):
-            name = f"sparse Loop {levels}x, {product}"
-            peers.found.append(Peer(name, call, matrices.triangles))
+        peers.found.append(
+            Peer(f"sparse Loop {levels}x, numba", matrices.frame, matrices.triangles)
+        )
     if len(load.faces) > LARGEST_FOR_FILTERS:
         return peers
     for name, bind in (

@@ -25,6 +25,7 @@ from risorius import assets, refine, sim
 
 from .peers import peers_for
 from .starts import Starts, measure_peak, measure_starts
+from .subjects import settled
 from .timing import interleaved
 from .waving_meshes import Load, waving_mesh
 
@@ -160,13 +161,7 @@ def face_load() -> Load:
     """The built-in face in each of the six basic expressions, at full strength."""
     head = assets.load("head")
     simulation = sim.create(head)
-    frames = []
-    for name in FULL_EXPRESSIONS:
-        simulation.reset()
-        simulation.set_all(head.expressions[name])
-        for _ in range(SETTLED):
-            simulation.step(1.0 / 60.0)
-        frames.append(simulation.positions.copy())
+    frames = [settled(simulation, head.expressions[name], SETTLED) for name in FULL_EXPRESSIONS]
     return Load("face", head.faces, head.vertices, frames)
 
 

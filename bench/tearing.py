@@ -15,14 +15,14 @@ import numpy.typing as npt
 from risorius import assets, sim
 
 from .report import table
+from .subjects import settled
 
 Array = npt.NDArray[np.float64]
 
 SEED = 2001
 MIXTURES = 500
 MOST_CONTROLS = 8  # in a mixture
-FRAME = 1.0 / 60.0
-SETTLE = 40  # frames
+SETTLE = 40  # frames of 1/60 s
 AROUND = 12.0  # mm around a triangle whose mean turn it is compared with
 
 
@@ -45,12 +45,9 @@ def run(*, mixtures: int = MIXTURES, seed: int = SEED) -> list[Pose]:
     simulation = sim.create(head)
     poses = []
     for name, values in _values(simulation, mixtures, np.random.default_rng(seed)):
-        simulation.reset()
-        simulation.set_all(values)
-        for _ in range(SETTLE):
-            simulation.step(FRAME)
+        now = settled(simulation, values, SETTLE)
         deep = simulation.penetrations()
-        inverted = _inverted(simulation.rest_positions, simulation.positions, head.faces)
+        inverted = _inverted(simulation.rest_positions, now, head.faces)
         poses.append(Pose(name, inverted, deep["lips"], deep["lids"], deep["teeth"]))
     return poses
 

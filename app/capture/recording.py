@@ -107,93 +107,58 @@ class Capture:
                 yield index / rate
 
 
-def write(
-    script: Script,
-    options: CaptureOptions,
-    *,
-    output: Path | None = None,
-    sheet: Path | None = None,
-    time: float | None = None,
-    overwrite: bool = False,
-    progress: bool = True,
-) -> int:
-    """Write `output`, a film, frames or the picture of one time [s], and the contact sheet.
-
-    Returns the largest number of triangles of a frame. Raises UserError on what cannot be.
-    """
-    is_picture = output is not None and output.suffix.lower() == ".png"
-    if time is not None and not is_picture:
-        raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
-    if output is None or not is_picture:
-        return capture(
-            script, options, output=output, sheet=sheet, overwrite=overwrite, progress=progress
-        )
-    if sheet is None:
-        return take_picture(script, options, output, time=time, progress=progress)
-    most = capture(script, options, sheet=sheet, progress=progress)
-    return max(most, take_picture(script, options, output, time=time, progress=progress))
-
-
 def capture(
     script: Script,
     options: CaptureOptions,
     *,
     output: Path | None = None,
     sheet: Path | None = None,
+    time: float | None = None,
     overwrite: bool = False,
     progress: bool = True,
 ) -> int:
-    """Film `script` into `output` (by its suffix) and its named poses into the picture `sheet`.
+    """Play `script` into `output`, by its suffix, and its named poses into the picture `sheet`.
 
+    time: of a picture [s]; else it is of the first pose that has a name, or of the end.
     Returns the largest number of triangles of a frame. Raises UserError on what cannot be.
     """
+    still = output if output is not None and output.suffix.lower() == ".png" else None
+    if time is not None and not still:
+        raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
     if output is None and sheet is None:
         raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")
     wanted = list(script.key_poses) if sheet else []
     if sheet and not wanted:
         raise UserError(f"{script.source}: no pose has a name, so there is nothing for a sheet")
-    if sheet:
-        check_picture(sheet)
+    for picture in (sheet, still):
+        if picture is not None:
+            check_picture(picture)
     if output is not None and output.suffix.lower() in outputs.FILM_SUFFIXES:
         check_file(output)
-    poses: list[tuple[str, Image]] = []
+    if time is None:
+        time = script.key_poses[0].time if script.key_poses else script.duration
+    rate = options.frames_per_second
+    still_at = round(time * rate) / rate if still else -1.0
+    until = still_at if still and not sheet else max(script.duration, still_at)
+    named: list[tuple[str, Image]] = []
     with contextlib.ExitStack() as stack:
         recording = stack.enter_context(Capture(scene_of(script, options.head), options))
-        film = stack.enter_context(_sink_for(output, options, overwrite)) if output else None
-        half_a_frame = 0.5 / options.frames_per_second
-        for time in recording.play(script, progress=progress):
-            is_wanted = bool(wanted) and wanted[0].time <= time + half_a_frame
-            if film is None and not is_wanted:
+        film = None
+        if output is not None and not still:
+            film = stack.enter_context(_sink_for(output, options, overwrite))
+        for now in recording.play(script, until=until, progress=progress):
+            is_wanted = bool(wanted) and wanted[0].time <= now + 0.5 / rate
+            if film is None and not is_wanted and now != still_at:
                 continue
             image = recording.picture()
             if film is not None:
                 film(image)
-            while wanted and wanted[0].time <= time + half_a_frame:
-                poses.append((wanted.pop(0).name or "", image))
+            if still and now == still_at:
+                save_png(still, image)
+            while wanted and wanted[0].time <= now + 0.5 / rate:
+                named.append((wanted.pop(0).name or "", image))
         if sheet is not None:
-            save_png(sheet, contact_sheet(poses, columns=2 if options.compare else 3))
-        return recording.most_triangles
-
-
-def take_picture(
-    script: Script,
-    options: CaptureOptions,
-    output: Path,
-    *,
-    time: float | None = None,
-    progress: bool = True,
-) -> int:
-    """Play `script` up to `time` [s] and write that moment; returns its number of triangles.
-
-    Without a time it is the first pose that has a name, or else the end.
-    """
-    if time is None:
-        time = script.key_poses[0].time if script.key_poses else script.duration
-    check_picture(output)
-    with Capture(scene_of(script, options.head), options) as recording:
-        for _ in recording.play(script, until=time, progress=progress):
-            pass
-        save_png(output, recording.picture())
+            save_png(sheet, contact_sheet(named, columns=2 if options.compare else 3))
         return recording.most_triangles
 
 

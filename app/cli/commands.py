@@ -40,13 +40,14 @@ def capture(
 
     Without SCRIPT the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
     """
-    from .. import capture as capturing
+    from ..capture import CaptureOptions
+    from ..capture import capture as film_of
     from ..files import check_apart
     from ..script import script_for
 
     check_apart((output, sheet), (script, drawing.head, drawing.landmarks))
     performance = script_for(script, scene, settings)
-    options = capturing.CaptureOptions(
+    options = CaptureOptions(
         size=filming.size,
         frames_per_second=filming.fps,
         refiner_options=drawing.refiner_options(),
@@ -60,7 +61,7 @@ def capture(
     )
     if filming.compare and drawing.refiner == "none":
         raise UserError("--compare sets the mesh as it is beside a --refiner other than none")
-    most = capturing.write(
+    most = film_of(
         performance,
         options,
         output=output,
@@ -120,13 +121,14 @@ def open_window(
 @click.command()
 def demo() -> None:
     """Render the built-in head through its expressions to out/demo.mp4 and out/demo.png."""
-    from .. import capture as capturing
+    from ..capture import CaptureOptions
+    from ..capture import capture as film_of
     from ..script import script_for
 
     script = script_for(None, "face")
-    options = capturing.CaptureOptions(compare=True, camera=script.camera)
+    options = CaptureOptions(compare=True, camera=script.camera)
     film, sheet = Path("out/demo.mp4"), Path("out/demo.png")
-    most = capturing.capture(script, options, output=film, sheet=sheet)
+    most = film_of(script, options, output=film, sheet=sheet)
     click.echo(f"{film} ({script.duration:g} s) and {sheet}: {most} triangles at most")
 
 
