@@ -25,7 +25,7 @@ SLIT_WINDOW = 12.0  # mm above and below the mouth's middle in which an opening 
 MOUTH = 45.0  # mm around the mouth's middle in which skin may cover it
 EYE_CORNERS = {"right": (36, 39), "left": (42, 45)}  # landmarks
 LID_COLUMNS, LID_END = 23, 3.0  # planes across an eye; mm beside its corners not looked at
-LID_WINDOW, LID_STEP = 9.0, 0.1  # mm above and below the eye's middle; between lines of sight
+LID_WINDOW = 9.0  # mm above and below the eye's middle
 EYE = 25.0  # mm around the eye's middle in which skin may cover it
 FRONT = 60.0  # mm: skin further back is the back of the head
 
@@ -58,7 +58,6 @@ def lip_slit(
     """Greatest height [mm] of the slit between the lips that one looks through.
 
     `corners`: of the mouth (2, 3); `yaw`, `pitch`: from where one looks [degrees], 0 is the front.
-    Lines of sight lie in vertical planes; what no triangle near the mouth covers is open.
     """
     turn = _turned_by(yaw, pitch)
     x, ends = positions @ turn.T, corners @ turn.T
@@ -66,22 +65,28 @@ def lip_slit(
     near = x[triangles]
     near = near[np.linalg.norm(near.mean(axis=1) - middle, axis=1) < MOUTH]
     left, right = sorted(ends[:, 0])
-    widest = 0.0
-    for column in np.linspace(left + SLIT_END, right - SLIT_END, SLIT_PLANES):
-        crossed = near[(near[:, :, 0].min(axis=1) < column) & (near[:, :, 0].max(axis=1) > column)]
-        start, end = crossed, np.roll(crossed, -1, axis=1)
-        run = end[:, :, 0] - start[:, :, 0]
-        share = (column - start[:, :, 0]) / np.where(run == 0.0, np.inf, run)
-        height = start[:, :, 1] + share * (end[:, :, 1] - start[:, :, 1])
-        meets = (share >= 0.0) & (share <= 1.0) & (run != 0.0)
-        low = np.where(meets, height, np.inf).min(axis=1)
-        high = np.where(meets, height, -np.inf).max(axis=1)
-        order = np.argsort(low)
-        reached = np.maximum.accumulate(high[order])[:-1]
-        open_above = low[order][1:] - reached
-        beside_mouth = np.abs(reached - middle[1]) < SLIT_WINDOW
-        widest = max(widest, float(open_above[beside_mouth].max(initial=0.0)))
-    return widest
+    columns = np.linspace(left + SLIT_END, right - SLIT_END, SLIT_PLANES)
+    return max(_widest_opening(near, column, middle[1], SLIT_WINDOW) for column in columns)
+
+
+def _widest_opening(triangles: Array, x: float, middle: float, window: float) -> float:
+    """Greatest height of what no triangle covers [mm], looked at along z in the plane at x.
+
+    It begins within `window` of the height `middle`; triangles: corners, shape (n, 3, 3).
+    """
+    is_crossed = (triangles[:, :, 0].min(axis=1) < x) & (triangles[:, :, 0].max(axis=1) > x)
+    start = triangles[is_crossed]
+    end = np.roll(start, -1, axis=1)
+    run = end[:, :, 0] - start[:, :, 0]
+    share = (x - start[:, :, 0]) / np.where(run == 0.0, np.inf, run)
+    height = start[:, :, 1] + share * (end[:, :, 1] - start[:, :, 1])
+    meets = (share >= 0.0) & (share <= 1.0) & (run != 0.0)
+    low = np.where(meets, height, np.inf).min(axis=1)
+    high = np.where(meets, height, -np.inf).max(axis=1)
+    order = np.argsort(low)
+    reached = np.maximum.accumulate(high[order])[:-1]
+    open_above = low[order][1:] - reached
+    return float(open_above[np.abs(reached - middle) < window].max(initial=0.0))
 
 
 def _turned_by(yaw: float, pitch: float) -> Array:
@@ -93,48 +98,21 @@ def _turned_by(yaw: float, pitch: float) -> Array:
 
 
 def lid_gaps(positions: Array, triangles: Triangles, landmarks: Array) -> dict[str, float]:
-    """Greatest vertical opening [mm] through which each eyeball is seen from the front.
+    """Greatest height [mm] of the opening through which each eyeball is seen from the front.
 
-    `landmarks`: where the 68 are now (68, 3). Rays along -z start in front of the eye on a grid;
-    an opening is a run of rays in one column that meet no skin. The result is by the eye's side.
+    `landmarks`: where the 68 are now (68, 3). The result is by the eye's side.
     """
     corners = positions[triangles]
     gaps = {}
     for side, numbers in EYE_CORNERS.items():
         ends = np.sort(landmarks[list(numbers), 0])
         middle = landmarks[list(numbers), 1].mean()
-        columns = np.linspace(ends[0] + LID_END, ends[1] - LID_END, LID_COLUMNS)
-        heights = middle + np.arange(-LID_WINDOW, LID_WINDOW, LID_STEP)
         near = corners[np.abs(corners[:, :, 0].mean(axis=1) - ends.mean()) < EYE]
-        near = near[(np.abs(near[:, :, 1].mean(axis=1) - middle) < EYE)]
+        near = near[np.abs(near[:, :, 1].mean(axis=1) - middle) < EYE]
         near = near[near[:, :, 2].max(axis=1) > FRONT]
-        gaps[side] = max(LID_STEP * _longest_run(_open(near, x, heights)) for x in columns)
+        columns = np.linspace(ends[0] + LID_END, ends[1] - LID_END, LID_COLUMNS)
+        gaps[side] = max(_widest_opening(near, x, middle, LID_WINDOW) for x in columns)
     return gaps
-
-
-def _open(triangles: Array, x: float, heights: Array) -> npt.NDArray[np.bool_]:
-    """Which rays along z at (x, height) meet no triangle."""
-    a, b, c = (triangles[:, k, :2] for k in range(3))
-    points = np.stack([np.full_like(heights, x), heights], axis=1)[:, None]
-
-    def side(p: Array, q: Array) -> Array:
-        along, to = q - p, points - p
-        product: Array = along[:, 0] * to[:, :, 1] - along[:, 1] * to[:, :, 0]
-        return product
-
-    sides: Array = np.stack([side(a, b), side(b, c), side(c, a)])
-    inside = np.all(sides >= 0.0, axis=0) | np.all(sides <= 0.0, axis=0)
-    uncovered: npt.NDArray[np.bool_] = np.logical_not(np.any(inside, axis=1))
-    return uncovered
-
-
-def _longest_run(flags: npt.NDArray[np.bool_]) -> int:
-    """How many flags in a row are set at most."""
-    longest = run = 0
-    for flag in flags:
-        run = run + 1 if flag else 0
-        longest = max(longest, run)
-    return longest
 
 
 def sunk_in_eyeballs(positions: Array, rest: Array, triangles: Triangles, eyes: Any) -> float:
