@@ -60,7 +60,8 @@ def test_nothing_half_written_is_left(
 def test_a_signal_is_heard_where_errors_are_dropped() -> None:
     """C code that calls Python and ignores what it raises does not lose the signal."""
     code = (
-        "import ctypes, signal\nfrom app.stopping import cleaned_up_if_stopped, listen\nlisten()\n"
+        "import ctypes, signal\n"
+        "from risorius.app.stopping import cleaned_up_if_stopped, listen\nlisten()\n"
         "callback = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGTERM))\n"
         "cleanups = lambda: print('clean'), lambda: 1 / 0\n"
         "with cleaned_up_if_stopped(cleanups[0]), cleaned_up_if_stopped(cleanups[1]):\n"
@@ -80,7 +81,8 @@ def test_a_film_can_be_stopped_while_it_is_finished(tmp_path: Path) -> None:
     slow.chmod(0o755)
     folder = tmp_path / "films"
     code = (
-        "import numpy, pathlib\nfrom app import outputs, stopping\nstopping.listen()\n"
+        "import numpy, pathlib\nfrom risorius.app import stopping\n"
+        "from risorius.app.capture import outputs\nstopping.listen()\n"
         f"with outputs.film(pathlib.Path({str(folder / 'film.mp4')!r}), (16, 16), 30) as add:\n"
         "    add(numpy.zeros((16, 16, 3), numpy.uint8))"
     )
@@ -105,7 +107,8 @@ def test_a_film_can_be_stopped_while_it_is_finished(tmp_path: Path) -> None:
 def test_frames_give_way_whole(tmp_path: Path) -> None:
     """A signal while the frames of an earlier film are replaced: all of the new ones are there."""
     code = (
-        "import numpy, os, pathlib, signal, sys\nfrom app import outputs, stopping\n"
+        "import numpy, os, pathlib, signal, sys\nfrom risorius.app import stopping\n"
+        "from risorius.app.capture import outputs\n"
         "stopping.listen()\nreplace, target = os.replace, pathlib.Path(sys.argv[1])\n"
         "def disturbed(*paths):\n    replace(*paths)\n    signal.raise_signal(signal.SIGTERM)\n"
         "for os.replace in (replace, disturbed):\n"

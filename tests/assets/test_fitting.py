@@ -15,7 +15,7 @@ from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead, fit, fit_head
 from risorius.assets.fitting.warp import Similarity, Warp, nearest_on
 from risorius.assets.meshes import Mesh
-from risorius.bench.sight import lid_gaps
+from risorius.bench.lines_of_sight import lid_gaps
 from risorius.sim.landmarks import MIRRORED
 from tests.heads import Stranger, closed, stranger
 from tests.sim.poses import inverted_triangles, lip_gap, moved_landmarks, settle

@@ -24,7 +24,7 @@ from .settings_inputs import ENVIRONMENTS, FILES, FILM, PICTURE
 pytestmark = pytest.mark.fuzz
 
 ROOT = Path(__file__).parents[2]
-COMMAND = "import sys; sys.argv[0] = 'risorius'; from app.__main__ import run; run()"
+COMMAND = "import sys; sys.argv[0] = 'risorius'; from risorius.__main__ import run; run()"
 STARTING = 60.0  # [s] a process of its own may have to compile first
 
 
