@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from risorius import assets
 from risorius.app.benchmarks import motion_table, simulate_table, soak_table, tearing_table
@@ -18,6 +19,7 @@ def test_simulate_table() -> None:
     assert "plain mesh" in table
 
 
+@pytest.mark.slow
 def test_motion_table(tmp_path: Path) -> None:
     """A reference of one's own, here the built-in head pulled up at the brows, is scored."""
     head = assets.load("head")
@@ -51,6 +53,7 @@ def test_motion_table(tmp_path: Path) -> None:
     assert unknown.splitlines()[-1].endswith(": earWiggle")
 
 
+@pytest.mark.slow
 def test_soak_table() -> None:
     """A few seconds of wild input are reported, and the face stays sound."""
     table = soak_table(0.05)
@@ -58,6 +61,7 @@ def test_soak_table() -> None:
     assert "0.1 simulated minutes" in table or "0.0 simulated minutes" in table
 
 
+@pytest.mark.slow
 def test_tearing_table() -> None:
     """Expressions and mixtures are looked at, and the worst is named."""
     table = tearing_table(3)

@@ -20,6 +20,7 @@ import pytest
     ],
 )
 @pytest.mark.skipif(sys.platform == "win32", reason="paths of POSIX systems")
+@pytest.mark.slow
 def test_mistakes_are_told(program: str, words: list[str], told: str) -> None:
     """What cannot be drawn or written is told in one line, before anything is drawn."""
     ended = subprocess.run(

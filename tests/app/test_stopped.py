@@ -24,43 +24,47 @@ def is_there(folder: Path, pattern: str) -> bool:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
-@pytest.mark.parametrize("output", ["film.mp4", "frames"])
 @pytest.mark.parametrize(
-    ("number", "words"),
-    [(signal.SIGINT, b"risorius: stopped"), (signal.SIGHUP, b"")],
+    ("output", "pattern", "number"),
+    [
+        ("film.mp4", "**/film.mp4", signal.SIGINT),
+        ("frames", "*", signal.SIGHUP),  # the place is tried: OpenGL is set up next
+        pytest.param("film.mp4", "*", signal.SIGINT, marks=pytest.mark.slow),
+        pytest.param("film.mp4", "*", signal.SIGHUP, marks=pytest.mark.slow),
+        pytest.param("film.mp4", "**/film.mp4", signal.SIGHUP, marks=pytest.mark.slow),
+        pytest.param("frames", "*", signal.SIGINT, marks=pytest.mark.slow),
+        pytest.param("frames", "**/*.png", signal.SIGINT, marks=pytest.mark.slow),
+        pytest.param("frames", "**/*.png", signal.SIGHUP, marks=pytest.mark.slow),
+    ],
 )
 def test_nothing_half_written_is_left(
-    tmp_path: Path, output: str, number: signal.Signals, words: bytes
+    tmp_path: Path, output: str, pattern: str, number: signal.Signals
 ) -> None:
     """Ctrl-C, or a closed terminal, while a film or frames are begun and while they are written."""
-    target = tmp_path / output
-    for pattern in (
-        "*",  # the place is tried: OpenGL is set up next
-        "**/*.png" if output == "frames" else "**/film.mp4",
-    ):
-        process = subprocess.Popen(
-            [*COMMAND, *SLOW, "-o", str(target), "--quiet"],
-            stderr=subprocess.PIPE,
-            start_new_session=True,
-            # Tests that run behind an `&` or `nohup` have the signals ignored, and pass that on.
-            preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),
-        )
-        while process.poll() is None and not is_there(tmp_path, pattern):
-            time.sleep(0.01)
-        os.killpg(process.pid, number)
-        _, told = process.communicate(timeout=60)
-        assert process.returncode == -number
-        # The first start on a machine also says that it compiles.
-        lines = [line for line in told.splitlines() if not line.startswith(b"Compiling")]
-        assert lines == ([words] if words else [])
-        assert list(tmp_path.iterdir()) == []
+    process = subprocess.Popen(
+        [*COMMAND, *SLOW, "-o", str(tmp_path / output), "--quiet"],
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+        # Tests that run behind an `&` or `nohup` have the signals ignored, and pass that on.
+        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),
+    )
+    while process.poll() is None and not is_there(tmp_path, pattern):
+        time.sleep(0.01)
+    os.killpg(process.pid, number)
+    _, told = process.communicate(timeout=60)
+    assert process.returncode == -number
+    # The first start on a machine also says that it compiles.
+    lines = [line for line in told.splitlines() if not line.startswith(b"Compiling")]
+    assert lines == ([b"risorius: stopped"] if number == signal.SIGINT else [])
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
 def test_a_signal_is_heard_where_errors_are_dropped() -> None:
     """C code that calls Python and ignores what it raises does not lose the signal."""
     code = (
-        "import ctypes, signal\nfrom app.stopping import cleaned_up_if_stopped, listen\nlisten()\n"
+        "import ctypes, signal\n"
+        "from risorius.app.stopping import cleaned_up_if_stopped, listen\nlisten()\n"
         "callback = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGTERM))\n"
         "cleanups = lambda: print('clean'), lambda: 1 / 0\n"
         "with cleaned_up_if_stopped(cleanups[0]), cleaned_up_if_stopped(cleanups[1]):\n"
@@ -80,7 +84,7 @@ def test_a_film_can_be_stopped_while_it_is_finished(tmp_path: Path) -> None:
     slow.chmod(0o755)
     folder = tmp_path / "films"
     code = (
-        "import numpy, pathlib\nfrom app import outputs, stopping\nstopping.listen()\n"
+        "import numpy, pathlib\nfrom risorius.app import outputs, stopping\nstopping.listen()\n"
         f"with outputs.film(pathlib.Path({str(folder / 'film.mp4')!r}), (16, 16), 30) as add:\n"
         "    add(numpy.zeros((16, 16, 3), numpy.uint8))"
     )
@@ -105,7 +109,7 @@ def test_a_film_can_be_stopped_while_it_is_finished(tmp_path: Path) -> None:
 def test_frames_give_way_whole(tmp_path: Path) -> None:
     """A signal while the frames of an earlier film are replaced: all of the new ones are there."""
     code = (
-        "import numpy, os, pathlib, signal, sys\nfrom app import outputs, stopping\n"
+        "import numpy, os, pathlib, signal, sys\nfrom risorius.app import outputs, stopping\n"
         "stopping.listen()\nreplace, target = os.replace, pathlib.Path(sys.argv[1])\n"
         "def disturbed(*paths):\n    replace(*paths)\n    signal.raise_signal(signal.SIGTERM)\n"
         "for os.replace in (replace, disturbed):\n"

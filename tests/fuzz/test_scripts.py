@@ -18,7 +18,7 @@ from risorius.app.script_writer import script_text
 from .sandbox import bounded, check_line
 from .script_inputs import ACCEPTED, REFUSED
 
-pytestmark = pytest.mark.fuzz
+pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 GOOD = sorted((ROOT / "assets" / "scripts").glob("*.toml"))
