@@ -19,6 +19,8 @@ from pathlib import Path
 
 import pytest
 
+import risorius
+
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 SETUPTOOLS = PROJECT["tool"]["setuptools"]
@@ -69,6 +71,17 @@ def test_python_versions_agree() -> None:
     assert PROJECT["project"]["requires-python"] == f">={lowest}"
     assert PROJECT["tool"]["mypy"]["python_version"] == lowest
     assert PROJECT["tool"]["ruff"]["target-version"] == f"py{lowest.replace('.', '')}"
+
+
+def test_the_release_is_the_same_everywhere() -> None:
+    """Version and date in pyproject.toml, the package, CHANGELOG.md and CITATION.cff."""
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    newest = re.search(r"^## \[Unreleased\]$.*?^## \[(\S+)\] - (\S+)$", changes, re.M | re.S)
+    assert newest is not None
+    version, date = newest.groups()
+    assert version == PROJECT["project"]["version"] == risorius.__version__
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {version}\ndate-released: {date}\n" in citation
 
 
 def test_nothing_is_imported_by_its_folder() -> None:
