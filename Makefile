@@ -1,15 +1,14 @@
 # Risorius: two commands on a fresh Debian or Ubuntu.
 #
 #   make demo     set up everything and render the built-in head to out/demo.mp4 and out/demo.png
-#   make test     set up everything, check the code and pass the tests
+#   make test     set up everything, check the code and pass the tests of the first lane
 #   make setup    only make .venv with everything in it
 #   make check    ruff, mypy and the import rules alone
 #   make clean    remove .venv and what was rendered
 #
 # Slower ones, before a release:
 #
-#   make test-slow        pass the tests that take minutes
-#   make fuzz             give every door hundreds of wrong inputs
+#   make test-all         make test, then the second lane: all tests that take long
 #   make test-lowest      pass the tests with the oldest versions that pyproject.toml allows
 #   make test-processors  pass the tests as other processors round
 
@@ -35,18 +34,25 @@ define debian_packages
 	fi
 endef
 
-.PHONY: demo test test-slow test-lowest test-processors fuzz setup check opengl screen clean
+.PHONY: demo test test-all test-lowest test-processors setup check opengl screen clean
 
 demo: setup opengl
 	@$(BIN)/risorius demo
 
-# Two processes, each with a screen of its own: real windows, whose keyboard nobody else may touch,
-# and all the rest. What the windows' tests say is shown when both have ended.
-test: setup opengl screen check
-	@$(SCREEN) -n 199 $(BIN)/python -m pytest -m "window and not slow" >.venv/windows.log 2>&1 & \
+# $(call pass_lane,marks): two processes, each with a screen of its own: real windows, whose keyboard
+# nobody else may touch, and all the rest. What the windows' tests say is shown when both have ended.
+define pass_lane
+	$(SCREEN) -n 199 $(BIN)/python -m pytest -m "window and $(1)" >.venv/windows.log 2>&1 & \
 		windows=$$!; code=0; \
-		$(SCREEN) $(BIN)/python -m pytest -m "not window and not slow and not fuzz" || code=1; \
+		$(SCREEN) $(BIN)/python -m pytest -m "not window and $(1)" || code=1; \
 		wait $$windows || code=1; cat .venv/windows.log; exit $$code
+endef
+
+test: setup opengl screen check
+	@$(call pass_lane,not slow)
+
+test-all: test
+	@$(call pass_lane,slow)
 
 # Compiled code is kept apart: the other numba could not read it.
 test-lowest: $(LOWEST)/.ready screen
@@ -60,12 +66,6 @@ $(LOWEST)/.ready: pyproject.toml tests/lowest.py
 	@$(LOWEST)/bin/python -m pip install -qq --disable-pip-version-check \
 		--constraint $(LOWEST)/constraints.txt --editable ".[dev]"
 	@touch $@
-
-fuzz: setup opengl
-	@$(BIN)/python -m pytest -q -m 'not slow' tests/fuzz
-
-test-slow: setup opengl screen
-	@$(SCREEN) $(BIN)/python -m pytest -m slow
 
 # Rounds as other processors do, as far as this one can: OpenBLAS, numpy and numba each choose code
 # by the processor, and can be told. The last needs AVX-512. TESTS=tests/assets passes a part alone.

@@ -108,6 +108,7 @@ def test_change_in_another_file_counts(run: Run, package: Path) -> None:
     assert len(kept(package)) == 1  # the old code was written over
 
 
+@pytest.mark.slow
 def test_change_in_a_file_outside_the_package_counts(tmp_path: Path, package: Path) -> None:
     """A kernel elsewhere may use the decorator: its own file is part of its code, too."""
     program = tmp_path / "program.py"
@@ -128,6 +129,7 @@ def test_change_in_a_file_outside_the_package_counts(tmp_path: Path, package: Pa
     assert len(kept(package)) == 1
 
 
+@pytest.mark.slow
 def test_changed_options_count(run: Run, package: Path) -> None:
     """Options that are the same for all kernels are part of the code."""
     run()
@@ -136,6 +138,7 @@ def test_changed_options_count(run: Run, package: Path) -> None:
     assert run() == [COMPILED, RESULT]
 
 
+@pytest.mark.slow
 def test_damaged_file_is_made_again(run: Run, package: Path) -> None:
     """A file that is empty, foreign or cut off costs a compilation, nothing else."""
     run()
@@ -176,6 +179,7 @@ def test_without_a_folder_code_is_compiled_each_time(run: Run, package: Path, ho
     assert "NUMBA_CACHE_DIR" in warned
 
 
+@pytest.mark.slow
 def test_full_disk(run: Run, package: Path) -> None:
     """A file that cannot be written whole is not left behind, and one line says why."""
     text = (package / "jit.py").read_text()
@@ -194,6 +198,7 @@ def test_full_disk(run: Run, package: Path) -> None:
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="no owners of files here")
 @pytest.mark.parametrize("fault", ["open", "open above", "a link", "of somebody else"])
+@pytest.mark.slow
 def test_folders_of_others_are_not_trusted(
     run: Run, package: Path, tmp_path: Path, fault: str
 ) -> None:
@@ -216,6 +221,7 @@ def test_folders_of_others_are_not_trusted(
 
 
 @pytest.mark.parametrize("name", ["code", "lock"])
+@pytest.mark.slow
 def test_pipes_in_the_folder_do_not_hang(run: Run, package: Path, name: str) -> None:
     """A pipe in the place of a file is no code, and nothing waits for what it will say."""
     run()
@@ -229,6 +235,7 @@ def test_pipes_in_the_folder_do_not_hang(run: Run, package: Path, name: str) -> 
 
 
 @pytest.mark.skipif(getattr(os, "geteuid", lambda: 1)() != 0, reason="only root gives files away")
+@pytest.mark.slow
 def test_files_of_others_are_not_trusted(run: Run, package: Path) -> None:
     """Nor is a file in a folder of ours that somebody else owns."""
     run()
@@ -237,6 +244,7 @@ def test_files_of_others_are_not_trusted(run: Run, package: Path) -> None:
     assert run() == [COMPILED, RESULT]
 
 
+@pytest.mark.slow
 def test_function_without_a_source(tmp_path: Path, package: Path) -> None:
     """What is typed in by hand is compiled, and not kept."""
     program = "from risorius.jit import njit\n@njit\ndef one(x):\n    return x\nprint(one(1))"
@@ -247,6 +255,7 @@ def test_function_without_a_source(tmp_path: Path, package: Path) -> None:
     assert not kept(package)
 
 
+@pytest.mark.slow
 def test_edited_after_import(package: Path, run: Run) -> None:
     """Code is kept under the sources that it was made of, not those that lie there by now."""
     edit = "(open('risorius/refine/other.py', 'w').write('FACTOR = 7.0\\n'))\n"
@@ -266,6 +275,7 @@ def test_edited_after_import(package: Path, run: Run) -> None:
     assert run() == [COMPILED, "[0.0, 7.0, 14.0]"]
 
 
+@pytest.mark.slow
 def test_processes_wait_for_the_one_that_compiles(package: Path, tmp_path: Path) -> None:
     """Of several that start together on nothing, one compiles and the others read."""
     told: list[list[str]] = []
@@ -286,6 +296,7 @@ def test_processes_wait_for_the_one_that_compiles(package: Path, tmp_path: Path)
     assert sum("MADE" in lines for lines in told) == 1
 
 
+@pytest.mark.slow
 def test_a_lock_that_is_never_given_back(package: Path, tmp_path: Path) -> None:
     """Patience ends: a process that hangs does not keep others from working."""
     fcntl = pytest.importorskip("fcntl")
@@ -346,6 +357,7 @@ def frames_of_threads(file: Path, **environment: str) -> dict[str, np.ndarray]:
     return dict(np.load(file))
 
 
+@pytest.mark.slow
 def test_threads_and_python_agree(tmp_path: Path) -> None:
     """Each thread a refiner of its own, all at once; and all of it as the Python it is written in.
 

@@ -99,6 +99,7 @@ def test_program_writes_the_light_of_a_head(unbaked: FaceScene) -> None:
         _ = load_head(head.openness_file.with_name("head.npz")).openness
 
 
+@pytest.mark.slow
 def test_the_built_in_head_waits_for_no_baking(tmp_path: Path) -> None:
     """A picture of it is drawn without the code that bakes, let alone its compiling."""
     words = ["capture", "--set", "joy", "--size", "64x48", "-o", str(tmp_path / "joy.png")]
@@ -110,6 +111,7 @@ def test_the_built_in_head_waits_for_no_baking(tmp_path: Path) -> None:
     assert (tmp_path / "joy.png").exists()
 
 
+@pytest.mark.slow
 def test_baking_leaves_a_posed_face_alone(unbaked: FaceScene) -> None:
     """Baking moves a face: one that is posed already keeps its pose, and gets the same picture."""
     rest = unbaked.positions.copy()

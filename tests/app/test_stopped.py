@@ -24,36 +24,39 @@ def is_there(folder: Path, pattern: str) -> bool:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
-@pytest.mark.parametrize("output", ["film.mp4", "frames"])
 @pytest.mark.parametrize(
-    ("number", "words"),
-    [(signal.SIGINT, b"risorius: stopped"), (signal.SIGHUP, b"")],
+    ("output", "pattern", "number"),
+    [
+        ("film.mp4", "**/film.mp4", signal.SIGINT),
+        ("frames", "*", signal.SIGHUP),  # the place is tried: OpenGL is set up next
+        pytest.param("film.mp4", "*", signal.SIGINT, marks=pytest.mark.slow),
+        pytest.param("film.mp4", "*", signal.SIGHUP, marks=pytest.mark.slow),
+        pytest.param("film.mp4", "**/film.mp4", signal.SIGHUP, marks=pytest.mark.slow),
+        pytest.param("frames", "*", signal.SIGINT, marks=pytest.mark.slow),
+        pytest.param("frames", "**/*.png", signal.SIGINT, marks=pytest.mark.slow),
+        pytest.param("frames", "**/*.png", signal.SIGHUP, marks=pytest.mark.slow),
+    ],
 )
 def test_nothing_half_written_is_left(
-    tmp_path: Path, output: str, number: signal.Signals, words: bytes
+    tmp_path: Path, output: str, pattern: str, number: signal.Signals
 ) -> None:
     """Ctrl-C, or a closed terminal, while a film or frames are begun and while they are written."""
-    target = tmp_path / output
-    for pattern in (
-        "*",  # the place is tried: OpenGL is set up next
-        "**/*.png" if output == "frames" else "**/film.mp4",
-    ):
-        process = subprocess.Popen(
-            [*COMMAND, *SLOW, "-o", str(target), "--quiet"],
-            stderr=subprocess.PIPE,
-            start_new_session=True,
-            # Tests that run behind an `&` or `nohup` have the signals ignored, and pass that on.
-            preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),
-        )
-        while process.poll() is None and not is_there(tmp_path, pattern):
-            time.sleep(0.01)
-        os.killpg(process.pid, number)
-        _, told = process.communicate(timeout=60)
-        assert process.returncode == -number
-        # The first start on a machine also says that it compiles.
-        lines = [line for line in told.splitlines() if not line.startswith(b"Compiling")]
-        assert lines == ([words] if words else [])
-        assert list(tmp_path.iterdir()) == []
+    process = subprocess.Popen(
+        [*COMMAND, *SLOW, "-o", str(tmp_path / output), "--quiet"],
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+        # Tests that run behind an `&` or `nohup` have the signals ignored, and pass that on.
+        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),
+    )
+    while process.poll() is None and not is_there(tmp_path, pattern):
+        time.sleep(0.01)
+    os.killpg(process.pid, number)
+    _, told = process.communicate(timeout=60)
+    assert process.returncode == -number
+    # The first start on a machine also says that it compiles.
+    lines = [line for line in told.splitlines() if not line.startswith(b"Compiling")]
+    assert lines == ([b"risorius: stopped"] if number == signal.SIGINT else [])
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")

@@ -127,6 +127,7 @@ def test_full_screen_without_panels_still_acts(viewer: Viewer) -> None:
     assert "play" in viewer.gui.places
 
 
+@pytest.mark.slow
 def test_the_first_size_suits_the_screen(tmp_path: Path) -> None:
     """Without a size the window is no larger than the screen; on a dense one it grows with it."""
     for dots, wanted in ((96, FIRST_SIZE), (192, (2 * FIRST_SIZE[0], 2 * FIRST_SIZE[1]))):

@@ -253,6 +253,7 @@ def test_of_several_scripts_the_first_is_opened(viewer: Viewer, tmp_path: Path) 
     assert not viewer.messages.is_error
 
 
+@pytest.mark.slow
 def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path) -> None:
     """The face is another one, the script plays on it; what was unsaved before is still there."""
     before = viewer.scene
@@ -310,6 +311,7 @@ def test_a_head_that_is_none_is_told(viewer: Viewer, tmp_path: Path) -> None:
     assert "it must be the 68 iBug points" in viewer.messages.text and viewer.scene is before
 
 
+@pytest.mark.slow
 def test_heads_come_and_go_without_leaving_anything(
     viewer: Viewer, monkeypatch: pytest.MonkeyPatch
 ) -> None:

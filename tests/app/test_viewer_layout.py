@@ -103,6 +103,7 @@ def test_any_size_can_be_drawn(viewer: Viewer) -> None:
     assert viewer.surface.read().shape == (SIZE[1], SIZE[0], 3)
 
 
+@pytest.mark.slow
 def test_a_dense_screen_has_everything_twice_as_large(viewer: Viewer) -> None:
     """At a content scale of 2 words, sliders and lines are doubled, and the mouse still hits."""
     left, top, right, bottom = viewer.gui.places["Neutral"]
@@ -121,6 +122,7 @@ def test_a_dense_screen_has_everything_twice_as_large(viewer: Viewer) -> None:
     assert found["pulled"] > 4.0
 
 
+@pytest.mark.slow
 def test_a_window_that_was_stopped_goes_on_calmly(tmp_path: Path) -> None:
     """The whole program halted for a second while a script plays: it ends as if it had not."""
     script = tmp_path / "short.toml"

@@ -410,6 +410,7 @@ def test_a_window_that_crashed_is_recovered(at_work: subprocess.Popen[str], tmp_
 
 @pytest.mark.window
 @NEEDS_A_SCREEN[1]
+@pytest.mark.slow
 def test_work_that_is_undone_is_kept_no_more(
     at_work: subprocess.Popen[str], tmp_path: Path
 ) -> None:

@@ -205,6 +205,7 @@ def test_only_skin_that_wrinkles_is_drawn_differently(scene: FaceScene) -> None:
     assert not differs[:8].any() and not differs[:, :4].any()  # background
 
 
+@pytest.mark.slow
 def test_other_heads_wrinkle_too(tmp_path: Path, scene: FaceScene, wrinkling: Wrinkling) -> None:
     """A fitted one of another shape and mesh, and the built-in one with more triangles."""
     head = assets.load("head")

@@ -36,6 +36,7 @@ def rebuilt(tmp_path_factory: pytest.TempPathFactory, shipped: Arrays) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_rebuilt_head_is_the_shipped_one(shipped: Arrays) -> None:
     """Every array: integers and names exactly, coordinates within the tolerance."""
     fresh = build.build_head()
@@ -48,11 +49,13 @@ def test_rebuilt_head_is_the_shipped_one(shipped: Arrays) -> None:
             assert np.array_equal(array, shipped[name]), name
 
 
+@pytest.mark.slow
 def test_rebuilt_head_can_be_loaded(rebuilt: Path) -> None:
     """What build writes, load reads."""
     assert len(load_head(rebuilt).faces) == 2030
 
 
+@pytest.mark.slow
 def test_rebuilt_finer_meshes_are_the_shipped_ones(rebuilt: Path) -> None:
     """New vertices within the tolerance; normals are of half precision."""
     with (
@@ -65,6 +68,7 @@ def test_rebuilt_finer_meshes_are_the_shipped_ones(rebuilt: Path) -> None:
     assert len(load_head(rebuilt).finer(2).faces) == 16 * 2030
 
 
+@pytest.mark.slow
 def test_repainted_skin_is_the_shipped_one(rebuilt: Path) -> None:
     """The picture beside the data file comes from the same command."""
     fresh, shipped = load_head(rebuilt).albedo.astype(int), load("head").albedo.astype(int)
@@ -73,6 +77,7 @@ def test_repainted_skin_is_the_shipped_one(rebuilt: Path) -> None:
     assert difference.mean() < LEVELS and (difference > 8).mean() < 0.001
 
 
+@pytest.mark.slow
 def test_repainted_wrinkles_are_the_shipped_ones(rebuilt: Path) -> None:
     """The map to a few texels of rounding, and the directions of all vertices."""
     fresh, shipped = load_head(rebuilt).wrinkles, load("head").wrinkles
@@ -82,6 +87,7 @@ def test_repainted_wrinkles_are_the_shipped_ones(rebuilt: Path) -> None:
     assert np.allclose(fresh.across, shipped.across, atol=1e-4)
 
 
+@pytest.mark.slow
 def test_tone_and_size_are_options(
     tmp_path: Path,
     shipped: Arrays,

@@ -115,6 +115,7 @@ def test_picture_goes_on_outside_the_skin(head: Head) -> None:
     assert np.abs(near - far).mean() < 12.0
 
 
+@pytest.mark.slow
 def test_tones_are_ordered_and_all_have_lips() -> None:
     """From light to dark, each clearly darker than the one before; values and names both work."""
     sizes = 256

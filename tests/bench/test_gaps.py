@@ -17,6 +17,7 @@ def poses() -> dict[str, Pose]:
     return {pose.name: pose for pose in run()}
 
 
+@pytest.mark.slow
 def test_closed_lips_stay_closed(poses: dict[str, Pose]) -> None:
     """No unit parts the lips but those that are there for it, on either side or on both."""
     slits = {name: pose.lips for name, pose in poses.items() if pose.lips is not None}
@@ -25,6 +26,7 @@ def test_closed_lips_stay_closed(poses: dict[str, Pose]) -> None:
     assert {name: slit for name, slit in slits.items() if slit >= LIPS_MOST} == {}
 
 
+@pytest.mark.slow
 def test_shut_eyes_are_shut(poses: dict[str, Pose]) -> None:
     """No eyeball is seen through closed lids, whatever else the face does, nor cut by them."""
     gaps = {name: pose.lids for name, pose in poses.items() if pose.lids is not None}
@@ -33,6 +35,7 @@ def test_shut_eyes_are_shut(poses: dict[str, Pose]) -> None:
     assert max(pose.sunk for pose in poses.values()) < 0.3
 
 
+@pytest.mark.slow
 def test_the_worst_is_named(poses: dict[str, Pose]) -> None:
     """The table and the file for programs hold every pose; one that fails is called so."""
     wide = Pose("wide", LIPS_MOST, None, 0.0)

@@ -68,6 +68,7 @@ def scored(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Row], li
     return {row.shape: row for row in rows}, left_out
 
 
+@pytest.mark.slow
 def test_own_motion_is_known_again(scored: tuple[dict[str, Row], list[str]]) -> None:
     """Carried over by landmarks to another head, each shape is nearly what it was made from."""
     rows, _ = scored

@@ -128,6 +128,7 @@ def test_built_in_head() -> None:
     assert np.abs(joy.coarse - head.vertices).max() > 5.0
 
 
+@pytest.mark.slow
 def test_targets_on_the_built_in_head() -> None:
     """Schemes that interpolate come nearer in every expression, by as much as was aimed at."""
     scores = quality.run(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from risorius import assets
 from risorius.bench import motion, simulate, soak, tearing
@@ -19,6 +20,7 @@ def test_simulate() -> None:
     assert "plain mesh" in text
 
 
+@pytest.mark.slow
 def test_motion_table(tmp_path: Path) -> None:
     """A reference of one's own, here the built-in head pulled up at the brows, is scored."""
     head = assets.load("head")
@@ -52,6 +54,7 @@ def test_motion_table(tmp_path: Path) -> None:
     assert unknown.splitlines()[-1].endswith(": earWiggle")
 
 
+@pytest.mark.slow
 def test_soak_table() -> None:
     """A few seconds of wild input are reported, and the face stays sound."""
     text = soak.report(soak.run(minutes=0.05))
@@ -59,6 +62,7 @@ def test_soak_table() -> None:
     assert "0.1 simulated minutes" in text or "0.0 simulated minutes" in text
 
 
+@pytest.mark.slow
 def test_tearing_table() -> None:
     """Expressions and mixtures are looked at, and the worst is named."""
     text = tearing.report(tearing.run(mixtures=3), 3)

@@ -11,6 +11,7 @@ from risorius.bench import window
 
 pytestmark = [
     pytest.mark.window,
+    pytest.mark.slow,
     pytest.mark.skipif(not os.environ.get("DISPLAY"), reason="needs a display"),
 ]
 

@@ -10,7 +10,7 @@ import pytest
 from .command_inputs import ACCEPTED, REFUSED, HostileValue, hostile_values
 from .sandbox import check_end, contents, run_command
 
-pytestmark = [pytest.mark.fuzz, pytest.mark.usefixtures("ready_face", "no_long_work")]
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("ready_face", "no_long_work")]
 
 
 def _short(words: str) -> str:

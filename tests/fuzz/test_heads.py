@@ -18,6 +18,8 @@ from risorius.assets.meshes import Mesh
 
 from .head_inputs import Kind, OddHead, head_inputs, open_brought
 
+pytestmark = pytest.mark.slow
+
 LONGEST = 10.0  # [s] on a busy machine; the slowest takes 1 s on an idle one
 MOST_MEMORY = 400_000_000  # [bytes] more than before
 STATUS = Path("/proc/self/status")

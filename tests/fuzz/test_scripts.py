@@ -16,7 +16,7 @@ from risorius.app.script import Script, parse_script, script_for, script_text
 from .sandbox import bounded, check_line
 from .script_inputs import ACCEPTED, REFUSED
 
-pytestmark = pytest.mark.fuzz
+pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 GOOD = sorted((ROOT / "assets" / "scripts").glob("*.toml"))

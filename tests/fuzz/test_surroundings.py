@@ -21,7 +21,7 @@ from .sandbox import LONGEST, bounded, check_end, check_line, contents
 from .sandbox import Ended as End
 from .settings_inputs import ENVIRONMENTS, FILES, FILM, PICTURE
 
-pytestmark = pytest.mark.fuzz
+pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 COMMAND = "import sys; sys.argv[0] = 'risorius'; from risorius.__main__ import run; run()"

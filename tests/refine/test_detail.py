@@ -233,6 +233,7 @@ def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, blend: bool) -> None:
     assert_equals_twin(refiner, refined, twin, tolerance=(2e-5, 2e-4))
 
 
+@pytest.mark.slow
 def test_binding_takes_no_square_of_time_where_vertices_cluster() -> None:
     """One vertex far away must not throw all others into one cell of a search."""
     coarse, fine = meshes.tube(24, 20), meshes.tube(96, 80)
@@ -269,6 +270,7 @@ def test_binding_takes_no_square_of_time_where_vertices_cluster() -> None:
     assert refiner.triangle_capacity == 12 * len(coarse.faces)
 
 
+@pytest.mark.slow
 def test_many_vertices_in_one_place() -> None:
     """Thousands of vertices in one place are searched in bounded time, and give finite detail."""
     random = np.random.default_rng(3)

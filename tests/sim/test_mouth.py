@@ -58,7 +58,14 @@ def test_closed_mouth_shows_no_teeth(
         assert slit < SHUT, mesh
 
 
-@pytest.mark.parametrize(("sides", "strength"), [("left", 1.0), ("both", 1.0), ("both", 0.4)])
+@pytest.mark.parametrize(
+    ("sides", "strength"),
+    [
+        ("both", 1.0),
+        pytest.param("left", 1.0, marks=pytest.mark.slow),
+        pytest.param("both", 0.4, marks=pytest.mark.slow),
+    ],
+)
 def test_no_other_muscle_opens_the_mouth(
     simulation: sim.Simulation, head: Head, slits: Slits, sides: str, strength: float
 ) -> None:

@@ -1,0 +1,262 @@
+"""What is installed: complete, one package, the same from checkout and sdist, usable anywhere."""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import tomllib
+import zipfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+import risorius
+
+ROOT = Path(__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+SETUPTOOLS = PROJECT["tool"]["setuptools"]
+FOLDERS: dict[str, str] = {"risorius": "risorius", **SETUPTOOLS["package-dir"]}
+TOP_NAMES = {package.partition(".")[2] for package in SETUPTOOLS["package-dir"]}
+PASSED_OVER = shutil.ignore_patterns(
+    ".git", ".venv*", ".*cache", ".hypothesis", "__pycache__", "build", "dist", "out", "*.egg-info"
+)
+
+
+def files_of_packages() -> Iterator[tuple[str, Path]]:
+    """Every file of the packages, with the package that its folder is."""
+    for top, folder in FOLDERS.items():
+        for file in sorted((ROOT / folder).rglob("*")):
+            if file.is_file() and "__pycache__" not in file.parts:
+                inside = file.parent.relative_to(ROOT / folder).parts
+                yield ".".join((top, *inside)), file
+
+
+def test_every_package_is_listed() -> None:
+    """A folder that pyproject.toml does not name would be missing where it is installed."""
+    found = {package for package, file in files_of_packages() if file.suffix == ".py"}
+    assert sorted(SETUPTOOLS["packages"]) == sorted(found)
+    assert all((ROOT / folder / "__init__.py").exists() for folder in FOLDERS.values())
+
+
+def test_every_data_file_is_listed() -> None:
+    """Shaders, rigs, scripts, tables and the head's data go along."""
+    listed = {
+        file
+        for package, patterns in SETUPTOOLS["package-data"].items()
+        for pattern in patterns
+        for file in (ROOT / FOLDERS[package]).glob(pattern)
+    }
+    data = {file for _, file in files_of_packages() if file.suffix != ".py"}
+    assert len(data) > 15
+    assert listed == data
+
+
+def test_python_versions_agree() -> None:
+    """What is claimed is what continuous integration runs."""
+    workflow = (ROOT / ".github" / "workflows" / "tests.yml").read_text(encoding="utf-8")
+    (matrix,) = re.findall(r"python: (\[.*\])", workflow)
+    start = "Programming Language :: Python :: 3."
+    claimed = [each for each in PROJECT["project"]["classifiers"] if each.startswith(start)]
+    assert [f"{start}{version.removeprefix('3.')}" for version in json.loads(matrix)] == claimed
+    lowest = json.loads(matrix)[0]
+    assert PROJECT["project"]["requires-python"] == f">={lowest}"
+    assert PROJECT["tool"]["mypy"]["python_version"] == lowest
+    assert PROJECT["tool"]["ruff"]["target-version"] == f"py{lowest.replace('.', '')}"
+
+
+def test_the_release_is_the_same_everywhere() -> None:
+    """Version and date in pyproject.toml, the package, CHANGELOG.md and CITATION.cff."""
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    newest = re.search(r"^## \[Unreleased\]$.*?^## \[(\S+)\] - (\S+)$", changes, re.M | re.S)
+    assert newest is not None
+    version, date = newest.groups()
+    assert version == PROJECT["project"]["version"] == risorius.__version__
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {version}\ndate-released: {date}\n" in citation
+
+
+def test_nothing_is_imported_by_its_folder() -> None:
+    """In the checkout `import render` would find a second copy of `risorius.render`."""
+    for file in ROOT.rglob("*.py"):
+        if any(part.startswith(".") for part in file.relative_to(ROOT).parts):
+            continue
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom) and not node.level:
+                names = [node.module or ""]
+            else:
+                continue
+            bare = {name.partition(".")[0] for name in names} & TOP_NAMES
+            assert not bare, f"{file}:{node.lineno}: write `from risorius import {bare.pop()}`"
+
+
+def test_no_file_is_loaded_twice() -> None:
+    """All modules at once, with the checkout as the current folder."""
+    modules = [
+        package if file.stem == "__init__" else f"{package}.{file.stem}"
+        for package, file in files_of_packages()
+        if file.suffix == ".py" and file.stem != "__main__"
+    ]
+    code = (
+        "import importlib, json, sys\n"
+        f"for name in {modules}:\n    importlib.import_module(name)\n"
+        "print(json.dumps({n: getattr(m, '__file__', None) for n, m in sys.modules.items()}))"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    ours = {str(file) for _, file in files_of_packages()}
+    loaded = {
+        name: os.path.realpath(file)
+        for name, file in json.loads(result.stdout).items()
+        if file and os.path.realpath(file) in ours
+    }
+    assert sorted(loaded) == sorted(modules)
+    assert len(set(loaded.values())) == len(loaded)
+
+
+@dataclass(frozen=True)
+class Built:
+    """Wheels of the checkout and of its sdist, and an environment with the second installed."""
+
+    wheels: tuple[Path, Path]
+    sdist: Path
+    python: Path
+
+
+def run(*words: object, **options: object) -> str:
+    """Run a program that must end well; what it says."""
+    result = subprocess.run(
+        [str(word) for word in words], capture_output=True, text=True, timeout=600, **options
+    )  # type: ignore[call-overload]
+    assert result.returncode == 0, result.stdout + result.stderr
+    return str(result.stdout)
+
+
+def wheel_of(folder: Path, target: Path) -> Path:
+    """Build a wheel without the network, with the setuptools of this environment."""
+    run(
+        sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "--no-index",
+        "--wheel-dir", target, folder,
+    )  # fmt: skip
+    (wheel,) = target.glob("*.whl")
+    return wheel
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
+    """Built in copies, so that nothing is left in the checkout."""
+    folder = tmp_path_factory.mktemp("built")
+    checkout = folder / "checkout"
+    shutil.copytree(ROOT, checkout, ignore=PASSED_OVER)
+    code = f"from setuptools import build_meta; build_meta.build_sdist({str(folder)!r})"
+    run(sys.executable, "-c", code, cwd=checkout)
+    (sdist,) = folder.glob("*.tar.gz")
+    with tarfile.open(sdist) as archive:
+        archive.extractall(folder / "unpacked", filter="data")
+    (unpacked,) = (folder / "unpacked").iterdir()
+    wheels = wheel_of(checkout, folder / "first"), wheel_of(unpacked, folder / "second")
+    run(sys.executable, "-m", "venv", "--without-pip", folder / "environment")
+    python = folder / "environment" / "bin" / "python"
+    site = run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))").strip()
+    # What Risorius needs is found here; editable installs are not, their .pth is not read twice.
+    Path(site, "needed.pth").write_text(sysconfig.get_path("purelib") + "\n", encoding="utf-8")
+    run(sys.executable, "-m", "pip", "--python", python, "install", "--no-deps", "--no-index",
+        wheels[1])  # fmt: skip
+    shutil.rmtree(checkout)
+    return Built(wheels, sdist, python)
+
+
+@pytest.mark.slow
+def test_wheel_of_the_sdist_is_that_of_the_checkout(built: Built) -> None:
+    """The same files in both, each module and data file among them, under one name."""
+    contents = []
+    for wheel in built.wheels:
+        with zipfile.ZipFile(wheel) as archive:
+            contents.append({name: archive.read(name) for name in archive.namelist()})
+    assert contents[0] == contents[1]
+    names = {name for name in contents[0] if ".dist-info/" not in name}
+    expected = {f"{package.replace('.', '/')}/{file.name}" for package, file in files_of_packages()}
+    assert names == expected
+
+
+@pytest.mark.slow
+def test_sdist_holds_what_its_tests_need(built: Built) -> None:
+    """Whoever packages it for a system can run the tests, and read the documentation."""
+    with tarfile.open(built.sdist) as archive:
+        names = {name.partition("/")[2] for name in archive.getnames()}
+    wanted = {
+        "Makefile",
+        "constraints.txt",
+        ".ci/run",
+        "CHANGELOG.md",
+        "LICENSE",
+        "docs/hello.toml",
+    }
+    wanted |= {
+        str(file.relative_to(ROOT))
+        for folder in ("tests", "examples")
+        for file in (ROOT / folder).rglob("*")
+        if file.is_file() and "__pycache__" not in file.parts
+    }
+    assert wanted <= names
+    assert not [name for name in names if name.endswith(".pyc")]
+
+
+@pytest.mark.slow
+def test_installed_wheel_works_beside_files_of_the_same_names(built: Built, tmp_path: Path) -> None:
+    """A user's own sim.py, refine.py and app/ disturb nothing; only `risorius` is installed."""
+    for name in TOP_NAMES - {"app"}:
+        (tmp_path / f"{name}.py").write_text("raise ImportError('of the user')\n")
+    (tmp_path / "app").mkdir()
+    (tmp_path / "app" / "__init__.py").write_text("raise ImportError('of the user')\n")
+    environment = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
+    environment["NUMBA_CACHE_DIR"] = str(tmp_path / "compiled")
+    surroundings = {"cwd": tmp_path, "env": environment}
+    command = built.python.with_name("risorius")
+    version = f"risorius, version {PROJECT['project']['version']}\n"
+    assert run(command, "--version", **surroundings) == version
+    assert run(built.python, "-m", "risorius", "--version", **surroundings) == version
+    for words in (["--help"], ["demo", "--help"], ["doctor", "--offscreen", "--quiet"]):
+        run(command, *words, **surroundings)
+    picture = ["capture", "--set", "joy", "--size", "64x64", "--quiet", "-o"]
+    run(command, *picture, tmp_path / "joy.png", **surroundings)
+    assert (tmp_path / "joy.png").stat().st_size > 1000
+    code = "from risorius import assets, refine, render, sim; print(sim.__file__)"
+    site = Path(run(built.python, "-c", code, **surroundings)).parents[2]
+    version = PROJECT["project"]["version"]
+    assert {path.name for path in site.iterdir()} == {
+        "needed.pth", "risorius", f"risorius-{version}.dist-info"
+    }  # fmt: skip
+
+
+@pytest.mark.slow
+def test_types_reach_who_uses_it(built: Built, tmp_path: Path) -> None:
+    """`py.typed` is honoured: a client's mistake is found by mypy, in annotations of ours."""
+    client = tmp_path / "client.py"
+    client.write_text(
+        "import numpy as np\nfrom risorius import refine\n"
+        "faces, positions = np.zeros((1, 3), np.int32), np.zeros((3, 3))\n"
+        "refiner = refine.create('kahler', faces, positions)\n"
+        "refined: refine.RefinedMesh = refiner.refine(positions)\n"
+        "wrong: str = refiner.refine(positions)\n"
+    )
+    result = subprocess.run(
+        [sys.executable, "-m", "mypy", "--python-executable", str(built.python), str(client)],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    mistakes = [line for line in result.stdout.splitlines() if line.startswith("client.py")]
+    assert len(mistakes) == 1, result.stdout
+    assert mistakes[0].startswith("client.py:6: error: Incompatible types in assignment")
