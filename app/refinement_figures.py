@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from risorius.refine.coherence import sequence_tables
-from risorius.refine.patterns import POINTS, splits_of, subdivide
+from risorius.refine.kahler.coherence import sequence_tables
+from risorius.refine.kahler.table import POINTS, splits_of, subdivide
 
 from .diagrams import FAINT, FILL, INK, MOVED, NEW, SECOND, Sheet, equilateral
 from .errors import run_alone
@@ -91,7 +91,7 @@ def sequences() -> Frame:
             column, row = place % columns, place // columns
             centre = (34 + (column + 0.5) * cell, top - (row + 0.5) * cell)
             sequence = tables.sequences[k]
-            triangles = tables.subtriangles[k, : tables.subtriangle_counts[k]].tolist()
+            triangles = tables.patterns.of(k).tolist()
             splits = (sequence.count(0), sequence.count(1), sequence.count(2))
             triangulation(
                 sheet, equilateral(centre, 0.86 * cell), triangles, splits, width=0.7, radius=1.1

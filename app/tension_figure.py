@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, render
-from risorius.refine.tension import Tension, TensionMap
+from risorius.refine import Tension, TensionMap
 
 from .cameras import camera_for
 from .easel import table_of_pictures
