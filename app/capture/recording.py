@@ -15,11 +15,10 @@ from risorius.assets.fitting import FittedHead
 from ..cameras import camera_for
 from ..errors import UserError
 from ..files import Image, check_file, check_picture, save_png
-from ..pipeline import Pipeline, side_by_side, texture_of
+from ..pipeline import Pipeline, side_by_side
 from ..scenes import Scene, build_scene
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped
-from ..wrinkling import wrinkling_of
 from . import outputs
 from .captions import captioned, contact_sheet
 
@@ -54,8 +53,7 @@ class Capture:
             refiners["none"] = None
         refiners[options.refiner] = options.refiner_options
         renderer = render.Renderer(self.surface)
-        texture, wrinkling = texture_of(scene, renderer), wrinkling_of(scene, renderer)
-        self.pipeline = Pipeline(scene, renderer, refiners, texture, wrinkling)
+        self.pipeline = Pipeline(scene, renderer, refiners)
         self.viewports = side_by_side(self.surface.size, len(refiners))
         self.camera = camera_for(scene, options.camera)
         self.most_triangles = 0
