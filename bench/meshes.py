@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, refine
+from risorius.assets.subdivision import quarter
 
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
@@ -185,14 +186,9 @@ def _median_edge(vertices: Points, faces: Faces) -> float:
 
 def _finer(vertices: Points, faces: Faces, generator: np.random.Generator) -> tuple[Points, Faces]:
     """The mesh with four times its triangles, and bumps in the middle of its edges."""
-    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    edges, numbers = np.unique(ends, axis=0, return_inverse=True)
-    bumps = BUMP * _median_edge(vertices, faces) * generator.normal(size=(len(edges), 3))
-    a, b, c = faces.T
-    ab, bc, ca = (len(vertices) + numbers.reshape(-1, 3)).T
-    finer = np.stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], axis=1).reshape(-1, 3)
-    middles = vertices[edges].mean(axis=1) + bumps
-    return np.concatenate([vertices, middles]), finer.astype(np.int32)
+    finer = quarter(faces, len(vertices))
+    bumps = BUMP * _median_edge(vertices, faces) * generator.normal(size=(len(finer.edges), 3))
+    return np.concatenate([vertices, vertices[finer.edges].mean(axis=1) + bumps]), finer.faces
 
 
 def report(seen: Sequence[Seen]) -> str:
