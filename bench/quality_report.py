@@ -74,9 +74,11 @@ def errors_table(scores: Sequence[Score]) -> str:
             [name, *(getattr(by_key[(*key, name)], what) for *_, key, _ in columns)]
             for name in expressions
         ]
-        lines += table([":<26", *(f"{above}:>{width}" for above, *_, width in columns)], [])
+        lines += table(
+            "|".join([":<26", *(f"{above}:>{width}" for above, *_, width in columns)]), []
+        )
         titles = [f"{head}:{width}.{digits}f" for _, head, _, width in columns]
-        lines += [*table([f"{unit}:<26", *titles], rows), ""]
+        lines += [*table("|".join([f"{unit}:<26", *titles]), rows), ""]
     counts = [f"{average[key].triangles:{width}d}" for *_, key, width in columns]
     return "\n".join([*lines, f"{'triangles, mean':26} {' '.join(counts)}"])
 
@@ -85,8 +87,10 @@ def rules_table(scores: Sequence[Score]) -> str:
     """Means over expressions of every scheme with every rule that splits edges."""
     average = means(scores)
     coarse = average[COARSE, "", 1.0]
-    columns = ("mean over expressions:<26", "x triangles:11.2f", "mm:7.3f", "better:>8",
-        "degrees:8.2f", "better:>8", "median:7.2f", "better:>8")  # fmt: skip
+    columns = (
+        "mean over expressions:<26|x triangles:11.2f|mm:7.3f|better:>8|degrees:8.2f|better:>8"
+        "|median:7.2f|better:>8"
+    )
     rows = []
     for (method, rule, budget), found in average.items():
         how = "twice" if budget == EVERYWHERE else rule
