@@ -120,19 +120,9 @@ def capture(
     time: of a picture [s]; else it is of the first pose that has a name, or of the end.
     Returns the largest number of triangles of a frame. Raises UserError on what cannot be.
     """
-    still = output if output is not None and output.suffix.lower() == ".png" else None
-    if time is not None and not still:
-        raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
-    if output is None and sheet is None:
-        raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")
+    _check(script, output, sheet, time)
     wanted = list(script.key_poses) if sheet else []
-    if sheet and not wanted:
-        raise UserError(f"{script.source}: no pose has a name, so there is nothing for a sheet")
-    for picture in (sheet, still):
-        if picture is not None:
-            check_picture(picture)
-    if output is not None and output.suffix.lower() in outputs.FILM_SUFFIXES:
-        check_file(output)
+    still = output if _is_picture(output) else None
     if time is None:
         time = script.key_poses[0].time if script.key_poses else script.duration
     rate = options.frames_per_second
@@ -158,6 +148,26 @@ def capture(
         if sheet is not None:
             save_png(sheet, contact_sheet(named, columns=2 if options.compare else 3))
         return recording.most_triangles
+
+
+def _is_picture(output: Path | None) -> bool:
+    return output is not None and output.suffix.lower() == ".png"
+
+
+def _check(script: Script, output: Path | None, sheet: Path | None, time: float | None) -> None:
+    """Raise UserError, before any work is done, where one of the outputs cannot be."""
+    if time is not None and not _is_picture(output):
+        raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
+    if output is None and sheet is None:
+        raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")
+    if sheet and not script.key_poses:
+        raise UserError(f"{script.source}: no pose has a name, so there is nothing for a sheet")
+    if sheet is not None:
+        check_picture(sheet)
+    if output is not None and _is_picture(output):
+        check_picture(output)
+    elif output is not None and output.suffix.lower() in outputs.FILM_SUFFIXES:
+        check_file(output)
 
 
 def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
