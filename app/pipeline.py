@@ -20,7 +20,7 @@ from risorius import refine, render
 
 from .refining import refiner_for
 from .scenes import Scene
-from .wrinkling import Amounts, Wrinkling, on_rows
+from .wrinkling import Amounts, on_rows, wrinkling_of
 
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 
@@ -77,17 +77,12 @@ class Pipeline:
         scene: Scene,
         renderer: render.Renderer,
         refiners: Mapping[str, Mapping[str, Any] | None],
-        texture: render.Texture | None = None,
-        wrinkling: Wrinkling | None = None,
     ) -> None:
-        """Bind `refiners` (name -> options beside the scene's own) to the scene, left to right.
-
-        `texture`: the scene's albedo, as `texture_of` made it; `wrinkling`: as `wrinkling_of` did.
-        """
+        """Bind `refiners` (name -> options beside the scene's own) to the scene, left to right."""
         self.scene = scene
         self.renderer = renderer
-        self.texture = texture
-        self.wrinkling = wrinkling
+        self.texture = texture_of(scene, renderer)
+        self.wrinkling = wrinkling_of(scene, renderer)
         self.meshes = [
             DrawnMesh.of(scene, renderer, name, options) for name, options in refiners.items()
         ]

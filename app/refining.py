@@ -19,14 +19,6 @@ DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `fine
 WORDS = {"on": True, "true": True, "off": False, "false": False}
 
 
-def known_refiner(name: str) -> str:
-    """The name of a registered refiner, or UserError with those that are."""
-    if name not in refine.available():
-        there_are = ", ".join(refine.available())
-        raise UserError(f"refiner '{name}' is unknown; there are {there_are}")
-    return name
-
-
 def refiner_for(scene: Scene, name: str, options: Mapping[str, Any] | None) -> refine.Refiner:
     """Bind the refiner `name` to the scene's mesh; UserError if it refuses an option.
 
@@ -98,8 +90,12 @@ def finer_mesh(scene: Scene) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.in
 def options_in_words(name: str, settings: Sequence[str]) -> dict[str, Any] | None:
     """What `--option NAME=VALUE ...` tells the refiner `name`; None for nothing.
 
-    Numbers, on and off, or words. Raises UserError where the mesh is drawn as it is.
+    Numbers, on and off, or words. Raises UserError for an unknown refiner, and where the mesh is
+    drawn as it is.
     """
+    if name not in refine.available():
+        there_are = ", ".join(refine.available())
+        raise UserError(f"refiner '{name}' is unknown; there are {there_are}")
     if name == "none" and settings:
         raise UserError(
             f"--option {settings[0]}: --refiner none draws the mesh as it is and has no options"

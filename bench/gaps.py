@@ -95,10 +95,8 @@ def report(poses: Sequence[Pose]) -> str:
             "lids  widest opening of an eye that is shut, from the front [mm]",
             "sunk  how deep skin lies in an eyeball, deeper than at rest [mm]",
             "",
-            *table(
-                ("pose:<14", "lips:6.2f", "lids:6.2f", "sunk:6.2f"), map(astuple, poses), empty="-"
-            ),
+            *table("pose:<14|lips:6.2f|lids:6.2f|sunk:6.2f", map(astuple, poses), empty="-"),
             "",
-            *table(("worst:<6", "mm:6.2f", " asked:<11", ":<1"), rows),
+            *table("worst:<6|mm:6.2f| asked:<11|:<1", rows),
         ]
     )

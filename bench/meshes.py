@@ -1,8 +1,8 @@
 """Meshes of all kinds, as they lie about in a folder: does any of them crack when it is refined.
 
 Every file that trimesh reads is bound by each method and bent into four poses, from rest to noise
-as large as its triangles. Each frame is looked at by cracks.py, which shares nothing with the
-refiners or their own checker, and neither the mesh nor the pose may have changed.
+as large as its triangles. Each frame is looked at by `refine.check`, which believes a refiner which
+edges the mesh has; so these are found again here. Neither the mesh nor the pose may have changed.
 """
 
 from __future__ import annotations
@@ -19,8 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, refine
-
-from .cracks import cracks
+from risorius.assets.subdivision import quarter
 
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
@@ -108,13 +107,28 @@ def refined(
     return frames, broken, False
 
 
-def _frame(refiner: refine.Refiner, vertices: Points, faces: Faces, pose: Points) -> str | None:
+def _frame(refiner: refine.Refiner, vertices: Points, faces: Faces, pose: Points) -> str:
+    """Refine one pose: what is wrong with it, "" if nothing."""
     before = [array.tobytes() for array in (vertices, faces, pose)]
     mesh = refiner.refine(pose)
-    wrong = cracks(faces, mesh, refiner.origins())
     if before != [array.tobytes() for array in (vertices, faces, pose)]:
         return "the mesh that was lent has changed"
-    return wrong
+    if not _are_edges_of(faces, refiner):
+        return "edges of the refiner are not those of the mesh"
+    try:
+        refine.check(refiner, mesh, pose)
+    except refine.BrokenMeshError as error:
+        return str(error)
+    return ""
+
+
+def _are_edges_of(faces: Faces, refiner: refine.Refiner) -> bool:
+    """Whether a refiner knows every edge of the mesh, and none twice."""
+    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2), axis=2)
+    has_area = (ends[:, :, 0] != ends[:, :, 1]).all(axis=1)
+    edges = np.sort(refiner.edges, axis=1)
+    named = edges[refiner.triangle_edges[has_area]]
+    return len(np.unique(edges, axis=0)) == len(edges) and np.array_equal(named, ends[has_area])
 
 
 def _mesh_files(folder: Path) -> Iterator[Path]:
@@ -172,14 +186,9 @@ def _median_edge(vertices: Points, faces: Faces) -> float:
 
 def _finer(vertices: Points, faces: Faces, generator: np.random.Generator) -> tuple[Points, Faces]:
     """The mesh with four times its triangles, and bumps in the middle of its edges."""
-    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    edges, numbers = np.unique(ends, axis=0, return_inverse=True)
-    bumps = BUMP * _median_edge(vertices, faces) * generator.normal(size=(len(edges), 3))
-    a, b, c = faces.T
-    ab, bc, ca = (len(vertices) + numbers.reshape(-1, 3)).T
-    finer = np.stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], axis=1).reshape(-1, 3)
-    middles = vertices[edges].mean(axis=1) + bumps
-    return np.concatenate([vertices, middles]), finer.astype(np.int32)
+    finer = quarter(faces, len(vertices))
+    bumps = BUMP * _median_edge(vertices, faces) * generator.normal(size=(len(finer.edges), 3))
+    return np.concatenate([vertices, vertices[finer.edges].mean(axis=1) + bumps]), finer.faces
 
 
 def report(seen: Sequence[Seen]) -> str:

@@ -293,10 +293,7 @@ def _vertex_areas(vertices: Array, faces: npt.NDArray[np.int32]) -> Array:
 
 def report(rows: list[Row], left_out: list[str]) -> str:
     """The text to print."""
-    columns = (
-        "shape:<20", "cosine:7.3f", "magnitude:9.2f", "residual:8.3f", "half:5.2f", "blob:6.3f",
-        "Waters:6.3f",
-    )  # fmt: skip
+    columns = "shape:<20|cosine:7.3f|magnitude:9.2f|residual:8.3f|half:5.2f|blob:6.3f|Waters:6.3f"
     lines = [
         "Simulated against scanned displacement, area weighted: cosine 1 and magnitude 1 are equal",
         "fields, residual is the squared difference over the squared scan, half is the share of",

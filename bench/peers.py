@@ -8,13 +8,13 @@
   a frame of ours has in addition: `vtkPolyDataNormals` in front, whose normals the filter
   interpolates, and rows of single precision and 32-bit triangles behind.
 
-What is not installed is left out, and named in `missing`.
+What is not installed is left out, and named.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -40,35 +40,30 @@ class Peer:
     triangles: int
 
 
-@dataclass
-class Peers:
-    """Those that could be bound, and a line for each that could not."""
+def peers_for(load: Load, target: int) -> tuple[list[Peer], list[str]]:
+    """Bind all peers to a mesh, and return a line for each that is missing, too.
 
-    found: list[Peer] = field(default_factory=list)
-    missing: list[str] = field(default_factory=list)
-
-
-def peers_for(load: Load, target: int) -> Peers:
-    """Bind all peers to a mesh; `target`: triangles that an adaptive one is to make."""
-    peers = Peers()
-    for levels in (1, 2) if len(load.faces) <= LARGEST_FOR_TWO_LEVELS else (1,):
-        matrices = sparse_loop(load, levels=levels)
-        peers.found.append(
-            Peer(f"sparse Loop {levels}x, numba", matrices.frame, matrices.triangles)
-        )
+    `target`: triangles that an adaptive one is to make.
+    """
+    levels_made = (1, 2) if len(load.faces) <= LARGEST_FOR_TWO_LEVELS else (1,)
+    found = [
+        Peer(f"sparse Loop {levels}x, numba", *sparse_loop(load, levels=levels))
+        for levels in levels_made
+    ]
+    missing: list[str] = []
     if len(load.faces) > LARGEST_FOR_FILTERS:
-        return peers
+        return found, missing
     for name, bind in (
         ("VTK adaptive", lambda: _vtk(load, target)),
         ("VTK adaptive, whole frame", lambda: _vtk(load, target, is_whole=True)),
         ("trimesh", lambda: _trimesh(load)),
     ):
         try:
-            peers.found.append(bind())
+            found.append(bind())
         except ImportError as error:
             package = (error.name or name).partition(".")[0]
-            peers.missing.append(f"{name}: left out, {package} is not installed (extra 'peers')")
-    return peers
+            missing.append(f"{name}: left out, {package} is not installed (extra 'peers')")
+    return found, missing
 
 
 def _trimesh(load: Load) -> Peer:

@@ -61,36 +61,36 @@ def _title(subject: Subject) -> str:
 def errors_table(scores: Sequence[Score]) -> str:
     """Errors of every expression, for adaptive refinement and for everything split twice."""
     average = means(scores)
-    columns = [(head, key) for head, key in COLUMNS if key in average]
+    columns = [(*head, key, max(7, *map(len, head))) for head, key in COLUMNS if key in average]
     by_key = {(*s.key, s.expression): s for s in scores}
-    expressions = list(dict.fromkeys(s.expression for s in scores))
-    widths = [max(7, *map(len, head)) for head, _ in columns]
-    lines: list[str] = []
+    by_key.update({(*key, "mean"): found for key, found in average.items()})
+    expressions = [*dict.fromkeys(s.expression for s in scores), "mean"]
+    lines = []
     for what, unit, digits in (
         ("distance", "RMS distance [mm]", 3),
         ("angle", "RMS angle of normals [deg]", 2),
     ):
-        for row, name in enumerate(("", unit)):
-            heads = [f"{head[row]:>{w}}" for (head, _), w in zip(columns, widths, strict=True)]
-            lines.append(f"{name:26} {' '.join(heads)}".rstrip())
-        for expression in [*expressions, "mean"]:
-            cells = []
-            for (_, key), width in zip(columns, widths, strict=True):
-                found = average[key] if expression == "mean" else by_key[(*key, expression)]
-                cells.append(f"{getattr(found, what):{width}.{digits}f}")
-            lines.append(f"{expression:26} {' '.join(cells)}")
-        lines.append("")
-    counts = [f"{average[key].triangles:{w}d}" for (_, key), w in zip(columns, widths, strict=True)]
-    lines.append(f"{'triangles, mean':26} {' '.join(counts)}")
-    return "\n".join(lines)
+        rows = [
+            [name, *(getattr(by_key[(*key, name)], what) for *_, key, _ in columns)]
+            for name in expressions
+        ]
+        lines += table(
+            "|".join([":<26", *(f"{above}:>{width}" for above, *_, width in columns)]), []
+        )
+        titles = [f"{head}:{width}.{digits}f" for _, head, _, width in columns]
+        lines += [*table("|".join([f"{unit}:<26", *titles]), rows), ""]
+    counts = [f"{average[key].triangles:{width}d}" for *_, key, width in columns]
+    return "\n".join([*lines, f"{'triangles, mean':26} {' '.join(counts)}"])
 
 
 def rules_table(scores: Sequence[Score]) -> str:
     """Means over expressions of every scheme with every rule that splits edges."""
     average = means(scores)
     coarse = average[COARSE, "", 1.0]
-    columns = ("mean over expressions:<26", "x triangles:11.2f", "mm:7.3f", "better:>8",
-        "degrees:8.2f", "better:>8", "median:7.2f", "better:>8")  # fmt: skip
+    columns = (
+        "mean over expressions:<26|x triangles:11.2f|mm:7.3f|better:>8|degrees:8.2f|better:>8"
+        "|median:7.2f|better:>8"
+    )
     rows = []
     for (method, rule, budget), found in average.items():
         how = "twice" if budget == EVERYWHERE else rule

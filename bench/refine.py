@@ -222,9 +222,9 @@ def _sheet_cases(
 
 
 def _peer_cases(load: Load, report: Report, target: float) -> list[_Case]:
-    peers = peers_for(load, round(target))
-    report.missing += [line for line in peers.missing if line not in report.missing]
-    return [_Case(p.name, True, p.triangles, p.call, load.frames) for p in peers.found]
+    peers, missing = peers_for(load, round(target))
+    report.missing += [line for line in missing if line not in report.missing]
+    return [_Case(p.name, True, p.triangles, p.call, load.frames) for p in peers]
 
 
 def _own(method: str, refiner: refine.Refiner, load: Load) -> _Case:

@@ -34,7 +34,7 @@ def text(report: Report) -> str:
     ]
     for mesh, rows in groupby(report.rows, key=lambda row: row.mesh):
         lines += ["", *_table(report, mesh, list(rows))]
-    columns = ("bound:<14", "triangles:9d", "seconds:8.3f", "buffers MB:10.1f", "peak MB:8.0f")
+    columns = "bound:<14|triangles:9d|seconds:8.3f|buffers MB:10.1f|peak MB:8.0f"
     lines += ["", *table(columns, map(astuple, report.bindings))]
     if report.starts is not None:
         lines += [
@@ -54,7 +54,7 @@ def figures(report: Report) -> dict[str, Any]:
 
 
 def _table(report: Report, mesh: str, rows: list[Row]) -> list[str]:
-    columns = ("method:<27", "out:9.0f", "ms:9.4f", "best:9.4f", "ns/tri:7.1f", "memcpys:7.1f")
+    columns = "method:<27|out:9.0f|ms:9.4f|best:9.4f|ns/tri:7.1f|memcpys:7.1f"
     cells = [
         (
             row.method + (" *" if row.is_peer else ""),

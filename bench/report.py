@@ -9,14 +9,14 @@ from pathlib import Path
 
 
 def table(
-    columns: Sequence[str], rows: Iterable[Sequence[object]], *, indent: str = "", empty: str = ""
+    columns: str, rows: Iterable[Sequence[object]], *, indent: str = "", empty: str = ""
 ) -> list[str]:
     """Lines of a table, the titles in the first one.
 
-    columns: each "title:format" with the width in front, as in "ms:8.3f"; text goes left with "<".
+    columns: "title:format" with the width in front, as in "name:<9|ms:8.3f"; "<" sets text left.
     empty: what stands for None.
     """
-    titles, formats = zip(*(column.rsplit(":", 1) for column in columns), strict=True)
+    titles, formats = zip(*(column.rsplit(":", 1) for column in columns.split("|")), strict=True)
     sides = [re.findall(r"^[<>]?\d+", each)[0] for each in formats]
     sides = [side if side[0] in "<>" else f">{side}" for side in sides]
     lines = [" ".join(f"{title:{side}}" for title, side in zip(titles, sides, strict=True))]

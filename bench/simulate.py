@@ -132,14 +132,7 @@ def _plain(size: int, generator: np.random.Generator) -> _Subject:
 
 def report(rows: Sequence[Row], rounds: int) -> str:
     """The text to print."""
-    columns = (
-        "motion:<28",
-        "vertices:8d",
-        "triangles:9d",
-        "ms:8.3f",
-        "best:8.3f",
-        "ns/vertex:9.0f",
-    )
+    columns = "motion:<28|vertices:8d|triangles:9d|ms:8.3f|best:8.3f|ns/vertex:9.0f"
     return "\n".join(
         [
             f"One frame of 1/60 s, serial, one core of {processor()}: medians of {rounds}",

@@ -9,7 +9,6 @@ never change. The product is compiled as our kernels are: four times as fast as 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -29,16 +28,8 @@ Narrow = npt.NDArray[np.float32]
 Unsigned = npt.NDArray[np.uint32]
 
 
-@dataclass(frozen=True)
-class SparseLoop:
-    """The triangles that the matrices of one mesh make, and what computes a frame's rows."""
-
-    triangles: int
-    frame: Callable[[Positions], Narrow]
-
-
-def sparse_loop(load: Load, *, levels: int) -> SparseLoop:
-    """Build the matrices of `levels` levels for a mesh."""
+def sparse_loop(load: Load, *, levels: int) -> tuple[Callable[[Positions], Narrow], int]:
+    """Build the matrices of `levels` levels; returns what computes rows, and how many triangles."""
     faces = load.faces.astype(np.int64)
     smooth = scipy.sparse.identity(len(load.rest), format="csr")
     spread = smooth
@@ -60,7 +51,7 @@ def sparse_loop(load: Load, *, levels: int) -> SparseLoop:
         _multiply(*smooth_rows, *spread_rows, points, normals, rows)
         return rows
 
-    return SparseLoop(len(faces), frame)
+    return frame, len(faces)
 
 
 def _plain_arrays(matrix: scipy.sparse.csr_matrix) -> tuple[Unsigned, Unsigned, Narrow]:

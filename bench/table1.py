@@ -121,7 +121,7 @@ def report(measured: Mapping[str, Sequence[Row]], renderer: str) -> str:
         f"OpenGL: {renderer}",
         "",
     ]
-    columns = (":<24", "static:7d", "dynamic:8d", "t static:9.3f", "t dynamic:9.3f", "c_rt:6.2f")
+    columns = ":<24|static:7d|dynamic:8d|t static:9.3f|t dynamic:9.3f|c_rt:6.2f"
     for number, (scene, ours) in enumerate(measured.items()):
         rows = [(*astuple(row), row.ratio) for row in (PAPER[scene], *ours)]
         lines += table(columns, rows)[0 if number == 0 else 1 :]  # the titles once

@@ -103,6 +103,6 @@ def report(poses: Sequence[Pose], mixtures: int) -> str:
             f"triangles turned by more than a right angle: {sum(pose.inverted for pose in poses)} "
             f"in {sum(pose.inverted > 0 for pose in poses)} poses",
             "",
-            *table(("worst:<10", "value:>9", " in:<1"), rows),
+            *table("worst:<10|value:>9| in:<1", rows),
         ]
     )

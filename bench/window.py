@@ -81,17 +81,8 @@ def report(seconds: float, size: tuple[int, int]) -> str:
         f"{os.cpu_count()} cores of {processor()}; {ROUNDS} interleaved rounds.",
         "",
         *table(
-            (
-                "case:<30",
-                "frames/s:8.1f",
-                "median:7.1f",
-                "95 %:7.1f",
-                "best:7.1f",
-                "level:5d",
-                f"{STAGES[0]}:12.1f",
-                *(f"{stage}:10.1f" for stage in STAGES[1:]),
-                "the rest:9.1f",
-            ),
+            "case:<30|frames/s:8.1f|median:7.1f|95 %:7.1f|best:7.1f|level:5d|"
+            f"{STAGES[0]}:12.1f|{'|'.join(f'{stage}:10.1f' for stage in STAGES[1:])}|the rest:9.1f",
             map(_cells, cases),
         ),
         "",

@@ -15,11 +15,10 @@ from risorius.assets.fitting import FittedHead
 from ..cameras import camera_for
 from ..errors import UserError
 from ..files import Image, check_file, check_picture, save_png
-from ..pipeline import Pipeline, side_by_side, texture_of
+from ..pipeline import Pipeline, side_by_side
 from ..scenes import Scene, build_scene
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped
-from ..wrinkling import wrinkling_of
 from . import outputs
 from .captions import captioned, contact_sheet
 
@@ -54,8 +53,7 @@ class Capture:
             refiners["none"] = None
         refiners[options.refiner] = options.refiner_options
         renderer = render.Renderer(self.surface)
-        texture, wrinkling = texture_of(scene, renderer), wrinkling_of(scene, renderer)
-        self.pipeline = Pipeline(scene, renderer, refiners, texture, wrinkling)
+        self.pipeline = Pipeline(scene, renderer, refiners)
         self.viewports = side_by_side(self.surface.size, len(refiners))
         self.camera = camera_for(scene, options.camera)
         self.most_triangles = 0
@@ -122,19 +120,9 @@ def capture(
     time: of a picture [s]; else it is of the first pose that has a name, or of the end.
     Returns the largest number of triangles of a frame. Raises UserError on what cannot be.
     """
-    still = output if output is not None and output.suffix.lower() == ".png" else None
-    if time is not None and not still:
-        raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
-    if output is None and sheet is None:
-        raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")
+    _check(script, output, sheet, time)
     wanted = list(script.key_poses) if sheet else []
-    if sheet and not wanted:
-        raise UserError(f"{script.source}: no pose has a name, so there is nothing for a sheet")
-    for picture in (sheet, still):
-        if picture is not None:
-            check_picture(picture)
-    if output is not None and output.suffix.lower() in outputs.FILM_SUFFIXES:
-        check_file(output)
+    still = output if _is_picture(output) else None
     if time is None:
         time = script.key_poses[0].time if script.key_poses else script.duration
     rate = options.frames_per_second
@@ -160,6 +148,26 @@ def capture(
         if sheet is not None:
             save_png(sheet, contact_sheet(named, columns=2 if options.compare else 3))
         return recording.most_triangles
+
+
+def _is_picture(output: Path | None) -> bool:
+    return output is not None and output.suffix.lower() == ".png"
+
+
+def _check(script: Script, output: Path | None, sheet: Path | None, time: float | None) -> None:
+    """Raise UserError, before any work is done, where one of the outputs cannot be."""
+    if time is not None and not _is_picture(output):
+        raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
+    if output is None and sheet is None:
+        raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")
+    if sheet and not script.key_poses:
+        raise UserError(f"{script.source}: no pose has a name, so there is nothing for a sheet")
+    if sheet is not None:
+        check_picture(sheet)
+    if output is not None and _is_picture(output):
+        check_picture(output)
+    elif output is not None and output.suffix.lower() in outputs.FILM_SUFFIXES:
+        check_file(output)
 
 
 def scene_of(script: Script, head: FittedHead | None = None) -> Scene:

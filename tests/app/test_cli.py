@@ -89,6 +89,20 @@ def test_the_same_script_gives_the_same_pictures(smile: Path, tmp_path: Path) ->
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
+def test_a_picture_beside_a_sheet(smile: Path, tmp_path: Path) -> None:
+    """Both of one run, also of a moment after the script's end, are what each would be alone."""
+    size = ("--size", "160x120", "--samples", "0", "--quiet")
+    picture, sheet = ("-o", tmp_path / "a.png", "--time", "0.6"), ("--sheet", tmp_path / "b.png")
+    counts, written = [], []
+    for outputs in ((*picture, *sheet), picture, sheet):
+        result = risorius("capture", smile, *outputs, *size)
+        assert result.exit_code == 0, result.output
+        counts.append(int(result.output.split(": ")[1].split()[0]))
+        written.append([(tmp_path / name).read_bytes() for name in ("a.png", "b.png")])
+    assert written[0] == written[1] == written[2]
+    assert counts[0] == max(counts[1:])
+
+
 def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
     """`capture --scene plane` refines the waving plane to the paper's many triangles."""
     sheet = tmp_path / "plane.png"

@@ -14,8 +14,8 @@ from click.testing import CliRunner
 
 from risorius import refine
 from risorius.__main__ import command
-from risorius.bench.cracks import cracks
 from risorius.bench.meshes import METHODS, NOISE, refined
+from tests.bench.cracks import cracks
 from tests.meshes import NAMED, Mesh, double_cone, fan, irregular, tube, wrinkled
 
 FRAMES = len(METHODS) * len(NOISE)
@@ -58,8 +58,27 @@ def test_a_mesh_that_is_too_large_or_not_there(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("mesh", [irregular(3), tube(), double_cone(50)], ids=["a", "b", "c"])
 def test_no_method_cracks(mesh: Mesh) -> None:
-    """Every method in every pose, at a texture seam and at a vertex with many neighbours, too."""
-    assert refined(mesh.vertices, mesh.faces, seconds=600.0) == (FRAMES, [], False)
+    """Every method in every pose, at a texture seam and at a vertex with many neighbours, too.
+
+    An oracle that shares nothing with the checker agrees.
+    """
+    seen = []
+
+    def create(name: str, faces: Any, vertices: Any, **options: Any) -> refine.Refiner:
+        refiner = refine.create(name, faces, vertices, **options)
+        whole = refiner.refine
+
+        def looked_at(positions: Any) -> refine.RefinedMesh:
+            frame = whole(positions)
+            seen.append(cracks(faces, frame, refiner.origins()))
+            return frame
+
+        refiner.refine = looked_at  # type: ignore[method-assign,assignment]
+        return refiner
+
+    found = refined(mesh.vertices, mesh.faces, create=create, seconds=600.0)
+    assert found == (FRAMES, [], False)
+    assert seen == [None] * FRAMES
 
 
 def _split_once(frame: refine.RefinedMesh, kept: int, count: int) -> int:
@@ -143,11 +162,15 @@ BREAKS: dict[Callable[..., refine.RefinedMesh], str] = {
 
 @pytest.mark.parametrize("broken", BREAKS, ids=lambda each: each.__name__.strip("_"))
 def test_the_checker_sees(broken: Callable[..., refine.RefinedMesh]) -> None:
-    """Each way in which a frame can be broken is seen and called by its name."""
+    """Each way in which a frame can be broken is seen; the oracle calls it by its name."""
     mesh = tube(16, 8)
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, mesh.uv, mesh.face_uv)
-    frame = refiner.refine(wrinkled(mesh, 7, amplitude=0.1))
+    pose = wrinkled(mesh, 7, amplitude=0.1)
+    frame = refiner.refine(pose)
     assert cracks(mesh.faces, frame, refiner.origins()) is None
+    refine.check(refiner, frame, pose)
+    with pytest.raises(refine.BrokenMeshError):
+        refine.check(refiner, broken(frame, mesh.faces), pose)
     words = cracks(mesh.faces, broken(frame, mesh.faces), refiner.origins())
     assert words is not None and BREAKS[broken] in words
 
@@ -175,7 +198,7 @@ def test_a_broken_refiner_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Pat
     write(tmp_path / "sheet.obj", mesh.vertices, mesh.faces)
     result = CliRunner().invoke(command(), ["bench", "meshes", str(tmp_path), *CALM])
     assert result.exit_code == 1, result.output
-    assert ": the triangles at edge" in result.output
+    assert ": a sub-edge on an input edge has the same sides" in result.output
 
 
 def test_a_meddling_refiner_is_told() -> None:
@@ -201,3 +224,23 @@ def test_a_triangle_that_names_a_vertex_twice_comes_out_once() -> None:
     )  # fmt: skip
     assert cracks(mesh.faces, frame, refiner.origins()) is None
     assert "does not come out once" in str(cracks(mesh.faces, less, refiner.origins()))
+
+
+class Confused(refine.PassThrough):
+    """A refiner that takes the first edge of the mesh for two."""
+
+    @property
+    def edges(self) -> npt.NDArray[np.int32]:
+        whole = super().edges
+        return np.concatenate([whole, whole[:1]])
+
+
+def test_a_refiner_that_confuses_edges_is_told() -> None:
+    """Two edges where the mesh has one would make a crack that the checker takes for a border."""
+    mesh = fan()
+
+    def create(_: str, *arguments: Any, **__: Any) -> Confused:
+        return Confused(*arguments)
+
+    _, broken, _ = refined(mesh.vertices, mesh.faces, create=create, seconds=600.0)
+    assert len(broken) == FRAMES and "edges of the refiner are not those of the mesh" in broken[0]

@@ -72,6 +72,6 @@ def test_tearing_table() -> None:
 
 def test_table() -> None:
     """Titles stand over their columns; text goes left, and for None stands what is asked."""
-    lines = table(("name:<6", "ms:6.2f", "n:3d"), [("a", 1.0, 2), ("b", None, 30)], empty="-")
+    lines = table("name:<6|ms:6.2f|n:3d", [("a", 1.0, 2), ("b", None, 30)], empty="-")
     assert lines == ["name       ms   n", "a        1.00   2", "b           -  30"]
-    assert table(("x:>4",), [(None,)], indent="  ") == ["     x", ""]
+    assert table("x:>4", [(None,)], indent="  ") == ["     x", ""]

@@ -1,4 +1,4 @@
-"""A crack checker that shares nothing with `refine.check`: every input triangle, covered exactly.
+"""An oracle that shares nothing with `refine.check`: every input triangle is covered exactly.
 
 Asked is only what a refiner hands out and its account of where rows come from (`origins`), in whole
 numbers, so that nothing is a matter of tolerance:
