@@ -84,6 +84,7 @@ check: setup
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
+	@$(BIN)/mypy docs/figures
 	@cd .venv/as_installed && ../bin/lint-imports --config ../../pyproject.toml
 
 setup: $(READY)

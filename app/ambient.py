@@ -16,6 +16,7 @@ with distance); Möller and Trumbore 1997 (ray and triangle).
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -24,11 +25,12 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, sim
-from risorius.assets.loading import HEAD_FILE, fingerprint, load_head
+from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.jit import njit
 
-from .errors import run_alone
-from .outputs import cannot_be_written, check_file, written_aside
+from .errors import told_in_one_line
+from .files import cannot_be_written, check_file, written_atomically
+from .stopping import listen
 
 REACH = 45.0  # [mm] beyond which nothing shades
 RAYS = 48  # from each vertex
@@ -46,7 +48,7 @@ Values = npt.NDArray[np.float32]
 
 
 def openness(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
-    """A picture over the head's texture: 255 where all light comes in, 0 where none; (H, W).
+    """An image over the head's texture: 255 where all light comes in, 0 where none; (H, W).
 
     head: with texture coordinates `uv`, `face_uv` and `albedo` (H, W, 3).
     simulation: of that head, at rest; it is moved, and at rest again at the end.
@@ -76,14 +78,27 @@ def openness(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
     between = np.setdiff1d(np.arange(count, len(ends)), steep)
     values[between] = values[ends[between]].mean(axis=1)
     height, width = head.albedo.shape[:2]
+    # Each triangle is painted in four: its corners, then what is between their middles.
     corners = (head.uv * [width, -height] + [-0.5, height - 0.5])[head.face_uv]
-    middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
-    picture = np.ones((height, width), np.float32)
     shades = values**DEPTH
-    at_corners, at_middles = shades[faces], shades[count + edge_of_side.reshape(-1, 3)]
-    for margin in (MARGIN, 0.0):  # first what overlaps, then what is meant
-        _paint(corners, middles, at_corners, at_middles, margin, picture)
-    return np.round(255.0 * picture).astype(np.uint8)
+    middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
+    places = _quartered(corners, middles)
+    colours = _quartered(shades[faces], shades[count + edge_of_side.reshape(-1, 3)])
+    image = np.ones((height, width), np.float32)
+    outside = np.tile([MARGIN, MARGIN, MARGIN, 0.0], len(faces))
+    for margins in (outside, np.zeros_like(outside)):  # first what overlaps, then what is meant
+        _paint(places, colours, margins, image)
+    return np.round(255.0 * image).astype(np.uint8)
+
+
+def _quartered(corners: npt.NDArray[Any], middles: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Values at the corners of triangles in four, (4 F, 3, ...), of those at corners and middles.
+
+    Both are of shape (F, 3, ...); middle i lies between corners i and i + 1.
+    """
+    before = np.roll(middles, 1, axis=1)
+    four = np.concatenate([np.stack([corners, middles, before], axis=2), middles[:, None]], axis=1)
+    return np.ascontiguousarray(four.reshape(-1, *four.shape[2:]))
 
 
 def open_to_light(positions: Points, faces: Triangles, ends: npt.NDArray[np.intp]) -> Values:
@@ -183,68 +198,40 @@ def _nearest(ray: Values, near: Values, count: int) -> float:
 
 
 @njit
-def _paint(
-    corners: Points,
-    middles: Points,
-    at_corners: Values,
-    at_middles: Values,
-    margin: float,
-    picture: Values,
-) -> None:
-    """Paint each triangle in four, straight between values at corners and middles of its sides."""
-    for t in range(len(corners)):
-        for i in range(3):
-            before = (i + 2) % 3
-            _paint_triangle(
-                corners[t, i], middles[t, i], middles[t, before],
-                at_corners[t, i], at_middles[t, i], at_middles[t, before], margin, picture,
-            )  # fmt: skip
-        _paint_triangle(
-            middles[t, 0], middles[t, 1], middles[t, 2],
-            at_middles[t, 0], at_middles[t, 1], at_middles[t, 2], 0.0, picture,
-        )  # fmt: skip
-
-
-@njit
-def _paint_triangle(
-    a: Points,
-    b: Points,
-    c: Points,
-    at_a: float,
-    at_b: float,
-    at_c: float,
-    margin: float,
-    picture: Values,
-) -> None:
-    """Paint texels in a triangle and `margin` beside it."""
-    height, width = picture.shape
-    area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-    if abs(area) < 1e-9:
-        return
-    least, most = min(at_a, at_b, at_c), max(at_a, at_b, at_c)
-    # How much of a corner's weight is lost within a margin beyond the side opposite to it.
-    slack_a = margin * np.hypot(c[0] - b[0], c[1] - b[1]) / abs(area) + 1e-9
-    slack_b = margin * np.hypot(a[0] - c[0], a[1] - c[1]) / abs(area) + 1e-9
-    slack_c = margin * np.hypot(b[0] - a[0], b[1] - a[1]) / abs(area) + 1e-9
-    left = max(int(np.floor(min(a[0], b[0], c[0]) - margin)), 0)
-    right = min(int(np.ceil(max(a[0], b[0], c[0]) + margin)), width - 1)
-    top = max(int(np.floor(min(a[1], b[1], c[1]) - margin)), 0)
-    bottom = min(int(np.ceil(max(a[1], b[1], c[1]) + margin)), height - 1)
-    for y in range(top, bottom + 1):
-        for x in range(left, right + 1):
-            of_b = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area
-            of_c = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area
-            of_a = 1.0 - of_b - of_c
-            if of_a > -slack_a and of_b > -slack_b and of_c > -slack_c:
-                value = of_a * at_a + of_b * at_b + of_c * at_c
-                picture[y, x] = min(max(value, least), most)
+def _paint(places: Points, values: Values, margins: Points, image: Values) -> None:
+    """Paint texels in triangles and margins beside them, straight between values at corners."""
+    height, width = image.shape
+    for t in range(len(places)):
+        a, b, c = places[t]
+        at_a, at_b, at_c = values[t]
+        margin = margins[t]
+        area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        if abs(area) < 1e-9:
+            continue
+        least, most = min(at_a, at_b, at_c), max(at_a, at_b, at_c)
+        # How much of a corner's weight is lost within a margin beyond the side opposite to it.
+        slack_a = margin * np.hypot(c[0] - b[0], c[1] - b[1]) / abs(area) + 1e-9
+        slack_b = margin * np.hypot(a[0] - c[0], a[1] - c[1]) / abs(area) + 1e-9
+        slack_c = margin * np.hypot(b[0] - a[0], b[1] - a[1]) / abs(area) + 1e-9
+        left = max(int(np.floor(min(a[0], b[0], c[0]) - margin)), 0)
+        right = min(int(np.ceil(max(a[0], b[0], c[0]) + margin)), width - 1)
+        top = max(int(np.floor(min(a[1], b[1], c[1]) - margin)), 0)
+        bottom = min(int(np.ceil(max(a[1], b[1], c[1]) + margin)), height - 1)
+        for y in range(top, bottom + 1):
+            for x in range(left, right + 1):
+                of_b = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area
+                of_c = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area
+                of_a = 1.0 - of_b - of_c
+                if of_a > -slack_a and of_b > -slack_b and of_c > -slack_c:
+                    value = of_a * at_a + of_b * at_b + of_c * at_c
+                    image[y, x] = min(max(value, least), most)
 
 
 def bake(head: assets.Head) -> dict[str, npt.NDArray[np.generic]]:
     """Make everything that `head.openness_file` holds, array name -> array."""
     return {
         "openness": openness(head, sim.create(head)),
-        "made_from": np.array(fingerprint(head), dtype=np.uint32),
+        "made_from": np.array(head.fingerprint, dtype=np.uint32),
     }
 
 
@@ -258,9 +245,11 @@ def main(arguments: Sequence[str]) -> None:
     target = head.openness_file
     check_file(target)
     arrays = bake(head)
-    with written_aside(target) as part, cannot_be_written(target):
+    with written_atomically(target) as part, cannot_be_written(target):
         np.savez_compressed(part, allow_pickle=False, **arrays)
 
 
 if __name__ == "__main__":
-    run_alone(main)
+    listen()
+    with told_in_one_line():
+        main(sys.argv[1:])

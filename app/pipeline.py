@@ -26,8 +26,8 @@ Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the l
 
 
 @dataclass
-class Picture:
-    """One view of the scene's mesh through one refiner; two of them make a comparison."""
+class DrawnMesh:
+    """The scene's mesh as one refiner has it drawn; two of them make a comparison."""
 
     refiner_name: str
     refiner: refine.Refiner
@@ -38,7 +38,7 @@ class Picture:
     @classmethod
     def of(
         cls, scene: Scene, renderer: render.Renderer, name: str, options: Mapping[str, Any] | None
-    ) -> Picture:
+    ) -> DrawnMesh:
         """Bind the refiner `name` to the scene's mesh and borrow render buffers for it."""
         refiner = refiner_for(scene, name, options)
         stream = renderer.lend_stream(
@@ -51,11 +51,11 @@ class Picture:
         self, positions: npt.NDArray[np.float64], camera: render.OrbitCamera, viewport: Viewport
     ) -> None:
         """Fill the lent buffers with refined triangles, for whoever looks through the viewport."""
-        seen = {}
+        looked_from = {}
         if self.takes_view:
             focal = camera.focal(viewport[2] / viewport[3], viewport[3])
-            seen["view"] = refine.View(camera.eye, focal)
-        self.mesh = self.refiner.refine(positions, out=self.stream, **seen)
+            looked_from["view"] = refine.View(camera.eye, focal)
+        self.mesh = self.refiner.refine(positions, out=self.stream, **looked_from)
 
     def upload(self, wrinkling: Amounts | None = None) -> None:
         """Hand over what was refined last, and how far the scene's vertices wrinkle."""
@@ -70,7 +70,7 @@ class Picture:
 
 
 class Pipeline:
-    """A scene, the pictures that are drawn of it, and the renderer that draws them."""
+    """A scene, its mesh as each refiner has it drawn, and the renderer that draws."""
 
     def __init__(
         self,
@@ -88,8 +88,8 @@ class Pipeline:
         self.renderer = renderer
         self.texture = texture
         self.wrinkling = wrinkling
-        self.pictures = [
-            Picture.of(scene, renderer, name, options) for name, options in refiners.items()
+        self.meshes = [
+            DrawnMesh.of(scene, renderer, name, options) for name, options in refiners.items()
         ]
 
     def step(self, seconds: float) -> None:
@@ -99,30 +99,30 @@ class Pipeline:
     def draw(
         self, camera: render.OrbitCamera, style: render.Style, viewports: Sequence[Viewport]
     ) -> None:
-        """The lower half: refine the mesh for each picture, and draw it into its viewport."""
+        """The lower half: refine the mesh by each refiner, and draw it into its viewport."""
         bones = self.scene.bone_transforms()
         amounts = None
         if self.wrinkling is not None and style.shows_wrinkles:
             amounts = self.wrinkling.amounts(self.scene.positions)
-        for picture, viewport in zip(self.pictures, viewports, strict=True):
-            picture.refine(self.scene.positions, camera, viewport)
-            picture.upload(amounts)
-            self._draw(picture, bones, camera, style, viewport)
+        for drawn, viewport in zip(self.meshes, viewports, strict=True):
+            drawn.refine(self.scene.positions, camera, viewport)
+            drawn.upload(amounts)
+            self._draw(drawn, bones, camera, style, viewport)
 
     def _draw(
         self,
-        picture: Picture,
+        drawn: DrawnMesh,
         bones: Mapping[str, npt.NDArray[np.float64]],
         camera: render.OrbitCamera,
         style: render.Style,
         viewport: Viewport,
     ) -> None:
         values = None
-        if style.colour_by is render.ColourBy.SPLITS and picture.mesh is not None:
-            values = splits_of_source(picture.refiner, picture.mesh)
+        if style.colour_by is render.ColourBy.SPLITS and drawn.mesh is not None:
+            values = splits_of_source(drawn.refiner, drawn.mesh)
         self.renderer.draw_background(style, viewport)
         self.renderer.draw_mesh(
-            picture.stream,
+            drawn.stream,
             camera,
             style,
             viewport=viewport,

@@ -20,6 +20,14 @@ DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `fine
 WORDS = {"on": True, "true": True, "off": False, "false": False}
 
 
+def known_refiner(name: str) -> str:
+    """The name of a registered refiner, or UserError with those that are."""
+    if name not in refine.available():
+        there_are = ", ".join(refine.available())
+        raise UserError(f"refiner '{name}' is unknown; there are {there_are}")
+    return name
+
+
 def refiner_for(scene: Scene, name: str, options: Mapping[str, Any] | None) -> refine.Refiner:
     """Bind the refiner `name` to the scene's mesh; UserError if it refuses an option.
 

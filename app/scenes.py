@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, sim
-from risorius.assets.fitting import FittedHead
+from risorius.assets.fitting import FittedHead, fit_head
 
 from .errors import UserError
 from .mouth import shaded_mouth
@@ -23,85 +25,80 @@ MOST_BAKED = 3000  # vertices; a larger head would take seconds, and takes the b
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
 
 
-class Scene(Protocol):
+class Scene:
     """Anything that moves the vertices of one triangle mesh."""
 
     name: str
     faces: npt.NDArray[np.int32]
     rest_positions: npt.NDArray[np.float64]
-    parts: tuple[Any, ...]
-    expressions: tuple[str, ...]  # controls that a panel shows as buttons
     focus: npt.NDArray[np.float64]  # where a camera close by looks [mm], shape (3,)
-    uv: npt.NDArray[np.float32] | None  # texture coordinates (U, 2), None: no texture
-    face_uv: npt.NDArray[np.int32] | None  # which of them each corner has (F, 3)
-    albedo: npt.NDArray[np.uint8] | None  # the texture (H, W, 3), sRGB
+    groups: Mapping[str, tuple[str, ...]]  # all controls, by the heading that a panel shows
+    limits: Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
+    actions: Mapping[str, str] = MappingProxyType({})  # what controls do, where that is known
+    expressions: tuple[str, ...] = ()  # controls that a panel shows as buttons
+    parts: tuple[Any, ...] = ()  # what moves with bones: eyes, teeth, ...
+    uv: npt.NDArray[np.float32] | None = None  # texture coordinates (U, 2)
+    face_uv: npt.NDArray[np.int32] | None = None  # which of them each corner has (F, 3)
+    albedo: npt.NDArray[np.uint8] | None = None  # the texture (H, W, 3), sRGB
+    wrinkles: assets.Wrinkles | None = None  # where skin wrinkles
     refiner_options: Mapping[str, Mapping[str, Any]]  # for a refiner by name, where not default
-    wrinkles: assets.Wrinkles | None  # where skin wrinkles; None: nowhere
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
         """The vertices now [mm], shape (V, 3); read only for everybody else."""
-
-    @property
-    def groups(self) -> Mapping[str, tuple[str, ...]]:
-        """All controls by the heading under which a panel shows them."""
-
-    @property
-    def limits(self) -> Mapping[str, tuple[float, float]]:
-        """The lowest and highest value of each control."""
+        raise NotImplementedError
 
     @property
     def values(self) -> Mapping[str, float]:
         """What each control is set to."""
-
-    @property
-    def actions(self) -> Mapping[str, str]:
-        """What controls do, in words, where that is known."""
+        raise NotImplementedError
 
     def openness(self) -> npt.NDArray[np.uint8] | None:
         """How open the skin is to light from all around, over the texture (H, W); None: all.
 
         The scene stays as it is.
         """
+        return None
 
     def pose(self, channels: Mapping[str, float]) -> None:
         """Set controls, each cut off at its limits; what is not named becomes 0.
 
         Raises UserError on a name that is no control.
         """
+        raise NotImplementedError
 
     def step(self, seconds: float) -> None:
         """Let time pass."""
+        raise NotImplementedError
 
     def reset(self) -> None:
         """Back to rest, at once."""
+        raise NotImplementedError
 
     def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
         """Where the rigid parts are now: a (4, 4) matrix for each bone."""
+        return {}
 
 
-class FaceScene:
+class FaceScene(Scene):
     """A head, moved by muscles, jaw and gaze through the spring simulation."""
 
     name = "face"
+    # Deformation alone would leave the outlines of crown, ears and neck polygons.
+    refiner_options = MappingProxyType({"kahler": {"criterion": "normal+rest"}})
 
     def __init__(self, head: assets.Head | FittedHead | None = None) -> None:
         """Simulate `head`, the built-in one unless told."""
         head = assets.load("head") if head is None else head
         self.head = head
-        self.simulation = sim.create(head)
-        self.faces = self.simulation.faces
-        self.rest_positions = self.simulation.rest_positions
-        self.parts: tuple[Any, ...] = shaded_mouth(head.parts)
-        self.expressions: tuple[str, ...] = self.simulation.layers.get("Expressions", ())
-        self.uv: npt.NDArray[np.float32] | None = head.uv
-        self.face_uv: npt.NDArray[np.int32] | None = head.face_uv
-        self.albedo: npt.NDArray[np.uint8] | None = head.albedo
-        # Deformation alone would leave the outlines of crown, ears and neck polygons.
-        self.refiner_options: Mapping[str, Mapping[str, Any]] = {
-            "kahler": {"criterion": "normal+rest"}
-        }
-        self.wrinkles: assets.Wrinkles | None = head.wrinkles
+        self.simulation = simulation = sim.create(head)
+        self.faces, self.rest_positions = simulation.faces, simulation.rest_positions
+        self.groups, self.limits = simulation.groups, simulation.limits
+        self.actions = simulation.actions
+        self.expressions = simulation.layers.get("Expressions", ())
+        self.parts = shaded_mouth(head.parts)
+        self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
+        self.wrinkles = head.wrinkles
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
@@ -111,20 +108,8 @@ class FaceScene:
         return self.simulation.positions
 
     @property
-    def groups(self) -> Mapping[str, tuple[str, ...]]:
-        return self.simulation.groups
-
-    @property
-    def limits(self) -> Mapping[str, tuple[float, float]]:
-        return self.simulation.limits
-
-    @property
     def values(self) -> Mapping[str, float]:
         return self.simulation.values
-
-    @property
-    def actions(self) -> Mapping[str, str]:
-        return self.simulation.actions
 
     def openness(self) -> npt.NDArray[np.uint8] | None:
         head, simulation = self.head, self.simulation
@@ -154,7 +139,7 @@ class FaceScene:
         return self.simulation.bone_transforms()
 
 
-class PlaneScene:
+class PlaneScene(Scene):
     """The paper's plane: 154 triangles under a strong travelling sine (Fig. 9 and Table 1).
 
     The wave runs along the diagonals of the cells, so that every edge bends: across one along the
@@ -166,53 +151,45 @@ class PlaneScene:
     WAVES = 1.5  # wavelengths in a length of the plane (chosen by eye, with HEIGHT)
     HEIGHT = 0.2  # crest above the middle, in lengths of the plane
 
+    groups = MappingProxyType({"Wave": ("amplitude", "phase")})
+    limits = MappingProxyType({"amplitude": (0.0, 1.0), "phase": (0.0, 100.0)})
+    # A flat mesh needs no slack for bends that it was made with. Found by search, so that the
+    # wave makes about as many triangles at most as in Table 1 (1328).
+    refiner_options = MappingProxyType(
+        {"kahler": {"threshold_once": 0.001, "threshold_twice": 0.005}}
+    )
+
     def __init__(self) -> None:
         plane = assets.load("plane")
-        self.faces = plane.faces
-        self.rest_positions = plane.vertices
-        self.parts: tuple[Any, ...] = ()
-        self.expressions: tuple[str, ...] = ()
+        self.faces, self.rest_positions = plane.faces, plane.vertices
         self.focus = plane.vertices.mean(axis=0)
-        self.uv: npt.NDArray[np.float32] | None = None
-        self.face_uv: npt.NDArray[np.int32] | None = None
-        self.albedo: npt.NDArray[np.uint8] | None = None
-        self.wrinkles: assets.Wrinkles | None = None
-        # A flat mesh needs no slack for bends that it was made with. Found by search, so that the
-        # wave makes about as many triangles at most as in Table 1 (1328).
-        self.refiner_options: Mapping[str, Mapping[str, Any]] = {
-            "kahler": {"threshold_once": 0.001, "threshold_twice": 0.005}
-        }
-        self.groups: Mapping[str, tuple[str, ...]] = {"Wave": ("amplitude", "phase")}
-        self.limits: Mapping[str, tuple[float, float]] = {
-            "amplitude": (0.0, 1.0),
-            "phase": (0.0, 100.0),
-        }
-        self.actions: Mapping[str, str] = {}
-        self.values = dict.fromkeys(self.limits, 0.0)
+        self._values = dict.fromkeys(self.limits, 0.0)
         extent = np.ptp(plane.vertices, axis=0)
         self._normal = int(np.argmin(extent))
         self._length = float(extent.max())
         along = plane.vertices.sum(axis=1) / np.sqrt(2.0)
         self._turns = self.WAVES * along / self._length
-        self.positions = plane.vertices.copy()
+        self._positions = plane.vertices.copy()
 
-    def openness(self) -> npt.NDArray[np.uint8] | None:
-        return None
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        return self._positions
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        return self._values
 
     def pose(self, channels: Mapping[str, float]) -> None:
-        self.values.update({**dict.fromkeys(self.limits, 0.0), **within(self.limits, channels)})
+        self._values.update({**dict.fromkeys(self.limits, 0.0), **within(self.limits, channels)})
 
     def step(self, seconds: float) -> None:
-        wave = np.sin(2.0 * np.pi * (self._turns - self.values["phase"]))
-        height = self.values["amplitude"] * self.HEIGHT * self._length
-        self.positions[:, self._normal] = self.rest_positions[:, self._normal] + height * wave
+        wave = np.sin(2.0 * np.pi * (self._turns - self._values["phase"]))
+        height = self._values["amplitude"] * self.HEIGHT * self._length
+        self._positions[:, self._normal] = self.rest_positions[:, self._normal] + height * wave
 
     def reset(self) -> None:
-        self.values.update(dict.fromkeys(self.limits, 0.0))
-        self.positions[:] = self.rest_positions
-
-    def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
-        return {}
+        self._values.update(dict.fromkeys(self.limits, 0.0))
+        self._positions[:] = self.rest_positions
 
 
 def within(
@@ -231,7 +208,7 @@ SCENES: dict[str, Callable[[], Scene]] = {"face": FaceScene, "plane": PlaneScene
 
 
 def build_scene(name: str, head: FittedHead | None = None) -> Scene:
-    """The scene called `name`, with a head that somebody brought; UserError where it has none."""
+    """The scene called `name`, with a head of the user's; UserError where it has none."""
     if head is None:
         return SCENES[name]()
     if name != "face":
@@ -240,3 +217,12 @@ def build_scene(name: str, head: FittedHead | None = None) -> Scene:
         return FaceScene(head)
     except ValueError as error:
         raise UserError(f"this head cannot be simulated: {error}") from None
+
+
+def head_for(head: Path | None, landmarks: Path | None) -> FittedHead | None:
+    """The user's own head, fitted; None for the built-in one."""
+    if head is None and landmarks is None:
+        return None
+    if head is None or landmarks is None:
+        raise UserError("--head HEAD.obj and --landmarks LANDMARKS.json go together")
+    return fit_head(head, landmarks)

@@ -9,9 +9,10 @@
 The programs that generate them are in this package, too: `python -m risorius.assets.build`.
 """
 
+from .errors import AssetError
 from .loading import available, load
 from .meshes import Mesh, read_mesh
-from .model import AssetError, Eye, Head, Layer, Part, Plane, Tone, Wrinkles
+from .model import Eye, Head, Layer, Part, Plane, Tone, Wrinkles
 from .painting import paint
 
 __all__ = [

@@ -19,7 +19,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from .aside import Aside
+from .errors import AssetError
+from .files import write_image
 from .generator.bones import bone_depth, jaw_axis, mandible_weight
 from .generator.dentition import LOWER_ARCH, UPPER_ARCH, gums, teeth
 from .generator.eyeballs import IRIS_RADIUS, corner_flesh, eyeball
@@ -32,9 +33,10 @@ from .generator.skin import Skin, build_half, mirrored
 from .generator.solids import Solid
 from .generator.unwrap import unwrap
 from .generator.wrinkling import paint_wrinkles
-from .loading import HEAD_FILE, fingerprint, load_head
-from .model import AssetError, Head, Tone
-from .pictures import write_picture
+from .loading import HEAD_FILE, load_head
+from .model import Head, Tone
+from .staging import StagingFolder
+from .topology import vertex_normals
 
 SMALLEST, LARGEST = 64, 8192  # [texels] of picture and wrinkles
 MIRROR = np.array([-1.0, 1.0, 1.0])
@@ -71,7 +73,9 @@ def part_arrays() -> dict[str, npt.NDArray[np.generic]]:
         "part_vertex_counts": np.array([len(solid.vertices) for solid in solids]),
         "part_face_counts": np.array([len(solid.faces) for solid in solids]),
         "part_vertices": np.vstack([solid.vertices for solid in solids]).astype(np.float32),
-        "part_normals": np.vstack([solid.normals() for solid in solids]).astype(np.float32),
+        "part_normals": np.vstack(
+            [vertex_normals(solid.vertices, solid.faces) for solid in solids]
+        ).astype(np.float32),
         "part_faces": np.vstack([solid.faces for solid in solids]).astype(np.int32),
         "part_colours": np.vstack([solid.colours for solid in solids]).astype(np.float32),
     }
@@ -121,7 +125,7 @@ def build_finer(head: Head) -> dict[str, npt.NDArray[np.generic]]:
     return {
         "added_vertices": added.astype(np.float32),
         "normals": normals.astype(np.float16),  # 0.03 degrees; full precision would double the file
-        "made_from": np.array(fingerprint(head), dtype=np.uint32),
+        "made_from": np.array(head.fingerprint, dtype=np.uint32),
     }
 
 
@@ -132,7 +136,7 @@ def build_wrinkles(head: Head, size: int) -> dict[str, npt.NDArray[np.generic]]:
         "map": wrinkles.map,
         "steepest": np.array(wrinkles.steepest),
         "across": wrinkles.across,
-        "made_from": np.array(fingerprint(head), dtype=np.uint32),
+        "made_from": np.array(head.fingerprint, dtype=np.uint32),
     }
 
 
@@ -153,9 +157,9 @@ def main(arguments: list[str]) -> None:
     if given.file.is_dir():
         raise IsADirectoryError(errno.EISDIR, "is a folder; name a file", str(given.file))
     given.file.parent.mkdir(parents=True, exist_ok=True)
-    with Aside(given.file.parent) as aside:
-        _write(aside / given.file.name, tone=Tone(given.tone), size=given.size)
-        for made in aside.iterdir():
+    with StagingFolder(given.file.parent) as staging:
+        _write(staging / given.file.name, tone=Tone(given.tone), size=given.size)
+        for made in staging.iterdir():
             os.replace(made, given.file.parent / made.name)
     load_head(given.file).openness_file.unlink(missing_ok=True)
 
@@ -166,7 +170,7 @@ def _write(file: Path, *, tone: Tone, size: int) -> None:
     head = load_head(file)
     _save(head.finer_file, build_finer(head))
     _save(head.wrinkles_file, build_wrinkles(head, size))
-    write_picture(head.albedo_file, paint_skin(head, tone=tone, size=size))
+    write_image(head.albedo_file, paint_skin(head, tone=tone, size=size))
 
 
 def _save(path: Path, arrays: dict[str, npt.NDArray[np.generic]]) -> None:
@@ -186,10 +190,10 @@ def run(arguments: list[str]) -> None:
     try:
         main(arguments)
     except (OSError, AssetError) as error:
-        words = [str(error)]
+        parts = [str(error)]
         if isinstance(error, OSError) and error.strerror:
-            words = [*([str(error.filename)] if error.filename else []), error.strerror]
-        print(f"assets.build: {': '.join(words)}", file=sys.stderr)
+            parts = [*([str(error.filename)] if error.filename else []), error.strerror]
+        print(f"assets.build: {': '.join(parts)}", file=sys.stderr)
         sys.exit(2)
     except KeyboardInterrupt:
         print("assets.build: stopped", file=sys.stderr)

@@ -5,9 +5,11 @@ Used by `assets.report` and by the tests. Plain arrays in, numbers out.
 
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
+from scipy.sparse import csgraph
 from scipy.spatial import cKDTree
 
-from .generator.topology import cross_products, edge_faces
+from .topology import cross_products, edge_faces
 
 FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.int32]
@@ -23,15 +25,10 @@ def is_manifold(faces: IndexArray) -> bool:
 
 def component_count(faces: IndexArray) -> int:
     """Number of pieces that hang together by shared vertices."""
-    label = np.arange(int(faces.max()) + 1)
-    while True:
-        lowest = label[faces].min(axis=1)
-        updated = label.copy()
-        for corner in range(3):
-            np.minimum.at(updated, faces[:, corner], lowest)
-        if (updated == label).all():
-            return len(np.unique(label[np.unique(faces)]))
-        label = updated
+    used, corners = np.unique(faces, return_inverse=True)
+    links = corners.reshape(-1, 3)[:, [0, 1, 1, 2]].reshape(-1, 2)
+    graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(len(used),) * 2)
+    return int(csgraph.connected_components(graph, directed=False)[0])
 
 
 def euler_characteristic(vertices: FloatArray, faces: IndexArray) -> int:
@@ -48,6 +45,7 @@ def is_mirrored(faces: IndexArray, mirror: IndexArray) -> bool:
     """Whether the mirror image of every face is a face, turned over."""
 
     def normalised(triangles: IndexArray) -> set[tuple[int, ...]]:
+        """Each triangle from its lowest vertex on."""
         start = triangles.argmin(axis=1)
         order = (start[:, None] + np.arange(3)) % 3
         return set(map(tuple, np.take_along_axis(triangles, order, axis=1).tolist()))

@@ -12,8 +12,8 @@ from operator import mul
 from types import MappingProxyType
 from typing import Any
 
-from .brought import MOST_VERTICES, size_text
-from .model import AssetError
+from .errors import AssetError
+from .user_files import MOST_VERTICES, size_text
 
 LONGEST_JSON = 4_000_000  # [bytes]
 MOST_ENTRIES = 10_000  # of nodes, meshes, accessors and so on, each

@@ -13,9 +13,9 @@ import struct
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from .brought import MOST_VERTICES, plain_text, size_text
+from .errors import AssetError
 from .glb_claims import check_glb
-from .model import AssetError
+from .user_files import MOST_VERTICES, plain_text, size_text
 
 MOST_SOLIDS = 1000  # of one STL file
 LONGEST_HEADER = 2**16  # [bytes] of a PLY file
@@ -113,10 +113,10 @@ def _check_polygons(rows: list[bytes]) -> None:
     for place, row in enumerate(rows):
         said, *corners = row.split()
         if not said.isdigit() or not 3 <= int(said[:12]) <= len(corners):
-            shown = b" ".join([said, *corners])[:30].decode()
+            excerpt = b" ".join([said, *corners])[:30].decode()
             raise AssetError(
-                f"face {place} (counted from 0) is '{shown}'; it must be a count from 3 up and as "
-                "many vertex numbers: save it anew"
+                f"face {place} (counted from 0) is '{excerpt}'; it must be a count from 3 up and "
+                "as many vertex numbers: save it anew"
             )
         triangle_count += int(said) - 2
         if triangle_count > MOST_VERTICES:

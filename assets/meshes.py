@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .brought import MOST_VERTICES, named, read_file
+from .errors import AssetError
 from .mesh_claims import CHECKS
-from .model import AssetError
+from .user_files import MOST_VERTICES, named, read_file
 from .wavefront import read_obj
 
 FORMATS = ("obj", "ply", "stl", "off", "glb")  # ends of names

@@ -1,7 +1,8 @@
 """The arrays that an asset consists of.
 
 Plain frozen dataclasses of plain numpy arrays: every other package takes arrays, so none of them
-has to import this one. All arrays are read-only.
+has to import this one. All arrays are read-only. What simulating a head needs not (images, finer
+meshes) is read from its files when it is first asked for.
 
 Frame of the head: millimetres, x toward the subject's left, y up, z toward the viewer, x = 0 is
 the mirror plane. Faces are counter-clockwise seen from outside.
@@ -9,6 +10,7 @@ Source: Kähler et al. 2003, section 5 (the face mesh with 2030 triangles, the p
 landmark numbering after Sagonas et al. 2013, "300 Faces in-the-Wild Challenge" (iBug 68 points).
 """
 
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
@@ -19,14 +21,13 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from .files import Image, read_arrays_of, read_image
+from .subdivision import coarse_places, quarter
+
 FloatArray = npt.NDArray[np.float64]
 SingleArray = npt.NDArray[np.float32]
 IndexArray = npt.NDArray[np.int32]
-Picture = npt.NDArray[np.uint8]
-
-
-class AssetError(Exception):
-    """An asset does not exist, or one of its files is missing or broken."""
+FINER_LEVELS = (1, 2)
 
 
 class Tone(Enum):
@@ -86,7 +87,7 @@ class Layer:
         sim/layers.py says what they mean.
     """
 
-    WORDS: ClassVar[tuple[str, ...]] = ("action", "pair")  # keys of a row that are no shares
+    NOT_SHARES: ClassVar[tuple[str, ...]] = ("action", "pair")  # keys of a row that are no shares
     title: str
     source: str
     rows: Mapping[str, Mapping[str, Any]]
@@ -104,7 +105,7 @@ class Wrinkles:
         its length is how readily it does; zero where it does not; shape (V, 2, 3), float32.
     """
 
-    map: Picture
+    map: Image
     steepest: float
     across: SingleArray
 
@@ -196,42 +197,43 @@ class Head:
         """The shares of each expression, without words: a pose of action units and muscles."""
         rows = next((layer.rows for layer in self.layers if layer.title == "Expressions"), {})
         return {
-            name: {key: float(value) for key, value in row.items() if key not in Layer.WORDS}
+            name: {key: float(value) for key, value in row.items() if key not in Layer.NOT_SHARES}
             for name, row in rows.items()
         }
 
+    @property
+    def fingerprint(self) -> int:
+        """A number that tells this mesh from any other: what was made from it fits it alone."""
+        return zlib.crc32(self.faces.tobytes(), zlib.crc32(self.vertices.tobytes()))
+
     @cached_property
-    def albedo(self) -> Picture:
+    def albedo(self) -> Image:
         """The colour of the skin, sRGB, shape (H, W, 3), uint8; row 0 is v = 1.
 
-        Read from `albedo_file` when it is first asked for: to simulate needs no picture. Raises
-        AssetError when the file is missing or no picture.
+        Raises AssetError when the file is missing or no picture.
         """
-        from .pictures import read_picture  # Pillow, which to load a head takes no time for
-
-        return read_picture(self.albedo_file)
+        return read_image(self.albedo_file)
 
     @cached_property
     def wrinkles(self) -> Wrinkles:
         """Where the skin wrinkles, and like what; arrays read-only.
 
-        Read from `wrinkles_file` when it is first asked for. Raises AssetError when the file is
-        missing, broken or that of another head.
-        """
-        from .loading import read_wrinkles  # which imports this module
-
-        return read_wrinkles(self)
-
-    @cached_property
-    def openness(self) -> Picture:
-        """How open the skin is to light from all around, 255 = wholly; shape (H, W), uint8.
-
-        Texel by texel that of `albedo`. Read from `openness_file` when it is first asked for.
         Raises AssetError when the file is missing, broken or that of another head.
         """
-        from .loading import read_openness  # which imports this module
+        names = ("map", "steepest", "across")
+        arrays = read_arrays_of(self.fingerprint, self.wrinkles_file, names)
+        return Wrinkles(arrays["map"], float(arrays["steepest"]), arrays["across"])
 
-        return read_openness(self)
+    @cached_property
+    def openness(self) -> Image:
+        """How open the skin is to light from all around, 255 = wholly; shape (H, W), uint8.
+
+        Texel by texel that of `albedo`. Raises AssetError when the file is missing, broken or that
+        of another head.
+        """
+        names, program = ("openness",), "app.ambient"
+        file = self.openness_file
+        return read_arrays_of(self.fingerprint, file, names, program=program)["openness"]
 
     def finer(self, level: int) -> FineMesh:
         """The same form with 4 (level 1) or 16 (level 2) triangles for each one; arrays read-only.
@@ -239,9 +241,24 @@ class Head:
         Read from `finer_file` at every call. Raises ValueError for another level, AssetError when
         the file is missing, broken or that of another head.
         """
-        from .loading import read_finer  # which imports this module
-
-        return read_finer(self, level)
+        if level not in FINER_LEVELS:
+            raise ValueError(
+                f"level was {level!r}; allowed are 1 (4 triangles for each one) and 2 (16)"
+            )
+        names = ("added_vertices", "normals")
+        arrays = read_arrays_of(self.fingerprint, self.finer_file, names)
+        faces, count = self.faces, len(self.vertices)
+        for _ in range(level):
+            cut = quarter(faces, count)
+            faces, count = cut.faces, count + len(cut.edges)
+        added = arrays["added_vertices"][: count - len(self.vertices)]
+        normals = arrays["normals"][:count].astype(np.float64)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        vertices = np.vstack([self.vertices, added])
+        fine = FineMesh(vertices, faces, *coarse_places(self.faces, faces), normals, self.faces)
+        for array in (fine.vertices, fine.faces, fine.coarse_triangle, fine.barycentric, normals):
+            array.flags.writeable = False
+        return fine
 
 
 @dataclass(frozen=True)

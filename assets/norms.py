@@ -49,11 +49,10 @@ class Sample:
 
 @dataclass(frozen=True)
 class Norm:
-    """A measure of both sexes."""
+    """A measure of both sexes, after Weinberg et al. 2016."""
 
     women: Sample
     men: Sample
-    source: str = WEINBERG_2016
 
     def usual_for(self, value: float) -> str:
         """Whom a value is usual for: "both", "women", "men" or "nobody"."""

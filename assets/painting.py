@@ -1,12 +1,13 @@
 """The skin of the built-in head in any complexion, painted anew."""
 
+from .files import Image
 from .loading import load
-from .model import Picture, Tone
+from .model import Tone
 
 SMALLEST = 64  # [texels] below this an eye would be smaller than a texel
 
 
-def paint(*, tone: Tone | str = Tone.MEDIUM_LIGHT, size: int | None = None) -> Picture:
+def paint(*, tone: Tone | str = Tone.MEDIUM_LIGHT, size: int | None = None) -> Image:
     """Paint the skin of the built-in head, shape (size, size, 3), uint8, sRGB; row 0 is v = 1.
 
     tone: a Tone or its value. size: of the picture [texels]; None for that of the shipped one.

@@ -5,7 +5,6 @@ stand the published means of adults, where there are such (`norms`), and how man
 head lies above or below them. The head is nobody, and of no sex: it is held against both.
 """
 
-import argparse
 import sys
 from dataclasses import dataclass
 
@@ -20,10 +19,10 @@ from .checks import (
     mirror_error,
     self_intersections,
 )
-from .generator.topology import boundary_loops, cross_products, smallest_angles
 from .loading import load
 from .model import Head
-from .norms import DEPTHS, NORMS, Norm, Sample
+from .norms import DEPTHS, NORMS, WEINBERG_2016, Norm
+from .topology import boundary_loops, cross_products, smallest_angles
 
 DISTANCES = (
     ("face height, n-gn", "nasion", "gnathion"),
@@ -118,42 +117,22 @@ def distance_rows(head: Head) -> list[Row]:
     ]
 
 
-def report(head: Head) -> list[Row]:
-    """Measure a head: surface, triangles, face."""
-    return [*topology_rows(head), *quality_rows(head), *distance_rows(head)]
+def _markdown(titles: str, rows: list[list[str]]) -> list[str]:
+    """A table in Markdown; titles: those of its columns, between bars."""
+    lines = [f"| {titles} |", "|---" * (titles.count("|") + 1) + "|"]
+    return [*lines, *(f"| {' | '.join(cells)} |".replace("  ", " ") for cells in rows)]
 
 
-def line(row: Row) -> str:
-    """One line of text: the value, and means, deviations and scores where there is a norm."""
-    text = f"{row.title:40s} {row.value:10.2f} {row.unit}"
-    if row.norm is None:
-        return text
-
-    def beside(sample: Sample) -> str:
-        mean = f"{sample.mean:6.1f} +- {sample.deviation:.1f}"
-        return f"{mean:>15s} {sample.score(row.value):+5.1f}"
-
-    usual_for = row.norm.usual_for(row.value)
-    return f"{text:54s} {beside(row.norm.women)}   {beside(row.norm.men)}   {usual_for}"
+def mesh_table(head: Head) -> list[str]:
+    """What describes the mesh as a surface and its triangles."""
+    rows = [*topology_rows(head), *quality_rows(head)]
+    return _markdown("mesh | ours", [[row.title, f"{row.value:.6g} {row.unit}"] for row in rows])
 
 
-def text_lines(rows: list[Row]) -> list[str]:
-    """The whole report as lines of text, sources last."""
-    heading = f"{'':55s} {'women':>13s} {'score':>7s}   {'men':>13s} {'score':>7s}   usual for"
-    first = next((i for i, row in enumerate(rows) if row.norm is not None), len(rows))
-    lines = [line(row) for row in rows]
-    sources = sorted({row.norm.source for row in rows if row.norm is not None})
-    notes = [f"Norms: mean +- deviation [mm] of {source}." for source in sources]
-    return [*lines[:first], heading, *lines[first:], *notes]
-
-
-def table(rows: list[Row]) -> list[str]:
-    """The distances as a table in Markdown."""
-    lines = [
-        "| measure | ours | women | score | men | score | usual for |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    for row in rows:
+def distance_table(head: Head) -> list[str]:
+    """The distances, with means and deviations [mm] of both sexes, and whom they are usual for."""
+    rows = []
+    for row in distance_rows(head):
         cells = [row.title, f"{row.value:.1f}"]
         if row.norm is None:
             cells += [""] * 5
@@ -162,42 +141,33 @@ def table(rows: list[Row]) -> list[str]:
                 cells.append(f"{sample.mean:.1f} ± {sample.deviation:.1f}")
                 cells.append(f"{sample.score(row.value):+.1f}")
             cells.append(row.norm.usual_for(row.value))
-        lines.append(f"| {' | '.join(cells)} |".replace("|  |", "| |").replace("|  |", "| |"))
-    return lines
+        rows.append(cells)
+    return _markdown("measure | ours | women | score | men | score | usual for", rows)
 
 
 def depth_table(head: Head) -> list[str]:
-    """How deep bone lies below named points as a table in Markdown, with what was published."""
-    lines = ["| bone below | ours | published | score | measured on |", "|---|---|---|---|---|"]
+    """How deep bone lies below named points [mm], with what was published."""
+    rows = []
     for name in DEPTH_NAMES:
         ours = float(head.bone_depth[head.anatomy[name]])
         cells = [name.removesuffix("_left").replace("_", " "), f"{ours:.1f}"]
-        text = f"| {' | '.join(cells)} | | | |"
         if name in DEPTHS:
             sample, source = DEPTHS[name]
-            text = " | ".join(
-                [
-                    f"| {' | '.join(cells)}",
-                    f"{sample.mean:.1f} ± {sample.deviation:.1f}",
-                    f"{sample.score(ours):+.1f}",
-                    f"{source} |",
-                ]
-            )
-        lines.append(text)
-    return lines
+            published = f"{sample.mean:.1f} ± {sample.deviation:.1f}"
+            cells += [published, f"{sample.score(ours):+.1f}", source]
+        else:
+            cells += [""] * 3
+        rows.append(cells)
+    return _markdown("bone below | ours | published | score | measured on", rows)
 
 
-def main(arguments: list[str]) -> None:
-    """Write the report of the built-in head, or only its distances and depths as tables."""
-    parser = argparse.ArgumentParser(
-        prog="python -m risorius.assets.report", description=(__doc__ or "").splitlines()[0]
-    )
-    parser.add_argument("--table", action="store_true", help="both tables only, in Markdown")
+def main() -> None:
+    """Write the report of the built-in head: three tables in Markdown, and the norms' source."""
     head = load("head")
-    is_table = parser.parse_args(arguments).table
-    lines = table(distance_rows(head)) if is_table else text_lines(report(head))
-    sys.stdout.writelines(f"{text}\n" for text in [*lines, "", *depth_table(head)])
+    tables = [mesh_table(head), distance_table(head), depth_table(head)]
+    sys.stdout.writelines(f"{line}\n" for table in tables for line in [*table, ""])
+    sys.stdout.write(f"Norms: mean ± deviation [mm] of {WEINBERG_2016}.\n")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

@@ -18,10 +18,10 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from .brought import LONGEST_LINE, plain_text
-from .model import AssetError
+from .errors import AssetError
+from .user_files import LONGEST_LINE, plain_text
 
-SHOWN = 30  # bytes of what is wrong in a line, at most
+EXCERPT = 30  # bytes of what is wrong in a line, at most
 
 
 def read_obj(content: bytes, *, most: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
@@ -78,7 +78,7 @@ def _point(words: list[bytes]) -> tuple[float, float, float]:
     try:
         return float(words[1]), float(words[2]), float(words[3])
     except ValueError:
-        raise AssetError(f"'{_shown(words)}' is no vertex; it must be 'v x y z'") from None
+        raise AssetError(f"'{_excerpt(words)}' is no vertex; it must be 'v x y z'") from None
 
 
 def _add_fan(corners: array[int], words: list[bytes], vertex_count: int) -> None:
@@ -89,13 +89,13 @@ def _add_fan(corners: array[int], words: list[bytes], vertex_count: int) -> None
         found = [int(word.split(b"/", 1)[0]) for word in words[1:]]
     except ValueError:
         raise AssetError(
-            f"'{_shown(words)}' is no face; it must be 'f' and whole vertex numbers"
+            f"'{_excerpt(words)}' is no face; it must be 'f' and whole vertex numbers"
         ) from None
     for place, number in enumerate(found):
         if number == 0 or number < -vertex_count or number >= 2**31:
             back = f"-1 to -{vertex_count}" if vertex_count else "no number below 0"
             raise AssetError(
-                f"no vertex has the number {words[place + 1][:SHOWN].decode()}; allowed are 1 to "
+                f"no vertex has the number {words[place + 1][:EXCERPT].decode()}; allowed are 1 to "
                 f"the number of vertices, and {back} at this line"
             )
         found[place] = number - 1 if number > 0 else vertex_count + number
@@ -104,6 +104,6 @@ def _add_fan(corners: array[int], words: list[bytes], vertex_count: int) -> None
         corners.extend((first, second, third))
 
 
-def _shown(words: list[bytes]) -> str:
+def _excerpt(words: list[bytes]) -> str:
     line = b" ".join(words[:8])
-    return line.decode() if len(line) <= SHOWN else line[:SHOWN].decode() + " ..."
+    return line.decode() if len(line) <= EXCERPT else line[:EXCERPT].decode() + " ..."

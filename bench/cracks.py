@@ -48,8 +48,8 @@ def cracks(
     wrong = _different_rows(mesh, _places(origins.vertices.astype(np.int64), parts, triangles))
     if wrong is not None:
         return wrong
-    kept = ~flat[source]
-    triangles, source = triangles[kept], source[kept]
+    has_area = ~flat[source]
+    triangles, source = triangles[has_area], source[has_area]
     is_corner = origins.vertices[triangles][:, :, None, :] == given[source][:, None, :, None]
     corners = (parts[triangles][:, :, None, :] * is_corner).sum(axis=3)
     if (corners.sum(axis=2) != WHOLE).any():

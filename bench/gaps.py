@@ -5,20 +5,21 @@ expressions in which the mouth or an eye is shut, settled on the built-in head. 
 the widest slit between the lips, where nothing opens them, from the front and from four oblique
 views; the widest opening between the lids of each eye that it shuts; and how deep any skin sits in
 an eyeball. All of the mesh and of what refinement makes of it, with round outlines as the window
-shows it, whichever is worse (sight.py).
+shows it, whichever is worse (lines_of_sight.py).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 from risorius import assets, refine, sim
 
-from .sight import lid_gaps, shown_meshes, sunk_in_eyeballs, widest_slit
+from .lines_of_sight import lid_gaps, meshes_of, sunk_in_eyeballs, widest_slit
+from .report import table
+from .subjects import settled
 
-FRAME = 1.0 / 60.0
-SETTLE = 45  # frames until a pose is still
+SETTLE = 45  # frames of 1/60 s until a pose is still
 UNITS = "Action units"
 # FACS: these part the lips themselves. All others leave the mouth as it is.
 LIP_PARTING = ("AU9", "AU10", "AU16", "AU22", "AU25", "AU26", "AU27")
@@ -46,14 +47,10 @@ def run() -> list[Pose]:
     refiner = refine.create("kahler", head.faces, head.vertices, criterion="normal+rest")
     poses = []
     for name, is_shut in _rows(simulation):
-        simulation.reset()
-        simulation.set(name, 1.0)
-        for _ in range(SETTLE):
-            simulation.step(FRAME)
-        landmarks = simulation.positions[head.landmarks]
+        landmarks = settled(simulation, {name: 1.0}, SETTLE)[head.landmarks]
         shut = [side for side in ("right", "left") if simulation.sums[f"{CLOSER}_{side}"] >= SHUT]
         lips, lids = [], []
-        for positions, triangles in shown_meshes(simulation, refiner).values():
+        for positions, triangles in meshes_of(simulation, refiner).values():
             if is_shut:
                 lips.append(widest_slit(positions, triangles, landmarks))
             if shut:
@@ -81,3 +78,27 @@ def _rows(simulation: sim.Simulation) -> Iterator[tuple[str, bool]]:
             yield name, name.removesuffix("_left").removesuffix("_right") not in LIP_PARTING
     for name in MOUTH_SHUT + EYES_SHUT:
         yield name, name in MOUTH_SHUT
+
+
+def report(poses: Sequence[Pose]) -> str:
+    """The text to print."""
+    asked = {"lips": LIPS_MOST, "lids": LIDS_MOST, "sunk": None}
+    rows = []
+    for part, most in asked.items():
+        value, pose = worst(poses, part)
+        verdict = "" if most is None else f" {most} {'met' if value < most else 'MISSED'}"
+        rows.append((part, value, verdict, f" {pose.name}"))
+    return "\n".join(
+        [
+            f"{len(poses)} poses of the built-in head, as simulated and as refined, the worse:",
+            "lips  widest slit between lips that nothing opens, from five sides [mm]",
+            "lids  widest opening of an eye that is shut, from the front [mm]",
+            "sunk  how deep skin lies in an eyeball, deeper than at rest [mm]",
+            "",
+            *table(
+                ("pose:<14", "lips:6.2f", "lids:6.2f", "sunk:6.2f"), map(astuple, poses), empty="-"
+            ),
+            "",
+            *table(("worst:<6", "mm:6.2f", " asked:<11", ":<1"), rows),
+        ]
+    )

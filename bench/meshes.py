@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import time
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -180,3 +180,27 @@ def _finer(vertices: Points, faces: Faces, generator: np.random.Generator) -> tu
     finer = np.stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], axis=1).reshape(-1, 3)
     middles = vertices[edges].mean(axis=1) + bumps
     return np.concatenate([vertices, middles]), finer.astype(np.int32)
+
+
+def report(seen: Sequence[Seen]) -> str:
+    """The text to print."""
+    refined = [each for each in seen if not each.left_out]
+    lines = [f"{'triangles':>9} {'frames':>6} {'broken':>6}  mesh"]
+    for each in seen:
+        note = f": left out, {each.left_out}" if each.left_out else ""
+        note += ": cut short" if each.is_cut_short else ""
+        lines.append(
+            f"{each.triangles:9d} {each.frames:6d} {len(each.broken):6d}  {each.name}{note}"
+        )
+        lines += [f"{'':25}{line}" for line in each.broken]
+    return "\n".join(
+        [
+            *lines,
+            "",
+            f"{len(seen)} files: {len(refined)} refined, {len(seen) - len(refined)} left out, "
+            f"{sum(each.is_cut_short for each in seen)} cut short;",
+            f"{sum(each.triangles for each in refined)} triangles, "
+            f"{sum(each.frames for each in seen)} frames, "
+            f"{sum(len(each.broken) for each in seen)} of them broken",
+        ]
+    )

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -30,15 +30,17 @@ import numpy.typing as npt
 from risorius import sim
 from risorius.assets.fitting import fit
 from risorius.assets.meshes import Mesh
-from risorius.bench.subjects import DENSE, read_arrays
-from risorius.sim.landmarks import FaceFrame, Side
+from risorius.sim.coordinates import FaceSpace
+from risorius.sim.landmarks import Side
 from risorius.sim.rig import LinearMuscle, RingMuscle
+
+from .report import table
+from .subjects import DENSE, read_arrays, settled
 
 Array = npt.NDArray[np.float64]
 
 SHAPES = Path(__file__).parent / "shapes.toml"
-FRAME = 1.0 / 60.0
-SETTLE = 60  # frames until a pose is still
+SETTLE = 60  # frames of 1/60 s until a pose is still
 NOT_SHAPES = ("vertices", "triangles", "landmarks68")
 SIDES = {"left": ("_left", "_l", "left"), "right": ("_right", "_r", "right")}  # endings of names
 SEAM = 10.0  # mm beside the midline over which a one-sided shape fades, where we have but one whole
@@ -77,9 +79,9 @@ def run(directory: str | Path) -> tuple[list[Row], list[str]]:
     Returns the scores, and the names of fields that have none: unknown ones, and those in which
     no skin moves. Raises ValueError, naming the file, if it is broken or no shape is left.
     """
-    fields = read_arrays(Path(directory) / DENSE, NOT_SHAPES)
-    mesh = Mesh(fields["vertices"].astype(np.float64), fields["triangles"].astype(np.int32))
-    landmarks = fields["landmarks68"].astype(np.int32)
+    arrays = read_arrays(Path(directory) / DENSE, NOT_SHAPES)
+    mesh = Mesh(arrays["vertices"].astype(np.float64), arrays["triangles"].astype(np.int32))
+    landmarks = arrays["landmarks68"].astype(np.int32)
     if not _is_sound(mesh, landmarks):
         raise ValueError(
             f"{directory}: in {DENSE}, vertices must be finite, (V, 3), triangles (F, 3) and "
@@ -91,18 +93,18 @@ def run(directory: str | Path) -> tuple[list[Row], list[str]]:
     ruler = _Ruler(head.vertices, head.landmarks, areas, head.rig)
     shapes = _read_shapes()
     rows, left_out = [], []
-    for name in fields:
+    for name in arrays:
         if name in NOT_SHAPES:
             continue
         shape = _known(name, shapes, simulation)
         if shape is None:
             left_out.append(name)
             continue
-        if fields[name].shape != mesh.vertices.shape or not np.isfinite(fields[name]).all():
+        if arrays[name].shape != mesh.vertices.shape or not np.isfinite(arrays[name]).all():
             raise ValueError(
                 f"{directory}: {name} in {DENSE} must be finite displacements of all vertices"
             )
-        scanned = head.to_millimetres.vectors(fields[name][head.kept])
+        scanned = head.to_millimetres.vectors(arrays[name][head.file_vertices])
         if scanned.any():
             rows.append(ruler.row(simulation, shape, scanned))
         else:
@@ -128,7 +130,7 @@ def _is_sound(mesh: Mesh, landmarks: npt.NDArray[np.int32]) -> bool:
 
 def mean_row(rows: list[Row]) -> Row:
     """The mean of each column."""
-    columns = ("cosine", "magnitude", "residual", "half", "blob", "waters")
+    columns = [each.name for each in fields(Row)][1:]
     return Row("mean", *(float(np.nanmean([getattr(r, c) for r in rows])) for c in columns))
 
 
@@ -169,12 +171,7 @@ def _controls(
 
 def _posed(simulation: sim.Simulation, values: Mapping[str, float]) -> Array:
     """Displacement [mm] of the settled pose, shape (V, 3)."""
-    simulation.reset()
-    simulation.set_all(values)
-    for _ in range(SETTLE):
-        simulation.step(FRAME)
-    moved: Array = simulation.positions - simulation.rest_positions
-    return moved
+    return settled(simulation, values, SETTLE) - simulation.rest_positions
 
 
 class _Ruler:
@@ -183,8 +180,8 @@ class _Ruler:
     def __init__(
         self, vertices: Array, landmarks: npt.NDArray[np.int32], areas: Array, rig: dict[str, Any]
     ) -> None:
-        self._frame = FaceFrame.from_landmarks(vertices[landmarks])
-        self._x = self._frame.to_standard(vertices)
+        self._space = FaceSpace.from_landmarks(vertices[landmarks])
+        self._x = self._space.to_standard(vertices)
         self._landmarks = self._x[landmarks]
         self._areas = areas
         self._muscles = {muscle.name: muscle for muscle in sim.read_rig(rig).muscles}
@@ -193,11 +190,11 @@ class _Ruler:
         """Pose one shape, fully and by half, and score it."""
         values, base = shape.values, shape.base
         start = _posed(simulation, base) if base else np.zeros_like(scanned)
-        kept = self._half_of_the_face(shape.cut)
-        full = kept * (_posed(simulation, values) - start)
+        side = self._half_of_the_face(shape.cut)
+        full = side * (_posed(simulation, values) - start)
         # A pose that is not there at the start comes in by half, what is there already stays.
         half = {c: base.get(c, 0.0) + (v - base.get(c, 0.0)) / 2.0 for c, v in values.items()}
-        part = kept * (_posed(simulation, half) - start)
+        part = side * (_posed(simulation, half) - start)
         own, true = self._product(full, full), self._product(scanned, scanned)
         return Row(
             shape.name,
@@ -250,7 +247,7 @@ class _Ruler:
                 for control, value in values.items():
                     moved += value * self._drawn(control, cone, reach)
                 if moved.any():
-                    field = self._frame.vectors_to_head(moved)
+                    field = self._space.vectors_to_head(moved)
                     best = float(np.fmax(best, self._cosine(field, scanned)))
         return best
 
@@ -292,3 +289,23 @@ def _vertex_areas(vertices: Array, faces: npt.NDArray[np.int32]) -> Array:
         float
     )
     return areas
+
+
+def report(rows: list[Row], left_out: list[str]) -> str:
+    """The text to print."""
+    columns = (
+        "shape:<20", "cosine:7.3f", "magnitude:9.2f", "residual:8.3f", "half:5.2f", "blob:6.3f",
+        "Waters:6.3f",
+    )  # fmt: skip
+    lines = [
+        "Simulated against scanned displacement, area weighted: cosine 1 and magnitude 1 are equal",
+        "fields, residual is the squared difference over the squared scan, half is the share of",
+        "the motion that half the controls give. Yardsticks (cosine): a rigid blob at the scanned",
+        "peak and the geometric muscle of Waters 1987, each the best of several.",
+        "",
+        *table(columns, [astuple(row) for row in [*rows, mean_row(rows)]]),
+    ]
+    if left_out:
+        names = ", ".join(left_out)
+        lines += ["", f"left out, no skin moves or bench/shapes.toml does not know it: {names}"]
+    return "\n".join(lines)

@@ -1,8 +1,7 @@
 """The nearest point of a triangle mesh, exactly: what the error of a refined mesh is measured with.
 
 Triangles are sorted along a space-filling curve and boxed in pairs, pairs of pairs and so on; a
-search goes down the nearer box first and skips boxes farther than what it has found. Point against
-triangle after Ericson, "Real-Time Collision Detection" (2005), section 5.1.5.
+search goes down the nearer box first and skips boxes farther than what it has found.
 """
 
 from typing import NamedTuple
@@ -11,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius.jit import njit
+from risorius.refine.closest import closest_on_triangle
 
 Doubles = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -93,38 +93,6 @@ def _box_distance(box, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _on_triangle(corners, x, y, z):  # type: ignore[no-untyped-def]
-    """Weights of the second and the third corner at the nearest point of a triangle."""
-    ax, ay, az = corners[0, 0], corners[0, 1], corners[0, 2]
-    abx, aby, abz = corners[1, 0] - ax, corners[1, 1] - ay, corners[1, 2] - az
-    acx, acy, acz = corners[2, 0] - ax, corners[2, 1] - ay, corners[2, 2] - az
-    apx, apy, apz = x - ax, y - ay, z - az
-    d1, d2 = abx * apx + aby * apy + abz * apz, acx * apx + acy * apy + acz * apz
-    if d1 <= 0.0 and d2 <= 0.0:
-        return 0.0, 0.0
-    bpx, bpy, bpz = x - corners[1, 0], y - corners[1, 1], z - corners[1, 2]
-    d3, d4 = abx * bpx + aby * bpy + abz * bpz, acx * bpx + acy * bpy + acz * bpz
-    if d3 >= 0.0 and d4 <= d3:
-        return 1.0, 0.0
-    vc = d1 * d4 - d3 * d2
-    if vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0:
-        return d1 / (d1 - d3), 0.0
-    cpx, cpy, cpz = x - corners[2, 0], y - corners[2, 1], z - corners[2, 2]
-    d5, d6 = abx * cpx + aby * cpy + abz * cpz, acx * cpx + acy * cpy + acz * cpz
-    if d6 >= 0.0 and d5 <= d6:
-        return 0.0, 1.0
-    vb = d5 * d2 - d1 * d6
-    if vb <= 0.0 and d2 >= 0.0 and d6 <= 0.0:
-        return 0.0, d2 / (d2 - d6)
-    va = d3 * d6 - d5 * d4
-    if va <= 0.0 and d4 - d3 >= 0.0 and d5 - d6 >= 0.0:
-        along = (d4 - d3) / ((d4 - d3) + (d5 - d6))
-        return 1.0 - along, along
-    total = va + vb + vc
-    return vb / total, vc / total
-
-
-@njit
 def _search(queries, corners, boxes, distance, triangle, weights):  # type: ignore[no-untyped-def]
     leaf_count = boxes.shape[0] // 2
     stack = np.empty(STACK, np.int64)
@@ -142,15 +110,14 @@ def _search(queries, corners, boxes, distance, triangle, weights):  # type: igno
             if node >= leaf_count:
                 first = LEAF * (node - leaf_count)
                 for t in range(first, min(first + LEAF, corners.shape[0])):
-                    v, w = _on_triangle(corners[t], x, y, z)
+                    a, b, c = corners[t]
+                    u, v, w = closest_on_triangle(x, y, z, a, b, c)
                     squared = 0.0
-                    for i, at in ((0, x), (1, y), (2, z)):
-                        edge, other = corners[t, 1, i], corners[t, 2, i]
-                        there = (1.0 - v - w) * corners[t, 0, i] + v * edge + w * other
-                        squared += (there - at) ** 2
+                    for i in range(3):
+                        squared += (u * a[i] + v * b[i] + w * c[i] - queries[q, i]) ** 2
                     if squared < best:
                         best, triangle[q] = squared, t
-                        weights[q, 0], weights[q, 1], weights[q, 2] = 1.0 - v - w, v, w
+                        weights[q, 0], weights[q, 1], weights[q, 2] = u, v, w
                 continue
             left = _box_distance(boxes[2 * node], x, y, z)
             right = _box_distance(boxes[2 * node + 1], x, y, z)

@@ -1,7 +1,7 @@
 """What others offer for the same work, ready to be timed beside us in one run.
 
 - *sparse Loop*: the strongest, see sparse_loop.py: one or two uniform levels as matrices that are
-  built once, with scipy's product and with a compiled one.
+  built once.
 - *trimesh*: `trimesh.remesh.subdivide_loop`, one level.
 - *VTK*: `vtkAdaptiveSubdivisionFilter`, two passes at most, its edge length chosen so that the mesh
   of the first frame gets as many triangles as ours. Alone, which computes no normals; and with what
@@ -20,11 +20,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .sheets import Load
 from .sparse_loop import sparse_loop
+from .waving_meshes import Load
 
-Frame = npt.NDArray[np.floating]
-Call = Callable[[Frame], object]
+Positions = npt.NDArray[np.floating]
+Call = Callable[[Positions], object]
 
 SEARCH_STEPS = 14
 LARGEST_FOR_FILTERS = 30_000  # triangles; above, a call of these takes seconds
@@ -53,9 +53,9 @@ def peers_for(load: Load, target: int) -> Peers:
     peers = Peers()
     for levels in (1, 2) if len(load.faces) <= LARGEST_FOR_TWO_LEVELS else (1,):
         matrices = sparse_loop(load, levels=levels)
-        for product, call in (("numba", matrices.by_numba), ("scipy", matrices.by_scipy)):
-            name = f"sparse Loop {levels}x, {product}"
-            peers.found.append(Peer(name, call, matrices.triangles))
+        peers.found.append(
+            Peer(f"sparse Loop {levels}x, numba", matrices.frame, matrices.triangles)
+        )
     if len(load.faces) > LARGEST_FOR_FILTERS:
         return peers
     for name, bind in (
@@ -74,7 +74,7 @@ def peers_for(load: Load, target: int) -> Peers:
 def _trimesh(load: Load) -> Peer:
     import trimesh.remesh
 
-    def frame(positions: Frame) -> Any:
+    def frame(positions: Positions) -> Any:
         return trimesh.remesh.subdivide_loop(positions, load.faces, iterations=1)
 
     return Peer("trimesh Loop 1x", frame, len(frame(load.frames[0])[1]))
@@ -113,7 +113,7 @@ def _vtk(load: Load, target: int, *, is_whole: bool = False) -> Peer:
     rows = np.zeros((len(load.rest) + 9 * len(load.faces), 6), np.float32)
     triangles = np.zeros((16 * len(load.faces), 3), np.uint32)
 
-    def frame(positions: Frame) -> int:
+    def frame(positions: Positions) -> int:
         points.SetData(numpy_to_vtk(np.ascontiguousarray(positions)))
         points.Modified()
         refiner.Update()

@@ -3,7 +3,8 @@
 Kähler, Haber, Seidel 2003, Table 1 compares the static with the refined mesh. Here the time of the
 refiner is taken, from positions to a filled stream, everything counted: normals, criterion, points,
 table, output and the call from Python. Meshes: the built-in face in six full expressions with the
-default thresholds, and sheets (sheets.py) with thresholds that split 10, 50 or 100 % of the edges.
+default thresholds, and sheets (waving_meshes.py) with thresholds that split 10, 50 or 100 % of the
+edges.
 
 The methods of a mesh are run interleaved, forwards and backwards in turn, with garbage collection
 off, and medians are reported: on a shared machine times drift by a third within a run, and so only
@@ -12,6 +13,7 @@ rows of one mesh can be compared. The best time is reported beside the median fo
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -23,9 +25,12 @@ import numpy.typing as npt
 from risorius import assets, refine, sim
 
 from .peers import peers_for
-from .sheets import Load, sheet
 from .starts import Starts, measure_peak, measure_starts
+from .subjects import settled
 from .timing import interleaved
+from .waving_meshes import Load, waving_mesh
+
+Points = npt.NDArray[np.float64]
 
 FULL_EXPRESSIONS = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
 SETTLED = 90  # steps of 1/60 s after which the face stands still
@@ -112,7 +117,13 @@ class _Case:
     method: str
     is_peer: bool
     triangles: float
-    call: Callable[[], object]
+    call: Callable[[Points], object]
+    frames: Sequence[Points]
+
+    def run(self) -> None:
+        """Go through all frames."""
+        for frame in self.frames:
+            self.call(frame)
 
 
 def run(
@@ -152,20 +163,14 @@ def load_of(size: str) -> Load:
         return face_load()
     count = SHEETS[size.partition(" ")[0]]
     frame_count = 4 if count < LARGE else 2
-    return sheet(size, count, frame_count=frame_count, shuffled=size in SHUFFLED)
+    return waving_mesh(size, count, frame_count=frame_count, shuffled=size in SHUFFLED)
 
 
 def face_load() -> Load:
     """The built-in face in each of the six basic expressions, at full strength."""
     head = assets.load("head")
     simulation = sim.create(head)
-    frames = []
-    for name in FULL_EXPRESSIONS:
-        simulation.reset()
-        simulation.set_all(head.expressions[name])
-        for _ in range(SETTLED):
-            simulation.step(1.0 / 60.0)
-        frames.append(simulation.positions.copy())
+    frames = [settled(simulation, head.expressions[name], SETTLED) for name in FULL_EXPRESSIONS]
     return Load("face", head.faces, head.vertices, frames)
 
 
@@ -219,42 +224,30 @@ def _sheet_cases(
 def _peer_cases(load: Load, report: Report, target: float) -> list[_Case]:
     peers = peers_for(load, round(target))
     report.missing += [line for line in peers.missing if line not in report.missing]
-
-    def all_frames(call: Callable[[npt.NDArray[np.floating]], object]) -> Callable[[], None]:
-        def run_all() -> None:
-            for frame in load.frames:
-                call(frame)
-
-        return run_all
-
-    return [_Case(p.name, True, p.triangles, all_frames(p.call)) for p in peers.found]
+    return [_Case(p.name, True, p.triangles, p.call, load.frames) for p in peers.found]
 
 
 def _own(method: str, refiner: refine.Refiner, load: Load) -> _Case:
     """One of our refiners over all frames; the first pass compiles or loads kernels, and counts."""
     counts = [len(refiner.refine(frame).triangles) for frame in load.frames]
-
-    def run_all() -> None:
-        for frame in load.frames:
-            refiner.refine(frame)
-
-    return _Case(method, False, float(np.mean(counts)), run_all)
+    return _Case(method, False, float(np.mean(counts)), refiner.refine, load.frames)
 
 
 def _copy_of(refiner: refine.Refiner, load: Load, method: str) -> _Case:
     """Copying an output as large as the refiner's, frame by frame: the speed of memory."""
     meshes = [refiner.refine(frame) for frame in load.frames]
-    rows = [len(mesh.positions) for mesh in meshes]
-    counts = [len(mesh.triangles) for mesh in meshes]
-    vertices = [np.ones((max(rows), 6), np.float32) for _ in range(2)]
-    triangles = [np.ones((max(counts), 3), np.uint32) for _ in range(2)]
+    sizes = [(len(mesh.positions), len(mesh.triangles)) for mesh in meshes]
+    row_count, count = np.max(sizes, axis=0)
+    vertices = np.ones((2, row_count, 6), np.float32)
+    triangles = np.ones((2, count, 3), np.uint32)
+    next_size = itertools.cycle(sizes)
 
-    def run_all() -> None:
-        for row_count, count in zip(rows, counts, strict=True):
-            np.copyto(vertices[1][:row_count], vertices[0][:row_count])
-            np.copyto(triangles[1][:count], triangles[0][:count])
+    def copy(_: Points) -> None:
+        row_count, count = next(next_size)
+        np.copyto(vertices[1, :row_count], vertices[0, :row_count])
+        np.copyto(triangles[1, :count], triangles[0, :count])
 
-    return _Case(method, False, float(np.mean(counts)), run_all)
+    return _Case(method, False, float(np.mean(sizes, axis=0)[1]), copy, load.frames)
 
 
 def thresholds_of(
@@ -298,10 +291,10 @@ def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:
     """Rows of all cases, in as many rounds as fit the time."""
     start = time.perf_counter()
     for case in cases:
-        case.call()
+        case.run()
     spent = time.perf_counter() - start
     rounds = int(np.clip(seconds / max(spent, 1e-9), FEWEST_ROUNDS, MOST_ROUNDS))
-    times = interleaved([case.call for case in cases], rounds) / len(load.frames)
+    times = interleaved([case.run for case in cases], rounds) / len(load.frames)
     return [
         Row(
             load.name,

@@ -14,7 +14,7 @@ core does.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import partial
 from types import SimpleNamespace
 
@@ -22,6 +22,7 @@ import numpy as np
 
 from risorius import assets, sim
 
+from .report import processor, table
 from .timing import interleaved
 
 FRAME = 1.0 / 60.0
@@ -127,3 +128,23 @@ def _plain(size: int, generator: np.random.Generator) -> _Subject:
     simulation = sim.create(SimpleNamespace(vertices=vertices, faces=faces))
     blow = generator.normal(scale=BLOW, size=vertices.shape)
     return _Subject("plain mesh", simulation, lambda: simulation.kick(blow))
+
+
+def report(rows: Sequence[Row], rounds: int) -> str:
+    """The text to print."""
+    columns = (
+        "motion:<28",
+        "vertices:8d",
+        "triangles:9d",
+        "ms:8.3f",
+        "best:8.3f",
+        "ns/vertex:9.0f",
+    )
+    return "\n".join(
+        [
+            f"One frame of 1/60 s, serial, one core of {processor()}: medians of {rounds}",
+            "interleaved rounds; set up is not counted.",
+            "",
+            *table(columns, [(*astuple(row), row.nanoseconds_per_vertex) for row in rows]),
+        ]
+    )

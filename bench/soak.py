@@ -152,3 +152,19 @@ def _mirror_error(simulation: sim.Simulation, mirror: npt.NDArray[np.int32], see
             run.append(simulation.positions.copy())
         runs.append(np.array(run))
     return float(np.abs(runs[1][:, mirror] * (-1.0, 1.0, 1.0) - runs[0]).max())
+
+
+def report(seen: Soak) -> str:
+    """The text to print."""
+    return "\n".join(
+        [
+            f"{seen.seconds / 60.0:.1f} simulated minutes, {seen.frames} frames of 1/240 to",
+            "1/20 s, every control at random in every frame:",
+            f"finite            {'yes' if seen.finite else 'NO'}",
+            f"furthest          {seen.furthest:.2f} mm from rest",
+            f"2 s after release {seen.left_over:.6f} mm from rest",
+            f"energy growth     {seen.growth:.1e} of a blow, most in a frame without input",
+            f"same bytes        {'yes' if seen.same_bytes else 'NO'}",
+            f"mirrored input    {seen.mirror_error:.1e} mm from the mirrored motion",
+        ]
+    )

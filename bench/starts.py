@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .sheets import Load
+from .waving_meshes import Load
 
 PROGRAM = """
 import time

@@ -106,11 +106,7 @@ def built_in(level: int) -> Subject:
     count = len(head.vertices)
     poses = {}
     for name, values in head.expressions.items():
-        simulation.reset()
-        simulation.set_all(values)
-        for _ in range(SETTLE):
-            simulation.step(1.0 / 60.0)
-        moved = simulation.positions.copy()
+        moved = settled(simulation, values, SETTLE)
         poses[name] = Pose(moved, moved[:count])
     return Subject(
         f"head x {4**level}",
@@ -119,6 +115,15 @@ def built_in(level: int) -> Subject:
         Pose(fine.vertices, fine.vertices[:count]),
         poses,
     )
+
+
+def settled(simulation: sim.Simulation, values: Mapping[str, float], frames: int) -> Points:
+    """Hold controls from rest for some frames of 1/60 s; a copy of the vertices [mm], (V, 3)."""
+    simulation.reset()
+    simulation.set_all(values)
+    for _ in range(frames):
+        simulation.step(1.0 / 60.0)
+    return simulation.positions.copy()
 
 
 def read_arrays(path: Path, needed: tuple[str, ...]) -> dict[str, npt.NDArray[Any]]:

@@ -6,7 +6,7 @@ against the skin around them, and how deep skin sits in the other lip, an eyebal
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,13 +14,15 @@ import numpy.typing as npt
 
 from risorius import assets, sim
 
+from .report import table
+from .subjects import settled
+
 Array = npt.NDArray[np.float64]
 
 SEED = 2001
 MIXTURES = 500
 MOST_CONTROLS = 8  # in a mixture
-FRAME = 1.0 / 60.0
-SETTLE = 40  # frames
+SETTLE = 40  # frames of 1/60 s
 AROUND = 12.0  # mm around a triangle whose mean turn it is compared with
 
 
@@ -43,12 +45,9 @@ def run(*, mixtures: int = MIXTURES, seed: int = SEED) -> list[Pose]:
     simulation = sim.create(head)
     poses = []
     for name, values in _values(simulation, mixtures, np.random.default_rng(seed)):
-        simulation.reset()
-        simulation.set_all(values)
-        for _ in range(SETTLE):
-            simulation.step(FRAME)
+        now = settled(simulation, values, SETTLE)
         deep = simulation.penetrations()
-        inverted = _inverted(simulation.rest_positions, simulation.positions, head.faces)
+        inverted = _inverted(simulation.rest_positions, now, head.faces)
         poses.append(Pose(name, inverted, deep["lips"], deep["lids"], deep["teeth"]))
     return poses
 
@@ -88,3 +87,22 @@ def _normals(x: Array, faces: npt.NDArray[np.int32]) -> Array:
     """Normals of triangles, shape (F, 3), not of unit length."""
     normals: Array = np.cross(x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]])
     return normals
+
+
+def report(poses: Sequence[Pose], mixtures: int) -> str:
+    """The text to print."""
+    rows = []
+    for part in ("inverted", "lips", "lids", "teeth"):
+        worst = max(poses, key=lambda pose: float(getattr(pose, part)))
+        value, unit = float(getattr(worst, part)), "" if part == "inverted" else " mm"
+        rows.append((part, f"{value:.4g}{unit}", f" {worst.name if value > 0.0 else '-'}"))
+    return "\n".join(
+        [
+            f"{len(poses)} poses: every row of the layers and {mixtures} random mixtures of "
+            "muscles.",
+            f"triangles turned by more than a right angle: {sum(pose.inverted for pose in poses)} "
+            f"in {sum(pose.inverted > 0 for pose in poses)} poses",
+            "",
+            *table(("worst:<10", "value:>9", " in:<1"), rows),
+        ]
+    )

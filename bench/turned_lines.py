@@ -7,14 +7,9 @@ there, and which is not, has turned: flat shaded, the triangle flickers.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
-
-import numpy as np
-import numpy.typing as npt
 
 from risorius import refine
 
-Positions = npt.NDArray[np.floating]
 Point = tuple[int, int, int]
 """A point of a refined mesh for life: ends of its edge, and quarters from the lower one."""
 Line = tuple[int, Point, Point]
@@ -51,15 +46,3 @@ def inner_lines(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> set[Line]:
 def turned(before: set[Line], now: set[Line], rows: dict[Point, int]) -> list[Line]:
     """Lines of the frame before that are gone although `rows` still has both their ends."""
     return sorted(line for line in before - now if line[1] in rows and line[2] in rows)
-
-
-def turned_per_frame(refiner: refine.Refiner, frames: Iterable[Positions]) -> list[int]:
-    """How many lines turn in each of `frames`, the first one left out."""
-    counts: list[int] = []
-    before: set[Line] | None = None
-    for positions in frames:
-        now = inner_lines(refiner, refiner.refine(positions))
-        if before is not None:
-            counts.append(len(turned(before, now, point_rows(refiner))))
-        before = now
-    return counts

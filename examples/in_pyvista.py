@@ -42,13 +42,13 @@ def main(picture: Path) -> list[int]:
         "kahler", plane.faces, plane.vertices, threshold_once=0.001, threshold_twice=0.005
     )
     plotter = pyvista.Plotter(off_screen=True, window_size=[800, 600])
-    shown = as_polydata(refiner.refine(waved(plane.vertices, 0.0)))
-    plotter.add_mesh(shown, color="tan", smooth_shading=True, show_edges=True)
+    polydata = as_polydata(refiner.refine(waved(plane.vertices, 0.0)))
+    plotter.add_mesh(polydata, color="tan", smooth_shading=True, show_edges=True)
     plotter.camera_position = [(70.0, -170.0, 120.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
     counts = []
     for frame in range(12):
         mesh = refiner.refine(waved(plane.vertices, 2.0 * np.pi * frame / 12))
-        shown.copy_from(as_polydata(mesh))  # the plotter keeps the object it was given
+        polydata.copy_from(as_polydata(mesh))  # the plotter keeps the object it was given
         plotter.render()
         counts.append(len(mesh.triangles))
     plotter.screenshot(str(picture))

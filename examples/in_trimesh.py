@@ -26,8 +26,8 @@ def twisted(points: Points, angle: float) -> Points:
 def main() -> list[trimesh.Trimesh]:
     """Twist a capsule in eight frames; the refined frames as meshes of trimesh."""
     mesh = trimesh.creation.capsule(height=4.0, radius=1.0, count=[10, 10])
-    kept, faces = refine.weld(mesh.vertices, mesh.faces)
-    rest = np.asarray(mesh.vertices)[kept] * [1.0, 0.5, 1.0]  # flat, so that a twist bends it
+    used, faces = refine.weld(mesh.vertices, mesh.faces)
+    rest = np.asarray(mesh.vertices)[used] * [1.0, 0.5, 1.0]  # flat, so that a twist bends it
     refiner = refine.create("kahler", faces, rest)
     frames = []
     for angle in np.linspace(0.0, np.pi, 8):

@@ -18,11 +18,11 @@ Source: Kähler et al. 2003, Fig. 1, the rendering stage.
 """
 
 from .camera import VIEWS, OrbitCamera
+from .compositor import Detail
 from .errors import GLError
 from .parts import Part
 from .probe import Finding, probe
 from .renderer import Renderer, Viewport
-from .shown import Detail
 from .stream import Stream
 from .style import (
     CLAY,
@@ -39,7 +39,7 @@ from .style import (
     Shading,
     Style,
 )
-from .surface import Frame, OffscreenSurface, Surface, open_offscreen
+from .surface import Image, OffscreenSurface, Surface, open_offscreen
 from .texture import Texture
 from .window import WindowSurface, open_window, size_on_screen
 from .wrinkles import WrinkleMap
@@ -59,8 +59,8 @@ __all__ = [
     "ColourBy",
     "Detail",
     "Finding",
-    "Frame",
     "GLError",
+    "Image",
     "OffscreenSurface",
     "OrbitCamera",
     "Part",

@@ -6,13 +6,13 @@ against 8 ms at 1280 x 720), and a tenth of a copy of a part, which is no plain 
 
 import moderngl
 
-from .layers import Layers, Rectangle, overlap, release_target
 from .programs import compile_program
+from .render_target import Rectangle, RenderTarget, overlap, release_target
 from .style import Background
 
 
 class Backdrop:
-    """Paints backgrounds into the frame of a surface's layers."""
+    """Paints backgrounds into the frame of a surface's target."""
 
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
@@ -21,11 +21,11 @@ class Backdrop:
         self._store: moderngl.Framebuffer | None = None
         self._stored: dict[Rectangle, Background] = {}
 
-    def paint(self, layers: Layers, viewport: Rectangle, background: Background) -> None:
+    def paint(self, target: RenderTarget, viewport: Rectangle, background: Background) -> None:
         """Paint the background over the viewport; what was drawn there is gone."""
-        if self._store is None or self._store.size != layers.size:
+        if self._store is None or self._store.size != target.size:
             self._forget()
-            self._store = self._gl.framebuffer([self._gl.renderbuffer(layers.size, 4)])
+            self._store = self._gl.framebuffer([self._gl.renderbuffer(target.size, 4)])
         if self._stored.get(viewport) != background:
             self._stored = {
                 other: kept for other, kept in self._stored.items() if not overlap(other, viewport)
@@ -36,15 +36,15 @@ class Backdrop:
                 self._store.clear(0.0, 0.0, 0.0, 1.0)  # around it, as an empty frame
             self._stored[viewport] = background
             self._paint(viewport, background)
-        layers.use_frame(viewport)  # its scissor restricts the copy to the viewport
-        if layers.is_empty and len(self._stored) == 1:
+        target.use_frame(viewport)  # its scissor restricts the copy to the viewport
+        if target.is_empty and len(self._stored) == 1:
             self._gl.scissor = None  # what is around it is black in both
-        self._gl.copy_framebuffer(layers.frame, self._store)
-        if not (layers.samples or layers.is_empty):  # the frame has depth, and it was drawn on
-            layers.frame.color_mask = False, False, False, False
-            layers.frame.clear(depth=1.0, viewport=viewport)
-            layers.frame.color_mask = True, True, True, True
-        layers.is_empty = False
+        self._gl.copy_framebuffer(target.frame, self._store)
+        if not (target.samples or target.is_empty):  # the frame has depth, and it was drawn on
+            target.frame.color_mask = False, False, False, False
+            target.frame.clear(depth=1.0, viewport=viewport)
+            target.frame.color_mask = True, True, True, True
+        target.is_empty = False
 
     def _paint(self, viewport: Rectangle, background: Background) -> None:
         gl = self._gl

@@ -7,7 +7,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .sight import box_corners
+from .camera_view import box_corners
 from .style import Colour
 
 VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl reads it so

@@ -27,7 +27,7 @@ def set_skin(program: moderngl.Program, style: Style) -> None:
     program["to_key"] = TO_KEY
     if "albedo" in program:  # not where a texture takes its place
         program["albedo"] = linear(style.albedo)
-    if "inner_albedo" in program:  # strips along contours have no inner side
+    if "inner_albedo" in program:  # fringes along contours have no inner side
         program["inner_albedo"] = linear(style.inside)
     program["subsurface"] = style.scattering
     program["gloss"] = 0.26 * style.gloss

@@ -13,8 +13,8 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .layers import Layers, Rectangle, release_target
 from .programs import compile_program
+from .render_target import Rectangle, RenderTarget, release_target
 
 BLOCK = 8  # pixels each way
 _WINDOWS = 5  # how many tables to look up: of 1, 2, 4, 8, 16 blocks each way
@@ -30,15 +30,15 @@ Indices = npt.NDArray[np.intp]
 
 
 class DepthReader:
-    """Reads the farthest depth of each block of the layer; belongs to one size of layers."""
+    """Reads the farthest depth of each block of the layer; belongs to one target."""
 
-    def __init__(self, gl: moderngl.Context, layers: Layers) -> None:
-        self.layers = layers
+    def __init__(self, gl: moderngl.Context, scene: RenderTarget) -> None:
+        self.scene = scene
         self._gl = gl
-        width, height = layers.size
+        width, height = scene.size
         self._size = -(-width // BLOCK), -(-height // BLOCK)
         self._program = compile_program(
-            gl, "farthest.glsl", f"SAMPLES {layers.samples}", f"BLOCK {BLOCK}"
+            gl, "farthest.glsl", f"SAMPLES {scene.samples}", f"BLOCK {BLOCK}"
         )
         self._program["depths"] = _UNIT
         self._program["last"] = width - 1, height - 1
@@ -53,7 +53,7 @@ class DepthReader:
         width = -(-(pixels[0] + pixels[2]) // BLOCK) - left
         height = -(-(pixels[1] + pixels[3]) // BLOCK) - bottom
         self._blocks = left, bottom, width, height
-        self.layers.use_depth(_UNIT)
+        self.scene.use_depth(_UNIT)
         self._target.use()
         gl.viewport, gl.scissor = (0, 0, *self._size), self._blocks
         gl.disable(moderngl.DEPTH_TEST)
@@ -82,11 +82,11 @@ class ProjectedFaces:
     """
 
     def __init__(
-        self, vertices: Depths, corners: Indices, matrix: FloatArray, view: Rectangle
+        self, vertices: Depths, corners: Indices, matrix: FloatArray, viewport: Rectangle
     ) -> None:
         """Project vertices, shape (n, 3), and faces by their corners, shape (3, m).
 
-        matrix: model -> clip space, for row vectors, shape (4, 4). view: the viewport.
+        matrix: model -> clip space, for row vectors, shape (4, 4). viewport: [pixels].
         """
         self.count = corners.shape[1]
         clip = vertices @ matrix[:3].astype(np.float32) + matrix[3].astype(np.float32)
@@ -94,8 +94,8 @@ class ProjectedFaces:
         if self.reaches_behind_the_eye:
             return
         place = clip[:, :3] / clip[:, 3:]
-        x = (0.5 * view[2]) * (place[:, 0] + 1.0) + view[0]
-        y = (0.5 * view[3]) * (place[:, 1] + 1.0) + view[1]
+        x = (0.5 * viewport[2]) * (place[:, 0] + 1.0) + viewport[0]
+        y = (0.5 * viewport[3]) * (place[:, 1] + 1.0) + viewport[1]
         depth = 0.5 * place[:, 2] + 0.5
         a, b, c = corners
         area = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])

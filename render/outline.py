@@ -1,8 +1,8 @@
-"""Smooth outlines where a pixel has but one sample: a fading strip along each contour of the mesh.
+"""Smooth outlines where a pixel has but one sample: a fading fringe along each contour of the mesh.
 
 Contours are the edges between a triangle that turns to the eye and one that turns away, and the
-mesh's borders. Along each a strip of one pixel is drawn outward, shaded as the skin beside it, that
-fades over what lies behind. Only these pixels are shaded, and no picture is filtered afterwards.
+mesh's borders. Along each a fringe of one pixel is drawn outward, shaded as the skin beside it,
+that fades over what lies behind. Only these pixels are shaded; no picture is filtered afterwards.
 Source: Sander, Hoppe, Snyder, Gortler 2001, "Discontinuity edge overdraw".
 """
 
@@ -12,12 +12,12 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .sight import Sight
+from .camera_view import CameraView
 from .stream import Stream
 
-WIDTH = 1.0  # [pixels] in which a strip fades: as far as the steps of its edge reach
+WIDTH = 1.0  # [pixels] in which a fringe fades: as far as the steps of its edge reach
 _SHORTEST = 1e-3  # [pixels] of an edge that has a direction
-# The corners of a strip's two triangles: at which end of the edge, and whether on the outer side.
+# The corners of a fringe's two triangles: at which end of the edge, and whether on the outer side.
 _ENDS = np.array([0, 0, 1, 0, 1, 1])
 _SIDES = np.array([0, 1, 1, 0, 1, 0])
 
@@ -25,7 +25,7 @@ Floats = npt.NDArray[np.float32]
 
 
 class Outline:
-    """The strips along the contours of one mesh, made anew whenever it is drawn."""
+    """The fringes along the contours of one mesh, made anew whenever it is drawn."""
 
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
@@ -34,10 +34,10 @@ class Outline:
         self._vertex_count = 0
         self._columns = 0
 
-    def upload(self, stream: Stream, sight: Sight) -> bool:
-        """Make the strips for what `stream` last uploaded; whether there are any."""
-        rows = strips(
-            stream.vertices[: stream.vertex_count], stream.triangles[: stream.triangle_count], sight
+    def upload(self, stream: Stream, view: CameraView) -> bool:
+        """Make the fringes for what `stream` last uploaded; whether there are any."""
+        rows = fringes(
+            stream.vertices[: stream.vertex_count], stream.triangles[: stream.triangle_count], view
         )
         self._vertex_count, self._columns = len(rows), rows.shape[1]
         if not len(rows):
@@ -50,10 +50,10 @@ class Outline:
         return True
 
     def draw(self, program: moderngl.Program) -> None:
-        """Draw the strips with a program that has in_strip and what a mesh has."""
+        """Draw the fringes with a program that has in_fringe and what a mesh has."""
         key = program, self._columns
         if key not in self._arrays:
-            names = ["in_position", "in_normal", "in_uv", "in_strip"]
+            names = ["in_position", "in_normal", "in_uv", "in_fringe"]
             layout = "3f 3f 2f 3f"
             if self._columns == 9:
                 names.remove("in_uv")
@@ -72,11 +72,11 @@ class Outline:
         self._buffer = None
 
 
-def strips(vertices: Floats, triangles: npt.NDArray[np.uint32], sight: Sight) -> Floats:
+def fringes(vertices: Floats, triangles: npt.NDArray[np.uint32], view: CameraView) -> Floats:
     """Two triangles for each contour: the mesh's columns, offset in clip space x y, coverage."""
-    matrix = sight.world_to_clip.astype(np.float32)
+    matrix = view.world_to_clip.astype(np.float32)
     clip = matrix[:3].T @ vertices[:, :3].T + matrix[3][:, None]  # by column
-    half_size = 0.5 * np.array(sight.viewport[2:], np.float32)
+    half_size = 0.5 * np.array(view.viewport[2:], np.float32)
     x, y = clip[:2] / np.maximum(clip[3], np.float32(1e-6)) * half_size[:, None]
     a, b, c = np.ascontiguousarray(triangles.T)
     area = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])

@@ -8,9 +8,9 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .layers import Layers, Rectangle, hull
+from .camera_view import CameraView, box_corners
 from .occlusion import DepthReader, ProjectedFaces
-from .sight import Sight, box_corners
+from .render_target import Rectangle, RenderTarget, hull
 from .style import linear
 
 
@@ -61,11 +61,11 @@ class PartBuffers:
         self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
         self._projection: tuple[object, ProjectedFaces] | None = None
 
-    def projected(self, matrix: npt.NDArray[np.float64], view: Rectangle) -> ProjectedFaces:
+    def projected(self, matrix: npt.NDArray[np.float64], viewport: Rectangle) -> ProjectedFaces:
         """Its faces as the camera sees them, as computed last where part and camera stood still."""
-        key = matrix.tobytes(), view
+        key = matrix.tobytes(), viewport
         if self._projection is None or self._projection[0] != key:
-            faces = ProjectedFaces(self.part.vertices, self.face_corners, matrix, view)
+            faces = ProjectedFaces(self.part.vertices, self.face_corners, matrix, viewport)
             self._projection = key, faces
         return self._projection[1]
 
@@ -122,23 +122,25 @@ class PartStore:
         """Each part with the matrix of its bone; ValueError for a bone without one."""
         return [(self.buffers(part), _transform(part, transforms)) for part in parts]
 
-    def seen(self, placed: list[PlacedPart], sight: Sight, layers: Layers) -> list[PlacedPart]:
+    def seen(
+        self, placed: list[PlacedPart], view: CameraView, target: RenderTarget
+    ) -> list[PlacedPart]:
         """Leave out all triangles of the parts that are hidden by what was drawn so far."""
         models = [np.asarray(transform, np.float64).T for _, transform in placed]
         touched = [
-            sight.touched_pixels(buffers.corners, model=model)
+            view.touched_pixels(buffers.corners, model=model)
             for (buffers, _), model in zip(placed, models, strict=True)
         ]
         touched = [pixels for pixels in touched if pixels[2] and pixels[3]]
         if not touched:
             return []
-        if self._depths is None or self._depths.layers is not layers:
+        if self._depths is None or self._depths.scene is not target:
             if self._depths is not None:
                 self._depths.release()
-            self._depths = DepthReader(self._gl, layers)
+            self._depths = DepthReader(self._gl, target)
         self._depths.look(functools.reduce(hull, touched))
         projected = [
-            buffers.projected(model @ sight.world_to_clip, sight.viewport)
+            buffers.projected(model @ view.world_to_clip, view.viewport)
             for (buffers, _), model in zip(placed, models, strict=True)
         ]
         depths = self._depths.read()

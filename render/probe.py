@@ -49,6 +49,7 @@ def probe(*, offscreen_only: bool = False) -> list[Finding]:
 
 def _probe_in_process(name: str) -> Finding:
     def failed(message: str) -> Finding:
+        """A way to draw that does not work."""
         return Finding(name, is_ok=False, message=message)
 
     code = f"from {__package__}.probe import write_finding; write_finding({name!r})"

@@ -30,6 +30,7 @@ def shader_text(name: str) -> str:
 
     # Line numbers in the driver's messages are those of the file: an include counts as no line.
     def fill(match: re.Match[str]) -> str:
+        """The text of an include."""
         line = text.count("\n", 0, match.start()) + 2
         return f"{shader_text(match.group(1))}\n#line {line}"
 
@@ -44,6 +45,7 @@ def compile_program(
     switches = "".join(f"#define {define}\n" for define in defines)
 
     def stage(stage_name: str) -> str:
+        """The text of one stage."""
         return f"#version 330 core\n#define {stage_name}_STAGE\n{switches}#line 1\n{body}"
 
     try:

@@ -18,13 +18,13 @@ import numpy.typing as npt
 
 from .backdrop import Backdrop
 from .camera import OrbitCamera
+from .camera_view import CameraView
 from .geometry import LineBuffer, ValueTexture, checked_values
 from .materials import COLOUR_DEFINES, TO_KEY, set_palette, set_part, set_skin
 from .outline import Outline
 from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
 from .shadow import TEXEL, ShadowMap
-from .sight import Sight
 from .stream import Share, Stream
 from .style import Colour, ColourBy, Shading, Style
 from .surface import Surface
@@ -36,7 +36,7 @@ Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the l
 SHADOW_OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
 SHADOW_REACH = 2.0 * TEXEL  # how far the shadow's look-up reaches to each side
 
-_VALUE_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the layers use 1
+_VALUE_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the target uses 1
 _WRINKLE_UNIT = 5  # 4 belongs to a window's enlargement
 # Colour as usual; the layer starts out transparent and collects premultiplied colour.
 _PREMULTIPLYING_BLEND: Any = (
@@ -69,7 +69,7 @@ class Renderer:
         Streams that were drawn with these programs have to be released, too.
         """
         self.surface.make_current()
-        self.surface.layers.frame.use()  # not what is released: moderngl would bind it again
+        self.surface.target.frame.use()  # not what is released: moderngl would bind it again
         for owner in (self._parts, self._values, self._lines, self._backdrop, self._outline):
             owner.release()
         for program in self._programs.values():
@@ -108,7 +108,7 @@ class Renderer:
 
     def draw_background(self, style: Style, viewport: Viewport | None = None) -> None:
         """Paint the style's background over the viewport, and over what was drawn there."""
-        self._backdrop.paint(self.surface.layers, self._viewport(viewport), style.background)
+        self._backdrop.paint(self.surface.target, self._viewport(viewport), style.background)
 
     def draw_mesh(
         self,
@@ -137,19 +137,19 @@ class Renderer:
         if not style.textured:
             texture = None
         is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
-        sight = self._sight(camera, viewport, clip)
+        view = self._camera_view(camera, viewport, clip)
         if is_coloured:
             self._values.upload(checked_values(values, stream.triangle_count))
         if style.shadows:
-            self._draw_shadow(stream, sight)
+            self._draw_shadow(stream, view)
         shares = [Share.ALL] if wrinkles is None or is_coloured else [Share.WRINKLED, Share.SMOOTH]
         drawn = []
         for share in shares:
             shown = None if share is Share.SMOOTH else wrinkles
             program = self._surface_program(style, texture, shown)
-            if not self._aim(program, sight, stream.corners, np.eye(4)):
+            if not self._aim(program, view, stream.corners, np.eye(4)):
                 return
-            self._set_surface(program, sight, style, texture, shown)
+            self._set_surface(program, view, style, texture, shown)
             drawn.append((program, share))
         self._draw_sides(stream, drawn)
 
@@ -171,12 +171,12 @@ class Renderer:
         if not is_smooth or style.colour_by is not ColourBy.NONE or not stream.triangle_count:
             return
         texture = texture if style.textured else None
-        sight = self._sight(camera, viewport, clip)
-        if not self._outline.upload(stream, sight):
+        view = self._camera_view(camera, viewport, clip)
+        if not self._outline.upload(stream, view):
             return
-        program = self._surface_program(style, texture, None, "STRIP")
-        if self._aim(program, sight, stream.corners, np.eye(4)):
-            self._set_surface(program, sight, style, texture, None)
+        program = self._surface_program(style, texture, None, "FRINGE")
+        if self._aim(program, view, stream.corners, np.eye(4)):
+            self._set_surface(program, view, style, texture, None)
             with self._blending():
                 self._outline.draw(program)
 
@@ -214,7 +214,7 @@ class Renderer:
     def _set_surface(
         self,
         program: moderngl.Program,
-        sight: Sight,
+        view: CameraView,
         style: Style,
         texture: Texture | None,
         wrinkles: WrinkleMap | None,
@@ -222,9 +222,9 @@ class Renderer:
         """Set what the mesh's program asks for beside matrices."""
         set_skin(program, style)
         if style.shadows:
-            self._set_shadow(program, sight)
+            self._set_shadow(program, view)
         if style.wireframe:
-            program["viewport_size"] = sight.viewport[2:]
+            program["viewport_size"] = view.viewport[2:]
             program["wire_half_width"] = 0.5 * style.wire_width * self._line_scale
             program["wire_colour"] = *style.wire_colour, style.wire_opacity
         if texture is not None:
@@ -254,18 +254,18 @@ class Renderer:
         Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
         is first seen and must not change after. Raises ValueError for a bone without transform.
         """
-        sight = self._sight(camera, viewport, clip)
-        is_shadowed = style.shadows and self._shadow_key == self._key_of_shadow(sight)
+        view = self._camera_view(camera, viewport, clip)
+        is_shadowed = style.shadows and self._shadow_key == self._key_of_shadow(view)
         program = self._program(
             "surface.glsl", "PIXEL", "COLOURED", *(["SHADOWS"] if is_shadowed else [])
         )
         if is_shadowed:
-            self._set_shadow(program, sight)
+            self._set_shadow(program, view)
         placed = self._parts.placed(parts, transforms)
         if self.surface.is_software:
-            placed = self._parts.seen(placed, sight, self.surface.layers)
+            placed = self._parts.seen(placed, view, self.surface.target)
         for buffers, transform in placed:
-            if self._aim(program, sight, buffers.corners, transform):
+            if self._aim(program, view, buffers.corners, transform):
                 set_part(program, buffers.part.shine)
                 buffers.draw(program)
 
@@ -286,18 +286,18 @@ class Renderer:
         colour: sRGB of all lines, or one row per line, shape (len(polylines), 3).
         width: [pixels at scale 1]; hidden_opacity: 0 (hidden) to 1 (as if nothing were in front).
         """
-        sight = self._sight(camera, viewport, clip)
+        view = self._camera_view(camera, viewport, clip)
         program = self._program("lines.glsl")
         if not self._lines.upload(program, polylines, colour):
             return
         width *= self._line_scale
-        touched = sight.touched_pixels(self._lines.corners, padding=2.0 + width)
-        write_uniform(program, "world_to_clip", sight.world_to_clip)
-        program["viewport_size"] = sight.viewport[2:]
+        touched = view.touched_pixels(self._lines.corners, padding=2.0 + width)
+        write_uniform(program, "world_to_clip", view.world_to_clip)
+        program["viewport_size"] = view.viewport[2:]
         program["half_width"] = 0.5 * width
         if touched[2] < 1 or touched[3] < 1:
             return
-        self.surface.layers.use_layer(sight.viewport, touched)
+        self.surface.target.use_layer(view.viewport, touched)
         with self._blending():
             for depth_func, opacity in ((">", hidden_opacity), ("<=", 1.0)):
                 if opacity > 0.0:
@@ -317,17 +317,17 @@ class Renderer:
         gl.depth_func = "<="
         gl.disable(moderngl.BLEND)
 
-    def _sight(
+    def _camera_view(
         self, camera: OrbitCamera, viewport: Viewport | None, clip: Viewport | None
-    ) -> Sight:
+    ) -> CameraView:
         inside = None if clip is None else self._viewport(clip)
-        return Sight(camera, self._viewport(viewport), inside)
+        return CameraView(camera, self._viewport(viewport), inside)
 
     def _viewport(self, viewport: Viewport | None) -> Viewport:
         self.surface.make_current()
         scale = self.surface.scale
         if viewport is None:
-            return (0, 0, *self.surface.layers.size)
+            return (0, 0, *self.surface.target.size)
         if viewport[2] < 1 or viewport[3] < 1:
             raise ValueError(
                 f"viewport is {viewport}; it must be (x, y, width, height) of 1 pixel or more"
@@ -355,34 +355,34 @@ class Renderer:
     def _aim(
         self,
         program: moderngl.Program,
-        sight: Sight,
+        view: CameraView,
         corners: npt.NDArray[np.float64],
         transform: npt.NDArray[np.float64],
     ) -> bool:
-        """Set matrices and drawing area for geometry in a box; False where it is out of sight."""
+        """Set matrices and drawing area for geometry in a box; False where it is not seen."""
         model = np.asarray(transform, np.float64).T
-        touched = sight.touched_pixels(corners, model=model)
+        touched = view.touched_pixels(corners, model=model)
         if touched[2] < 1 or touched[3] < 1:
             return False
-        self.surface.layers.use_layer(sight.viewport, touched)
-        write_uniform(program, "model_view", model @ sight.view)
-        write_uniform(program, "projection", sight.projection)
+        self.surface.target.use_layer(view.viewport, touched)
+        write_uniform(program, "model_view", model @ view.world_to_view)
+        write_uniform(program, "projection", view.projection)
         return True
 
-    def _key_of_shadow(self, sight: Sight) -> tuple[int, bytes]:
-        return self.surface.layers.frame_number, sight.fingerprint
+    def _key_of_shadow(self, view: CameraView) -> tuple[int, bytes]:
+        return self.surface.target.frame_number, view.fingerprint
 
-    def _draw_shadow(self, stream: Stream, sight: Sight) -> None:
+    def _draw_shadow(self, stream: Stream, view: CameraView) -> None:
         if self._shadow is None:
             self._shadow = ShadowMap(self._gl, TO_KEY)
-        self._shadow.draw(stream, sight)
-        self._shadow_key = self._key_of_shadow(sight)
+        self._shadow.draw(stream, view)
+        self._shadow_key = self._key_of_shadow(view)
 
-    def _set_shadow(self, program: moderngl.Program, sight: Sight) -> None:
+    def _set_shadow(self, program: moderngl.Program, view: CameraView) -> None:
         assert self._shadow is not None
-        write_uniform(program, "shadow_matrix", self._shadow.lookup_matrix(sight))
-        program["shadow_offset"] = SHADOW_OFFSET * sight.camera.scene_radius
-        program["shadow_reach"] = SHADOW_REACH * sight.camera.scene_radius
+        write_uniform(program, "shadow_matrix", self._shadow.lookup_matrix(view))
+        program["shadow_offset"] = SHADOW_OFFSET * view.camera.scene_radius
+        program["shadow_reach"] = SHADOW_REACH * view.camera.scene_radius
         program["shadow_map"] = self._shadow.bind(_SHADOW_UNIT)
 
 

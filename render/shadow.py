@@ -12,9 +12,9 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .layers import release_target
+from .camera_view import CameraView
 from .programs import compile_program, write_uniform
-from .sight import Sight
+from .render_target import release_target
 from .stream import Stream
 
 RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade within 5 mm
@@ -40,10 +40,10 @@ class ShadowMap:
         self._depth.filter = moderngl.LINEAR, moderngl.LINEAR
         self._target = gl.framebuffer(depth_attachment=self._depth)
 
-    def draw(self, stream: Stream, sight: Sight) -> None:
+    def draw(self, stream: Stream, view: CameraView) -> None:
         """Take the depth picture of what `stream` uploaded."""
         gl = self._gl
-        write_uniform(self._program, "light_matrix", sight.view @ self._view_to_light(sight))
+        write_uniform(self._program, "light_matrix", view.world_to_view @ self._view_to_light(view))
         self._target.use()
         gl.viewport, gl.scissor = (0, 0, RESOLUTION, RESOLUTION), None
         self._target.clear(depth=1.0)
@@ -59,15 +59,15 @@ class ShadowMap:
         self._depth.use(unit)
         return unit
 
-    def lookup_matrix(self, sight: Sight) -> FloatArray:
+    def lookup_matrix(self, view: CameraView) -> FloatArray:
         """View space -> texture coordinates and depth, 0..1, for row vectors, shape (4, 4)."""
-        lookup: FloatArray = self._view_to_light(sight) @ _TO_TEXTURE
+        lookup: FloatArray = self._view_to_light(view) @ _TO_TEXTURE
         return lookup
 
-    def _view_to_light(self, sight: Sight) -> FloatArray:
+    def _view_to_light(self, view: CameraView) -> FloatArray:
         """View space -> the light's clip space: all that throws and takes shadows fills it."""
-        camera = sight.camera
-        centre = (np.append(camera.scene_centre, 1.0) @ sight.view)[:3]
+        camera = view.camera
+        centre = (np.append(camera.scene_centre, 1.0) @ view.world_to_view)[:3]
         matrix = np.eye(4)
         matrix[:3, :3] = self._basis.T / (REACH * camera.scene_radius)
         matrix[3, :3] = -centre @ matrix[:3, :3]

@@ -12,7 +12,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .sight import box_corners
+from .camera_view import box_corners
 
 
 class Share(Enum):

@@ -92,10 +92,8 @@ class Style:
     colour_by: ColourBy = ColourBy.NONE
     albedo: Colour = SKIN  # of the front side
     textured: bool = True  # a texture, where there is one, takes the place of the albedo
-    inner_albedo: Colour | None = None  # of the back side; None: by how warm the front's is
-    subsurface: float | None = (
-        None  # 0 = hard terminator, 1 = skin; None: by how warm the albedo is
-    )
+    # How far light bleeds past the terminator, 0 .. 1 (skin); None: by how warm the albedo is
+    subsurface: float | None = None
     gloss: float = 0.5  # strength of the skin's highlight, 0..1
     shadows: bool = True  # of the key light
     occlusion: bool = True  # less light from all around in folds, where the texture says so
@@ -107,14 +105,12 @@ class Style:
 
     @property
     def scattering(self) -> float:
-        """How far light bleeds past the terminator: `subsurface`, or from the albedo's warmth."""
+        """`subsurface`, or what the albedo's warmth makes of it."""
         return max(self._warmth, 0.25) if self.subsurface is None else self.subsurface
 
     @property
     def inside(self) -> Colour:
         """The albedo of the back side: red inside of lids and mouth, darker clay behind clay."""
-        if self.inner_albedo is not None:
-            return self.inner_albedo
         warmth = min(self._warmth / WARM, 1.0)
         red, green, blue = (
             warmth * flesh + (1.0 - warmth) * INNER_SHARE * front

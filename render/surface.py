@@ -1,8 +1,8 @@
 """What is drawn on: an offscreen frame or a window, behind one interface.
 
-Both kinds draw the scene into layers of their own (`layers.py`), which a window then lays under
-its panels (`shown.py`). So `read` gives what is seen for both, even while a window is hidden or
-covered, and a panel that is drawn after `resolve` is part of it.
+Both kinds draw the scene into a target of their own (`render_target.py`), which a window then lays
+under its panels (`compositor.py`). So `read` gives what is seen for both, even while a window is
+hidden or covered, and a panel that is drawn after `resolve` is part of it.
     surface.begin();  ...draw...;  [surface.resolve(); ...draw a panel on top...;]  surface.end()
 """
 
@@ -16,17 +16,17 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import GLError, diagnose
-from .layers import Layers
+from .render_target import RenderTarget
 
-Frame = npt.NDArray[np.uint8]
+Image = npt.NDArray[np.uint8]
 
 
 class Surface:
     """The interface of both kinds; made by `open_offscreen` and `open_window`.
 
-    gl: the OpenGL context. samples: per pixel, 0 = none. layers: where the Renderer draws.
+    gl: the OpenGL context. samples: per pixel, 0 = none. target: where the Renderer draws.
     pixel_scale: pixels per unit of line width: 1, or 2 on a dense screen.
-    scale: pixels of the layers per pixel of the surface; below 1 only in a window in a hurry.
+    scale: pixels of the target per pixel of the surface; below 1 only in a window in a hurry.
     """
 
     _current: ClassVar["Surface | None"] = None
@@ -35,13 +35,13 @@ class Surface:
         self.gl = gl
         self.pixel_scale = self.scale = 1.0
         self.samples = clamp_samples(samples, most_samples(gl))
-        self.layers = Layers(gl, size, self.samples)
+        self.target = RenderTarget(gl, size, self.samples)
         self._is_open = True
 
     @property
     def size(self) -> tuple[int, int]:
         """Width and height of the frame [pixels]."""
-        return self.layers.size
+        return self.target.size
 
     @property
     def is_software(self) -> bool:
@@ -56,26 +56,26 @@ class Surface:
         gl.depth_func = "<="
         gl.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
         gl.wireframe = False
-        self.layers.start()
+        self.target.start()
 
     def resolve(self) -> None:
         """End the scene: what is drawn from here on (a panel) lies on top, not multisampled."""
         self.make_current()
-        self.layers.use_frame((0, 0, *self.size))
+        self.target.use_frame((0, 0, *self.size))
         self.gl.scissor = None
 
     def end(self) -> None:
         """Finish the frame; a window shows it."""
         self.resolve()
 
-    def read(self) -> Frame:
+    def read(self) -> Image:
         """Return the frame as it is seen, top row first, shape (H, W, 3), uint8, a new array."""
         return self.read_scene()
 
-    def read_scene(self) -> Frame:
+    def read_scene(self) -> Image:
         """Return the scene without panels, as finely as it was drawn: like `read`."""
         self.make_current()
-        return picture_of(self.layers.read(), self.layers.size)
+        return image_of(self.target.read(), self.target.size)
 
     def make_current(self) -> None:
         """Direct this thread's OpenGL calls here; needed only where several surfaces are open."""
@@ -93,7 +93,7 @@ class Surface:
         if not self._is_open:
             return
         self.make_current()
-        self.layers.release()
+        self.target.release()
         self._close_context()
         self._is_open = False
         Surface._current = None
@@ -203,7 +203,7 @@ def _offscreen_context() -> tuple[moderngl.Context, bool]:
     raise diagnose("offscreen OpenGL (EGL)", egl_error) from None
 
 
-def picture_of(pixels: bytes, size: tuple[int, int]) -> Frame:
+def image_of(pixels: bytes, size: tuple[int, int]) -> Image:
     """OpenGL's bytes, bottom row first, as a picture with the top row first, (H, W, 3) uint8."""
     width, height = size
     return np.frombuffer(pixels, np.uint8).reshape(height, width, 3)[::-1].copy()

@@ -12,11 +12,11 @@ from typing import Any
 
 import moderngl
 
+from .compositor import Compositor, Detail
 from .errors import GLError, diagnose
-from .layers import Layers, Rectangle
-from .shown import Detail, Shown
+from .render_target import Rectangle, RenderTarget
 from .style import Colour
-from .surface import Frame, Surface, check_size, clamp_samples, most_samples, picture_of
+from .surface import Image, Surface, check_size, clamp_samples, image_of, most_samples
 
 TITLE_BAR = 40  # [units at scale 1] that a desktop puts above a window (chosen: a little ample)
 
@@ -37,15 +37,15 @@ class WindowSurface(Surface):
         self.detail = Detail(self.samples)
         self.area: Rectangle | None = None
         self.rules: Sequence[tuple[Rectangle, Colour]] = ()
-        self._shown = Shown(gl, size)
+        self._compositor = Compositor(gl, size)
         self._is_resolved = False  # in this frame: panels may have been drawn
-        self._is_laid = False  # what `_shown` has of the scene is what is seen
+        self._is_laid = False  # what `_compositor` has of the scene is what is seen
         self.pixel_scale = max(glfw.get_window_content_scale(handle))
 
     @property
     def size(self) -> tuple[int, int]:
         """Width and height of the window's frame [pixels], in which viewports are given."""
-        return self._shown.size
+        return self._compositor.size
 
     @property
     def window_size(self) -> tuple[int, int]:
@@ -72,29 +72,29 @@ class WindowSurface(Surface):
         self.make_current()
         size = _framebuffer_size(self._glfw, self.handle)
         if size != self.size:
-            self._shown.release()
-            self._shown = Shown(self.gl, size)
+            self._compositor.release()
+            self._compositor = Compositor(self.gl, size)
             self.pixel_scale = max(self._glfw.get_window_content_scale(self.handle))
         self.samples = clamp_samples(self.detail.samples, most_samples(self.gl))
         self.scale = self.detail.scale
         scaled = self.detail.scaled(size)
-        if (scaled, self.samples) != (self.layers.size, self.layers.samples):
-            old_layers = self.layers
-            self.layers = Layers(self.gl, scaled, self.samples)
-            old_layers.release()
+        if (scaled, self.samples) != (self.target.size, self.target.samples):
+            old_target = self.target
+            self.target = RenderTarget(self.gl, scaled, self.samples)
+            old_target.release()
         self._is_resolved = False
         super().begin()
 
     def resolve(self) -> None:
         """End the scene: panels lie on top. Again: forget the panels, keep the scene."""
         self.make_current()
-        self._shown.lay(self.layers, self.area)
-        self._rule(self._shown.frame)
+        self._compositor.lay(self.target, self.area)
+        self._rule(self._compositor.frame)
         self._is_resolved = self._is_laid = True
 
     def fill(self, area: Rectangle, colour: Colour) -> None:
         """Paint a part of the resolved frame in one colour: cheaper than a quad."""
-        self._shown.frame.clear(*colour, viewport=area)
+        self._compositor.frame.clear(*colour, viewport=area)
 
     def end(self) -> None:
         """Finish the frame and show it: as resolved, else the scene amid the panels as they were.
@@ -103,12 +103,12 @@ class WindowSurface(Surface):
         """
         self.make_current()
         if self._is_resolved:
-            self._shown.copy_to(self.gl.screen)
+            self._compositor.copy_to(self.gl.screen)
         else:
-            self._shown.lay(self.layers, self.area, self.gl.screen)
+            self._compositor.lay(self.target, self.area, self.gl.screen)
             self._rule(self.gl.screen)
             if self.area is not None:
-                self._shown.copy_to(self.gl.screen, around=self.area)
+                self._compositor.copy_to(self.gl.screen, around=self.area)
             self._is_laid = False
         self._glfw.swap_buffers(self.handle)
         self._is_resolved = False
@@ -117,13 +117,13 @@ class WindowSurface(Surface):
         for rectangle, colour in self.rules:
             target.clear(*colour, viewport=rectangle)
 
-    def read(self) -> Frame:
+    def read(self) -> Image:
         """Return the frame as it is seen, with the panels; see `Surface.read`."""
         self.make_current()
         if not self._is_laid:
-            self._shown.lay(self.layers, self.area)
-            self._rule(self._shown.frame)
-        return picture_of(self._shown.read(), self.size)
+            self._compositor.lay(self.target, self.area)
+            self._rule(self._compositor.frame)
+        return image_of(self._compositor.read(), self.size)
 
     def _bind(self) -> None:
         self._glfw.make_context_current(self.handle)
@@ -132,7 +132,7 @@ class WindowSurface(Surface):
         self._glfw.make_context_current(None)
 
     def _close_context(self) -> None:
-        self._shown.release()
+        self._compositor.release()
         self.gl.release()
         self._glfw.destroy_window(self.handle)
 
@@ -257,6 +257,7 @@ def _complaints(glfw: ModuleType) -> Iterator[list[str]]:
     texts: list[str] = []
 
     def note(code: int, text: bytes | str) -> None:
+        """What GLFW calls."""
         texts.append(text.decode(errors="replace") if isinstance(text, bytes) else text)
 
     previous = glfw.set_error_callback(note)

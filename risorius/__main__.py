@@ -1,14 +1,29 @@
-"""`python -m risorius` is the same as the command `risorius`."""
+"""The command `risorius`, whole: the product's sub-commands, and beside them those of bench/."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 from risorius.app.stopping import listen
+
+if TYPE_CHECKING:
+    import click
+
+
+def command() -> click.Group:
+    """Return the whole command."""
+    from risorius.app.cli import main
+    from risorius.bench.commands import bench, reproduce
+
+    main.add_command(bench)
+    main.add_command(reproduce)
+    return main
 
 
 def run() -> None:
     """Run the command; whoever stops it is heard before anything else is loaded."""
     listen()
-    from risorius.app.cli import main
-
-    main()
+    command()()
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@ springs.
 
 A head may be any object with `vertices` and `faces`. What else it brings makes it more of a face:
 
-    landmarks                   frame, lips, lids; without them a plain spring mesh, still stable
+    landmarks                   size, lips, lids; without them a plain spring mesh, still stable
     landmarks + rig             muscles
     layers                      action units, expressions, ... above the muscles (layers.py)
     jaw_axis, mandible_weight   a jaw; guessed from landmarks where one is missing
@@ -22,28 +22,27 @@ import numpy as np
 import numpy.typing as npt
 
 from . import checked
-from .contact import EyeContact, Grip, LipPairs, pair_lips, watch_eyeballs
+from .contact import Grip, LipPairs, pair_lips, watch_eyeballs
 from .controls import GAZE_RATE, Control
+from .coordinates import FaceSpace
 from .integrator import LONGEST_SUBSTEP, ROUNDING
 from .landmarks import (
     INNER_CORNERS,
     LANDMARK_COUNT,
-    LOWER_INNER,
-    UPPER_INNER,
     Array,
-    FaceFrame,
     Side,
+    mouth_line,
     polyline_distance,
-    select,
     smoothstep,
 )
 from .layers import NO_LAYERS, Layers, read_layers
 from .lids import Lids, place_lids
+from .lip_lid_sides import lip_side
+from .muscle_forces import MuscleForces, build_muscle_forces
 from .muscles import place_muscles, sides_of
-from .openings import lip_side
-from .pull import MusclePull, prepare_pull
 from .rig import Rig
 from .rig_reader import read_rig
+from .skin import Skin
 from .skull import (
     HEAD_CONTROLS,
     HEAD_RATE,
@@ -55,7 +54,7 @@ from .skull import (
 )
 from .springs import EdgeSprings
 from .surface import Surface, build_surface
-from .teeth import Teeth, watch_teeth
+from .teeth import watch_teeth
 from .tissue import TissueSprings, masses_for_step
 
 SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
@@ -73,21 +72,16 @@ class Anatomy:
     """A face at rest: nothing here changes while it is simulated."""
 
     vertices: Array  # (V, 3) as given [head units]
-    frame: FaceFrame
+    space: FaceSpace
     rig: Rig
     surface: Surface
     skull: Skull
-    muscles: MusclePull
+    muscles: MuscleForces
     lids: Lids | None
-    springs: TissueSprings
-    edges: EdgeSprings
-    lips: LipPairs
-    eye_contact: EyeContact
-    teeth: Teeth
+    skin: Skin
     turns: Array  # (V, 1) share of the head's pose: 1, fading to 0 down the neck
     passive_hold: Array  # (V,)
     closed_weight: Array  # (V,) of the mandible while the lips are kept closed over an open jaw
-    mass: Array  # (V,)
     controls: tuple[Control, ...]
     layers: Layers
 
@@ -97,7 +91,7 @@ class Anatomy:
         activation: of each muscle, shape (M,); jaw: its values open, forward, sideways; closed: how
         far the lips are kept together over an open jaw, 0..1.
         """
-        if not len(self.lips.lower):
+        if not len(self.skin.lips.lower):
             return Grip(0.0, 0.0)
         muscles = self.muscles
         strength = max(0.0, 1.0 - (1.0 - closed) * jaw[0] / SEAL_BROKEN_BY_JAW)
@@ -117,35 +111,42 @@ def build_anatomy(head: Any) -> Anatomy:
     if numbers is None:
         rig = Rig(rig.tissue, rig.jaw, rig.eyes)
     points = None if numbers is None else vertices[numbers]
-    frame = FaceFrame.from_bounds(vertices) if points is None else FaceFrame.from_landmarks(points)
-    surface = build_surface(frame.to_standard(vertices), faces)
-    landmarks = None if points is None else frame.to_standard(points)
+    space = FaceSpace.from_bounds(vertices) if points is None else FaceSpace.from_landmarks(points)
+    surface = build_surface(space.to_standard(vertices), faces)
+    landmarks = None if points is None else space.to_standard(points)
     side = np.zeros(len(vertices)) if landmarks is None else lip_side(surface, landmarks)
-    skull = _skull(head, rig, frame, surface, landmarks, side)
+    skull = _skull(head, rig, space, surface, landmarks, side)
     known = np.zeros((LANDMARK_COUNT, 3)) if landmarks is None else landmarks
     placed = place_muscles(rig, surface, known, side)
     seal = rig.tissue.lip_seal * rig.tissue.stiffness_scale
     lips = pair_lips(surface, known, side, seal)
-    muscles = prepare_pull(placed, rig, surface, skull.mandible_weight, lips.members, known, side)
+    muscles = build_muscle_forces(
+        placed, rig, surface, skull.mandible_weight, lips.members, known, side
+    )
     controls = _controls(rig, skull, lips, landmarks is not None)
     lids = None
     if landmarks is not None and skull.eyeballs:
         names = [control.name for control in controls]
         lids = place_lids(rig, surface, landmarks, skull.eyeballs, names)
-    corners = np.zeros((0, 3)) if landmarks is None else select(landmarks, INNER_CORNERS)
+    corners = np.zeros((0, 3)) if landmarks is None else landmarks[list(INNER_CORNERS)]
     springs = TissueSprings.under(surface, rig.tissue)
     edges = EdgeSprings.along(surface, rig.tissue, corners)
     passive, greatest = _holds(muscles, lids, surface.vertex_count)
     bound = edges.row_bound(surface.vertex_count)
     bound += np.maximum(springs.tangential, springs.normal) + greatest
-    return Anatomy(
-        vertices=vertices, frame=frame, rig=rig, surface=surface, skull=skull, muscles=muscles,
-        lids=lids, springs=springs, edges=edges, lips=lips,
-        eye_contact=watch_eyeballs(surface, skull.eyeballs), passive_hold=passive,
-        teeth=watch_teeth(getattr(head, "parts", None), surface, frame),
-        turns=_turning_share(surface, landmarks),
-        closed_weight=_closed_weight(surface, known, skull.mandible_weight, lips),
+    skin = Skin(
+        rest=surface.positions,
         mass=masses_for_step(surface.areas, bound, LONGEST_SUBSTEP * STEP_MARGIN),
+        tissue=springs,
+        edges=edges,
+        lips=lips,
+        eyes=watch_eyeballs(surface, skull.eyeballs),
+        teeth=watch_teeth(getattr(head, "parts", None), surface, space),
+    )
+    return Anatomy(
+        vertices=vertices, space=space, rig=rig, surface=surface, skull=skull, muscles=muscles,
+        lids=lids, skin=skin, passive_hold=passive, turns=_turning_share(surface, landmarks),
+        closed_weight=_closed_weight(surface, known, skull.mandible_weight, lips),
         controls=controls, layers=_layers(head, rig, controls),
     )  # fmt: skip
 
@@ -186,12 +187,12 @@ def _optional(head: Any, name: str, shape: tuple[int, ...]) -> Array | None:
 
 
 def _skull(
-    head: Any, rig: Rig, frame: FaceFrame, surface: Surface, landmarks: Array | None, side: Array
+    head: Any, rig: Rig, space: FaceSpace, surface: Surface, landmarks: Array | None, side: Array
 ) -> Skull:
     """Bones from what the head brings, the rest guessed from landmarks; without either no jaw."""
     axis = _optional(head, "jaw_axis", (2, 3))
     weight = _optional(head, "mandible_weight", (surface.vertex_count,))
-    condyles = None if axis is None else frame.to_standard(axis)
+    condyles = None if axis is None else space.to_standard(axis)
     if landmarks is not None:
         if condyles is None:
             condyles = condyles_from_landmarks(landmarks, rig.jaw)
@@ -202,10 +203,10 @@ def _skull(
     # Lips clamped to one bone open like a letter box; skin between the bones rounds the mouth.
     weight = np.clip(surface.smoothed(weight, rig.jaw.softness), 0.0, 1.0)
     weight[weight < LEAST_MANDIBLE] = 0.0
-    return Skull(condyles, weight, _eyeballs(head, frame, landmarks), rig.jaw, rig.eyes, rig.head)
+    return Skull(condyles, weight, _eyeballs(head, space, landmarks), rig.jaw, rig.eyes, rig.head)
 
 
-def _eyeballs(head: Any, frame: FaceFrame, landmarks: Array | None) -> tuple[Eyeball, ...]:
+def _eyeballs(head: Any, space: FaceSpace, landmarks: Array | None) -> tuple[Eyeball, ...]:
     """The head's eyes, or guessed ones where it has landmarks; none otherwise."""
     given = getattr(head, "eyes", None)
     if given is None:
@@ -213,20 +214,20 @@ def _eyeballs(head: Any, frame: FaceFrame, landmarks: Array | None) -> tuple[Eye
     balls = []
     for eye in checked.several("head.eyes", given, ("name", "centre", "radius")):
         if eye.name not in ("right", "left"):
-            name = checked.shown(eye.name)
+            name = checked.quoted(eye.name)
             raise ValueError(f"head.eyes: name was {name}, allowed are 'right' and 'left'")
-        centre = frame.to_standard(checked.numbers("head.eyes: centre", eye.centre, (3,)))
+        centre = space.to_standard(checked.numbers("head.eyes: centre", eye.centre, (3,)))
         radius = checked.number("head.eyes: radius", eye.radius)
         if radius <= 0.0:
             raise ValueError(f"head.eyes: radius was {radius:g}, must be above 0")
-        balls.append(Eyeball(Side(eye.name), centre, radius / frame.scale))
+        balls.append(Eyeball(Side(eye.name), centre, radius / space.scale))
     return tuple(balls)
 
 
-def _holds(muscles: MusclePull, lids: Lids | None, count: int) -> tuple[Array, Array]:
+def _holds(muscles: MuscleForces, lids: Lids | None, count: int) -> tuple[Array, Array]:
     """Stiffness of relaxed and of fully active muscles, lids included, per vertex."""
-    greatest = muscles.hold_of(np.ones_like(muscles.passive), count)
-    passive = muscles.hold_of(muscles.passive, count)
+    greatest = muscles.hold_of(np.ones_like(muscles.skin.passive), count)
+    passive = muscles.hold_of(muscles.skin.passive, count)
     if lids is not None:
         for hold in (passive, greatest):
             np.add.at(hold, lids.vertices.vertex, lids.hold)
@@ -246,10 +247,9 @@ def _closed_weight(surface: Surface, landmarks: Array, weight: Array, lips: LipP
     """The mandible's weight where both lips meet although the jaw is open, shape (V,)."""
     if not len(lips.lower):
         return weight.copy()
-    line = (select(landmarks, UPPER_INNER) + select(landmarks, LOWER_INNER)) / 2.0
-    reach = (LIPS_END - polyline_distance(surface.positions, line)) / (LIPS_END - LIPS_WHOLE)
-    closed: Array = weight + smoothstep(reach) * (LIPS_MEET_AT - weight)
-    return closed
+    distance = polyline_distance(surface.positions, mouth_line(landmarks))
+    reach = (LIPS_END - distance) / (LIPS_END - LIPS_WHOLE)
+    return weight + smoothstep(reach) * (LIPS_MEET_AT - weight)
 
 
 def _controls(rig: Rig, skull: Skull, lips: LipPairs, is_face: bool) -> tuple[Control, ...]:

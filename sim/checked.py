@@ -18,7 +18,7 @@ from .landmarks import Array
 Shape = tuple[int | None, ...]  # None: any length
 
 
-def shown(value: object) -> str:
+def quoted(value: object) -> str:
     """A value in the text of an error, cut where it is long."""
     try:
         return reprlib.repr(value)
@@ -35,14 +35,22 @@ def number(what: str, value: Any) -> float:
     except (TypeError, ValueError, OverflowError):
         result = math.nan
     if not math.isfinite(result):
-        raise ValueError(f"{what}: was {shown(value)}, must be a finite number")
+        raise ValueError(f"{what}: was {quoted(value)}, must be a finite number")
     return result
+
+
+def number_within(where: str, value: Any, low: float, high: float) -> float:
+    """A finite number from `low` to `high`, and no True or False."""
+    is_one = isinstance(value, int | float) and not isinstance(value, bool)
+    if not is_one or not low <= value <= high:  # NaN is not
+        raise ValueError(f"{where}: was {quoted(value)}, must be a number from {low:g} to {high:g}")
+    return float(value)
 
 
 def flag(what: str, value: Any) -> bool:
     """True or False, and nothing that only counts as such."""
     if not isinstance(value, bool | np.bool_):
-        raise ValueError(f"{what}: was {shown(value)}, must be True or False")
+        raise ValueError(f"{what}: was {quoted(value)}, must be True or False")
     return bool(value)
 
 
@@ -82,11 +90,11 @@ def several(what: str, given: Any, attributes: tuple[str, ...]) -> list[Any]:
         found = list(given)
     except TypeError:
         raise ValueError(
-            f"{what}: was {shown(given)}, must be a list of objects with {names}"
+            f"{what}: was {quoted(given)}, must be a list of objects with {names}"
         ) from None
     for each in found:
         if not all(hasattr(each, name) for name in attributes):
-            raise ValueError(f"{what}: holds {shown(each)}, must be objects with {names}")
+            raise ValueError(f"{what}: holds {quoted(each)}, must be objects with {names}")
     return found
 
 
@@ -94,9 +102,9 @@ def _array(what: str, given: Any, kinds: str, wanted: str) -> npt.NDArray[Any]:
     try:
         array = np.asarray(given)
     except (TypeError, ValueError, OverflowError):  # rows of different lengths
-        raise ValueError(f"{what}: was {shown(given)}, must be {wanted}") from None
+        raise ValueError(f"{what}: was {quoted(given)}, must be {wanted}") from None
     if array.dtype.kind not in kinds:
-        raise ValueError(f"{what}: was {shown(given)}, must be {wanted}")
+        raise ValueError(f"{what}: was {quoted(given)}, must be {wanted}")
     return array
 
 

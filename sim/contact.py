@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .landmarks import LOWER_INNER, UPPER_INNER, Array, polyline_distance, select
+from .landmarks import Array, mouth_line, polyline_distance
 from .skull import Eyeball
 from .substep import SEAL_AXES, SLIDES_IN_FRONT
 from .surface import Surface
@@ -92,7 +92,7 @@ SEALED = Grip.of(1.0, 0.0)
 def pair_lips(surface: Surface, landmarks: Array, lip_side: Array, seal: float) -> LipPairs:
     """Pair the edges of the lips; no pairs if the mouth is open at rest or has no slit."""
     x = surface.positions
-    line = (select(landmarks, UPPER_INNER) + select(landmarks, LOWER_INNER)) / 2.0
+    line = mouth_line(landmarks)
     at_edge = polyline_distance(x, line) < LIP_EDGE
     at_edge &= np.abs(x[:, 0] - line[2, 0]) < 0.51 * abs(line[-1, 0] - line[0, 0])
     upper = np.flatnonzero(at_edge & (lip_side > OWN_SIDE))

@@ -22,7 +22,7 @@ import numpy as np
 
 from ..jit import njit
 from .checked import number as finite
-from .checked import shown
+from .checked import quoted
 from .landmarks import Array
 from .layers import NO_LAYERS, Layers
 
@@ -77,11 +77,11 @@ class Controls:
         ValueError offers near names.
         """
         if not isinstance(name, str):
-            raise ValueError(f"control: was {shown(name)}, must be a name; see .limits for all")
+            raise ValueError(f"control: was {quoted(name)}, must be a name; see .limits for all")
         if name not in self._index:
             near = difflib.get_close_matches(name, self.names, n=3, cutoff=0.4)
             hint = f"did you mean {', '.join(near)}?" if near else "see .limits for all names"
-            raise ValueError(f"there is no control called {shown(name)}; {hint}")
+            raise ValueError(f"there is no control called {quoted(name)}; {hint}")
         return self._index[name]
 
     def value(self, name: str) -> float:
@@ -107,7 +107,7 @@ class Controls:
     def set_all(self, values: Mapping[str, float], *, others_to_zero: bool = False) -> None:
         """Set several values at once; nothing is changed if one is refused."""
         if not isinstance(values, Mapping):
-            raise ValueError(f"values: was {shown(values)}, must be a mapping of name to number")
+            raise ValueError(f"values: was {quoted(values)}, must be a mapping of name to number")
         checked = [self.checked(name, value) for name, value in values.items()]
         if others_to_zero:
             self._values[:] = 0.0

@@ -41,10 +41,8 @@ class MuscleDrive:
         """Activation 0..1 of each muscle, shape (M,): its own control plus that of both halves."""
         reached = self._controls.activation
         whole = np.where(self._has_whole, reached[self._whole], 0.0)
-        activation: Array = np.minimum(np.maximum(reached[self._own] + whole, 0.0), 1.0)
-        return activation
+        return np.minimum(np.maximum(reached[self._own] + whole, 0.0), 1.0)
 
     def pull(self, activation: Array) -> Array:
         """What the fibres feel: a power that makes the skin's motion about linear, shape (M,)."""
-        pull: Array = activation**self._power
-        return pull
+        return activation**self._power

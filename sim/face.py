@@ -11,7 +11,7 @@
     lips and eyeballs keep skin out                                      contact.py, substep.py
 
 Built once from a mesh (anatomy.py), then `step` moves it. Everything inside runs in the standard
-face frame, fixed to the cranium; only displacements are turned back into the head's own
+face space, fixed to the cranium; only displacements are turned back into the head's own
 coordinates, so a face at rest has exactly the positions it came with. The pose of the head moves
 the result as a whole, but for the foot of the neck.
 
@@ -31,13 +31,13 @@ from . import checked, integrator
 from .anatomy import Anatomy
 from .contact import SEALED
 from .controls import Controls
+from .coordinates import to_posed_head
 from .drive import MuscleDrive
 from .lids import turn_lids
-from .outlet import place
+from .skin import Tick
 from .skull import REST, Pose
 from .state import State
 from .substep import advance
-from .teeth import deepest
 from .tissue import carry, tissue_energy
 from .weight import Weight
 
@@ -62,7 +62,7 @@ class Simulation:
         self._head_values = (0.0, 0.0, 0.0)
         self._head: Pose = REST
         self._turn = np.eye(4)
-        self._axes = anatomy.frame.axes * anatomy.frame.scale
+        self._axes = anatomy.space.axes * anatomy.space.scale
         heaviness = anatomy.rig.tissue.heaviness
         self._weight = Weight(surface.areas, heaviness, gravity=gravity, inertia=inertia)
         self._weighs = gravity or inertia
@@ -164,7 +164,7 @@ class Simulation:
         Raises ValueError for another shape, and for what is not finite.
         """
         added = checked.numbers("velocities", velocities, self._state.v.shape)
-        self._state.v[:] += self._anatomy.frame.vectors_to_standard(added) @ self._head.rotation
+        self._state.v[:] += self._anatomy.space.vectors_to_standard(added) @ self._head.rotation
 
     def pull(
         self, vertices: npt.ArrayLike, targets: npt.ArrayLike, firmness: npt.ArrayLike
@@ -185,10 +185,10 @@ class Simulation:
             )
         if len(np.unique(numbers)) < len(numbers):
             raise ValueError(f"vertices: some are there twice, must be {wanted}")
-        away = self._anatomy.frame.vectors_to_standard(points - self._positions[numbers])
+        away = self._anatomy.space.vectors_to_standard(points - self._positions[numbers])
         self._pulled = numbers
         self._pulled_to = self._state.x[numbers] + away @ self._head.rotation
-        self._pulled_by = share * self._anatomy.mass[numbers] * FINGER_RATE**2
+        self._pulled_by = share * self._anatomy.skin.mass[numbers] * FINGER_RATE**2
 
     def let_go(self) -> None:
         """End every `pull`; the skin swings back."""
@@ -218,7 +218,7 @@ class Simulation:
             self._advance(dt / ticks)
             self._controls.advance(dt / ticks / 2.0)
         anatomy, state = self._anatomy, self._state
-        broken = place(
+        broken = to_posed_head(
             state.x, anatomy.surface.positions, self._axes, self._rest, self._turn, anatomy.turns,
             self._positions,
         )  # fmt: skip
@@ -240,12 +240,11 @@ class Simulation:
         if head != self._head_values:
             self._head_values = head
             self._head = anatomy.skull.head_pose(*head)
-            self._turn = np.eye(4) if self._head is REST else self._head.matrix(anatomy.frame)
+            self._turn = np.eye(4) if self._head is REST else self._head.matrix(anatomy.space)
         weight, closed = anatomy.skull.mandible_weight, now("lips_closed")
         if closed > 0.0:
             weight = weight + closed * (anatomy.closed_weight - weight)
-        turn, shift = self._mandible.rotation, self._mandible.shift
-        carry(surface.positions, surface.normals, weight, turn, shift, state)
+        carry(state, surface.positions, surface.normals, weight, self._mandible)
         if anatomy.lids is not None:
             drive = anatomy.lids.drive(self._controls.activation)
             gaze = self._gaze_angle()
@@ -253,7 +252,7 @@ class Simulation:
         activation = self._drive.activation()
         state.hold[:] = anatomy.passive_hold
         state.pull[:] = 0.0
-        muscles.add(self._drive.pull(activation), self._mandible, weight, state.hold, state.pull)
+        muscles.add(self._drive.pull(activation), self._mandible, weight, state)
         if len(self._pulled):
             drawn = self._pulled_to - state.carried[self._pulled]
             state.hold[self._pulled] += self._pulled_by
@@ -262,12 +261,9 @@ class Simulation:
 
     def _advance(self, tick: float) -> None:
         """One tick [s] in substeps: all forces on the skin (substep.py)."""
-        anatomy, count = self._anatomy, integrator.substeps_in(tick)
-        advance(
-            self._state, count, tick / count, anatomy.surface.positions, anatomy.mass,
-            anatomy.springs, anatomy.edges, anatomy.lips, self._grip, anatomy.eye_contact,
-            anatomy.teeth, self._mandible.rotation, self._mandible.shift,
-        )  # fmt: skip
+        count = integrator.substeps_in(tick)
+        now = Tick(count, tick / count, self._grip, self._mandible)
+        advance(self._state, self._anatomy.skin, now)
 
     def _gaze_angle(self) -> float:
         """Vertical angle of the eyes [rad]."""
@@ -280,22 +276,22 @@ class Simulation:
         """Motion of each bone from rest to now, name -> (4, 4) for column vectors [head units]."""
         anatomy = self._anatomy
         transforms = {
-            "cranium": self._head.matrix(anatomy.frame),
-            "mandible": self._head.after(self._mandible).matrix(anatomy.frame),
+            "cranium": self._head.matrix(anatomy.space),
+            "mandible": self._head.after(self._mandible).matrix(anatomy.space),
         }
         gaze = self._controls.now("gaze_horizontal"), self._controls.now("gaze_vertical")
         for ball in anatomy.skull.eyeballs:
             pose = anatomy.skull.eye_pose(ball, *gaze)
-            transforms[f"eye_{ball.side.value}"] = self._head.after(pose).matrix(anatomy.frame)
+            transforms[f"eye_{ball.side.value}"] = self._head.after(pose).matrix(anatomy.space)
         return transforms
 
     def fibres(self) -> dict[str, list[npt.NDArray[np.float64]]]:
         """Contracted muscle fibres now, control name -> polylines (n, 3) [head units], to draw."""
         pull = self._drive.pull(self._drive.activation())
         lines = self._anatomy.muscles.lines(pull, self._mandible, self._state.x)
-        frame, head = self._anatomy.frame, self._head
+        space, head = self._anatomy.space, self._head
         return {
-            name: [frame.to_head(line + head.displacements(line)) for line in found]
+            name: [space.to_head(line + head.displacements(line)) for line in found]
             for name, found in lines.items()
         }
 
@@ -305,11 +301,11 @@ class Simulation:
         Names: "lips" (in the other lip, more than sealed lips are pressed together), "lids" (in an
         eyeball), "teeth".
         """
-        anatomy, x = self._anatomy, self._state.x
+        skin, x = self._anatomy.skin, self._state.x
         return {
-            "lips": anatomy.lips.deepest(x, anatomy.surface.positions, self._grip.overlap),
-            "lids": anatomy.eye_contact.deepest(x),
-            "teeth": deepest(anatomy.teeth, x, self._mandible),
+            "lips": skin.lips.deepest(x, skin.rest, self._grip.overlap),
+            "lids": skin.eyes.deepest(x),
+            "teeth": skin.teeth.deepest(x, self._mandible),
         }
 
     def energy(self) -> float:
@@ -318,9 +314,8 @@ class Simulation:
         Relaxed muscles count as springs to the bone. While a muscle is active its pull is outside
         work and is not counted, so the value is a measure of rest, not a conserved quantity.
         """
-        anatomy, state = self._anatomy, self._state
-        kinetic = float((anatomy.mass[:, None] * state.v**2).sum() / 2.0)
-        held = tissue_energy(state, anatomy.springs)
-        edges = anatomy.edges.energy(state.x, state.x - state.carried)
-        seal = anatomy.lips.energy(state.x - anatomy.surface.positions, self._grip)
-        return kinetic + held + edges + seal
+        skin, state = self._anatomy.skin, self._state
+        kinetic = float((skin.mass[:, None] * state.v**2).sum() / 2.0)
+        held = tissue_energy(state, skin.tissue)
+        edges = skin.edges.energy(state.x, state.x - state.carried)
+        return kinetic + held + edges + skin.lips.energy(state.x - skin.rest, self._grip)

@@ -10,7 +10,8 @@ lies on the fibre, read it by linear interpolation.
                       t = 0                t (1 - c)   t                 t = 1
     origin on bone      o-------.-------.----*<--------o-------.-----------o  insertion in the skin
 
-Before a fibre contracts, its points follow the bones and the muscles that it lies on (riding.py).
+Before a fibre contracts, its points follow the bones and the muscles that it lies on
+(muscle_stack.py).
 
 Source: Kähler et al. 2001, section 4 (piecewise linear fibres, contraction q_i along the
 polyline, u_i = max(c t_i, 0.01)).
@@ -48,7 +49,7 @@ class FibreBundle(NamedTuple):
     fixed_at: Array  # (B,) place along the fibre that stays still
 
 
-class Riding(NamedTuple):
+class Stack(NamedTuple):
     """Which points of a line lie on which lines; line b has rows[b] up to rows[b + 1]."""
 
     rows: npt.NDArray[np.uint32]  # (B + 1,)
@@ -58,6 +59,23 @@ class Riding(NamedTuple):
     place: Array  # (n,) the same, in points
     share: Array  # (n,) of its displacement
     steady: Array  # (n, 3) mm of displacement at full activation that is linear in it
+
+
+class LineMotion(NamedTuple):
+    """How all lines are displaced [mm], rewritten each tick."""
+
+    contracted: Array  # (B, SAMPLES, 3) along each line by its own contraction, if it is active
+    carried: Array  # (B, FIBRE_POINTS, 3) its points by the muscles beneath
+    is_carried: npt.NDArray[np.bool_]  # (B,) whether any of those moves
+
+    @classmethod
+    def of(cls, line_count: int) -> LineMotion:
+        """Room for so many lines."""
+        return cls(
+            np.zeros((line_count, SAMPLES, 3)),
+            np.zeros((line_count, FIBRE_POINTS, 3)),
+            np.zeros(line_count, dtype=np.bool_),
+        )
 
 
 def build_fibre(
@@ -97,16 +115,18 @@ def over_skin(points: Array, surface: Surface, field: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Attachment:
-    """How the skin is attached to one fibre; per vertex of the whole skin."""
+class FibreCoordinates:
+    """Where n places lie relative to one fibre."""
 
-    weight: Array  # (V,)
-    arc: Array  # (V,) place along the fibre, 0..1
-    foot: Array  # (V, 3) nearest point of the fibre
+    weight: Array  # (n,) 1 on the fibre .. 0 far away
+    arc: Array  # (n,) place along the fibre, 0..1
+    foot: Array  # (n, 3) nearest point of the fibre
 
 
-def attach(points: Array, positions: Array, *, width: float, beyond: float) -> Attachment:
-    """Attach skin (V, 3) to a fibre (n, 3): Gaussian falloff across it and past its end."""
+def fibre_coordinates(
+    points: Array, positions: Array, *, width: float, beyond: float
+) -> FibreCoordinates:
+    """Relate places (n, 3) to a fibre (k, 3): Gaussian falloff across it and past its end."""
     start, segment = points[:-1], np.diff(points, axis=0)
     length = np.maximum(np.linalg.norm(segment, axis=1), 1e-9)
     arc_start = np.concatenate([[0.0], np.cumsum(length)])
@@ -123,53 +143,48 @@ def attach(points: Array, positions: Array, *, width: float, beyond: float) -> A
     squared_widths = squared[row, best] / width**2
     reach = np.where(at_end, across / width**2 + (past / beyond) ** 2, squared_widths)
     weight = np.where(reach < CUT**2, np.exp(-reach), 0.0)
-    return Attachment(weight, arc, foot)
+    return FibreCoordinates(weight, arc, foot)
 
 
 CUT = 2.2  # widths at which the Gaussian (0.8 %) is cut to zero
 
 
 @njit
-def move_lines(  # type: ignore[no-untyped-def]
-    bundle, riding, activation, turn, shift, ride, rides, table
-):
+def move_lines(bundle, stack, activation, mandible, motion):  # type: ignore[no-untyped-def]
     """Move all lines for one tick, each after those it lies on, and contract the active ones.
 
-    activation: of each muscle, (M,); turn, shift: of the mandible. Fills `ride` (B, FIBRE_POINTS,
-    3) with the displacement [mm] of points by the muscles beneath, `rides` (B,) with whether there
-    is one, and `table` (B, SAMPLES, 3) with that along each active fibre.
+    activation: of each muscle, (M,); mandible: its Pose. Fills `motion`.
     """
-    muscle, contraction, rows = bundle.muscle, bundle.contraction, riding.rows
+    muscle, contraction, rows, lines = bundle.muscle, bundle.contraction, stack.rows, stack.line
+    is_carried, carried, contracted = motion.is_carried, motion.carried, motion.contracted
     moved = np.empty(bundle.points.shape[1:])
     for b in range(len(muscle)):
-        first, last = rows[b], rows[b + 1]
-        rides[b] = False
-        for row in range(first, last):
-            c = riding.line[row]
-            if activation[muscle[c]] > 0.0 or rides[c]:
-                rides[b] = True
+        is_carried[b] = False
+        for row in range(rows[b], rows[b + 1]):
+            c = lines[row]
+            if activation[muscle[c]] > 0.0 or is_carried[c]:
+                is_carried[b] = True
                 break
-        if rides[b]:
-            be_carried(bundle, riding, first, last, activation, turn, ride, rides, table, b)
+        if is_carried[b]:
+            carry_line(bundle, stack, activation, mandible.rotation, motion, b)
         a = activation[muscle[b]]
         if a > 0.0 and contraction[b] > 0.0:
-            follow(bundle.points[b], bundle.mandible[b], turn, shift, moved)
-            if rides[b]:
-                moved += ride[b]
-            contract(moved, contraction[b] * a, bundle.fixed_at[b], table[b])
+            follow_bones(bundle.points[b], bundle.mandible[b], mandible, moved)
+            if is_carried[b]:
+                moved += carried[b]
+            contract(moved, contraction[b] * a, bundle.fixed_at[b], contracted[b])
 
 
 @njit
-def be_carried(  # type: ignore[no-untyped-def]
-    bundle, riding, first, last, activation, turn, ride, rides, table, b
-):
-    """Fill `ride[b]` with what the lines beneath, in rows `first` to `last`, carry line b by."""
+def carry_line(bundle, stack, activation, turn, motion, b):  # type: ignore[no-untyped-def]
+    """Fill `motion.carried[b]` with what the lines beneath carry line b by."""
     muscle, contraction, mandible = bundle.muscle, bundle.contraction, bundle.mandible[b]
-    point, line, steady = riding.point, riding.line, riding.steady
-    sample, place, share = riding.sample, riding.place, riding.share
-    own = ride[b]
+    point, line, steady = stack.point, stack.line, stack.steady
+    sample, place, share = stack.sample, stack.place, stack.share
+    contracted, carried, is_carried = motion.contracted, motion.carried, motion.is_carried
+    own = carried[b]
     own[:] = 0.0
-    for row in range(first, last):
+    for row in range(stack.rows[b], stack.rows[b + 1]):
         c, p = line[row], point[row]
         a = activation[muscle[c]]
         if a > 0.0:
@@ -179,33 +194,34 @@ def be_carried(  # type: ignore[no-untyped-def]
             own[p, 1] += sy + w * (turn[1, 0] * sx + turn[1, 1] * sy + turn[1, 2] * sz - sy)
             own[p, 2] += sz + w * (turn[2, 0] * sx + turn[2, 1] * sy + turn[2, 2] * sz - sz)
             if contraction[c] > 0.0:
-                s = min(np.uint32(sample[row]), table.shape[1] - 2)
+                s = min(np.uint32(sample[row]), contracted.shape[1] - 2)
                 far = share[row] * (sample[row] - s)
                 near = share[row] - far
                 for k in range(3):
-                    own[p, k] += near * table[c, s, k] + far * table[c, s + 1, k]
-        if rides[c]:
-            s = min(np.uint32(place[row]), ride.shape[1] - 2)
+                    own[p, k] += near * contracted[c, s, k] + far * contracted[c, s + 1, k]
+        if is_carried[c]:
+            s = min(np.uint32(place[row]), carried.shape[1] - 2)
             far = share[row] * (place[row] - s)
             near = share[row] - far
             for k in range(3):
-                own[p, k] += near * ride[c, s, k] + far * ride[c, s + 1, k]
+                own[p, k] += near * carried[c, s, k] + far * carried[c, s + 1, k]
 
 
 @njit
-def follow(points, mandible, turn, shift, moved):  # type: ignore[no-untyped-def]
-    """Carry the points of a line by its bones."""
+def follow_bones(points, share, mandible, moved):  # type: ignore[no-untyped-def]
+    """Carry the points of a line by its bones; `share`: of the mandible's motion, by point."""
+    turn, shift = mandible.rotation, mandible.shift
     for p in range(len(points)):
         x, y, z = points[p, 0], points[p, 1], points[p, 2]
         for k in range(3):
             to = turn[k, 0] * x + turn[k, 1] * y + turn[k, 2] * z + shift[k]
-            moved[p, k] = points[p, k] + mandible[p] * (to - points[p, k])
+            moved[p, k] = points[p, k] + share[p] * (to - points[p, k])
 
 
 @njit
-def contract(moved, lost, fixed_at, table):  # type: ignore[no-untyped-def]
-    """Fill `table` (SAMPLES, 3) with displacements along a fibre that loses a share of itself."""
-    samples, count = len(table), len(moved)
+def contract(moved, lost, fixed_at, displacement):  # type: ignore[no-untyped-def]
+    """Fill `displacement` (SAMPLES, 3) along a fibre that loses a share of itself."""
+    samples, count = len(displacement), len(moved)
     arc = np.empty(count)
     arc[0] = 0.0
     for p in range(1, count):
@@ -213,13 +229,13 @@ def contract(moved, lost, fixed_at, table):  # type: ignore[no-untyped-def]
         dy = moved[p, 1] - moved[p - 1, 1]
         dz = moved[p, 2] - moved[p - 1, 2]
         arc[p] = arc[p - 1] + np.sqrt(dx * dx + dy * dy + dz * dz)
-    kept = max(1.0 - lost, LEAST_ARC)
+    remaining = max(1.0 - lost, LEAST_ARC)
     fixed = fixed_at * arc[count - 1]
     # `there` and `here` only grow, so both find their segment by walking on.
     near, far = 1, 1
     for s in range(samples):
         here = arc[count - 1] * s / (samples - 1)
-        there = fixed + kept * (here - fixed)
+        there = fixed + remaining * (here - fixed)
         while near < count - 1 and arc[near] < there:
             near += 1
         while far < count - 1 and arc[far] < here:
@@ -229,4 +245,4 @@ def contract(moved, lost, fixed_at, table):  # type: ignore[no-untyped-def]
         for k in range(3):
             to = moved[near - 1, k] + u * (moved[near, k] - moved[near - 1, k])
             at = moved[far - 1, k] + t * (moved[far, k] - moved[far - 1, k])
-            table[s, k] = to - at
+            displacement[s, k] = to - at

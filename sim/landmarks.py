@@ -1,14 +1,11 @@
-"""The 68 landmarks, the face frame they span, and points described in it.
+"""The 68 landmarks, and points described by them.
 
 A rig must move from head to head, so nothing in it may be a vertex number or a world coordinate.
 Everything is written relative to the 68 iBug/Multi-PIE landmarks: a weighted mix of landmarks
-plus an offset "lateral, up, forward" in millimetres of a head of standard size. This module turns
-a head of any size, place and orientation into that frame.
+plus an offset "lateral, up, forward" in millimetres of a head of standard size (coordinates.py).
 
 Source: Kähler, Haber, Yamauchi, Seidel 2002 ("Head shop"): landmarks carry muscles from head to
 head.
-Differs from it: they warp a template by scattered data interpolation; we only use one similarity
-transform and local landmark mixes.
 
     0-16  jaw line, from the subject's RIGHT ear to the left      36-41 right eye, 42-47 left eye
     17-21 right brow, 22-26 left brow                             48-59 outer lips, from the right
@@ -17,7 +14,6 @@ transform and local landmark mixes.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -27,12 +23,6 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 LANDMARK_COUNT = 68
-STANDARD_EYE_SPAN = (
-    89.2  # mm between the outer eye corners 36 and 45: the size rigs are written in (adult mean)
-)
-STANDARD_DIAGONAL = (
-    280.0  # mm, bounding box of a head; scales meshes that have no landmarks (chosen: our head's)
-)
 
 # The middle of each lip: away from the corners, and not the inner points, which often coincide.
 UPPER_LIP = (50, 51, 52)
@@ -43,7 +33,7 @@ UPPER_INNER, LOWER_INNER = (60, 61, 62, 63, 64), (60, 67, 66, 65, 64)  # lines o
 
 
 class Side(Enum):
-    """The subject's side; `sign` is the direction of "lateral" along the frame's first axis."""
+    """The subject's side; `sign` is the direction of "lateral" along the first standard axis."""
 
     RIGHT = "right"
     LEFT = "left"
@@ -72,67 +62,6 @@ MIRRORED = _mirror_table()  # number of the landmark on the other side of the fa
 
 
 @dataclass(frozen=True)
-class FaceFrame:
-    """A similarity between a head's own coordinates and the standard face frame.
-
-    Standard axes: lateral (to the subject's left), up, forward; millimetres; origin at the nasion.
-    """
-
-    origin: Array
-    axes: Array  # rows: unit vectors lateral-left, up, forward in head coordinates
-    scale: float  # head units per standard millimetre
-
-    @classmethod
-    def from_landmarks(cls, points: Array) -> FaceFrame:
-        """Frame of a head from its landmark positions [head units], shape (68, 3).
-
-        Raises ValueError if they coincide.
-        """
-        lateral = points[42:48].mean(axis=0) - points[36:42].mean(axis=0)
-        upward = points[27] - points[[48, 54]].mean(axis=0)
-        span = float(np.linalg.norm(points[45] - points[36]))
-        if min(span, float(np.linalg.norm(lateral)), float(np.linalg.norm(upward))) < 1e-9:
-            raise ValueError(
-                "landmarks: eyes, nasion and mouth corners must be different points; "
-                "check that the 68 vertex numbers belong to this mesh"
-            )
-        lateral = lateral / np.linalg.norm(lateral)
-        upward = upward - lateral * (lateral @ upward)
-        upward = upward / np.linalg.norm(upward)
-        axes = np.array([lateral, upward, np.cross(lateral, upward)])
-        return cls(points[27].copy(), axes, span / STANDARD_EYE_SPAN)
-
-    @classmethod
-    def from_bounds(cls, vertices: Array) -> FaceFrame:
-        """Frame for a mesh without landmarks: its own axes, its bounding box scaled to a head's."""
-        low, high = vertices.min(axis=0), vertices.max(axis=0)
-        diagonal = float(np.linalg.norm(high - low))
-        scale = diagonal / STANDARD_DIAGONAL if diagonal > 0.0 else 1.0
-        return cls((low + high) / 2.0, np.eye(3), scale)
-
-    def to_standard(self, points: npt.ArrayLike) -> Array:
-        """Points [head units], shape (..., 3), in the standard frame [mm]."""
-        result: Array = (
-            (np.asarray(points, dtype=np.float64) - self.origin) @ self.axes.T / self.scale
-        )
-        return result
-
-    def to_head(self, points: npt.ArrayLike) -> Array:
-        """Points [mm, standard frame], shape (..., 3), in head coordinates."""
-        return self.vectors_to_head(points) + self.origin
-
-    def vectors_to_head(self, vectors: npt.ArrayLike) -> Array:
-        """Displacements [mm, standard frame], shape (..., 3), in head units and axes."""
-        result: Array = np.asarray(vectors, dtype=np.float64) @ self.axes * self.scale
-        return result
-
-    def vectors_to_standard(self, vectors: npt.ArrayLike) -> Array:
-        """Displacements [head units], shape (..., 3), in the standard frame [mm]."""
-        result: Array = np.asarray(vectors, dtype=np.float64) @ self.axes.T / self.scale
-        return result
-
-
-@dataclass(frozen=True)
 class LandmarkPoint:
     """A point of the LEFT half of the face: a mix of landmarks plus an offset [mm].
 
@@ -143,7 +72,7 @@ class LandmarkPoint:
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def on(self, landmarks: Array, side: Side) -> Array:
-        """Position [mm, standard frame], shape (3,), on a head with these landmarks (68, 3).
+        """Position [mm, standard space], shape (3,), on a head with these landmarks (68, 3).
 
         The right side is the mirror image of what the rig says.
         """
@@ -165,14 +94,13 @@ def polyline_distance(points: Array, corners: Array) -> Array:
     return distance
 
 
-def select(landmarks: Array, numbers: Sequence[int]) -> Array:
-    """Positions of the numbered landmarks, shape (len(numbers), 3)."""
-    chosen: Array = landmarks[np.asarray(numbers, dtype=np.int64)]
-    return chosen
+def mouth_line(landmarks: Array) -> Array:
+    """Where the inner lips meet, from corner to corner, of landmarks (68, 3), shape (5, 3)."""
+    line: Array = (landmarks[list(UPPER_INNER)] + landmarks[list(LOWER_INNER)]) / 2.0
+    return line
 
 
 def smoothstep(x: npt.ArrayLike) -> Array:
     """0 below 0, 1 above 1, 3x^2 - 2x^3 between."""
     t = np.clip(np.asarray(x, dtype=np.float64), 0.0, 1.0)
-    result: Array = t * t * (3.0 - 2.0 * t)
-    return result
+    return t * t * (3.0 - 2.0 * t)

@@ -32,7 +32,7 @@ from typing import Any
 
 import numpy as np
 
-from .checked import several, shown
+from .checked import number_within, quoted, several
 from .landmarks import Array
 from .rig_reader import question
 
@@ -72,7 +72,7 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
     reader.add(BOTH_SIDES, (base for base in paired if f"{base}_right" in reader.shares))
     for layer in several("head.layers", given, ("title", "source", "rows")):
         if not isinstance(layer.rows, Mapping):
-            raise ValueError(f"{layer.source}: was {shown(layer.rows)}, must be a table of rows")
+            raise ValueError(f"{layer.source}: was {quoted(layer.rows)}, must be a table of rows")
         below = reader.everything()
         names: list[str] = []
         for row, table in layer.rows.items():
@@ -109,13 +109,13 @@ class _Reader:
     def row(self, where: str, name: str, table: Any, below: Mapping[str, Array]) -> list[str]:
         """Take in one row; the names of the controls that it makes."""
         if not isinstance(table, Mapping):
-            raise ValueError(f"{where}: was {shown(table)}, must be a table of control = share")
+            raise ValueError(f"{where}: was {quoted(table)}, must be a table of control = share")
         entries = dict(table)
         action, is_pair = entries.pop("action", ""), entries.pop("pair", False)
         if not isinstance(action, str):
-            raise ValueError(f"{where}: 'action' was {shown(action)}, must be a text")
+            raise ValueError(f"{where}: 'action' was {quoted(action)}, must be a text")
         if not isinstance(is_pair, bool):
-            raise ValueError(f"{where}: 'pair' was {shown(is_pair)}, must be true or false")
+            raise ValueError(f"{where}: 'pair' was {quoted(is_pair)}, must be true or false")
         if is_pair and name.endswith(SIDES):
             raise ValueError(f"{where}: a pair adds the sides by itself; leave '_left' away")
         sides = SIDES if is_pair else ("",)
@@ -124,7 +124,10 @@ class _Reader:
             self._new(where, full)
             share = np.zeros(len(next(iter(below.values()), ())))
             for control, value in entries.items():
-                share += _share(where, control, value) * _side_of(where, control, side, below)
+                part = number_within(
+                    f"{where}, '{control}'", value, -GREATEST_SHARE, GREATEST_SHARE
+                )
+                share += part * _side_of(where, control, side, below)
             self.shares[full] = share
             self.actions[full] = action
         if is_pair:
@@ -139,17 +142,6 @@ class _Reader:
             raise ValueError(f"{where}: there is a control called '{name}' already; rename the row")
 
 
-def _share(where: str, control: str, value: Any) -> float:
-    """A checked share."""
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not is_number or not -GREATEST_SHARE <= value <= GREATEST_SHARE:  # NaN is not
-        raise ValueError(
-            f"{where}, '{control}': was {shown(value)}, must be a number "
-            f"from {-GREATEST_SHARE:g} to {GREATEST_SHARE:g}"
-        )
-    return float(value)
-
-
 def _side_of(where: str, control: str, side: str, below: Mapping[str, Array]) -> Array:
     """Shares of what an entry names; for a side of a pair, of that side or half of the middle."""
     if control not in below:
@@ -162,5 +154,4 @@ def _side_of(where: str, control: str, side: str, below: Mapping[str, Array]) ->
         raise ValueError(f"{where}: in a pair leave the side of '{control}' away")
     if control + side in below:
         return below[control + side]
-    half: Array = 0.5 * below[control]
-    return half
+    return 0.5 * below[control]

@@ -23,8 +23,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..jit import njit
-from .landmarks import EYE_LANDMARKS, Array, polyline_distance, select, smoothstep
-from .openings import lid_side
+from .landmarks import EYE_LANDMARKS, Array, polyline_distance, smoothstep
+from .lip_lid_sides import lid_side
 from .rig import LIDS, Eyes, LidMuscle, Rig
 from .skull import Eyeball
 from .surface import Surface
@@ -130,17 +130,18 @@ def _one_eye(
     corner, axis = landmarks[outer], landmarks[inner] - landmarks[outer]
 
     def angle_of(points: Array) -> Array:
-        angle: Array = np.arctan2((points - ball.centre) @ up, (points - ball.centre) @ forward)
-        return angle
+        """Angle [rad] about the axis of the lids, 0 straight forward."""
+        return np.arctan2((points - ball.centre) @ up, (points - ball.centre) @ forward)
 
     def column_of(points: Array) -> Array:
+        """Place from the outer corner of the eye, 0, to the inner one, 1."""
         column: Array = ((points - corner) @ axis) / (axis @ axis)
         return column
 
     column, angle = column_of(x), angle_of(x)
     rows = {
-        True: select(landmarks, (outer, upper_outer, upper_inner, inner)),
-        False: select(landmarks, (outer, lower_outer, lower_inner, inner)),
+        True: landmarks[[outer, upper_outer, upper_inner, inner]],
+        False: landmarks[[outer, lower_outer, lower_inner, inner]],
     }
     edges, weight, slide = {}, np.zeros(surface.vertex_count), np.zeros(surface.vertex_count)
     for upper, line in rows.items():

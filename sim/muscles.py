@@ -3,7 +3,7 @@
 Linear muscles attach the skin around each of their fibres (fibres.py). Sphincters draw skin on an
 elliptic ring to a centre, q = p* + (1 - c a)(p - p*); a centre in front of the lips makes them
 protrude, and upper and lower half are separate muscles. Both bulge the skin as they contract. What
-lies on a muscle instead of the skin is attached to it in the same way (riding.py).
+lies on a muscle instead of the skin is attached to it in the same way (muscle_stack.py).
 
 Source: Kähler et al. 2001, section 4: linear muscles, sphincters, bulging.
 Differs from it: skin hangs on fibre points by smooth weights instead of on the nearest ellipsoid,
@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .fibres import FIBRE_POINTS, attach, bent_to_skin, build_fibre
+from .fibres import FIBRE_POINTS, bent_to_skin, build_fibre, fibre_coordinates
 from .landmarks import Array, Side, smoothstep
 from .rig import Fibre, LinearMuscle, Muscle, Rig, RingMuscle
 from .surface import Surface
@@ -33,15 +33,15 @@ MIDLINE_FADE = 20.0  # mm across the midline over which a paired muscle yields t
 FACE_DEPTH = 25.0  # mm behind the outer eye corners a ring no longer reaches the skin
 
 
-class Places(NamedTuple):
+class AttachedPoints(NamedTuple):
     """Points that may hang on a muscle: the skin, or control points of a muscle above it."""
 
     positions: Array  # (n, 3) mm
     normals: Array  # (n, 3) of the skin there
-    lip_side: Array  # (n,) of openings.lip_side
+    lip_side: Array  # (n,) of lip_lid_sides.lip_side
 
 
-class Hold(NamedTuple):
+class Attachment(NamedTuple):
     """How places hang on one line of a muscle."""
 
     weight: Array  # (n,)
@@ -55,11 +55,11 @@ class Line:
 
     points: Array  # (FIBRE_POINTS, 3) mm
     fibre: Fibre | None  # None: a sphincter
-    skin: Hold  # how the skin hangs on it
+    skin: Attachment  # how the skin hangs on it
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedMuscle:
     """One muscle on one side of a face and its attachment to the skin, per vertex."""
 
     name: str  # of its control
@@ -83,9 +83,9 @@ class Placed:
 
 def place_muscles(
     rig: Rig, surface: Surface, landmarks: Array, lip_side: Array
-) -> tuple[Placed, ...]:
+) -> tuple[PlacedMuscle, ...]:
     """Lay all linear and ring muscles of a rig into a face, in rig order, left before right."""
-    skin = Places(surface.positions, surface.normals, lip_side)
+    skin = AttachedPoints(surface.positions, surface.normals, lip_side)
     placed = []
     for muscle in rig.muscles:
         for name, side in sides_of(muscle):
@@ -94,14 +94,14 @@ def place_muscles(
                 for fibre in muscle.fibres:
                     points = build_fibre(fibre, muscle, surface, landmarks, side)
                     lines.append(
-                        Line(points, fibre, hang_on_fibre(muscle, fibre, points, side, skin))
+                        Line(points, fibre, attach_to_fibre(muscle, fibre, points, side, skin))
                     )
-                placed.append(Placed(name, muscle, side, tuple(lines)))
+                placed.append(PlacedMuscle(name, muscle, side, tuple(lines)))
             elif isinstance(muscle, RingMuscle):
                 points = _ring_line(muscle, surface, landmarks, side)
-                hold = hang_on_ring(muscle, points, landmarks, side, skin)
+                hold = attach_to_ring(muscle, points, landmarks, side, skin)
                 ring = _ring_vertices(muscle, surface.positions, landmarks, hold.weight, side)
-                placed.append(Placed(name, muscle, side, (Line(points, None, hold),), ring))
+                placed.append(PlacedMuscle(name, muscle, side, (Line(points, None, hold),), ring))
     return tuple(placed)
 
 
@@ -112,16 +112,18 @@ def sides_of(muscle: Muscle) -> tuple[tuple[str, Side], ...]:
     return ((f"{muscle.name}_left", Side.LEFT), (f"{muscle.name}_right", Side.RIGHT))
 
 
-def hang_on(placed: Placed, line: Line, landmarks: Array, places: Places) -> Hold:
+def attach(
+    placed: PlacedMuscle, line: Line, landmarks: Array, places: AttachedPoints
+) -> Attachment:
     """Hang places on one line of a muscle in a face."""
     muscle, side = placed.muscle, placed.side
     if isinstance(muscle, RingMuscle):
-        return hang_on_ring(muscle, line.points, landmarks, side, places)
+        return attach_to_ring(muscle, line.points, landmarks, side, places)
     assert line.fibre is not None
-    return hang_on_fibre(muscle, line.fibre, line.points, side, places)
+    return attach_to_fibre(muscle, line.fibre, line.points, side, places)
 
 
-def _gate(muscle: Muscle, side: Side, places: Places) -> Array:
+def _gate(muscle: Muscle, side: Side, places: AttachedPoints) -> Array:
     """1 where a muscle of one side may act, 0 where it must leave the skin alone, shape (n,)."""
     gate = np.ones(len(places.positions))
     if muscle.pair and not muscle.crosses:  # fades to 0 across the midline; twins add up to 1
@@ -133,12 +135,12 @@ def _gate(muscle: Muscle, side: Side, places: Places) -> Array:
     return gate
 
 
-def hang_on_fibre(
-    muscle: LinearMuscle, fibre: Fibre, points: Array, side: Side, places: Places
-) -> Hold:
+def attach_to_fibre(
+    muscle: LinearMuscle, fibre: Fibre, points: Array, side: Side, places: AttachedPoints
+) -> Attachment:
     """Hang places on a fibre of a linear muscle; the skin slides, converges and bulges."""
     factor = fibre.width_factor
-    at = attach(
+    at = fibre_coordinates(
         points, places.positions, width=muscle.width * factor, beyond=muscle.beyond * factor
     )
     weight = fibre.weight * at.weight * _gate(muscle, side, places)
@@ -147,12 +149,12 @@ def hang_on_fibre(
     bulge += fibre.lift
     steady = (weight * drawn)[:, None] * (at.foot - places.positions)
     steady += (weight * bulge)[:, None] * places.normals
-    return Hold(weight, at.arc, steady)
+    return Attachment(weight, at.arc, steady)
 
 
-def hang_on_ring(
-    muscle: RingMuscle, points: Array, landmarks: Array, side: Side, places: Places
-) -> Hold:
+def attach_to_ring(
+    muscle: RingMuscle, points: Array, landmarks: Array, side: Side, places: AttachedPoints
+) -> Attachment:
     """Hang places on a sphincter: an elliptic ring around `shape`, drawn to `centre`."""
     x = places.positions
     centre = muscle.centre.on(landmarks, side)
@@ -178,8 +180,8 @@ def hang_on_ring(
     across = np.sqrt(np.maximum(1.0 - (x[:, 0] / corner) ** 2, 0.0))
     pull[:, 1] += muscle.flare * np.tanh((x[:, 1] - seam) / FLARE_HEIGHT) * across
     pull += muscle.bulge * places.normals
-    arc = attach(points, x, width=1.0, beyond=1.0).arc
-    return Hold(weight, arc, weight[:, None] * pull)
+    arc = fibre_coordinates(points, x, width=1.0, beyond=1.0).arc
+    return Attachment(weight, arc, weight[:, None] * pull)
 
 
 def _round_mouth(muscle: RingMuscle, x: Array, landmarks: Array) -> Array:

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields
 from typing import Any, TypeVar, cast
 
-from .checked import shown
+from .checked import number_within, quoted
 from .landmarks import LANDMARK_COUNT, LandmarkPoint
 from .rig import (
     FORMAT,
@@ -42,11 +42,11 @@ KINDS: dict[str, type[Muscle]] = {
 def read_rig(document: Mapping[str, Any]) -> Rig:
     """Read a rig from the parsed rig file; ValueError names the muscle and key that is wrong."""
     if not isinstance(document, Mapping):
-        raise ValueError(f"rig: was {shown(document)}, must be the table of a rig file")
+        raise ValueError(f"rig: was {quoted(document)}, must be the table of a rig file")
     _known_keys(document, ("format", "tissue", "jaw", "eyes", "head", "muscle"), "rig")
     version = document.get("format", FORMAT)
     if not isinstance(version, int) or version != FORMAT:
-        raise ValueError(f"rig, key 'format': was {shown(version)}, this version reads {FORMAT}")
+        raise ValueError(f"rig, key 'format': was {quoted(version)}, this version reads {FORMAT}")
     muscles = []
     for name, table in _table(document, "muscle", "rig").items():
         where = f"rig, muscle '{name}'"
@@ -70,10 +70,10 @@ def read_rig(document: Mapping[str, Any]) -> Rig:
 def _read_muscle(name: str, table: Any, where: str) -> Muscle:
     """Read one muscle table by its kind."""
     if not isinstance(table, Mapping):
-        raise ValueError(f"{where}: was {shown(table)}, must be a table [muscle.{name}]")
+        raise ValueError(f"{where}: was {quoted(table)}, must be a table [muscle.{name}]")
     kind = table.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
-        raise ValueError(f"{where}, key 'kind': was {shown(kind)}, allowed are {', '.join(KINDS)}")
+        raise ValueError(f"{where}, key 'kind': was {quoted(kind)}, allowed are {', '.join(KINDS)}")
     rest = {("fibres" if key == "fibre" else key): v for key, v in table.items() if key != "kind"}
     muscle = _read(KINDS[kind], rest, where, name=name)
     if isinstance(muscle, LinearMuscle) and not muscle.fibres:
@@ -125,28 +125,28 @@ def _value(value: Any, rule: Field[Any], where: str) -> Any:
     meta = rule.metadata
     match meta["rule"]:
         case "number":
-            return _check_number(value, meta["low"], meta["high"], where)
+            return number_within(where, value, meta["low"], meta["high"])
         case "vector":
             return _check_vector(value, meta["size"], meta["low"], meta["high"], where)
         case "choice":
             if not isinstance(value, str) or value not in meta["allowed"]:
                 allowed = ", ".join(meta["allowed"])
-                raise ValueError(f"{where}: was {shown(value)}, allowed are {allowed}")
+                raise ValueError(f"{where}: was {quoted(value)}, allowed are {allowed}")
             return value
         case "text" | "boolean":
             wanted = str if meta["rule"] == "text" else bool
             if not isinstance(value, wanted):
-                raise ValueError(f"{where}: was {shown(value)}, must be a {meta['rule']}")
+                raise ValueError(f"{where}: was {quoted(value)}, must be a {meta['rule']}")
             return value
         case "names":
             if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
-                raise ValueError(f"{where}: was {shown(value)}, must be a list of muscle names")
+                raise ValueError(f"{where}: was {quoted(value)}, must be a list of muscle names")
             return tuple(value)
         case "seeds":
             return _read_mix(value, where, low=-2.0, high=2.0)
         case "fibres":
             if not isinstance(value, list):
-                raise ValueError(f"{where}: was {shown(value)}, must be a list of fibre tables")
+                raise ValueError(f"{where}: was {quoted(value)}, must be a list of fibre tables")
             read = (_read(Fibre, f, f"{where} {i + 1}") for i, f in enumerate(value))
             return tuple(read)
         case _:
@@ -157,7 +157,7 @@ def _read_point(value: Any, where: str) -> LandmarkPoint:
     """Read {landmark = 54} or {landmarks = {45 = 0.6, 14 = 0.4}}, with an optional offset."""
     if not isinstance(value, Mapping):
         raise ValueError(
-            f"{where}: was {shown(value)}, must be a table such as "
+            f"{where}: was {quoted(value)}, must be a table such as "
             "{landmark = 54, offset = [0, 0, 0]}"
         )
     _known_keys(value, ("landmark", "landmarks", "offset"), where)
@@ -175,38 +175,30 @@ def _read_point(value: Any, where: str) -> LandmarkPoint:
 def _read_mix(value: Any, where: str, *, low: float, high: float) -> tuple[tuple[int, float], ...]:
     """Read a table landmark number -> weight."""
     if not isinstance(value, Mapping) or not value:
-        raise ValueError(f"{where}: was {shown(value)}, must be a table landmark number = weight")
+        raise ValueError(f"{where}: was {quoted(value)}, must be a table landmark number = weight")
     mix = []
     for key, weight in value.items():
         text = str(key)
         if not re.fullmatch("[0-9]{1,2}", text) or int(text) >= LANDMARK_COUNT:
             raise ValueError(
-                f"{where}: landmark {shown(text)}, allowed are 0 to {LANDMARK_COUNT - 1}"
+                f"{where}: landmark {quoted(text)}, allowed are 0 to {LANDMARK_COUNT - 1}"
             )
-        mix.append((int(text), _check_number(weight, low, high, f"{where}, landmark {text}")))
+        mix.append((int(text), number_within(f"{where}, landmark {text}", weight, low, high)))
     return tuple(mix)
-
-
-def _check_number(value: Any, low: float, high: float, where: str) -> float:
-    """A finite number inside [low, high]."""
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not number or not low <= value <= high:  # NaN is not
-        raise ValueError(f"{where}: was {shown(value)}, must be a number from {low:g} to {high:g}")
-    return float(value)
 
 
 def _check_vector(value: Any, size: int, low: float, high: float, where: str) -> tuple[float, ...]:
     """A list of `size` finite numbers inside [low, high]."""
     if not isinstance(value, list | tuple) or len(value) != size:
-        raise ValueError(f"{where}: was {shown(value)}, must be a list of {size} numbers")
-    return tuple(_check_number(v, low, high, f"{where}[{i}]") for i, v in enumerate(value))
+        raise ValueError(f"{where}: was {quoted(value)}, must be a list of {size} numbers")
+    return tuple(number_within(f"{where}[{i}]", v, low, high) for i, v in enumerate(value))
 
 
 def _table(document: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:
     """The sub-table `key`, empty if it is not there."""
     table = document.get(key, {})
     if not isinstance(table, Mapping):
-        raise ValueError(f"{where}, key '{key}': was {shown(table)}, must be a table [{key}]")
+        raise ValueError(f"{where}, key '{key}': was {quoted(table)}, must be a table [{key}]")
     return table
 
 

@@ -1,6 +1,6 @@
 """Bones and eyeballs: where they are at rest, and how jaw and gaze values move them.
 
-Skin is simulated in the frame of the cranium; head pose moves the result as a whole about the
+Skin is simulated in coordinates of the cranium; head pose moves the result as a whole about the
 joint with the spine. The mandible turns about the axis through both condyles and glides with
 them; skin hangs on both by a weight. Eyeballs turn in place. These are rigid degrees of freedom
 beside the muscles: no spring moves a bone.
@@ -14,15 +14,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ..jit import njit
-from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Array, FaceFrame, Side, select
+from .coordinates import FaceSpace
+from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Array, Side
 from .rig import Eyes, Head, Jaw
 from .surface import Surface
 
-EYE_RADIUS = 12.5  # mm in the standard frame, where a head brings no eyes (adult eyeball: 12)
+EYE_RADIUS = 12.5  # mm in the standard space, where a head brings no eyes (adult eyeball: 12)
 EYE_SETBACK = 5.5  # mm from the line of the eye corners back to the centre (fitted on scans)
 NECK_BELOW_CHIN = 30.0  # mm below the chin landmark the skin no longer belongs to the mandible
 BEHIND_EARS = 20.0  # mm behind the ear landmarks likewise
@@ -32,9 +34,8 @@ LATERAL, UP, FORWARD = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 SEED_HOLD = 3.0  # seeds are advice, not nails: a soft hold gives a smooth border
 
 
-@dataclass(frozen=True)
-class Pose:
-    """A rigid motion x -> rotation x + shift in the standard frame [mm]."""
+class Pose(NamedTuple):
+    """A rigid motion x -> rotation x + shift in the standard space [mm]."""
 
     rotation: Array  # (3, 3)
     shift: Array  # (3,)
@@ -46,16 +47,15 @@ class Pose:
 
     def displacements(self, points: Array) -> Array:
         """How far points (..., 3) move."""
-        moved: Array = points @ self.rotation.T + self.shift - points
-        return moved
+        return points @ self.rotation.T + self.shift - points
 
     def after(self, first: Pose) -> Pose:
         """This motion done after another."""
         return Pose(self.rotation @ first.rotation, self.rotation @ first.shift + self.shift)
 
-    def matrix(self, frame: FaceFrame) -> Array:
+    def matrix(self, space: FaceSpace) -> Array:
         """The motion in head coordinates as a (4, 4) matrix for column vectors."""
-        result: Array = in_head(self.rotation, self.shift, frame.axes, frame.origin, frame.scale)
+        result: Array = in_head(self, space.axes, space.origin, space.scale)
         return result
 
 
@@ -64,7 +64,7 @@ REST = Pose(np.eye(3), np.zeros(3))
 
 @dataclass(frozen=True)
 class Eyeball:
-    """One eyeball in the standard frame [mm]."""
+    """One eyeball in the standard space [mm]."""
 
     side: Side
     centre: Array  # (3,)
@@ -180,10 +180,10 @@ def move_mandible(condyles, ways, angles, values):  # type: ignore[no-untyped-de
 
 
 @njit
-def in_head(turn, shift, axes, origin, scale):  # type: ignore[no-untyped-def]
-    """A motion of the standard frame in head coordinates, as a (4, 4) matrix."""
-    there = times(times(axes.T, turn), axes)
-    to = origin + scale * turned(axes.T, shift) - turned(there, origin)
+def in_head(pose, axes, origin, scale):  # type: ignore[no-untyped-def]
+    """A motion of the standard space in head coordinates, as a (4, 4) matrix."""
+    there = times(times(axes.T, pose.rotation), axes)
+    to = origin + scale * turned(axes.T, pose.shift) - turned(there, origin)
     matrix = np.eye(4)
     for i in range(3):
         matrix[i, 3] = to[i]
@@ -226,11 +226,9 @@ def mandible_weight_from_landmarks(
     fixed = (y < landmarks[8, 1] - NECK_BELOW_CHIN) | (y > landmarks[29, 1])
     fixed |= z < min(landmarks[0, 2], landmarks[16, 2]) - BEHIND_EARS
     half_mouth = 0.9 * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0
-    middle = select(landmarks, UPPER_LIP).mean(axis=0)
+    middle = landmarks[list(UPPER_LIP)].mean(axis=0)
     lips = (np.abs(lip_side) > 0.9) & (np.abs(x - middle[0]) < half_mouth)
     lips &= np.linalg.norm(surface.positions - middle, axis=1) < half_mouth
     seeds = np.concatenate([vertices, np.flatnonzero(fixed), np.flatnonzero(lips)])
     wanted = np.concatenate([values, np.zeros(fixed.sum()), (lip_side[lips] < 0.0) * 1.0])
-    weight = np.clip(surface.harmonic(seeds.astype(np.int64), wanted, hold=SEED_HOLD), 0.0, 1.0)
-    result: Array = weight
-    return result
+    return np.clip(surface.harmonic(seeds.astype(np.int64), wanted, hold=SEED_HOLD), 0.0, 1.0)

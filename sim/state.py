@@ -1,7 +1,7 @@
 """What changes while a face is simulated, as arrays that the kernels share.
 
 One `State` belongs to one simulation and is allocated once; kernels take it whole and write into
-its arrays. Coordinates are the standard frame of landmarks.py [mm, mm/s].
+its arrays. Coordinates are the standard space of coordinates.py [mm, mm/s].
 
 Source: Kähler et al. 2001: point masses at the vertices, moved by what they hang on.
 """
@@ -21,17 +21,15 @@ class State(NamedTuple):
 
     x: Array  # (V, 3) positions
     v: Array  # (V, 3) velocities
-    carried: (
-        Array  # (V, 3) rest positions carried by bones and lids: far ends of the tissue springs
-    )
+    carried: Array  # (V, 3) rest carried by bones and lids: far ends of the tissue springs
     normals: Array  # (V, 3) tissue directions carried likewise
     hold: Array  # (V,) stiffness of muscles and lids
     pull: Array  # (V, 3) force of active muscles
     offset: Array  # (V, 3) x - carried
     force: Array  # (V, 3) sum of all forces
-    kept: Array  # (V,) share of the velocity that damping leaves in a substep
+    decay: Array  # (V,) share of the velocity that damping leaves in a substep
     gain: Array  # (V,) velocity gained per force in a substep
-    move: Array  # (V, 3) work space of lip contact and seal
+    work: Array  # (V, 3) work space: nobody finds there what another left
     tension: Array  # (E,) of each edge spring, per its length
 
     @classmethod
@@ -47,8 +45,8 @@ class State(NamedTuple):
             pull=np.zeros(vector),
             offset=np.zeros(vector),
             force=np.zeros(vector),
-            kept=np.zeros(scalar),
+            decay=np.zeros(scalar),
             gain=np.zeros(scalar),
-            move=np.zeros(vector),
+            work=np.zeros(vector),
             tension=np.zeros(len(surface.edges)),
         )

@@ -1,9 +1,10 @@
 """One substep of the face, compiled: all forces on the skin, Euler's step, all contacts.
 
-The physics is explained where its data is made: tissue.py, springs.py, contact.py. The kernels
-stand together because numba caches compiled code by the file it is written in and freezes what it
-finds outside it: a kernel may use constants and kernels of its own file only, or an update runs
-old code. A test holds this for the whole package.
+The physics is explained where its data is made: tissue.py, springs.py, contact.py, teeth.py; the
+arguments are the named tuples of state.py and skin.py. The kernels stand together because numba
+caches compiled code by the file it is written in and freezes what it finds outside it: a kernel may
+use constants and kernels of its own file only, or an update runs old code. A test holds this for
+the whole package.
 
 Source: Kähler et al. 2001, section 3 (mass-spring skin); semi-implicit Euler instead of Verlet.
 """
@@ -25,31 +26,30 @@ LEAST_SHARE = 0.1  # of an arch: nearer to its axis the way out is uncertain
 
 
 @njit
-def advance(  # type: ignore[no-untyped-def]
-    state, substeps, h, rest, mass, tissue, edges, lips, grip, eyes, teeth, turn, shift
-):
-    """Advance a face by `substeps` of length `h` [s]: the list of all forces and constraints."""
-    damp(state, h, mass, tissue)
-    for _ in range(substeps):
-        tissue_forces(state, tissue)
-        edge_forces(state, edges)
+def advance(state, skin, tick):  # type: ignore[no-untyped-def]
+    """Advance a face by one tick in substeps: the list of all forces and constraints."""
+    damp(state, skin, tick.h)
+    for _ in range(tick.substeps):
+        tissue_forces(state, skin.tissue)
+        edge_forces(state, skin.edges)
         accelerate(state)
-        hold_lips(state, rest, mass, lips, grip, h)
-        move(state, h)
+        hold_lips(state, skin, tick)
+        move(state, tick.h)
         for _ in range(LIP_PASSES):
-            keep_lips_apart(state, rest, mass, lips, grip.overlap)
-        keep_out_of_eyeballs(state, eyes)
-        keep_out_of_teeth(state, teeth, turn, shift)
+            keep_lips_apart(state, skin, tick.grip.overlap)
+        keep_out_of_eyeballs(state, skin.eyes)
+        keep_out_of_teeth(state, skin.teeth, tick.mandible)
 
 
 @njit
-def damp(state, h, mass, tissue):  # type: ignore[no-untyped-def]
+def damp(state, skin, h):  # type: ignore[no-untyped-def]
     """Prepare what damping leaves of a velocity, and what a force adds to it, for this tick."""
+    mass, tissue = skin.mass, skin.tissue
     for i in range(len(mass)):
         rate = np.sqrt((tissue.tangential[i] + state.hold[i]) / mass[i])
         damping = tissue.damping + 2.0 * tissue.damping_ratio * rate
-        state.kept[i] = 1.0 / (1.0 + h * damping)
-        state.gain[i] = state.kept[i] * h / mass[i]
+        state.decay[i] = 1.0 / (1.0 + h * damping)
+        state.gain[i] = state.decay[i] * h / mass[i]
 
 
 @njit
@@ -119,21 +119,23 @@ def accelerate(state):  # type: ignore[no-untyped-def]
     """First half of semi-implicit Euler: velocities from forces and damping."""
     v, force = state.v, state.force
     for i in range(len(v)):
-        kept, gain = state.kept[i], state.gain[i]
+        decay, gain = state.decay[i], state.gain[i]
         for k in range(3):
-            v[i, k] = kept * v[i, k] + gain * force[i, k]
+            v[i, k] = decay * v[i, k] + gain * force[i, k]
 
 
 @njit
-def hold_lips(state, rest, mass, lips, grip, h):  # type: ignore[no-untyped-def]
-    """Change velocities by the seal's pull over a substep of `h` [s], as if it had already acted.
+def hold_lips(state, skin, tick):  # type: ignore[no-untyped-def]
+    """Change velocities by the seal's pull over a substep, as if it had already acted.
 
     An implicit spring on the distance c of a pair, growing at speed s, with inverse mass w:
     s' = (s - h k w c) / (1 + h^2 k w), stable for any stiffness k.
     """
+    rest, mass, lips = skin.rest, skin.mass, skin.lips
+    grip, h = tick.grip, tick.h
     if grip.stiffness <= 0.0:
         return
-    x, v, change = state.x, state.v, state.move
+    x, v, change = state.x, state.v, state.work
     change[:] = 0.0
     for p in range(len(lips.lower)):
         i, a, b = lips.lower[p], lips.upper[p, 0], lips.upper[p, 1]
@@ -146,8 +148,8 @@ def hold_lips(state, rest, mass, lips, grip, h):  # type: ignore[no-untyped-def]
                 apart -= grip.overlap
             speed = v[i, k] - w * v[a, k] - (1.0 - w) * v[b, k]
             give = h * inverse * grip.stiffness * lips.seal[p] * SEAL_AXES[k]
-            kept = (speed - give * apart) / (1.0 + h * give)
-            impulse = lips.averaging[p] * (kept - speed) / inverse
+            slowed = (speed - give * apart) / (1.0 + h * give)
+            impulse = lips.averaging[p] * (slowed - speed) / inverse
             change[i, k] += impulse / mass[i]
             change[a, k] -= w * impulse / mass[a]
             change[b, k] -= (1.0 - w) * impulse / mass[b]
@@ -168,9 +170,10 @@ def move(state, h):  # type: ignore[no-untyped-def]
 
 
 @njit
-def keep_lips_apart(state, rest, mass, lips, overlap):  # type: ignore[no-untyped-def]
+def keep_lips_apart(state, skin, overlap):  # type: ignore[no-untyped-def]
     """Project lips that cross by more than `overlap` [mm] back and stop their approach."""
-    x, v, move = state.x, state.v, state.move
+    rest, mass, lips = skin.rest, skin.mass, skin.lips
+    x, v, move = state.x, state.v, state.work
     crossed = False
     for p in range(len(lips.lower)):
         i, a, b = lips.lower[p], lips.upper[p, 0], lips.upper[p, 1]
@@ -205,16 +208,16 @@ def keep_lips_apart(state, rest, mass, lips, overlap):  # type: ignore[no-untype
 
 
 @njit
-def keep_out_of_teeth(state, teeth, turn, shift):  # type: ignore[no-untyped-def]
+def keep_out_of_teeth(state, teeth, mandible):  # type: ignore[no-untyped-def]
     """Project skin out of the dental arches, away from their axes, and stop its approach.
 
-    The lower arch is where the mandible is: turned by `turn`, moved by `shift`.
+    The lower arch is where the mandible is.
     """
-    x, v = state.x, state.v
+    x, v, turn, shift = state.x, state.v, mandible.rotation, mandible.shift
     for c in range(len(teeth.vertex)):
         i = teeth.vertex[c]
         px, py, pz = x[i, 0], x[i, 1], x[i, 2]
-        if teeth.lower[c]:  # into the mandible's own frame
+        if teeth.lower[c]:  # into the mandible's own space
             dx, dy, dz = px - shift[0], py - shift[1], pz - shift[2]
             px = turn[0, 0] * dx + turn[1, 0] * dy + turn[2, 0] * dz
             py = turn[0, 1] * dx + turn[1, 1] * dy + turn[2, 1] * dz

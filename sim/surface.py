@@ -2,7 +2,7 @@
 on it.
 
 Everything here is computed once when a simulation is built; nothing runs per frame. Coordinates
-are the standard frame of landmarks.py in millimetres.
+are the standard space of coordinates.py in millimetres.
 
 Source: Van Gelder 1998 for edge stiffness from triangle areas; Kähler et al. 2001 for one mass
 per vertex and one spring per edge.
@@ -64,8 +64,7 @@ class Surface:
         i, j = self.edges.T
         graph = sparse.csr_array((self.lengths, (i, j)), shape=(self.vertex_count,) * 2)
         distance = csgraph.dijkstra(graph, directed=False, indices=vertices, min_only=True)
-        result: Array = np.asarray(distance, dtype=np.float64)
-        return result
+        return np.asarray(distance, dtype=np.float64)
 
     def smoothed(self, field: Array, extent: float) -> Array:
         """A field (V,) without details smaller than about sqrt(`extent`) [mm2]."""

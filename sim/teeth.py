@@ -17,7 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import checked
-from .landmarks import Array, FaceFrame
+from .coordinates import FaceSpace
+from .landmarks import Array
 from .skull import Pose
 from .surface import Surface
 
@@ -34,8 +35,21 @@ class Teeth(NamedTuple):
     arch: Array  # (C, 5) mm: half width, depth, z of the axis, lowest and highest tooth
     least: Array  # (C,) how near to the axis it may come, 1 = the arch
 
+    def deepest(self, x: Array, mandible: Pose) -> float:
+        """How deep skin at `x` (V, 3) sits in the teeth at most, less what it did at rest [mm]."""
+        if not len(self.vertex):
+            return 0.0
+        points = x[self.vertex]
+        in_jaw = (points - mandible.shift) @ mandible.rotation
+        points = np.where(self.lower[:, None], in_jaw, points)
+        width, depth, axis, low, high = self.arch.T
+        share = np.hypot(points[:, 0] / width, (points[:, 2] - axis) / depth)
+        met = (points[:, 2] > axis) & (points[:, 1] > low) & (points[:, 1] < high)
+        sunk = np.where(met, (self.least - share) * np.minimum(width, depth), 0.0)
+        return float(max(sunk.max(), 0.0))
 
-def watch_teeth(parts: Any, surface: Surface, frame: FaceFrame) -> Teeth:
+
+def watch_teeth(parts: Any, surface: Surface, space: FaceSpace) -> Teeth:
     """Find the skin that could touch the teeth: the parts whose name starts with "teeth_".
 
     Skin that starts inside an arch may not sink deeper.
@@ -47,7 +61,7 @@ def watch_teeth(parts: Any, surface: Surface, frame: FaceFrame) -> Teeth:
             found = checked.numbers(f"head.parts: {part.name}", part.vertices, (None, 3), "(n, 3)")
             if not len(found):
                 continue
-            arch = _arch(frame.to_standard(found))
+            arch = _arch(space.to_standard(found))
             inside = _inside(surface.positions, arch)
             off = surface.positions - (0.0, 0.0, arch[2])
             near = inside < 1.0 + REACH / min(arch[0], arch[1])
@@ -79,17 +93,3 @@ def _inside(points: Array, arch: Array) -> Array:
     """Distance to the axis as a share of the arch's, shape (n,)."""
     share: Array = np.hypot(points[:, 0] / arch[0], (points[:, 2] - arch[2]) / arch[1])
     return share
-
-
-def deepest(teeth: Teeth, x: Array, mandible: Pose) -> float:
-    """How deep skin at `x` (V, 3) sits in the teeth at most, less what it did at rest [mm]."""
-    if not len(teeth.vertex):
-        return 0.0
-    points = x[teeth.vertex]
-    in_jaw = (points - mandible.shift) @ mandible.rotation
-    points = np.where(teeth.lower[:, None], in_jaw, points)
-    width, depth, axis, low, high = teeth.arch.T
-    share = np.hypot(points[:, 0] / width, (points[:, 2] - axis) / depth)
-    met = (points[:, 2] > axis) & (points[:, 1] > low) & (points[:, 1] < high)
-    sunk = np.where(met, (teeth.least - share) * np.minimum(width, depth), 0.0)
-    return float(max(sunk.max(), 0.0))

@@ -57,14 +57,14 @@ def masses_for_step(areas: Array, stiffness: Array, step: float) -> Array:
     heavier.
     """
     needed = stiffness * step**2 / (4.0 * STABLE_STEP_SHARE)
-    result: Array = np.maximum(areas * AREAL_MASS, needed)
-    return result
+    return np.maximum(areas * AREAL_MASS, needed)
 
 
 @njit
-def carry(rest, normals, weight, turn, shift, state):  # type: ignore[no-untyped-def]
+def carry(state, rest, normals, weight, mandible):  # type: ignore[no-untyped-def]
     """Move the far ends of the tissue springs with the mandible, each vertex by its share."""
     carried, carried_normals = state.carried, state.normals
+    turn, shift = mandible.rotation, mandible.shift
     for i in range(len(rest)):
         w = weight[i]
         x, y, z = rest[i, 0], rest[i, 1], rest[i, 2]

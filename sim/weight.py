@@ -1,6 +1,6 @@
 """Weight and inertia of the soft tissue, for those who ask for them: cheeks follow a nod.
 
-Skin is simulated in the frame of the cranium. While the head turns, that frame is accelerated, and
+Skin is simulated in coordinates of the cranium. While the head turns, these are accelerated, and
 the skin feels it as a load; a tilted head also feels gravity from another side. The rest shape is
 how a face hangs upright, so an upright head feels no gravity:
 
@@ -21,7 +21,7 @@ from .landmarks import Array
 from .skull import REST, Pose
 from .tissue import AREAL_MASS
 
-GRAVITY = np.array([0.0, -9810.0, 0.0])  # mm/s2 in the standard frame
+GRAVITY = np.array([0.0, -9810.0, 0.0])  # mm/s2 in the standard space
 
 
 class Weight:

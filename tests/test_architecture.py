@@ -1,7 +1,8 @@
-"""The three sentences of docs/architecture.md, as far as imports can tell."""
+"""The three sentences of docs/architecture.md, as far as imports can tell, and limits of size."""
 
 from __future__ import annotations
 
+import ast
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +12,9 @@ import pytest
 from tests.as_installed import lay
 
 ROOT = Path(__file__).parents[1]
+FOLDERS = ("app", "assets", "bench", "docs", "examples", "refine", "render", "risorius", "sim")
+LONGEST_FILE, LONGEST_FUNCTION = 400, 60  # lines
+TOO_LONG = {"app/viewer/window.py"}
 
 
 def test_import_rules(tmp_path: Path) -> None:
@@ -46,3 +50,20 @@ def test_fresh_import(package: str, banned: set[str]) -> None:
     assert package in modules
     neighbours = {"app", "assets", "bench", "refine", "render", "sim"} - {package}
     assert not modules & (banned | neighbours)
+
+
+def test_files_and_functions_are_short() -> None:
+    """One screen for a function, a few for a file; what is excused is too long indeed."""
+    sources = [path for folder in FOLDERS for path in (ROOT / folder).rglob("*.py")]
+    assert len(sources) > 100
+    long = {
+        str(path.relative_to(ROOT)) for path in sources if _is_too_long(path.read_text("utf-8"))
+    }
+    assert long == TOO_LONG
+
+
+def _is_too_long(source: str) -> bool:
+    """Whether a file or one of its functions has more lines than it may."""
+    functions = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef)]
+    lengths = [(node.end_lineno or 0) - node.lineno + 1 for node in functions]
+    return source.count("\n") > LONGEST_FILE or max(lengths, default=0) > LONGEST_FUNCTION

@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 import pytest
 
-from risorius.app.cli import main
+from risorius.__main__ import command as risorius
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -35,7 +35,7 @@ def test_links_lead_somewhere(page: Path) -> None:
 def test_commands_are_known(page: Path) -> None:
     """Every command that a page shows has the options that it is shown with."""
     for words in COMMAND.findall(page.read_text(encoding="utf-8")):
-        command: click.Command = main
+        command: click.Command = risorius()
         rest = shlex.split(words)[1:]
         while isinstance(command, click.Group) and rest:
             assert rest[0] in command.commands, words

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from imgui_bundle import imgui
 
-from ..easing import EASINGS
+from ..script.easing import EASINGS
 from . import commands, dropped, key_commands
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from risorius import refine, render
 
-from ..pipeline import Picture, splits_of_source
+from ..pipeline import DrawnMesh, splits_of_source
 from ..scenes import Scene
 
 MOST_DROP = 0.3  # of the normals' dot product, drawn darkest: a bend of 45 degrees
@@ -34,7 +34,7 @@ class Colours:
     legend: str
     of_source: Callable[[Scene, refine.Refiner], Amounts] | None = None
 
-    def values(self, scene: Scene, picture: Picture) -> Amounts | None:
+    def values(self, scene: Scene, picture: DrawnMesh) -> Amounts | None:
         """One value for each drawn triangle, as `kind` wants it."""
         assert picture.mesh is not None
         if self.kind is render.ColourBy.SPLITS:

@@ -10,9 +10,9 @@ import numpy as np
 
 from risorius import render
 
-from .. import outputs
 from ..cameras import whole_scene
-from ..script_writer import is_pose
+from ..files import save_png
+from ..script import is_pose
 from .setting_rules import ZOOMS
 from .settings import save_settings
 from .take import Film, free_name
@@ -105,7 +105,7 @@ def save_pose(viewer: Viewer, then: Callable[[], None] = _nothing) -> None:
 def screenshot(viewer: Viewer) -> None:
     """Write the picture without panels, in full detail, into the present folder."""
     target = free_name(Path.cwd(), ".png")
-    outputs.save_png(target, viewer.stage.photograph(*viewer.scene_view))
+    save_png(target, viewer.stage.photograph(*viewer.scene_view))
     viewer.messages.say(f"{target.name}: written to {target.parent}")
 
 

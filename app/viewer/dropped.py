@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 from risorius import assets
 from risorius.assets.meshes import FORMATS
 
-from ..choices import head_for
 from ..errors import UserError
-from ..scenes import build_scene
+from ..scenes import build_scene, head_for
 from . import commands
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from ..errors import UserError
-from ..script_writer import pose_script
+from ..script import pose_script
 from ..stopping import cleaned_up_if_stopped
 from .session import Session
 from .unsaved import Place, Work, left_behind

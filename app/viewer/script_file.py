@@ -6,8 +6,7 @@ import re
 from importlib.resources import files
 from pathlib import Path
 
-from ..script import Script, preface_of
-from ..script_writer import save_script
+from ..script import Script, preface_of, save_script
 
 _QUOTED = re.compile(r"""'[^'\n]*'|"(?:\\.|[^"\\\n])*\"""")
 

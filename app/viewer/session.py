@@ -15,8 +15,7 @@ import numpy as np
 
 from ..errors import UserError
 from ..scenes import Scene, within
-from ..script import Pose, Script, load_script, rounded
-from ..script_writer import is_pose, pose_script, save_script
+from ..script import Pose, Script, is_pose, load_script, pose_script, rounded, save_script
 from . import keys
 from .history import History
 from .recorder import Recorder

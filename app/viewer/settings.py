@@ -19,8 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import UserError, in_one_line
-from ..inputs import read_text
-from ..outputs import written_aside
+from ..files import read_text, written_atomically
 from ..refining import refiner_for
 from ..scenes import Scene
 from .setting_rules import (
@@ -178,5 +177,5 @@ def _suits(scene: Scene, refiner: str, options: Mapping[str, Any] | None) -> boo
 
 def save_settings(path: Path, settings: Settings) -> None:
     """Write the file; UserError where that cannot be."""
-    with written_aside(path) as part:
+    with written_atomically(path) as part:
         part.write_text(json.dumps(asdict(settings), indent=1), encoding="utf-8")

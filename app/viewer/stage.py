@@ -15,9 +15,9 @@ import numpy as np
 
 from risorius import render
 
-from ..labels import caption
-from ..outputs import Frame
-from ..pipeline import Picture, Viewport, texture_of
+from ..capture.captions import captioned
+from ..files import Image
+from ..pipeline import DrawnMesh, Viewport, texture_of
 from ..scenes import Scene
 from ..wrinkling import wrinkling_of
 from .colours import COLOURS
@@ -38,7 +38,7 @@ SceneView = tuple[render.OrbitCamera, Look, render.Background, Viewport, Collect
 class Shot(NamedTuple):
     """One mesh in the picture, and the part of it in which it is seen."""
 
-    picture: Picture
+    picture: DrawnMesh
     viewport: Viewport
     clip: Viewport
     label: str
@@ -53,7 +53,7 @@ class Stage:
         self.renderer = render.Renderer(surface)
         self._texture = texture_of(scene, self.renderer)
         self._wrinkling = wrinkling_of(scene, self.renderer)
-        self.static = Picture.of(scene, self.renderer, "none", None)
+        self.static = DrawnMesh.of(scene, self.renderer, "none", None)
         self.refined = self.static
         self._adopted: object = None
         self.adopt(look)
@@ -66,7 +66,7 @@ class Stage:
         if wanted == self._adopted:
             return
         self._adopted = wanted  # refused options are refused once, not in every frame
-        refined = Picture.of(self.scene, self.renderer, look.refiner, options)
+        refined = DrawnMesh.of(self.scene, self.renderer, look.refiner, options)
         if self.refined is not self.static:
             self.refined.stream.release()
         self.refined = refined
@@ -149,7 +149,7 @@ class Stage:
                         width=lines.width,
                         hidden_opacity=lines.hidden_opacity,
                     )
-            self.surface.layers.flush()
+            self.surface.target.flush()
             self.surface.gl.finish()
 
     def _draw(
@@ -198,7 +198,7 @@ class Stage:
         background: render.Background,
         viewport: Viewport,
         pointed: Collection[str] = (),
-    ) -> Frame:
+    ) -> Image:
         """The picture without panels, in full detail, with captions where two meshes are seen."""
         self.surface.detail = FULL
         self.draw(camera, look, background, viewport, pointed)
@@ -210,7 +210,7 @@ class Stage:
             return np.ascontiguousarray(frame)
         texts = [f"{shot.label} · {shot.picture.triangle_count} triangles" for shot in shots]
         places = [(shot.clip[0] - left, shot.clip[1] - bottom, *shot.clip[2:]) for shot in shots]
-        return caption(frame, texts, places)
+        return captioned(frame, texts, places)
 
 
 def style_of(look: Look, background: render.Background) -> render.Style:

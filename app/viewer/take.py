@@ -8,9 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import outputs
+from ..capture import outputs
+from ..capture.outputs import FrameSink
 from ..errors import UserError
-from ..outputs import Frame, FrameSink
+from ..files import Image
 
 FRAMES_PER_SECOND = 30.0
 
@@ -37,7 +38,7 @@ class Film:
         """How long it is so far."""
         return self.frame_count / FRAMES_PER_SECOND
 
-    def add(self, frame: Frame) -> None:
+    def add(self, frame: Image) -> None:
         """Add a frame, an odd row or column cut off; UserError where the size has changed."""
         height, width = frame.shape[0] // 2 * 2, frame.shape[1] // 2 * 2
         if self._sink is None:

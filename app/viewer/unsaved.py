@@ -21,13 +21,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
-from risorius.assets.aside import locked
+from risorius.assets.staging import locked
 
 from ..errors import UserError
-from ..inputs import read_text
-from ..outputs import cannot_be_written, save_text
-from ..script import LONGEST_FILE, Limits, Script, parse_script
-from ..script_writer import script_text
+from ..files import cannot_be_written, read_text, save_text
+from ..script import LONGEST_FILE, Limits, Script, parse_script, script_text
 
 KINDS = ("script", "recording", "pose")  # the files of one window, in the order of opening
 FILE_LINE = "# Its file: "

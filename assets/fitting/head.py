@@ -20,24 +20,25 @@ from typing import Any
 
 import numpy as np
 
-from ..brought import named
+from ..errors import AssetError
+from ..files import Image
 from ..loading import load
 from ..meshes import Mesh, read_mesh
 from ..model import (
-    AssetError,
     Eye,
     FloatArray,
     Head,
     IndexArray,
     Layer,
     Part,
-    Picture,
     SingleArray,
     Wrinkles,
 )
+from ..topology import vertex_normals
+from ..user_files import named
 from .landmark_file import COUNT, read_landmarks
 from .organs import Place, place_eyes, place_parts
-from .soundness import Skin, check_manifold, check_openings, skin_of
+from .soundness import SkinPiece, check_manifold, check_openings, skin_of
 from .warp import Similarity, Warp, nearest_on
 
 ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere
@@ -58,7 +59,7 @@ class FittedHead:
     the mesh's own) was left away.
 
     to_millimetres: takes the file's coordinates to these.
-    kept: numbers in the file of the vertices, shape (V,), int32.
+    file_vertices: numbers in the file of the vertices, shape (V,), int32.
     """
 
     vertices: FloatArray
@@ -69,12 +70,12 @@ class FittedHead:
     parts: tuple[Part, ...]
     uv: SingleArray
     face_uv: IndexArray
-    albedo: Picture
+    albedo: Image
     wrinkles: Wrinkles
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
     to_millimetres: Similarity
-    kept: IndexArray
+    file_vertices: IndexArray
 
 
 def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
@@ -111,7 +112,7 @@ def fit(
     _check_size(skin)
     skin = _facing_outward(skin)
     check_openings(skin)
-    normals = _normals(skin.vertices, skin.faces)
+    normals = vertex_normals(skin.vertices, skin.faces)
     target = similarity.points(points)
     warp = Warp(*_distinct(known.vertices[known.landmarks], target))
     warped = warp.points(known.vertices)
@@ -135,7 +136,7 @@ def fit(
         rig=known.rig,
         layers=known.layers,
         to_millimetres=similarity,
-        kept=skin.kept,
+        file_vertices=skin.file_vertices,
     )
 
 
@@ -166,14 +167,15 @@ def _placed(points: FloatArray, known: Head) -> Similarity:
     return similarity
 
 
-def _check_size(skin: Skin) -> None:
+def _check_size(skin: SkinPiece) -> None:
     """AssetError for a vertex [mm] that is nowhere near the face."""
     off = np.linalg.norm(skin.vertices, axis=1)
     if off.max() > LARGEST:
         where = int(off.argmax())
         raise AssetError(
-            f"vertex {skin.kept[where]} lies {off[where] / 1000.0:.3g} m off the face; allowed are "
-            f"{LARGEST / 1000.0:g} m: remove stray vertices and whatever is not the head"
+            f"vertex {skin.file_vertices[where]} lies {off[where] / 1000.0:.3g} m off the face; "
+            f"allowed are {LARGEST / 1000.0:g} m: remove stray vertices and whatever is not the "
+            "head"
         )
 
 
@@ -188,24 +190,12 @@ def _check_different(points: FloatArray, template: FloatArray) -> None:
         )
 
 
-def _facing_outward(skin: Skin) -> Skin:
+def _facing_outward(skin: SkinPiece) -> SkinPiece:
     """The same skin with its triangles counter-clockwise seen from outside."""
-    normals = _normals(skin.vertices, skin.faces)
+    normals = vertex_normals(skin.vertices, skin.faces)
     if normals[skin.landmarks[ORIENTING], 2].mean() > 0.0:
         return skin
     return replace(skin, faces=np.ascontiguousarray(skin.faces[:, ::-1]))
-
-
-def _normals(vertices: FloatArray, faces: IndexArray) -> FloatArray:
-    """Unit vertex normals, shape (V, 3)."""
-    corners = vertices[faces]
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals = np.zeros_like(vertices)
-    for corner in range(3):
-        np.add.at(normals, faces[:, corner], cross)
-    length = np.linalg.norm(normals, axis=1, keepdims=True)
-    normals /= np.maximum(length, 1e-12)
-    return normals
 
 
 def _distinct(source: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -17,9 +17,10 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..brought import named, read_file
+from ..errors import AssetError
 from ..meshes import FARTHEST, Mesh
-from ..model import AssetError, FloatArray, IndexArray
+from ..model import FloatArray, IndexArray
+from ..user_files import named, read_file
 from .soundness import ways
 from .warp import nearest_on
 

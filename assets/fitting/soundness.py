@@ -14,7 +14,8 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from ..model import AssetError, FloatArray, IndexArray
+from ..errors import AssetError
+from ..model import FloatArray, IndexArray
 
 MOST_TRIANGLES = 50_000
 FEWEST_TRIANGLES = 300  # below it eyes and mouth have no shape (chosen)
@@ -28,16 +29,16 @@ COVERED = 6.0  # [mm] behind the lids' edges in which skin covers the eye: no so
 
 
 @dataclass(frozen=True)
-class Skin:
+class SkinPiece:
     """The piece of a mesh that the landmarks lie on, and where its vertices were."""
 
     vertices: FloatArray  # (V, 3)
     faces: IndexArray  # (F, 3)
     landmarks: IndexArray  # (68,) in this piece
-    kept: IndexArray  # (V,) numbers in the whole mesh
+    file_vertices: IndexArray  # (V,) numbers in the whole mesh
 
 
-def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> Skin:
+def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> SkinPiece:
     """Leave away what hangs together with no landmark: eyeballs, teeth, vertices of no triangle.
 
     Raises AssetError if landmarks lie on two pieces or on none, or there are too many triangles,
@@ -62,7 +63,7 @@ def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> S
     is_kept = piece == piece[landmarks[0]]
     kept = np.flatnonzero(is_kept).astype(np.int32)
     number = np.cumsum(is_kept).astype(np.int32) - 1
-    return Skin(vertices[kept], number[faces[is_kept[faces[:, 0]]]], number[landmarks], kept)
+    return SkinPiece(vertices[kept], number[faces[is_kept[faces[:, 0]]]], number[landmarks], kept)
 
 
 def check_manifold(faces: IndexArray) -> None:
@@ -91,7 +92,7 @@ def check_manifold(faces: IndexArray) -> None:
         )
 
 
-def check_openings(skin: Skin) -> None:
+def check_openings(skin: SkinPiece) -> None:
     """Raise AssetError where lips are welded or skin covers an eye; in the face frame [mm]."""
     over, under = skin.landmarks[list(LIPS)]
     from_above, from_below = ways(skin.vertices, skin.faces, skin.landmarks[list(LIPS)])

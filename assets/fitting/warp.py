@@ -51,13 +51,11 @@ class Similarity:
 
     def points(self, points: npt.ArrayLike) -> FloatArray:
         """Points moved, shape (..., 3)."""
-        moved: FloatArray = self.vectors(points) + self.shift
-        return moved
+        return self.vectors(points) + self.shift
 
     def vectors(self, vectors: npt.ArrayLike) -> FloatArray:
         """Displacements turned and scaled, shape (..., 3)."""
-        turned: FloatArray = self.scale * (np.asarray(vectors, dtype=np.float64) @ self.rotation.T)
-        return turned
+        return self.scale * (np.asarray(vectors, dtype=np.float64) @ self.rotation.T)
 
 
 class Warp:
@@ -141,8 +139,7 @@ def _barycentric(points: FloatArray, corners: FloatArray) -> FloatArray:
     )
     on_edge = np.stack(edges)[distances.argmin(axis=0), np.arange(len(points))]
     is_inside = (inside >= 0.0).min(axis=1, keepdims=True)
-    result: FloatArray = np.where(is_inside, inside, on_edge)
-    return result
+    return np.where(is_inside, inside, on_edge)
 
 
 def _in_plane(points: FloatArray, a: FloatArray, u: FloatArray, v: FloatArray) -> FloatArray:

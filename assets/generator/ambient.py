@@ -20,8 +20,7 @@ def mouth_light(points: Points) -> Values:
     """Factor on sRGB colours at places within the mouth, LEAST to 1, shape (n,)."""
     inward = np.clip((points[:, 2] - GLOOM) / (DAYLIGHT - GLOOM), 0.0, 1.0) ** FALL
     side = 1.0 - BESIDE_SHARE * smooth_step(0.4 * BESIDE, BESIDE, np.abs(points[:, 0]))
-    light: Values = np.maximum(inward * side, LEAST)
-    return light
+    return np.maximum(inward * side, LEAST)
 
 
 def in_mouth_light(points: Points, colours: Points) -> Points:

@@ -15,11 +15,11 @@ from scipy import sparse
 from scipy.sparse.linalg import spsolve
 from scipy.spatial import cKDTree
 
+from ..topology import cross_products, edge_faces
 from .fields import Points, Values
 from .form import from_front
 from .mouth_rows import BORDER_ROW, COLUMNS, SEAM_ROW
 from .skin import Skin
-from .topology import cross_products, edge_faces
 
 DEPTH_BY_NAME = {
     "vertex": 5.0, "trichion": 4.5, "metopion": 5.0, "glabella": 5.5, "nasion": 6.5,

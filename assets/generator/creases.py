@@ -100,8 +100,7 @@ def both(first: Furrows, second: Furrows) -> Furrows:
 def stray(points: Points, reach: float, size: float, seed: int) -> Values:
     """How far lines wander from their course [mm], shape (n,)."""
     fine = noise(points, 0.35 * size, seed=seed + 1)
-    wandering: Values = reach * (noise(points, size, seed=seed) + 0.35 * fine)
-    return wandering
+    return reach * (noise(points, size, seed=seed) + 0.35 * fine)
 
 
 def band(values: Values, start: float, full: float, fade: float, end: float) -> Values:

@@ -1,6 +1,6 @@
 """Rows of vertices that make the left ear, from its root on the head to the floor of the concha.
 
-Row 0 is the root, a hole in the sheet; row 1 the free edge of the helix; 2 the crest where the
+Row 0 is the root, a hole in the infill; row 1 the free edge of the helix; 2 the crest where the
 helix rolls forward; 3 the hollow inside it (the scapha); 4 the ridge around the concha (antihelix,
 antitragus, tragus), which two deep vertices close. Columns run from the root of the helix over the
 top, down the back to the lobe, and up again in front of the tragus. In front the ear has no back

@@ -41,8 +41,7 @@ def _radii(angles: Values) -> Values:
     """Distance of the surface from the eye's centre: a ball with a bulge in front [mm]."""
     beside = np.minimum(EYE_RADIUS * np.sin(np.minimum(angles, np.pi / 2)), CORNEA_RADIUS)
     bulge = CORNEA_RISE * (1.0 - (beside / CORNEA_RADIUS) ** 2) ** 1.5
-    radii: Values = EYE_RADIUS + np.where(angles < np.pi / 2, bulge, 0.0)
-    return radii
+    return EYE_RADIUS + np.where(angles < np.pi / 2, bulge, 0.0)
 
 
 def _iris(beside: Values, around: Values) -> npt.NDArray[np.float64]:

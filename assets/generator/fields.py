@@ -31,14 +31,12 @@ def smooth_maximum(first: Values, second: Values, radius: float | Values) -> Val
 def smooth_step(low: float, high: float, values: Values) -> Values:
     """Rise from 0 at `low` to 1 at `high` without a kink."""
     t = np.clip((values - low) / (high - low), 0.0, 1.0)
-    step: Values = t * t * (3.0 - 2.0 * t)
-    return step
+    return t * t * (3.0 - 2.0 * t)
 
 
 def bump(values: Values, centre: float, width: float) -> Values:
     """A bell of height 1 around `centre`, down to 1/e at `width`."""
-    bell: Values = np.exp(-(((values - centre) / width) ** 2))
-    return bell
+    return np.exp(-(((values - centre) / width) ** 2))
 
 
 def sphere(points: Points, centre: tuple[float, float, float], radius: float) -> Values:

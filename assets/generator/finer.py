@@ -20,10 +20,10 @@ import numpy.typing as npt
 
 from ..checks import self_intersections
 from ..subdivision import quarter
+from ..topology import Faces, cross_products, edge_faces, edge_key, vertex_normals
 from .fields import Points, Values, gradient, project, unit
 from .form import distance
 from .skin import Skin
-from .topology import Faces, cross_products, edge_faces, edge_key
 
 LEVELS = 2
 ON_FORM = 0.03  # [mm] such a vertex lies on the form
@@ -111,13 +111,13 @@ def refined(level: Level) -> Level:
 
     image = _edge_numbers(edges, level.mirror[edges], count)
     step = 0.5 * (step + step[image] * [-1.0, 1.0, 1.0])  # symmetric to the last bit
-    kept = _free_of_cuts(level.vertices, cut.faces, middle, step, image)
-    point = (middle + kept[:, None] * step).astype(np.float32)
+    share = _free_of_cuts(level.vertices, cut.faces, middle, step, image)
+    point = (middle + share[:, None] * step).astype(np.float32)
     return Level(
         np.vstack([level.vertices, point]),
         cut.faces,
         np.r_[level.mirror, count + image].astype(np.int32),
-        np.r_[level.value, np.where(kept == 1.0, 0.5 * (value + value[image]), np.nan)],
+        np.r_[level.value, np.where(share == 1.0, 0.5 * (value + value[image]), np.nan)],
         [_finer_row(row, edges, count) for row in level.rows],
     )
 
@@ -152,12 +152,11 @@ def _miss(points: Points, value: float | Values) -> Values:
 def _values_between(first: Values, second: Values) -> Values:
     """Values of the form between ends: the mean, or less where one end lies on the form."""
     runs_out = (np.abs(first) < ON_FORM) != (np.abs(second) < ON_FORM)
-    values: Values = np.where(runs_out, RUN_OUT, 0.5) * (first + second)
-    return values
+    return np.where(runs_out, RUN_OUT, 0.5) * (first + second)
 
 
 def _form_values(skin: Skin) -> Values:
-    normal = _vertex_normals(skin.vertices, skin.faces)
+    normal = vertex_normals(skin.vertices, skin.faces)
     along = (normal * unit(gradient(distance, skin.vertices))).sum(axis=1)
     away = _miss(skin.vertices, 0.0)
     is_on = (away < ON_FORM) & (along > ALONG_FORM)
@@ -165,18 +164,9 @@ def _form_values(skin: Skin) -> Values:
     return np.where(is_on | is_near, distance(skin.vertices), np.nan)
 
 
-def _vertex_normals(vertices: Points, faces: Faces) -> Points:
-    """Unit normals, faces weighted by area, shape (n, 3)."""
-    cross = cross_products(vertices, faces)
-    total = np.zeros_like(vertices)
-    for corner in range(3):
-        np.add.at(total, faces[:, corner], cross)
-    return unit(total)
-
-
 def _normals(level: Level) -> Points:
     """Unit normals: of the form where the mesh lies on it, else of the mesh, shape (n, 3)."""
-    normals = _vertex_normals(level.vertices, level.faces)
+    normals = vertex_normals(level.vertices, level.faces)
     on_form = np.abs(level.value) < ON_FORM
     normals[on_form] = unit(gradient(distance, level.vertices[on_form]))
     return normals
@@ -282,5 +272,4 @@ def _row_steps(vertices: Points, row: Row) -> Points:
     # straight on.
     before = np.where(goes_on_before[:, None], before, along)
     after = np.where(goes_on_after[:, None], after, along)
-    steps: Points = (before - after) / 16.0
-    return steps
+    return (before - after) / 16.0

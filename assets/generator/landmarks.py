@@ -6,10 +6,10 @@ the subject's right ear, 17-26 brows, 27-35 nose, 36-47 eyes, 48-59 outer lips, 
 
 import numpy as np
 
+from ..topology import Faces
 from .eye_rows import COLUMNS as EYE_COLUMNS
 from .mouth_rows import BORDER_ROW, CREST_ROW, SEAM_ROW, SIDE
 from .skin import Skin
-from .topology import Faces
 
 # Landmarks of the mid-plane and of the left half by the name of their vertex.
 BY_NAME = {

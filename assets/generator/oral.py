@@ -10,8 +10,8 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from .ambient import in_mouth_light
-from .fields import Points
-from .solids import Solid, grid_faces, joined, mix, smooth_step, welded
+from .fields import Points, smooth_step
+from .solids import Solid, grid_faces, joined, mix, welded
 
 PALATE, CHEEK, FLOOR = (0.66, 0.33, 0.31), (0.92, 0.40, 0.36), (0.60, 0.27, 0.25)
 TONGUE, TONGUE_ROOT = (0.74, 0.41, 0.40), (0.62, 0.30, 0.29)

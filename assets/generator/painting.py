@@ -8,7 +8,8 @@ import numpy.typing as npt
 from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
-from ..model import Head, Picture, Tone
+from ..files import Image
+from ..model import Head, Tone
 from . import lips
 from .brows import brow_cover
 from .fields import Points, Values, bump, smooth_step
@@ -33,13 +34,13 @@ PADDING = 24.0  # texels
 FRECKLE_RADII = (0.3, 0.8)  # [mm]
 
 
-def paint_skin(head: Head, *, tone: Tone, size: int = SIZE) -> Picture:
+def paint_skin(head: Head, *, tone: Tone, size: int = SIZE) -> Image:
     """Paint the skin of a head, shape (size, size, 3), uint8, sRGB; row 0 is v = 1."""
     texels = left_texels(head, size)
     complexion = COMPLEXIONS[tone]
     melanin, redness, shadow = _pigments(texels, complexion)
     covers = _covers(texels, complexion, _grain(texels))
-    picture = np.zeros((size, size, 3))
+    image = np.zeros((size, size, 3))
     is_painted = np.zeros((size, size), dtype=bool)
     for side in (1, -1):
         points = texels.points * [side, 1.0, 1.0]
@@ -50,17 +51,17 @@ def paint_skin(head: Head, *, tone: Tone, size: int = SIZE) -> Picture:
         for colour, cover in covers:
             colours += cover[:, None] * (colour - colours)
         columns = texels.columns if side > 0 else size - 1 - texels.columns
-        picture[texels.rows, columns] = to_screen(colours)
+        image[texels.rows, columns] = to_screen(colours)
         is_painted[texels.rows, columns] = True
-    return np.asarray(np.rint(255.0 * _padded(picture, is_painted)), dtype=np.uint8)
+    return np.asarray(np.rint(255.0 * _padded(image, is_painted)), dtype=np.uint8)
 
 
-def _padded(picture: Points, is_painted: npt.NDArray[np.bool_]) -> Points:
+def _padded(image: Points, is_painted: npt.NDArray[np.bool_]) -> Points:
     """The edge of the skin goes on outside: filters and small mipmaps must find no border."""
     away, nearest = distance_transform_edt(~is_painted, return_indices=True)
-    around = picture[is_painted].mean(axis=0)
+    around = image[is_painted].mean(axis=0)
     share = smooth_step(PADDING, 0.5 * PADDING, away)[:, :, None]
-    return np.asarray(around + (picture[nearest[0], nearest[1]] - around) * share)
+    return np.asarray(around + (image[nearest[0], nearest[1]] - around) * share)
 
 
 def _grain(texels: Texels) -> float:

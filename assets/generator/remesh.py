@@ -1,6 +1,6 @@
-"""Improve the sheet in space: flip edges, move vertices over the surface, split and collapse.
+"""Improve the infill in space: flip edges, move vertices over the surface, split and collapse.
 
-The layout that the sheet came from squeezes steep places; a few rounds of these four well-known
+The layout that the infill came from squeezes steep places; a few rounds of these four well-known
 steps (Botsch and Kobbelt 2004, "A remeshing approach to multiresolution modeling") forget it.
 """
 
@@ -10,10 +10,10 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
+from ..topology import Edge, Faces, cross_products, edge_faces, edge_key
 from .fields import Points, Values, normals, project
 from .form import distance
-from .sheet import wanted_length
-from .topology import Edge, Faces, cross_products, edge_faces, edge_key
+from .infill import wanted_length
 
 LONGEST, SHORTEST = 1.38, 0.68  # of the wanted length: split above, collapse below
 FLIP_NORMAL_COSINE = 0.3  # both new faces must roughly agree
@@ -29,8 +29,8 @@ class Freedom(IntEnum):
 
 
 @dataclass
-class Sheet:
-    """The sheet under work; `locked` edges are neither flipped nor split nor collapsed."""
+class InfillMesh:
+    """The infill under work; `locked` edges are neither flipped nor split nor collapsed."""
 
     vertices: Points
     faces: Faces
@@ -60,21 +60,21 @@ def _corner_angles(vertices: Points, faces: Faces) -> Values:
     return angles
 
 
-def flip_edges(sheet: Sheet, *, rounds: int = 6) -> None:
+def flip_edges(mesh: InfillMesh, *, rounds: int = 6) -> None:
     """Flip every edge whose opposite angles add up to more than 180 degrees."""
-    triangles = sheet.faces.tolist()
+    triangles = mesh.faces.tolist()
     for _ in range(rounds):
         faces = np.array(triangles, dtype=np.int32)
-        beside, angles = edge_faces(faces), _corner_angles(sheet.vertices, faces)
+        beside, angles = edge_faces(faces), _corner_angles(mesh.vertices, faces)
         existing, flips = set(beside), 0
         touched: set[int] = set()
         for edge, pair in beside.items():
-            if len(pair) != 2 or edge in sheet.locked or touched & set(pair):
+            if len(pair) != 2 or edge in mesh.locked or touched & set(pair):
                 continue
             opposite = [angles[t, triangles[t].index(_opposite(triangles[t], edge))] for t in pair]
             if sum(opposite) <= np.pi + 1e-3:
                 continue
-            new = _flipped(sheet.vertices, triangles[pair[0]], triangles[pair[1]], edge, existing)
+            new = _flipped(mesh.vertices, triangles[pair[0]], triangles[pair[1]], edge, existing)
             if new is not None:
                 triangles[pair[0]], triangles[pair[1]] = new
                 touched |= set(pair)
@@ -83,7 +83,7 @@ def flip_edges(sheet: Sheet, *, rounds: int = 6) -> None:
                 flips += 1
         if flips == 0:
             break
-    sheet.faces = np.array(triangles, dtype=np.int32)
+    mesh.faces = np.array(triangles, dtype=np.int32)
 
 
 def _flipped(
@@ -107,10 +107,10 @@ def _flipped(
     return new
 
 
-def move_vertices(sheet: Sheet, *, rounds: int = 2, rate: float = 0.5) -> None:
+def move_vertices(mesh: InfillMesh, *, rounds: int = 2, rate: float = 0.5) -> None:
     """Pull vertices toward the weighted centre of their faces, along the surface."""
     for _ in range(rounds):
-        faces, vertices = sheet.faces, sheet.vertices
+        faces, vertices = mesh.faces, mesh.vertices
         wanted = wanted_length(vertices)
         weight = np.linalg.norm(cross_products(vertices, faces), axis=1)
         weight = weight / wanted[faces].mean(axis=1) ** 2
@@ -120,18 +120,18 @@ def move_vertices(sheet: Sheet, *, rounds: int = 2, rate: float = 0.5) -> None:
             np.add.at(total, faces[:, corner], weight)
             np.add.at(target, faces[:, corner], centre * weight[:, None])
         step = (target / np.maximum(total, 1e-12)[:, None] - vertices) * rate
-        step[sheet.freedom == Freedom.MIDLINE, 0] = 0.0
-        moving = np.flatnonzero((sheet.freedom != Freedom.FIXED) & (total > 0))
+        step[mesh.freedom == Freedom.MIDLINE, 0] = 0.0
+        moving = np.flatnonzero((mesh.freedom != Freedom.FIXED) & (total > 0))
         normal = normals(distance, vertices[moving])
         tangential = step[moving] - (step[moving] * normal).sum(axis=1, keepdims=True) * normal
         moved = vertices.copy()
         moved[moving] = project(distance, vertices[moving] + tangential, rounds=2)
-        moved[sheet.freedom == Freedom.MIDLINE, 0] = 0.0
-        sheet.vertices = moved
+        moved[mesh.freedom == Freedom.MIDLINE, 0] = 0.0
+        mesh.vertices = moved
 
 
 def split_edges(
-    sheet: Sheet,
+    mesh: InfillMesh,
     *,
     scale: float,
     longest: float = LONGEST,
@@ -142,9 +142,9 @@ def split_edges(
 
     face_counts: split only edges with so many faces beside them (1: in the mid-plane).
     """
-    beside = edge_faces(sheet.faces)
-    lengths = sheet.relative_lengths(scale)
-    vertices, freedom = list(sheet.vertices), sheet.freedom.tolist()
+    beside = edge_faces(mesh.faces)
+    lengths = mesh.relative_lengths(scale)
+    vertices, freedom = list(mesh.vertices), mesh.freedom.tolist()
     used: set[int] = set()
     new_faces: list[list[int]] = []
     new_vertices: list[int] = []
@@ -152,26 +152,26 @@ def split_edges(
         if lengths[edge] < longest or len(new_vertices) >= limit:
             break
         pair = beside[edge]
-        on_midline = len(pair) == 1 and not sheet.vertices[list(edge), 0].any()
+        on_midline = len(pair) == 1 and not mesh.vertices[list(edge), 0].any()
         is_fixed = all(freedom[vertex] == Freedom.FIXED for vertex in edge)
         is_border = len(pair) == 1 and not on_midline
-        is_excluded = edge in sheet.locked or len(pair) not in face_counts
+        is_excluded = edge in mesh.locked or len(pair) not in face_counts
         if is_excluded or is_border or used & set(pair) or (is_fixed and on_midline):
             continue
         middle = len(vertices)
-        vertices.append(0.5 * (sheet.vertices[edge[0]] + sheet.vertices[edge[1]]))
+        vertices.append(0.5 * (mesh.vertices[edge[0]] + mesh.vertices[edge[1]]))
         freedom.append(int(Freedom.MIDLINE if on_midline else Freedom.FREE))
         new_vertices.append(middle)
         used |= set(pair)
         for index in pair:
-            new_faces += _halves(sheet.faces[index].tolist(), edge, middle)
-    kept = [face for i, face in enumerate(sheet.faces.tolist()) if i not in used]
-    sheet.vertices = np.array(vertices)
-    sheet.freedom = np.array(freedom, dtype=np.int8)
+            new_faces += _halves(mesh.faces[index].tolist(), edge, middle)
+    unsplit = [face for i, face in enumerate(mesh.faces.tolist()) if i not in used]
+    mesh.vertices = np.array(vertices)
+    mesh.freedom = np.array(freedom, dtype=np.int8)
     if new_vertices:
-        sheet.vertices[new_vertices] = project(distance, sheet.vertices[new_vertices])
-        sheet.vertices[sheet.freedom == Freedom.MIDLINE, 0] = 0.0
-    sheet.faces = np.array(kept + new_faces, dtype=np.int32)
+        mesh.vertices[new_vertices] = project(distance, mesh.vertices[new_vertices])
+        mesh.vertices[mesh.freedom == Freedom.MIDLINE, 0] = 0.0
+    mesh.faces = np.array(unsplit + new_faces, dtype=np.int32)
     return len(new_vertices)
 
 
@@ -182,71 +182,71 @@ def _halves(face: list[int], edge: Edge, middle: int) -> list[list[int]]:
 
 
 def collapse_edges(
-    sheet: Sheet, *, scale: float, shortest: float = SHORTEST, limit: int = 10**6
+    mesh: InfillMesh, *, scale: float, shortest: float = SHORTEST, limit: int = 10**6
 ) -> int:
     """Collapse edges shorter than `shortest` times the wanted length, shortest first."""
-    lengths = sheet.relative_lengths(scale)
+    lengths = mesh.relative_lengths(scale)
     neighbours: dict[int, set[int]] = {}
     for a, b in lengths:
         neighbours.setdefault(a, set()).add(b)
         neighbours.setdefault(b, set()).add(a)
-    chained = {vertex for edge in sheet.locked for vertex in edge}
+    chained = {vertex for edge in mesh.locked for vertex in edge}
     blocked: set[int] = set()
     replaced: dict[int, int] = {}
     for edge in sorted(lengths, key=lambda key: (lengths[key], key)):
         if lengths[edge] > shortest or len(replaced) >= limit:
             break
-        gone, kept = sorted(edge, key=lambda vertex: sheet.freedom[vertex], reverse=True)
-        if sheet.freedom[gone] != Freedom.FREE or gone in chained or blocked & {gone, kept}:
+        gone, kept = sorted(edge, key=lambda vertex: mesh.freedom[vertex], reverse=True)
+        if mesh.freedom[gone] != Freedom.FREE or gone in chained or blocked & {gone, kept}:
             continue
-        if len(neighbours[gone] & neighbours[kept]) != 2 or not _may_merge(sheet, gone, kept):
+        if len(neighbours[gone] & neighbours[kept]) != 2 or not _may_merge(mesh, gone, kept):
             continue
         replaced[gone] = kept
         blocked |= neighbours[gone] | neighbours[kept] | {gone, kept}
-    merged = [[replaced.get(v, v) for v in face] for face in sheet.faces.tolist()]
-    sheet.faces = np.array([face for face in merged if len(set(face)) == 3], dtype=np.int32)
+    merged = [[replaced.get(v, v) for v in face] for face in mesh.faces.tolist()]
+    mesh.faces = np.array([face for face in merged if len(set(face)) == 3], dtype=np.int32)
     return len(replaced)
 
 
-def _may_merge(sheet: Sheet, gone: int, kept: int) -> bool:
+def _may_merge(mesh: InfillMesh, gone: int, kept: int) -> bool:
     """Whether no face around `gone` turns over when it moves onto `kept`."""
-    around = sheet.faces[(sheet.faces == gone).any(axis=1)]
+    around = mesh.faces[(mesh.faces == gone).any(axis=1)]
     around = around[~(around == kept).any(axis=1)]
-    before = cross_products(sheet.vertices, around)
-    after = cross_products(sheet.vertices, np.where(around == gone, kept, around))
+    before = cross_products(mesh.vertices, around)
+    after = cross_products(mesh.vertices, np.where(around == gone, kept, around))
     lengths = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
     return bool(((before * after).sum(axis=1) > COLLAPSE_NORMAL_COSINE * lengths).all())
 
 
-def remesh(sheet: Sheet, *, scale: float, target_faces: int) -> None:
+def remesh(mesh: InfillMesh, *, scale: float, target_faces: int) -> None:
     """Run the rounds and end with exactly `target_faces` faces."""
     for turn in range(10):
-        flip_edges(sheet)
-        move_vertices(sheet)
+        flip_edges(mesh)
+        move_vertices(mesh)
         if turn < 7:
-            split_edges(sheet, scale=scale)
-            collapse_edges(sheet, scale=scale)
-    _reach_count(sheet, scale=scale, target=target_faces)
+            split_edges(mesh, scale=scale)
+            collapse_edges(mesh, scale=scale)
+    _reach_count(mesh, scale=scale, target=target_faces)
     for _ in range(5):
-        flip_edges(sheet)
-        move_vertices(sheet)
-    flip_edges(sheet)
+        flip_edges(mesh)
+        move_vertices(mesh)
+    flip_edges(mesh)
 
 
-def _reach_count(sheet: Sheet, *, scale: float, target: int) -> None:
+def _reach_count(mesh: InfillMesh, *, scale: float, target: int) -> None:
     """An inner split adds two faces, a split in the mid-plane one, a collapse takes two."""
     for _ in range(80):
-        missing = target - len(sheet.faces)
+        missing = target - len(mesh.faces)
         if missing == 0:
             return
         if missing % 2:
-            split_edges(sheet, scale=scale, longest=0.0, limit=1, face_counts=(1,))
+            split_edges(mesh, scale=scale, longest=0.0, limit=1, face_counts=(1,))
         elif missing > 0:
             amount = max(1, min(6, missing // 4))
-            split_edges(sheet, scale=scale, longest=0.0, limit=amount, face_counts=(2,))
+            split_edges(mesh, scale=scale, longest=0.0, limit=amount, face_counts=(2,))
         else:
             amount = max(1, min(6, -missing // 4))
-            collapse_edges(sheet, scale=scale, shortest=9.0, limit=amount)
-        flip_edges(sheet)
-        move_vertices(sheet)
-    raise RuntimeError(f"the sheet has {len(sheet.faces)} faces, {target} cannot be reached")
+            collapse_edges(mesh, scale=scale, shortest=9.0, limit=amount)
+        flip_edges(mesh)
+        move_vertices(mesh)
+    raise RuntimeError(f"the infill has {len(mesh.faces)} faces, {target} cannot be reached")

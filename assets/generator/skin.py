@@ -1,4 +1,4 @@
-"""One half of the skin from rows, anchors and sheet; then its mirror image.
+"""One half of the skin from rows, anchors and infill; then its mirror image.
 
 Result: one manifold, consistently oriented piece with four boundary loops (rim, two eyes, mouth).
 """
@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from ..topology import Faces, halved, quads_between
 from .anchors import (
     FOLD_ON_CREASE,
     MIDLINE_ABOVE_MOUTH,
@@ -23,15 +24,14 @@ from .ear_rows import COLUMNS as EAR_COLUMNS
 from .ear_rows import ear_root, ear_rows, face_count, floor_faces, merged_columns
 from .eye_rows import eye_rows
 from .fields import Points
+from .infill import Domain, throw_darts, triangulate, wanted_length
 from .mouth_rows import mouth_rows
 from .nostril_rows import nostril_cap, nostril_ring
 from .outline import crown_curve, midline_curve, resampled, rim_curve
-from .remesh import Freedom, Sheet, remesh
-from .sheet import Domain, throw_darts, triangulate, wanted_length
-from .topology import Faces, halved, strip
+from .remesh import Freedom, InfillMesh, remesh
 
 TARGET_HALF = 1015  # faces; the paper's face has 2030 triangles (Table 1)
-SCALE = 1.32  # of the wanted edge lengths; chosen: the sheet ends a little above what it is cut to
+SCALE = 1.32  # of the wanted edge lengths; chosen: the infill ends a little above what it is cut to
 SEED = 3  # chosen among a few for the largest smallest angle
 RIM_SCALE, CROWN_SCALE = 0.50, 0.62  # rim and crown are seen as an outline: finer
 
@@ -94,7 +94,7 @@ def _midline(
 def _border(
     book: PointList, mouth: list[int], scale: float
 ) -> tuple[list[int], list[int], dict[str, int]]:
-    """The outline of the sheet and the rim: crown, front profile, mouth, throat, rim."""
+    """The outline of the infill and the rim: crown, front profile, mouth, throat, rim."""
     rim_dense = rim_curve()
     rim = book.add(resampled(rim_dense, wanted_length(rim_dense) * scale * RIM_SCALE))
     upper_end, lower_end = book.points[mouth[0]], book.points[mouth[-1]]
@@ -110,7 +110,7 @@ def _border(
 
 
 def build_half(*, scale: float = SCALE, seed: int = SEED, target: int = TARGET_HALF) -> Skin:
-    """Build the left half: the sheet first, then the rows that hang on it."""
+    """Build the left half: the infill first, then the rows that hang on it."""
     eye, mouth, ring = eye_rows(), mouth_rows(), nostril_ring()
     book = PointList()
     eye_outer, mouth_outer = book.add(eye[-1]), book.add(mouth[-1])
@@ -128,15 +128,15 @@ def build_half(*, scale: float = SCALE, seed: int = SEED, target: int = TARGET_H
     points, faces = triangulate(domain, throw_darts(domain, scale=scale, seed=seed))
     freedom = np.full(len(points), Freedom.FREE, dtype=np.int8)
     freedom[: len(book.freedom)] = book.freedom
-    sheet = Sheet(points, faces, freedom, domain.locked_edges())
-    sheet.locked = {edge for edge in sheet.locked if not _on_midline(sheet, edge)}
+    mesh = InfillMesh(points, faces, freedom, domain.locked_edges())
+    mesh.locked = {edge for edge in mesh.locked if not _on_midline(mesh, edge)}
 
     row_faces = 4 * 2 * len(eye_outer) + 7 * 2 * (len(mouth_outer) - 1) + 5 * len(nostril)
     row_faces += face_count()
-    remesh(sheet, scale=scale, target_faces=target - row_faces)
+    remesh(mesh, scale=scale, target_faces=target - row_faces)
     rings = {"rim": rim, "alar_crease": crease, "nasolabial_fold": fold}
     rings |= {f"neck_{n}": row for n, row in enumerate(neck)}
-    half = Skin(sheet.vertices, sheet.faces, names, rings)
+    half = Skin(mesh.vertices, mesh.faces, names, rings)
     _hang_rows(half, "eye", eye, eye_outer, closed=True)
     _hang_rows(half, "mouth", mouth, mouth_outer, closed=False)
     _close_nostril(half, nostril)
@@ -144,9 +144,9 @@ def build_half(*, scale: float = SCALE, seed: int = SEED, target: int = TARGET_H
     return _compressed(half)
 
 
-def _on_midline(sheet: Sheet, edge: tuple[int, int]) -> bool:
-    return not sheet.vertices[list(edge), 0].any() and bool(
-        (sheet.freedom[list(edge)] == Freedom.MIDLINE).any()
+def _on_midline(mesh: InfillMesh, edge: tuple[int, int]) -> bool:
+    return not mesh.vertices[list(edge), 0].any() and bool(
+        (mesh.freedom[list(edge)] == Freedom.MIDLINE).any()
     )
 
 
@@ -159,21 +159,18 @@ def _append(half: Skin, points: Points) -> list[int]:
 def _hang_rows(
     half: Skin, title: str, rows: list[Points], outer: list[int], *, closed: bool
 ) -> None:
-    """Add all rows but the outer one, which the sheet has, and the strips between them."""
+    """Add all rows but the outer one, which the infill has, and the quadrilaterals between them."""
     numbered = [_append(half, row) for row in rows[:-1]] + [outer]
-    quads = [
-        quad
-        for inner_row, outer_row in pairwise(numbered)
-        for quad in strip(inner_row, outer_row, closed=closed)
-    ]
+    quads = quads_between(numbered, closed=closed)
     _join(half, halved(half.vertices, quads), (outer[0], outer[1]))
     half.rings |= {f"{title}_{i}": row for i, row in enumerate(numbered)}
 
 
 def _join(half: Skin, faces: Faces, outer_edge: tuple[int, int]) -> None:
-    """Append faces, turned so that they run along the outer edge against the sheet."""
+    """Append faces, turned so that they run along the outer edge against the infill."""
 
     def runs_along(triangles: Faces) -> bool:
+        """Whether one of them runs along the outer edge in its direction."""
         turned = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
         return bool((turned == outer_edge).all(axis=1).any())
 
@@ -186,7 +183,7 @@ def _close_nostril(half: Skin, ring: list[int]) -> None:
     inner, end = nostril_cap(half.vertices[ring])
     rows = [ring, *(_append(half, row) for row in inner)]
     centre = _append(half, end[None])[0]
-    quads = [quad for first, second in pairwise(rows) for quad in strip(first, second, closed=True)]
+    quads = quads_between(rows, closed=True)
     last = rows[-1]
     fan = [[a, centre, b] for a, b in zip(last, last[1:] + last[:1], strict=True)]
     faces = np.vstack([halved(half.vertices, quads), np.array(fan, dtype=np.int32)])
@@ -205,7 +202,7 @@ def _hang_ear(half: Skin, root: list[int]) -> None:
         for column, number in zip(own, _append(half, row[own]), strict=True):
             numbers[column] = number
         rows.append(numbers)
-    quads = [quad for first, second in pairwise(rows) for quad in strip(first, second, closed=True)]
+    quads = quads_between(rows, closed=True)
     upper, lower = _append(half, floor)
     whole = halved(half.vertices, [quad for quad in quads if len(set(quad)) == 4])
     corners = [list(dict.fromkeys(quad)) for quad in quads if len(set(quad)) == 3]

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .fields import Points, Values, smooth_step, unit
-from .topology import Faces, cross_products
+from ..topology import Faces
+from .fields import Points, Values
 
 Colour = tuple[float, float, float]
 
@@ -23,14 +23,6 @@ class Solid:
     vertices: Points
     faces: Faces
     colours: npt.NDArray[np.float64]
-
-    def normals(self) -> Points:
-        """Area-weighted unit normals, shape (n, 3)."""
-        cross = cross_products(self.vertices, self.faces)
-        total = np.zeros_like(self.vertices)
-        for corner in range(3):
-            np.add.at(total, self.faces[:, corner], cross)
-        return unit(total)
 
 
 def grid_faces(rows: int, columns: int, *, wrapped: bool = False) -> Faces:
@@ -72,6 +64,3 @@ def mix(first: Colour | npt.NDArray[np.float64], second: Colour, share: Values) 
     """Blend colours: `share` 0 gives the first, 1 the second; shape (n, 3)."""
     share = np.clip(share, 0.0, 1.0)[:, None]
     return np.asarray(first) * (1.0 - share) + np.asarray(second) * share
-
-
-__all__ = ["Colour", "Solid", "grid_faces", "joined", "mix", "smooth_step", "welded"]

@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ..model import Head
+from ..topology import Faces
 from .ear_rows import ROWS as EAR_ROWS
 from .fields import Points, Values
 from .mouth_rows import OUTER_ROW, SIDE
 from .sections import direction_coordinates
-from .topology import Faces
 
 EYE_ROWS = 5
 NOSTRIL_DEPTH = 3  # edges from the rim of a nostril to its roof

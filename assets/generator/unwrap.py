@@ -22,9 +22,9 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from ..model import AssetError
+from ..errors import AssetError
+from ..topology import Faces, boundary_loops, edge_faces
 from .fields import Points, Values, smooth_step
-from .topology import Faces, boundary_loops, edge_faces
 
 Flat = npt.NDArray[np.float64]
 Rings = Mapping[str, npt.NDArray[np.integer]]
@@ -140,6 +140,7 @@ def tutte(patch: Patch) -> Flat:
         straight, arc = straight[::-1], arc[::-1]
 
     def along(row: npt.NDArray[np.integer]) -> Values:
+        """How far along a row each of its vertices lies, 0 to 1."""
         steps = np.linalg.norm(np.diff(patch.rest[row], axis=0), axis=1)
         return np.asarray(np.r_[0.0, np.cumsum(steps)] / steps.sum(), dtype=np.float64)
 

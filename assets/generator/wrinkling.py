@@ -30,11 +30,11 @@ def paint_wrinkles(head: Head, size: int) -> Wrinkles:
         covered = np.full(len(texels.rows), 1e-9)
         second = np.zeros(len(texels.rows))
         for crease in creases(texels.points * [side, 1.0, 1.0], texels.mouth_row):
-            shown = crease.cover * _free(texels.eye_row, texels.ear_row, texels.nostril)
-            height[place] += shown * crease.furrows.height
-            depth[place] += shown * crease.furrows.depth
-            covered += shown
-            second += shown * crease.slot
+            visible = crease.cover * _free(texels.eye_row, texels.ear_row, texels.nostril)
+            height[place] += visible * crease.furrows.height
+            depth[place] += visible * crease.furrows.depth
+            covered += visible
+            second += visible * crease.slot
         slot[place] = second / covered
     down, right = np.gradient(height * (size / SCALE))
     texel = np.stack(
@@ -46,8 +46,8 @@ def paint_wrinkles(head: Head, size: int) -> Wrinkles:
         ],
         axis=-1,
     )
-    picture = np.rint(texel).astype(np.uint8)
-    return Wrinkles(picture, STEEPEST * SCALE, across(head) * _shows(head, picture)[:, None, None])
+    image = np.rint(texel).astype(np.uint8)
+    return Wrinkles(image, STEEPEST * SCALE, across(head) * _shows(head, image)[:, None, None])
 
 
 def _free(eye_row: Values, ear_row: Values, nostril: Values) -> Values:
@@ -55,13 +55,13 @@ def _free(eye_row: Values, ear_row: Values, nostril: Values) -> Values:
     return smooth_step(3.0, 4.2, eye_row) * (ear_row < 0.5) * (nostril < 0.02)
 
 
-def _shows(head: Head, picture: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
+def _shows(head: Head, image: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
     """The vertices with a triangle around in which the map is not plain, shape (V,).
 
     Only those are measured, and triangles between others are drawn without wrinkles.
     """
-    is_plain = (picture[..., :2] == 128).all(axis=2) & (picture[..., 2] == 0)
-    size = len(picture)
+    is_plain = (image[..., :2] == 128).all(axis=2) & (image[..., 2] == 0)
+    size = len(image)
     places = head.uv[head.face_uv] * [size, -size] + [0.0, size]
     low = np.floor(places.min(axis=1)).astype(int) - 1
     high = np.ceil(places.max(axis=1)).astype(int) + 1

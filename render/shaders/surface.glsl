@@ -1,7 +1,7 @@
 // Skin and rigid parts.
 // One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
 // stage), VALUES (colour by a value per triangle: SPLITS a count, RAMP an amount), COLOURED (vertex colours), TEXTURED (skin's albedo from
-// a picture), SHADOWS (of the key), WRINKLES (of the skin; with PIXEL), STRIP (fading strips along
+// a picture), SHADOWS (of the key), WRINKLES (of the skin; with PIXEL), FRINGE (fading fringes along
 // contours, see outline.py).
 
 #include "lighting.glsl"
@@ -43,13 +43,13 @@ uniform float sharpness;
 #else
 #define SHADOW_VARYING
 #endif
-#if defined(STRIP)
-#define STRIP_VARYING float coverage;
+#if defined(FRINGE)
+#define FRINGE_VARYING float coverage;
 #else
-#define STRIP_VARYING
+#define FRINGE_VARYING
 #endif
 #define VARYINGS vec3 position; NORMAL_VARYING LIT_VARYING COLOUR_VARYING TEXTURE_VARYING \
-    SHADOW_VARYING WRINKLE_VARYING STRIP_VARYING
+    SHADOW_VARYING WRINKLE_VARYING FRINGE_VARYING
 
 #if defined(VERTEX_STAGE)
 
@@ -64,8 +64,8 @@ in vec2 in_uv;
 #if defined(WRINKLES)
 in vec2 in_wrinkling;
 #endif
-#if defined(STRIP)
-in vec3 in_strip;  // how far aside in clip space, coverage
+#if defined(FRINGE)
+in vec3 in_fringe;  // how far aside in clip space, coverage
 #endif
 uniform mat4 model_view;
 uniform mat4 projection;
@@ -108,9 +108,9 @@ void main() {
     surface.light_place = (shadow_matrix * vec4(position.xyz + height * normal, 1.0)).xyz;
 #endif
     gl_Position = projection * position;
-#if defined(STRIP)
-    gl_Position.xy += in_strip.xy * gl_Position.w;
-    surface.coverage = in_strip.z;
+#if defined(FRINGE)
+    gl_Position.xy += in_fringe.xy * gl_Position.w;
+    surface.coverage = in_fringe.z;
 #endif
 }
 
@@ -205,7 +205,7 @@ uniform sampler2DShadow shadow_map;
 #if defined(WRINKLES)
 #include "wrinkles.glsl"
 #endif
-#if defined(STRIP)
+#if defined(FRINGE)
 #define IS_FRONT true
 #else
 #define IS_FRONT gl_FrontFacing
@@ -326,7 +326,7 @@ void main() {
     float coverage = clamp(wire_half_width + 0.5 - nearest, 0.0, 1.0);
     shown = mix(shown, wire_colour.rgb, wire_colour.a * surface.wire_strength * coverage);
 #endif
-#if defined(STRIP)
+#if defined(FRINGE)
     pixel_colour = vec4(shown, surface.coverage);
 #else
     pixel_colour = vec4(shown, 1.0);

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
-from risorius.app.cli import main
+from risorius.__main__ import command
 
 WRITERS = {
     "film": ("capture", "--set", "joy", "-o", "x.mp4"),
@@ -23,7 +23,7 @@ WRITERS = {
 
 def risorius(*arguments: str) -> Result:
     """Run the command in this process."""
-    return CliRunner().invoke(main, list(arguments))
+    return CliRunner().invoke(command(), list(arguments))
 
 
 def told(result: Result) -> str:
@@ -43,7 +43,7 @@ def idle(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
     for name in (
         "risorius.app.capture.Capture.play",
-        "risorius.app.paper_figures.figure_9",
+        "risorius.bench.paper_figures.figure_9",
         "risorius.bench.refine.run",
         "risorius.bench.quality.run",
     ):

@@ -14,7 +14,7 @@ import pytest
 from click.testing import CliRunner, Result
 from PIL import Image
 
-from risorius.app.cli import main
+from risorius.__main__ import command
 from risorius.app.scenes import SCENES, FaceScene
 from tests.heads import stranger
 
@@ -31,7 +31,7 @@ joy = 1.0
 
 def risorius(*arguments: object) -> Result:
     """Run the command in this process."""
-    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+    return CliRunner().invoke(command(), [str(argument) for argument in arguments])
 
 
 @pytest.fixture

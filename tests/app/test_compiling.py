@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from risorius.app import compiling
+from risorius.app.cli import compiling
 
 COMMANDS = (
     "capture --set joy",

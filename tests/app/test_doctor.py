@@ -9,8 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from risorius import render
-from risorius.app import doctor
-from risorius.app.cli import main
+from risorius.app.cli import doctor, main
 
 
 @pytest.fixture

@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from risorius.app import ffmpeg, outputs
+from risorius.app import files
+from risorius.app.capture import ffmpeg, outputs
 from risorius.app.cli import main
 from risorius.app.errors import UserError
 
@@ -97,7 +98,7 @@ def test_broken_frames_leave_the_folder_as_it_was(tmp_path: Path) -> None:
 def test_a_run_after_one_that_was_killed(tmp_path: Path) -> None:
     """Its frames go into the same folder as if that was empty; what was left goes the day after."""
     code = (
-        "import os, pathlib, signal, sys\nfrom app import outputs\n"
+        "import os, pathlib, signal, sys\nfrom risorius.app.capture import outputs\n"
         "with outputs.folder(pathlib.Path(sys.argv[1]), overwrite=False):\n"
         "    os.kill(os.getpid(), signal.SIGKILL)"
     )
@@ -109,7 +110,7 @@ def test_a_run_after_one_that_was_killed(tmp_path: Path) -> None:
     assert sorted(target.iterdir()) == [left, target / "frame_00000.png"]
     for path in (*left.iterdir(), left):
         os.utime(path, (0.0, 0.0))
-    outputs.save_png(target / "x.png", GREY)
+    files.save_png(target / "x.png", GREY)
     assert {path.name for path in target.iterdir()} == {"frame_00000.png", "x.png"}
 
 
@@ -117,7 +118,7 @@ def test_a_place_that_cannot_be_written(tmp_path: Path) -> None:
     """A parent that is a file is one clear line."""
     (tmp_path / "file").write_text("x")
     with pytest.raises(UserError, match="cannot be written"):
-        outputs.save_png(tmp_path / "file" / "picture.png", GREY)
+        files.save_png(tmp_path / "file" / "picture.png", GREY)
 
 
 def test_a_link_stays_a_link(tmp_path: Path) -> None:
@@ -125,7 +126,7 @@ def test_a_link_stays_a_link(tmp_path: Path) -> None:
     (tmp_path / "disk").mkdir()
     link, real = tmp_path / "link.png", tmp_path / "disk" / "real.png"
     link.symlink_to(real)
-    outputs.save_png(link, GREY)
+    files.save_png(link, GREY)
     assert link.is_symlink() and real.is_file() and not real.is_symlink()
     assert list((tmp_path / "disk").iterdir()) == [real]
 

@@ -60,7 +60,7 @@ def test_a_registered_refiner_is_drawn(surface: Any, monkeypatch: pytest.MonkeyP
     pipeline.step(0.1)
     pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
     surface.end()
-    assert pipeline.pictures[0].triangle_count == 308
+    assert pipeline.meshes[0].triangle_count == 308
     assert np.ptp(surface.read()) > 30
 
 
@@ -80,7 +80,7 @@ def test_the_mesh_and_the_simulation_never_notice(surface: Any) -> None:
             surface.end()
         assert np.array_equal(faces, scene.faces)
     assert scenes[0].positions.tobytes() == scenes[1].positions.tobytes()
-    assert pipeline.pictures[0].triangle_count > 1.1 * len(scenes[0].faces)
+    assert pipeline.meshes[0].triangle_count > 1.1 * len(scenes[0].faces)
 
 
 def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:

@@ -9,7 +9,7 @@ from risorius import refine
 from risorius.app.errors import UserError
 from risorius.app.refining import refiner_for
 from risorius.app.scenes import FaceScene, PlaneScene, within
-from risorius.bench.sight import shown_meshes, widest_slit
+from risorius.bench.lines_of_sight import meshes_of, widest_slit
 
 LIMITS = {"a": (0.0, 1.0), "b": (-1.0, 1.0)}
 
@@ -84,7 +84,7 @@ def test_the_shown_face_keeps_shut_what_is_shut(pose: str) -> None:
     refiner = refiner_for(face, "kahler", None)
     face.pose({} if pose == "rest" else {pose: 1.0})
     face.step(1.0)
-    meshes = shown_meshes(face.simulation, refiner)
+    meshes = meshes_of(face.simulation, refiner)
     assert len(meshes["refined"][1]) < 2.8 * len(face.faces)
     if pose in ("rest", "blink"):
         landmarks = face.positions[face.landmarks]

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from risorius.app.easing import EASINGS
 from risorius.app.errors import UserError
 from risorius.app.script import load_script, parse_script
+from risorius.app.script.easing import EASINGS
 
 HELLO = """
 title = "Hello"

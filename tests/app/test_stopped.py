@@ -84,7 +84,8 @@ def test_a_film_can_be_stopped_while_it_is_finished(tmp_path: Path) -> None:
     slow.chmod(0o755)
     folder = tmp_path / "films"
     code = (
-        "import numpy, pathlib\nfrom risorius.app import outputs, stopping\nstopping.listen()\n"
+        "import numpy, pathlib\nfrom risorius.app import stopping\n"
+        "from risorius.app.capture import outputs\nstopping.listen()\n"
         f"with outputs.film(pathlib.Path({str(folder / 'film.mp4')!r}), (16, 16), 30) as add:\n"
         "    add(numpy.zeros((16, 16, 3), numpy.uint8))"
     )
@@ -109,7 +110,8 @@ def test_a_film_can_be_stopped_while_it_is_finished(tmp_path: Path) -> None:
 def test_frames_give_way_whole(tmp_path: Path) -> None:
     """A signal while the frames of an earlier film are replaced: all of the new ones are there."""
     code = (
-        "import numpy, os, pathlib, signal, sys\nfrom risorius.app import outputs, stopping\n"
+        "import numpy, os, pathlib, signal, sys\nfrom risorius.app import stopping\n"
+        "from risorius.app.capture import outputs\n"
         "stopping.listen()\nreplace, target = os.replace, pathlib.Path(sys.argv[1])\n"
         "def disturbed(*paths):\n    replace(*paths)\n    signal.raise_signal(signal.SIGTERM)\n"
         "for os.replace in (replace, disturbed):\n"

@@ -8,11 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from risorius.app.choices import script_for
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
-from risorius.app.script import Script, load_script, parse_script
-from risorius.app.script_writer import save_script, script_text
+from risorius.app.script import (
+    Script,
+    load_script,
+    parse_script,
+    save_script,
+    script_for,
+    script_text,
+)
 from risorius.app.viewer import keys
 from risorius.app.viewer.keys import FRAME, POSES, KeyPlace
 from risorius.app.viewer.lanes import described, lanes_shown

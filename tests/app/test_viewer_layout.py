@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from risorius.app.choices import script_for
+from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.keys import places_of
 

@@ -6,12 +6,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from viewer import STOPS
 
-from risorius.app.choices import script_for
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
-from risorius.app.script import load_script, parse_script
-from risorius.app.script_writer import is_pose, pose_script, save_script, script_text
+from risorius.app.script import (
+    is_pose,
+    load_script,
+    parse_script,
+    pose_script,
+    save_script,
+    script_for,
+    script_text,
+)
 from risorius.app.viewer import picking
 from risorius.app.viewer.clock import MOST_STEPS, STEP, Clock
 from risorius.app.viewer.history import History
@@ -20,7 +27,6 @@ from risorius.app.viewer.quality import FULL, LEVELS, PATIENCE, Quality
 from risorius.app.viewer.recorder import TOLERANCE, Recorder
 from risorius.app.viewer.rows import found, mirrored, rows_of
 from risorius.app.viewer.session import Session
-from risorius.app.viewer.tour import STOPS
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger
 

@@ -13,10 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from risorius.app.choices import script_for
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.app.script import load_script
+from risorius.app.script import load_script, script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.clock import STEP
 from risorius.app.viewer.recovery import LONGEST, QUIET, Recovery

@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
-from risorius.app.choices import script_for
 from risorius.app.scenes import FaceScene
+from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import (
     Look,

@@ -13,10 +13,10 @@ import pytest
 from risorius import assets
 from risorius.assets import checks
 from risorius.assets.generator import form
-from risorius.assets.generator.topology import boundary_loops, cross_products
 from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import FineMesh, Head
 from risorius.assets.subdivision import coarse_places, quarter
+from risorius.assets.topology import boundary_loops, cross_products
 
 MOST_FINER_DATA = 1_500_000  # bytes
 

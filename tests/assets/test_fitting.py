@@ -15,7 +15,7 @@ from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead, fit, fit_head
 from risorius.assets.fitting.warp import Similarity, Warp, nearest_on
 from risorius.assets.meshes import Mesh
-from risorius.bench.sight import lid_gaps
+from risorius.bench.lines_of_sight import lid_gaps
 from risorius.sim.landmarks import MIRRORED
 from tests.heads import Stranger, closed, stranger
 from tests.sim.poses import inverted_triangles, lip_gap, moved_landmarks, settle
@@ -131,7 +131,7 @@ def test_other_pieces_and_inside_out_meshes_do_no_harm(other: Stranger) -> None:
         np.vstack([ball, vertices]), np.vstack([[[0, 1, 2]], faces[:, ::-1] + 3]).astype(np.int32)
     )
     head = fit(mesh, (other.landmarks + 3).astype(np.int32))
-    assert np.array_equal(head.kept, np.arange(3, len(vertices) + 3))
+    assert np.array_equal(head.file_vertices, np.arange(3, len(vertices) + 3))
     assert np.array_equal(np.sort(head.faces, axis=None), np.sort(faces, axis=None))
     corners = head.vertices[head.faces]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -17,25 +17,31 @@ from risorius.assets.generator.fields import (
     sphere,
     tapered_capsule,
 )
-from risorius.assets.generator.mouth_rows import SEAM_ROW, mouth_rows
-from risorius.assets.generator.outline import midline_curve, resampled, rim_curve
-from risorius.assets.generator.remesh import Freedom, Sheet, collapse_edges, flip_edges, split_edges
-from risorius.assets.generator.sections import base_radius, direction_coordinates, rays
-from risorius.assets.generator.sheet import (
+from risorius.assets.generator.infill import (
     Domain,
     inside_polygon,
     layout,
     triangulate,
     wanted_length,
 )
+from risorius.assets.generator.mouth_rows import SEAM_ROW, mouth_rows
+from risorius.assets.generator.outline import midline_curve, resampled, rim_curve
+from risorius.assets.generator.remesh import (
+    Freedom,
+    InfillMesh,
+    collapse_edges,
+    flip_edges,
+    split_edges,
+)
+from risorius.assets.generator.sections import base_radius, direction_coordinates, rays
 from risorius.assets.generator.solids import Solid, grid_faces, joined, mix, welded
-from risorius.assets.generator.topology import (
+from risorius.assets.topology import (
     boundary_loops,
     cross_products,
     edge_faces,
     halved,
+    quads_between,
     smallest_angles,
-    strip,
 )
 
 Points = npt.NDArray[np.float64]
@@ -182,38 +188,38 @@ def test_polygon_test_knows_inside() -> None:
     assert inside.tolist() == [True, False, True, False]
 
 
-def patch() -> Sheet:
+def patch() -> InfillMesh:
     """A patch of the forehead as a regular grid, its border fixed."""
     x, y = np.meshgrid(np.linspace(5.0, 35.0, 6), np.linspace(35.0, 65.0, 6))
     vertices = form.from_front(x.ravel(), y.ravel())
     faces = grid_faces(6, 6)
     freedom = np.full(36, Freedom.FREE, dtype=np.int8)
     freedom[np.unique(boundary_loops(faces)[0])] = Freedom.FIXED
-    return Sheet(vertices, faces, freedom, set())
+    return InfillMesh(vertices, faces, freedom, set())
 
 
 def test_remeshing_steps_keep_a_disc_a_disc() -> None:
     """Splits add two faces each, collapses take two; flips change none; nothing turns over."""
-    sheet = patch()
-    before = len(sheet.faces)
-    splits = split_edges(sheet, scale=0.3)
-    assert splits > 0 and len(sheet.faces) == before + 2 * splits
-    flip_edges(sheet)
-    assert len(sheet.faces) == before + 2 * splits
-    collapses = collapse_edges(sheet, scale=3.0)
-    assert collapses > 0 and len(sheet.faces) == before + 2 * splits - 2 * collapses
-    assert len(boundary_loops(sheet.faces)) == 1
-    assert cross_products(sheet.vertices, sheet.faces)[:, 2].min() > 0.0
+    mesh = patch()
+    before = len(mesh.faces)
+    splits = split_edges(mesh, scale=0.3)
+    assert splits > 0 and len(mesh.faces) == before + 2 * splits
+    flip_edges(mesh)
+    assert len(mesh.faces) == before + 2 * splits
+    collapses = collapse_edges(mesh, scale=3.0)
+    assert collapses > 0 and len(mesh.faces) == before + 2 * splits - 2 * collapses
+    assert len(boundary_loops(mesh.faces)) == 1
+    assert cross_products(mesh.vertices, mesh.faces)[:, 2].min() > 0.0
 
 
 def test_locked_edges_survive() -> None:
     """Neither splits nor flips nor collapses touch them."""
-    sheet = patch()
-    sheet.locked = {(14, 15), (15, 16)}
-    split_edges(sheet, scale=0.3)
-    flip_edges(sheet)
-    collapse_edges(sheet, scale=3.0)
-    assert sheet.locked <= set(edge_faces(sheet.faces))
+    mesh = patch()
+    mesh.locked = {(14, 15), (15, 16)}
+    split_edges(mesh, scale=0.3)
+    flip_edges(mesh)
+    collapse_edges(mesh, scale=3.0)
+    assert mesh.locked <= set(edge_faces(mesh.faces))
 
 
 def test_quads_are_cut_along_the_better_diagonal() -> None:
@@ -221,8 +227,8 @@ def test_quads_are_cut_along_the_better_diagonal() -> None:
     kite = np.array([[0.0, 0, 0], [3.0, -1, 0], [6.0, 0, 0], [3.0, 1, 0]])
     faces = halved(kite, [[0, 1, 2, 3]])
     assert smallest_angles(kite, faces).min() == pytest.approx(36.87, abs=0.01)
-    assert len(strip([0, 1, 2], [3, 4, 5], closed=True)) == 3
-    assert len(strip([0, 1, 2], [3, 4, 5], closed=False)) == 2
+    assert len(quads_between([[0, 1, 2], [3, 4, 5]], closed=True)) == 3
+    assert len(quads_between([[0, 1, 2], [3, 4, 5]], closed=False)) == 2
 
 
 def test_solids_are_joined_and_welded() -> None:

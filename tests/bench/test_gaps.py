@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import pytest
 
 from risorius import assets
-from risorius.app.benchmarks import gaps_json, gaps_table
-from risorius.bench.gaps import LIDS_MOST, LIPS_MOST, Pose, run, worst
-from risorius.bench.sight import sunk_in_eyeballs
+from risorius.bench.gaps import LIDS_MOST, LIPS_MOST, Pose, report, run, worst
+from risorius.bench.lines_of_sight import sunk_in_eyeballs
 
 
 @pytest.fixture(scope="module")
@@ -39,11 +40,11 @@ def test_the_worst_is_named(poses: dict[str, Pose]) -> None:
     """The table and the file for programs hold every pose; one that fails is called so."""
     wide = Pose("wide", LIPS_MOST, None, 0.0)
     assert worst([*poses.values(), wide], "lips") == (LIPS_MOST, wide)
-    table = gaps_table([*poses.values(), wide])
+    table = report([*poses.values(), wide])
     assert "MISSED  wide" in table
-    assert "MISSED" not in gaps_table([*poses.values()])
-    assert '"name": "wide"' in gaps_json([wide])
-    assert '"lids": null' in gaps_json([wide])
+    assert "MISSED" not in report([*poses.values()])
+    shown = asdict(wide)
+    assert shown == {"name": "wide", "lips": LIPS_MOST, "lids": None, "sunk": 0.0}
 
 
 def test_skin_in_an_eyeball_is_found() -> None:

@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from risorius import refine
-from risorius.app.cli import main
+from risorius.__main__ import command
 from risorius.bench.cracks import cracks
 from risorius.bench.meshes import METHODS, NOISE, refined
 from tests.meshes import NAMED, Mesh, double_cone, fan, irregular, tube, wrinkled
@@ -38,7 +38,7 @@ def test_a_folder_of_meshes(tmp_path: Path) -> None:
     write(tmp_path / "below" / "pillow.obj", NAMED["pillow"]().vertices, NAMED["pillow"]().faces)
     (tmp_path / "broken.ply").write_text("no mesh")
     (tmp_path / "words.md").write_text("no mesh either, and not called one")
-    result = CliRunner().invoke(main, ["bench", "meshes", str(tmp_path), *CALM])
+    result = CliRunner().invoke(command(), ["bench", "meshes", str(tmp_path), *CALM])
     assert result.exit_code == 0, result.output
     assert "broken.ply: left out, is no PLY file" in result.output
     assert "words.md" not in result.output
@@ -49,10 +49,10 @@ def test_a_folder_of_meshes(tmp_path: Path) -> None:
 def test_a_mesh_that_is_too_large_or_not_there(tmp_path: Path) -> None:
     """Larger meshes than asked for are left out; an empty folder is one line."""
     write(tmp_path / "fan.obj", fan().vertices, fan().faces)
-    result = CliRunner().invoke(main, ["bench", "meshes", str(tmp_path), "--most", "3"])
+    result = CliRunner().invoke(command(), ["bench", "meshes", str(tmp_path), "--most", "3"])
     assert result.exit_code == 0 and "fan.obj: left out, has more than 3 triangles" in result.output
     (tmp_path / "fan.obj").unlink()
-    result = CliRunner().invoke(main, ["bench", "meshes", str(tmp_path)])
+    result = CliRunner().invoke(command(), ["bench", "meshes", str(tmp_path)])
     assert result.exit_code == 2 and "holds no file that could be a mesh" in result.stderr
 
 
@@ -173,7 +173,7 @@ def test_a_broken_refiner_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Pat
 
     monkeypatch.setattr(refine.Kahler, "refine", cracked)
     write(tmp_path / "sheet.obj", mesh.vertices, mesh.faces)
-    result = CliRunner().invoke(main, ["bench", "meshes", str(tmp_path), *CALM])
+    result = CliRunner().invoke(command(), ["bench", "meshes", str(tmp_path), *CALM])
     assert result.exit_code == 1, result.output
     assert ": the triangles at edge" in result.output
 

@@ -9,8 +9,8 @@ import numpy.typing as npt
 import pytest
 
 from risorius import assets
-from risorius.app.quality_report import error_curves, quality_table, rules_table, targets_text
 from risorius.bench import quality, subjects
+from risorius.bench.quality_report import error_curves, text
 from risorius.bench.subjects import Pose, Subject
 
 Points = npt.NDArray[np.float64]
@@ -39,7 +39,8 @@ def rolled_sheet() -> Subject:
 
 def test_scores_of_a_cylinder() -> None:
     """Cubic edges follow a cylinder, Loop shrinks it; what splits more is never coarser."""
-    scores = quality.run(rolled_sheet(), budgets=(1.6, 2.0))
+    subject = rolled_sheet()
+    scores = quality.run(subject, budgets=(1.6, 2.0))
     average = quality.means(scores)
     coarse = average[quality.COARSE, "", 1.0]
     assert coarse.triangles == 72
@@ -53,12 +54,11 @@ def test_scores_of_a_cylinder() -> None:
     assert average["uniform PN", "", 2].distance < 0.5 * coarse.distance
     assert average["uniform Loop", "", 2].triangles == 16 * 72
 
-    table = quality_table("a sheet", scores)
-    assert "roll 0.5" in table
-    assert f"{coarse.distance:.3f}" in table
-    assert "cubic, height" in rules_table(scores)
-    assert "cubic: never worse than coarse" in targets_text(scores)
-    assert error_curves("a sheet", scores, "drop", (300, 200)).shape == (200, 300, 3)
+    printed = text(subject, scores)
+    for part in ("sheet: 72 tri", "roll 0.5", f"{coarse.distance:.3f}", "cubic, height"):
+        assert part in printed
+    assert "cubic: never worse than coarse" in printed
+    assert error_curves(subject, scores, "drop", (300, 200)).shape == (200, 300, 3)
 
 
 def test_error_of_the_truth_is_zero() -> None:

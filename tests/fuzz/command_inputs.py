@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import click
 
-from risorius.app.cli import main
+from risorius.__main__ import command as risorius
 
 PICTURE = "capture good.toml -o x.png --size 16x16 --samples 0 --fps 5 --quiet"
 
@@ -305,7 +305,7 @@ class HostileValue:
 
 def hostile_values() -> Iterator[HostileValue]:
     """Each hostile value for every option of every command that takes one."""
-    for path, command in commands(main, ()):
+    for path, command in commands(risorius(), ()):
         words = " ".join(path)
         for option in command.params:
             is_option = isinstance(option, click.Option)

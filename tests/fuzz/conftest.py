@@ -16,20 +16,20 @@ from .sandbox import furnish
 DOORS = pytest.StashKey[dict[str, Counter[str]]]()
 
 LONG_WORK = (
-    "risorius.app.benchmarks.simulate_table",
-    "risorius.app.benchmarks.motion_table",
-    "risorius.app.benchmarks.soak_table",
-    "risorius.app.benchmarks.tearing_table",
-    "risorius.app.paper_figures.figure_10",
-    "risorius.app.paper_figures.figure_9",
-    "risorius.app.strip.coherence_strip",
-    "risorius.app.table1.table_1",
+    "risorius.bench.paper_figures.figure_10",
+    "risorius.bench.paper_figures.figure_9",
     "risorius.app.viewer.Viewer",
-    "risorius.app.window_report.window_table",
     "risorius.bench.gaps.run",
     "risorius.bench.meshes.run",
+    "risorius.bench.motion.run",
+    "risorius.bench.paper_figures.coherence",
     "risorius.bench.quality.run",
     "risorius.bench.refine.run",
+    "risorius.bench.simulate.run",
+    "risorius.bench.soak.run",
+    "risorius.bench.table1.run",
+    "risorius.bench.tearing.run",
+    "risorius.bench.window.report",
 )
 
 

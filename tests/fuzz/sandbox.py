@@ -14,7 +14,7 @@ from pathlib import Path
 
 from click.testing import CliRunner
 
-from risorius.app.cli import main
+from risorius.__main__ import command
 
 LONGEST = 60.0  # [s] on a busy machine, compiling; the slowest takes 2 s otherwise
 MOST_MEMORY = 600 << 20  # [bytes] more than before
@@ -122,7 +122,7 @@ def _kilobytes(name: str) -> int:
 def run_command(arguments: tuple[str, ...]) -> Ended:
     """Run the command in this process, within bounds; whatever it does not catch comes through."""
     with bounded():
-        result = CliRunner(catch_exceptions=False).invoke(main, arguments)
+        result = CliRunner(catch_exceptions=False).invoke(command(), arguments)
     return Ended(result.exit_code, result.stdout, result.stderr)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import refine
-from risorius.bench.turned_lines import turned_per_frame
+from risorius.bench.turned_lines import Line, inner_lines, point_rows, turned
 from tests import meshes
 from tests.refine.cases import Forced
 
@@ -24,6 +24,18 @@ def history_of(refiner: refine.Refiner) -> refine.Coherent:
     assert isinstance(refiner, refine.Kahler)
     assert refiner.history is not None
     return refiner.history
+
+
+def turned_per_frame(refiner: refine.Refiner, frames: Iterable[Positions]) -> list[int]:
+    """How many lines turn in each of `frames`, the first one left out."""
+    counts: list[int] = []
+    before: set[Line] | None = None
+    for positions in frames:
+        now = inner_lines(refiner, refiner.refine(positions))
+        if before is not None:
+            counts.append(len(turned(before, now, point_rows(refiner))))
+        before = now
+    return counts
 
 
 def growing(mesh: meshes.Mesh, seed: int, count: int = 25) -> Frames:

@@ -97,7 +97,7 @@ def test_zoom_scales_what_is_seen() -> None:
 
 
 def test_zoom_has_an_end_on_both_sides() -> None:
-    """A wheel that is turned for ever never takes the eye into the target, nor out of sight."""
+    """A wheel that is turned for ever never takes the eye into the target, nor out of view."""
     camera = render.OrbitCamera.framing(HEAD)
     camera.zoom(1e30)
     assert camera.distance == pytest.approx(0.02 * camera.scene_radius)

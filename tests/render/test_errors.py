@@ -70,7 +70,7 @@ def test_a_frame_that_does_not_fit_is_one_line(monkeypatch: pytest.MonkeyPatch) 
     def refused(*_: object) -> None:
         raise moderngl.Error("the framebuffer is not complete (INCOMPLETE_ATTACHMENT)")
 
-    monkeypatch.setattr("risorius.render.surface.Layers", refused)
+    monkeypatch.setattr("risorius.render.surface.RenderTarget", refused)
     with pytest.raises(render.GLError, match=r"64 x 48 pixels .* Cure: ask for a smaller frame"):
         render.open_offscreen((64, 48))
 

@@ -29,7 +29,7 @@ STYLES = {
 }
 
 
-def scene(surface: render.Surface, style: render.Style) -> render.Frame:
+def scene(surface: render.Surface, style: render.Style) -> render.Image:
     """A sphere before a wall, a wet ball beside it, and a line through both."""
     renderer = render.Renderer(surface)
     shape = joined(square(70.0, z=-45.0), sphere(2, 40.0))

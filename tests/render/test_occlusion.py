@@ -27,7 +27,7 @@ def scene(
     wall: Shape,
     camera: render.OrbitCamera,
     viewport: render.Viewport | None = None,
-) -> tuple[render.Frame, list[int]]:
+) -> tuple[render.Image, list[int]]:
     """Two balls behind a wall; the picture, and how many faces of each ball were drawn."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, wall)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from risorius import render
-from risorius.render.outline import contours, strips
-from risorius.render.sight import Sight
+from risorius.render.camera_view import CameraView
+from risorius.render.outline import contours, fringes
 
 from .scenes import PLAIN, facing, joined, lent, sphere, square
 
@@ -79,9 +79,9 @@ def test_contours_are_the_edges_of_one_triangle() -> None:
 
 
 def test_strips_lie_outside_by_a_pixel() -> None:
-    """Each strip goes from the contour, where it covers all, to a pixel outside, where nothing."""
-    shape, sight = square(30.0), Sight(facing(), (0, 0, 200, 100))
-    rows = strips(np.hstack([shape.positions, shape.normals]), shape.triangles, sight)
+    """Each fringe goes from the contour, where it covers all, to a pixel outside, where nothing."""
+    shape, view = square(30.0), CameraView(facing(), (0, 0, 200, 100))
+    rows = fringes(np.hstack([shape.positions, shape.normals]), shape.triangles, view)
     assert rows.shape == (4 * 6, 9)
     is_outer = rows[:, 8] == 0.0
     pixels = rows[:, 6:8] * (100.0, 50.0)
@@ -90,11 +90,13 @@ def test_strips_lie_outside_by_a_pixel() -> None:
     assert ((pixels * rows[:, :2]).sum(axis=1) >= 0.0).all()
 
 
-def test_what_lies_behind_the_eye_has_no_strips() -> None:
+def test_what_lies_behind_the_eye_has_no_fringes() -> None:
     """A camera in the middle of the mesh: nothing fails, and nothing is not a number."""
     shape, camera = sphere(3), facing()
     camera.distance = 10.0
-    rows = strips(
-        np.hstack([shape.positions, shape.normals]), shape.triangles, Sight(camera, (0, 0, 64, 64))
+    rows = fringes(
+        np.hstack([shape.positions, shape.normals]),
+        shape.triangles,
+        CameraView(camera, (0, 0, 64, 64)),
     )
     assert np.isfinite(rows).all()

@@ -41,12 +41,12 @@ def textured(
     return frame
 
 
-def plain_image(colour: tuple[int, int, int], size: tuple[int, int] = (8, 8)) -> render.Frame:
+def plain_image(colour: tuple[int, int, int], size: tuple[int, int] = (8, 8)) -> render.Image:
     """An image of one colour."""
     return np.full((size[1], size[0], 3), colour, np.uint8)
 
 
-def quarters() -> render.Frame:
+def quarters() -> render.Image:
     """Red up left, green up right, blue down left, grey down right."""
     image = np.zeros((48, 64, 3), np.uint8)
     image[:24, :32], image[:24, 32:] = (200, 30, 30), (30, 200, 30)

@@ -7,7 +7,7 @@ import pytest
 
 from risorius import refine, sim
 from risorius.assets.model import Head
-from risorius.bench.sight import lid_gaps, shown_meshes
+from risorius.bench.lines_of_sight import lid_gaps, meshes_of
 from risorius.sim.contact import PRESSED_OVERLAP
 from tests.sim.poses import (
     FRAME,
@@ -160,7 +160,7 @@ def test_lips_do_not_cross(
 ) -> None:
     """Lips pressed by their own muscles touch; the lower one does not rise far into the upper."""
     settle(simulation, both_sides(simulation, values))
-    lips = simulation._anatomy.lips
+    lips = simulation._anatomy.skin.lips
     y = simulation._state.x[:, 1]
     above = lips.share * y[lips.upper[:, 0]] + (1.0 - lips.share) * y[lips.upper[:, 1]]
     assert (above - y[lips.lower] - lips.least_gap).min() > -PRESSED_OVERLAP - 0.1
@@ -176,7 +176,7 @@ def test_blink_closes_the_eyes(simulation: sim.Simulation, head: Head, other: fl
     settle(simulation, both_sides(simulation, values))
     refiner = refine.create("kahler", head.faces, head.vertices)
     landmarks = simulation.positions[head.landmarks]
-    for name, mesh in shown_meshes(simulation, refiner).items():
+    for name, mesh in meshes_of(simulation, refiner).items():
         assert max(lid_gaps(*mesh, landmarks).values()) < 0.3, name
 
 

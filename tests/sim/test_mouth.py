@@ -13,7 +13,7 @@ import pytest
 
 from risorius import refine, sim
 from risorius.assets.model import Head
-from risorius.bench.sight import shown_meshes, widest_slit
+from risorius.bench.lines_of_sight import meshes_of, widest_slit
 from tests.sim.poses import both_sides, settle
 
 SHUT = 0.3  # mm: less than a pixel of a full-screen close-up
@@ -42,7 +42,7 @@ def slits(simulation: sim.Simulation, head: Head, refiner: refine.Refiner) -> Sl
         landmarks = simulation.positions[head.landmarks]
         return {
             name: widest_slit(*mesh, landmarks)
-            for name, mesh in shown_meshes(simulation, refiner).items()
+            for name, mesh in meshes_of(simulation, refiner).items()
         }
 
     return measure
@@ -81,7 +81,7 @@ def test_no_other_muscle_opens_the_mouth(
         if sides == "left":
             values = {name: value for name, value in values.items() if "_right" not in name}
         moved = settle(simulation, values, frames=40)
-        if np.abs(moved[simulation._anatomy.lips.members]).max() < UNMOVED:
+        if np.abs(moved[simulation._anatomy.skin.lips.members]).max() < UNMOVED:
             continue
         for mesh, slit in slits().items():
             assert slit < SHUT, (muscle, mesh)

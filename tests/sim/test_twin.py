@@ -14,6 +14,8 @@ from risorius.sim.contact import Grip, watch_eyeballs
 from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
 from risorius.sim.integrator import substeps_in
 from risorius.sim.lids import turn_lids
+from risorius.sim.skin import Tick
+from risorius.sim.skull import REST
 from risorius.sim.substep import SEAL_AXES, edge_forces, hold_lips, tissue_forces
 from risorius.sim.tissue import carry, tissue_energy
 from tests.sim.poses import FRAME, settle
@@ -31,7 +33,7 @@ def stirred(simulation: sim.Simulation, generator: np.random.Generator) -> sim.S
 
 def test_edge_forces(stirred: sim.Simulation) -> None:
     """Biphasic tension along each edge plus shear on the difference of the ends' offsets."""
-    edges, state = stirred._anatomy.edges, stirred._state
+    edges, state = stirred._anatomy.skin.edges, stirred._state
     x = state.x
     state.offset[:] = x - state.carried
     state.force[:] = 0.0
@@ -54,7 +56,7 @@ def test_edge_forces(stirred: sim.Simulation) -> None:
 
 def test_tissue_forces(stirred: sim.Simulation) -> None:
     """Anchors are soft along the skin and stiff across it; muscles add hold and pull."""
-    springs, state = stirred._anatomy.springs, stirred._state
+    springs, state = stirred._anatomy.skin.tissue, stirred._state
     tissue_forces(state, springs)
     away = state.x - state.carried
     across = (away * state.normals).sum(axis=1, keepdims=True) * state.normals
@@ -66,15 +68,15 @@ def test_tissue_forces(stirred: sim.Simulation) -> None:
 
 def test_forces_are_the_gradient_of_the_energy(stirred: sim.Simulation) -> None:
     """Without muscle pull and contact, forces are minus the slope of the energy."""
-    anatomy = stirred._anatomy
+    skin = stirred._anatomy.skin
     state = stirred._state._replace(x=stirred._state.x.copy())
     state.pull[:] = 0.0
-    tissue_forces(state, anatomy.springs)
-    edge_forces(state, anatomy.edges)
+    tissue_forces(state, skin.tissue)
+    edge_forces(state, skin.edges)
 
     def energy(at: Array) -> float:
-        held = tissue_energy(state._replace(x=at), anatomy.springs)
-        return held + anatomy.edges.energy(at, at - state.carried)
+        held = tissue_energy(state._replace(x=at), skin.tissue)
+        return held + skin.edges.energy(at, at - state.carried)
 
     way = np.sin(np.arange(state.x.size)).reshape(state.x.shape)
     slope = (energy(state.x + 1e-5 * way) - energy(state.x - 1e-5 * way)) / 2e-5
@@ -85,8 +87,8 @@ def test_seal_is_an_implicit_spring(
     stirred: sim.Simulation, generator: np.random.Generator
 ) -> None:
     """A pair on its own ends a substep at the speed that the spring's force at its end explains."""
-    lips, rest = stirred._anatomy.lips, stirred._anatomy.surface.positions
-    mass, h, grip = stirred._anatomy.mass, 0.002, Grip(3.0, 0.4)
+    skin, h, grip = stirred._anatomy.skin, 0.002, Grip(3.0, 0.4)
+    rest, mass, lips = skin.rest, skin.mass, skin.lips
     for pair in (0, 7, 11):
         alone = lips._replace(
             averaging=np.where(np.arange(len(lips.lower)) == pair, 1.0, 0.0),
@@ -95,7 +97,7 @@ def test_seal_is_an_implicit_spring(
             x=rest + generator.normal(size=rest.shape), v=generator.normal(size=rest.shape)
         )
         before = state.v.copy()
-        hold_lips(state, rest, mass, alone, grip, h)
+        hold_lips(state, skin._replace(lips=alone), Tick(1, h, grip, REST))
         i, (a, b), w = lips.lower[pair], lips.upper[pair], lips.share[pair]
         ends = state.x + h * state.v - rest
         apart = ends[i] - w * ends[a] - (1.0 - w) * ends[b] - (0.0, grip.overlap, 0.0)
@@ -109,7 +111,8 @@ def test_seal_is_an_implicit_spring(
 
 def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
     """Velocities after the seal has acted on all pairs at once, each share averaged."""
-    lips, mass, rest = face._anatomy.lips, face._anatomy.mass, face._anatomy.surface.positions
+    skin = face._anatomy.skin
+    lips, mass, rest = skin.lips, skin.mass, skin.rest
     state, grip = face._state, face._grip
     w = lips.share[:, None]
 
@@ -135,7 +138,7 @@ def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
     muscles, mandible = stirred._anatomy.muscles, stirred._mandible
     bundle = muscles.bundle
     activation = np.linspace(0.0, 1.0, len(bundle.muscle))
-    table = np.zeros_like(muscles.table)
+    table = np.zeros_like(muscles.motion.contracted)
     assert bundle.fixed_at.max() > 0.0
     t = np.linspace(0.0, 1.0, SAMPLES)
     for b in range(1, len(bundle.muscle)):
@@ -143,8 +146,8 @@ def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
         moved = points + bundle.mandible[b][:, None] * mandible.displacements(points)
         contract(moved, bundle.contraction[b] * activation[b], bundle.fixed_at[b], table[b])
         arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))]
-        kept = max(1.0 - bundle.contraction[b] * activation[b], LEAST_ARC)
-        there = bundle.fixed_at[b] + kept * (t - bundle.fixed_at[b])
+        remaining = max(1.0 - bundle.contraction[b] * activation[b], LEAST_ARC)
+        there = bundle.fixed_at[b] + remaining * (t - bundle.fixed_at[b])
         for k in range(3):
             to = np.interp(there * arc[-1], arc, moved[:, k])
             at = np.interp(t * arc[-1], arc, moved[:, k])
@@ -152,29 +155,29 @@ def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
 
 
 def test_muscle_pull(stirred: sim.Simulation) -> None:
-    """Hold and pull of all muscles, summed muscle by muscle and line by line."""
+    """Attachment and pull of all muscles, summed muscle by muscle and line by line."""
     anatomy, mandible = stirred._anatomy, stirred._mandible
     muscles, weight = anatomy.muscles, anatomy.skull.mandible_weight
     activation = np.linspace(-0.1, 1.0, len(muscles.names))
     hold, force = np.zeros(len(weight)), np.zeros((len(weight), 3))
-    muscles.add(activation, mandible, weight, hold, force)
-    a = np.maximum(activation, 0.0)
-    assert 0.0 in muscles.passive
-    tight = muscles.passive + (1.0 - muscles.passive) * a
-    owner = np.repeat(np.arange(len(a)), np.diff(muscles.holds.rows))
-    i, steady = muscles.holds.vertex, muscles.holds.value
+    muscles.add(activation, mandible, weight, stirred._state._replace(hold=hold, pull=force))
+    a, skin, motion = np.maximum(activation, 0.0), muscles.skin, muscles.motion
+    assert 0.0 in skin.passive
+    tight = skin.passive + (1.0 - skin.passive) * a
+    owner = np.repeat(np.arange(len(a)), np.diff(skin.holds.rows))
+    i, steady = skin.holds.vertex, skin.holds.value
     expected_hold = np.zeros_like(hold)
-    np.add.at(expected_hold, i, ((1.0 - muscles.passive) * a)[owner] * muscles.holds.weight)
+    np.add.at(expected_hold, i, ((1.0 - skin.passive) * a)[owner] * skin.holds.weight)
     turned = steady + weight[i, None] * (steady @ mandible.rotation.T - steady)
     expected = np.zeros_like(force)
     np.add.at(expected, i, (tight * a)[owner, None] * turned)
     of_line = muscles.bundle.muscle
     pulled = np.where(a[of_line] > 0.0, tight[of_line], 0.0)
-    ridden = np.where(muscles.rides, tight[of_line], 0.0)
+    ridden = np.where(motion.is_carried, tight[of_line], 0.0)
     assert ridden.any()
     for attached, table, scale, last in (
-        (muscles.pulls, muscles.table, pulled, SAMPLES - 2),
-        (muscles.carries, muscles.ride, ridden, FIBRE_POINTS - 2),
+        (skin.pulls, motion.contracted, pulled, SAMPLES - 2),
+        (skin.carries, motion.carried, ridden, FIBRE_POINTS - 2),
     ):
         line = np.repeat(np.arange(len(table)), np.diff(attached.rows))
         s = np.minimum(attached.value.astype(int), last)
@@ -189,8 +192,7 @@ def test_bones_carry_anchors(stirred: sim.Simulation) -> None:
     """Anchors blend between cranium and mandible by weight; their normals stay unit."""
     anatomy, mandible, state = stirred._anatomy, stirred._mandible, stirred._state
     surface, weight = anatomy.surface, anatomy.skull.mandible_weight
-    turn, shift = mandible.rotation, mandible.shift
-    carry(surface.positions, surface.normals, weight, turn, shift, state)
+    carry(state, surface.positions, surface.normals, weight, mandible)
     moved = mandible.displacements(surface.positions)
     assert np.abs(moved).max() > 5.0
     assert np.allclose(state.carried, surface.positions + weight[:, None] * moved, atol=1e-12)
@@ -226,11 +228,12 @@ def test_lids_turn_about_the_eyeball(simulation: sim.Simulation) -> None:
 def test_a_step_is_its_substeps(head: Head) -> None:
     """A frame without contact, done again with plain Euler, lands on the same positions."""
     anatomy = sim.create(head)._anatomy
-    free = replace(
-        anatomy,
-        lips=anatomy.lips._replace(least_gap=anatomy.lips.least_gap - 100.0),
-        eye_contact=watch_eyeballs(anatomy.surface, ()),
+    lips = anatomy.skin.lips
+    without_contact = anatomy.skin._replace(
+        lips=lips._replace(least_gap=lips.least_gap - 100.0),
+        eyes=watch_eyeballs(anatomy.surface, ()),
     )
+    free = replace(anatomy, skin=without_contact)
     fast, plain = sim.Simulation(free), sim.Simulation(free)
     values = {"zygomaticus_major_left": 1.0, "frontalis_medial_right": 1.0}
     fast.set_all(values)
@@ -241,15 +244,15 @@ def test_a_step_is_its_substeps(head: Head) -> None:
     for _ in range(substeps_in(FRAME)):
         _plain_substep(plain, FRAME / substeps_in(FRAME))
     moved = plain._state.x - anatomy.surface.positions
-    expected = plain.rest_positions + anatomy.frame.vectors_to_head(moved)
+    expected = plain.rest_positions + anatomy.space.vectors_to_head(moved)
     assert np.abs(fast.positions - expected).max() < 1e-6
     assert np.abs(fast.positions - fast.rest_positions).max() > 0.05
 
 
 def _plain_substep(face: sim.Simulation, h: float) -> None:
     """Forces by numpy, then velocity, then position."""
-    anatomy, state = face._anatomy, face._state
-    springs, edges = anatomy.springs, anatomy.edges
+    skin, state = face._anatomy.skin, face._state
+    springs, edges = skin.tissue, skin.edges
     x, v, n = state.x, state.v, state.normals
     away = x - state.carried
     across = (away * n).sum(axis=1, keepdims=True) * n
@@ -264,8 +267,8 @@ def _plain_substep(face: sim.Simulation, h: float) -> None:
     pull = tension[:, None] * along + edges.shear[:, None] * (away[j] - away[i])
     np.add.at(force, i, pull)
     np.add.at(force, j, -pull)
-    stiff = (springs.tangential + state.hold) / anatomy.mass
+    stiff = (springs.tangential + state.hold) / skin.mass
     damping = springs.damping + 2.0 * springs.damping_ratio * np.sqrt(stiff)
-    v[:] = (v + h * force / anatomy.mass[:, None]) / (1.0 + h * damping)[:, None]
+    v[:] = (v + h * force / skin.mass[:, None]) / (1.0 + h * damping)[:, None]
     v[:] = _sealed_speeds(face, h)
     x += h * v

@@ -1,0 +1,184 @@
+"""Offscreen capture: a script becomes a film, a folder of frames, a picture or a contact sheet."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from tqdm import tqdm
+
+from risorius import render
+from risorius.assets.fitting import FittedHead
+
+from ..cameras import camera_for
+from ..errors import UserError
+from ..files import Image, check_file, check_picture, save_png
+from ..pipeline import Pipeline, side_by_side, texture_of
+from ..scenes import Scene, build_scene
+from ..script import Script
+from ..stopping import cleaned_up_if_stopped
+from ..wrinkling import wrinkling_of
+from . import outputs
+from .captions import captioned, contact_sheet
+
+SETTLING = 1.0  # [s] after which the face rests in a pose
+
+
+@dataclass(frozen=True)
+class CaptureOptions:
+    """How a script is filmed."""
+
+    size: tuple[int, int] = (1280, 720)  # of the whole picture [pixels]
+    frames_per_second: float = 30.0
+    refiner: str = "kahler"
+    refiner_options: Mapping[str, float] | None = None  # None: what suits the scene
+    compare: bool = False  # the mesh as it is on the left, refined on the right
+    captions: bool = True  # names and triangle counts under a comparison
+    camera: str | None = None  # a named view, or yaw,pitch[,zoom] in degrees
+    style: render.Style = render.Style()  # noqa: RUF009 - frozen
+    samples: int = 4
+    head: FittedHead | None = None  # None: the built-in one
+
+
+class Capture:
+    """An offscreen surface with the whole pipeline behind it; a context manager."""
+
+    def __init__(self, scene: Scene, options: CaptureOptions) -> None:
+        self.scene = scene
+        self.options = options
+        self.surface = render.open_offscreen(options.size, samples=options.samples)
+        refiners: dict[str, Mapping[str, float] | None] = {}
+        if options.compare:
+            refiners["none"] = None
+        refiners[options.refiner] = options.refiner_options
+        renderer = render.Renderer(self.surface)
+        texture, wrinkling = texture_of(scene, renderer), wrinkling_of(scene, renderer)
+        self.pipeline = Pipeline(scene, renderer, refiners, texture, wrinkling)
+        self.viewports = side_by_side(self.surface.size, len(refiners))
+        self.camera = camera_for(scene, options.camera)
+        self.most_triangles = 0
+
+    def __enter__(self) -> Capture:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.surface.close()
+
+    def picture(self) -> Image:
+        """Draw the scene as it is now, and read the picture back."""
+        self.surface.begin()
+        self.pipeline.draw(self.camera, self.options.style, self.viewports)
+        self.surface.end()
+        meshes = self.pipeline.meshes
+        self.most_triangles = max(
+            [self.most_triangles, *(drawn.triangle_count for drawn in meshes)]
+        )
+        image = self.surface.read()
+        if self.options.compare and self.options.captions:
+            texts = [
+                f"{'static' if drawn.refiner_name == 'none' else drawn.refiner_name} "
+                f"· {drawn.triangle_count} triangles"
+                for drawn in meshes
+            ]
+            image = captioned(image, texts, self.viewports)
+        return image
+
+    def play(
+        self, script: Script, *, until: float | None = None, progress: bool = True
+    ) -> Iterator[float]:
+        """Play a script and yield the time [s] of each frame, the scene moved to it.
+
+        It begins in the script's first pose, as if that had been held for a while.
+        """
+        self.scene.reset()
+        self.scene.pose(script.at(0.0))
+        if any(self.scene.values.values()):
+            self.pipeline.step(SETTLING)
+        rate = self.options.frames_per_second
+        last = round((script.duration if until is None else until) * rate)
+        bar = tqdm(range(last + 1), unit="frame", disable=not progress or None, leave=False)
+        with cleaned_up_if_stopped(bar.close):
+            for index in bar:
+                self.scene.pose(script.at(index / rate))
+                if index:
+                    self.pipeline.step(1.0 / rate)
+                yield index / rate
+
+
+def capture(
+    script: Script,
+    options: CaptureOptions,
+    *,
+    output: Path | None = None,
+    sheet: Path | None = None,
+    time: float | None = None,
+    overwrite: bool = False,
+    progress: bool = True,
+) -> int:
+    """Play `script` into `output`, by its suffix, and its named poses into the picture `sheet`.
+
+    time: of a picture [s]; else it is of the first pose that has a name, or of the end.
+    Returns the largest number of triangles of a frame. Raises UserError on what cannot be.
+    """
+    still = output if output is not None and output.suffix.lower() == ".png" else None
+    if time is not None and not still:
+        raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
+    if output is None and sheet is None:
+        raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")
+    wanted = list(script.key_poses) if sheet else []
+    if sheet and not wanted:
+        raise UserError(f"{script.source}: no pose has a name, so there is nothing for a sheet")
+    for picture in (sheet, still):
+        if picture is not None:
+            check_picture(picture)
+    if output is not None and output.suffix.lower() in outputs.FILM_SUFFIXES:
+        check_file(output)
+    if time is None:
+        time = script.key_poses[0].time if script.key_poses else script.duration
+    rate = options.frames_per_second
+    still_at = round(time * rate) / rate if still else -1.0
+    until = still_at if still and not sheet else max(script.duration, still_at)
+    named: list[tuple[str, Image]] = []
+    with contextlib.ExitStack() as stack:
+        recording = stack.enter_context(Capture(scene_of(script, options.head), options))
+        film = None
+        if output is not None and not still:
+            film = stack.enter_context(_sink_for(output, options, overwrite))
+        for now in recording.play(script, until=until, progress=progress):
+            is_wanted = bool(wanted) and wanted[0].time <= now + 0.5 / rate
+            if film is None and not is_wanted and now != still_at:
+                continue
+            image = recording.picture()
+            if film is not None:
+                film(image)
+            if still and now == still_at:
+                save_png(still, image)
+            while wanted and wanted[0].time <= now + 0.5 / rate:
+                named.append((wanted.pop(0).name or "", image))
+        if sheet is not None:
+            save_png(sheet, contact_sheet(named, columns=2 if options.compare else 3))
+        return recording.most_triangles
+
+
+def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
+    """The scene that a script is written for; UserError if it asks for what that has not."""
+    scene = build_scene(script.scene, head)
+    script.check(scene.limits)
+    return scene
+
+
+def _sink_for(
+    output: Path, options: CaptureOptions, overwrite: bool
+) -> contextlib.AbstractContextManager[outputs.FrameSink]:
+    """A film or a folder of frames, by what the output is called."""
+    suffix = output.suffix.lower()
+    if suffix in outputs.FILM_SUFFIXES:
+        return outputs.film(output, options.size, options.frames_per_second)
+    if suffix == "" or output.is_dir():
+        return outputs.folder(output, overwrite=overwrite)
+    raise UserError(
+        f"{output}: what is '{suffix}'? Allowed are {', '.join(outputs.FILM_SUFFIXES)} (a film), "
+        ".png (one picture) and a name without suffix (a folder of frames)"
+    )

@@ -1,0 +1,176 @@
+"""The product's sub-commands.
+
+What needs OpenGL or compiled code is imported inside the commands, so that --help comes at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from ..errors import UserError, in_one_line
+from .options import PATH, SCENE_NAMES, Drawing, Filming, with_drawing, with_filming
+from .parameters import Size
+
+if TYPE_CHECKING:
+    from ..script import Script
+
+
+@click.command()
+@click.argument("script", type=PATH, required=False)
+@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="Instead of a SCRIPT.")
+@click.option("-o", "--output", type=PATH, help="out.mp4, a folder, or .png")
+@click.option("--sheet", type=PATH, help="Contact sheet of the named poses.")
+@click.option("--scene", type=SCENE_NAMES, help="What is animated.")
+@with_filming
+@with_drawing
+def capture(
+    script: Path | None,
+    settings: tuple[str, ...],
+    output: Path | None,
+    sheet: Path | None,
+    scene: str | None,
+    filming: Filming,
+    drawing: Drawing,
+) -> None:
+    """Render SCRIPT offscreen into a film, frames, a picture or a contact sheet.
+
+    Without SCRIPT the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
+    """
+    from ..capture import CaptureOptions
+    from ..capture import capture as film_of
+    from ..files import check_apart
+    from ..script import script_for
+
+    check_apart((output, sheet), (script, drawing.head, drawing.landmarks))
+    performance = script_for(script, scene, settings)
+    options = CaptureOptions(
+        size=filming.size,
+        frames_per_second=filming.fps,
+        refiner_options=drawing.refiner_options(),
+        refiner=drawing.refiner,
+        compare=filming.compare,
+        captions=filming.captions,
+        camera=filming.camera or performance.camera,
+        style=drawing.style(),
+        samples=filming.samples,
+        head=drawing.fitted_head(),
+    )
+    if filming.compare and drawing.refiner == "none":
+        raise UserError("--compare sets the mesh as it is beside a --refiner other than none")
+    most = film_of(
+        performance,
+        options,
+        output=output,
+        sheet=sheet,
+        time=filming.still_time,
+        overwrite=filming.overwrite,
+        progress=not filming.quiet,
+    )
+    written = in_one_line(" and ".join(str(path) for path in (output, sheet) if path))
+    click.echo(f"{written}: {most} triangles at most")
+
+
+@click.command()
+@click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
+@click.option("--scene", type=SCENE_NAMES, help="face, unless told.")
+@click.option("--script", type=PATH, help="What the space key plays.")
+@with_drawing
+def view(
+    size: tuple[int, int] | None, scene: str | None, script: Path | None, drawing: Drawing
+) -> None:
+    """Open the window: a face with a slider for every muscle."""
+    from ..script import script_for
+
+    open_window(script_for(script, scene), size, drawing)
+
+
+@click.command()
+@click.argument("script", type=PATH)
+@click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
+@click.option("--once", is_flag=True, help="Close the window at the end of the script.")
+@with_drawing
+def replay(script: Path, size: tuple[int, int] | None, once: bool, drawing: Drawing) -> None:
+    """Play SCRIPT in real time in the window."""
+    from ..script import script_for
+
+    open_window(script_for(script, None), size, drawing, playing=True, once=once)
+
+
+def open_window(
+    script: Script,
+    size: tuple[int, int] | None,
+    drawing: Drawing,
+    *,
+    playing: bool = False,
+    once: bool = False,
+) -> None:
+    """Open the viewer on a script's scene."""
+    head = drawing.fitted_head()
+    from ..viewer import Viewer
+    from ..viewer.settings import look_of, settings_path
+
+    look = look_of(drawing.refiner, drawing.refiner_options(), **drawing.look)
+    with Viewer(script, size, look, head=head, settings_path=settings_path()) as viewer:
+        viewer.run(playing=playing, once=once)
+
+
+@click.command()
+def demo() -> None:
+    """Render the built-in head through its expressions to out/demo.mp4 and out/demo.png."""
+    from ..capture import CaptureOptions
+    from ..capture import capture as film_of
+    from ..script import script_for
+
+    script = script_for(None, "face")
+    options = CaptureOptions(compare=True, camera=script.camera)
+    film, sheet = Path("out/demo.mp4"), Path("out/demo.png")
+    most = film_of(script, options, output=film, sheet=sheet)
+    click.echo(f"{film} ({script.duration:g} s) and {sheet}: {most} triangles at most")
+
+
+@click.command()
+@click.option("--scene", type=SCENE_NAMES, default="face", show_default=True)
+def controls(scene: str) -> None:
+    """List every control that a script may name: muscles, action units, expressions, visemes."""
+    from ..scenes import SCENES
+
+    built = SCENES[scene]()
+    for title, names in built.groups.items():
+        click.echo(title)
+        for name in names:
+            low, high = built.limits[name]
+            action = built.actions.get(name, "")
+            click.echo(f"  {name}  {low:g}..{high:g}  {action}".rstrip())
+
+
+@click.command()
+@click.option("--offscreen", is_flag=True, help="Only ask for offscreen OpenGL.")
+@click.option("--quiet", is_flag=True, help="Say nothing; the exit code tells.")
+def doctor(offscreen: bool, quiet: bool) -> None:
+    """Say what there is, what works because of it, and the cure for what is missing.
+
+    Exit code 0: everything is there. 1: some commands work. 2: nothing can be drawn.
+    """
+    from .doctor import examine
+
+    health, lines = examine(offscreen_only=offscreen)
+    if not quiet:
+        for line in lines:
+            click.echo(line)
+    sys.exit(int(health))
+
+
+@click.command()
+@click.option("--quiet", is_flag=True, help="No progress bar.")
+def warm(quiet: bool) -> None:
+    """Compile everything once, so that no later start has to."""
+    from .compiling import warm as compile_all
+
+    compile_all(quiet)
+
+
+ALL = (capture, view, replay, demo, controls, doctor, warm)

@@ -1,0 +1,112 @@
+"""Compiled code: what is said while it is made, and `risorius warm`, which makes all of it.
+
+Kernels are compiled by numba when they are first called, and kept on disk (`risorius/jit.py`). That
+takes half a minute once, for which a user wants to know the reason.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import click
+import numpy as np
+
+if TYPE_CHECKING:
+    from ..scenes import Scene
+
+LOG = logging.getLogger("risorius.jit")  # where it is told what is compiled
+
+
+class Announcer(logging.Handler):
+    """Says once that code is compiled, and once that it cannot be kept."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.INFO)
+        self._said: set[int] = set()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Say a line on the error stream."""
+        if record.levelno in self._said:
+            return
+        self._said.add(record.levelno)
+        line = "Compiling, this once; it takes half a minute (risorius warm: all at once)."
+        if record.levelno >= logging.WARNING:
+            line = f"risorius: {record.getMessage()}"
+        click.echo(line, err=True)
+
+
+def announce() -> None:
+    """From here on tell the user when something is compiled, or cannot be kept."""
+    LOG.handlers = [Announcer()]
+    LOG.setLevel(logging.INFO)
+    LOG.propagate = False
+
+
+def warm(quiet: bool) -> None:
+    """Compile everything that the application runs, with a bar; what is there already is read."""
+    from tqdm import tqdm
+
+    LOG.setLevel(logging.WARNING)  # the bar tells of the rest
+    jobs = list(_jobs())
+    with tqdm(
+        jobs, disable=quiet or None, unit="part", bar_format="{l_bar}{bar}| {postfix}"
+    ) as bar:
+        for name, run in bar:
+            bar.set_postfix_str(name)
+            run()
+        bar.set_postfix_str("everything is compiled", refresh=True)
+
+
+def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
+    """Everything that compiles kernels of its own, by name."""
+    from risorius import refine
+
+    from ..ambient import openness
+    from ..scenes import FaceScene, PlaneScene
+
+    face, plane = FaceScene(), PlaneScene()
+
+    def simulate() -> None:
+        """Move every control a little, and pull the skin."""
+        face.pose(dict.fromkeys(face.limits, 0.1))
+        face.step(1 / 60)
+        face.simulation.pull([0], face.positions[:1] + 1.0, [1.0])
+        face.step(1 / 60)
+        face.simulation.let_go()
+        face.simulation.fibres()
+        face.reset()
+
+    yield "muscles and springs", simulate
+    yield "light", partial(openness, face.head, face.simulation)
+    choices: tuple[dict[str, Any], ...] = (
+        {},
+        {"criterion": "normal", "blend": True},
+        {"scheme": "cubic"},
+        {"scheme": "cubic", "criterion": "bulge"},
+        {"scheme": "detail"},
+        {"scheme": "detail", "criterion": "bulge"},
+        {"coherent": True},
+        *({"criterion": name} for name in ("curvature", "silhouette", "screen")),
+    )
+    for options in choices:
+        text = " ".join(f"{name}={value}" for name, value in options.items())
+        yield f"refinement {text}".rstrip(), partial(_refine, face, "kahler", options)
+    yield "uniform subdivision", partial(_refine, face, "loop", {})
+    yield "the plane", partial(_refine, plane, "kahler", {})
+    tension = refine.Tension(face.faces, face.rest_positions)
+    yield "strain", partial(tension.measure, face.rest_positions)
+    assert face.wrinkles is not None
+    wrinkles = refine.Shortening(face.faces, face.rest_positions, face.wrinkles.across)
+    yield "wrinkles", partial(wrinkles.measure, face.rest_positions)
+
+
+def _refine(scene: Scene, name: str, options: dict[str, Any]) -> None:
+    from risorius import refine
+
+    from ..refining import refiner_for
+
+    view = refine.View(scene.focus + np.array([0.0, 0.0, 400.0]))
+    refiner_for(scene, name, options or None).refine(scene.positions, view=view)

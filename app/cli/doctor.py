@@ -1,0 +1,92 @@
+"""`risorius doctor`: what this machine has, what it lacks, and what works here because of that."""
+
+from __future__ import annotations
+
+import enum
+import os
+import platform
+import subprocess
+
+from risorius import __version__, render
+
+from ..capture import ffmpeg
+from ..errors import UserError, in_one_line
+
+PATIENCE = 20.0  # [s] for ffmpeg to say which it is
+
+
+class Health(enum.IntEnum):
+    """What works here; the values are exit codes."""
+
+    WHOLE = 0
+    PARTLY = 1  # it draws, but has no window, no offscreen frames or no films
+    NOTHING = 2  # it cannot draw
+
+
+def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
+    """Return what works here, and the lines of the report.
+
+    offscreen_only: ask for offscreen frames alone, and report on nothing else.
+    """
+    found = {finding.name: finding for finding in render.probe(offscreen_only=offscreen_only)}
+    works = {name: finding.is_ok for name, finding in found.items()}
+    lines = [
+        f"Risorius {__version__}, Python {platform.python_version()}, "
+        f"{platform.system()} {platform.machine()}",
+        *map(str, found.values()),
+    ]
+    if not offscreen_only:
+        works["films"], answer = _films()
+        lines.append(f"films: {answer}")
+    lines = [in_one_line(line) for line in lines + _verdicts(works)]
+    if all(works.values()):
+        return Health.WHOLE, lines
+    draws = works["offscreen"] or works.get("window", False)
+    return Health.PARTLY if draws else Health.NOTHING, lines
+
+
+def _verdicts(works: dict[str, bool]) -> list[str]:
+    """A line for each command: whether it works."""
+    if not works["offscreen"]:
+        frames = "no: needs offscreen"
+    elif works.get("films", True):
+        frames = "works"
+    else:
+        frames = "works for pictures and folders of frames; films need ffmpeg"
+    verdicts = [f"capture, demo, reproduce: {frames}"]
+    if "window" in works:
+        verdicts.append(f"view, replay: {'works' if works['window'] else 'no: needs a window'}")
+    missing = [name for name, is_there in works.items() if not is_there]
+    verdicts.append(
+        f"Missing: {', '.join(missing)}; the cure is in its line above."
+        if missing
+        else "Everything is there."
+    )
+    return verdicts
+
+
+def _films() -> tuple[bool, str]:
+    """Whether there is an ffmpeg that answers, and which, or the cure."""
+    is_named = "IMAGEIO_FFMPEG_EXE" in os.environ
+    mend = (
+        "unset IMAGEIO_FFMPEG_EXE" if is_named else "pip install --force-reinstall imageio-ffmpeg"
+    )
+    cure = f"Cure: {mend}"
+    try:
+        program = ffmpeg.program()
+        said = subprocess.run(
+            [program, "-version"],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=PATIENCE,
+            check=True,
+        ).stdout
+    except UserError as error:
+        return False, f"no. {error}. {cure}"
+    except subprocess.TimeoutExpired:
+        return False, f"no. {program} did not answer within {PATIENCE:g} s. {cure}"
+    except (OSError, subprocess.CalledProcessError) as error:
+        return False, f"no. {program} does not run ({error}). {cure}"
+    return True, f"yes. {' '.join(said.split()[:3])}"

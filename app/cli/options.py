@@ -1,0 +1,163 @@
+"""Options that commands share, as settings objects that say what they stand for."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .parameters import FiniteRange, Size
+
+if TYPE_CHECKING:
+    from risorius import render
+    from risorius.assets.fitting import FittedHead
+
+Command = Callable[..., Any]
+PATH = click.Path(path_type=Path)
+SCENE_NAMES = click.Choice(["face", "plane"])
+
+
+def packed(name: str, settings: type[Any], *options: Command) -> Callable[[Command], Command]:
+    """Give a command these options as one argument, `name`, of the dataclass `settings`."""
+    keys = [each.name for each in fields(settings)]
+
+    def decorate(command: Command) -> Command:
+        @functools.wraps(command)
+        def call(**given: Any) -> Any:
+            packed_in = settings(**{key: given.pop(key) for key in keys})
+            return command(**given, **{name: packed_in})
+
+        wrapped: Command = call
+        for option in reversed(options):
+            wrapped = option(wrapped)
+        return wrapped
+
+    return decorate
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What view, replay and capture are told alike: whose head, by which refiner, in what style."""
+
+    head: Path | None
+    landmarks: Path | None
+    wrinkles: float
+    skin: str
+    splits: bool
+    wireframe: bool
+    shading: str
+    refiner_settings: tuple[str, ...]
+    refiner: str
+
+    def fitted_head(self) -> FittedHead | None:
+        """The user's own head, fitted; None for the built-in one."""
+        from ..scenes import head_for
+
+        return head_for(self.head, self.landmarks)
+
+    def refiner_options(self) -> dict[str, Any] | None:
+        """What the refiner is told; UserError where there is no such refiner."""
+        from ..refining import known_refiner, options_in_words
+
+        return options_in_words(known_refiner(self.refiner), self.refiner_settings)
+
+    @property
+    def look(self) -> dict[str, Any]:
+        """The options of style alone."""
+        names = ("shading", "wireframe", "splits", "skin", "wrinkles")
+        return {name: getattr(self, name) for name in names}
+
+    def style(self) -> render.Style:
+        """The style that these options ask for."""
+        from risorius import render
+
+        return render.Style(
+            shading=render.Shading[self.shading.upper()],
+            wireframe=self.wireframe,
+            colour_by=render.ColourBy.SPLITS if self.splits else render.ColourBy.NONE,
+            textured=self.skin == "textured",
+            albedo=render.CLAY if self.skin == "clay" else render.SKIN,
+            wrinkles=self.wrinkles,
+        )
+
+
+with_drawing = packed(
+    "drawing",
+    Drawing,
+    click.option("--head", type=PATH, help="A head of your own: any triangle mesh."),
+    click.option("--landmarks", type=PATH, help="The 68 iBug landmarks of --head, as JSON."),
+    click.option(
+        "--wrinkles",
+        type=FiniteRange(0, 1),
+        default=1.0,
+        show_default=True,
+        help="How deep skin wrinkles where it is compressed; 0: not at all.",
+    ),
+    click.option(
+        "--skin",
+        type=click.Choice(["textured", "plain", "clay"]),
+        default="textured",
+        show_default=True,
+        help="clay is plain grey, as in the paper's pictures.",
+    ),
+    click.option("--splits", is_flag=True, help="Colour triangles by their number of splits."),
+    click.option("--wireframe", is_flag=True, help="Draw the edges of every triangle."),
+    click.option(
+        "--shading",
+        type=click.Choice(["flat", "gouraud", "pixel"]),
+        default="pixel",
+        show_default=True,
+    ),
+    click.option(
+        "--option",
+        "refiner_settings",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="Of the refiner: scheme=cubic, criterion=bulge, threshold_once=0.01, ...",
+    ),
+    click.option(
+        "--refiner",
+        default="kahler",
+        show_default=True,
+        help="Refine plug-in; none draws the mesh as it is.",
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Filming:
+    """What capture alone is told."""
+
+    size: tuple[int, int]
+    fps: float
+    compare: bool
+    captions: bool
+    camera: str | None
+    still_time: float | None
+    samples: int
+    overwrite: bool
+    quiet: bool
+
+
+with_filming = packed(
+    "filming",
+    Filming,
+    click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told."),
+    click.option("--fps", type=FiniteRange(1, 240), default=30.0, show_default=True),
+    click.option("--compare", is_flag=True, help="The mesh as it is on the left, refined right."),
+    click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
+    click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
+    click.option(
+        "--time",
+        "still_time",
+        type=FiniteRange(0, 86_400),
+        help="When a .png is taken [s]: else in the first named pose, or at the end.",
+    ),
+    click.option("--samples", type=click.IntRange(0, 16), default=4, show_default=True),
+    click.option("--overwrite", is_flag=True, help="Replace the frames in a folder."),
+    click.option("--quiet", is_flag=True, help="No progress bar."),
+)

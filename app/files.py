@@ -1,0 +1,146 @@
+"""Files: those that are read, whole or refused, and those that are written, whole or not at all.
+
+Only plain files are read: a pipe nobody writes into would keep the program waiting for ever, a
+device like /dev/zero has no end. An output is written beside its place and moved there when it is
+complete.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import stat
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+
+from risorius.assets.staging import StagingFolder
+
+from .errors import UserError
+from .stopping import cleaned_up_if_stopped
+
+Image = npt.NDArray[np.uint8]  # (H, W, 3), top row first
+
+
+def read_text(path: Path, *, what: str, longest: int) -> str:
+    """The text in a file, UTF-8 with or without a byte order mark, of `longest` bytes at most.
+
+    what: what the file is to be, for error texts ("script"). Raises UserError for what is there
+    and of no use, FileNotFoundError where there is nothing.
+    """
+    try:
+        if not stat.S_ISREG(path.stat().st_mode):
+            kind = "folder" if path.is_dir() else "pipe or a device"
+            raise UserError(f"{path}: is a {kind}, not a file; a {what} is a plain file")
+        with path.open("rb") as file:
+            content = file.read(longest + 1)
+    except FileNotFoundError:
+        raise
+    except (OSError, ValueError) as error:  # a name that no file can have is a ValueError
+        why = getattr(error, "strerror", None) or error
+        raise UserError(f"{path}: cannot be read: {why}") from None
+    if len(content) > longest:
+        raise UserError(f"{path}: is longer than a {what} may be, {longest >> 20} MB")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise UserError(f"{path}: cannot be read as a text file: {error}") from None
+
+
+@contextlib.contextmanager
+def written_atomically(target: Path) -> Iterator[Path]:
+    """Yield a path beside `target`, renamed to it if the block ends without an error.
+
+    A link stays one: what it points to is written. UserError where that cannot be.
+    """
+    whole = real_path(target)
+    with cannot_be_written(target):
+        whole.parent.mkdir(parents=True, exist_ok=True)
+    with temporary_folder(target, whole.parent) as folder:
+        part = folder / whole.name
+        yield part
+        with cannot_be_written(target):
+            os.replace(part, whole)
+
+
+@contextlib.contextmanager
+def temporary_folder(target: Path, parent: Path) -> Iterator[Path]:
+    """A folder in `parent` that is gone after the block; errors are those of writing `target`."""
+    temporary = StagingFolder(parent)
+    with cleaned_up_if_stopped(temporary.remove), contextlib.ExitStack() as stack:
+        with cannot_be_written(target):
+            folder = stack.enter_context(temporary)
+        yield folder
+
+
+@contextlib.contextmanager
+def cannot_be_written(target: Path) -> Iterator[None]:
+    """Turn what the system says against writing `target` into a UserError that names it."""
+    try:
+        yield
+    except OSError as error:
+        raise UserError(f"{target}: cannot be written: {error.strerror or error}") from None
+
+
+def real_path(target: Path) -> Path:
+    """The file that `target` stands for; UserError where its links go round in a circle."""
+    whole = Path(os.path.realpath(target))
+    with cannot_be_written(target):
+        if whole.is_symlink():
+            raise UserError(f"{target}: is a link that leads back to itself; choose another name")
+    return whole
+
+
+def check_file(target: Path) -> None:
+    """Raise UserError, before any work is done, where no file of this name can be written."""
+    whole = real_path(target)
+    with cannot_be_written(target):
+        if whole.is_dir():
+            raise UserError(f"{target}: is a folder; choose another name for the file")
+        if whole.exists() and not whole.is_file():
+            raise UserError(f"{target}: is a device, not a file; choose another name")
+        parent = next(parent for parent in whole.parents if os.path.lexists(parent))
+        with temporary_folder(target, parent) as folder:
+            (folder / whole.name).touch()
+
+
+def check_picture(target: Path) -> None:
+    """Raise UserError, before any work is done, where no picture can be written."""
+    if target.suffix.lower() != ".png":
+        raise UserError(f"{target}: pictures are written as .png; choose a name that ends so")
+    check_file(target)
+
+
+def save_text(target: Path, text: str) -> None:
+    """Write a text file, UTF-8; UserError where it cannot be written."""
+    check_file(target)
+    with written_atomically(target) as part, cannot_be_written(target):
+        part.write_text(text, encoding="utf-8")
+
+
+def save_png(target: Path, image: Image, *, is_small: bool = False) -> None:
+    """Write one picture; UserError for another suffix, and where it cannot be written.
+
+    is_small: take time, so that the file gets as small as it can.
+    """
+    check_picture(target)
+    with written_atomically(target) as part, cannot_be_written(target):
+        PIL.Image.fromarray(image).save(part, format="PNG", optimize=is_small)
+
+
+def check_apart(outputs: Sequence[Path | None], inputs: Sequence[Path | None]) -> None:
+    """UserError where two outputs are one file, or one would take the place of an input."""
+    written: set[str] = set()
+    read = {os.path.realpath(path) for path in inputs if path is not None}
+    for path in outputs:
+        if path is None:
+            continue
+        real = os.path.realpath(path)  # unlike `resolve` it bears links that lead to themselves
+        if real in read:
+            raise UserError(f"{path}: is read and would be written; choose another name")
+        if real in written:
+            raise UserError(f"{path}: is to be two outputs at once; choose another name for one")
+        written.add(real)

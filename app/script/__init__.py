@@ -1,0 +1,53 @@
+"""Animation scripts: keyframes of controls over time, in a TOML file.
+
+A script is a list of poses and, beside them, tracks::
+
+    title = "Hello"              # optional
+    scene = "face"               # optional: face (default) or plane
+    camera = "three-quarter"     # optional: a named view
+    duration = 4.0               # optional [s]; the default is the time of the last key
+
+    [[pose]]                     # a whole pose: what it does not name is 0
+    time = 0.0                   # [s]
+
+    [[pose]]
+    time = 1.0
+    easing = "smooth"            # how this pose is approached, see easing.py
+    name = "joy"                 # optional: the label of this key pose on a contact sheet
+    joy = 1.0                    # a control of any layer: an expression, an action unit,
+    jaw_open = 0.1               # a viseme, a muscle, the jaw, the gaze
+
+    [tracks]                     # single channels, added to the poses (a blink, a glance)
+    blink = [
+        { time = 2.0, value = 0 },
+        { time = 2.12, value = 1, easing = "ease-in" },
+        { time = 2.3, value = 0 },
+    ]
+
+Before its first key a channel keeps that key's value, after its last key the last one's.
+`docs/scripts.md` is the user's page of this format.
+"""
+
+from .choice import script_for
+from .model import Channel, Key, Limits, Pose, Script, rounded
+from .reader import LARGEST, LONGEST_FILE, load_script, parse_script, preface_of
+from .writer import is_pose, pose_script, save_script, script_text
+
+__all__ = [
+    "LARGEST",
+    "LONGEST_FILE",
+    "Channel",
+    "Key",
+    "Limits",
+    "Pose",
+    "Script",
+    "is_pose",
+    "load_script",
+    "parse_script",
+    "pose_script",
+    "preface_of",
+    "rounded",
+    "save_script",
+    "script_for",
+    "script_text",
+]

@@ -1,0 +1,81 @@
+"""Scripts and poses back into TOML files; what is written reads back as the same script.
+
+A pose by itself is a script with one [[pose]] at time 0.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+from ..files import save_text
+from .model import Channel, Pose, Script, rounded
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+POSE_SECONDS = 1.0  # duration of a script that is one pose
+
+
+def save_script(target: Path, script: Script) -> None:
+    """Write a script file, whole or not at all; UserError where it cannot be written."""
+    save_text(target, script_text(script))
+
+
+def script_text(script: Script) -> str:
+    """The TOML text of a script."""
+    head = [script.preface] if script.preface else []
+    if script.title:  # else it is called as its file is
+        head.append(f"title = {_quoted(script.title)}")
+    head.append(f"scene = {_quoted(script.scene)}")
+    if script.camera is not None:
+        head.append(f"camera = {_quoted(script.camera)}")
+    head.append(f"duration = {_number(script.duration)}")
+    blocks = ["\n".join(head), *map(_pose, script.poses)]
+    if script.tracks:
+        tracks = [_track(name, channel) for name, channel in script.tracks.items()]
+        blocks.append("\n".join(["[tracks]", *tracks]))
+    return "\n\n".join(blocks) + "\n"
+
+
+def pose_script(values: Mapping[str, float], *, title: str, scene: str) -> Script:
+    """A script that is nothing but one pose; what is 0 is left out."""
+    pose = Pose(0.0, {name: rounded(value) for name, value in values.items() if rounded(value)})
+    return Script(title, POSE_SECONDS, source=title, scene=scene, poses=(pose,))
+
+
+def is_pose(script: Script) -> bool:
+    """Whether a script holds one pose and no motion."""
+    is_still = all(len(channel.keys) == 1 for channel in script.tracks.values())
+    is_something = bool(script.posed_names or script.tracks)
+    return is_something and is_still and len(script.poses) <= 1
+
+
+def _pose(pose: Pose) -> str:
+    lines = ["[[pose]]", f"time = {_number(pose.time)}"]
+    if pose.easing != "smooth":
+        lines.append(f"easing = {_quoted(pose.easing)}")
+    if pose.name is not None:
+        lines.append(f"name = {_quoted(pose.name)}")
+    lines += [f"{_key(name)} = {_number(value)}" for name, value in pose.values.items()]
+    return "\n".join(lines)
+
+
+def _track(name: str, channel: Channel) -> str:
+    lines = [f"{_key(name)} = ["]
+    for key in channel.keys:
+        easing = "" if key.easing == "smooth" else f", easing = {_quoted(key.easing)}"
+        lines.append(f"    {{ time = {_number(key.time)}, value = {_number(key.value)}{easing} }},")
+    return "\n".join([*lines, "]"])
+
+
+def _number(value: float) -> str:
+    return repr(float(value))
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _key(name: str) -> str:
+    return name if _BARE.fullmatch(name) else _quoted(name)

@@ -1,0 +1,5 @@
+"""The one error of this package."""
+
+
+class AssetError(Exception):
+    """An asset does not exist, or one of its files is missing or broken."""

@@ -1,0 +1,103 @@
+"""Small questions about triangle lists: edges, boundary loops, angles."""
+
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from .model import FloatArray
+
+Faces = npt.NDArray[np.int32]
+Edge = tuple[int, int]
+
+
+def edge_key(first: int, second: int) -> Edge:
+    """The undirected edge between two vertices."""
+    return (first, second) if first < second else (second, first)
+
+
+def edge_faces(faces: Faces) -> dict[Edge, list[int]]:
+    """Faces beside each undirected edge, in the order of the face list."""
+    result: dict[Edge, list[int]] = {}
+    for index, (a, b, c) in enumerate(faces.tolist()):
+        for first, second in ((a, b), (b, c), (c, a)):
+            result.setdefault(edge_key(first, second), []).append(index)
+    return result
+
+
+def boundary_loops(faces: Faces) -> list[list[int]]:
+    """Closed rows of boundary vertices, in the direction of their faces, longest first.
+
+    Raises ValueError where the boundary branches, that is, where the mesh is not a manifold.
+    """
+    directed = {
+        (first, second) for a, b, c in faces.tolist() for first, second in ((a, b), (b, c), (c, a))
+    }
+    following: dict[int, int] = {}
+    for first, second in sorted(directed):
+        if (second, first) not in directed:
+            if first in following:
+                raise ValueError(f"the boundary branches at vertex {first}")
+            following[first] = second
+    loops = []
+    while following:
+        start = min(following)
+        loop = [start]
+        while following[loop[-1]] != start:
+            loop.append(following[loop[-1]])
+        for vertex in loop:
+            del following[vertex]
+        loops.append(loop)
+    return sorted(loops, key=len, reverse=True)
+
+
+def cross_products(vertices: FloatArray, faces: Faces) -> FloatArray:
+    """Face normals times twice the area, shape (F, 3)."""
+    corner = vertices[faces]
+    return np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+
+
+def vertex_normals(vertices: FloatArray, faces: Faces) -> FloatArray:
+    """Unit normals of the vertices, faces weighted by area, shape (V, 3); zero where none is."""
+    cross = cross_products(vertices, faces)
+    total = np.zeros_like(vertices)
+    for corner in range(3):
+        np.add.at(total, faces[:, corner], cross)
+    normals: FloatArray = total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
+    return normals
+
+
+def smallest_angles(vertices: FloatArray, faces: Faces) -> FloatArray:
+    """Smallest inner angle of each face [deg], shape (F,)."""
+    corner = vertices[faces]
+    angles = []
+    for k in range(3):
+        first = corner[:, (k + 1) % 3] - corner[:, k]
+        second = corner[:, (k + 2) % 3] - corner[:, k]
+        height = np.linalg.norm(np.cross(first, second), axis=1)
+        angles.append(np.degrees(np.arctan2(height, (first * second).sum(axis=1))))
+    smallest: FloatArray = np.min(angles, axis=0)
+    return smallest
+
+
+def quads_between(rows: list[list[int]], *, closed: bool) -> list[list[int]]:
+    """Quadrilaterals between neighbouring rows of equal length, each as four vertex numbers."""
+    quads = []
+    for first, second in pairwise(rows):
+        count = len(first)
+        for i in range(count if closed else count - 1):
+            j = (i + 1) % count
+            quads.append([first[i], second[i], second[j], first[j]])
+    return quads
+
+
+def halved(vertices: FloatArray, quads: list[list[int]]) -> Faces:
+    """Cut each quadrilateral along the diagonal with the better smallest angle."""
+    a, b, c, d = np.array(quads, dtype=np.int32).T
+    one = np.stack([np.stack([a, b, c], 1), np.stack([a, c, d], 1)], axis=1)
+    other = np.stack([np.stack([a, b, d], 1), np.stack([b, c, d], 1)], axis=1)
+    quality = [
+        smallest_angles(vertices, pair.reshape(-1, 3)).reshape(-1, 2).min(axis=1)
+        for pair in (one, other)
+    ]
+    return np.where((quality[0] >= quality[1])[:, None, None], one, other).reshape(-1, 3)

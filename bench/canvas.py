@@ -1,0 +1,115 @@
+"""An offscreen surface on which single meshes are drawn, and pictures laid out in rows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+from PIL import ImageDraw
+
+from risorius import refine, render
+from risorius.app.capture.captions import INK, SHADE, font
+from risorius.app.files import Image
+from risorius.app.pipeline import splits_of_source
+
+Lines = Sequence[npt.NDArray[np.float64]]
+Transforms = Mapping[str, npt.NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What is drawn beside the mesh, and from where."""
+
+    camera: render.OrbitCamera
+    style: render.Style
+    parts: tuple[Any, ...] = ()
+    bones: Transforms | None = None
+    texture: render.Texture | None = None
+    lines: Lines = ()
+    line_colour: render.Colour = (0.85, 0.1, 0.1)
+    line_width: float = 3.0
+
+
+class Canvas:
+    """Draws the output of refiners, one picture at a time; a context manager."""
+
+    def __init__(self, size: tuple[int, int], *, samples: int = 4) -> None:
+        self.surface = render.open_offscreen(size, samples=samples)
+        self.renderer = render.Renderer(self.surface)
+        self._streams: dict[refine.Refiner, render.Stream] = {}
+
+    def __enter__(self) -> Canvas:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.surface.close()
+
+    def stream_for(self, refiner: refine.Refiner) -> render.Stream:
+        """The buffers lent to a refiner, the same at every call."""
+        if refiner not in self._streams:
+            self._streams[refiner] = self.renderer.lend_stream(
+                refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
+            )
+        return self._streams[refiner]
+
+    def draw(
+        self, refiner: refine.Refiner, positions: npt.NDArray[np.floating], drawing: Drawing
+    ) -> int:
+        """Refine, upload and draw, without reading back; returns the number of triangles."""
+        stream = self.stream_for(refiner)
+        mesh = refiner.refine(positions, out=stream)
+        stream.upload(len(mesh.positions), len(mesh.triangles))
+        style = drawing.style
+        values = None
+        if style.colour_by is render.ColourBy.SPLITS:
+            values = splits_of_source(refiner, mesh)
+        self.surface.begin()
+        self.renderer.draw_background(style)
+        self.renderer.draw_mesh(
+            stream, drawing.camera, style, values=values, texture=drawing.texture
+        )
+        if drawing.bones is not None:
+            self.renderer.draw_parts(drawing.parts, drawing.bones, drawing.camera, style)
+        if drawing.lines:
+            self.renderer.draw_lines(
+                drawing.lines,
+                drawing.line_colour,
+                drawing.camera,
+                width=drawing.line_width,
+                hidden_opacity=0.0,
+            )
+        self.surface.end()
+        return stream.triangle_count
+
+    def picture(
+        self, refiner: refine.Refiner, positions: npt.NDArray[np.floating], drawing: Drawing
+    ) -> Image:
+        """Draw and read back."""
+        self.draw(refiner, positions, drawing)
+        return self.surface.read()
+
+
+def table_of_pictures(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Image:
+    """Lay pictures of one size out in rows, each row with a title above and each cell a caption."""
+    first = rows[0][1][0][1]
+    height, width = first.shape[:2]
+    columns = max(len(cells) for _, cells in rows)
+    size = max(13.0, min(width, height) / 17.0)
+    title, caption_height = round(2.0 * size), round(1.7 * size)
+    page = PIL.Image.new(
+        "RGB", (columns * width, len(rows) * (title + height + caption_height)), SHADE
+    )
+    draw = ImageDraw.Draw(page)
+    for k, (heading, cells) in enumerate(rows):
+        top = k * (title + height + caption_height)
+        draw.text((0.6 * size, top + title / 2), heading, font=font(size), fill=INK, anchor="lm")
+        for column, (caption, image) in enumerate(cells):
+            left = column * width
+            page.paste(PIL.Image.fromarray(image), (left, top + title))
+            middle = (left + width / 2, top + title + height + caption_height / 2)
+            draw.text(middle, caption, font=font(0.85 * size), fill=INK, anchor="mm")
+    return np.asarray(page)

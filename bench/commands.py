@@ -1,0 +1,267 @@
+"""The groups `risorius bench` and `risorius reproduce`: measurements, and the paper made anew.
+
+What is slow to import is imported inside.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from risorius.app.cli.parameters import FiniteRange, Size
+from risorius.app.errors import UserError, in_one_line
+
+if TYPE_CHECKING:
+    from risorius.app.files import Image
+
+MESHES = ("face", "2k", "20k", "200k", "200k shuffled", "1M", "1M shuffled")
+PATH = click.Path(path_type=Path)
+FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
+json_option = click.option("--json", "json_file", type=PATH, help="Figures for programs.")
+
+
+@click.group()
+def bench() -> None:
+    """Measure; each command prints its figures and how they were taken."""
+
+
+@click.group()
+def reproduce() -> None:
+    """Make the paper's table and figures anew."""
+
+
+@bench.command("refine")
+@click.option(
+    "--size",
+    "sizes",
+    type=click.Choice(MESHES),
+    multiple=True,
+    help="Only this mesh; may be given several times. Unless told: all but 2k.",
+)
+@click.option(
+    "--seconds",
+    type=FiniteRange(0.05, 600.0),
+    default=7.0,
+    show_default=True,
+    help="How long each mesh is timed, at least five rounds.",
+)
+@json_option
+def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None) -> None:
+    """Time refinement on the face and on sheets of up to a million triangles, beside peers."""
+    from . import refine, refine_report
+
+    save = _json(json_file)
+    report = refine.run(
+        sizes=sizes or refine.SIZES, seconds=seconds, starts=not sizes, progress=_progress
+    )
+    click.echo(refine_report.text(report))
+    save(refine_report.figures(report))
+
+
+@bench.command("quality")
+@click.option(
+    "--reference",
+    type=FOLDER,
+    help="A folder with face.npz and coarse_2029.npz: scans and their decimation.",
+)
+@click.option(
+    "--finer",
+    type=click.Choice(["4", "16", "none"]),
+    default="16",
+    show_default=True,
+    help="The built-in head with so many times its triangles as the truth.",
+)
+@click.option("--apart", is_flag=True, help="Left and right halves of scans, each for itself.")
+@click.option(
+    "--curves", type=PATH, help="NAME.png: error over triangles, as NAME_SUBJECT_RULE.png."
+)
+def bench_quality(reference: Path | None, finer: str, apart: bool, curves: Path | None) -> None:
+    """Measure how near every scheme comes to a dense face, for the triangles it spends."""
+    from risorius.app.files import check_picture, save_png
+
+    from . import quality, quality_report, subjects
+
+    if curves is not None:
+        check_picture(curves)
+    measured: list[subjects.Subject] = []
+    if reference is not None:
+        with _told():
+            measured.append(subjects.scanned(reference, apart=apart))
+    if finer != "none":
+        measured.append(subjects.built_in({"4": 1, "16": 2}[finer]))
+    if not measured:
+        raise UserError("nothing to measure: give --reference FOLDER, or --finer 4 or 16")
+    budgets = quality.BUDGETS if curves is None else quality.CURVE_BUDGETS
+    for subject in measured:
+        scores = quality.run(subject, budgets=budgets, progress=_progress)
+        click.echo(quality_report.text(subject, scores) + "\n")
+        if curves is None:
+            continue
+        for rule in quality.RULES:
+            name = f"{curves.stem}_{subject.name}_{rule}".replace(" ", "_").replace(",", "")
+            target = curves.with_stem(name)
+            save_png(target, quality_report.error_curves(subject, scores, rule))
+            click.echo(f"{in_one_line(target)}: written", err=True)
+
+
+@bench.command("simulate")
+@click.option("--rounds", type=click.IntRange(1, 100_000), default=100, show_default=True)
+def bench_simulate(rounds: int) -> None:
+    """Time a 60 Hz frame of the simulation: the head, and plain meshes up to 100k vertices."""
+    from . import simulate
+
+    click.echo(simulate.report(simulate.run(rounds=rounds), rounds))
+
+
+@bench.command("motion")
+@click.option(
+    "--reference",
+    type=FOLDER,
+    required=True,
+    help="a folder with face.npz: vertices, triangles, landmarks68, displacement fields",
+)
+def bench_motion(reference: Path) -> None:
+    """Compare simulated with scanned skin motion, shape by shape."""
+    from . import motion
+
+    with _told("--reference: "):
+        click.echo(motion.report(*motion.run(reference)))
+
+
+@bench.command("soak")
+@click.option(
+    "--minutes", type=FiniteRange(0.01, 1e4), default=60.0, show_default=True, help="Simulated."
+)
+def bench_soak(minutes: float) -> None:
+    """Drive the face with random input for a simulated hour: does it stay sound, and come back."""
+    from . import soak
+
+    click.echo(soak.report(soak.run(minutes=minutes)))
+
+
+@bench.command("gaps")
+@json_option
+def bench_gaps(json_file: Path | None) -> None:
+    """Look through lips and lids that ought to be shut, in every action unit."""
+    from . import gaps
+
+    save = _json(json_file)
+    poses = gaps.run()
+    click.echo(gaps.report(poses))
+    save([asdict(pose) for pose in poses])
+
+
+@bench.command("tearing")
+@click.option("--mixtures", type=click.IntRange(0, 100_000), default=500, show_default=True)
+def bench_tearing(mixtures: int) -> None:
+    """Look for torn skin and for contacts that fail, in all expressions and random mixtures."""
+    from . import tearing
+
+    click.echo(tearing.report(tearing.run(mixtures=mixtures), mixtures))
+
+
+@bench.command("meshes")
+@click.argument("folder", type=FOLDER)
+@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=2003, show_default=True)
+@click.option(
+    "--seconds", type=FiniteRange(0.1, 3600.0), default=20.0, show_default=True, help="Of a mesh."
+)
+@click.option(
+    "--most",
+    type=click.IntRange(1, 10_000_000),
+    default=200_000,
+    show_default=True,
+    help="Triangles; larger meshes are left out.",
+)
+def bench_meshes(folder: Path, seed: int, seconds: float, most: int) -> None:
+    """Refine every mesh in FOLDER and below, in noisy poses, and look for cracks: 1 if any."""
+    from . import meshes
+
+    with _told():
+        seen = meshes.run(
+            folder, seed=seed, seconds=seconds, most_triangles=most, progress=_progress
+        )
+    click.echo(meshes.report(seen))
+    sys.exit(1 if any(each.broken for each in seen) else 0)
+
+
+@bench.command("window")
+@click.option("--size", type=Size(), default=(1280, 720), show_default="1280x720")
+@click.option(
+    "--seconds", type=FiniteRange(0.3, 600.0), default=5.0, show_default=True, help="Of each case."
+)
+def bench_window(size: tuple[int, int], seconds: float) -> None:
+    """Time the window while a smile plays, and while nothing happens; needs a screen."""
+    from . import window
+
+    click.echo(window.report(seconds, size))
+
+
+@reproduce.command("table1")
+@click.option("--rounds", type=click.IntRange(3, 10_000), default=60, show_default=True)
+def reproduce_table1(rounds: int) -> None:
+    """Print Table 1 of the paper beside our own figures."""
+    from . import table1
+
+    click.echo(table1.report(*table1.run(rounds=rounds)))
+
+
+def _figure(name: str, function: str, help_text: str) -> None:
+    """Add a command that draws a picture: out/NAME.png unless told."""
+
+    @reproduce.command(name, help=help_text)
+    @click.option("-o", "--output", type=PATH, default=Path(f"out/{name}.png"), show_default=True)
+    def draw(output: Path) -> None:
+        from risorius.app.files import check_picture, save_png
+
+        from . import paper_figures
+
+        check_picture(output)
+        picture: Callable[[], Image] = getattr(paper_figures, function)
+        save_png(output, picture())
+        click.echo(f"{in_one_line(output)}: written")
+
+
+_figure("figure9", "figure_9", "Draw the plane: static and refined, flat and Gouraud shaded.")
+_figure("figure10", "figure_10", "Draw the region of the mouth: static and refined.")
+_figure(
+    "coherence",
+    "coherence",
+    "Draw a film strip of a growing wave, with and without memory of the splits.",
+)
+
+
+def _json(target: Path | None) -> Callable[[object], None]:
+    """What writes figures for programs into `target`, if it was given; checked before any work."""
+    from risorius.app.files import check_file, save_text
+
+    def save(figures: object) -> None:
+        if target is not None:
+            save_text(target, json.dumps(figures, indent=1) + "\n")
+            click.echo(f"{in_one_line(target)}: written", err=True)
+
+    if target is not None:
+        check_file(target)
+    return save
+
+
+@contextlib.contextmanager
+def _told(before: str = "") -> Iterator[None]:
+    """Tell the user of a ValueError, with some text before its own."""
+    try:
+        yield
+    except ValueError as error:
+        raise UserError(f"{before}{error}") from None
+
+
+def _progress(name: str) -> None:
+    """Say on the error stream what is at work, where a person looks on."""
+    if sys.stderr.isatty():
+        click.echo(f"... {name}", err=True)

@@ -1,0 +1,137 @@
+"""What one sees through: the slit between closed lips, the opening between closed lids.
+
+Measured by lines of sight, not by distances between vertices: a gap that nobody can look through
+is none, and one between two vertices that lie on each other may be one. Looked at is the mesh and
+what refinement makes of it, because smoothing thins a folded lip a little.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import refine, sim
+
+Array = npt.NDArray[np.float64]
+Triangles = npt.NDArray[Any]
+
+VIEWS = ((0.0, 0.0), (30.0, 0.0), (-30.0, 0.0), (0.0, 8.0), (0.0, -8.0))  # yaw, pitch [degrees]
+MOUTH_CORNERS = (60, 64)  # landmarks of the inner lips
+SLIT_PLANES = 40  # vertical planes across the mouth that the lines of sight lie in
+SLIT_END = 1.0  # mm beside a mouth corner that are not looked at: lips are joined there
+SLIT_WINDOW = 12.0  # mm above and below the mouth's middle in which an opening is the mouth
+MOUTH = 45.0  # mm around the mouth's middle in which skin may cover it
+EYE_CORNERS = {"right": (36, 39), "left": (42, 45)}  # landmarks
+LID_COLUMNS, LID_END = 23, 3.0  # planes across an eye; mm beside its corners not looked at
+LID_WINDOW = 9.0  # mm above and below the eye's middle
+EYE = 25.0  # mm around the eye's middle in which skin may cover it
+FRONT = 60.0  # mm: skin further back is the back of the head
+
+
+def meshes_of(
+    simulation: sim.Simulation, refiner: refine.Refiner
+) -> dict[str, tuple[Array, Triangles]]:
+    """Positions [mm] and triangles of the face as it is simulated ("static") and "refined"."""
+    drawn = refiner.refine(simulation.positions)
+    return {
+        "static": (simulation.positions, simulation.faces),
+        "refined": (drawn.positions.astype(np.float64), drawn.triangles),
+    }
+
+
+def widest_slit(positions: Array, triangles: Triangles, landmarks: Array) -> float:
+    """Greatest height [mm] of the slit between the lips from any of VIEWS; see `lip_slit`.
+
+    `landmarks`: where the 68 are now (68, 3).
+    """
+    corners = landmarks[list(MOUTH_CORNERS)]
+    return max(
+        lip_slit(positions, triangles, corners, yaw=yaw, pitch=pitch) for yaw, pitch in VIEWS
+    )
+
+
+def lip_slit(
+    positions: Array, triangles: Triangles, corners: Array, *, yaw: float, pitch: float
+) -> float:
+    """Greatest height [mm] of the slit between the lips that one looks through.
+
+    `corners`: of the mouth (2, 3); `yaw`, `pitch`: from where one looks [degrees], 0 is the front.
+    """
+    turn = _turned_by(yaw, pitch)
+    x, ends = positions @ turn.T, corners @ turn.T
+    middle = ends.mean(axis=0)
+    near = x[triangles]
+    near = near[np.linalg.norm(near.mean(axis=1) - middle, axis=1) < MOUTH]
+    left, right = sorted(ends[:, 0])
+    columns = np.linspace(left + SLIT_END, right - SLIT_END, SLIT_PLANES)
+    return max(_widest_opening(near, column, middle[1], SLIT_WINDOW) for column in columns)
+
+
+def _widest_opening(triangles: Array, x: float, middle: float, window: float) -> float:
+    """Greatest height of what no triangle covers [mm], looked at along z in the plane at x.
+
+    It begins within `window` of the height `middle`; triangles: corners, shape (n, 3, 3).
+    """
+    is_crossed = (triangles[:, :, 0].min(axis=1) < x) & (triangles[:, :, 0].max(axis=1) > x)
+    start = triangles[is_crossed]
+    end = np.roll(start, -1, axis=1)
+    run = end[:, :, 0] - start[:, :, 0]
+    share = (x - start[:, :, 0]) / np.where(run == 0.0, np.inf, run)
+    height = start[:, :, 1] + share * (end[:, :, 1] - start[:, :, 1])
+    meets = (share >= 0.0) & (share <= 1.0) & (run != 0.0)
+    low = np.where(meets, height, np.inf).min(axis=1)
+    high = np.where(meets, height, -np.inf).max(axis=1)
+    order = np.argsort(low)
+    reached = np.maximum.accumulate(high[order])[:-1]
+    open_above = low[order][1:] - reached
+    return float(open_above[np.abs(reached - middle) < window].max(initial=0.0))
+
+
+def _turned_by(yaw: float, pitch: float) -> Array:
+    """Rotation that brings the look from `yaw`, `pitch` [degrees] to the front."""
+    a, b = np.radians([yaw, pitch])
+    about_y = [[np.cos(a), 0.0, np.sin(a)], [0.0, 1.0, 0.0], [-np.sin(a), 0.0, np.cos(a)]]
+    about_x = [[1.0, 0.0, 0.0], [0.0, np.cos(b), -np.sin(b)], [0.0, np.sin(b), np.cos(b)]]
+    return np.array(about_x) @ np.array(about_y)
+
+
+def lid_gaps(positions: Array, triangles: Triangles, landmarks: Array) -> dict[str, float]:
+    """Greatest height [mm] of the opening through which each eyeball is seen from the front.
+
+    `landmarks`: where the 68 are now (68, 3). The result is by the eye's side.
+    """
+    corners = positions[triangles]
+    gaps = {}
+    for side, numbers in EYE_CORNERS.items():
+        ends = np.sort(landmarks[list(numbers), 0])
+        middle = landmarks[list(numbers), 1].mean()
+        near = corners[np.abs(corners[:, :, 0].mean(axis=1) - ends.mean()) < EYE]
+        near = near[np.abs(near[:, :, 1].mean(axis=1) - middle) < EYE]
+        near = near[near[:, :, 2].max(axis=1) > FRONT]
+        columns = np.linspace(ends[0] + LID_END, ends[1] - LID_END, LID_COLUMNS)
+        gaps[side] = max(_widest_opening(near, x, middle, LID_WINDOW) for x in columns)
+    return gaps
+
+
+def sunk_in_eyeballs(positions: Array, rest: Array, triangles: Triangles, eyes: Any) -> float:
+    """How deep skin sits in an eyeball at most, deeper than at rest [mm].
+
+    Asked at the corners, at the middles of the edges and in the middle of each triangle: a coarse
+    lid whose vertices rest on the ball may still cut into it between them. `eyes`: with a centre
+    and a radius each.
+    """
+    now, before = _points_of(positions[triangles]), _points_of(rest[triangles])
+    deepest = 0.0
+    for eye in eyes:
+        depth = eye.radius - np.linalg.norm(now - np.asarray(eye.centre), axis=2)
+        earlier = eye.radius - np.linalg.norm(before - np.asarray(eye.centre), axis=2)
+        deepest = max(deepest, float((depth - np.maximum(earlier, 0.0)).max(initial=0.0)))
+    return deepest
+
+
+def _points_of(corners: Array) -> Array:
+    """Corners, middles of the edges and middle of triangles (M, 3, 3), shape (M, 7, 3)."""
+    middles = (corners + np.roll(corners, -1, axis=1)) / 2.0
+    return np.concatenate([corners, middles, corners.mean(axis=1, keepdims=True)], axis=1)

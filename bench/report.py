@@ -1,0 +1,44 @@
+"""What all reports are made of: tables, verdicts, and the name of the processor."""
+
+from __future__ import annotations
+
+import platform
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+
+def table(
+    columns: Sequence[str], rows: Iterable[Sequence[object]], *, indent: str = "", empty: str = ""
+) -> list[str]:
+    """Lines of a table, the titles in the first one.
+
+    columns: each "title:format" with the width in front, as in "ms:8.3f"; text goes left with "<".
+    empty: what stands for None.
+    """
+    titles, formats = zip(*(column.rsplit(":", 1) for column in columns), strict=True)
+    sides = [re.findall(r"^[<>]?\d+", each)[0] for each in formats]
+    sides = [side if side[0] in "<>" else f">{side}" for side in sides]
+    lines = [" ".join(f"{title:{side}}" for title, side in zip(titles, sides, strict=True))]
+    for row in rows:
+        cells = [
+            f"{empty:{side}}" if value is None else f"{value:{style}}"
+            for value, style, side in zip(row, formats, sides, strict=True)
+        ]
+        lines.append(" ".join(cells))
+    return [(indent + line).rstrip() for line in lines]
+
+
+def verdict(is_met: bool, text: str) -> str:
+    """A line that says whether a target is met."""
+    return f"  {'met   ' if is_met else 'MISSED'}  {text}"
+
+
+def processor() -> str:
+    """The name of this machine's processor."""
+    information = Path("/proc/cpuinfo")
+    if information.exists():
+        for line in information.read_text().splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()

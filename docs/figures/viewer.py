@@ -1,0 +1,154 @@
+"""Draw the pictures of docs/viewer.md: `xvfb-run -a python docs/figures/viewer.py [FOLDER]`.
+
+Each is a window as a user would see it, brought there by the same commands that menus use.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import numpy as np
+from imgui_bundle import imgui
+
+from risorius.app.files import Image
+from risorius.app.script import script_for
+from risorius.app.viewer import Viewer, commands
+from risorius.app.viewer.keys import places_of
+from risorius.app.viewer.settings import Look
+from risorius.app.viewer.touch import Pull
+from risorius.bench import figures
+
+SIZE = (1160, 700)
+MOST_FRAMES = 400
+
+
+def settled(viewer: Viewer) -> None:
+    """Let the face come to rest, and the picture be drawn in full."""
+    for _ in range(8):
+        viewer.frame()
+    for _ in range(MOST_FRAMES):
+        if viewer.is_idle:
+            return
+        viewer.messages.left = 0.0 if viewer.messages.is_fading else viewer.messages.left
+        viewer.frame()
+
+
+def face(viewer: Viewer) -> None:
+    """The window as it opens, smiling."""
+    viewer.session.show("joy")
+
+
+def controls(viewer: Viewer) -> None:
+    """Search, sides apart, and a muscle that was clicked in the face."""
+    viewer.settings.is_linked = False
+    viewer.face_panel.search = "lip"
+    viewer.session.set("levator_labii_superioris_left", 0.9)
+    viewer.look.overlays = ["muscles"]
+
+
+def wipe(viewer: Viewer) -> None:
+    """Static and refined, divided by a line; the dark theme."""
+    viewer.session.show("disgust")
+    viewer.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
+    viewer.look = Look(compare="wipe", divider=0.46, wireframe=True, colours="splits", skin="clay")
+    viewer.camera.zoom(1.5)
+
+
+def side_by_side(viewer: Viewer) -> None:
+    """Two viewports under one camera, coloured by how far the normals turned apart."""
+    viewer.session.show("surprise")
+    viewer.wanted_tab = "Mechanism"
+    viewer.look = Look(compare="side by side", colours="curvature drop", skin="clay")
+
+
+def tension(viewer: Viewer) -> None:
+    """What is stretched and what is compressed, with the springs."""
+    viewer.session.show("yawn")
+    viewer.wanted_tab = "Mechanism"
+    viewer.look = Look(colours="tension", overlays=["springs"], skin="clay")
+
+
+def anatomy(viewer: Viewer) -> None:
+    """Skull, muscles and landmarks."""
+    viewer.session.set("jaw_open", 0.5)
+    viewer.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
+    viewer.look = Look(overlays=["skull", "muscles", "landmarks"])
+
+
+def finger(viewer: Viewer) -> None:
+    """The skin, pulled by the mouse."""
+    scene = viewer.scene
+    corner = scene.positions[scene.head.landmarks[48]]  # type: ignore[attr-defined]
+    viewer.touch.pull = Pull(scene, corner.copy())
+    viewer.touch.pull.to(corner + np.array([-30.0, 16.0, 12.0]))
+    for _ in range(20):
+        viewer.frame()
+    viewer.quality.level = 0
+    viewer.frame()
+
+
+def timeline(viewer: Viewer) -> None:
+    """Keys of poses and tracks, some of them selected; the dark theme."""
+    viewer.settings.theme, viewer.settings.folds["Tracks"] = "dark", True
+    sheet = viewer.timeline.sheet
+    viewer.session.seek(2.3)
+    viewer.frame()
+    sheet.view.zoom(0.6, sheet.view.x(0.0))
+    places = places_of(viewer.session.script)
+    sheet.selected = frozenset(place for place in places if 1.5 < place.time < 3.0)
+
+
+def keys(viewer: Viewer) -> None:
+    """Help, made of the same table as the menus."""
+    viewer.is_help_open = True
+
+
+def unsaved(viewer: Viewer) -> None:
+    """A question before work is lost."""
+    viewer.session.set("jaw_open", 0.4)
+    commands.close_politely(viewer)
+
+
+def large(viewer: Viewer) -> None:
+    """Everything as on a screen of twice the density."""
+    viewer.settings.zoom = 2.0
+    viewer.session.show("kiss")
+
+
+STOPS: dict[str, Callable[[Viewer], None]] = {
+    "viewer": face,
+    "viewer_controls": controls,
+    "viewer_wipe": wipe,
+    "viewer_side_by_side": side_by_side,
+    "viewer_tension": tension,
+    "viewer_anatomy": anatomy,
+    "viewer_pull": finger,
+    "viewer_timeline": timeline,
+    "viewer_keys": keys,
+    "viewer_unsaved": unsaved,
+    "viewer_large": large,
+}
+
+
+def picture(stop: Callable[[Viewer], None]) -> Image:
+    """A window, brought to a stop of the tour."""
+    with Viewer(script_for(None, "face"), SIZE) as viewer:
+        # Wherever the mouse happens to be, it points at nothing: no hint comes up.
+        imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
+        settled(viewer)
+        stop(viewer)
+        if viewer.touch.pull is None:
+            settled(viewer)
+        return figures.without_noise(viewer.surface.read())
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Draw the pictures into the folder given."""
+    given = figures.parse(arguments, __doc__)
+    every = {name: partial(picture, stop) for name, stop in STOPS.items()}
+    figures.draw(given.folder, figures.chosen(every, given.only))
+
+
+if __name__ == "__main__":
+    figures.run(main)

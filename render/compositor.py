@@ -1,0 +1,91 @@
+"""What a window shows: the scene, enlarged where it was drawn smaller, and panels over it.
+
+Software OpenGL pays for every pixel, so a scene that moves may be drawn with fewer (`Detail`) and
+is enlarged here. The scene's own pixels stay as they are: when only a panel changes, the scene is
+laid under it again without being drawn again.
+"""
+
+from dataclasses import dataclass
+
+import moderngl
+
+from .programs import compile_program
+from .render_target import Rectangle, RenderTarget
+
+_UNIT = 4  # texture unit while enlarging
+
+
+@dataclass(frozen=True)
+class Detail:
+    """How finely a window's scene is drawn.
+
+    samples: per pixel, 0 = none. scale: pixels of the scene per pixel of the window, 0..1.
+    """
+
+    samples: int = 4
+    scale: float = 1.0
+
+    def scaled(self, size: tuple[int, int]) -> tuple[int, int]:
+        """The scene's size in a window of `size` pixels."""
+        return max(round(self.scale * size[0]), 1), max(round(self.scale * size[1]), 1)
+
+
+class Compositor:
+    """A frame of the window's size, apart from the scene's target; panels are drawn on it."""
+
+    def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
+        self.size = size
+        self._gl = gl
+        self._colour = gl.renderbuffer(size, 4)
+        self.frame = gl.framebuffer([self._colour])
+        self._program = compile_program(gl, "stretch.glsl")
+        self._program["picture"] = _UNIT
+        self._triangle = gl.vertex_array(self._program, [])
+
+    def lay(
+        self,
+        scene: RenderTarget,
+        area: Rectangle | None,
+        target: moderngl.Framebuffer | None = None,
+    ) -> None:
+        """Lay the scene into all of this frame, or of another `target` of its size, or an area.
+
+        The target stays bound.
+        """
+        gl, target = self._gl, target or self.frame
+        scene.flush()
+        target.use()
+        gl.viewport, gl.scissor = (0, 0, *self.size), area  # of what is bound
+        if scene.size == self.size:
+            gl.copy_framebuffer(target, scene.frame)
+        else:
+            gl.disable(moderngl.DEPTH_TEST)
+            scene.colour.use(_UNIT)
+            self._triangle.render(moderngl.TRIANGLES, vertices=3)
+            gl.enable(moderngl.DEPTH_TEST)
+        gl.scissor = None
+
+    def copy_to(self, target: moderngl.Framebuffer, around: Rectangle = (0, 0, 0, 0)) -> None:
+        """Copy everything, but for an area, to a framebuffer of the same size."""
+        width, height = self.size
+        left, bottom, right, top = *around[:2], around[0] + around[2], around[1] + around[3]
+        for rectangle in (
+            (0, 0, left, height),
+            (right, 0, width - right, height),
+            (left, 0, right - left, bottom),
+            (left, top, right - left, height - top),
+        ):
+            if rectangle[2] > 0 and rectangle[3] > 0:
+                self._gl.scissor = rectangle  # it cuts the copy
+                self._gl.copy_framebuffer(target, self.frame)
+        self._gl.scissor = None
+
+    def read(self) -> bytes:
+        """The pixels, bottom row first, three bytes each."""
+        return bytes(self.frame.read(components=3, alignment=1))
+
+    def release(self) -> None:
+        """Give everything back to OpenGL."""
+        self._gl.screen.use()  # moderngl binds what was bound last again, even if it is gone
+        for resource in (self.frame, self._colour, self._triangle, self._program):
+            resource.release()

@@ -1,0 +1,169 @@
+"""Where a scene is drawn: a plain frame, and a multisampled layer that is averaged onto it.
+
+Backgrounds and panels go straight to the plain frame, geometry goes to the layer. Only the
+rectangles that geometry touched are averaged: on software OpenGL, where a head fills a third of a
+frame, that halves the cost of multisampling (measured: 16 -> 7.5 ms at 1280 x 720). The layer is
+wiped just before it is drawn on, when software OpenGL does both tile by tile in the cache.
+
+Invariant: unless `_is_worn`, the layer is transparent and its depth is 1 outside `_touched`.
+"""
+
+import moderngl
+
+from .errors import GLError
+from .programs import compile_program
+
+Rectangle = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
+
+_UNIT = 1  # texture unit of the layer; 0 belongs to the meshes
+
+
+class RenderTarget:
+    """Frame and layer of `size` pixels; with samples 0 the frame is the layer."""
+
+    def __init__(self, gl: moderngl.Context, size: tuple[int, int], samples: int) -> None:
+        limit = min(int(gl.info[f"GL_MAX_{kind}_SIZE"]) for kind in ("RENDERBUFFER", "TEXTURE"))
+        if max(size) > limit:
+            raise GLError(
+                f"a frame of {size[0]} x {size[1]} pixels: this driver draws at most {limit} "
+                "each way. Cure: ask for a smaller frame"
+            )
+        self.size = size
+        self.samples = samples
+        self._gl = gl
+        self.frame_number = 0  # counts the frames since the target was made
+        self.is_empty = False  # nothing was drawn since `start`
+        self._touched: list[Rectangle] = []  # apart from each other
+        self._is_worn = False
+        self.colour = gl.texture(size, 4)
+        self.colour.repeat_x = self.colour.repeat_y = False
+        self.depth = gl.depth_texture(size, samples=samples)
+        if not samples:
+            self.depth.compare_func = ""
+        if not samples:
+            self.frame = gl.framebuffer([self.colour], self.depth)
+            self._layer = self.frame
+            return
+        self.frame = gl.framebuffer([self.colour])
+        self._layer_colour = gl.texture(size, 4, samples=samples)
+        self._layer = gl.framebuffer([self._layer_colour], self.depth)
+        self._layer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+        self._average_program = compile_program(gl, "average.glsl", f"SAMPLES {samples}")
+        self._average_program["layer"] = _UNIT
+        self._average = gl.vertex_array(self._average_program, [])
+
+    def start(self) -> None:
+        """Empty both; the frame is bound."""
+        self.frame_number += 1
+        self.use_frame((0, 0, *self.size))
+        self._gl.scissor = None
+        self.frame.clear(0.0, 0.0, 0.0, 1.0, depth=1.0)
+        self.is_empty = True
+
+    def use_frame(self, viewport: Rectangle) -> None:
+        """Direct drawing to the frame, over all that was drawn so far in the viewport."""
+        if any(overlap(viewport, touched) for touched in self._touched):
+            self.flush()
+        self.frame.use()
+        self._gl.viewport = self._gl.scissor = viewport
+
+    def use_layer(self, viewport: Rectangle, touched: Rectangle) -> None:
+        """Direct drawing to the layer, within the part `touched` of the viewport."""
+        self._wipe()
+        self._layer.use()
+        self.is_empty = False
+        self._gl.viewport, self._gl.scissor = viewport, touched
+        self._touched = _apart(self._touched, touched)
+
+    def use_depth(self, unit: int) -> None:
+        """Bind the depth of what was drawn on the layer so far to a texture unit."""
+        self._wipe()
+        self.depth.use(unit)
+
+    def flush(self) -> None:
+        """Average the layer onto the frame where it was touched."""
+        rectangles, self._touched = self._touched, []
+        if not self.samples or not rectangles:
+            return
+        gl = self._gl
+        self.frame.use()
+        gl.viewport = 0, 0, *self.size
+        gl.enable_only(moderngl.BLEND)
+        gl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA  # the layer is premultiplied
+        self._layer_colour.use(_UNIT)
+        for rectangle in rectangles:
+            gl.scissor = rectangle
+            self._average.render(moderngl.TRIANGLES, vertices=3)
+        gl.enable_only(moderngl.DEPTH_TEST)
+        gl.scissor = None
+        self._is_worn = True
+
+    def _wipe(self) -> None:
+        """Empty the layer, if all that is on it was averaged onto the frame."""
+        if not self._is_worn:
+            return
+        self._layer.use()
+        self._gl.scissor = None
+        self._layer.depth_mask = True
+        self._layer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+        self._is_worn = False
+
+    def read(self) -> bytes:
+        """The frame, bottom row first, three bytes per pixel."""
+        self.flush()
+        return bytes(self.frame.read(components=3, alignment=1))
+
+    def release(self) -> None:
+        """Give everything back to OpenGL."""
+        if self.samples:
+            for resource in (
+                self._average,
+                self._average_program,
+                self._layer,
+                self._layer_colour,
+            ):
+                resource.release()
+        for buffer in (self.frame, self.colour, self.depth):
+            buffer.release()
+
+
+def release_target(target: moderngl.Framebuffer) -> None:
+    """Give a framebuffer of one's own back to OpenGL, with what was drawn into."""
+    for attachment in (*target.color_attachments, target.depth_attachment):
+        if attachment is not None:
+            attachment.release()
+    target.release()
+
+
+def overlap(first: Rectangle, second: Rectangle) -> bool:
+    """Whether two rectangles share a pixel."""
+    return (
+        first[0] < second[0] + second[2]
+        and second[0] < first[0] + first[2]
+        and first[1] < second[1] + second[3]
+        and second[1] < first[1] + first[3]
+    )
+
+
+def common(first: Rectangle, second: Rectangle) -> Rectangle:
+    """The pixels of both rectangles; a width or height of 0 where they share none."""
+    left, bottom = max(first[0], second[0]), max(first[1], second[1])
+    right = min(first[0] + first[2], second[0] + second[2])
+    top = min(first[1] + first[3], second[1] + second[3])
+    return left, bottom, max(right - left, 0), max(top - bottom, 0)
+
+
+def hull(first: Rectangle, second: Rectangle) -> Rectangle:
+    """The smallest rectangle that holds both."""
+    left, bottom = min(first[0], second[0]), min(first[1], second[1])
+    right = max(first[0] + first[2], second[0] + second[2])
+    top = max(first[1] + first[3], second[1] + second[3])
+    return left, bottom, right - left, top - bottom
+
+
+def _apart(rectangles: list[Rectangle], added: Rectangle) -> list[Rectangle]:
+    """Rectangles without common pixels that hold those given, which have none, and one more."""
+    for index, other in enumerate(rectangles):
+        if overlap(other, added):
+            return _apart(rectangles[:index] + rectangles[index + 1 :], hull(other, added))
+    return [*rectangles, added]

@@ -1,0 +1,107 @@
+"""The standard face space in which a face is simulated, and the way back to the head's own.
+
+A rig is written in millimetres of a head of standard size: landmarks span a space of three axes,
+lateral (to the subject's left), up and forward, into which a head of any size, place and
+orientation is brought by one similarity. Displacements become positions of the posed head in one
+compiled pass, because it runs in every frame and numpy needs eight for it.
+
+Source: Kähler, Haber, Yamauchi, Seidel 2002 ("Head shop"): landmarks carry muscles from head to
+head.
+Differs from it: they warp a template by scattered data interpolation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ..jit import njit
+from .landmarks import Array
+
+# mm between the outer eye corners 36 and 45: the size rigs are written in (adult mean)
+STANDARD_EYE_SPAN = 89.2
+# mm, bounding box of a head; scales meshes that have no landmarks (chosen: our head's)
+STANDARD_DIAGONAL = 280.0
+
+
+@dataclass(frozen=True)
+class FaceSpace:
+    """A similarity between a head's own coordinates and the standard face space.
+
+    Standard axes: lateral (to the subject's left), up, forward; millimetres; origin at the nasion.
+    """
+
+    origin: Array
+    axes: Array  # rows: unit vectors lateral-left, up, forward in head coordinates
+    scale: float  # head units per standard millimetre
+
+    @classmethod
+    def from_landmarks(cls, points: Array) -> FaceSpace:
+        """The space of a head from its landmark positions [head units], shape (68, 3).
+
+        Raises ValueError if they coincide.
+        """
+        lateral = points[42:48].mean(axis=0) - points[36:42].mean(axis=0)
+        upward = points[27] - points[[48, 54]].mean(axis=0)
+        span = float(np.linalg.norm(points[45] - points[36]))
+        if min(span, float(np.linalg.norm(lateral)), float(np.linalg.norm(upward))) < 1e-9:
+            raise ValueError(
+                "landmarks: eyes, nasion and mouth corners must be different points; "
+                "check that the 68 vertex numbers belong to this mesh"
+            )
+        lateral = lateral / np.linalg.norm(lateral)
+        upward = upward - lateral * (lateral @ upward)
+        upward = upward / np.linalg.norm(upward)
+        axes = np.array([lateral, upward, np.cross(lateral, upward)])
+        return cls(points[27].copy(), axes, span / STANDARD_EYE_SPAN)
+
+    @classmethod
+    def from_bounds(cls, vertices: Array) -> FaceSpace:
+        """The space for a mesh without landmarks: its own axes, its box scaled to a head's."""
+        low, high = vertices.min(axis=0), vertices.max(axis=0)
+        diagonal = float(np.linalg.norm(high - low))
+        scale = diagonal / STANDARD_DIAGONAL if diagonal > 0.0 else 1.0
+        return cls((low + high) / 2.0, np.eye(3), scale)
+
+    def to_standard(self, points: npt.ArrayLike) -> Array:
+        """Points [head units], shape (..., 3), in the standard space [mm]."""
+        return (np.asarray(points, dtype=np.float64) - self.origin) @ self.axes.T / self.scale
+
+    def to_head(self, points: npt.ArrayLike) -> Array:
+        """Points [mm, standard space], shape (..., 3), in head coordinates."""
+        return self.vectors_to_head(points) + self.origin
+
+    def vectors_to_head(self, vectors: npt.ArrayLike) -> Array:
+        """Displacements [mm, standard space], shape (..., 3), in head units and axes."""
+        return np.asarray(vectors, dtype=np.float64) @ self.axes * self.scale
+
+    def vectors_to_standard(self, vectors: npt.ArrayLike) -> Array:
+        """Displacements [head units], shape (..., 3), in the standard space [mm]."""
+        return np.asarray(vectors, dtype=np.float64) @ self.axes.T / self.scale
+
+
+@njit
+def to_posed_head(x, rest, axes, head_rest, turn, share, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (V, 3) [head units]; return how many vertices are not finite and left out.
+
+    x, rest: positions now and at rest [mm]; axes (3, 3): of the standard space in head coordinates,
+    times the scale; head_rest: rest positions [head units]; turn (4, 4): pose of the head;
+    share (V, 1): how far each vertex follows it.
+    """
+    broken = 0
+    for i in range(len(x)):
+        dx, dy, dz = x[i, 0] - rest[i, 0], x[i, 1] - rest[i, 1], x[i, 2] - rest[i, 2]
+        if not np.isfinite(dx + dy + dz):
+            broken += 1
+            continue
+        px = head_rest[i, 0] + dx * axes[0, 0] + dy * axes[1, 0] + dz * axes[2, 0]
+        py = head_rest[i, 1] + dx * axes[0, 1] + dy * axes[1, 1] + dz * axes[2, 1]
+        pz = head_rest[i, 2] + dx * axes[0, 2] + dy * axes[1, 2] + dz * axes[2, 2]
+        s = share[i, 0]
+        for k in range(3):
+            turned = turn[k, 0] * px + turn[k, 1] * py + turn[k, 2] * pz + turn[k, 3]
+            here = px if k == 0 else (py if k == 1 else pz)
+            out[i, k] = here + s * (turned - here)
+    return broken

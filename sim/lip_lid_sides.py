@@ -1,0 +1,65 @@
+"""Which side of the mouth and of an eye each vertex lies on.
+
+Closed lips and lids are a millimetre apart, so distance in space cannot tell upper from lower;
+the way along the skin can: from a vertex of the upper lip the upper lip's landmarks are near and
+the lower lip's are only reached around the mouth corner.
+
+Source: our own; the gates of Kähler et al. 2001 are painted by hand.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .landmarks import (
+    EYE_LANDMARKS,
+    INNER_CORNERS,
+    LOWER_LIP,
+    UPPER_LIP,
+    Array,
+    Side,
+    smoothstep,
+)
+from .surface import Surface
+
+LIP_REACH = 20.0  # mm from the middle of a lip within which skin belongs to it
+CORNER_FADE = 10.0  # mm from the mouth corner where a lip moves fully on its own
+LID_REACH = 14.0  # mm from the lid landmarks
+CERTAIN = 3.0  # mm by which one lid must be nearer; less only happens at the corners
+
+
+def lip_side(surface: Surface, landmarks: Array) -> Array:
+    """+1 on the upper lip .. -1 on the lower lip, smooth around the corners, shape (V,)."""
+    upper = _distance(surface, landmarks, UPPER_LIP)
+    lower = _distance(surface, landmarks, LOWER_LIP)
+    inside = np.flatnonzero(np.minimum(upper, lower) < LIP_REACH)
+    # On a lip the two ways differ by twice the distance to the mouth corner, where they are alike
+    # but for the lips' shape.
+    longer = lower - upper
+    longer = longer - longer[surface.nearest(landmarks[list(INNER_CORNERS)])].mean()
+    ramp = np.clip(longer[inside] / (2.0 * CORNER_FADE), -1.0, 1.0)
+    ends = surface.nearest(landmarks[[33, 30, 8]])
+    vertices = np.concatenate([inside, ends])
+    values = np.concatenate([ramp, [1.0, 1.0, -1.0]])
+    return np.clip(surface.harmonic(vertices, values), -1.0, 1.0)
+
+
+def lid_side(surface: Surface, landmarks: Array, side: Side) -> Array:
+    """+1 on the upper lid .. -1 on the lower lid of one eye, 0 at its corners, shape (V,)."""
+    outer, upper_outer, upper_inner, inner, lower_outer, lower_inner = EYE_LANDMARKS[side]
+    upper = _distance(surface, landmarks, (upper_outer, upper_inner))
+    lower = _distance(surface, landmarks, (lower_outer, lower_inner))
+    near = np.minimum(upper, lower) < LID_REACH
+    balance = (lower - upper) / np.maximum(
+        np.abs(lower - upper).max(where=near, initial=CERTAIN), CERTAIN
+    )
+    ramp = np.sign(balance) * smoothstep(np.abs(lower - upper) / CERTAIN)
+    vertices = np.concatenate([np.flatnonzero(near), surface.nearest(landmarks[[outer, inner]])])
+    values = np.concatenate([ramp[near], [0.0, 0.0]])
+    return np.clip(surface.harmonic(vertices, values), -1.0, 1.0)
+
+
+def _distance(surface: Surface, landmarks: Array, numbers: tuple[int, ...]) -> Array:
+    """Way along the skin [mm] to the nearest of some landmarks; far where there is none."""
+    start = surface.nearest(landmarks[list(numbers)]).astype(np.int64)
+    return np.minimum(surface.distances_from(start), 1e3)

@@ -1,0 +1,304 @@
+"""How contraction values become forces: one anchor per skin vertex, summed over active muscles.
+
+Every attached vertex hangs on its muscle by a spring of stiffness k w A (muscle, attachment weight,
+skin area). At activation a the spring is tightened from a passive share p to its full stiffness
+and its far end is displaced:
+
+    force = k A (p + (1 - p) a) [ w (r - x) + a d + sum_f w_f u_f(a) ]
+
+r is the vertex at rest carried by the bones, u_f the pull of fibre f at the vertex (fibres.py), d
+what is linear in a (rings, bulge, convergence to the fibre line). Where a muscle lies on others, r
+is also carried by them: by the mean of what carries its fibres, w_f their weights
+(muscle_stack.py). A tick sums this into one stiffness and one pull per vertex, so substeps cost the
+same for one muscle and for fifty.
+
+Source: Kähler et al. 2001, section 4; the passive share is our own, fitted to half activations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ..jit import njit
+from .fibres import (
+    FIBRE_POINTS,
+    LEAST_ARC,
+    SAMPLES,
+    FibreBundle,
+    LineMotion,
+    Stack,
+    move_lines,
+    over_skin,
+)
+from .landmarks import Array
+from .muscle_stack import bottom_up, points_along, stack_muscles
+from .muscles import Line, PlacedMuscle
+from .rig import LinearMuscle, Rig
+from .skull import Pose
+from .state import State
+from .surface import Surface
+
+Indices = npt.NDArray[np.int32]
+Unsigned = npt.NDArray[np.uint32]  # saves the kernels a test per access
+
+LEAST_STIFFNESS = 0.4  # per area, in units of the rig: attachments below it are dropped
+LEAST_CARRIED = 0.05  # likewise those by which one muscle carries the skin on another
+
+
+class Attachments(NamedTuple):
+    """Vertices attached to muscles or lines; owner m has rows[m] up to rows[m + 1]."""
+
+    rows: Unsigned  # (owners + 1,)
+    vertex: Unsigned  # (n,)
+    weight: Array  # (n,) k w A
+    value: Array  # (n, 3) steady displacement x k A, or (n,) place along the line
+
+
+class SkinAttachments(NamedTuple):
+    """How the skin hangs on M muscles and on their B lines."""
+
+    muscle: Indices  # (B,) number of each line's muscle
+    passive: Array  # (M,) share of the stiffness that is there at rest
+    holds: Attachments  # by muscle
+    pulls: Attachments  # by line, places in samples
+    carries: Attachments  # by line, places in points
+
+
+@dataclass(frozen=True)
+class MuscleForces:
+    """All muscles of a face, ready to pull."""
+
+    names: tuple[str, ...]  # M control names
+    opens_lips: Array  # (M,)
+    reaches_lips: Array  # (M,) greatest attachment to the edge of a lip, 0..1
+    bundle: FibreBundle
+    stack: Stack
+    skin: SkinAttachments
+    motion: LineMotion
+    rings: tuple[tuple[int, Indices], ...]  # muscle, skin vertices along its ring
+
+    def hold_of(self, share: Array, vertex_count: int) -> Array:
+        """Stiffness per vertex, shape (V,), with each muscle's scaled by `share` (M,)."""
+        holds = self.skin.holds
+        weight = holds.weight * np.repeat(share, holds.rows[1:] - holds.rows[:-1])
+        hold = np.bincount(holds.vertex, weight, minlength=vertex_count)
+        return hold.astype(np.float64)
+
+    def add(self, activation: Array, mandible: Pose, weight: Array, state: State) -> None:
+        """Add the active muscles' stiffness to `state.hold` and their pull to `state.pull`.
+
+        activation: of each muscle, shape (M,); weight: mandible's share of each vertex, shape (V,).
+        """
+        move_lines(self.bundle, self.stack, activation, mandible, self.motion)
+        gather(state, activation, self.skin, self.motion, mandible.rotation, weight)
+
+    def lines(self, activation: Array, mandible: Pose, x: Array) -> dict[str, list[Array]]:
+        """Polylines [mm] to draw: contracted fibres of linear muscles, skin rows of rings."""
+        lines: dict[str, list[Array]] = {name: [] for name in self.names}
+        move_lines(self.bundle, self.stack, activation, mandible, self.motion)
+        rings = dict(self.rings)
+        for b, muscle in enumerate(self.bundle.muscle):
+            if muscle in rings:
+                continue
+            points = self.bundle.points[b]
+            moved = points + self.bundle.mandible[b][:, None] * mandible.displacements(points)
+            if self.motion.is_carried[b]:
+                moved += self.motion.carried[b]
+            arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))])
+            remaining = max(1.0 - self.bundle.contraction[b] * activation[muscle], LEAST_ARC)
+            fixed = self.bundle.fixed_at[b] * arc[-1]
+            line = [
+                np.interp(fixed + remaining * (arc - fixed), arc, moved[:, k]) for k in range(3)
+            ]
+            lines[self.names[muscle]].append(np.stack(line, axis=1))
+        for muscle, row in self.rings:
+            lines[self.names[muscle]].append(x[row])
+        return lines
+
+
+def build_muscle_forces(
+    placed: Sequence[PlacedMuscle],
+    rig: Rig,
+    surface: Surface,
+    mandible_weight: Array,
+    lips: Indices,
+    landmarks: Array,
+    lip_side: Array,
+) -> MuscleForces:
+    """Turn placed muscles into the flat arrays of the kernels; `lips`: vertices that can touch."""
+    strength = rig.tissue.stiffness_scale * surface.areas
+    order = bottom_up(placed)
+    stack = stack_muscles(placed, order, surface, landmarks, lip_side)
+    bundle = _bundle(placed, order, surface, mandible_weight)
+    holds = []
+    for at in placed:
+        k = at.muscle.stiffness * strength
+        holds.append((k * at.weight, k[:, None] * at.steady))
+    least = LEAST_STIFFNESS * strength
+    return MuscleForces(
+        names=tuple(at.name for at in placed),
+        opens_lips=np.array([at.muscle.opens_lips for at in placed], dtype=np.float64),
+        reaches_lips=np.array(
+            [min(float(at.weight[lips].max(initial=0.0)), 1.0) for at in placed], dtype=np.float64
+        ),
+        bundle=bundle,
+        stack=stack,
+        skin=SkinAttachments(
+            muscle=bundle.muscle,
+            passive=np.array([rig.tissue.passive * at.muscle.tone for at in placed], np.float64),
+            holds=_attachments(holds, least, np.zeros((0, 3))),
+            pulls=_attachments(_pulls(placed, order, strength), least, np.zeros(0)),
+            carries=_attachments(_carries(placed, order, strength, stack), least, np.zeros(0)),
+        ),
+        motion=LineMotion.of(len(bundle.muscle)),
+        rings=tuple((n, at.ring) for n, at in enumerate(placed) if at.ring is not None),
+    )
+
+
+def _bundle(
+    placed: Sequence[PlacedMuscle], order: Sequence[int], surface: Surface, mandible_weight: Array
+) -> FibreBundle:
+    """All lines, muscle by muscle in `order`.
+
+    Origins are on their bone; insertions and sphincters are carried like the skin there.
+    """
+    lines = [(n, placed[n].muscle, line) for n in order for line in placed[n].lines]
+    carried, contraction, fixed_at = [], [], []
+    for _, muscle, line in lines:
+        if isinstance(muscle, LinearMuscle):
+            start = 1.0 if muscle.bone == "mandible" else 0.0
+            end = mandible_weight[surface.nearest(line.points[-1:])[0]]
+            carried.append(np.linspace(start, end, FIBRE_POINTS))
+        else:
+            carried.append(over_skin(line.points, surface, mandible_weight))
+        contraction.append(muscle.contraction if isinstance(muscle, LinearMuscle) else 0.0)
+        fixed_at.append(muscle.fixed_at if isinstance(muscle, LinearMuscle) else 0.0)
+    return FibreBundle(
+        muscle=np.array([n for n, _, _ in lines], dtype=np.int32),
+        points=np.array([line.points for _, _, line in lines]).reshape(-1, FIBRE_POINTS, 3),
+        mandible=np.array(carried).reshape(-1, FIBRE_POINTS),
+        contraction=np.array(contraction, dtype=np.float64),
+        fixed_at=np.array(fixed_at, dtype=np.float64),
+    )
+
+
+def _gain(line: Line) -> float:
+    """What a line pulls by; a sphincter pulls on no line."""
+    return 0.0 if line.fibre is None else line.fibre.gain
+
+
+Part = tuple[Array, Array]  # weight k w A and value of each vertex of the skin
+
+
+def _pulls(placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Array) -> list[Part]:
+    """How skin hangs on each line that pulls, gain included, places in samples."""
+    return [
+        (
+            placed[n].muscle.stiffness * strength * line.skin.weight * _gain(line),
+            line.skin.arc * (SAMPLES - 1),
+        )
+        for n in order
+        for line in placed[n].lines
+    ]
+
+
+def _carries(
+    placed: Sequence[PlacedMuscle], order: Sequence[int], strength: Array, stack: Stack
+) -> list[Part]:
+    """How skin hangs on each line where it lies on others, places in points.
+
+    A vertex is carried by the line of a muscle that it hangs on most.
+    """
+    lies = np.zeros((len(stack.rows) - 1, FIBRE_POINTS), dtype=np.bool_)
+    lies[np.repeat(np.arange(len(lies)), np.diff(stack.rows)), stack.point] = True
+    parts: list[Part] = []
+    for n in order:
+        k = placed[n].muscle.stiffness * strength
+        weights = np.stack([line.skin.weight for line in placed[n].lines])
+        hangs_on = weights.argmax(axis=0)
+        for f, line in enumerate(placed[n].lines):
+            place = points_along(line, line.skin.arc)
+            before = np.minimum(place.astype(np.int64), FIBRE_POINTS - 2)
+            lies_there = lies[len(parts), before] | lies[len(parts), before + 1]
+            on = lies_there & (hangs_on == f) & (weights[f] > LEAST_CARRIED)
+            parts.append((k * weights[f] * on, place))
+    return parts
+
+
+def _attachments(parts: list[tuple[Array, Array]], least: Array, empty: Array) -> Attachments:
+    """Lay the vertices that matter of each part (weight, value) end to end."""
+    on = [np.flatnonzero(weight > least) for weight, _ in parts]
+    nothing = np.zeros(0, dtype=np.int64)
+    return Attachments(
+        rows=np.cumsum([0, *(len(rows) for rows in on)]).astype(np.uint32),
+        vertex=np.concatenate([*on, nothing]).astype(np.uint32),
+        weight=np.concatenate(
+            [*(p[0][rows] for p, rows in zip(parts, on, strict=True)), np.zeros(0)]
+        ),
+        value=np.concatenate([*(p[1][rows] for p, rows in zip(parts, on, strict=True)), empty]),
+    )
+
+
+@njit
+def gather(state, activation, skin, motion, turn, weight):  # type: ignore[no-untyped-def]
+    """Add what all active muscles do to `state.hold` and `state.pull`."""
+    gather_holds(state, activation, skin, turn, weight)
+    gather_lines(state.pull, activation, skin, motion)
+
+
+@njit(fastmath={"contract"})
+def gather_holds(state, activation, skin, turn, mandible):  # type: ignore[no-untyped-def]
+    """Sum what is linear in the activation into one stiffness and one force per vertex."""
+    passive, holds = skin.passive, skin.holds
+    hold, force, steady = state.hold, state.pull, state.work
+    steady[:] = 0.0
+    for m in range(len(activation)):
+        a = activation[m]
+        if a <= 0.0:
+            continue
+        grip = (1.0 - passive[m]) * a
+        scale = (passive[m] + grip) * a
+        for row in range(holds.rows[m], holds.rows[m + 1]):
+            i = holds.vertex[row]
+            hold[i] += grip * holds.weight[row]
+            for k in range(3):
+                steady[i, k] += scale * holds.value[row, k]
+    # Displacements that belong to the mandible turn with it: once per vertex, not per attachment.
+    for i in range(len(steady)):
+        sx, sy, sz = steady[i, 0], steady[i, 1], steady[i, 2]
+        for k in range(3):
+            turned = turn[k, 0] * sx + turn[k, 1] * sy + turn[k, 2] * sz
+            force[i, k] += steady[i, k] + mandible[i] * (turned - steady[i, k])
+
+
+@njit
+def gather_lines(force, activation, skin, motion):  # type: ignore[no-untyped-def]
+    """Add the pull of all lines that contract, and of all that others carry, to `force` (V, 3)."""
+    muscle, passive, pulls, carries = skin.muscle, skin.passive, skin.pulls, skin.carries
+    contracted, carried, is_carried = motion.contracted, motion.carried, motion.is_carried
+    for b in range(len(muscle)):
+        a = max(activation[muscle[b]], 0.0)
+        scale = passive[muscle[b]] + (1.0 - passive[muscle[b]]) * a
+        if a > 0.0:
+            add_pull(pulls, b, scale, contracted[b], force)
+        if is_carried[b]:
+            add_pull(carries, b, scale, carried[b], force)
+
+
+@njit(fastmath={"contract"})
+def add_pull(attached, b, scale, along, force):  # type: ignore[no-untyped-def]
+    """Add the displacement `along` a line, between two of its rows, times each attachment."""
+    last = along.shape[0] - 2
+    for row in range(attached.rows[b], attached.rows[b + 1]):
+        i = attached.vertex[row]
+        s = min(np.uint32(attached.value[row]), last)
+        strength = scale * attached.weight[row]
+        far = strength * (attached.value[row] - s)
+        near = strength - far
+        for k in range(3):
+            force[i, k] += near * along[s, k] + far * along[s + 1, k]

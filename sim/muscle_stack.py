@@ -1,0 +1,128 @@
+"""Muscles that lie on other muscles: control points carried and lifted by what contracts beneath.
+
+A row of the rig says what a muscle lies on (`lies_on`). Each control point of its lines hangs on
+each of those muscles as skin does (muscles.py), but on one line only, the one that holds it most.
+With w that hold, u the displacement along the contracting line at its foot, s the bulge there and
+what else is linear in the activation a, and o' what the line is itself carried by, the point moves
+
+    o = sum over muscles beneath of w (u + a s + o')  /  max(1, sum over muscles beneath of w)
+
+so a point on one muscle goes all the way with it, and one on the border of two goes between them.
+The fibre contracts along its points so moved, and skin that hangs on it, contracting or not, is
+carried by o (muscle_forces.py): the relaxed zygomaticus does not hold the cheek back while the
+buccinator bulges under it. A muscle at rest carries nothing. Lines are moved from below, each after
+those that it lies on; rig_reader.py refuses circles.
+
+Source: Kähler et al. 2001, section 4 (muscles attached to muscles). Who lies on whom: the four
+layers of Freilinger et al. 1987, "Surgical anatomy of the mimic muscle system".
+Differs from it: a point hangs on a muscle by a smooth weight, which fades toward its border.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .fibres import FIBRE_POINTS, SAMPLES, Stack, over_skin
+from .landmarks import Array
+from .muscles import AttachedPoints, Line, PlacedMuscle, attach
+from .surface import Surface
+
+LEAST_SHARE = 0.02  # of a displacement: less carries nothing
+
+Entry = tuple[int, int, float, float, float, Array]  # a row of Stack, in its order
+
+
+def bottom_up(placed: Sequence[PlacedMuscle]) -> list[int]:
+    """Numbers of the muscles in an order in which each comes after those that it lies on."""
+    muscles = {at.muscle.name: at.muscle for at in placed}
+    heights: dict[str, int] = {}
+
+    def height(name: str) -> int:
+        """How many muscles lie above each other up to this one."""
+        if name not in heights:
+            heights[name] = 1 + max((height(n) for n in muscles[name].lies_on), default=0)
+        return heights[name]
+
+    return sorted(range(len(placed)), key=lambda n: height(placed[n].muscle.name))
+
+
+def stack_muscles(
+    placed: Sequence[PlacedMuscle],
+    order: Sequence[int],
+    surface: Surface,
+    landmarks: Array,
+    lip_side: Array,
+) -> Stack:
+    """Find what each point of each line lies on; lines are numbered muscle by muscle in `order`."""
+    numbers, count = {}, 0
+    for n in order:
+        numbers[n] = count
+        count += len(placed[n].lines)
+    rows, found = [0], list[Entry]()
+    for n in order:
+        beneath = {numbers[m]: placed[m] for m in numbers if _is_under(placed[m], placed[n])}
+        for line in placed[n].lines:
+            if not beneath:
+                rows.append(len(found))
+                continue
+            places = AttachedPoints(
+                line.points,
+                over_skin(line.points, surface, surface.normals),
+                over_skin(line.points, surface, lip_side),
+            )
+            found += _entries(beneath, landmarks, places)
+            rows.append(len(found))
+    return _riding(rows, found)
+
+
+def _is_under(below: PlacedMuscle, above: PlacedMuscle) -> bool:
+    """Whether one lies on the other: a muscle of a pair on that of its own side."""
+    is_beside = below.muscle.pair and above.muscle.pair and below.side is not above.side
+    return below.muscle.name in above.muscle.lies_on and not is_beside
+
+
+def _entries(
+    beneath: dict[int, PlacedMuscle], landmarks: Array, places: AttachedPoints
+) -> list[Entry]:
+    """What the points of a line lie on, with shares that are at most 1 in all for each point.
+
+    beneath: the muscles, by the number of their first line.
+    """
+    entries, held = list[Entry](), np.zeros(FIBRE_POINTS)
+    for first, placed in beneath.items():
+        holds = [attach(placed, line, landmarks, places) for line in placed.lines]
+        strongest = np.argmax([hold.weight for hold in holds], axis=0)
+        for f, hold in enumerate(holds):
+            sample, place = hold.arc * (SAMPLES - 1), points_along(placed.lines[f], hold.arc)
+            for p in np.flatnonzero(strongest == f).tolist():
+                weight = float(hold.weight[p])
+                row = p, first + f, float(sample[p]), float(place[p]), weight, hold.steady[p]
+                entries.append(row)
+                held[p] += weight
+    most = np.maximum(held, 1.0)
+    shared = [(*row[:4], row[4] / most[row[0]], row[5] / most[row[0]]) for row in entries]
+    return [row for row in shared if row[4] > LEAST_SHARE]
+
+
+def points_along(line: Line, arc: Array) -> Array:
+    """Places 0..1 along a line as places among its points, 0..FIBRE_POINTS - 1, shape (n,)."""
+    lengths = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
+    reached = np.concatenate([[0.0], np.cumsum(lengths)])
+    places: Array = np.interp(arc * reached[-1], reached, np.arange(FIBRE_POINTS))
+    return places
+
+
+def _riding(rows: Sequence[int], found: Sequence[Entry]) -> Stack:
+    """Arrays of what was found."""
+    point, line, sample, place, share, steady = zip(*found, strict=True) if found else [()] * 6
+    return Stack(
+        rows=np.array(rows, dtype=np.uint32),
+        point=np.array(point, dtype=np.uint32),
+        line=np.array(line, dtype=np.uint32),
+        sample=np.array(sample, dtype=np.float64),
+        place=np.array(place, dtype=np.float64),
+        share=np.array(share, dtype=np.float64),
+        steady=np.array(steady, dtype=np.float64).reshape(-1, 3),
+    )

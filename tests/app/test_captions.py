@@ -1,0 +1,42 @@
+"""Text on pictures lies where it belongs, and nowhere else."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from risorius.app.capture.captions import captioned, contact_sheet
+from risorius.app.pipeline import side_by_side
+
+GREY = np.full((200, 400, 3), 128, np.uint8)
+
+
+def test_a_caption_for_each_half_and_a_line_between() -> None:
+    """Text at the lower left of both, the line from top to bottom, the image left as it was."""
+    halves = side_by_side((400, 200), 2)
+    with_captions = captioned(GREY, ["static", "kahler"], halves)
+    is_drawn = (with_captions != 128).any(axis=2)
+    assert is_drawn[:, 200].all()
+    text = is_drawn.copy()
+    text[:, 200] = False
+    assert not text[:150].any()
+    assert text[150:, :100].any() and text[150:, 201:300].any()
+    assert not text[:, 100:200].any() and not text[:, 300:].any()
+    assert (GREY == 128).all()
+
+
+def test_a_single_picture_has_no_line() -> None:
+    """Nothing is divided where there is one viewport."""
+    with_captions = captioned(GREY, ["x"], side_by_side((400, 200), 1))
+    assert (with_captions[:150] == 128).all()
+
+
+def test_a_sheet_has_a_cell_for_each_pose() -> None:
+    """Row by row, pictures in their proportions, each with its name below."""
+    shades = [np.full((60, 80, 3), shade, np.uint8) for shade in (90, 140, 190)]
+    sheet = contact_sheet(list(zip("abc", shades, strict=True)), columns=2, cell_width=160)
+    assert sheet.shape == (2 * (120 + 10), 320, 3)
+    middles = [sheet[60, 80], sheet[60, 240], sheet[190, 80]]
+    assert [middle.tolist() for middle in middles] == [[90] * 3, [140] * 3, [190] * 3]
+    names = [sheet[120:130, :160], sheet[120:130, 160:], sheet[250:, :160]]
+    assert all((name > 60).any() for name in names)
+    assert not (sheet[130:, 160:] > 60).any()

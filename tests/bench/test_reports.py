@@ -1,0 +1,77 @@
+"""The tables that `risorius bench` prints."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius import assets
+from risorius.bench import motion, simulate, soak, tearing
+from risorius.bench.report import table
+
+
+def test_simulate() -> None:
+    """Head and plain meshes each get a row with their sizes."""
+    text = simulate.report(simulate.run(rounds=2, sizes=(400,)), 2)
+    assert "head, all muscles" in text
+    assert "2030" in text
+    assert "plain mesh" in text
+
+
+@pytest.mark.slow
+def test_motion_table(tmp_path: Path) -> None:
+    """A reference of one's own, here the built-in head pulled up at the brows, is scored."""
+    head = assets.load("head")
+    lifts = {}
+    for side, landmark in (("L", 23), ("R", 20)):
+        off = (head.vertices - head.vertices[head.landmarks[landmark]]) / 20.0
+        near = np.exp(-(off**2).sum(axis=1))
+        lifts[side] = near[:, None] * np.array([0.0, 8.0, 0.0])
+    lift = lifts["L"] + lifts["R"]
+    zero = np.zeros_like(lift)
+    shapes = ("browInnerUp", "browDown", "eyeBlink", "noseSneer", "mouthSmile", "mouthFrown")
+    shapes += ("mouthStretch", "mouthLowerDown")
+    fields = {f"{name}_{side}": lifts[side] for name in shapes for side in "LR"}
+    np.savez(
+        tmp_path / "face.npz",
+        vertices=head.vertices,
+        triangles=head.faces,
+        landmarks68=head.landmarks,
+        jawOpen=zero + lift,
+        mouthPucker=zero + lift,
+        earWiggle=lift,
+        **fields,
+    )
+    text = motion.report(*motion.run(tmp_path))
+    rows, _, unknown = text.partition("mean")
+    scores = {line.split()[0]: float(line.split()[1]) for line in rows.splitlines()[6:]}
+    for side in "LR":
+        assert scores[f"browInnerUp_{side}"] > 0.5
+        assert scores[f"browInnerUp_{side}"] > scores[f"browDown_{side}"]
+    assert set(fields) < set(scores)
+    assert unknown.splitlines()[-1].endswith(": earWiggle")
+
+
+@pytest.mark.slow
+def test_soak_table() -> None:
+    """A few seconds of wild input are reported, and the face stays sound."""
+    text = soak.report(soak.run(minutes=0.05))
+    assert "NO" not in text
+    assert "0.1 simulated minutes" in text or "0.0 simulated minutes" in text
+
+
+@pytest.mark.slow
+def test_tearing_table() -> None:
+    """Expressions and mixtures are looked at, and the worst is named."""
+    text = tearing.report(tearing.run(mixtures=3), 3)
+    assert "3 random mixtures" in text
+    assert text.splitlines()[-1].startswith("teeth")
+
+
+def test_table() -> None:
+    """Titles stand over their columns; text goes left, and for None stands what is asked."""
+    lines = table(("name:<6", "ms:6.2f", "n:3d"), [("a", 1.0, 2), ("b", None, 30)], empty="-")
+    assert lines == ["name       ms   n", "a        1.00   2", "b           -  30"]
+    assert table(("x:>4",), [(None,)], indent="  ") == ["     x", ""]

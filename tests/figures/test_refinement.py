@@ -1,0 +1,71 @@
+"""The pictures of docs/refinement.md and the paper's figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import refinement
+from PIL import Image
+
+from risorius.bench import paper_figures
+from risorius.bench.charts import Axis, Series, chart
+
+PICTURES = Path(__file__).parents[2] / "docs" / "pictures"
+MOST_PICTURE = 450_000  # bytes
+
+
+@pytest.mark.slow
+def test_figures_are_drawn(tmp_path: Path) -> None:
+    """Every figure of the page, and ink on each; the same again to the last pixel."""
+    refinement.main([str(tmp_path)])
+    for name, figure in refinement.FIGURES.items():
+        drawn = np.asarray(Image.open(tmp_path / f"{name}.png"))
+        assert 0.01 < (drawn.min(axis=2) < 128).mean() < 0.8
+        assert name == "refine_tension" or (figure() == drawn).all()
+
+
+def test_paper_figures() -> None:
+    """Rows and columns of Fig. 9 and Fig. 10, refined rows with more triangles than static ones."""
+    nine = paper_figures.figure_9((96, 64))
+    assert nine.shape[1] == 3 * 96
+    assert nine.std() > 10.0
+    ten = paper_figures.figure_10((80, 64), poses=("joy",))
+    assert ten.shape[1] == 4 * 80
+    left, right = ten[30:90, :80].astype(int), ten[30:90, 80:160].astype(int)
+    assert np.abs(left - right).max() > 20  # refinement shows
+
+
+def test_no_corner_of_the_plane_is_a_speck() -> None:
+    """In the flat static row of Fig. 9 nothing is as dark as an underside, which has no light."""
+    static = paper_figures.figure_9((380, 230))[28:250]
+    assert 90 < static.min() < 200
+
+
+def test_film_strip() -> None:
+    """Red lines are in the row without memory, and none in the row with it."""
+    drawn = paper_figures.coherence((120, 96)).astype(int)
+    assert drawn.shape[1] == len(paper_figures.AMPLITUDES) * 120
+    is_red = (drawn[..., 0] > 150) & (drawn[..., 1:].max(axis=2) < 90)
+    half = len(drawn) // 2
+    assert is_red[:half].sum() > 200
+    assert is_red[half:].sum() == 0
+
+
+def test_chart() -> None:
+    """Curves lie where their values say, and names do not touch."""
+    across = Axis("triangles", 1.0, 16.0, (1, 4, 16), is_logarithmic=True)
+    up = Axis("error", 0.0, 1.0, (0, 0.5, 1))
+    assert across.fraction(4.0) == pytest.approx(0.5)
+    assert up.fraction(0.25) == 0.25
+    series = [Series(name, [(1, 0.5), (16, 0.5)]) for name in "abc"]
+    drawn = chart("title", across, up, series, (300, 200))
+    assert drawn.shape == (200, 300, 3)
+    assert (drawn.min(axis=2) < 128).any()
+
+
+@pytest.mark.parametrize("path", sorted(PICTURES.glob("refine_*.png")), ids=lambda path: path.stem)
+def test_pictures_of_the_page_are_small(path: Path) -> None:
+    """They travel with the source."""
+    assert path.stat().st_size < MOST_PICTURE
