@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Mapping, Sequence
 from types import NoneType
 from typing import Any, get_args
@@ -35,8 +34,7 @@ def refiner_for(scene: Scene, name: str, options: Mapping[str, Any] | None) -> r
     """
     try:
         if options:
-            plain = refine.create(name, scene.faces, scene.rest_positions)
-            _check(name, options_of(plain), options)
+            _check(name, options_of(name), options)
         merged: dict[str, Any] = {**scene.refiner_options.get(name, {}), **(options or {})}
         if merged.get("scheme") == DETAIL and "detail" not in merged:
             merged["detail"] = finer_mesh(scene)
@@ -49,25 +47,16 @@ def refiner_for(scene: Scene, name: str, options: Mapping[str, Any] | None) -> r
         raise UserError(f"refiner {name}: {error}") from None
 
 
-def options_of(refiner: refine.Refiner) -> dict[str, Any]:
-    """What a refiner can be told in numbers and words, as its class declares it, and its defaults.
+def options_of(name: str) -> dict[str, Any]:
+    """What a refiner can be told in numbers and words, as it is declared, and its defaults.
 
     An option whose default is None is left out, unless it may be on or off.
     """
     return {
         each.name: each.default
-        for each in _signature(type(refiner)).parameters.values()
-        if each.kind is each.KEYWORD_ONLY
-        and (isinstance(each.default, bool | int | float | str) or _is_switch(each.annotation))
+        for each in refine.parameters(name)
+        if isinstance(each.default, bool | int | float | str) or _is_switch(each.annotation)
     }
-
-
-def _signature(refiner: type[refine.Refiner]) -> inspect.Signature:
-    """Its annotations as types, where they are written as text and can be looked up."""
-    try:
-        return inspect.signature(refiner, eval_str=True)
-    except (NameError, AttributeError, SyntaxError, TypeError):  # of imports for type checkers only
-        return inspect.signature(refiner)
 
 
 def _is_switch(annotation: object) -> bool:

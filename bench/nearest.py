@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius.jit import njit
-from risorius.refine.closest import closest_on_triangle
+from risorius.refine.beyond.closest import closest_on_triangle
 
 Doubles = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]

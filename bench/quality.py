@@ -29,7 +29,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine
-from risorius.refine.criterion import Thresholds
+from risorius.refine.kahler.criterion import Thresholds
 
 from .nearest import nearest_points
 from .pn import tessellate

@@ -18,8 +18,8 @@ import scipy.sparse
 
 from risorius import refine
 from risorius.jit import njit
-from risorius.refine.normals import vertex_normals
-from risorius.refine.rings import vertex_rings
+from risorius.refine.mesh.normals import vertex_normals
+from risorius.refine.mesh.rings import vertex_rings
 
 from .waving_meshes import Load
 
@@ -79,11 +79,11 @@ def _loop_rules(mesh: refine.Connectivity) -> scipy.sparse.csr_matrix:
     )
     edge_count = len(mesh.edges)
     weights = np.where(
-        mesh.is_interior[:, None], [3 / 8, 3 / 8, 1 / 8, 1 / 8], [0.5, 0.5, 0.0, 0.0]
+        mesh.around.is_interior[:, None], [3 / 8, 3 / 8, 1 / 8, 1 / 8], [0.5, 0.5, 0.0, 0.0]
     )
     rows = np.repeat(np.arange(edge_count), 4)
     edges = scipy.sparse.csr_matrix(
-        (weights.ravel(), (rows, mesh.edge_points.ravel().astype(np.int64))),
+        (weights.ravel(), (rows, mesh.around.points.ravel().astype(np.int64))),
         shape=(edge_count, mesh.vertex_count),
     )
     edges.eliminate_zeros()

@@ -16,38 +16,61 @@ relation that a refined mesh breaks.
 `criterion` which edges are split, `blend` that nothing pops, `coherent` that no triangulation
 turns, `attributes` what rides along.
 
-Read in this order: plugin.py (the border), adaptive.py (a frame) and frame.py (what its passes hand
-on), criterion.py, criteria.py and rest_curvature.py (which edges), schemes.py (where points go:
-masks.py, cubic.py, detail.py), blend.py, patterns.py and coherence.py (the tables), output.py (rows
-and triangles), jit.py (how all this is compiled). docs/refinement.md tells it all with pictures.
+One room for each subject; each may import from those above it, and jit.py, which compiles it all:
+
+    mesh/       what a refiner is bound to: connectivity, seams, normals
+    border/     what goes in and out: plugin.py says what a refiner is
+    kahler/     the paper: refiner.py is a frame, then sections 4.1 to 4.4, one file each
+    beyond/     other criteria and schemes, and blending
+    others/     refiners to compare with
+    strain/     how far the skin is stretched
+
+Read border/plugin.py first, then kahler/. docs/refinement.md tells it all with pictures.
 """
 
-from .adaptive import Kahler
-from .checker import BrokenMeshError, check
-from .coherence_pass import Coherent
-from .connectivity import Connectivity, connect, weld
-from .criteria import Bulge, Curvature, Maximum, ScreenEdge, Silhouette
-from .criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, Measured, NormalDrop
-from .frame import Frame
-from .passthrough import PassThrough
-from .plugin import Origins, RefinedMesh, Refiner, Stream, View, available, create, register
-from .reorder import Order, reorder
-from .rest_curvature import RestCurvature
-from .schemes import Scheme
-from .shortening import Shortening
-from .tension import Tension, TensionMap
-from .uniform import Loop
+from .beyond.blending import Blended
+from .beyond.bulge import Bulge
+from .beyond.cubic import CubicScheme
+from .beyond.curvature import Curvature, RestCurvature
+from .beyond.detail import DetailScheme
+from .beyond.measuring import Maximum
+from .beyond.options import create_kahler
+from .beyond.view_dependent import ScreenEdge, Silhouette
+from .border.checker import BrokenMeshError, check
+from .border.plugin import Origins, RefinedMesh, Refiner, Stream, View
+from .border.registry import available, create, parameters, register
+from .kahler.coherence import Coherent
+from .kahler.criterion import (
+    THRESHOLD_ONCE,
+    THRESHOLD_TWICE,
+    Criterion,
+    Measured,
+    NormalDrop,
+    criteria,
+    register_criterion,
+)
+from .kahler.frame import FrameBuffers
+from .kahler.refiner import Kahler
+from .kahler.smoothing import LoopScheme, Scheme, register_scheme, schemes
+from .mesh.connectivity import Connectivity, connect
+from .mesh.reorder import Order, reorder
+from .mesh.seams import weld
+from .others.loop import Loop
+from .others.passthrough import PassThrough
+from .strain.shortening import Shortening
+from .strain.tension import Tension, TensionMap
 
 __all__ = [
     "THRESHOLD_ONCE",
     "THRESHOLD_TWICE",
+    "Blended",
     "BrokenMeshError",
     "Bulge",
     "Coherent",
     "Connectivity",
     "Criterion",
     "Curvature",
-    "Frame",
+    "FrameBuffers",
     "Kahler",
     "Loop",
     "Maximum",
@@ -71,11 +94,26 @@ __all__ = [
     "check",
     "connect",
     "create",
+    "create_kahler",
+    "criteria",
+    "parameters",
     "register",
+    "register_criterion",
+    "register_scheme",
     "reorder",
+    "schemes",
     "weld",
 ]
 
 register("none", PassThrough)
-register("kahler", Kahler)
+register("kahler", create_kahler)
 register("loop", Loop)
+register_criterion("normal", NormalDrop)
+register_criterion("curvature", Curvature)
+register_criterion("rest", RestCurvature)
+register_criterion("bulge", Bulge)
+register_criterion("silhouette", Silhouette)
+register_criterion("screen", ScreenEdge)
+register_scheme("loop", LoopScheme)
+register_scheme("cubic", CubicScheme)
+register_scheme("detail", DetailScheme)

@@ -18,8 +18,8 @@ from strain import tension_map
 
 from risorius.app.files import Image
 from risorius.bench import figures
-from risorius.refine.coherence import sequence_tables
-from risorius.refine.patterns import POINTS, splits_of, subdivide
+from risorius.refine.kahler.coherence import sequence_tables
+from risorius.refine.kahler.table import POINTS, splits_of, subdivide
 
 Places = npt.NDArray[np.float64]
 
@@ -88,7 +88,7 @@ def sequences() -> Image:
             column, row = place % columns, place // columns
             centre = (34 + (column + 0.5) * cell, top - (row + 0.5) * cell)
             sequence = tables.sequences[k]
-            triangles = tables.subtriangles[k, : tables.subtriangle_counts[k]].tolist()
+            triangles = tables.patterns.of(k).tolist()
             splits = (sequence.count(0), sequence.count(1), sequence.count(2))
             triangulation(
                 diagram, equilateral(centre, 0.86 * cell), triangles, splits, width=0.7, radius=1.1

@@ -13,7 +13,7 @@ from risorius.app.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.scenes import FaceScene
 from risorius.bench.canvas import table_of_pictures
-from risorius.refine.tension import Tension, TensionMap
+from risorius.refine import Tension, TensionMap
 
 POSES = ("joy", "surprise", "disgust")
 SIZE = (330, 400)

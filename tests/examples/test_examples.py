@@ -69,9 +69,9 @@ def test_in_pyvista(tmp_path: Path) -> None:
 
 def test_own_refiner(monkeypatch: pytest.MonkeyPatch) -> None:
     """A refiner from outside is registered, known by name, passes the checker, and cuts in four."""
-    from risorius.refine import plugin
+    from risorius.refine.border import registry
 
-    monkeypatch.setattr(plugin, "_factories", dict(plugin._factories))
+    monkeypatch.setattr(registry.refiners, "_factories", dict(registry.refiners._factories))
     assert "quarters" not in refine.available()
     module = example("own_refiner")
     assert module.main() == [8, 8, 32, 32]

@@ -7,7 +7,7 @@ import numpy.typing as npt
 from hypothesis import strategies as st
 
 from risorius import refine
-from risorius.refine.blend import RAMP
+from risorius.refine.beyond.blending import RAMP
 from tests.refine import plain_twin
 
 

@@ -9,7 +9,6 @@ import numpy as np
 from imgui_bundle import imgui
 
 from risorius import refine, render
-from risorius.refine import choices, criteria
 
 from ...refining import DETAIL, can_detail, options_of
 from .. import commands
@@ -27,8 +26,8 @@ if TYPE_CHECKING:
 
 # Words that options of refiners may be, asked of the plug-in.
 CHOICES: dict[str, Sequence[str]] = {
-    "scheme": choices.NAMES,
-    "criterion": ("normal", "normal+rest", *criteria.CRITERIA),
+    "scheme": refine.schemes.available(),
+    "criterion": ("normal", "normal+rest", *refine.criteria.available()[1:]),
 }
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
@@ -83,7 +82,7 @@ class MechanismPanel:
         names = [name for name in refine.available() if name != "none"]
         self._choose("Refiner", "refiner", names)
         self._choose("Compare", "compare", COMPARISONS)
-        for name, default in options_of(viewer.stage.refined.refiner).items():
+        for name, default in options_of(look.refiner).items():
             self._draw_option(name, default)
         shots = viewer.stage.shots(look, viewer.viewport)
         base = len(viewer.scene.faces)

@@ -1,0 +1,8 @@
+"""Beyond the paper: its future work (section 6) and what it leaves to others.
+
+options.py            the refiner `kahler` with all its options
+blending.py           points that grow out of their edges, so that nothing pops
+curvature.py, view_dependent.py, bulge.py, measuring.py     other criteria
+cubic.py, curves.py                                         edges that are cubic curves
+detail.py, fit.py, closest.py, axes.py                      what a finer mesh at rest has
+"""

@@ -1,0 +1,205 @@
+r"""No popping: the refined surface as a continuous function of the positions.
+
+Kähler, Haber, Seidel 2003, put a new point where it belongs in the very frame in which its edge
+passes a threshold. Here it begins on the straight edge and moves out while the need of its edge
+goes on to rise. Two things have to be continuous for that:
+
+*Points.* A criterion measures the `need` of an edge: above 0 it is split once, above 1 twice.
+
+    growth once    need / RAMP,         from 0 to 1        where m is between the straight edge and
+    growth twice   (need - 1) / RAMP,   from 0 to 1        its full place; the same for the quarters
+
+*Triangles.* Where two edges of a triangle are split, a quadrangle is left that has two diagonals.
+If one of its splits goes away the diagonal from the other one must stand, whichever it is, so it
+has to turn somewhere in between, and the surface jumps. A point C in the middle has no diagonals:
+
+              2               C = (corners) / 3 + sum of  w x (how far m stands out of its edge)
+             /|\
+            / | \             w = 2/3 where this is the only split edge: C lies on the line m-2 that
+           /  |  \                is there without it, and nothing moves when it appears;
+          /   C...m           w = 4/9 where another one has grown: the middle of a cubic patch
+         / .  |  . \              (the sixth part of its six inner points; Vlachos et al. 2001,
+        0-----m-----1             "Curved PN triangles", give the same).
+
+It costs one more point and two more subtriangles for triangles with two or more splits.
+
+So while blending, another table takes the place of the paper's: a triangle with more than one split
+is a fan around that point, because then a new split cuts one triangle of the fan and never turns a
+diagonal. The paper's patterns have to turn one somewhere: between 110 and 010, for one, the
+diagonal from corner 2 becomes the one from corner 0, and what they span is not flat.
+
+Differs from the paper: "We don't generate any new vertices in the interior" (section 3).
+"""
+
+from typing import Unpack
+
+import numpy as np
+import numpy.typing as npt
+
+from ...jit import njit
+from ..border.corner_values import Values
+from ..border.plugin import Origins, View
+from ..kahler.criterion import Measured
+from ..kahler.frame import CENTRES, ROWS, TRIANGLES, FrameBuffers
+from ..kahler.refiner import Kahler
+from ..kahler.smoothing import Scheme
+from ..kahler.table import (
+    CENTRE,
+    CONFIGURATION_COUNT,
+    Patterns,
+    Triangle,
+    outline,
+    splits_of,
+    subdivide,
+    table_of,
+)
+from ..mesh.connectivity import Connectivity
+from ..mesh.normals import unit
+
+Floats = npt.NDArray[np.float32]
+Small = npt.NDArray[np.uint8]
+
+RAMP = np.float32(0.25)
+"""Need over which a point grows, in what lies between the two thresholds. Chosen: points that are
+only half grown cost as much as whole ones."""
+ALONE = np.float32(2 / 3)
+"""Weight of the only split edge in the place of C."""
+SHARED = np.float32(2 / 9)
+"""What it loses where another edge has grown; 2/3 - 2/9 = 4/9."""
+ZERO = np.float32(0.0)
+HALF = np.float32(0.5)
+ONE = np.float32(1.0)
+THIRD = np.float32(1 / 3)
+
+
+def fan(splits: tuple[int, int, int]) -> list[Triangle]:
+    """Cut a triangle into a fan around its middle; one with a single split as the paper does."""
+    if sum(splits) <= 1:
+        return subdivide(splits)
+    points = outline(splits)
+    pairs = zip(points, points[1:] + points[:1], strict=True)
+    return [(CENTRE, start, end) for start, end in pairs]
+
+
+FANS = table_of([fan(splits_of(configuration)) for configuration in range(CONFIGURATION_COUNT)])
+"""The patterns of blended frames."""
+
+
+class Blended(Kahler):
+    """The paper's refiner, but that points grow out of their edges, and nothing pops."""
+
+    _criterion: Measured
+
+    def __init__(
+        self,
+        faces: npt.ArrayLike,
+        rest_positions: npt.ArrayLike,
+        *,
+        criterion: Measured,
+        scheme: Scheme,
+        **values: Unpack[Values],
+    ) -> None:
+        """Bind to a mesh, as `Kahler`; the criterion has to measure."""
+        super().__init__(faces, rest_positions, criterion=criterion, scheme=scheme, **values)
+        self._patterns = FANS
+        self._need = np.zeros(len(self.connectivity.edges), dtype=np.float32)
+        self._corrects = hasattr(scheme, "place_centres")
+
+    @property
+    def vertex_capacity(self) -> int:
+        """Most output vertices: one in the middle of every triangle, too."""
+        return super().vertex_capacity + len(self.connectivity.faces)
+
+    def _mark(self, view: View | None) -> None:
+        """Decide how far the points of every edge have grown, and so how often it is split."""
+        frame = self._frame
+        self._show(view)
+        self._criterion.measure(frame.positions, frame.normals, self._need)
+        grow(self._need, self._edge_splits, frame.growth_once, frame.growth_twice)
+
+    def _number(self) -> tuple[int, int]:
+        """Number the points in the middle of triangles after all others."""
+        super()._number()
+        counts = self._frame.counts
+        number_centres(self._frame, self._patterns)
+        return int(counts[ROWS] + counts[CENTRES]), int(counts[TRIANGLES])
+
+    def _place(self, rows: Floats) -> None:
+        """Write vertices and points on edges, then those in the middle of triangles."""
+        super()._place(rows)
+        place_centres(self.connectivity, self._frame)
+        if self._corrects:
+            self._scheme.place_centres(self._frame)  # type: ignore[attr-defined]
+
+    def origins(self) -> Origins:
+        """Say for every vertex of the last frame where it lies on the input mesh."""
+        mesh, others = self.connectivity, super().origins()
+        centres = self._frame.centre_triangles[: self._frame.centre_count]
+        thirds = np.full((len(centres), 3), 1.0 / 3.0, dtype=np.float32)
+        corners = mesh.wedge_vertices[mesh.corners[centres]].astype(np.int32)
+        return Origins(
+            np.concatenate([others.vertices, corners]), np.concatenate([others.weights, thirds])
+        )
+
+
+@njit
+def grow(need: Floats, splits: Small, growth_once: Floats, growth_twice: Floats) -> None:
+    """Write splits and growth of every edge from its need, all of shape (E,)."""
+    for e in range(need.shape[0]):
+        splits[e] = np.uint8(need[e] > ZERO) + np.uint8(need[e] > ONE)
+        growth_once[e] = min(max(need[e] / RAMP, ZERO), ONE)
+        growth_twice[e] = min(max((need[e] - ONE) / RAMP, ZERO), ONE)
+
+
+@njit
+def number_centres(frame: FrameBuffers, patterns: Patterns) -> None:
+    """List the triangles that have a point in the middle; count them, and all subtriangles."""
+    centre_count = triangle_count = 0
+    for t in range(frame.configurations.shape[0] - 1):
+        row = frame.configurations[t]
+        frame.centre_triangles[centre_count] = t
+        centre_count += patterns.subtriangles[row, 0, 0] == CENTRE
+        triangle_count += int(patterns.counts[row])
+    frame.counts[TRIANGLES], frame.counts[CENTRES] = triangle_count, centre_count
+
+
+@njit
+def weight_of_middle(splits: Small, growth: Floats, e: int, after: int, before: int) -> np.float32:
+    """Weight of the middle of edge e in a point C; 0 where the edge has none.
+
+    `after`, `before`: the other two edges of the triangle.
+    """
+    return ALONE - SHARED * max(growth[after], growth[before]) if splits[e] > 0 else ZERO
+
+
+@njit
+def place_centres(mesh: Connectivity, frame: FrameBuffers) -> None:
+    """Write the rows of the points in the middle of triangles, attributes too."""
+    vertices, splits, growth = frame.rows, frame.splits, frame.growth_once
+    first_points, edges = frame.first_points, mesh.triangle_edges
+    for k in range(frame.counts[CENTRES]):
+        t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
+        a, b, c = mesh.faces[t, 0], mesh.faces[t, 1], mesh.faces[t, 2]
+        ab, bc, ca = edges[t, 0], edges[t, 1], edges[t, 2]
+        u = weight_of_middle(splits, growth, ab, bc, ca)
+        v = weight_of_middle(splits, growth, bc, ca, ab)
+        w = weight_of_middle(splits, growth, ca, ab, bc)
+        # Where there is no middle its weight is 0 and any row will do.
+        p = first_points[ab] + (splits[ab] >> 1) if splits[ab] > 0 else a
+        q = first_points[bc] + (splits[bc] >> 1) if splits[bc] > 0 else b
+        r = first_points[ca] + (splits[ca] >> 1) if splits[ca] > 0 else c
+        for i in range(6):
+            at_a, at_b, at_c = vertices[a, i], vertices[b, i], vertices[c, i]
+            vertices[row, i] = (
+                THIRD * at_a
+                + u * (vertices[p, i] - HALF * (at_a + at_b))
+                + THIRD * at_b
+                + v * (vertices[q, i] - HALF * (at_b + at_c))
+                + THIRD * at_c
+                + w * (vertices[r, i] - HALF * (at_c + at_a))
+            )
+        x, y, z = unit(vertices[row, 3], vertices[row, 4], vertices[row, 5])
+        vertices[row, 3], vertices[row, 4], vertices[row, 5] = x, y, z
+        a, b, c = mesh.corners[t, 0], mesh.corners[t, 1], mesh.corners[t, 2]
+        for i in range(6, vertices.shape[1]):
+            vertices[row, i] = THIRD * (vertices[a, i] + vertices[b, i] + vertices[c, i])

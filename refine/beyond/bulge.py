@@ -1,0 +1,94 @@
+"""The criterion `bulge`: how far the scheme would move the middle of an edge.
+
+For schemes whose edges are curves (curves.py): where the straight edge is far from its curve, the
+unsplit mesh is wrong.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from ...jit import njit
+from ..mesh.connectivity import Connectivity
+from .blending import RAMP
+from .curves import CurveScheme
+from .measuring import Measuring, mean_length, scale_needs
+
+Floats = npt.NDArray[np.float32]
+Doubles = npt.NDArray[np.float64]
+
+HASTE = 0.25
+"""Share of the first threshold of `bulge` in which a blended point grows. Chosen: a point that is
+half grown costs as much as a whole one; and one that moves by 6 times the change of its bulge, and
+no farther than that threshold, does not pop."""
+
+
+class Bulge(Measuring):
+    """How far the scheme would move the middle of an edge: what is wrong without a split.
+
+    For the schemes that interpolate. What is coarse at rest counts as well, unlike in the paper.
+    """
+
+    def __init__(self, once: float = 0.03, twice: float = 0.15, *, turning: float = 0.15) -> None:
+        """`once`, `twice`: distances in mean edge lengths of the mesh at rest.
+
+        `turning`: the distance that an error of normals of a radian counts that a split would mend,
+        for the scheme `detail`; 0 looks at distances only.
+        """
+        super().__init__(once, twice, "distances in mean edge lengths")
+        self.turning = turning
+
+    def use(self, scheme: object) -> None:
+        """Take the scheme of the refiner; raises ValueError for one without curves."""
+        if not isinstance(scheme, CurveScheme):
+            raise ValueError(
+                'criterion "bulge" measures curved edges: it goes with the schemes "cubic" and '
+                f'"detail", got {type(scheme).__name__}'
+            )
+        self._scheme = scheme
+
+    def bind(
+        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+    ) -> None:
+        """Store the unit of length."""
+        super().bind(connectivity, rest_positions, rest_normals)
+        self._unit = mean_length(connectivity, rest_positions)
+
+    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
+        """Write the need of every edge, shape (E,)."""
+        limits, turns = self.thresholds, self._scheme.turns
+        bulge_sizes(self._scheme.all_bulges(positions, normals), need)
+        if turns is not None and self.turning > 0.0:
+            count_turns(need, turns, np.float32(self.turning) * self._unit)
+        scale_needs(need, limits.once * self._unit, limits.width * self._unit, limits.most)
+        hasten(need, np.float32(HASTE) * limits.once / limits.width, RAMP)
+
+
+@njit
+def bulge_sizes(bulges: Floats, sizes: Floats) -> None:
+    """Write how far the middle of every edge bulges, shape (E,)."""
+    for e in range(sizes.shape[0]):
+        x, y, z = bulges[e, 1, 0], bulges[e, 1, 1], bulges[e, 1, 2]
+        sizes[e] = np.sqrt(x * x + y * y + z * z)
+
+
+@njit
+def count_turns(sizes: Floats, turns: Floats, scale: np.float32) -> None:
+    """Add what the turns of normals count to the sizes of edges, shape (E,), as squares."""
+    for e in range(sizes.shape[0]):
+        turn = scale * turns[e]
+        sizes[e] = np.sqrt(sizes[e] * sizes[e] + turn * turn)
+
+
+@njit
+def hasten(need: Floats, soon: np.float32, ramp: np.float32) -> None:
+    """Stretch the needs, shape (E,), so that `soon` becomes `ramp`, where points have grown."""
+    if soon >= ramp:
+        return
+    for e in range(need.shape[0]):
+        if need[e] <= np.float32(0.0) or need[e] >= np.float32(1.0):
+            continue
+        if need[e] < soon:
+            need[e] *= ramp / soon
+        else:
+            rest = (np.float32(1.0) - need[e]) / (np.float32(1.0) - soon)
+            need[e] = np.float32(1.0) - (np.float32(1.0) - ramp) * rest

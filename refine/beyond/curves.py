@@ -1,0 +1,149 @@
+r"""What the interpolating schemes share: edges that bulge between end points that stay.
+
+A scheme says how far the points of a split edge stand out of the straight edge, its *bulge*; this
+pass puts them there, as far as they have grown (blending.py), with their normals.
+
+                 .  m  .                 m      =  (a + b) / 2          +  bulge
+              n           n              n at a =  (3 a + b) / 4        +  bulge
+            a---------------b            grown   =  mix of (a + m) / 2 and n
+
+The normal at m is the mean of those at a and b, turned until it stands upright on the curve there:
+an S that ends as it began has the same normals at both ends and another one in between (Vlachos et
+al. 2001, "Curved PN triangles", have quadratic normals for the same reason). It does so as far as
+the edges of both triangles have grown: beside a triangle that has no such normals a single one is
+seen as a scar. At n the normal is the mean of its neighbours'.
+
+Kähler, Haber, Seidel 2003, section 4.2 asks for rules that are cheap, local, close to the input
+mesh, and correct at borders; these are all, and leave every vertex where the simulation has it.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from ...jit import njit
+from ..border.rows import place_unmoved
+from ..kahler.frame import ONCE, FrameBuffers, buffers_for, split_everywhere
+from ..kahler.smoothing import growth_of_split, mix, write_mean_normal, write_normal
+from ..mesh.connectivity import Connectivity, Surroundings
+from ..mesh.normals import unit
+
+Floats = npt.NDArray[np.float32]
+Doubles = npt.NDArray[np.float64]
+
+ZERO = np.float32(0.0)
+QUARTER = np.float32(0.25)
+HALF = np.float32(0.5)
+THREE_QUARTERS = np.float32(0.75)
+TINY = np.finfo(np.float32).tiny
+
+UPRIGHT = np.float32(0.95)
+"""How much of its slope along the curve a normal in the middle of an edge loses. Chosen: all but a
+rest, so that one that lies along the edge keeps a direction."""
+NEAR_START, MIDDLE, NEAR_END = 0, 1, 2
+"""Points of an edge in an array of bulges, shape (E, 3, 3): edge, point, x y z."""
+
+
+class CurveScheme:
+    """A scheme whose original vertices stay and whose edges are curves; fill in `_bulge`."""
+
+    interpolates = True
+    turns: Floats | None = None
+    """How much a split would mend in normals [rad] at every edge, shape (E,), if that is known."""
+
+    def bind(
+        self,
+        connectivity: Connectivity,
+        rest_positions: Doubles,
+        rest_normals: Floats,
+    ) -> None:
+        """Take the mesh; `rest_positions` and `rest_normals`, shape (V, 3)."""
+        self._mesh, self._around = connectivity, connectivity.around
+        self._bulges = np.zeros((len(connectivity.edges), 3, 3), dtype=np.float32)
+        self._every_edge = split_everywhere(
+            buffers_for(connectivity, rest_positions, np.zeros((0, 3), np.float32), rest_normals),
+            connectivity.vertex_count,
+        )
+
+    def place(self, frame: FrameBuffers) -> None:
+        """Write vertices as they are, and the points of split edges on their curves."""
+        place_on_curves(self._around, frame, self._vertex_normals(frame), self._bulge(frame))
+
+    def all_bulges(self, positions: Doubles, normals: Floats) -> Floats:
+        """Bulges of all edges as if each were split once, shape (E, 3, 3): middles are number 1.
+
+        For criteria that ask how far an edge is from where it should be. The array is the one that
+        `place` uses.
+        """
+        return self._bulge(self._every_edge._replace(positions=positions, normals=normals))
+
+    def _vertex_normals(self, frame: FrameBuffers) -> Floats:
+        """Return the normals that vertices get in the output, shape (V, 3)."""
+        return frame.normals
+
+    def _bulge(self, frame: FrameBuffers) -> Floats:
+        """Return the bulges, shape (E, 3, 3); of edges split once only the middle, if split."""
+        raise NotImplementedError
+
+
+@njit
+def stand_upright(
+    vertices: Floats,
+    start: np.uint32,
+    end: np.uint32,
+    a: np.uint32,
+    b: np.uint32,
+    share: np.float32,
+) -> tuple[np.float32, np.float32, np.float32]:
+    """The mean normal of a and b, less a share of its slope on the way from start to end.
+
+    All four are rows of the output; the result has length one.
+    """
+    along = slope = ZERO
+    for i in range(3):
+        d = vertices[end, i] - vertices[start, i]
+        along += d * d
+        slope += d * (vertices[a, 3 + i] + vertices[b, 3 + i])
+    slope *= share / max(along, TINY)
+    return unit(
+        vertices[a, 3] + vertices[b, 3] - slope * (vertices[end, 0] - vertices[start, 0]),
+        vertices[a, 4] + vertices[b, 4] - slope * (vertices[end, 1] - vertices[start, 1]),
+        vertices[a, 5] + vertices[b, 5] - slope * (vertices[end, 2] - vertices[start, 2]),
+    )
+
+
+@njit
+def place_on_curves(
+    around: Surroundings, frame: FrameBuffers, normals: Floats, bulges: Floats
+) -> None:
+    """Write vertices as they are, and the one or three points of every split edge.
+
+    `normals`: of the vertices, shape (V, 3).
+    """
+    points, vertices = frame.points, frame.rows
+    place_unmoved(points, normals, vertices)
+    for k in range(frame.counts[ONCE]):
+        e = frame.split_once[k]
+        a, b = around.points[e, 0], around.points[e, 1]
+        row = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
+        near_a, near_b = np.uint32(row - 1), np.uint32(row + 1)
+        is_twice = frame.splits[e] == 2
+        share, twice = frame.growth_once[e], frame.growth_twice[e]
+        for i in range(3):
+            at_a, at_b = points[a, i], points[b, i]
+            middle = HALF * (at_a + at_b) + share * bulges[e, MIDDLE, i]
+            vertices[row, i] = middle
+            if is_twice:
+                full_a = THREE_QUARTERS * at_a + QUARTER * at_b + bulges[e, NEAR_START, i]
+                full_b = THREE_QUARTERS * at_b + QUARTER * at_a + bulges[e, NEAR_END, i]
+                vertices[near_a, i] = mix(HALF * (at_a + middle), full_a, twice)
+                vertices[near_b, i] = mix(HALF * (at_b + middle), full_b, twice)
+        if around.is_interior[e]:
+            for i in range(4):
+                wing = around.wings[e, i]
+                share = min(share, growth_of_split(frame.splits, frame.growth_once, wing))
+        start, end = (near_a, near_b) if is_twice else (a, b)
+        x, y, z = stand_upright(vertices, start, end, a, b, UPRIGHT * share)
+        write_normal(vertices, row, x, y, z)
+        if is_twice:
+            write_mean_normal(vertices, a, row, near_a)
+            write_mean_normal(vertices, b, row, near_b)

@@ -1,0 +1,300 @@
+"""Fit split points to a finer mesh, so that the triangles between them lie on it and not only they.
+
+Positions: the closest points on the finer mesh are a start; but where it bends between them, flat
+triangles cut its corners off. So every vertex of the finer mesh pulls at the triangle that it is
+closest to, and the points of all split edges and the middles of all triangles give way, while the
+vertices of the coarse mesh stay: linear least squares, solved by conjugate gradients, a few times
+over because after each time other triangles are the closest.
+
+Triangles around an edge that is split once are twice as long as around one that is split twice, and
+cut more off: the middle of an edge has one place for each, and so has the middle of a triangle.
+
+The middles of triangles are fitted twice: with all else where the edges meet half way, because an
+unblended frame has none of them; then alone, where they slide to (axes.py).
+
+Normals: in the folds of lips and lids, where the vertices of a decimated face often lie, the normal
+of one place says nothing about the triangles around it. So the normals that are shown are fitted
+too, at vertices and points at once, to those of all finer vertices; unsplit, split once and split
+twice, because a frame shows something between them.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ..kahler.table import CENTRE, CONFIGURATIONS, Patterns
+from ..mesh.connectivity import Connectivity
+from .blending import FANS
+from .closest import Surface
+
+Doubles = npt.NDArray[np.float64]
+Wide = npt.NDArray[np.int64]
+
+ROUNDS, ONCE_ROUNDS = 4, 2
+"""Times that closest triangles are found anew, for all points and for those of edges split once;
+more gave less than 1 % (measured, a scanned face)."""
+STEPS = 20
+"""Steps of conjugate gradients in each round."""
+STIFFNESS = 0.05
+"""Pull back to where a point was, against 1 of a vertex of the finer mesh. Chosen by measurement:
+less fits the vertices better and what lies between them worse, and lets points leap far out where
+the finer mesh is hardly finer."""
+NORMAL_STIFFNESS, CORNER_STIFFNESS = 0.1, 1.0
+"""The same for normals of points, and of vertices, which are there whatever is split around them.
+Chosen by measurement on two heads."""
+UNSPLIT = 1.0
+"""How much the unsplit mesh counts in the fit of normals, against 1 of the one whose edges are all
+split twice. Chosen by measurement, flat from 0.3 to 1."""
+TWICE = (FANS, 26)
+ONCE = ((FANS, 13), (CONFIGURATIONS, 13))
+"""Tables and rows (kahler/table.py) that points are fitted to: all edges split twice, and once;
+blended and not, because the middle of a triangle is there only in one of them."""
+START, MIDDLE, END, ALONE = 0, 1, 2, 3
+"""Points of an edge: two quarters and the middle if it is split twice, the middle if once."""
+TOO_FAR = 1.0
+"""A finer vertex farther away than this, in edge lengths, belongs nowhere on the coarse mesh."""
+LOST = 0.05
+"""Length of a fitted normal below which those that pulled at it have cancelled each other."""
+
+
+class Points(NamedTuple):
+    """Something for each point that splitting may make: places, or normals there."""
+
+    of_edges: Doubles
+    """START, MIDDLE, END of edges split twice, ALONE of those split once, shape (E, 4, 3)."""
+    of_triangles: Doubles
+    """The middle, with all edges split twice, and once, shape (F, 2, 3)."""
+
+    def stacked(self, vertices: npt.NDArray[np.floating]) -> Doubles:
+        """One list, shape (N, 3): those of vertices first."""
+        return np.concatenate([vertices, *(part.reshape(-1, 3) for part in self)])
+
+    @staticmethod
+    def unstacked(rows: Doubles, mesh: Connectivity) -> "Points":
+        """Take the list apart again."""
+        first = mesh.vertex_count + 4 * len(mesh.edges)
+        of_edges, of_triangles = rows[mesh.vertex_count : first], rows[first:]
+        return Points(of_edges.reshape(-1, 4, 3), of_triangles.reshape(-1, 2, 3))
+
+
+class Fit(NamedTuple):
+    """Where points lie on the finer mesh, and what is seen there."""
+
+    places: Points
+    looks: Doubles
+    """Unit normals, stacked."""
+    saved: npt.NDArray[np.float32]
+    """What a split of each edge mends, shape (E,) (saved_turns)."""
+
+
+def fit(
+    surface: Surface, mesh: Connectivity, positions: Doubles, normals: npt.NDArray[np.float32],
+    edges: tuple[Doubles, Doubles], middles: tuple[Doubles, Doubles],
+) -> Fit:  # fmt: skip
+    """Fit everything to the finer mesh `surface`.
+
+    `positions`, `normals`: of the coarse mesh at rest, shape (V, 3); `edges`: points of edges to
+    begin with and normals there, shape (E, 4, 3); `middles`: where in triangles their middle points
+    lie, as shares of the corners, and normals there, shape (F, 3).
+    """
+    shares, middle_ups = middles[0], np.repeat(middles[1][:, None], 2, axis=1)
+    points, ups = edges
+    of_edges, _ = closest_places(surface, points, ups)
+    corner_ups = np.repeat(normals[mesh.faces].sum(axis=1)[:, None], 2, axis=1)
+    centres = middles_of(of_edges, mesh, positions, np.full_like(shares, 1.0 / 3.0))
+    start = Points(of_edges, closest_places(surface, centres, corner_ups)[0])
+    places = fitted(surface, mesh, positions, start, mesh.vertex_count)
+    where = places.stacked(positions)
+    _, looks = closest_places(surface, where, Points(ups, corner_ups).stacked(normals))
+    looks = fitted_normals(surface, mesh, where, looks, 0)
+    saved = saved_turns(surface, mesh, where, looks)
+
+    first_middle = mesh.vertex_count + 4 * len(mesh.edges)
+    centres = middles_of(places.of_edges, mesh, positions, shares)
+    start = Points(places.of_edges, closest_places(surface, centres, middle_ups)[0])
+    places = fitted(surface, mesh, positions, start, first_middle)
+    _, middle_looks = closest_places(surface, places.of_triangles, middle_ups)
+    looks[first_middle:] = middle_looks.reshape(-1, 3)
+    looks = fitted_normals(surface, mesh, places.stacked(positions), looks, first_middle)
+    return Fit(places, looks, saved)
+
+
+def middles_of(
+    of_edges: Doubles, mesh: Connectivity, positions: Doubles, shares: Doubles
+) -> Doubles:
+    """Middles of triangles whose edges are all split, twice and once, shape (F, 2, 3).
+
+    `of_edges`: places of the points of edges; `shares`: where in the triangles, shape (F, 3).
+    """
+    bulges = of_edges[:, [MIDDLE, ALONE]] - positions[mesh.edges].mean(axis=1)[:, None]
+    bulges = np.concatenate([bulges, np.zeros((1, 2, 3))])  # found at -1, where there is no edge
+    weights = 4.0 * shares * np.roll(shares, -1, axis=1)
+    flat = np.einsum("fi,fij->fj", shares, positions[mesh.faces])
+    middles: Doubles = flat[:, None] + np.einsum(
+        "fi,fikj->fkj", weights, bulges[mesh.triangle_edges]
+    )
+    return middles
+
+
+def closest_places(surface: Surface, points: Doubles, normals: Doubles) -> tuple[Doubles, Doubles]:
+    """Closest points on the finer mesh, and its unit normals there, in the shape of `points`."""
+    triangles, weights = surface.closest(points.reshape(-1, 3), normals.reshape(-1, 3))
+    looks = surface.at(surface.normals, triangles, weights)
+    looks /= np.maximum(np.linalg.norm(looks, axis=1, keepdims=True), 1e-12)
+    places = surface.at(surface.positions, triangles, weights)
+    return places.reshape(points.shape), looks.reshape(points.shape)
+
+
+def fitted(
+    surface: Surface, mesh: Connectivity, positions: Doubles, points: Points, first: int
+) -> Points:
+    """Return points that fit better.
+
+    `points`: where to begin; `first`: the first that may move, of vertices and points stacked.
+    """
+    reach = _reach(mesh, positions)
+    places = points.stacked(positions)
+    shapes = [(split_everywhere(mesh, *row), 1.0) for row in (TWICE, *ONCE)]
+    for k in range(ROUNDS if len(shapes[0][0]) else 0):
+        if k == ONCE_ROUNDS:
+            shapes = shapes[:1]
+        corners, weights, pull = _pulls(surface, places, shapes, reach, surface.positions, places)
+        places[first:] += _solved(corners - first, weights, pull, len(places) - first, STIFFNESS)
+    return Points.unstacked(places, mesh)
+
+
+def fitted_normals(
+    surface: Surface, mesh: Connectivity, places: Doubles, normals: Doubles, first: int
+) -> Doubles:
+    """Return unit normals of vertices and points that fit better, stacked, shape (N, 3).
+
+    `places`: where they are; `normals`: where to begin; `first`: the first that may turn.
+    """
+    whole = mesh.faces[~mesh.is_degenerate].astype(np.int64)
+    if len(whole) == 0:
+        return normals
+    reach = _reach(mesh, places[: mesh.vertex_count])
+    shapes = [(split_everywhere(mesh, *row), 1.0) for row in (TWICE, *ONCE)]
+    shapes.append((whole, UNSPLIT))
+    corners, weights, pull = _pulls(surface, places, shapes, reach, surface.normals, normals)
+    stiffness = np.full((len(normals), 1), NORMAL_STIFFNESS)
+    stiffness[: mesh.vertex_count] = CORNER_STIFFNESS
+    turned = normals.copy()
+    turned[first:] += _solved(
+        corners - first, weights, pull, len(normals) - first, stiffness[first:]
+    )
+    lengths = np.linalg.norm(turned, axis=1, keepdims=True)
+    return np.where(lengths > LOST, turned / np.maximum(lengths, LOST), normals)
+
+
+def saved_turns(
+    surface: Surface, mesh: Connectivity, places: Doubles, normals: Doubles
+) -> npt.NDArray[np.float32]:
+    """Return how much a split of each edge saves of the errors of normals [rad], shape (E,).
+
+    The root of the squared angles that all finer vertices are off, before less after, each a third
+    for every edge of the triangle that it is closest to, over the finer vertices of an edge. The
+    very closest triangle counts, as for who looks at it: coarse lips that touch show through.
+    """
+    whole = mesh.faces[~mesh.is_degenerate].astype(np.int64)
+    saved = np.zeros(len(mesh.edges))
+    if len(whole) == 0:
+        return saved.astype(np.float32)
+    nearest, before = _squared_angles(surface, places, normals, whole)
+    _, after = _squared_angles(surface, places, normals, split_everywhere(mesh, CONFIGURATIONS, 13))
+    by_triangle = np.maximum(np.bincount(nearest, before - after, len(whole)), 0.0)
+    np.add.at(saved, mesh.triangle_edges[~mesh.is_degenerate], by_triangle[:, None] / 3.0)
+    return np.sqrt(saved * len(saved) / len(surface.positions)).astype(np.float32)
+
+
+def split_everywhere(mesh: Connectivity, patterns: Patterns, row: int) -> Wide:
+    """All triangles cut like one row of a table, of stacked points, shape (K, 3)."""
+    proper = np.flatnonzero(~mesh.is_degenerate)
+    edges = mesh.triangle_edges[proper].astype(np.int64)
+    is_against = mesh.edges[edges][..., 0] != mesh.faces[proper]
+    is_twice = row == TWICE[1]
+    local = np.empty((len(proper), CENTRE + 1), dtype=np.int64)
+    local[:, :3] = mesh.faces[proper]
+    first = mesh.vertex_count + 4 * edges
+    local[:, 3:12:3] = first + (MIDDLE if is_twice else ALONE)
+    local[:, 4:12:3] = first + np.where(is_against, END, START)
+    local[:, 5:12:3] = first + np.where(is_against, START, END)
+    local[:, CENTRE] = mesh.vertex_count + 4 * len(mesh.edges) + 2 * proper + (not is_twice)
+    return local[:, patterns.subtriangles[row, : patterns.counts[row]]].reshape(-1, 3)
+
+
+def _reach(mesh: Connectivity, positions: Doubles) -> float:
+    """How far a finer vertex may be away."""
+    lengths = np.linalg.norm(np.diff(positions[mesh.edges], axis=1)[:, 0], axis=1)
+    return TOO_FAR * float(lengths.mean()) if len(lengths) else 0.0
+
+
+def _pulls(
+    surface: Surface, places: Doubles, shapes: list[tuple[Wide, float]], reach: float,
+    wanted: npt.NDArray[np.floating], values: Doubles,
+) -> tuple[Wide, Doubles, Doubles]:  # fmt: skip
+    """What the finer vertices want at the triangles that they are closest to, in every shape.
+
+    Returns corners and weights, shape (N, 3), and what is missing there from `values` at `places`
+    to what is `wanted`, shape (N, 3).
+    """
+    terms = []
+    for triangles, share in shapes:
+        refined = Surface(places, triangles.astype(np.uint32))
+        hit, weights = refined.closest(surface.positions, surface.normals.astype(np.float64))
+        away = surface.positions - refined.at(places, hit, weights)
+        is_near = np.linalg.norm(away, axis=1, keepdims=True) <= reach
+        corners = triangles[hit]
+        missing = wanted - np.einsum("nk,nki->ni", weights, values[corners])
+        scale = np.sqrt(share) * is_near
+        terms.append((corners, scale * weights, scale * missing))
+    corners, weights, pull = (np.concatenate(part) for part in zip(*terms, strict=True))
+    return corners, weights, pull
+
+
+def _squared_angles(
+    surface: Surface, places: Doubles, normals: Doubles, triangles: Wide
+) -> tuple[Wide, Doubles]:
+    """The triangle that is closest to each finer vertex, and how far the normal there is off."""
+    refined = Surface(places, triangles.astype(np.uint32))
+    hit, weights = refined.closest(surface.positions, np.zeros_like(surface.positions))
+    shown = np.einsum("nk,nki->ni", weights, normals[triangles[hit]])
+    shown /= np.maximum(np.linalg.norm(shown, axis=1, keepdims=True), LOST)
+    cosines = np.einsum("ni,ni->n", shown, surface.normals)
+    return hit, np.arccos(np.clip(cosines, -1.0, 1.0)) ** 2
+
+
+def _solved(
+    corners: Wide, weights: Doubles, pull: Doubles, count: int, stiffness: float | Doubles
+) -> Doubles:
+    """Return how far each of `count` points moves, shape (count, 3).
+
+    Each pull is answered by the corners, shape (N, 3), of its triangle with their weights; negative
+    numbers are vertices that stay.
+    """
+    weights = np.where(corners >= 0, weights, 0.0)
+    corners = np.maximum(corners, 0)
+
+    def gathered(residuals: Doubles) -> Doubles:
+        shares = (weights[..., None] * residuals[:, None]).reshape(-1, 3)
+        columns = [np.bincount(corners.ravel(), shares[:, i], count) for i in range(3)]
+        return np.stack(columns, axis=1)
+
+    def applied(moves: Doubles) -> Doubles:
+        answers: Doubles = np.einsum("nk,nki->ni", weights, moves[corners])
+        return gathered(answers) + stiffness * moves
+
+    moves = np.zeros((count, 3))
+    residual = gathered(pull)
+    direction, square = residual.copy(), float((residual**2).sum())
+    for _ in range(STEPS):
+        if square < 1e-20:
+            break
+        image = applied(direction)
+        step = square / float((direction * image).sum())
+        moves += step * direction
+        residual -= step * image
+        previous, square = square, float((residual**2).sum())
+        direction = residual + square / previous * direction
+    return moves

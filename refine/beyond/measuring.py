@@ -1,0 +1,123 @@
+r"""What criteria beside the paper's share: they measure, and compare with two thresholds.
+
+Kähler, Haber, Seidel 2003, section 4.1 ("More complex criteria can be used as well, such as
+measuring discrete curvature on the mesh [19]") and section 6 ("refining the mesh along silhouette
+edges. To achieve this, appropriate splitting criteria have to be developed").
+
+    curvature   height of the arc over an edge      |k| L^2 / 8, k = 2 n . (b - a) / L^2 the
+                in mean edge lengths at rest        curvature along it (Taubin 1995, section 3)
+    rest        much the same at rest               the same edges in every frame (curvature.py)
+    silhouette  how far the surface turns along     (1 - n_a . n_b) x facing; facing is 1 where the
+                an edge that is seen edge-on        line of sight grazes the edge, 0 a BAND away;
+                                                    the turn counts up to where points have grown
+    screen      length of an edge as it is seen     L x focal / distance from the eye, in pixels
+    bulge       how far the scheme moves a middle   for schemes with curved edges (curves.py);
+                and mends normals, if it knows      `detail` does
+
+Each has two thresholds, above which an edge is split once and twice, and says how much an edge
+needs a split, so that all of them can be blended (blending.py) and any of them combined.
+"""
+
+from collections.abc import Sequence
+from typing import cast
+
+import numpy as np
+import numpy.typing as npt
+
+from ...jit import njit
+from ..border.plugin import View
+from ..kahler.criterion import Criterion, Measured, Thresholds
+from ..mesh.connectivity import Connectivity
+
+Floats = npt.NDArray[np.float32]
+Doubles = npt.NDArray[np.float64]
+Small = npt.NDArray[np.uint8]
+
+
+class Measuring:
+    """What criteria that measure share: thresholds, and splits that follow from needs."""
+
+    def __init__(self, once: float, twice: float, meaning: str) -> None:
+        self.thresholds = Thresholds(once, twice, meaning)
+
+    def bind(
+        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+    ) -> None:
+        """Take the edges."""
+        self._edges = connectivity.edges.view(np.uint32)
+        self._need = np.zeros(len(self._edges), dtype=np.float32)
+
+    def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
+        """Write the number of splits of every edge into `splits`, shape (E,)."""
+        self.measure(positions, normals, self._need)
+        splits_of_needs(self._need, splits)
+
+    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
+        """Write the need of every edge, shape (E,)."""
+        raise NotImplementedError
+
+
+class Maximum:
+    """Several criteria: each edge is split as often as the one that asks for most."""
+
+    def __init__(self, criteria: Sequence[Criterion]) -> None:
+        if not criteria:
+            raise ValueError("criterion: an empty list decides nothing; name at least one")
+        self.criteria = tuple(criteria)
+        # Only a whole of measuring parts measures; others decide in whole splits.
+        if all(isinstance(criterion, Measured) for criterion in self.criteria):
+            self.measure = self._measure
+
+    def bind(
+        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
+    ) -> None:
+        """Bind them all."""
+        for criterion in self.criteria:
+            criterion.bind(connectivity, rest_positions, rest_normals)
+        self._splits = np.zeros(len(connectivity.edges), dtype=np.uint8)
+        self._need = np.zeros(len(connectivity.edges), dtype=np.float32)
+
+    def use(self, scheme: object) -> None:
+        """Show the scheme to those that want it."""
+        for criterion in self.criteria:
+            if hasattr(criterion, "use"):
+                criterion.use(scheme)
+
+    def look(self, view: View | None) -> None:
+        """Show the view to those that want it."""
+        for criterion in self.criteria:
+            if hasattr(criterion, "look"):
+                criterion.look(view)
+
+    def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
+        """Write the largest number of splits of every edge into `splits`, shape (E,)."""
+        splits[:] = 0
+        for criterion in self.criteria:
+            criterion.mark(positions, normals, self._splits)
+            np.maximum(splits, self._splits, out=splits)
+
+    def _measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
+        need[:] = -np.inf
+        for criterion in self.criteria:
+            cast(Measured, criterion).measure(positions, normals, self._need)
+            np.maximum(need, self._need, out=need)
+
+
+def mean_length(connectivity: Connectivity, positions: Doubles) -> np.float32:
+    """Mean length of the edges; 1 if there are none."""
+    lengths = np.linalg.norm(np.diff(positions[connectivity.edges], axis=1)[:, 0], axis=1)
+    return np.float32(lengths.mean() if len(lengths) else 1.0)
+
+
+@njit
+def splits_of_needs(need: Floats, splits: Small) -> None:
+    """Write 0, 1 or 2 into `splits`, shape (E,): above 0 once, above 1 twice."""
+    for e in range(need.shape[0]):
+        splits[e] = np.uint8(need[e] > np.float32(0.0)) + np.uint8(need[e] > np.float32(1.0))
+
+
+@njit
+def scale_needs(need: Floats, once: np.float32, width: np.float32, most: np.float32) -> None:
+    """Turn the measures in `need`, shape (E,), into needs."""
+    for e in range(need.shape[0]):
+        need[e] = min((need[e] - once) / width, most)

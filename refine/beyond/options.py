@@ -1,0 +1,110 @@
+"""The refiner named `kahler`: its options in words, and what they stand for.
+
+By default it is the paper's to the letter (`refine.Kahler`). Options put other criteria and schemes
+in place, by name or as objects, and blend new points in (`Blended`).
+"""
+
+from collections.abc import Sequence
+from typing import Unpack
+
+import numpy.typing as npt
+
+from ..border.corner_values import Values
+from ..kahler.criterion import (
+    THRESHOLD_ONCE,
+    THRESHOLD_TWICE,
+    Criterion,
+    Measured,
+    NormalDrop,
+    criteria,
+)
+from ..kahler.refiner import Kahler
+from ..kahler.smoothing import Scheme, schemes
+from .blending import Blended
+from .detail import FinerMesh
+from .measuring import Maximum
+
+
+def create_kahler(
+    faces: npt.ArrayLike,
+    rest_positions: npt.ArrayLike,
+    *,
+    threshold_once: float = THRESHOLD_ONCE,
+    threshold_twice: float = THRESHOLD_TWICE,
+    criterion: str | Criterion | Sequence[str | Criterion] = "normal",
+    scheme: str | Scheme = "loop",
+    detail: FinerMesh | None = None,
+    blend: bool | None = None,
+    coherent: bool = False,
+    **values: Unpack[Values],
+) -> Kahler:
+    """Bind the paper's refiner, or what the options make of it, to a mesh (`registry.create`).
+
+    `threshold_once`, `threshold_twice`: drop of the normal dot product above which an edge is
+    split once or twice, for the paper's criterion, "normal".
+    `criterion`: "normal", "curvature", "rest", "silhouette", "screen", "bulge", an object, or a
+    list of them, of which the one counts that asks for most; "normal+rest" is such a list.
+    `scheme`: "loop", the paper's, "cubic", "detail", or an object.
+    `detail`: for "detail" the finer mesh at rest, its positions and its triangles.
+    `blend`: whether points grow out of their edges, so that nothing pops. None stands for what
+    costs nothing in faithfulness: True for the schemes that interpolate, False for the paper's.
+    `coherent`: whether triangulations continue those of the frame before (section 4.4).
+    """
+    chosen = scheme_of(scheme, detail)
+    decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))
+    for name, flag in (("blend", blend), ("coherent", coherent)):
+        if flag not in (None, True, False):
+            raise ValueError(f"{name} must be True or False, got {flag!r}")
+    if blend and coherent:
+        raise ValueError(
+            "coherent=True continues the triangulations of the frame before; with blend=True "
+            "none ever turns a diagonal; ask for one of the two"
+        )
+    measures = isinstance(decides, Measured)
+    if blend and not measures:
+        raise ValueError(
+            f"blend=True needs a criterion that measures, but {type(decides).__name__} "
+            "has no method measure(positions, normals, need)"
+        )
+    if blend is None:
+        blend = chosen.interpolates and not coherent
+    if blend and isinstance(decides, Measured):
+        return Blended(faces, rest_positions, criterion=decides, scheme=chosen, **values)
+    return Kahler(
+        faces, rest_positions, criterion=decides, scheme=chosen, coherent=bool(coherent), **values
+    )
+
+
+def scheme_of(chosen: str | Scheme, detail: FinerMesh | None) -> Scheme:
+    """Return the scheme of a name, or the object itself; raises ValueError for anything else."""
+    if (chosen == "detail") != (detail is not None):
+        raise ValueError(
+            'scheme="detail" and detail=(finer rest positions, finer triangles) go together, got '
+            f"scheme={chosen!r} and detail {'given' if detail is not None else 'not given'}"
+        )
+    if isinstance(chosen, str):
+        return schemes.find(chosen)(*([] if detail is None else [detail]))
+    if isinstance(chosen, type) or not (hasattr(chosen, "bind") and hasattr(chosen, "place")):
+        raise ValueError(
+            f"scheme must be one of {schemes.available()} or a refine.Scheme, got {chosen!r}"
+        )
+    return chosen
+
+
+def criterion_of(
+    chosen: str | Criterion | Sequence[str | Criterion], normal_drop: NormalDrop
+) -> Criterion:
+    """Return the criterion of a name, of several, or of an object; `normal_drop` for "normal"."""
+    if isinstance(chosen, str) and "+" in chosen:
+        chosen = chosen.split("+")
+    if isinstance(chosen, str):
+        return normal_drop if chosen == "normal" else criteria.find(chosen)()
+    if isinstance(chosen, Sequence):
+        if any(isinstance(one, Sequence) and not isinstance(one, str) for one in chosen):
+            raise ValueError("criterion: a list must hold names and objects, not other lists")
+        return Maximum([criterion_of(one, normal_drop) for one in chosen])
+    if isinstance(chosen, type) or not (hasattr(chosen, "bind") and hasattr(chosen, "mark")):
+        raise ValueError(
+            f"criterion must be a name, an object with bind and mark, or a list, got {chosen!r}"
+        )
+    return chosen

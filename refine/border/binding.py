@@ -1,0 +1,228 @@
+"""What all built-in refiners share: what is bound, lent and handed in, checked once per kind.
+
+A refiner derives from `BoundRefiner`, says how large its output can get, and writes one method,
+`_fill`. Positions are copied into a buffer at the start of a frame, so that any float type and any
+strides will do, the kernels are compiled for one type only, and a simulation may run on meanwhile.
+
+Source: the plug-in of Kähler, Haber, Seidel 2003, Fig. 1.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Unpack
+
+import numpy as np
+import numpy.typing as npt
+
+from ..mesh.connectivity import Connectivity, connect
+from ..mesh.normals import vertex_normals
+from ..mesh.validation import (
+    as_array,
+    checked_indices,
+    checked_positions,
+    not_finite,
+    round_finite,
+)
+from .corner_values import Values, checked_corner_values
+from .plugin import Origins, RefinedMesh, Stream, View
+from .rows import GEOMETRY_COLUMNS, wedge_values, write_wedges
+from .stream import OwnStream, StreamArrays, check_lent
+
+Floats = npt.NDArray[np.float32]
+
+
+class BoundRefiner(ABC):
+    """A mesh that was checked and connected, with buffers for one frame."""
+
+    def __init__(
+        self,
+        faces: npt.ArrayLike,
+        rest_positions: npt.ArrayLike,
+        **values: Unpack[Values],
+    ) -> None:
+        """Check and connect (see `registry.create`)."""
+        positions = checked_positions(rest_positions)
+        triangles = checked_indices("faces", faces, len(positions), "rest_positions")
+        self._values = checked_corner_values(triangles, len(positions), **values)
+        corners = None if self._values is None else self._values.corners
+        self.connectivity: Connectivity = connect(triangles, len(positions), corners)
+        if self._values is not None:
+            self._wedge_values = wedge_values(self.connectivity, self._values.values)
+        self._rest_positions = positions
+        self._positions = positions.copy()
+        self._points = positions.astype(np.float32)
+        self._normals = np.zeros_like(self._points)
+        self._shape = positions.shape
+        self._own_stream: OwnStream | None = None
+        self._accepted: StreamArrays = _NO_ROWS
+        self._geometry: tuple[Floats, Floats]
+
+    def __reduce__(self) -> str:
+        """Raise TypeError: its arrays look into each other, which no copy would do."""
+        raise TypeError(
+            "a refiner cannot be copied, pickled or sent to another process; make one there with "
+            "refine.create from the same faces and rest positions"
+        )
+
+    @property
+    @abstractmethod
+    def splits(self) -> npt.NDArray[np.uint8]:
+        """How often each edge was split in the last frame, shape (E,)."""
+
+    @property
+    @abstractmethod
+    def vertex_capacity(self) -> int:
+        """Most output vertices a frame can have."""
+
+    @property
+    @abstractmethod
+    def triangle_capacity(self) -> int:
+        """Most output triangles a frame can have."""
+
+    @abstractmethod
+    def origins(self) -> Origins:
+        """Say for every vertex of the last frame where it lies on the input mesh."""
+
+    @abstractmethod
+    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        """Write the frame for `self._positions` into the rows that `self._reserve` gives.
+
+        `self._points` has them in single precision. Returns the numbers of vertices and triangles.
+        """
+
+    def _find_normals(self) -> None:
+        """Write the vertex normals of `self._positions` into `self._normals`."""
+        vertex_normals(self._positions, self.connectivity.faces, self._normals)
+
+    def _write_wedges(self, rows: Floats) -> None:
+        """Write copies of vertices along texture seams, and the values of all wedges."""
+        if self._values is not None:
+            write_wedges(self.connectivity, self._wedge_values, rows)
+
+    @property
+    def edges(self) -> npt.NDArray[np.int32]:
+        """End points of each edge, shape (E, 2)."""
+        return self.connectivity.edges
+
+    @property
+    def triangle_edges(self) -> npt.NDArray[np.int32]:
+        """Edges of each triangle, shape (F, 3); -1 for a triangle that names a vertex twice."""
+        return self.connectivity.triangle_edges
+
+    @property
+    def vertex_columns(self) -> int:
+        """Columns of a stream's vertices: 6, 2 for texture coordinates, those of attributes."""
+        return GEOMETRY_COLUMNS + (0 if self._values is None else self._values.values.shape[1])
+
+    @property
+    def memory(self) -> int:
+        """Bytes of the arrays that this refiner holds now, its own stream included."""
+        return _bytes_of(self, seen=set())
+
+    def refine(
+        self,
+        positions: npt.NDArray[np.floating],
+        out: Stream | None = None,
+        view: View | None = None,
+    ) -> RefinedMesh:
+        """Turn deformed `positions`, shape (V, 3), into triangles; see `Refiner.refine`.
+
+        Raises ValueError if `positions` or the arrays of `out` have a wrong shape or type, or if
+        positions are not finite.
+        """
+        if type(positions) is not np.ndarray:
+            positions = as_array("positions", positions, f"floats of shape {self._shape}")
+        if view is not None and not isinstance(view, View):
+            raise ValueError(f"view must be a refine.View(eye, focal), got {type(view).__name__}")
+        if positions.shape != self._shape or positions.dtype.kind != "f":
+            raise ValueError(
+                f"positions must be floats of shape {self._shape} like the mesh that was bound, "
+                f"got {positions.dtype} of shape {positions.shape}"
+            )
+        stream = self._lend_own_stream() if out is None else out
+        if out is not None and not hasattr(out, "reserve"):
+            self._accept(out, self.vertex_capacity, self.triangle_capacity)
+        self._positions[...] = positions
+        if round_finite(self._positions, self._points) > 0:
+            raise ValueError(not_finite(positions))
+        vertex_count, triangle_count = self._fill(stream, view)
+        vertices, triangles, source = self._accepted
+        uv, attributes = None, _NO_ATTRIBUTES
+        if self._values is not None:
+            uv, attributes = self._attributes_in(vertices[:vertex_count])
+        return RefinedMesh(
+            self._geometry[0][:vertex_count],
+            self._geometry[1][:vertex_count],
+            triangles[:triangle_count],
+            source[:triangle_count],
+            uv,
+            attributes,
+        )
+
+    def _reserve(self, stream: Stream, vertex_count: int, triangle_count: int) -> StreamArrays:
+        """Let the stream grow if it can, and return its arrays, checked.
+
+        The same tuple as long as they are the same arrays.
+        """
+        if hasattr(stream, "reserve"):
+            stream.reserve(vertex_count, triangle_count)
+            self._accept(stream, vertex_count, triangle_count)
+        return self._accepted
+
+    def _accept(self, stream: Stream, vertex_count: int, triangle_count: int) -> None:
+        """Raise ValueError unless the arrays can take this much; seen ones are hardly looked at."""
+        try:
+            vertices, triangles, source = stream.vertices, stream.triangles, stream.source
+        except AttributeError as error:
+            raise ValueError(
+                "a stream must have the arrays vertices, triangles and source "
+                f"(refine.Stream); {type(stream).__name__} has no {error.name}"
+            ) from None
+        accepted = self._accepted
+        is_known = vertices is accepted[0] and triangles is accepted[1] and source is accepted[2]
+        if is_known and len(vertices) >= vertex_count and len(triangles) >= triangle_count:
+            if all(array.flags.writeable for array in accepted):
+                return
+        check_lent("vertices", vertices, np.float32, (vertex_count, self.vertex_columns))
+        check_lent("triangles", triangles, np.uint32, (triangle_count, 3))
+        check_lent("source", source, np.int32, (triangle_count,))
+        self._accepted = StreamArrays(vertices, triangles, source)
+        self._geometry = vertices[:, 0:3], vertices[:, 3:6]
+
+    def _lend_own_stream(self) -> OwnStream:
+        if self._own_stream is None:
+            self._own_stream = OwnStream(
+                self.vertex_columns, self.vertex_capacity, self.triangle_capacity
+            )
+        return self._own_stream
+
+    def _attributes_in(self, vertices: Floats) -> tuple[Floats | None, Mapping[str, Floats]]:
+        """Views of texture coordinates and attributes in the rows of a frame."""
+        assert self._values is not None
+        values = vertices[:, GEOMETRY_COLUMNS:]
+        uv = values[:, :2] if self._values.has_uv else None
+        return uv, {name: values[:, columns] for name, columns in self._values.columns.items()}
+
+
+_NO_ROWS = StreamArrays(
+    np.zeros((0, GEOMETRY_COLUMNS), np.float32), np.zeros((0, 3), np.uint32), np.zeros(0, np.int32)
+)
+_NO_ATTRIBUTES: Mapping[str, Floats] = MappingProxyType({})
+
+
+def _bytes_of(thing: object, seen: set[int]) -> int:
+    """Bytes of the arrays that an object of this package holds, each counted once."""
+    if isinstance(thing, np.ndarray):
+        owner = (
+            thing if thing.base is None or not isinstance(thing.base, np.ndarray) else thing.base
+        )
+        new = id(owner) not in seen
+        seen.add(id(owner))
+        return owner.nbytes if new else 0
+    if isinstance(thing, tuple):  # what compiled code takes as it is
+        return sum(_bytes_of(value, seen) for value in thing)
+    if id(thing) in seen or not hasattr(thing, "__dict__"):
+        return 0
+    seen.add(id(thing))
+    return sum(_bytes_of(value, seen) for value in vars(thing).values())

@@ -1,0 +1,255 @@
+"""A checker to call: is this refined mesh what section 4 of the paper promises?
+
+It goes from counts to references to geometry, uses nothing of the way a mesh was made except the
+refiner's own account of where its vertices come from (`origins`), and names the first relation that
+is broken. For tests, and for authors of refiners; far too slow for every frame.
+
+The relations (Kähler, Haber, Seidel 2003, sections 3 and 4.3, Fig. 7 for the cracks):
+  - every input triangle is covered exactly, by subtriangles of its own orientation, in the plane of
+    its barycentric coordinates: no fold, no sliver with three points on one edge;
+  - equal places have equal positions and normals, on both sides of a texture seam too;
+  - a sub-edge inside an input triangle has two subtriangles, in opposite directions;
+  - a sub-edge on an input edge has the sides that this edge has in the input: so no T-junction, and
+    no border where there was none;
+  - an edge that was split s times has 2^s sub-edges;
+  - a vertex at which no edge was split is where the input has it, to the last bit of a float32.
+A triangle of the input that names a vertex twice takes part in none of this; it comes out once.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from .plugin import Origins, RefinedMesh, Refiner
+
+Wide = npt.NDArray[np.int64]
+
+PARTS = 12
+"""Points of the refined mesh lie at quarters of the edges of the input (section 4.1), or in the
+middle of a triangle: all are whole twelfths."""
+
+
+class BrokenMeshError(ValueError):
+    """A refined mesh violates a relation that the refiner promises."""
+
+
+def check(refiner: Refiner, mesh: RefinedMesh, positions: npt.NDArray[np.floating]) -> None:
+    """Raise BrokenMeshError, naming the relation, unless `mesh` is a proper refinement.
+
+    `mesh`: what `refiner.refine(positions)` returned, still of its last frame; `positions`: the
+    deformed vertex positions, shape (V, 3). Returns nothing and changes nothing.
+    """
+    origins = refiner.origins()
+    _check_arrays(mesh, origins, len(positions), len(refiner.triangle_edges))
+    points = _number_places(origins)
+    _check_same_places(mesh, points)
+
+    faces = _input_faces(refiner)
+    proper = faces[:, 0] >= 0
+    _check_sources(mesh, proper)
+    rows = np.flatnonzero(proper[mesh.source])
+    triangles, source = mesh.triangles[rows].astype(np.int64), mesh.source[rows]
+    corners = _places_in_source(origins, triangles, faces[source])
+    _check_cover(corners, source, np.flatnonzero(proper), rows)
+    _check_sub_edges(points[triangles], corners, source, refiner)
+    _check_unmoved(refiner, mesh, origins, positions)
+
+
+def _check_arrays(mesh: RefinedMesh, origins: Origins, vertex_count: int, face_count: int) -> None:
+    rows, triangle_rows = len(mesh.positions), len(mesh.triangles)
+    _require(
+        mesh.positions.dtype == mesh.normals.dtype == np.float32
+        and mesh.triangles.dtype == np.uint32
+        and mesh.source.dtype == np.int32,
+        "positions and normals are float32, triangles uint32, source int32",
+    )
+    _require(
+        mesh.positions.shape == mesh.normals.shape == (rows, 3)
+        and origins.vertices.shape == origins.weights.shape == (rows, 3)
+        and mesh.triangles.shape == (triangle_rows, 3)
+        and mesh.source.shape == (triangle_rows,)
+        and (mesh.uv is None or mesh.uv.shape == (rows, 2)),
+        "one row of normals, texture coordinates and origins per vertex, one source per triangle",
+    )
+    for name, array, limit in (
+        ("triangles name vertices of the mesh", mesh.triangles, rows),
+        ("sources name triangles of the input", mesh.source, face_count),
+        ("origins name vertices of the input", origins.vertices, vertex_count),
+    ):
+        row = array.reshape(len(array), array[:1].size)
+        _require_all(np.asarray(((row >= 0) & (row < limit)).all(axis=1)), name)
+    is_finite = np.asarray(np.isfinite(mesh.positions).all(axis=1))
+    _require_all(is_finite, "positions are finite")
+    length = np.linalg.norm(mesh.normals.astype(np.float64), axis=1)
+    is_unit = np.isclose(length, 1.0, rtol=0.0, atol=1e-5)
+    _require_all(is_unit | (length == 0.0), "normals have length one or zero")
+
+
+def _input_faces(refiner: Refiner) -> Wide:
+    """Vertices of the input triangles, found again from their edges: corner i is on i - 1 and i.
+
+    -1 for triangles without edges.
+    """
+    faces = np.full(refiner.triangle_edges.shape, -1, dtype=np.int64)
+    proper = refiner.triangle_edges[:, 0] >= 0
+    ends = refiner.edges[refiner.triangle_edges[proper]]
+    is_shared = (ends[..., 0, None] == np.roll(ends, 1, axis=1)).any(axis=2)
+    faces[proper] = np.where(is_shared, ends[..., 0], ends[..., 1])
+    return faces
+
+
+def _number_places(origins: Origins) -> Wide:
+    """Number equal places on the input mesh alike, shape (N,)."""
+    vertices = np.where(origins.weights > 0.0, origins.vertices, -1)
+    order = np.argsort(vertices, axis=1)
+    vertices = np.take_along_axis(vertices, order, axis=1)
+    parts = np.take_along_axis(_in_parts(origins.weights), order, axis=1)
+    # The middle of a triangle is one point of one triangle, even if another has the same corners.
+    is_middle = (parts > 0).all(axis=1)
+    own_number = np.where(is_middle, np.arange(len(parts)), -1)
+    rows = np.column_stack([vertices, parts, own_number])
+    return np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
+
+
+def _in_parts(weights: npt.NDArray[np.float32]) -> Wide:
+    parts = np.rint(weights * PARTS).astype(np.int64)
+    exact = (abs(parts - weights * PARTS) < 1e-5) & (parts >= 0)
+    _require_all(
+        exact.all(axis=1) & (parts.sum(axis=1) == PARTS),
+        "origins have weights in twelfths that add up to one",
+    )
+    return parts
+
+
+def _check_same_places(mesh: RefinedMesh, points: Wide) -> None:
+    _, first, inverse = np.unique(points, return_index=True, return_inverse=True)
+    original = first[inverse.reshape(-1)]
+    _require_all(
+        (mesh.positions == mesh.positions[original]).all(axis=1),
+        "vertices at one place of the input have one position (no crack along a seam)",
+    )
+    _require_all(
+        (mesh.normals == mesh.normals[original]).all(axis=1),
+        "vertices at one place of the input have one normal",
+    )
+
+
+def _check_sources(mesh: RefinedMesh, proper: npt.NDArray[np.bool_]) -> None:
+    counts = np.bincount(mesh.source, minlength=len(proper))
+    _require_all(counts > 0, "every input triangle is part of the output")
+    _require_all(
+        proper | (counts == 1), "an input triangle that names a vertex twice is handed through"
+    )
+
+
+def _places_in_source(origins: Origins, triangles: Wide, source_faces: Wide) -> Wide:
+    """Corners of subtriangles in parts of their source's coordinates, shape (M, 3, 3)."""
+    parts = _in_parts(origins.weights)[triangles]
+    vertices = origins.vertices[triangles]
+    is_corner = vertices[..., None] == source_faces[:, None, None, :]
+    places = (parts[..., None] * is_corner).sum(axis=2)
+    _require_all(
+        (places.sum(axis=2) == PARTS).all(axis=1),
+        "the vertices of a subtriangle lie in the input triangle it is part of",
+    )
+    return np.asarray(places, dtype=np.int64)
+
+
+def _check_cover(corners: Wide, source: npt.NDArray[np.int32], proper: Wide, rows: Wide) -> None:
+    areas = np.einsum("ni,ni->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+    _require_all(
+        areas > 0,
+        "a subtriangle has the orientation of its input triangle and an area "
+        "(it is not flipped, no sliver, not degenerate)",
+        rows,
+    )
+    covered = np.bincount(source, weights=areas, minlength=int(proper.max(initial=-1)) + 1)
+    _require_all(
+        covered[proper] == PARTS**3,
+        "the areas of its subtriangles add up to that of the input triangle",
+        proper,
+    )
+
+
+def _check_sub_edges(
+    triangles: Wide, corners: Wide, source: npt.NDArray[np.int32], refiner: Refiner
+) -> None:
+    starts, ends = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    # A sub-edge lies on edge i of its source where coordinate i + 2 is zero at both ends.
+    is_zero = (corners == 0) & (np.roll(corners, -1, axis=1) == 0)
+    on_edge = np.roll(is_zero, 1, axis=2).reshape(-1, 3)
+    is_inside = ~on_edge.any(axis=1)
+    half_edge_source = np.repeat(source, 3)
+    edge = refiner.triangle_edges[half_edge_source, on_edge.argmax(axis=1)].astype(np.int64)
+    # Sub-edges on an input edge are told apart by the edge, those inside by the triangle.
+    owner = np.where(is_inside, len(refiner.edges) + half_edge_source, edge)
+
+    low, high = np.minimum(starts, ends), np.maximum(starts, ends)
+    keys = np.stack([owner, low, high], axis=1)
+    found, first, inverse, sides = np.unique(
+        keys, axis=0, return_index=True, return_inverse=True, return_counts=True
+    )
+    inverse = inverse.reshape(-1)
+    backward = np.bincount(inverse, weights=starts > ends).astype(np.int64)
+    inside = is_inside[first]
+    _require_all(
+        ~inside | ((sides == 2) & (backward == 1)),
+        "a sub-edge inside an input triangle has two subtriangles in opposite directions",
+    )
+    on = np.flatnonzero(~inside)
+    edge_of_sub = found[on, 0]
+    along, against = _sides_of_edges(refiner)
+    balance = np.stack([backward[on], sides[on] - backward[on]], axis=1)
+    expected = np.stack([along[edge_of_sub], against[edge_of_sub]], axis=1)
+    _require_all(
+        (np.sort(balance, axis=1) == np.sort(expected, axis=1)).all(axis=1),
+        "a sub-edge on an input edge has the same sides as this edge (no crack, no T-junction)",
+        edge_of_sub,
+    )
+    pieces = np.bincount(edge_of_sub, minlength=len(refiner.edges))
+    _require_all(
+        pieces == 2 ** refiner.splits.astype(np.int64),
+        "an edge that was split s times has 2 to the power of s sub-edges",
+    )
+
+
+def _sides_of_edges(refiner: Refiner) -> tuple[Wide, Wide]:
+    """How many input triangles run along and against each edge."""
+    faces = _input_faces(refiner)
+    proper = faces[:, 0] >= 0
+    triangle_edges = refiner.triangle_edges[proper]
+    is_along = refiner.edges[triangle_edges][..., 0] == faces[proper]
+    edge_count = len(refiner.edges)
+    along = np.bincount(triangle_edges[is_along], minlength=edge_count)
+    against = np.bincount(triangle_edges[~is_along], minlength=edge_count)
+    return along.astype(np.int64), against.astype(np.int64)
+
+
+def _check_unmoved(
+    refiner: Refiner, mesh: RefinedMesh, origins: Origins, positions: npt.NDArray[np.floating]
+) -> None:
+    is_near_split = np.zeros(len(positions), dtype=bool)
+    is_near_split[refiner.edges[refiner.splits > 0]] = True
+    is_vertex = origins.weights.max(axis=1) == 1.0
+    rows = np.flatnonzero(is_vertex)
+    vertex = origins.vertices[rows, origins.weights[rows].argmax(axis=1)]
+    same = (mesh.positions[rows] == positions[vertex].astype(np.float32)).all(axis=1)
+    _require_all(
+        same | is_near_split[vertex],
+        "a vertex at which no edge was split keeps its position to the last bit",
+        rows,
+    )
+
+
+def _require(holds: bool, relation: str) -> None:
+    if not holds:
+        raise BrokenMeshError(f"broken: {relation}")
+
+
+def _require_all(
+    holds: npt.NDArray[np.bool_], relation: str, numbers: npt.NDArray[np.integer] | None = None
+) -> None:
+    """Raise with the relation and the number of the first row for which it does not hold."""
+    broken = np.flatnonzero(~holds)
+    if len(broken):
+        number = broken[0] if numbers is None else numbers[broken[0]]
+        raise BrokenMeshError(f"broken at {number} ({len(broken)} of {len(holds)}): {relation}")

@@ -1,0 +1,122 @@
+"""Texture coordinates and attributes: what corners of triangles have beside a place.
+
+Checked and joined into one table, one row for each different corner. What passes is copied, so that
+later changes to the caller's arrays cannot reach a frame.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+from ..mesh.validation import as_array, checked_indices
+
+AttributeLike = npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]
+"""Values of each vertex, shape (V, k), or values (A, k) and the row of each corner (F, 3)."""
+
+
+class Values(TypedDict, total=False):
+    """What all built-in refiners take beside the mesh (see `registry.create`)."""
+
+    uv: npt.ArrayLike | None
+    face_uv: npt.ArrayLike | None
+    attributes: Mapping[str, AttributeLike] | None
+
+
+@dataclass(frozen=True)
+class CornerValues:
+    """Texture coordinates and attributes side by side: one row per different corner."""
+
+    values: npt.NDArray[np.float32]
+    """Shape (A, k)."""
+    corners: npt.NDArray[np.int64] | None
+    """Row of every corner, shape (F, 3); None if vertex v has row v."""
+    columns: Mapping[str, slice]
+    """Where the attributes are among the k columns."""
+    has_uv: bool
+    """Whether the first two columns are texture coordinates."""
+
+
+def checked_corner_values(
+    faces: npt.NDArray[np.int64],
+    vertex_count: int,
+    *,
+    uv: npt.ArrayLike | None = None,
+    face_uv: npt.ArrayLike | None = None,
+    attributes: Mapping[str, AttributeLike] | None = None,
+) -> CornerValues | None:
+    """Join texture coordinates and attributes into one table; None if there are none."""
+    if uv is None and face_uv is not None:
+        raise ValueError("face_uv points into uv, but uv is None; pass both or neither")
+    tables: list[npt.NDArray[np.float32]] = []
+    indices: list[npt.NDArray[np.int64] | None] = []
+    columns: dict[str, slice] = {}
+    if uv is not None:
+        values, corners = _checked_values("uv", uv, "face_uv", face_uv, faces, vertex_count)
+        if values.shape[1] != 2:
+            raise ValueError(f"uv must be numbers of shape (U, 2), got shape {values.shape}")
+        tables, indices = [values], [corners]
+    if attributes is not None and not isinstance(attributes, Mapping):
+        raise ValueError(
+            "attributes must be arrays by name, as in {'colour': array of shape (V, 3)}, "
+            f"got {type(attributes).__name__}"
+        )
+    for name, given in (attributes or {}).items():
+        what = f"attributes[{name!r}]"
+        pair = given if isinstance(given, tuple) and len(given) == 2 else (given, None)
+        values, corners = _checked_values(what, pair[0], f"{what}[1]", pair[1], faces, vertex_count)
+        start = sum(table.shape[1] for table in tables)
+        columns[name] = slice(start, start + values.shape[1])
+        tables.append(values)
+        indices.append(corners)
+    if not tables:
+        return None
+    if all(corners is None for corners in indices):
+        return CornerValues(np.concatenate(tables, axis=1), None, columns, uv is not None)
+    rows = np.stack([faces if corners is None else corners for corners in indices], axis=2)
+    different, number = np.unique(rows.reshape(-1, len(tables)), axis=0, return_inverse=True)
+    table = [values[different[:, k]] for k, values in enumerate(tables)]
+    return CornerValues(
+        np.concatenate(table, axis=1), number.reshape(-1, 3), columns, uv is not None
+    )
+
+
+def _checked_values(
+    what: str,
+    values: npt.ArrayLike,
+    what_corners: str,
+    corners: npt.ArrayLike | None,
+    faces: npt.NDArray[np.int64],
+    vertex_count: int,
+) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int64] | None]:
+    wanted = "numbers of shape " + (
+        "(U, 2)" if what == "uv" else "(V, k), or a tuple of such values and the row of each corner"
+    )
+    array = as_array(what, values, wanted)
+    if array.ndim != 2 or array.shape[1] == 0 or array.dtype.kind not in "fiu":
+        raise ValueError(f"{what} must be {wanted}, got {array.dtype} of shape {array.shape}")
+    with np.errstate(over="ignore"):
+        table = np.array(array, dtype=np.float32)
+    is_finite = np.isfinite(table).all(axis=1)
+    if not is_finite.all():
+        bad = int(is_finite.argmin())
+        raise ValueError(
+            f"{what} must be finite as single precision, but row {bad} is {array[bad]} "
+            f"({np.count_nonzero(~is_finite)} such rows in all)"
+        )
+    if corners is None:
+        if len(array) != vertex_count:
+            raise ValueError(
+                f"{what} without {what_corners} needs one row per vertex ({vertex_count}), got "
+                f"{len(array)}; pass {what_corners}, shape (F, 3), if corners have values of their "
+                "own"
+            )
+        return table, None
+    rows = checked_indices(what_corners, corners, len(array), what)
+    if len(rows) != len(faces):
+        raise ValueError(
+            f"{what_corners} must have one row per triangle ({len(faces)}), got {len(rows)}"
+        )
+    return table, rows

@@ -1,0 +1,130 @@
+"""The border of the plug-in: what a refiner is, what it reads, and what it hands out.
+
+Kähler, Haber, Seidel 2003, Fig. 1 and section 3: refinement sits between the deformed mesh and the
+rendering engine, reads the one and feeds the other, and keeps nothing of its own between frames.
+So a refiner is bound once to the connectivity and the undeformed positions of a mesh, and then
+turns positions into triangles, frame by frame:
+
+    refiner = refine.create("kahler", faces, rest_positions)
+    mesh = refiner.refine(positions)          # draw mesh.positions, mesh.normals, mesh.triangles
+
+New refiners join by name (registry.py).
+"""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+import numpy.typing as npt
+
+
+class RefinedMesh(NamedTuple):
+    """Triangles of one frame: views of buffers that the next frame overwrites."""
+
+    positions: npt.NDArray[np.float32]
+    """Vertex positions [unit of the input], shape (N, 3)."""
+    normals: npt.NDArray[np.float32]
+    """Unit vertex normals, zero where the surface has none, shape (N, 3)."""
+    triangles: npt.NDArray[np.uint32]
+    """Vertices of each triangle, counter-clockwise as in the input, shape (M, 3)."""
+    source: npt.NDArray[np.int32]
+    """Input triangle that each triangle is part of, shape (M,)."""
+    uv: npt.NDArray[np.float32] | None
+    """Texture coordinates, shape (N, 2); None if the mesh was bound without."""
+    attributes: Mapping[str, npt.NDArray[np.float32]] = MappingProxyType({})
+    """The attributes that were bound, by name, shape (N, k)."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copy and pickle as arrays of its own: to keep a frame, or send it to another process."""
+        return RefinedMesh, (*self[:-1], dict(self.attributes))
+
+
+class View(NamedTuple):
+    """Where the mesh is looked at from, for criteria that depend on it."""
+
+    eye: npt.ArrayLike
+    """Position of the eye [unit of the input], shape (3,)."""
+    focal: float = 1000.0
+    """Pixels that a length of 1 covers at distance 1: viewport height / (2 tan(angle of view / 2)).
+    """
+
+
+class Origins(NamedTuple):
+    """Where every output vertex lies in the undeformed parameter domain of the input mesh.
+
+    Output vertex n is the mix of input vertices `vertices[n]` with `weights[n]`, before smoothing.
+    It carries any other attribute over: `(colours[o.vertices] * o.weights[..., None]).sum(1)`.
+    """
+
+    vertices: npt.NDArray[np.int32]
+    """Input vertices, shape (N, 3)."""
+    weights: npt.NDArray[np.float32]
+    """Their barycentric weights, shape (N, 3): quarters, or thirds in the middle of a triangle."""
+
+
+class Stream(Protocol):
+    """Arrays lent by the caller, which the refiner fills from the top.
+
+    They have room for `vertex_capacity` and `triangle_capacity`, unless the stream has a method
+    `reserve(vertex_count, triangle_count)`: that is called before each frame is written, with what
+    the frame needs, and may put larger arrays in place.
+    """
+
+    @property
+    def vertices(self) -> npt.NDArray[np.float32]:
+        """Rows x y z, nx ny nz[, u v][, attributes]; C-contiguous, shape (.., vertex_columns)."""
+
+    @property
+    def triangles(self) -> npt.NDArray[np.uint32]:
+        """C-contiguous, shape (.., 3)."""
+
+    @property
+    def source(self) -> npt.NDArray[np.int32]:
+        """C-contiguous, shape (..,)."""
+
+
+@runtime_checkable
+class Refiner(Protocol):
+    """A refinement method bound to one mesh with V vertices, F triangles and E edges."""
+
+    @property
+    def edges(self) -> npt.NDArray[np.int32]:
+        """End points of each edge of the input mesh, shape (E, 2), in any order."""
+
+    @property
+    def triangle_edges(self) -> npt.NDArray[np.int32]:
+        """Edges of each input triangle, corner i to i + 1, shape (F, 3); -1 if it has no edges."""
+
+    @property
+    def splits(self) -> npt.NDArray[np.uint8]:
+        """How often each edge was split in the last frame, 0, 1 or 2, shape (E,)."""
+
+    @property
+    def vertex_capacity(self) -> int:
+        """Most output vertices a frame can have."""
+
+    @property
+    def triangle_capacity(self) -> int:
+        """Most output triangles a frame can have."""
+
+    @property
+    def vertex_columns(self) -> int:
+        """Columns of a stream's vertices: 6, 2 for texture coordinates, those of attributes."""
+
+    def refine(
+        self,
+        positions: npt.NDArray[np.floating],
+        out: Stream | None = None,
+        view: View | None = None,
+    ) -> RefinedMesh:
+        """Turn deformed `positions`, shape (V, 3), any float type, into triangles; never writes it.
+
+        The result views the arrays of `out`, or of the refiner's own stream without it. `view`:
+        for criteria that ask where the eye is. One frame at a time: threads take a refiner each. A
+        process must not be forked while one of its threads compiles: numba's lock stays shut in the
+        child. (`risorius warm`, or a first frame before the fork, and there is nothing to compile.)
+        """
+
+    def origins(self) -> Origins:
+        """Say for every vertex of the last frame where it lies on the input mesh (allocates)."""

@@ -1,0 +1,142 @@
+"""Things that are found by name: refiners here, schemes and criteria of `kahler` in the same way.
+
+Whoever makes a new one registers it; what the package brings itself goes no other way. Refiners are
+found by an entry point in group `risorius.refiners` too, which is imported when it is asked for.
+"""
+
+import inspect
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, Unpack, get_args, get_origin
+
+import numpy.typing as npt
+
+from .plugin import Refiner
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+ENTRY_POINT_GROUP = "risorius.refiners"
+
+Product = TypeVar("Product")
+
+
+class Registry(Generic[Product]):
+    """Factories of things of one kind, by name."""
+
+    def __init__(self, kind: str) -> None:
+        """`kind`: what the factories make, for errors."""
+        self._kind = kind
+        self._factories: dict[str, Callable[..., Product]] = {}
+
+    def register(self, name: str, factory: Callable[..., Product]) -> None:
+        """Make `factory` known as `name`; raises ValueError if the name is empty or taken."""
+        if not (isinstance(name, str) and name):
+            raise ValueError(f"the name of a {self._kind} must be a word, got {name!r}")
+        if name in self._factories:
+            raise ValueError(
+                f"a {self._kind} named {name!r} exists already; taken are {self.available()}"
+            )
+        if not callable(factory):
+            raise ValueError(f"factory of {self._kind} {name!r} must be callable, got {factory!r}")
+        self._factories[name] = factory
+
+    def available(self) -> tuple[str, ...]:
+        """Names that are known, in the order of their registration."""
+        return tuple(self._factories)
+
+    def find(self, name: str) -> Callable[..., Product]:
+        """Return the factory of a name; raises ValueError if there is none."""
+        if name not in self._factories:
+            raise ValueError(f"{self._kind} {name!r} is unknown; there are {self.available()}")
+        return self._factories[name]
+
+
+class Refiners(Registry[Refiner]):
+    """Refiners, those of installed packages included.
+
+    A factory is called as factory(faces, rest_positions, uv=..., face_uv=..., **options).
+    """
+
+    def available(self) -> tuple[str, ...]:
+        """Names of refiners, sorted: built in, registered, and from entry points."""
+        return tuple(sorted({*self._factories, *_entry_points()}))
+
+    def find(self, name: str) -> Callable[..., Refiner]:
+        """Return the factory of a name; raises ValueError for one that cannot be imported, too."""
+        points = _entry_points()
+        if name in self._factories or name not in points:
+            return super().find(name)
+        try:
+            factory: Callable[..., Refiner] = points[name].load()
+        except Exception as error:  # whatever the module of somebody else does when it is imported
+            raise ValueError(
+                f"refiner {name!r} of {points[name].value!r} cannot be loaded: "
+                f"{type(error).__name__}: {error}"
+            ) from error
+        return factory
+
+
+refiners = Refiners("refiner")
+register, available = refiners.register, refiners.available
+
+
+def create(
+    name: str,
+    faces: npt.ArrayLike,
+    rest_positions: npt.ArrayLike,
+    uv: npt.ArrayLike | None = None,
+    face_uv: npt.ArrayLike | None = None,
+    **options: Any,
+) -> Refiner:
+    """Bind the refiner `name` to a mesh; nothing that is passed is kept or changed.
+
+    `faces`: vertices of each triangle, shape (F, 3), any integer type.
+    `rest_positions`: undeformed vertex positions [any unit], shape (V, 3), any float type.
+    `uv`: texture coordinates, shape (U, 2); `face_uv`: the one of each corner, shape (F, 3), or
+    None if vertex v has coordinate v (then U = V).
+    `options`: what the method takes; see `create_kahler` and `Loop`. The built-in ones all
+    take `attributes`: by name, values of each vertex, shape (V, k), or a pair of values, shape
+    (A, k), and the row of each corner, shape (F, 3), for values that part along seams.
+    Raises ValueError for an unknown name or option, for arrays that do not fit together, and for a
+    refiner of an installed package that cannot be imported.
+    """
+    factory = refiners.find(name)
+    _check_options(name, factory, options)
+    return factory(faces, rest_positions, uv=uv, face_uv=face_uv, **options)
+
+
+def parameters(name: str) -> tuple[inspect.Parameter, ...]:
+    """The options of a refiner that its factory declares, with their defaults and types.
+
+    Types are as they are written where that is text that cannot be looked up.
+    """
+    factory = refiners.find(name)
+    try:
+        signature = inspect.signature(factory, eval_str=True)
+    except (NameError, AttributeError, SyntaxError, TypeError):  # of imports for type checkers only
+        signature = inspect.signature(factory)
+    keywords = (p for p in signature.parameters.values() if p.kind is p.KEYWORD_ONLY)
+    return tuple(p for p in keywords if p.name not in ("uv", "face_uv"))
+
+
+def _check_options(name: str, factory: Callable[..., Refiner], options: dict[str, Any]) -> None:
+    allowed = set()
+    for parameter in inspect.signature(factory).parameters.values():
+        if parameter.kind is parameter.KEYWORD_ONLY:
+            allowed.add(parameter.name)
+        if parameter.kind is parameter.VAR_KEYWORD:
+            if get_origin(parameter.annotation) is not Unpack:
+                return  # it takes anything
+            (values,) = get_args(parameter.annotation)
+            allowed |= values.__annotations__.keys()
+    allowed -= {"uv", "face_uv"}
+    unknown = sorted(set(options) - allowed)
+    if unknown:
+        takes = f"it takes {sorted(allowed)}" if allowed else "it takes none"
+        raise ValueError(f"unknown option {unknown[0]!r} for refiner {name!r}; {takes}")
+
+
+def _entry_points() -> "dict[str, EntryPoint]":
+    from importlib.metadata import entry_points  # takes as long to import as all of this package
+
+    return {point.name: point for point in entry_points(group=ENTRY_POINT_GROUP)}

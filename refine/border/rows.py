@@ -1,0 +1,50 @@
+"""Rows of the output that stand for vertices of the input.
+
+A row is x y z, nx ny nz[, attributes]. The output of every built-in refiner begins with one row per
+wedge (mesh/seams.py), so that vertex v of the input is row v.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from ...jit import njit
+from ..mesh.connectivity import Connectivity
+
+Floats = npt.NDArray[np.float32]
+
+GEOMETRY_COLUMNS = 6
+"""x y z, nx ny nz: columns of a row before attributes."""
+
+
+@njit
+def place_unmoved(points: Floats, normals: Floats, rows: Floats) -> None:
+    """Write vertices as they are."""
+    for v in range(points.shape[0]):
+        for i in range(3):
+            rows[v, i] = points[v, i]
+            rows[v, 3 + i] = normals[v, i]
+
+
+@njit
+def copy_along_seams(wedge_vertices: npt.NDArray[np.uint32], first: int, rows: Floats) -> None:
+    """Copy position and normal of vertices on texture seams to their other sides.
+
+    `wedge_vertices`: the vertex of every wedge, shape (W,), of which copies begin with `first`.
+    """
+    for w in range(first, wedge_vertices.shape[0]):
+        for i in range(GEOMETRY_COLUMNS):
+            rows[w, i] = rows[wedge_vertices[w], i]
+
+
+def wedge_values(mesh: Connectivity, values: Floats) -> Floats:
+    """Texture coordinates and attributes of wedges, 0 where none is given, shape (W, k).
+
+    `values`: shape (A, k); the mesh says which row of it a wedge has.
+    """
+    return np.where(mesh.wedge_uv[:, None] < 0, np.float32(0.0), values[mesh.wedge_uv])
+
+
+def write_wedges(mesh: Connectivity, values: Floats, rows: Floats) -> None:
+    """Write what follows a vertex: its copies along seams, and the values of `wedge_values`."""
+    copy_along_seams(mesh.wedge_vertices, mesh.vertex_count, rows)
+    rows[: len(values), GEOMETRY_COLUMNS:] = values

@@ -1,0 +1,70 @@
+"""Arrays that frames are written into: those a caller lends, and a refiner's own."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float32]
+
+SPARE = 1.25
+"""How much more than it needs a stream of one's own takes when it has to grow."""
+
+
+class StreamArrays(NamedTuple):
+    """The arrays of a stream, checked."""
+
+    vertices: Floats
+    """Rows of the output (rows.py), shape (.., k)."""
+    triangles: npt.NDArray[np.uint32]
+    """Their corners, shape (.., 3)."""
+    source: npt.NDArray[np.int32]
+    """Input triangle that each is part of, shape (..,)."""
+
+
+class OwnStream:
+    """The stream a refiner uses when none is lent: it grows to what the frames need."""
+
+    def __init__(self, columns: int, vertex_capacity: int, triangle_capacity: int) -> None:
+        self._most = vertex_capacity, triangle_capacity
+        self.vertices = np.zeros((0, columns), dtype=np.float32)
+        self.triangles = np.zeros((0, 3), dtype=np.uint32)
+        self.source = np.zeros(0, dtype=np.int32)
+
+    def reserve(self, vertex_count: int, triangle_count: int) -> None:
+        """Make room for a frame of this size; what was written is lost."""
+        if len(self.vertices) < vertex_count:
+            rows = min(int(SPARE * vertex_count), self._most[0])
+            self.vertices = np.zeros((rows, self.vertices.shape[1]), dtype=np.float32)
+        if len(self.triangles) < triangle_count:
+            rows = min(int(SPARE * triangle_count), self._most[1])
+            self.triangles = np.zeros((rows, 3), dtype=np.uint32)
+            self.source = np.zeros(rows, dtype=np.int32)
+
+
+def check_lent(name: str, array: object, dtype: type[np.generic], needed: tuple[int, ...]) -> None:
+    """Raise ValueError unless `array` can be filled with at least `needed` rows."""
+    if (
+        isinstance(array, np.ndarray)
+        and array.dtype == dtype
+        and array.ndim == len(needed)
+        and len(array) >= needed[0]
+        and array.shape[1:] == needed[1:]
+        and array.flags.c_contiguous
+        and array.flags.aligned
+        and array.flags.writeable
+    ):
+        return
+    if isinstance(array, np.ndarray):
+        got = f"{array.dtype} of shape {array.shape}"
+        got += "" if array.flags.c_contiguous else ", not contiguous"
+        got += "" if array.flags.writeable else ", read-only"
+        got += "" if array.flags.aligned else ", not aligned"
+    else:
+        got = type(array).__name__
+    columns = "".join(f", {size}" for size in needed[1:])
+    raise ValueError(
+        f"stream.{name} must be a writable C-contiguous {np.dtype(dtype)} array of shape "
+        f"(>= {needed[0]}{columns}), got {got}; see vertex_capacity, triangle_capacity and "
+        "vertex_columns of the refiner"
+    )

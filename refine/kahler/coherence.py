@@ -1,0 +1,235 @@
+r"""Time-coherent splitting: the 271 sequences of splits, and how a triangle moves between them.
+
+Kähler, Haber, Seidel 2003, section 4.4. The 27-entry table (table.py) knows how often each edge
+is split, not in which order, so a new split may turn diagonals that were there before, and a flat
+shaded triangle flickers. Here a triangle is split in the order in which its edges were:
+
+            2                   2                   2         the first split of an edge joins its
+           / \                 /|\                 /|\        middle to the corner opposite; every
+          /   \     edge 0    / | \     edge 1    / | 6       split after it halves the subtriangles
+         /     \    ----->   /  |  \    ----->   /  |/ \      that lie on the halves of its edge
+        0-------1           0---3---1           0---3---1
+
+    sequence ()             (0,)                (0, 1)
+
+A split only ever cuts subtriangles in two. So the triangulation of a sequence holds every inner
+line of the triangulation of each sequence that it continues: what is there stays there.
+
+Each edge can be split up to twice: 271 sequences from () to those of length six, and the number of
+its sequence is all that a triangle keeps from one frame to the next. `TRANSITIONS` leads from
+sequence and wanted splits to the next sequence:
+
+  - Splits taken back leave the sequence from its end. One that is taken back while a later one
+    stays is removed out of order: the rest is what it would be had it never been, and lines may
+    turn. That cannot be avoided (the paper says so); it is counted.
+  - Splits that come in one frame have no order among them. They are put in the order that gives the
+    shortest inner lines in an equilateral triangle, and of equals the one that comes first by edge
+    number.
+
+Differs from the paper: it keeps the history with the mesh, we keep one number for each triangle.
+Entries for all edges split have no middle triangle as the table's have: no order of splits gives
+one. The tables are built when a refiner first asks for them, in a tenth of a second.
+
+Neighbours may have come to their splits in different orders: they share the points along their
+edge, so no crack can open.
+"""
+
+import itertools
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+
+from ...jit import njit
+from .table import (
+    CONFIGURATION_COUNT,
+    MOST_SPLITS,
+    POINTS,
+    Patterns,
+    Triangle,
+    splits_of,
+    table_of,
+    verify,
+)
+
+SEQUENCE_COUNT = 271
+"""Sequences of up to two splits on each of three edges (section 4.4)."""
+
+Sequence = tuple[int, ...]
+Numbers = npt.NDArray[np.uint16]
+
+
+@dataclass(frozen=True)
+class SequenceTables:
+    """Everything there is to know about the 271 sequences, as read-only arrays."""
+
+    sequences: tuple[Sequence, ...]
+    """Edges in the order of their splits; number 0 is (), shorter ones come first."""
+    patterns: Patterns
+    """Subtriangles of each sequence."""
+    transitions: npt.NDArray[np.uint16]
+    """Next sequence for each sequence and each configuration wanted, shape (271, 27)."""
+    removals: npt.NDArray[np.uint8]
+    """How many splits this takes back out of order, shape (271, 27)."""
+
+
+@cache
+def sequence_tables() -> SequenceTables:
+    """Build all tables, once; every entry is verified like those of the 27-entry table."""
+    sequences = _all_sequences()
+    assert len(sequences) == SEQUENCE_COUNT, f"{len(sequences)} sequences, not {SEQUENCE_COUNT}"
+    number = {sequence: k for k, sequence in enumerate(sequences)}
+    triangulations = [split_in_order(sequence) for sequence in sequences]
+    for sequence, triangles in zip(sequences, triangulations, strict=True):
+        verify(_splits_of(sequence), triangles)
+
+    transitions = np.zeros((SEQUENCE_COUNT, CONFIGURATION_COUNT), dtype=np.uint16)
+    removals = np.zeros((SEQUENCE_COUNT, CONFIGURATION_COUNT), dtype=np.uint8)
+    continued = _best_continuations(sequences)
+    for k, sequence in enumerate(sequences):
+        for configuration in range(CONFIGURATION_COUNT):
+            wanted = splits_of(configuration)
+            left, out_of_order = _taken_back(sequence, wanted)
+            transitions[k, configuration] = number[continued[left, wanted]]
+            removals[k, configuration] = out_of_order
+    for array in (transitions, removals):
+        array.flags.writeable = False
+    return SequenceTables(sequences, table_of(triangulations), transitions, removals)
+
+
+def split_in_order(sequence: Sequence) -> list[Triangle]:
+    """Split the edges of a triangle one after the other, as often as `sequence` names them.
+
+    Returns subtriangles of the 12 numbered points. Raises ValueError for a third split of an edge.
+    """
+    triangles: list[Triangle] = [(0, 1, 2)]
+    for position, edge in enumerate(sequence):
+        start, end = edge, (edge + 1) % 3
+        middle, near_start, near_end = 3 + 3 * edge, 4 + 3 * edge, 5 + 3 * edge
+        earlier = sequence[:position].count(edge)
+        if earlier == 0:
+            triangles = _halved(triangles, start, end, middle)
+        elif earlier < MOST_SPLITS:
+            triangles = _halved(triangles, start, middle, near_start)
+            triangles = _halved(triangles, middle, end, near_end)
+        else:
+            raise ValueError(
+                f"sequence {sequence} splits edge {edge} more than {MOST_SPLITS} times"
+            )
+    return triangles
+
+
+def _halved(triangles: list[Triangle], start: int, end: int, point: int) -> list[Triangle]:
+    """Cut the one subtriangle with the side start-end in two, at a point on this side."""
+    result: list[Triangle] = []
+    for triangle in triangles:
+        if start in triangle and end in triangle:
+            turn = triangle.index(start)
+            a, b, c = triangle[turn], triangle[turn - 2], triangle[turn - 1]
+            result += [(a, point, c), (point, b, c)]
+        else:
+            result.append(triangle)
+    return result
+
+
+def _all_sequences() -> tuple[Sequence, ...]:
+    """Sequences with up to two of each edge, by length, then by edge numbers."""
+    return tuple(
+        sequence
+        for length in range(3 * MOST_SPLITS + 1)
+        for sequence in itertools.product(range(3), repeat=length)
+        if max(_splits_of(sequence)) <= MOST_SPLITS
+    )
+
+
+def _splits_of(sequence: Sequence) -> tuple[int, int, int]:
+    return sequence.count(0), sequence.count(1), sequence.count(2)
+
+
+def _taken_back(sequence: Sequence, wanted: tuple[int, int, int]) -> tuple[Sequence, int]:
+    """Leave out the last splits of edges that have too many.
+
+    Returns what is left, and how many were followed by one that stays.
+    """
+    surplus = [max(0, has - want) for has, want in zip(_splits_of(sequence), wanted, strict=True)]
+    left: list[int] = []
+    out_of_order = 0
+    for edge in reversed(sequence):
+        if surplus[edge]:
+            surplus[edge] -= 1
+            out_of_order += bool(left)
+        else:
+            left.append(edge)
+    return tuple(reversed(left)), out_of_order
+
+
+def _best_continuations(
+    sequences: tuple[Sequence, ...],
+) -> dict[tuple[Sequence, tuple[int, int, int]], Sequence]:
+    """Of all ways to get from a sequence to a configuration, the one with the shortest lines."""
+    best: dict[tuple[Sequence, tuple[int, int, int]], tuple[float, Sequence]] = {}
+    for sequence in sequences:
+        candidate = (round(_length_of_inner_lines(sequence), 9), sequence)
+        for length in range(len(sequence) + 1):
+            key = sequence[:length], _splits_of(sequence)
+            best[key] = min(best.get(key, candidate), candidate)
+    return {key: sequence for key, (_, sequence) in best.items()}
+
+
+def _length_of_inner_lines(sequence: Sequence) -> float:
+    """Twice the length of all lines inside an equilateral triangle, and a constant border."""
+    corners = POINTS[np.array(split_in_order(sequence))]
+    u, v, w = np.moveaxis(corners - np.roll(corners, 1, axis=1), 2, 0)
+    return float(np.sqrt(-(u * v + v * w + w * u)).sum())
+
+
+class Coherent:
+    """Table rows by sequence of splits, for the triangles of one mesh."""
+
+    def __init__(self, face_count: int) -> None:
+        """Start with no split anywhere in `face_count` triangles."""
+        self._tables = sequence_tables()
+        self.patterns = self._tables.patterns
+        """A row for each sequence."""
+        self.states: Numbers = np.zeros(face_count, dtype=np.uint16)
+        """The sequence of each triangle, shape (F,): all that lives from frame to frame."""
+        self.removals_out_of_order = 0
+        """Splits taken back while a later one stayed, in all frames; each may turn lines."""
+
+    def follow(self, configurations: Numbers) -> Numbers:
+        """Move every triangle from its sequence to the next one; return these, shape (F,).
+
+        `configurations`: s0 + 3 s1 + 9 s2 of each triangle in the frame, shape (F + 1,).
+        """
+        tables = self._tables
+        self.removals_out_of_order += follow_splits(
+            configurations, tables.transitions, tables.removals, self.states
+        )
+        return self.states
+
+    def forget(self) -> None:
+        """Take up the next frame as if it were the first: after a cut, or a jump in time."""
+        self.states[:] = 0
+        self.removals_out_of_order = 0
+
+
+@njit
+def follow_splits(
+    configurations: Numbers,
+    transitions: Numbers,
+    removals: npt.NDArray[np.uint8],
+    states: Numbers,
+) -> int:
+    """Replace every sequence in `states`, shape (F,), by the next one for its configuration.
+
+    Returns how many splits were taken back out of order.
+    """
+    removed = 0
+    for t in range(states.shape[0]):
+        if configurations[t] == 0:  # most triangles: nothing is left of what they remember
+            states[t] = 0
+            continue
+        removed += int(removals[states[t], configurations[t]])
+        states[t] = transitions[states[t], configurations[t]]
+    return removed

@@ -1,0 +1,111 @@
+"""What the passes of a frame hand on to each other, as plain arrays.
+
+Kähler, Haber, Seidel 2003, section 4. A frame has two halves: first it is decided which edges are
+split (`splits`, and how far their points have grown), then points are placed and triangles written
+into `rows`. Compiled code takes the
+`FrameBuffers` as they are; the arrays stay the same from frame to frame,
+but for `rows`, which belongs to whoever draws.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ..mesh.connectivity import Connectivity
+
+Floats = npt.NDArray[np.float32]
+Unsigned = npt.NDArray[np.uint32]
+
+ROWS, ONCE, TWICE, TRIANGLES, CENTRES = range(5)
+"""Places in `FrameBuffers.counts`: output rows but centres, edges split, edges split twice,
+subtriangles, triangles with a point in the middle."""
+
+
+class FrameBuffers(NamedTuple):
+    """One frame of a mesh with V vertices, F triangles, E edges and R rims."""
+
+    positions: npt.NDArray[np.float64]
+    """Deformed vertex positions, shape (V, 3)."""
+    points: Floats
+    """The same in single precision, which is enough for all but differences."""
+    normals: Floats
+    """Their unit normals, shape (V, 3)."""
+    splits: npt.NDArray[np.uint8]
+    """Splits of every rim, edges first, shape (R + 1,); the last stands for where no edge is."""
+    growth_once: Floats
+    """How far the middle point of an edge is from the straight edge to its place, shape (E,).
+
+    Ones, but for frames that are blended (beyond/blending.py); no meaning where no point is.
+    """
+    growth_twice: Floats
+    """How far its quarter points are."""
+    first_points: Unsigned
+    """Output row of the first point of every split rim, shape (R + 1,)."""
+    split_once: Unsigned
+    """The edges that are split; the first `counts[ONCE]` count."""
+    split_twice: Unsigned
+    """The edges that are split twice; the first `counts[TWICE]` count."""
+    configurations: npt.NDArray[np.uint16]
+    """s0 + 3 s1 + 9 s2 of each triangle's edges, shape (F + 1,); the last one has no meaning."""
+    centre_triangles: Unsigned
+    """The triangles with a point in the middle, which only blending has; the first
+    `counts[CENTRES]` count. Shape (F + 1,)."""
+    counts: npt.NDArray[np.int64]
+    """How many there are of what, shape (5,): see ROWS, ONCE, TWICE, TRIANGLES, CENTRES."""
+    rows: Floats
+    """The output: x y z, nx ny nz, attributes; row v is vertex v."""
+
+    @property
+    def once_count(self) -> int:
+        """How many edges are split."""
+        return int(self.counts[ONCE])
+
+    @property
+    def twice_count(self) -> int:
+        """How many edges are split twice."""
+        return int(self.counts[TWICE])
+
+    @property
+    def first_centre(self) -> int:
+        """Output row of the first point in the middle of a triangle."""
+        return int(self.counts[ROWS])
+
+    @property
+    def centre_count(self) -> int:
+        """How many triangles have a point in the middle."""
+        return int(self.counts[CENTRES])
+
+
+def buffers_for(
+    mesh: Connectivity, positions: npt.NDArray[np.float64], points: Floats, normals: Floats
+) -> FrameBuffers:
+    """Make the buffers of a mesh, but for `rows`, of which there are none yet."""
+    edge_count, rim_count, face_count = len(mesh.edges), len(mesh.rim_edges), len(mesh.faces)
+    return FrameBuffers(
+        positions=positions,
+        points=points,
+        normals=normals,
+        # One more than rims: triangles without edges refer to it and find zero splits.
+        splits=np.zeros(rim_count + 1, dtype=np.uint8),
+        growth_once=np.ones(edge_count, dtype=np.float32),
+        growth_twice=np.ones(edge_count, dtype=np.float32),
+        first_points=np.zeros(rim_count + 1, dtype=np.uint32),
+        split_once=np.zeros(edge_count + 1, dtype=np.uint32),
+        split_twice=np.zeros(edge_count + 1, dtype=np.uint32),
+        configurations=np.zeros(face_count + 1, dtype=np.uint16),
+        centre_triangles=np.zeros(face_count + 1, dtype=np.uint32),
+        counts=np.zeros(5, dtype=np.int64),
+        rows=np.zeros((0, 0), dtype=np.float32),
+    )
+
+
+def split_everywhere(frame: FrameBuffers, vertex_count: int) -> FrameBuffers:
+    """Fill buffers in so that every edge is split once: points follow vertices in its order."""
+    edge_count = len(frame.growth_once)
+    every_edge = np.arange(edge_count, dtype=np.uint32)
+    frame.splits[:edge_count] = 1
+    frame.split_once[:edge_count] = every_edge
+    frame.first_points[:edge_count] = vertex_count + every_edge
+    frame.counts[ROWS], frame.counts[ONCE] = vertex_count + edge_count, edge_count
+    return frame

@@ -1,0 +1,158 @@
+"""Numbering of new points, and the subtriangles that are looked up for them.
+
+Kähler, Haber, Seidel 2003, section 4.3. The output begins with one row per wedge, so that vertex v
+of the input is row v. The points of a rim follow in a block, in the direction of its edge: the
+middle point, or quarter, middle, quarter. Points in the middle of triangles, which only blending
+has (beyond/blending.py), come last.
+
+Attributes (texture coordinates, colours) of new points are
+interpolated linearly along their edge, with the values of their own side of a seam (section 4.4,
+first paragraph).
+
+Everything here goes from the edges that are split, not from the triangles: most are not.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from ...jit import njit
+from ..border.rows import GEOMETRY_COLUMNS
+from ..border.stream import StreamArrays
+from .frame import ONCE, ROWS, TRIANGLES, TWICE, FrameBuffers
+from .table import CENTRE, Patterns
+
+Floats = npt.NDArray[np.float32]
+Indices = npt.NDArray[np.int32]
+Unsigned = npt.NDArray[np.uint32]
+Short = npt.NDArray[np.uint16]
+
+QUARTER = np.float32(0.25)
+HALF = np.float32(0.5)
+THREE_QUARTERS = np.float32(0.75)
+SIDE_BITS, SIDE_MASK = np.uint32(2), np.uint32(3)
+"""A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
+PLACE_VALUES = np.array([1, 3, 9], dtype=np.uint16)
+"""Of the splits of a triangle's three edges in the number of its configuration."""
+
+
+@njit
+def points_on(split: int) -> int:
+    """New points on an edge that was split 0, 1 or 2 times: 0, 1 or 3."""
+    return int(split + (split >> 1))
+
+
+@njit
+def number_points(
+    edge_sides: Unsigned,
+    more_sides: Unsigned,
+    rim_edges: Unsigned,
+    wedge_count: int,
+    frame: FrameBuffers,
+) -> None:
+    """List the split edges, give new points their rows, and triangles their configuration.
+
+    `split_once` gets every split edge, `split_twice` those split twice. The entries of
+    `first_points` for edges that are not split have no meaning. `counts` gets all but centres.
+    """
+    splits, configurations = frame.splits, frame.configurations
+    edge_count, face_count = edge_sides.shape[0], configurations.shape[0] - 1
+    once_count = twice_count = 0
+    for e in range(edge_count):
+        # Written always and counted when split: no branch that a processor could guess wrong.
+        frame.split_once[once_count] = e
+        once_count += splits[e] > 0
+    configurations[:] = 0
+    row, triangle_count = wedge_count, face_count
+    for k in range(once_count):
+        e = frame.split_once[k]
+        split = splits[e]
+        frame.split_twice[twice_count] = e
+        twice_count += split > 1
+        points = points_on(split)
+        frame.first_points[e] = row
+        row += points
+        for i in range(2):
+            t, place = edge_sides[e, i] >> SIDE_BITS, edge_sides[e, i] & SIDE_MASK
+            configurations[t] += split * PLACE_VALUES[place]
+            triangle_count += points * (t < face_count)
+    for k in range(more_sides.shape[0]):
+        split, side = splits[more_sides[k, 0]], more_sides[k, 1]
+        configurations[side >> SIDE_BITS] += split * PLACE_VALUES[side & SIDE_MASK]
+        triangle_count += points_on(split)
+    for r in range(edge_count, rim_edges.shape[0]):
+        splits[r] = splits[rim_edges[r]]
+        frame.first_points[r] = row
+        row += points_on(splits[r])
+    frame.counts[ROWS], frame.counts[ONCE], frame.counts[TWICE] = row, once_count, twice_count
+    frame.counts[TRIANGLES] = triangle_count
+
+
+@njit
+def copy_along_rims(rim_edges: Unsigned, frame: FrameBuffers) -> None:
+    """Copy position and normal of new points on texture seams to their other sides."""
+    for r in range(frame.growth_once.shape[0], rim_edges.shape[0]):
+        for point in range(points_on(frame.splits[r])):
+            original = frame.first_points[rim_edges[r]] + point
+            copy = frame.first_points[r] + point
+            for i in range(GEOMETRY_COLUMNS):
+                frame.rows[copy, i] = frame.rows[original, i]
+
+
+@njit
+def place_rim_attributes(rim_uv: Indices, frame: FrameBuffers, values: Floats) -> None:
+    """Write attributes of new points, linearly along their rim; `values`: shape (A, k)."""
+    vertices = frame.rows
+    for r in range(rim_uv.shape[0]):
+        split, row = frame.splits[r], frame.first_points[r]
+        if split == 0:
+            continue
+        a, b = rim_uv[r, 0], rim_uv[r, 1]
+        for i in range(values.shape[1]):
+            at_a, at_b, column = values[a, i], values[b, i], GEOMETRY_COLUMNS + i
+            vertices[row + (split >> 1), column] = HALF * (at_a + at_b)
+            if split == 2:
+                vertices[row, column] = THREE_QUARTERS * at_a + QUARTER * at_b
+                vertices[row + 2, column] = QUARTER * at_a + THREE_QUARTERS * at_b
+
+
+@njit
+def look_up_triangles(
+    corners: Unsigned,
+    triangle_rims: Unsigned,
+    frame: FrameBuffers,
+    patterns: Patterns,
+    table_rows: Short,
+    out: StreamArrays,
+) -> None:
+    """Write the subtriangles of every triangle by its row in the table (section 4.3).
+
+    A rim keeps its points in the direction of the edge; a triangle that runs against it reads the
+    quarter points in reverse. Centres are numbered in the order of the triangles that have one.
+    """
+    triangles, source = out.triangles, out.source
+    points = np.zeros(CENTRE + 1, np.uint32)
+    points[CENTRE] = frame.counts[ROWS]
+    one, two = np.uint32(1), np.uint32(2)
+    count = 0
+    for t in range(corners.shape[0]):
+        row = table_rows[t]
+        if row == 0:  # most triangles are not split
+            for i in range(3):
+                triangles[count, i] = corners[t, i]
+            source[count] = t
+            count += 1
+            continue
+        # The 12 numbered points; those of edges that are not split are never looked up.
+        for i in range(3):
+            rim, against = triangle_rims[t, i] >> one, triangle_rims[t, i] & one
+            first = frame.first_points[rim]
+            points[i] = corners[t, i]
+            points[3 + 3 * i] = first + (frame.splits[rim] >> 1)  # the only point, or the second
+            points[4 + 3 * i] = first + two * against
+            points[5 + 3 * i] = first + two - two * against
+        for k in range(patterns.counts[row]):
+            for i in range(3):
+                triangles[count, i] = points[patterns.subtriangles[row, k, i]]
+            source[count] = t
+            count += 1
+        points[CENTRE] += patterns.subtriangles[row, 0, 0] == CENTRE

@@ -1,0 +1,158 @@
+"""The paper's refiner: split the edges that bend, smooth around them, look the triangles up.
+
+Kähler, Haber, Seidel 2003, sections 4.1 to 4.4. One frame is `Kahler._fill`:
+
+    normals     of the deformed mesh                                  (mesh/normals.py)
+    mark        how often each edge is split               (4.1, criterion.py)
+    number      lists of split edges, rows for new points  (look_up.py; 4.4, coherence.py)
+    place       moved vertices, first level, second level  (4.2, smoothing.py)
+    look up     subtriangles of each triangle              (4.3, table.py, look_up.py)
+
+Differs from the paper: normals of new points are interpolated linearly and then normalised; the
+deformed mesh is copied once, as a shield against a simulation that runs on meanwhile.
+"""
+
+from typing import Unpack
+
+import numpy as np
+import numpy.typing as npt
+
+from ..border.binding import BoundRefiner
+from ..border.corner_values import Values
+from ..border.plugin import Origins, Stream, View
+from ..border.stream import StreamArrays
+from .coherence import Coherent
+from .criterion import Criterion, NormalDrop
+from .frame import ROWS, TRIANGLES, buffers_for
+from .look_up import copy_along_rims, look_up_triangles, number_points, place_rim_attributes
+from .smoothing import LoopScheme, Scheme
+from .table import CONFIGURATIONS, MOST_SPLITS, POINTS_OF_EDGE
+
+Floats = npt.NDArray[np.float32]
+
+
+class Kahler(BoundRefiner):
+    """Refinement after Kähler, Haber, Seidel 2003."""
+
+    def __init__(
+        self,
+        faces: npt.ArrayLike,
+        rest_positions: npt.ArrayLike,
+        *,
+        criterion: Criterion | None = None,
+        scheme: Scheme | None = None,
+        coherent: bool = False,
+        **values: Unpack[Values],
+    ) -> None:
+        """Bind to a mesh (see `registry.create`).
+
+        `criterion`, `scheme`: None for the paper's.
+        `coherent`: whether triangulations continue those of the frame before (section 4.4).
+        """
+        super().__init__(faces, rest_positions, **values)
+        mesh = self.connectivity
+        self._criterion = NormalDrop() if criterion is None else criterion
+        self._scheme = LoopScheme() if scheme is None else scheme
+        self.history = Coherent(len(mesh.faces)) if coherent else None
+        """What triangles remember of their splits, as they are walked; None unless `coherent`."""
+        self._frame = buffers_for(mesh, self._positions, self._points, self._normals)
+        self._patterns, self._table_rows = CONFIGURATIONS, self._frame.configurations
+        if self.history is not None:
+            self._patterns, self._table_rows = self.history.patterns, self.history.states
+        self._edge_splits = self._frame.splits[: len(mesh.edges)]
+        self._splits = self._edge_splits.view()
+        self._splits.flags.writeable = False
+        if hasattr(self._criterion, "use"):
+            self._criterion.use(self._scheme)
+        self._find_normals()
+        self._criterion.bind(mesh, self._rest_positions, self._normals)
+        self._scheme.bind(mesh, self._rest_positions, self._normals)
+
+    @property
+    def splits(self) -> npt.NDArray[np.uint8]:
+        """How often each edge was split in the last frame, shape (E,), read only."""
+        return self._splits
+
+    @property
+    def vertex_capacity(self) -> int:
+        """Most output vertices: every wedge, and three points on every rim."""
+        return len(self.connectivity.wedge_vertices) + 3 * len(self.connectivity.rim_edges)
+
+    @property
+    def triangle_capacity(self) -> int:
+        """Most output triangles: the longest row of the table for each."""
+        return int(self._patterns.subtriangles.shape[1] * len(self.connectivity.faces))
+
+    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        self._find_normals()
+        self._mark(view)
+        vertex_count, triangle_count = self._number()
+        out = self._reserve(stream, vertex_count, triangle_count)
+        self._place(out.vertices)
+        self._look_up(out)
+        return vertex_count, triangle_count
+
+    def _mark(self, view: View | None) -> None:
+        """Decide how often every edge is split (section 4.1)."""
+        self._show(view)
+        self._criterion.mark(self._frame.positions, self._frame.normals, self._edge_splits)
+        if not isinstance(self._criterion, NormalDrop):
+            self._check_splits()
+
+    def _number(self) -> tuple[int, int]:
+        """Give new points their rows and triangles their row of the table; count both."""
+        mesh, frame = self.connectivity, self._frame
+        wedge_count = len(mesh.wedge_vertices)
+        number_points(mesh.edge_sides, mesh.more_sides, mesh.rim_edges, wedge_count, frame)
+        if self.history is not None:
+            self.history.follow(frame.configurations)
+        return int(frame.counts[ROWS]), int(frame.counts[TRIANGLES])
+
+    def _place(self, rows: Floats) -> None:
+        """Write vertices and new points: positions, normals, attributes (section 4.2)."""
+        if rows is not self._frame.rows:
+            self._frame = self._frame._replace(rows=rows)
+        self._scheme.place(self._frame)
+        if self._values is not None:
+            self._write_wedges(rows)
+            copy_along_rims(self.connectivity.rim_edges, self._frame)
+            place_rim_attributes(self.connectivity.rim_uv, self._frame, self._values.values)
+
+    def _look_up(self, out: StreamArrays) -> None:
+        """Write the subtriangles of every triangle (section 4.3)."""
+        mesh = self.connectivity
+        look_up_triangles(
+            mesh.corners, mesh.triangle_rims, self._frame, self._patterns, self._table_rows, out
+        )
+
+    def _show(self, view: View | None) -> None:
+        """Show the criterion where the eye is, if it wants to know."""
+        if hasattr(self._criterion, "look"):
+            self._criterion.look(view)
+
+    def _check_splits(self) -> None:
+        """Raise ValueError if a criterion asks for more than the table has."""
+        most = self._edge_splits.max(initial=0)
+        if most > MOST_SPLITS:
+            raise ValueError(
+                f"{type(self._criterion).__name__}.mark must write 0, 1 or 2 for every edge, "
+                f"but edge {self._edge_splits.argmax()} got {most}"
+            )
+
+    def origins(self) -> Origins:
+        """Say for every vertex of the last frame where it lies on the input mesh."""
+        mesh = self.connectivity
+        point_counts = np.array(POINTS_OF_EDGE)[self._frame.splits[:-1]]
+        # Place along the edge, in quarters, of the points of a block: x 2 x or 1 2 3.
+        block_starts = np.cumsum(point_counts) - point_counts
+        within = np.arange(point_counts.sum()) - np.repeat(block_starts, point_counts)
+        place = np.where(np.repeat(point_counts, point_counts) == 1, 2, within + 1)
+        ends = np.repeat(self.edges[mesh.rim_edges], point_counts, axis=0)
+        wedges = mesh.wedge_vertices.astype(np.int32)
+        vertices = [np.stack([wedges] * 3, axis=1), np.column_stack([ends, ends[:, 0]])]
+        weights = [np.zeros((len(wedges), 3)), np.zeros((len(ends), 3))]
+        weights[0][:, 0] = 1.0
+        weights[1][:, 0], weights[1][:, 1] = (4 - place) / 4.0, place / 4.0
+        return Origins(
+            np.concatenate(vertices).astype(np.int32), np.concatenate(weights).astype(np.float32)
+        )

@@ -1,0 +1,286 @@
+r"""Smoothing: where vertices and new points on split edges go; the paper's scheme, named `loop`.
+
+Kähler, Haber, Seidel 2003, section 4.2 with Figs. 3 and 4, after Loop 1987. `o` is the point that
+is computed.
+
+    first level, interior edge      border edge
+
+              1/8
+             /   \
+          3/8--o--3/8              1/2---o---1/2
+             \   /
+              1/8
+
+    second level: o halves the half-edge a'm; then the middle point m itself is moved
+
+            c                quarter point, interior edge   o = 3/8 (a' + m) + 1/8 (p + r)
+           / \               quarter point, border edge     o = 1/2 (a' + m)
+          /   \
+         p-----q             middle point, interior edge
+        / \   / \                5/8 m + 1/16 (a' + b' + p + q + r + s)
+       /   \ /   \           middle point, border edge
+      a'-o--m-----b'             3/4 m + 1/8 (a' + b')
+       \   / \   /
+        \ /   \ /
+         r-----s
+          \   /
+            d
+
+m is the first-level point of the edge; p, q, r, s those of the neighbour edges ac, bc, ad, bd, or
+their midpoints where these are not split. a' and b' are the moved end points; their weights are in
+mesh/rings.py.
+
+The paper leaves open, and we decide: m, p, q, r, s enter the second level as the first level left
+them, so that the order of edges cannot matter.
+
+*Growth* is how much of its way from the straight edge a point has gone: 0 to 1, for each level of
+each edge; 1 everywhere unless the frame is blended (beyond/blending.py). A mix with growth 0 or 1
+returns one of its two sides to the last bit.
+
+Normals of new points are interpolated between their two neighbours on the edge and normalised
+(section 4.4, first paragraph).
+
+Section 6: "it would be interesting to investigate the effects of other smoothing schemes". So a
+scheme is one small class, bound once to the mesh and called once in every frame, when it is known
+which edges are split and where in the output their points go.
+"""
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from ...jit import njit
+from ..border.registry import Registry
+from ..mesh.connectivity import Connectivity, Surroundings
+from ..mesh.normals import Number, unit
+from ..mesh.rings import NEAR, Rings, vertex_rings
+from .frame import ONCE, TWICE, FrameBuffers
+
+Floats = npt.NDArray[np.float32]
+Small = npt.NDArray[np.uint8]
+
+EDGE_END = np.float32(3 / 8)
+"""First and second level, interior: end points of the edge or half-edge (Fig. 3, Fig. 4 left)."""
+EDGE_WING = np.float32(1 / 8)
+"""First and second level, interior: the two points beside it (Fig. 3, Fig. 4 left)."""
+BORDER_EDGE_END = np.float32(1 / 2)
+"""Border edge: end points (Fig. 3, bottom left)."""
+BORDER_MIDDLE_OWN = np.float32(3 / 4)
+"""Middle point of a border edge split twice: the rule of a vertex on a border (Fig. 3)."""
+BORDER_MIDDLE_RING = np.float32(1 / 8)
+"""The moved ends of this edge."""
+MIDDLE_OWN = np.float32(5 / 8)
+"""Middle point of an interior edge split twice: valence six, 1 - 6/16 (Fig. 4 right)."""
+MIDDLE_RING = np.float32(1 / 16)
+"""Its six neighbours, 3/(8 x 6) (Fig. 4 right)."""
+
+ZERO = np.float32(0.0)
+HALF = np.float32(0.5)
+ONE = np.float32(1.0)
+
+
+class Scheme(Protocol):
+    """Places points; anything with these members can take the place of the built-in schemes.
+
+    One more is used where it is there: `place_centres(frame)`, which corrects the points in the
+    middle of triangles after blending has written them.
+    """
+
+    @property
+    def interpolates(self) -> bool:
+        """Whether the original vertices stay where they are."""
+
+    def bind(
+        self,
+        connectivity: Connectivity,
+        rest_positions: npt.NDArray[np.float64],
+        rest_normals: Floats,
+    ) -> None:
+        """Learn the mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
+
+    def place(self, frame: FrameBuffers) -> None:
+        """Write positions and normals of vertices and of points on split edges into the rows."""
+
+
+schemes: Registry[Scheme] = Registry("scheme")
+"""Schemes by name."""
+register_scheme = schemes.register
+
+
+class FirstLevel(NamedTuple):
+    """What the second level needs of the first: scratch of a frame."""
+
+    vertex_growth: Floats
+    """How far the most grown edge at each vertex has grown, shape (V,); 0 where none is split."""
+    middles: Floats
+    """First-level points as they are when fully grown, shape (E, 3); only of edges split now."""
+
+
+class LoopScheme:
+    """The paper's scheme: Loop's rules with Warren's weights (section 4.2)."""
+
+    interpolates = False
+
+    def bind(
+        self,
+        connectivity: Connectivity,
+        rest_positions: npt.NDArray[np.float64],
+        rest_normals: Floats,
+    ) -> None:
+        """Work out the weights of every vertex."""
+        self._around = connectivity.around
+        self._rings = vertex_rings(connectivity)
+        self._first_level = FirstLevel(
+            np.zeros(connectivity.vertex_count, dtype=np.float32),
+            np.zeros((len(connectivity.edges), 3), dtype=np.float32),
+        )
+
+    def place(self, frame: FrameBuffers) -> None:
+        """Write moved vertices, first level, second level."""
+        place_points(self._around, frame, self._rings, self._first_level)
+
+
+@njit
+def mix(start: np.float32, end: np.float32, share: np.float32) -> np.float32:
+    """A share of the way from one number to another; to the last bit one of them at 0 and at 1."""
+    return (ONE - share) * start + share * end
+
+
+@njit
+def write_normal(
+    vertices: Floats, row: Number, x: np.float32, y: np.float32, z: np.float32
+) -> None:
+    """Write a normal, after its position."""
+    vertices[row, 3], vertices[row, 4], vertices[row, 5] = x, y, z
+
+
+@njit
+def write_mean_normal(vertices: Floats, p: np.uint32, q: np.uint32, row: np.uint32) -> None:
+    """Write the unit mean of the normals of two rows."""
+    x, y, z = unit(
+        vertices[p, 3] + vertices[q, 3],
+        vertices[p, 4] + vertices[q, 4],
+        vertices[p, 5] + vertices[q, 5],
+    )
+    write_normal(vertices, row, x, y, z)
+
+
+@njit
+def grow_vertices(around: Surroundings, frame: FrameBuffers, vertex_growth: Floats) -> None:
+    """A vertex moves as much as the most grown edge at it: 0 where none is split."""
+    vertex_growth[:] = ZERO
+    for k in range(frame.counts[ONCE]):
+        e = frame.split_once[k]
+        a, b, growth = around.points[e, 0], around.points[e, 1], frame.growth_once[e]
+        vertex_growth[a] = max(vertex_growth[a], growth)
+        vertex_growth[b] = max(vertex_growth[b], growth)
+
+
+@njit
+def place_vertices(
+    points: Floats, normals: Floats, rings: Rings, growth: Floats, vertices: Floats
+) -> None:
+    """Write the original vertices, those at split edges moved by the vertex rule (Fig. 3).
+
+    `growth`: of each vertex, shape (V,).
+    """
+    for v in range(points.shape[0]):
+        write_normal(vertices, v, normals[v, 0], normals[v, 1], normals[v, 2])
+        if growth[v] == ZERO:
+            for i in range(3):
+                vertices[v, i] = points[v, i]
+            continue
+        for i in range(3):
+            total = points[rings.near[v, 0], i]
+            for k in range(1, NEAR):
+                total += points[rings.near[v, k], i]
+            for k in range(rings.starts[v], rings.starts[v + 1]):
+                total += points[rings.others[k], i]
+            moved = rings.own[v] * points[v, i] + rings.ring[v] * total
+            vertices[v, i] = mix(points[v, i], moved, growth[v])
+
+
+@njit
+def place_middles(around: Surroundings, frame: FrameBuffers, middles: Floats) -> None:
+    """Write the first-level point of every split edge (Fig. 3), and keep it in `middles`."""
+    points, vertices = frame.points, frame.rows
+    for k in range(frame.counts[ONCE]):
+        e = frame.split_once[k]
+        a, b = around.points[e, 0], around.points[e, 1]
+        c, d = around.points[e, 2], around.points[e, 3]
+        row = frame.first_points[e] + (frame.splits[e] >> 1)
+        growth = frame.growth_once[e]
+        for i in range(3):
+            ends = points[a, i] + points[b, i]
+            middle = BORDER_EDGE_END * ends
+            if around.is_interior[e]:
+                middle = EDGE_END * ends + EDGE_WING * (points[c, i] + points[d, i])
+            middles[e, i] = middle
+            if growth < ONE:
+                middle = mix(HALF * (vertices[a, i] + vertices[b, i]), middle, growth)
+            vertices[row, i] = middle
+        x, y, z = unit(
+            frame.normals[a, 0] + frame.normals[b, 0],
+            frame.normals[a, 1] + frame.normals[b, 1],
+            frame.normals[a, 2] + frame.normals[b, 2],
+        )
+        write_normal(vertices, row, x, y, z)
+
+
+@njit
+def growth_of_split(splits: Small, growth: Floats, e: np.uint32) -> np.float32:
+    """How far the middle of an edge has grown; 0 where it has none."""
+    return growth[e] if splits[e] > 0 else ZERO
+
+
+@njit
+def place_quarters(around: Surroundings, frame: FrameBuffers, middles: Floats) -> None:
+    """Write the quarter points of every edge that is split twice, and move its middle (Fig. 4)."""
+    points, vertices = frame.points, frame.rows
+    splits, once = frame.splits, frame.growth_once
+    for k in range(frame.counts[TWICE]):
+        e = frame.split_twice[k]
+        near_a = frame.first_points[e]
+        centre, near_b = np.uint32(near_a + 1), np.uint32(near_a + 2)
+        a, b = around.points[e, 0], around.points[e, 1]
+        c, d = around.points[e, 2], around.points[e, 3]
+        # p, q, r, s: the edges ac, bc, ad, bd
+        p, q = around.wings[e, 0], around.wings[e, 1]
+        r, s = around.wings[e, 2], around.wings[e, 3]
+        grown_p, grown_q = growth_of_split(splits, once, p), growth_of_split(splits, once, q)
+        grown_r, grown_s = growth_of_split(splits, once, r), growth_of_split(splits, once, s)
+        growth = frame.growth_twice[e]
+        for i in range(3):
+            m, moved_a, moved_b = middles[e, i], vertices[a, i], vertices[b, i]
+            ends_a, ends_b = moved_a + m, moved_b + m
+            if around.is_interior[e]:
+                at_a, at_b, at_c, at_d = points[a, i], points[b, i], points[c, i], points[d, i]
+                at_p = mix(HALF * (at_a + at_c), middles[p, i], grown_p)
+                at_q = mix(HALF * (at_b + at_c), middles[q, i], grown_q)
+                at_r = mix(HALF * (at_a + at_d), middles[r, i], grown_r)
+                at_s = mix(HALF * (at_b + at_d), middles[s, i], grown_s)
+                wings_a, wings_b = at_p + at_r, at_q + at_s
+                ring = (moved_a + moved_b) + (wings_a + wings_b)
+                beside_a = EDGE_END * ends_a + EDGE_WING * wings_a
+                beside_b = EDGE_END * ends_b + EDGE_WING * wings_b
+                middle = MIDDLE_OWN * m + MIDDLE_RING * ring
+            else:
+                beside_a, beside_b = BORDER_EDGE_END * ends_a, BORDER_EDGE_END * ends_b
+                middle = BORDER_MIDDLE_OWN * m + BORDER_MIDDLE_RING * (moved_a + moved_b)
+            vertices[near_a, i] = mix(HALF * ends_a, beside_a, growth)
+            vertices[near_b, i] = mix(HALF * ends_b, beside_b, growth)
+            vertices[centre, i] = mix(m, middle, growth)
+        write_mean_normal(vertices, a, centre, near_a)
+        write_mean_normal(vertices, b, centre, near_b)
+
+
+@njit
+def place_points(
+    around: Surroundings, frame: FrameBuffers, rings: Rings, first: FirstLevel
+) -> None:
+    """Write moved vertices, the first level and the second."""
+    grow_vertices(around, frame, first.vertex_growth)
+    place_vertices(frame.points, frame.normals, rings, first.vertex_growth, frame.rows)
+    place_middles(around, frame, first.middles)
+    place_quarters(around, frame, first.middles)

@@ -1,0 +1,1 @@
+"""The mesh that a refiner is bound to: its edges, seams, normals and rings, checked and ordered."""

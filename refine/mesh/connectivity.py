@@ -1,0 +1,198 @@
+r"""Edges of the bound mesh: found once, walked every frame.
+
+Every question the paper asks of its half-edge structure (section 3, after Campagna et al. 1998) is
+answered here once, as flat index arrays, because the connectivity never changes while it deforms:
+
+              c
+             / \          edge e runs from a to b in the direction of its first triangle (a, b, c);
+        ac  /   \  bc     the second triangle (b, a, d) runs through it the other way.
+           /     \        `points`  row e = a, b, c, d
+          a---e---b        `edge_wings`  row e = the edges ac, bc, ad, bd
+           \     /
+        ad  \   /  bd     Edge i of a triangle joins its corners i and i + 1.
+             \ /
+              d
+
+An edge is *interior* when exactly two triangles run through it in opposite directions. Everything
+else (one side, three sides, two sides in the same direction) is a *border*: it is split by the
+boundary rules, which read the end points only, and so from all sides in the same way.
+
+Wedges and rims, by which texture seams part, are told in seams.py.
+
+A triangle that names a vertex twice has no area and no edges: it is handed through as it is.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ...jit import njit
+from .seams import find_seams
+from .validation import as_indices
+
+Indices = npt.NDArray[np.int32]
+Unsigned = npt.NDArray[np.uint32]
+Flags = npt.NDArray[np.bool_]
+
+
+class Surroundings(NamedTuple):
+    """What lies around each edge: all that placing points on edges asks of a mesh."""
+
+    points: Unsigned
+    """a, b and the opposite corners c, d, shape (E, 4); c = d = a on a border."""
+    wings: Unsigned
+    """Edges ac, bc, ad, bd, shape (E, 4); the edge itself on a border."""
+    is_interior: Flags
+    """Whether two triangles run through the edge in opposite directions, shape (E,)."""
+
+
+class Connectivity(NamedTuple):
+    """Index arrays of one mesh; V vertices, F triangles, E edges, W wedges, R rims."""
+
+    faces: Unsigned
+    """Vertices of each triangle, shape (F, 3)."""
+    edges: Indices
+    """End points a, b of each edge, in the order of first use, shape (E, 2)."""
+    around: Surroundings
+    """What lies around each edge."""
+    edge_sides: Unsigned
+    """The first two sides of each edge, 4 x triangle + i, shape (E, 2); 4 F where there is none."""
+    more_sides: Unsigned
+    """Edge and side beyond the first two, shape (X, 2): edges of three sheets."""
+    triangle_edges: Indices
+    """Edges of each triangle, shape (F, 3); -1 for a triangle that names a vertex twice."""
+    corners: Unsigned
+    """Wedge of each triangle corner, shape (F, 3); equals `faces` without texture seams."""
+    triangle_rims: Unsigned
+    """2 x rim + (1 if the triangle runs against it), shape (F, 3); rim R where there is none."""
+    wedge_vertices: Unsigned
+    """Vertex of each wedge, shape (W,)."""
+    wedge_uv: Indices
+    """Texture coordinate of each wedge, shape (W,); -1 where no corner gives the vertex one."""
+    rim_edges: Unsigned
+    """Edge of each rim, shape (R,)."""
+    rim_uv: Indices
+    """Texture coordinates at the ends a, b of each rim, shape (R, 2)."""
+    vertex_count: int
+    """V, isolated vertices included."""
+
+    @property
+    def is_degenerate(self) -> Flags:
+        """Triangles that name a vertex twice, shape (F,)."""
+        return np.asarray(self.triangle_edges[:, 0] < 0)
+
+
+def connect(
+    faces: npt.ArrayLike,
+    vertex_count: int,
+    face_uv: npt.ArrayLike | None = None,
+) -> Connectivity:
+    """Build the connectivity of triangles `faces`, shape (F, 3), with indices below `vertex_count`.
+
+    `face_uv`: texture coordinate index of each corner, shape (F, 3); None when each vertex has one.
+    Raises ValueError for other shapes or types and for indices out of range.
+    """
+    given = as_indices("faces", faces, vertex_count, "the vertices")
+    corners = np.array(given, dtype=np.uint32, order="C")
+    if face_uv is not None:
+        face_uv = as_indices("face_uv", face_uv, 2**31, "the texture coordinates")
+        if len(face_uv) != len(corners):
+            raise ValueError(
+                f"face_uv must have one row per triangle ({len(corners)}), got {len(face_uv)}"
+            )
+    edge_of, edges, sides, side_counts = find_edges(corners, vertex_count)
+    around = Surroundings(*look_around(corners, edge_of, edges, sides, side_counts))
+    seams = find_seams(corners, edge_of, edges, sides, vertex_count, face_uv)
+    triangle_edges = edge_of.reshape(-1, 3)
+    for handed_out in (edges, triangle_edges):
+        handed_out.flags.writeable = False
+    return Connectivity(
+        faces=corners,
+        edges=edges,
+        around=around,
+        edge_sides=sides,
+        more_sides=_more_sides(edge_of, sides, side_counts),
+        triangle_edges=triangle_edges,
+        vertex_count=vertex_count,
+        **seams,
+    )
+
+
+@njit
+def find_edges(faces: Unsigned, vertex_count: int) -> tuple[Indices, Indices, Unsigned, Indices]:
+    """Number the edges in the order of their first use, which keeps neighbours near in memory.
+
+    Returns the edge of each half-edge, -1 for none, shape (3 F,); end points, shape (E, 2); the
+    first two sides, shape (E, 2); and the number of sides, shape (E,). Edges are found again in
+    lists that are chained by the sum of their end points: short ones, however large a valence is.
+    """
+    half_edge_count = faces.size
+    edge_of = np.full(half_edge_count, np.int32(-1))
+    edges = np.empty((half_edge_count, 2), np.int32)
+    sides = np.full((half_edge_count, 2), np.uint32(4 * faces.shape[0]))
+    side_counts = np.zeros(half_edge_count, np.int32)
+    heads = np.full(2 * vertex_count, np.int32(-1))
+    following = np.empty(half_edge_count, np.int32)
+    count = 0
+    for t in range(faces.shape[0]):
+        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        if a == b or b == c or c == a:
+            continue
+        for i in range(3):
+            start, end = np.int32(faces[t, i]), np.int32(faces[t, (i + 1) % 3])
+            edge = heads[start + end]
+            while edge >= 0:
+                if edges[edge, 0] == start and edges[edge, 1] == end:
+                    break
+                if edges[edge, 0] == end and edges[edge, 1] == start:
+                    break
+                edge = following[edge]
+            if edge < 0:
+                edge = np.int32(count)
+                count += 1
+                edges[edge, 0], edges[edge, 1] = start, end
+                following[edge] = heads[start + end]
+                heads[start + end] = edge
+            edge_of[3 * t + i] = edge
+            if side_counts[edge] < 2:
+                sides[edge, side_counts[edge]] = 4 * t + i
+            side_counts[edge] += 1
+    return edge_of, edges[:count].copy(), sides[:count].copy(), side_counts[:count].copy()
+
+
+@njit
+def look_around(
+    faces: Unsigned, edge_of: Indices, edges: Indices, sides: Unsigned, side_counts: Indices
+) -> tuple[Unsigned, Unsigned, Flags]:
+    """Find the fields of `Surroundings` (see the picture)."""
+    points = np.empty((edges.shape[0], 4), np.uint32)
+    wings = np.empty((edges.shape[0], 4), np.uint32)
+    is_interior = np.zeros(edges.shape[0], np.bool_)
+    for e in range(edges.shape[0]):
+        a, b = np.uint32(edges[e, 0]), np.uint32(edges[e, 1])
+        points[e, 0], points[e, 1], points[e, 2], points[e, 3] = a, b, a, a
+        wings[e, :] = np.uint32(e)
+        t, i = sides[e, 0] >> 2, sides[e, 0] & 3
+        if side_counts[e] != 2:
+            continue
+        u, j = sides[e, 1] >> 2, sides[e, 1] & 3
+        if faces[u, j] != b:
+            continue
+        is_interior[e] = True
+        points[e, 2] = faces[t, (i + 2) % 3]
+        points[e, 3] = faces[u, (j + 2) % 3]
+        wings[e, 0] = edge_of[3 * t + (i + 2) % 3]
+        wings[e, 1] = edge_of[3 * t + (i + 1) % 3]
+        wings[e, 2] = edge_of[3 * u + (j + 1) % 3]
+        wings[e, 3] = edge_of[3 * u + (j + 2) % 3]
+    return points, wings, is_interior
+
+
+def _more_sides(edge_of: Indices, sides: Unsigned, side_counts: Indices) -> Unsigned:
+    """Sides of edges of more than two triangles that `edge_sides` has no room for."""
+    proper = np.flatnonzero(edge_of >= 0)
+    crowded = proper[side_counts[edge_of[proper]] > 2]
+    edges, side = edge_of[crowded], crowded // 3 * 4 + crowded % 3
+    is_more = (sides[edges] != side[:, None]).all(axis=1)
+    return np.stack([edges[is_more], side[is_more]], axis=1).astype(np.uint32)

@@ -1,0 +1,145 @@
+r"""Texture seams: where corners of one vertex look different, and equal vertices told apart.
+
+`faces` say where a corner is, `face_uv` what it looks like. Geometry is worked out per vertex and
+edge; the output needs one row per
+
+  *wedge*: a pair (vertex, texture coordinate). Wedges 0..V-1 are the vertices, seam copies follow;
+  *rim*:   an edge with the texture coordinates of one side. Rims 0..E-1 are the edges, then copies.
+A rim has its own output points, at the very positions of its edge, so a seam cannot crack.
+"""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .validation import as_indices, checked_positions
+
+Indices = npt.NDArray[np.int32]
+Unsigned = npt.NDArray[np.uint32]
+Flags = npt.NDArray[np.bool_]
+Wide = npt.NDArray[np.int64]
+
+
+def find_seams(
+    faces: Unsigned,
+    edge_of: Indices,
+    edges: Indices,
+    sides: Unsigned,
+    vertex_count: int,
+    face_uv: npt.NDArray[np.integer] | None,
+) -> dict[str, npt.NDArray[Any]]:
+    """Wedges and rims: those of the vertices and edges, and their copies along seams."""
+    edge_count = len(edges)
+    none = np.uint32(2 * edge_count)
+    is_proper = edge_of >= 0
+    starts = faces.ravel()
+    is_reversed = is_proper & (starts != edges[edge_of, 0]) if edge_count else is_proper
+    if face_uv is None:
+        rims = np.where(is_proper, 2 * edge_of + is_reversed, none).astype(np.uint32)
+        return {
+            "corners": faces,
+            "triangle_rims": rims.reshape(-1, 3),
+            "wedge_vertices": np.arange(vertex_count, dtype=np.uint32),
+            "wedge_uv": np.arange(vertex_count, dtype=np.int32),
+            "rim_edges": np.arange(edge_count, dtype=np.uint32),
+            "rim_uv": edges.copy(),
+        }
+    corner_uv = np.asarray(face_uv, dtype=np.int64).reshape(-1, 3)
+    proper = is_proper.reshape(-1, 3)[:, 0]
+    place = np.cumsum(is_proper) - 1  # of a half-edge among those of proper triangles
+    rim_of, rim_edges, rim_uv = _rims(
+        corner_uv[proper],
+        edge_of[is_proper].astype(np.int64),
+        is_reversed[is_proper],
+        place[(sides[:, 0] >> 2) * 3 + (sides[:, 0] & 3)],
+    )
+    corners, wedge_vertices, wedge_uv = _wedges(faces.astype(np.int64), corner_uv, vertex_count)
+    triangle_rims = np.full(faces.size, 2 * len(rim_edges), dtype=np.uint32)
+    triangle_rims[is_proper] = 2 * rim_of + is_reversed[is_proper]
+    return {
+        "corners": corners.astype(np.uint32),
+        "triangle_rims": triangle_rims.reshape(-1, 3),
+        "wedge_vertices": wedge_vertices.astype(np.uint32),
+        "wedge_uv": wedge_uv.astype(np.int32),
+        "rim_edges": rim_edges.astype(np.uint32),
+        "rim_uv": rim_uv.astype(np.int32),
+    }
+
+
+def number_by_first_use(keys: Wide) -> tuple[Wide, Wide]:
+    """Number equal keys alike, in the order in which they first appear.
+
+    Returns the number of every key, and for every number the place of its first use. The order
+    keeps neighbours in the mesh near each other in memory.
+    """
+    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
+    order = np.argsort(first, kind="stable")
+    rank = np.empty(len(order), dtype=np.int64)
+    rank[order] = np.arange(len(order))
+    return rank[inverse.reshape(-1)], first[order].astype(np.int64)
+
+
+def weld(positions: npt.ArrayLike, faces: npt.ArrayLike) -> tuple[Indices, Indices]:
+    """Merge vertices with equal positions: for meshes whose vertices were doubled along seams.
+
+    `positions`: shape (V, 3); `faces`: shape (F, 3). Returns one vertex of each place, shape
+    (K,), and the triangles in terms of them, shape (F, 3). Bind the refiner to these triangles with
+    `rest_positions[vertices]`, give it the texture coordinates of the doubled vertices as `uv` and
+    the original triangles as `face_uv`, and hand it `positions[vertices]` in every frame.
+
+    It is a call of its own, never done unasked: closed lips touch at rest and must not be sewn up.
+    Raises ValueError for arrays that do not fit together, and for positions that are not finite.
+    """
+    points = checked_positions(positions, "positions")
+    corners = as_indices("faces", faces, len(points), "positions")
+    rows = np.unique(points, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
+    number, first_uses = number_by_first_use(rows)
+    return first_uses.astype(np.int32), number[corners].astype(np.int32)
+
+
+def _rims(
+    corner_uv: Wide, edge_of: Wide, is_reversed: Flags, first: Wide
+) -> tuple[Wide, Wide, Wide]:
+    """Rim of each half-edge, edge of each rim, texture coordinates at the ends of each rim."""
+    start_uv = corner_uv.ravel()
+    end_uv = np.roll(corner_uv, -1, axis=1).ravel()
+    uv_at_a = np.where(is_reversed, end_uv, start_uv)
+    uv_at_b = np.where(is_reversed, start_uv, end_uv)
+    uv_pair, _ = number_by_first_use(uv_at_a * (corner_uv.max(initial=0) + 1) + uv_at_b)
+    number, rim_first = number_by_first_use(edge_of * (uv_pair.max(initial=0) + 1) + uv_pair)
+    number, rim_first = _originals_first(number, rim_first, edge_of[rim_first], first)
+    return (
+        number,
+        edge_of[rim_first],
+        np.stack([uv_at_a[rim_first], uv_at_b[rim_first]], axis=1),
+    )
+
+
+def _wedges(faces: Wide, corner_uv: Wide, vertex_count: int) -> tuple[Wide, Wide, Wide]:
+    """Wedge of each corner, vertex of each wedge, texture coordinate of each wedge."""
+    vertices = faces.ravel()
+    number, first = number_by_first_use(
+        vertices * (corner_uv.max(initial=0) + 1) + corner_uv.ravel()
+    )
+    vertex_first = np.full(vertex_count, -1, dtype=np.int64)
+    used, used_first = np.unique(vertices, return_index=True)
+    vertex_first[used] = used_first
+    number, first = _originals_first(number, first, vertices[first], vertex_first)
+    wedge_vertices = np.concatenate([np.arange(vertex_count), vertices[first[vertex_count:]]])
+    uv_or_none = np.append(corner_uv.ravel(), -1)  # first use -1 (never used) reads the -1
+    return number.reshape(faces.shape), wedge_vertices, uv_or_none[first]
+
+
+def _originals_first(
+    number: Wide, first: Wide, owner: Wide, owner_first: Wide
+) -> tuple[Wide, Wide]:
+    """Renumber copies so that copy k < len(owner_first) is the one its owner k was first seen as.
+
+    `owner`: edge (or vertex) of each copy; `owner_first`: first use of each owner, -1 for none.
+    """
+    is_original = owner_first[owner] == first
+    rank = np.empty(len(first), dtype=np.int64)
+    rank[is_original] = owner[is_original]
+    rank[~is_original] = len(owner_first) + np.arange(np.count_nonzero(~is_original))
+    return rank[number], np.concatenate([owner_first, first[~is_original]])

@@ -1,0 +1,111 @@
+"""Checks of positions and triangles that are handed in, with errors that say what to do.
+
+All raise ValueError with: which argument, what it was, what is allowed. What passes is copied, so
+that later changes to the caller's arrays cannot reach a frame.
+"""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...jit import njit
+
+LARGEST = 1e15
+"""No coordinate may be larger: cross products of edges have to stay finite in single precision."""
+SIZES = 1e-6, 1e9
+"""Sizes of a mesh, longest side of its box, in which single precision tells normals from rounding.
+Measured: sheets with edges of a fortieth of that are refined as ever from 1e-7 to 1e9."""
+
+
+def checked_positions(
+    rest_positions: npt.ArrayLike, name: str = "rest_positions"
+) -> npt.NDArray[np.float64]:
+    """Return positions, shape (V, 3), as a copy in double precision."""
+    positions = as_array(name, rest_positions, "numbers of shape (V, 3)")
+    if positions.ndim != 2 or positions.shape[1] != 3 or positions.dtype.kind not in "fiu":
+        raise ValueError(
+            f"{name} must be numbers of shape (V, 3), "
+            f"got {positions.dtype} of shape {positions.shape}"
+        )
+    checked = np.array(positions, dtype=np.float64, order="C")
+    is_good = np.abs(checked) < LARGEST
+    if not is_good.all():
+        bad = np.flatnonzero(~is_good.all(axis=1))
+        raise ValueError(
+            f"{name} must be finite and below {LARGEST:g}, but vertex {bad[0]} is "
+            f"{positions[bad[0]]} ({len(bad)} such vertices in all); repair the mesh before "
+            "binding it"
+        )
+    size = float(np.ptp(checked, axis=0).max()) if len(checked) else 0.0
+    if size != 0.0 and not SIZES[0] <= size <= SIZES[1]:
+        raise ValueError(
+            f"{name} must extend over {SIZES[0]:g} to {SIZES[1]:g} (or lie all at one place), but "
+            f"extend over {size:g}; take another unit of length, at binding and in all frames"
+        )
+    return checked
+
+
+def as_array(name: str, given: npt.ArrayLike, wanted: str) -> npt.NDArray[Any]:
+    """Return what was given as an array; raises ValueError if it is ragged or has masked entries.
+
+    `wanted`: what it should be, for the error.
+    """
+    try:
+        array = np.asarray(given)
+    except ValueError as error:  # numpy's own words for rows of unequal length
+        raise ValueError(f"{name} must be {wanted}, but is no array: {error}") from None
+    if np.ma.is_masked(given):
+        raise ValueError(f"{name} must be {wanted}, but has masked entries; fill them first")
+    return array
+
+
+def checked_indices(
+    name: str, indices: npt.ArrayLike, limit: int, target: str
+) -> npt.NDArray[np.int64]:
+    """Return triangles, shape (F, 3), as a copy; all indices are from 0 to `limit` - 1."""
+    return as_indices(name, indices, limit, target).astype(np.int64)
+
+
+def as_indices(
+    name: str, indices: npt.ArrayLike, limit: int, target: str
+) -> npt.NDArray[np.integer]:
+    """Do the same without a copy, if it can be done without."""
+    array = as_array(name, indices, "integers of shape (F, 3)")
+    if array.shape in ((0,), (0, 3)):
+        return np.zeros((0, 3), dtype=np.int64)
+    if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iu":
+        raise ValueError(
+            f"{name} must be integers of shape (F, 3), got {array.dtype} of shape {array.shape}; "
+            "cut polygons into triangles first"
+        )
+    if not (array.min() >= 0 and array.max() < limit):
+        bad = np.flatnonzero(((array < 0) | (array >= limit)).any(axis=1))
+        raise ValueError(
+            f"{name} must hold indices from 0 to {limit - 1} into {target}, "
+            f"but triangle {bad[0]} is {array[bad[0]].tolist()}"
+        )
+    return array
+
+
+def not_finite(positions: npt.NDArray[np.floating]) -> str:
+    """Say which of the positions of a frame are no numbers below LARGEST."""
+    bad = np.flatnonzero(~(np.abs(positions) < LARGEST).all(axis=1))
+    return (
+        f"positions must be finite and below {LARGEST:g}, but vertex {bad[0]} is "
+        f"{positions[bad[0]]} ({len(bad)} such vertices in all); what moves the mesh has blown up"
+    )
+
+
+@njit
+def round_finite(positions: npt.NDArray[np.float64], points: npt.NDArray[np.float32]) -> int:
+    """Write positions, shape (V, 3), as single precision; return how many numbers are too large.
+
+    That is NaN, or not below LARGEST: 0 unless what moves the mesh has blown up.
+    """
+    finite = 0  # counted, not left early: so the loop takes several at a time
+    for v in range(positions.shape[0]):
+        for i in range(3):
+            points[v, i] = positions[v, i]
+            finite += abs(positions[v, i]) < LARGEST
+    return int(3 * positions.shape[0] - finite)

@@ -1,0 +1,214 @@
+"""Loop subdivision of the whole mesh, once or twice: what the adaptive refiner is compared with.
+
+Loop 1987 with Warren's vertex weights (Warren 2001), the scheme that Kähler, Haber, Seidel 2003,
+section 4.2, borrow their rules from. Every edge is split, every vertex is smoothed, borders follow
+their own curve. The connectivity of each level is built at binding; a frame only moves points, with
+the very passes of `kahler`.
+
+Normals and texture coordinates of new points are interpolated along the edge and not recomputed
+from the subdivided surface, as in `kahler`, so that the two can be compared in shading and in time.
+
+Differs from `kahler` where that splits all edges twice: a triangle becomes sixteen, not ten, with
+three points in its interior, and the second level smooths all vertices of the first.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Unpack
+
+import numpy as np
+import numpy.typing as npt
+
+from ..border.binding import BoundRefiner
+from ..border.corner_values import Values
+from ..border.plugin import Origins, Stream, View
+from ..border.rows import GEOMETRY_COLUMNS, wedge_values, write_wedges
+from ..kahler.frame import ONCE, ROWS, FrameBuffers
+from ..kahler.smoothing import place_middles, place_vertices
+from ..mesh.connectivity import Connectivity, connect
+from ..mesh.rings import vertex_rings
+
+Floats = npt.NDArray[np.float32]
+Wide = npt.NDArray[np.int64]
+
+
+class Level:
+    """One step of subdivision of a mesh with V vertices and E edges: every edge split once."""
+
+    def __init__(self, connectivity: Connectivity, points: Floats, normals: Floats) -> None:
+        """Take `points` and `normals`, shape (V, 3), as buffers that a frame fills."""
+        vertex_count, edge_count = connectivity.vertex_count, len(connectivity.edges)
+        self.points = points
+        self.normals = normals
+        self._mesh = connectivity
+        self._rings = vertex_rings(connectivity)
+        self._all_move = np.ones(vertex_count, dtype=np.float32)
+        self._middles = np.zeros((edge_count, 3), dtype=np.float32)
+        every_edge = np.arange(edge_count, dtype=np.uint32)
+        counts = np.zeros(5, dtype=np.int64)
+        counts[ROWS], counts[ONCE] = vertex_count + edge_count, edge_count
+        self._frame = FrameBuffers(
+            positions=np.zeros((0, 3)),
+            points=points,
+            normals=normals,
+            splits=np.ones(edge_count, dtype=np.uint8),
+            growth_once=np.ones(edge_count, dtype=np.float32),
+            growth_twice=np.zeros(0, dtype=np.float32),
+            first_points=every_edge + np.uint32(vertex_count),
+            split_once=every_edge,
+            split_twice=every_edge[:0],
+            configurations=np.zeros(0, dtype=np.uint16),
+            centre_triangles=every_edge[:0],
+            counts=counts,
+            rows=np.zeros((0, GEOMETRY_COLUMNS), dtype=np.float32),
+        )
+
+    def subdivide(self, rows: Floats) -> None:
+        """Write the moved vertices, then one point per edge, into the first V + E `rows`."""
+        if rows is not self._frame.rows:
+            self._frame = self._frame._replace(rows=rows)
+        place_vertices(self.points, self.normals, self._rings, self._all_move, rows)
+        place_middles(self._mesh.around, self._frame, self._middles)
+
+
+class Loop(BoundRefiner):
+    """Uniform Loop subdivision; the refiner named `loop`."""
+
+    def __init__(
+        self,
+        faces: npt.ArrayLike,
+        rest_positions: npt.ArrayLike,
+        *,
+        levels: int = 1,
+        **values: Unpack[Values],
+    ) -> None:
+        """Bind to a mesh (see `registry.create`). `levels`: 1 or 2, how often edges are split."""
+        super().__init__(faces, rest_positions, **values)
+        if not isinstance(levels, int | np.integer) or levels not in (1, 2):
+            raise ValueError(f"levels must be 1 or 2, got {levels!r}")
+        self._splits = np.full(len(self.connectivity.edges), levels, dtype=np.uint8)
+        self._splits.flags.writeable = False
+
+        finest = _Refined.of(
+            self.connectivity, None if self._values is None else self._values.values
+        )
+        self._levels = [Level(finest.connectivity, self._points, self._normals)]
+        for _ in range(levels - 1):
+            finest = finest.subdivided()
+            rest = np.zeros((finest.connectivity.vertex_count, 3), dtype=np.float32)
+            self._levels.append(Level(finest.connectivity, rest, rest.copy()))
+        self._rows = np.zeros((len(self._levels[-1].points), GEOMETRY_COLUMNS), np.float32)
+        self._finest = finest.subdivided()
+        self._triangles = self._finest.connectivity.corners
+        if self._finest.values is not None:
+            self._wedge_values = wedge_values(self._finest.connectivity, self._finest.values)
+
+    @property
+    def splits(self) -> npt.NDArray[np.uint8]:
+        """The number of levels for every edge, shape (E,), read only."""
+        return self._splits
+
+    @property
+    def vertex_capacity(self) -> int:
+        """Vertices of the finest level, one per wedge."""
+        return len(self._finest.connectivity.wedge_vertices)
+
+    @property
+    def triangle_capacity(self) -> int:
+        """Triangles of the finest level: 4 or 16 for each."""
+        return len(self._triangles)
+
+    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
+        vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
+        self._find_normals()
+        for level, finer in pairwise(self._levels):
+            level.subdivide(self._rows)
+            np.copyto(finer.points, self._rows[:, :3])
+            np.copyto(finer.normals, self._rows[:, 3:])
+        self._levels[-1].subdivide(vertices)
+
+        if self._values is not None:
+            write_wedges(self._finest.connectivity, self._wedge_values, vertices)
+        triangles[:triangle_count] = self._triangles
+        source[:triangle_count] = self._finest.source
+        return vertex_count, triangle_count
+
+    def origins(self) -> Origins:
+        """Say for every output vertex where it lies on the input mesh."""
+        finest = self._finest
+        wedges = finest.connectivity.wedge_vertices.astype(np.int32)
+        vertices = np.stack([wedges] * 3, axis=1)
+        weights = np.zeros(vertices.shape, dtype=np.float32)
+        weights[:, 0] = 1.0
+        vertices[self._triangles] = self.connectivity.faces[finest.source][:, None, :]
+        weights[self._triangles] = finest.barycentric
+        return Origins(vertices, weights)
+
+
+@dataclass(frozen=True)
+class _Refined:
+    """A subdivided mesh in terms of the mesh it came from."""
+
+    connectivity: Connectivity
+    values: Floats | None
+    """Texture coordinates and attributes, shape (A, k)."""
+    source: npt.NDArray[np.int32]
+    """Triangle of the input that each triangle is part of, shape (M,)."""
+    barycentric: Floats
+    """Corners of each triangle in coordinates of its source, shape (M, 3, 3)."""
+
+    @classmethod
+    def of(cls, connectivity: Connectivity, values: Floats | None) -> "_Refined":
+        """Take a mesh as it is."""
+        face_count = len(connectivity.faces)
+        return cls(
+            connectivity,
+            values,
+            np.arange(face_count, dtype=np.int32),
+            np.tile(np.eye(3, dtype=np.float32), (face_count, 1, 1)),
+        )
+
+    def subdivided(self) -> "_Refined":
+        """Split every edge: each triangle becomes four, one that names a vertex twice stays."""
+        mesh = self.connectivity
+        whole = np.flatnonzero(mesh.is_degenerate)
+        split = np.flatnonzero(~mesh.is_degenerate)
+        parents = np.concatenate([np.repeat(split, 4), whole])
+        order = np.argsort(parents, kind="stable")
+
+        vertex_middles = mesh.vertex_count + mesh.triangle_edges[split].astype(np.int64)
+        children = _children(mesh.faces[split].astype(np.int64), vertex_middles)
+        faces = np.concatenate([children, mesh.faces[whole]])[order]
+
+        corner_rows, values = None, self.values
+        if values is not None:
+            rows = mesh.wedge_uv[mesh.corners].astype(np.int64)
+            middles = len(values) + (mesh.triangle_rims[split] >> 1).astype(np.int64)
+            corner_rows = np.concatenate([_children(rows[split], middles), rows[whole]])[order]
+            values = np.concatenate([values, values[mesh.rim_uv].mean(axis=1, dtype=np.float32)])
+
+        barycentric = np.concatenate(
+            [_children_coordinates(self.barycentric[split]), self.barycentric[whole]]
+        )[order]
+        return _Refined(
+            connect(faces, mesh.vertex_count + len(mesh.edges), corner_rows),
+            values,
+            self.source[parents[order]],
+            barycentric,
+        )
+
+
+def _children(corners: Wide, middles: Wide) -> Wide:
+    """Four triangles for each, three at its corners and one of its middle points, (4 F, 3)."""
+    (a, b, c), (ab, bc, ca) = corners.T, middles.T
+    four = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    return np.array(four, dtype=np.int64).transpose(2, 0, 1).reshape(-1, 3)
+
+
+def _children_coordinates(corners: Floats) -> Floats:
+    """Corners of the four children from those of their parents, shape (4 F, 3, 3)."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+    four = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    return np.array(four, dtype=np.float32).transpose(2, 0, 1, 3).reshape(-1, 3, 3)

@@ -1,0 +1,62 @@
+"""The refiner that does nothing: the mesh itself, in the form in which refined meshes come.
+
+Kähler, Haber, Seidel 2003, compare with the static mesh in every figure and in Table 1. Positions,
+normals and texture coordinates are those that `kahler` hands out where no edge is split, to the
+last bit, so that switching between the two shows nothing but refinement.
+"""
+
+from typing import Unpack
+
+import numpy as np
+import numpy.typing as npt
+
+from ..border.binding import BoundRefiner
+from ..border.corner_values import Values
+from ..border.plugin import Origins, Stream, View
+from ..border.rows import place_unmoved
+
+
+class PassThrough(BoundRefiner):
+    """Hands the mesh through with normals; the refiner named `none`."""
+
+    def __init__(
+        self, faces: npt.ArrayLike, rest_positions: npt.ArrayLike, **values: Unpack[Values]
+    ) -> None:
+        """Bind to a mesh (see `registry.create`); there are no options."""
+        super().__init__(faces, rest_positions, **values)
+        mesh = self.connectivity
+        self._splits = np.zeros(len(mesh.edges), dtype=np.uint8)
+        self._splits.flags.writeable = False
+        self._source = np.arange(len(mesh.faces), dtype=np.int32)
+
+    @property
+    def splits(self) -> npt.NDArray[np.uint8]:
+        """All zero, shape (E,)."""
+        return self._splits
+
+    @property
+    def vertex_capacity(self) -> int:
+        """One output vertex per wedge."""
+        return len(self.connectivity.wedge_vertices)
+
+    @property
+    def triangle_capacity(self) -> int:
+        """The triangles of the input."""
+        return len(self.connectivity.faces)
+
+    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
+        vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
+        self._find_normals()
+        place_unmoved(self._points, self._normals, vertices)
+        self._write_wedges(vertices)
+        triangles[:triangle_count] = self.connectivity.corners
+        source[:triangle_count] = self._source
+        return vertex_count, triangle_count
+
+    def origins(self) -> Origins:
+        """Say for every output vertex which input vertex it is."""
+        wedges = self.connectivity.wedge_vertices.astype(np.int32)
+        weights = np.zeros((len(wedges), 3), dtype=np.float32)
+        weights[:, 0] = 1.0
+        return Origins(np.stack([wedges] * 3, axis=1), weights)

@@ -1,0 +1,1 @@
+"""Strain: how far the skin is stretched and compressed, for artists. Not in the paper."""

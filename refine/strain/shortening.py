@@ -1,0 +1,146 @@
+r"""How much shorter the skin is than at rest along given directions: what wrinkles follow.
+
+The tension map (tension.py) finds the direction of the strongest compression anew in each frame,
+and where there is little of it the direction is anybody's guess. Wrinkles stay where they are; so
+here the directions are given at rest, d at each vertex, and only the amount is measured:
+
+    shortening = max(1 - |F d|, 0)         F: from rest to now, in the plane of a triangle
+
+Written with the barycentric coordinates b of d, which add up to 0, |F d|^2 needs nothing but the
+squared lengths l of the triangle's edges,
+
+    |F d|^2 = - b0 b1 l01^2 - b1 b2 l12^2 - b2 b0 l20^2
+
+so neither a rigid motion nor a bend counts, and the mean over the triangles around a vertex,
+weighted by area, is a sum with weights that never change. At rest it is 0 to the last bit.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from ...jit import njit
+from ..mesh.validation import checked_indices, checked_positions
+
+Floats = npt.NDArray[np.float32]
+Doubles = npt.NDArray[np.float64]
+Unsigned = npt.NDArray[np.uint32]
+
+THINNEST = 1e-6
+"""Height over length below which a triangle at rest has no plane to measure in."""
+
+
+class Shortening:
+    """Measures deformed positions of one mesh along directions that are known at rest.
+
+    shortening = refine.Shortening(faces, rest_positions, directions)
+    amounts = shortening.measure(positions)
+    """
+
+    def __init__(
+        self, faces: npt.ArrayLike, rest_positions: npt.ArrayLike, directions: npt.ArrayLike
+    ) -> None:
+        """Learn the mesh at rest: `faces`, (F, 3), `rest_positions`, (V, 3), `directions`.
+
+        `directions`: k for each vertex, of any length, shape (V, k, 3); what of one stands on the
+        skin is left away, and one that is zero measures nothing. Raises ValueError for arrays that
+        do not fit together.
+        """
+        rest = checked_positions(rest_positions)
+        triangles = checked_indices("faces", faces, len(rest), "rest_positions")
+        wanted = np.asarray(directions, dtype=np.float64)
+        if wanted.ndim != 3 or wanted.shape[::2] != (len(rest), 3) or not np.isfinite(wanted).all():
+            raise ValueError(
+                f"directions must be finite, of shape ({len(rest)}, k, 3), got shape {wanted.shape}"
+            )
+        asked = (wanted != 0.0).any(axis=(1, 2))[triangles].any(axis=1)
+        triangles = triangles[asked]
+        self._faces = triangles.astype(np.uint32)
+        self._weights = _weights(rest, triangles, wanted)
+        self._shape = len(rest), wanted.shape[1]
+        self._squares = np.zeros(self._shape, dtype=np.float32)
+        self._rest = np.zeros((len(triangles), 3))
+        _square_lengths(rest, self._faces, self._rest)
+
+    def measure(self, positions: npt.NDArray[np.floating]) -> Floats:
+        """Loss of length of each vertex along its directions, 0 = none, up to 1, shape (V, k).
+
+        `positions`: shape (V, 3), any float type. The result is overwritten by the next call.
+        Raises ValueError for another shape.
+        """
+        given = np.asarray(positions, dtype=np.float64)
+        if given.shape != (self._shape[0], 3):
+            raise ValueError(
+                f"positions must be of shape ({self._shape[0]}, 3) like the rest positions, got "
+                f"shape {given.shape}"
+            )
+        _shorten(given, self._faces, self._rest, self._weights, self._squares)
+        return self._squares
+
+
+def _weights(rest: Doubles, faces: npt.NDArray[np.int64], directions: Doubles) -> Floats:
+    """Of each triangle's squared edge lengths at its corners, shape (F, 3, k, 3)."""
+    a, b, c = (rest[faces[:, k]] for k in range(3))
+    normal = np.cross(b - a, c - a)
+    area = np.linalg.norm(normal, axis=1)
+    longest = np.max([np.linalg.norm(each, axis=1) for each in (b - a, c - b, a - c)], axis=0)
+    is_proper = area > THINNEST * longest**2
+    squared = np.where(is_proper, area, 1.0) ** 2
+    # Gradients of the barycentric coordinates: coordinate i grows away from the edge opposite.
+    gradients = np.cross(normal[:, None], np.stack([c - b, a - c, b - a], axis=1))
+    gradients /= squared[:, None, None]
+    shares = np.einsum("tik,tcsk->tcsi", gradients, directions[faces])  # (F, corner, k, i)
+    sides = -shares * np.roll(shares, -1, axis=3)  # of the edges 01, 12, 20
+    lengths = np.stack(
+        [((b - a) ** 2).sum(1), ((c - b) ** 2).sum(1), ((a - c) ** 2).sum(1)], axis=1
+    )
+    in_plane = np.einsum("tcsi,ti->tcs", sides, lengths)  # |d|^2, without what stands on the skin
+    whole = (directions[faces] ** 2).sum(axis=3)
+    is_seen = is_proper[:, None, None] & (in_plane > 0.05 * whole) & (whole > 0.0)
+    weight = np.where(is_seen, area[:, None, None], 0.0)
+    totals = np.zeros(directions.shape[:2])
+    for k in range(3):
+        np.add.at(totals, faces[:, k], weight[:, k])
+    share = weight / np.maximum(totals[faces], 1e-300) / np.where(is_seen, in_plane, 1.0)
+    return np.ascontiguousarray(share[..., None] * sides, dtype=np.float32)
+
+
+@njit
+def _square_length(positions: Doubles, a: int, b: int) -> float:
+    """The squared length of the edge between two vertices."""
+    x = positions[b, 0] - positions[a, 0]
+    y = positions[b, 1] - positions[a, 1]
+    z = positions[b, 2] - positions[a, 2]
+    return float(x * x + y * y + z * z)
+
+
+@njit
+def _square_lengths(positions: Doubles, faces: Unsigned, squares: Doubles) -> None:
+    """Write the squared lengths of the edges 01, 12, 20 of each triangle, shape (F, 3)."""
+    for t in range(faces.shape[0]):
+        for i in range(3):
+            squares[t, i] = _square_length(positions, faces[t, i], faces[t, (i + 1) % 3])
+
+
+@njit
+def _shorten(
+    positions: Doubles, faces: Unsigned, rest: Doubles, weights: Floats, lost: Floats
+) -> None:
+    """Write the loss of length along the directions, (V, k)."""
+    lost[:] = np.float32(0.0)
+    grown = np.empty(3, dtype=np.float32)
+    for t in range(faces.shape[0]):
+        for i in range(3):
+            squared = _square_length(positions, faces[t, i], faces[t, (i + 1) % 3])
+            grown[i] = squared - rest[t, i]
+        for i in range(3):
+            v = faces[t, i]
+            for k in range(lost.shape[1]):
+                lost[v, k] += (
+                    weights[t, i, k, 0] * grown[0]
+                    + weights[t, i, k, 1] * grown[1]
+                    + weights[t, i, k, 2] * grown[2]
+                )
+    for v in range(lost.shape[0]):
+        for k in range(lost.shape[1]):
+            left = np.sqrt(max(np.float32(1.0) + lost[v, k], np.float32(0.0)))
+            lost[v, k] = max(np.float32(1.0) - left, np.float32(0.0))

@@ -1,0 +1,382 @@
+"""Criteria beside the paper's, and several at once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from risorius import refine
+from risorius.refine import RestCurvature
+from risorius.refine.kahler.criterion import Thresholds
+from tests import meshes
+from tests.refine.cases import Forced, Needed
+
+
+def splits_of(
+    mesh: meshes.Mesh, deformed: np.ndarray, criterion: object, **view: object
+) -> tuple[np.ndarray, np.ndarray]:
+    """Splits of every edge, and the edges."""
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
+    refiner.refine(deformed, **view)
+    return refiner.splits.copy(), refiner.edges
+
+
+def ball(levels: int = 2) -> meshes.Mesh:
+    """A unit sphere."""
+    octahedron = meshes.octahedron()
+    finer = refine.create("loop", octahedron.faces, octahedron.vertices, levels=levels)
+    refined = finer.refine(octahedron.vertices)
+    positions = refined.positions / np.linalg.norm(refined.positions, axis=1, keepdims=True)
+    return meshes.Mesh(positions.astype(np.float64), refined.triangles.astype(np.int32))
+
+
+def test_curvature_by_hand() -> None:
+    """On a circle of radius r the height over a chord is r (1 - cos(angle / 2))."""
+    tube = meshes.tube(24, 4)
+    around = 2 * np.sin(np.pi / 24)
+    height = around**2 / 8  # k L^2 / 8 with k = 1
+    lengths = np.linalg.norm(
+        np.diff(tube.vertices[refine.connect(tube.faces, len(tube.vertices)).edges], axis=1)[:, 0],
+        axis=1,
+    )
+    for factor, expected in ((0.9, 1), (1.1, 0)):
+        criterion = refine.Curvature(factor * height / lengths.mean(), 1.0, relative=False)
+        splits, edges = splits_of(tube, tube.vertices, criterion)
+        inner = (edges // 8 > 0).all(axis=1) & (edges < 24 * 4).all(axis=1) & (edges >= 24).all(1)
+        is_around = inner & (edges[:, 0] // 24 == edges[:, 1] // 24)
+        assert (splits[is_around] == expected).all()
+        along = inner & (edges[:, 0] % 24 == edges[:, 1] % 24)
+        assert not splits[along].any()
+
+
+def test_relative_curvature() -> None:
+    """What is curved at rest is not split, unless it bends more; absolute curvature counts all."""
+    sphere = ball()
+    assert not splits_of(sphere, sphere.vertices, refine.Curvature(0.001, 0.1))[0].any()
+    absolute = refine.Curvature(0.001, 0.1, relative=False)
+    assert splits_of(sphere, sphere.vertices, absolute)[0].all()
+    drawn_out = sphere.vertices * [1.0, 1.0, 4.0]
+    splits, edges = splits_of(sphere, drawn_out, "curvature")
+    at_rim = (abs(sphere.vertices[edges][..., 2]) < 0.4).all(axis=1)
+    at_pole = (abs(sphere.vertices[edges][..., 2]) > 0.8).all(axis=1)
+    assert splits[at_pole].min() > 0
+    assert not splits[at_rim].any()
+
+
+def test_rest_by_hand() -> None:
+    """Where a tube is curved, by height and length; the same edges however it is bent and seen."""
+    tube = meshes.tube(24, 4)
+    around = 2 * np.sin(np.pi / 24)
+    edges = refine.connect(tube.faces, len(tube.vertices)).edges
+    size = np.linalg.norm(np.ptp(tube.vertices, axis=0))
+    measure = around**2 / 8 / size * np.cbrt(40.0 * around / size)
+    for factor, expected in ((0.9, 1), (1.1, 0)):
+        refiner = refine.create(
+            "kahler", tube.faces, tube.vertices,
+            criterion=refine.RestCurvature(factor * measure, 1.0),
+        )  # fmt: skip
+        is_around = edges[:, 0] // 24 == edges[:, 1] // 24
+        is_inner = (edges >= 24).all(axis=1) & (edges < 24 * 4).all(axis=1)
+        along = edges[:, 0] % 24 == edges[:, 1] % 24
+        for positions in (tube.vertices, meshes.wrinkled(tube, 3), tube.vertices[:, [1, 2, 0]]):
+            mesh = refiner.refine(positions, view=refine.View([0.0, 9.0, 0.0]))
+            refine.check(refiner, mesh, positions)
+            assert (refiner.splits[is_around & is_inner] == expected).all()
+            assert not refiner.splits[along].any()
+
+
+def test_rest_is_grown_at_once() -> None:
+    """Blended points that are there at rest stand where they stand without blending."""
+    sphere = ball(1)
+    points = []
+    for blend in (False, True):
+        refiner = refine.create(
+            "kahler", sphere.faces, sphere.vertices,
+            criterion="rest", scheme="cubic", blend=blend,
+        )  # fmt: skip
+        mesh = refiner.refine(sphere.vertices)
+        points.append({tuple(row) for row in mesh.positions.round(5).tolist()})
+    assert len(points[0]) > len(sphere.vertices)
+    assert points[0] < points[1]  # and the points in the middle of triangles
+
+
+def test_silhouette() -> None:
+    """Edges where a ball turns away from the eye are split, those in front and behind are not."""
+    sphere = ball()
+    eye = np.array([0.0, 0.0, 20.0])
+    splits, edges = splits_of(sphere, sphere.vertices, "silhouette", view=refine.View(eye))
+    towards = abs(sphere.vertices[edges][..., 2])
+    assert splits[(towards < 0.1).all(axis=1)].min() >= 1
+    assert not splits[(towards > 0.5).all(axis=1)].any()
+    moved, _ = splits_of(sphere, sphere.vertices, "silhouette", view=refine.View(eye[[2, 0, 1]]))
+    assert (moved != splits).any()
+
+
+def test_screen_edge() -> None:
+    """Length in pixels: focal x length / distance."""
+    mesh = meshes.triangle()
+    criterion = refine.ScreenEdge(once=99.0, twice=141.0)
+    view = refine.View(np.array([0.4, 0.4, 10.0]), focal=1000.0)
+    splits, edges = splits_of(mesh, mesh.vertices, criterion, view=view)
+    hypotenuse = (edges != 0).all(axis=1)
+    assert splits[hypotenuse] == 2
+    assert (splits[~hypotenuse] == 1).all()
+    far, _ = splits_of(mesh, mesh.vertices, criterion, view=view._replace(eye=[0, 0, 100]))
+    assert not far.any()
+
+
+@pytest.mark.parametrize("name", ["silhouette", "screen"])
+def test_view_is_needed(name: str) -> None:
+    """Criteria that depend on the eye say so."""
+    mesh = meshes.octahedron()
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=name)
+    with pytest.raises(ValueError, match=r"needs to know where the eye is; pass view=refine.View"):
+        refiner.refine(mesh.vertices)
+    for view in (
+        refine.View([0, 0, np.nan]),
+        refine.View([0, 0]),
+        refine.View([0, 0, 1], focal=0.0),
+    ):
+        with pytest.raises(ValueError, match="an eye of shape"):
+            refiner.refine(mesh.vertices, view=view)
+
+
+def test_maximum() -> None:
+    """A list splits each edge as often as the criterion that asks for most."""
+    mesh = meshes.irregular(1)
+    deformed = meshes.wrinkled(mesh, 2)
+    view = refine.View([0.0, 0.0, 50.0], 800.0)
+    names = ["normal", "curvature", "silhouette", refine.ScreenEdge(14, 18)]
+    single = [splits_of(mesh, deformed, name, view=view)[0] for name in names]
+    together, _ = splits_of(mesh, deformed, names, view=view)
+    assert (together == np.max(single, axis=0)).all()
+    assert len({s.tobytes() for s in single}) == 4
+    assert len(set(together.tolist())) == 3
+    joined, _ = splits_of(mesh, deformed, "normal+curvature+silhouette", view=view)
+    assert (joined == np.max(single[:3], axis=0)).all()
+
+
+def test_maximum_of_needs() -> None:
+    """Blending takes the largest need; one part that only counts splits cannot be blended."""
+    mesh = meshes.octahedron()
+    one, other = np.full(12, 0.2), np.linspace(-1.0, 0.4, 12)
+    pair = [Needed(one), Needed(other)]
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, blend=True, criterion=pair)
+    expected = refine.create(
+        "kahler", mesh.faces, mesh.vertices, blend=True, criterion=Needed(np.maximum(one, other))
+    )
+    frames = [r.refine(mesh.vertices).positions.tobytes() for r in (refiner, expected)]
+    assert frames[0] == frames[1]
+    with pytest.raises(ValueError, match="blend=True needs a criterion that measures"):
+        refine.create(
+            "kahler", mesh.faces, mesh.vertices, blend=True,
+            criterion=[Needed(one), Forced(np.zeros(12))],
+        )  # fmt: skip
+
+
+@pytest.mark.parametrize("criterion", ["normal", "curvature"])
+def test_blended_splits_are_the_same(criterion: str) -> None:
+    """Blending does not change how often an edge is split."""
+    mesh = meshes.irregular(2)
+    deformed = meshes.wrinkled(mesh, 3)
+    splits = []
+    for blend in (False, True):
+        refiner = refine.create(
+            "kahler", mesh.faces, mesh.vertices, criterion=criterion, blend=blend
+        )
+        refiner.refine(deformed)
+        splits.append(refiner.splits.copy())
+    assert (splits[0] == splits[1]).mean() > 0.998
+    assert len(set(splits[0].tolist())) == 3
+
+
+@pytest.mark.parametrize("blend", [False, True])
+def test_one_level_only(blend: bool) -> None:
+    """An infinite second threshold switches the second level off, blended or not."""
+    mesh = meshes.irregular(2)
+    refiner = refine.create(
+        "kahler", mesh.faces, mesh.vertices, threshold_twice=np.inf, blend=blend
+    )
+    refiner.refine(meshes.wrinkled(mesh, 3, 1.0))
+    assert refiner.splits.max() == 1
+
+
+EYE = np.array([3.0, 2.0, 4.0])
+
+
+def plain_measure(
+    kind: type,
+    positions: np.ndarray,
+    normals: np.ndarray,
+    edges: np.ndarray,
+    unit: float,
+    most: float,
+) -> np.ndarray:
+    """What a criterion measures at every edge, written once more, plainly."""
+    values = []
+    for a, b in edges:
+        d, cosine = positions[b] - positions[a], float(normals[a] @ normals[b])
+        if kind is refine.NormalDrop:
+            values.append(-cosine)
+        elif kind is refine.Curvature:
+            values.append(abs(d @ normals[b] - d @ normals[a]) / 8 / unit)
+        elif kind is refine.ScreenEdge:
+            distance = np.linalg.norm(EYE - (positions[a] + positions[b]) / 2)
+            values.append(500.0 * np.linalg.norm(d) / distance)
+        else:
+            sight = [(EYE - positions[v]) / np.linalg.norm(EYE - positions[v]) for v in (a, b)]
+            facing = [float(normals[v] @ s) for v, s in zip((a, b), sight, strict=True)]
+            aside = 0.0 if facing[0] * facing[1] <= 0 else min(map(abs, facing))
+            values.append(min(1 - cosine, most) * max(0.0, 1 - aside / 0.3))
+    return np.array(values)
+
+
+@pytest.mark.parametrize("level", ["both", "first only"])
+@pytest.mark.parametrize(
+    ("kind", "once", "twice"),
+    [
+        (refine.NormalDrop, 0.02, 0.08),
+        (refine.Curvature, 0.025, 0.06),
+        (refine.Silhouette, 0.005, 0.03),
+        (refine.ScreenEdge, 80.0, 120.0),
+    ],
+)
+def test_needs_by_hand(kind: type, once: float, twice: float, level: str) -> None:
+    """Needs are measures over the distance of the thresholds; without a second one, over itself."""
+    mesh = meshes.irregular(2)
+    deformed = meshes.wrinkled(mesh, 3)
+    none = refine.create("none", mesh.faces, mesh.vertices)
+    connectivity = refine.connect(mesh.faces, len(mesh.vertices))
+    edges = connectivity.edges
+    at_rest = none.refine(mesh.vertices).normals.copy()
+    now = none.refine(deformed).normals.copy()
+    unit = np.linalg.norm(np.diff(mesh.vertices[edges], axis=1)[:, 0], axis=1).mean()
+    width = twice - once if level == "both" else once
+    most = once + 1.25 * width  # points have grown twice
+    expected = plain_measure(kind, deformed, now.astype(float), edges, unit, most)
+    if kind in (refine.NormalDrop, refine.Curvature):
+        expected -= plain_measure(kind, mesh.vertices, at_rest.astype(float), edges, unit, most)
+
+    criterion = kind(once, twice if level == "both" else np.inf)
+    criterion.bind(connectivity, mesh.vertices, at_rest)
+    if hasattr(criterion, "look"):
+        criterion.look(refine.View(EYE, 500.0))
+    need = np.zeros(len(edges), dtype=np.float32)
+    criterion.measure(deformed, now, need)
+    wanted = np.minimum((expected - once) / width, np.inf if level == "both" else 1.0)
+    np.testing.assert_allclose(need, wanted, rtol=1e-4, atol=1e-3)
+    assert 0.05 < (need > 0).mean() < 0.95
+    splits = np.zeros(len(edges), dtype=np.uint8)
+    criterion.mark(deformed, now, splits)
+    clear = (abs(need) > 1e-3) & ((abs(need - 1) > 1e-3) | (level == "first only"))
+    assert clear.sum() > 0.5 * len(edges)
+    count = (need > 0).astype(int) + (need > 1)
+    np.testing.assert_array_equal(splits[clear], count[clear])
+
+
+@pytest.mark.parametrize(
+    ("criterion", "text"),
+    [
+        ("bending", r"criterion 'bending' is unknown; there are \('normal', 'curvature'"),
+        ("normal+", "criterion '' is unknown; there are"),
+        ([], "an empty list decides nothing"),
+        (7, "criterion must be a name, an object with bind and mark, or a list, got 7"),
+    ],
+)
+def test_bad_criteria(criterion: object, text: str) -> None:
+    """What is no criterion is refused with what there is."""
+    mesh = meshes.octahedron()
+    with pytest.raises(ValueError, match=text):
+        refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
+
+
+@pytest.mark.parametrize(
+    "kind", [refine.Curvature, refine.RestCurvature, refine.Silhouette, refine.ScreenEdge]
+)
+def test_bad_thresholds(kind: type) -> None:
+    """Thresholds out of order are refused by every criterion."""
+    with pytest.raises(ValueError, match="0 <= threshold_once <= threshold_twice"):
+        kind(0.3, 0.2)
+
+
+@pytest.mark.parametrize("scheme", ["cubic", "detail"])
+def test_bulge(scheme: str) -> None:
+    """An edge is split where its full middle lies farther than the threshold from the straight."""
+    mesh = meshes.irregular(2)
+    deformed = meshes.wrinkled(mesh, 3)
+    detail = {"detail": (mesh.vertices + 0.01, mesh.faces)} if scheme == "detail" else {}
+    edges = refine.connect(mesh.faces, len(mesh.vertices)).edges
+    full = refine.create(
+        "kahler", mesh.faces, mesh.vertices, scheme=scheme, blend=False,
+        criterion=Forced(np.ones(len(edges))), **detail,
+    ).refine(deformed)  # fmt: skip
+    middles = full.positions[len(mesh.vertices) :]
+    heights = np.linalg.norm(middles - deformed[edges].mean(axis=1), axis=1)
+    unit = np.linalg.norm(np.diff(mesh.vertices[edges], axis=1)[:, 0], axis=1).mean()
+    once, twice = np.quantile(heights, [0.4, 0.8])
+    refiner = refine.create(
+        "kahler", mesh.faces, mesh.vertices, scheme=scheme,
+        criterion=[refine.Bulge(once / unit, twice / unit)], **detail,
+    )  # fmt: skip
+    refine.check(refiner, refiner.refine(deformed), deformed)
+    expected = (heights > once).astype(int) + (heights > twice)
+    assert (refiner.splits == expected).mean() > 0.99
+    assert set(refiner.splits.tolist()) == {0, 1, 2}
+
+
+def test_bulge_needs_curves() -> None:
+    """The paper's scheme has no curved edges to measure."""
+    mesh = meshes.octahedron()
+    with pytest.raises(ValueError, match=r"it goes with the schemes .* got LoopScheme"):
+        refine.create("kahler", mesh.faces, mesh.vertices, criterion="bulge")
+
+
+@pytest.mark.parametrize("names", ["normal+rest", "rest+normal", "normal+normal", "rest", "normal"])
+def test_several_criteria_mark(names: str) -> None:
+    """Several criteria together mark what the one marks that asks for most.
+
+    Also after their thresholds have been replaced, or moved.
+    """
+    mesh = meshes.irregular(4)
+    deformed = meshes.wrinkled(mesh, 5)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=names)
+    parts = [refine.NormalDrop() if name == "normal" else RestCurvature()
+             for name in names.split("+")]  # fmt: skip
+    plain = refine.create("none", mesh.faces, mesh.vertices)
+    rest_normals = plain.refine(mesh.vertices).normals.copy()
+    normals = plain.refine(deformed).normals.copy()
+    for part in parts:
+        part.bind(refiner.connectivity, mesh.vertices, rest_normals)
+    drops = [refiner._criterion, *getattr(refiner._criterion, "criteria", ())]
+    drops = [one for one in drops if isinstance(one, refine.NormalDrop)]
+    for change in (None, 0.3, 0.05):
+        if change == 0.3:
+            for one in (*drops, *(p for p in parts if isinstance(p, refine.NormalDrop))):
+                one.thresholds = Thresholds(0.3, 0.5, "drops")
+        elif change:
+            for one in (*drops, *(p for p in parts if isinstance(p, refine.NormalDrop))):
+                one.thresholds.once = change
+        refiner.refine(deformed)
+        asked = []
+        for part in parts:
+            splits = np.zeros(len(refiner.edges), np.uint8)
+            part.mark(deformed, normals, splits)
+            asked.append(splits)
+        assert (refiner.splits == np.max(asked, axis=0)).all()
+    assert refiner.splits.any()
+
+
+def test_a_rule_of_ones_own_is_asked() -> None:
+    """A subclass that marks otherwise is not passed over."""
+    mesh = meshes.irregular(4)
+
+    class Everything(refine.NormalDrop):
+        def mark(self, positions: Any, normals: Any, splits: Any) -> None:
+            splits[:] = 2
+
+    for criterion in (Everything(), ["rest", Everything()]):
+        refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
+        refiner.refine(mesh.vertices)
+        assert (refiner.splits == 2).all()

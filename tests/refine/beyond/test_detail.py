@@ -1,0 +1,283 @@
+"""Closest points, the fit to a finer mesh, and detail that moves with the surface."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from risorius import refine
+from risorius.refine.beyond.closest import Surface
+from tests import meshes
+from tests.refine import plain_twin
+from tests.refine.cases import Needed, as_lists, assert_equals_twin, point_names
+from tests.refine.plain_detail import DetailRules, Seen
+
+
+def bumpy(columns: int, rows: int) -> meshes.Mesh:
+    """A sheet of 4 x 3 with bumps that a coarse grid cannot show."""
+    grid = meshes.open_grid(columns, rows)
+    vertices = grid.vertices * [4.0 / columns, 3.0 / rows, 1.0]
+    x, y = vertices[:, 0], vertices[:, 1]
+    vertices[:, 2] = 0.1 * np.sin(4.0 * x) * np.cos(5.0 * y) + 0.2 * np.sin(x)
+    return meshes.Mesh(vertices, grid.faces)
+
+
+COARSE, FINE = bumpy(8, 6), bumpy(48, 36)
+
+
+def distances(points: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Distance of each point from a mesh."""
+    surface = Surface(positions.astype(np.float64), triangles.astype(np.uint32))
+    hit, weights = surface.closest(points, np.zeros_like(points))
+    return np.linalg.norm(surface.at(surface.positions, hit, weights) - points, axis=1)
+
+
+def angles(some: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Degrees between unit vectors, shape (N, 3)."""
+    return np.degrees(np.arccos(np.clip((some * others).sum(axis=1), -1.0, 1.0)))
+
+
+def refined(scheme: str, positions: np.ndarray, **options: object) -> refine.RefinedMesh:
+    """The coarse sheet with all edges split twice."""
+    edge_count = len(refine.connect(COARSE.faces, len(COARSE.vertices)).edges)
+    if scheme == "detail":
+        options["detail"] = (FINE.vertices, FINE.faces)
+    refiner = refine.create(
+        "kahler", COARSE.faces, COARSE.vertices, scheme=scheme,
+        criterion=Needed(np.full(edge_count, 9.0)), **options,
+    )  # fmt: skip
+    mesh = refiner.refine(positions)
+    refine.check(refiner, mesh, positions)
+    return mesh
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_closest_points(seed: int) -> None:
+    """Nothing that lies on the mesh is closer than the point that is found, near the mesh."""
+    mesh = meshes.irregular(seed)
+    generator = np.random.default_rng(seed)
+    picked = mesh.faces[generator.integers(len(mesh.faces), size=60)]
+    shares = generator.dirichlet([1, 1, 1], 60)
+    points = np.einsum("nik,ni->nk", mesh.vertices[picked], shares)
+    points += 0.05 * generator.standard_normal(points.shape)
+    found = distances(points, mesh.vertices, mesh.faces)
+    samples = np.random.default_rng(9).dirichlet([0.6, 0.6, 0.6], 300)
+    cloud = np.einsum("fik,si->fsk", mesh.vertices[mesh.faces], samples).reshape(-1, 3)
+    nearest = np.array([np.linalg.norm(cloud - point, axis=1).min() for point in points])
+    assert (found <= nearest + 1e-12).all()
+    assert (nearest - found).max() < 0.2
+
+
+def test_closest_looks_the_same_way() -> None:
+    """Of two sheets that almost touch, each point finds the one that looks its way."""
+    sheet = meshes.open_grid(6, 6)
+    count = len(sheet.vertices)
+    below = sheet.vertices - [0.0, 0.0, 0.01]
+    vertices = np.concatenate([sheet.vertices, below])
+    faces = np.concatenate([sheet.faces, sheet.faces[:, ::-1] + count]).astype(np.uint32)
+    points = np.tile([[3.3, 2.2, -0.005]], (2, 1))
+    hit, _ = Surface(vertices, faces).closest(points, np.array([[0, 0, 1.0], [0, 0, -1.0]]))
+    assert hit[0] < len(sheet.faces) <= hit[1]
+
+
+@pytest.mark.parametrize("blend", [False, True])
+def test_lies_on_the_finer_mesh(blend: bool) -> None:
+    """At rest, with all edges split, the detail scheme is much closer to the finer mesh."""
+    errors = {}
+    for scheme in ("cubic", "detail"):
+        mesh = refined(scheme, COARSE.vertices, blend=blend)
+        errors[scheme] = distances(FINE.vertices, mesh.positions, mesh.triangles).mean()
+    coarse = distances(FINE.vertices, COARSE.vertices, COARSE.faces).mean()
+    assert errors["detail"] < 0.25 * coarse
+    assert errors["detail"] < 0.5 * errors["cubic"]
+
+
+def test_shows_finer_normals() -> None:
+    """Normals are those of the finer mesh where the vertices of the refined one are."""
+    mesh = refined("detail", COARSE.vertices)
+    surface = Surface(FINE.vertices, FINE.faces.astype(np.uint32))
+    hit, weights = surface.closest(mesh.positions.astype(np.float64), np.zeros(mesh.normals.shape))
+    expected = surface.at(surface.normals, hit, weights)
+    expected /= np.linalg.norm(expected, axis=1, keepdims=True)
+    assert np.median((expected * mesh.normals).sum(axis=1)) > 0.999
+
+
+def test_no_stars_in_folds() -> None:
+    """A finer mesh that adds nothing leaves the normals of a folded sheet as smooth as the cubic.
+
+    Between a vertex and the quarter points around it they turn by a part of the fold; with one
+    direction for a whole edge they turned by half of it there and stood still from there on.
+    """
+    flat = meshes.open_grid(8, 6)
+    x = flat.vertices[:, 0] - 4.0
+    folded = np.stack([x, flat.vertices[:, 1], np.sqrt(x * x + 0.2)], axis=1)
+    edge_count = len(refine.connect(flat.faces, len(folded)).edges)
+    shown, off = {}, {}
+    for scheme, detail in (("cubic", {}), ("detail", {"detail": (flat.vertices, flat.faces)})):
+        refiner = refine.create(
+            "kahler", flat.faces, flat.vertices, scheme=scheme,
+            criterion=Needed(np.full(edge_count, 9.0)), **detail,
+        )  # fmt: skip
+        mesh = refiner.refine(folded)
+        is_middle = refiner.origins().weights.max(axis=1) < 0.4
+        shown[scheme] = mesh.normals[~is_middle].copy()
+        x = mesh.positions[is_middle, 0]
+        true = np.stack([-x / np.sqrt(x * x + 0.2), np.zeros_like(x), np.ones_like(x)], axis=1)
+        true /= np.linalg.norm(true, axis=1, keepdims=True)
+        off[scheme] = angles(true, mesh.normals[is_middle])
+    assert angles(shown["cubic"], shown["detail"]).max() < 5.0
+    # The middles of triangles lie elsewhere, so the fold itself is what they are held against.
+    assert off["detail"].max() < off["cubic"].max() + 1.0
+
+
+def test_no_teeth_along_folds() -> None:
+    """Along a strip of triangles that is folded at one side normals hardly alternate.
+
+    With the middle of every triangle in its centroid, as `cubic` has it, every second one lies in
+    the fold and every other one beside it.
+    """
+    grid = meshes.open_grid(10, 6)
+    flat = grid.vertices * [0.5, 1.0, 1.0]
+    up, down = np.minimum(flat[:, 1] - 3.0, 0.0), np.minimum(3.0 - flat[:, 1], 0.0)
+    folded = np.stack([flat[:, 0], up, down], axis=1)
+    edge_count = len(refine.connect(grid.faces, len(flat)).edges)
+    shares = np.random.default_rng(1).dirichlet([1, 1, 1], 200)
+    ripples = {}
+    for scheme, detail in (("cubic", {}), ("detail", {"detail": (flat, grid.faces)})):
+        refiner = refine.create(
+            "kahler", grid.faces, flat, scheme=scheme,
+            criterion=Needed(np.full(edge_count, 9.0)), **detail,
+        )  # fmt: skip
+        mesh = refiner.refine(folded)
+        places, normals = (
+            np.einsum("fik,si->fsk", values[mesh.triangles], shares).reshape(-1, 3)
+            for values in (mesh.positions, mesh.normals)
+        )
+        is_inner = abs(places[:, 0] - 2.5) < 1.5
+        across = (places[:, 1] - places[:, 2])[is_inner]
+        tilts = np.degrees(np.arctan2(normals[:, 1], normals[:, 2]))[is_inner]
+        lines = [abs(across - line) < 0.02 for line in np.linspace(-0.9, 0.9, 19)]
+        ripples[scheme] = np.mean([tilts[line].std() for line in lines])
+    assert ripples["detail"] < 0.7 * ripples["cubic"]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_turns_with_the_mesh(seed: int) -> None:
+    """A rigid motion of the mesh moves everything along: points, middles and normals."""
+    turn = meshes.rotation(seed)
+    still = refined("detail", COARSE.vertices)
+    moved = refined("detail", COARSE.vertices @ turn.T + [1.0, 2.0, 3.0])
+    np.testing.assert_allclose(moved.positions, still.positions @ turn.T + [1, 2, 3], atol=2e-5)
+    np.testing.assert_allclose(moved.normals, still.normals @ turn.T, atol=2e-4)
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    mesh=st.one_of(
+        st.builds(meshes.irregular, st.integers(0, 99), st.just(5), st.just(4), st.integers(0, 2)),
+        st.builds(meshes.double_cone, st.integers(3, 60)),
+        st.sampled_from([meshes.octahedron(), meshes.tube(6, 2)]),
+    ),
+    seed=st.integers(0, 2**16),
+    blend=st.booleans(),
+)
+def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, blend: bool) -> None:
+    """What is seen at rest moves as the plain twin says, for any splits and any growth."""
+    generator = np.random.default_rng(seed)
+    lift = 0.05 * generator.standard_normal(mesh.vertices.shape)
+    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+
+    def refiner_of(need: np.ndarray, blend: bool) -> refine.Refiner:
+        return refine.create(
+            "kahler", mesh.faces, mesh.vertices, scheme="detail", blend=blend,
+            detail=(mesh.vertices + lift, mesh.faces), criterion=Needed(need),
+        )  # fmt: skip
+
+    def seen_with(need: float) -> Seen:
+        everything = refiner_of(np.full(edge_count, need), True)
+        still = everything.refine(mesh.vertices)
+        rows = np.concatenate([still.positions, still.normals], axis=1).astype(float).tolist()
+        names = point_names(everything.origins())
+        return {
+            name: ((x, y, z), (u, v, w))
+            for name, (x, y, z, u, v, w) in zip(names, rows, strict=True)
+        }
+
+    seen = seen_with(0.9), seen_with(2.0)
+    need = generator.uniform(-0.7, 2.0, edge_count)
+    deformed = meshes.wrinkled(mesh, seed, 0.1)
+    refiner = refiner_of(need, blend)
+    refined = refiner.refine(deformed)
+    refine.check(refiner, refined, deformed)
+
+    rest, faces = as_lists(mesh.vertices, mesh.faces)
+    points, _ = as_lists(deformed, mesh.faces)
+    edges = [(int(a), int(b)) for a, b in refiner.edges]
+    needed = Needed(need)
+    splits = {
+        plain_twin.edge_name(*edge): int(n > 0) + int(n > 1)
+        for edge, n in zip(edges, needed.need, strict=True)
+    }
+    twin = plain_twin.refine(
+        points,
+        faces,
+        splits,
+        growth=needed.growth(refiner.edges) if blend else None,
+        rules=DetailRules(rest, points, faces, edges, seen),
+    )
+    # Short edges make long levers: directions are single precision, twice over.
+    assert_equals_twin(refiner, refined, twin, tolerance=(2e-5, 2e-4))
+
+
+@pytest.mark.slow
+def test_binding_takes_no_square_of_time_where_vertices_cluster() -> None:
+    """One vertex far away must not throw all others into one cell of a search."""
+    coarse, fine = meshes.tube(24, 20), meshes.tube(96, 80)
+
+    def clustered(mesh: meshes.Mesh) -> np.ndarray:
+        positions = 1e-4 * mesh.vertices
+        positions[0] = 1.0
+        return positions
+
+    refiner = refine.create(
+        "kahler",
+        coarse.faces,
+        clustered(coarse),
+        scheme="detail",
+        detail=(clustered(fine), fine.faces),
+    )
+    begun = time.process_time()
+    for _ in range(3):
+        refine.create(
+            "kahler",
+            coarse.faces,
+            clustered(coarse),
+            scheme="detail",
+            detail=(clustered(fine), fine.faces),
+        )
+    clustered_time = time.process_time() - begun
+    begun = time.process_time()
+    for _ in range(3):
+        refine.create(
+            "kahler", coarse.faces, coarse.vertices, scheme="detail",
+            detail=(fine.vertices, fine.faces),
+        )  # fmt: skip
+    assert clustered_time < 5.0 * (time.process_time() - begun)
+    assert refiner.triangle_capacity == 12 * len(coarse.faces)
+
+
+@pytest.mark.slow
+def test_many_vertices_in_one_place() -> None:
+    """Thousands of vertices in one place are searched in bounded time, and give finite detail."""
+    random = np.random.default_rng(3)
+    positions = np.zeros((3000, 3))
+    positions[:3] = np.eye(3)
+    faces = random.integers(0, 3000, (4000, 3))
+    refiner = refine.create(
+        "kahler", faces[:500], positions, scheme="detail", detail=(positions, faces)
+    )
+    assert np.isfinite(refiner.refine(positions).positions).all()

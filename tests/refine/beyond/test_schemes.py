@@ -1,0 +1,227 @@
+"""Every scheme, blended and not, against its plain twin and the checker."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from risorius import refine
+from tests import meshes
+from tests.refine import plain_schemes
+from tests.refine.cases import Needed, as_lists, assert_equals_twin, soups
+from tests.refine.plain_twin import Rules, Twin, edge_name
+from tests.refine.plain_twin import refine as refine_plainly
+
+SCHEMES = ("loop", "cubic")
+EVERY_SCHEME = (*SCHEMES, "detail")
+VALENCES = {f"fan of {n}": lambda n=n: meshes.double_cone(n) for n in (3, 4, 5, 7, 60, 90)}
+MESHES = {**meshes.NAMED, **VALENCES, "irregular": lambda: meshes.irregular(3, 6, 5, 1)}
+
+
+def bound(
+    mesh: meshes.Mesh, scheme: str, blend: bool, need: np.ndarray, **options: object
+) -> refine.Refiner:
+    """A refiner whose edges have the given needs; the finer mesh of `detail` is the mesh itself."""
+    if scheme == "detail":
+        options["detail"] = (mesh.vertices + np.array([0.0, 0.0, 0.01]), mesh.faces)
+    return refine.create(
+        "kahler",
+        mesh.faces,
+        mesh.vertices,
+        uv=mesh.uv,
+        face_uv=mesh.face_uv,
+        scheme=scheme,
+        blend=blend,
+        criterion=Needed(need),
+        **options,
+    )
+
+
+def twin_of(mesh: meshes.Mesh, deformed: np.ndarray, scheme: str, blend: bool, needed: Needed,
+            edges: np.ndarray) -> Twin:  # fmt: skip
+    """The same frame by the plain implementations."""
+    points, faces = as_lists(deformed, mesh.faces)
+    rest, _ = as_lists(mesh.vertices, mesh.faces)
+    rules: Rules | None = None
+    if scheme == "cubic":
+        rules = plain_schemes.cubic(rest, points, faces)
+    growth = needed.growth(edges)
+    splits = {
+        edge_name(int(a), int(b)): int(n > 0) + int(n > 1)
+        for (a, b), n in zip(edges, needed.need, strict=True)
+    }
+    return refine_plainly(points, faces, splits, growth=growth if blend else None, rules=rules)
+
+
+def random_needs(mesh: meshes.Mesh, seed: int) -> np.ndarray:
+    """Needs of no, one and two splits, and all shades between, for every edge."""
+    count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    return np.random.default_rng(seed).uniform(-0.7, 2.0, count)
+
+
+@pytest.mark.parametrize("name", MESHES)
+@pytest.mark.parametrize("blend", [False, True])
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_equals_plain_twin(scheme: str, blend: bool, name: str) -> None:
+    """Points, normals and triangles are those of the plain twin, on meshes of every kind."""
+    mesh = MESHES[name]()
+    for seed in range(2):
+        needed = Needed(random_needs(mesh, seed))
+        deformed = meshes.wrinkled(mesh, seed, 0.2)
+        refiner = bound(mesh, scheme, blend, needed.need)
+        refined = refiner.refine(deformed)
+        refine.check(refiner, refined, deformed)
+        twin = twin_of(mesh, deformed, scheme, blend, needed, refiner.edges)
+        if name != "pillow" or not blend:  # whose two middles have one name
+            assert_equals_twin(refiner, refined, twin)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    soup=soups(),
+    data=st.data(),
+    scheme=st.sampled_from(EVERY_SCHEME),
+    blend=st.booleans(),
+    seams=st.booleans(),
+)
+def test_soups(
+    soup: tuple[np.ndarray, np.ndarray],
+    data: st.DataObject,
+    scheme: str,
+    blend: bool,
+    seams: bool,
+) -> None:
+    """Any triangles with any needs come out proper from every scheme, with seams and without."""
+    positions, faces = soup
+    edge_count = len(refine.connect(faces, len(positions)).edges)
+    need = data.draw(st.lists(st.floats(-1, 3), min_size=edge_count, max_size=edge_count))
+    uv = np.random.default_rng(1).random((3, 2)) if seams else None
+    face_uv = np.random.default_rng(2).integers(3, size=faces.shape) if seams else None
+    mesh = meshes.Mesh(positions, faces, uv, face_uv)
+    deformed = meshes.wrinkled(mesh, 3, 0.1)
+    refiner = bound(mesh, scheme, blend, np.array(need))
+    refine.check(refiner, refiner.refine(deformed), deformed)
+
+
+@settings(max_examples=60, deadline=None)
+@given(soup=soups(), data=st.data(), scheme=st.sampled_from(SCHEMES), blend=st.booleans())
+def test_soups_equal_twin(
+    soup: tuple[np.ndarray, np.ndarray], data: st.DataObject, scheme: str, blend: bool
+) -> None:
+    """Any triangles with any needs: the fast kernels do what the plain twin does."""
+    positions, faces = soup
+    edge_count = len(refine.connect(faces, len(positions)).edges)
+    strategy = st.floats(-1, 3, width=32)
+    needed = Needed(data.draw(st.lists(strategy, min_size=edge_count, max_size=edge_count)))
+    mesh = meshes.Mesh(positions, faces)
+    refiner = bound(mesh, scheme, blend, needed.need)
+    refined = refiner.refine(positions)
+    corners = [tuple(sorted(face)) for face in faces.tolist()]
+    if len(set(corners)) == len(corners) and _has_normals(refined):
+        twin = twin_of(mesh, positions, scheme, blend, needed, refiner.edges)
+        assert_equals_twin(refiner, refined, twin, normals_cancel=True)
+
+
+def _has_normals(refined: refine.RefinedMesh) -> bool:
+    """Whether no normal is a rest of rounding, which cubic edges would follow."""
+    lengths = np.linalg.norm(refined.normals, axis=1)
+    return bool((lengths > 0.5).all())
+
+
+@pytest.mark.parametrize("blend", [False, True])
+@pytest.mark.parametrize("scheme", ["cubic", "detail"])
+def test_vertices_stay(scheme: str, blend: bool) -> None:
+    """Schemes that interpolate leave every original vertex where it is, to the last bit."""
+    mesh = meshes.irregular(5)
+    deformed = meshes.wrinkled(mesh, 6)
+    refiner = bound(mesh, scheme, blend, random_needs(mesh, 7))
+    refined = refiner.refine(deformed)
+    assert (refined.positions[: len(deformed)] == deformed.astype(np.float32)).all()
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_flat_stays_flat(scheme: str) -> None:
+    """A plane refines into itself: all weights add up to one."""
+    mesh = meshes.irregular(2)
+    flat = mesh.vertices * [1.0, 1.0, 0.0]
+    tilted = flat @ np.array([[1, 0, 0.5], [0, 1, -0.3], [0, 0, 1.0]])
+    refined = bound(meshes.Mesh(flat, mesh.faces), scheme, True, random_needs(mesh, 3)).refine(
+        tilted
+    )
+    heights = 0.5 * refined.positions[:, 0] - 0.3 * refined.positions[:, 1]
+    np.testing.assert_allclose(refined.positions[:, 2], heights, rtol=0, atol=1e-5)
+
+
+def test_sphere_is_approached() -> None:
+    """On a sphere the points of split edges are much nearer to it than the edges' middles."""
+    octahedron = meshes.octahedron()
+    finer = refine.create("loop", octahedron.faces, octahedron.vertices, levels=2)
+    ball = finer.refine(octahedron.vertices)
+    positions = ball.positions / np.linalg.norm(ball.positions, axis=1, keepdims=True)
+    mesh = meshes.Mesh(positions.astype(np.float64), ball.triangles.astype(np.int32))
+    edge_count = len(refine.connect(mesh.faces, len(positions)).edges)
+    refiner = bound(mesh, "cubic", False, np.full(edge_count, 2.0))
+    refined = refiner.refine(mesh.vertices)
+    straight = 0.5 * mesh.vertices[refiner.edges].sum(axis=1)
+    before = abs(np.linalg.norm(straight, axis=1) - 1.0).mean()
+    after = abs(np.linalg.norm(refined.positions[len(positions) :], axis=1) - 1.0).mean()
+    assert after * 4.0 < before
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"scheme": "lop"}, "scheme 'lop' is unknown; there are"),
+        ({"scheme": 3}, "scheme must be one of .* or a refine.Scheme, got 3"),
+        ({"scheme": "detail"}, "go together, got scheme='detail' and detail not given"),
+        ({"detail": (np.eye(3), [[0, 1, 2]])}, "go together, got scheme='loop' and detail given"),
+        ({"scheme": "detail", "detail": np.eye(3)}, "detail must be a pair"),
+        (
+            {"scheme": "detail", "detail": (np.eye(3), [[0, 1, 3]])},
+            r"detail\[1\] must hold indices",
+        ),
+        ({"scheme": "detail", "detail": (np.eye(3), np.zeros((0, 3), int))}, "must have triangles"),
+        ({"blend": True, "coherent": True}, "ask for one of the two"),
+    ],
+)
+def test_bad_choices(options: dict[str, object], text: str) -> None:
+    """Choices that do not exist or do not fit together are refused with what there is."""
+    mesh = meshes.octahedron()
+    with pytest.raises(ValueError, match=text):
+        refine.create("kahler", mesh.faces, mesh.vertices, **options)
+
+
+def test_scheme_of_somebody_else() -> None:
+    """An object with bind and place takes the place of the built-in schemes."""
+
+    class Straight:
+        """Points stay on their edges."""
+
+        interpolates = True
+
+        def bind(self, connectivity: refine.Connectivity, *rest: object) -> None:
+            """Remember the edges."""
+            self.edges = connectivity.edges
+
+        def place(self, frame: refine.FrameBuffers) -> None:
+            """Write middles only."""
+            frame.rows[: len(frame.positions), :3] = frame.positions
+            frame.rows[: len(frame.positions), 3:6] = frame.normals
+            for e in frame.split_once[: frame.once_count]:
+                a, b = self.edges[e]
+                frame.rows[frame.first_points[e]] = 0.5 * (frame.rows[a] + frame.rows[b])
+
+        def place_centres(self, frame: refine.FrameBuffers) -> None:
+            """Nothing to add."""
+
+    mesh = meshes.open_grid()
+    refiner = refine.create(
+        "kahler",
+        mesh.faces,
+        mesh.vertices,
+        scheme=Straight(),
+        criterion=Needed(np.ones(len(refine.connect(mesh.faces, len(mesh.vertices)).edges))),
+    )
+    refine.check(refiner, refiner.refine(mesh.vertices), mesh.vertices)

@@ -1,0 +1,284 @@
+"""The registry, binding errors, and a refiner of somebody else."""
+
+from __future__ import annotations
+
+import copy
+import importlib.metadata
+import pickle
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from risorius import refine
+from risorius.refine.border import registry
+from risorius.refine.kahler.smoothing import LoopScheme
+from tests import meshes
+
+FINE = meshes.octahedron()
+
+
+class Outside:
+    """The smallest refiner of somebody else: written from the protocol, not from our base class."""
+
+    vertex_columns = 6
+
+    def __init__(
+        self,
+        faces: np.ndarray,
+        rest_positions: np.ndarray,
+        *,
+        uv: object = None,
+        face_uv: object = None,
+        offset: float = 0.0,
+    ) -> None:
+        self._faces = np.asarray(faces, dtype=np.uint32)
+        connectivity = refine.connect(faces, len(rest_positions))
+        self.edges, self.triangle_edges = connectivity.edges, connectivity.triangle_edges
+        self.splits = np.zeros(len(self.edges), dtype=np.uint8)
+        self.vertex_capacity, self.triangle_capacity = len(rest_positions), len(faces)
+        self.offset = offset
+
+    def refine(self, positions: np.ndarray, out: refine.Stream | None = None) -> refine.RefinedMesh:
+        """Hand the mesh through without normals."""
+        points = (positions + self.offset).astype(np.float32)
+        source = np.arange(len(self._faces), dtype=np.int32)
+        return refine.RefinedMesh(points, np.zeros_like(points), self._faces, source, None)
+
+    def origins(self) -> refine.Origins:
+        """Every output vertex is the input vertex of the same number."""
+        numbers = np.arange(self.vertex_capacity, dtype=np.int32)
+        weights = np.tile(np.array([[1, 0, 0]], dtype=np.float32), (len(numbers), 1))
+        return refine.Origins(np.stack([numbers] * 3, axis=1), weights)
+
+
+@pytest.fixture
+def clean_registry(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Forget afterwards what a test registers."""
+    monkeypatch.setattr(registry.refiners, "_factories", dict(registry.refiners._factories))
+
+
+def test_built_in_names() -> None:
+    """The three built-in refiners are there."""
+    assert {"none", "kahler", "loop"} <= set(refine.available())
+
+
+@pytest.mark.usefixtures("clean_registry")
+def test_registered_refiner() -> None:
+    """A registered refiner is created by name with its options, and passes the checker."""
+    refine.register("outside", Outside)
+    assert "outside" in refine.available()
+    refiner = refine.create("outside", FINE.faces, FINE.vertices, offset=0.0)
+    assert isinstance(refiner, refine.Refiner)
+    refine.check(refiner, refiner.refine(FINE.vertices), FINE.vertices)
+    moved = refine.create("outside", FINE.faces, FINE.vertices, offset=0.5)
+    with pytest.raises(refine.BrokenMeshError, match="to the last bit"):
+        refine.check(moved, moved.refine(FINE.vertices), FINE.vertices)
+
+
+@pytest.mark.usefixtures("clean_registry")
+def test_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An installed package brings a refiner by entry point, loaded when it is first asked for."""
+    loaded = []
+    point = SimpleNamespace(name="installed", load=lambda: loaded.append(1) or Outside)
+
+    def entry_points(*, group: str) -> list[SimpleNamespace]:
+        return [point] if group == "risorius.refiners" else []
+
+    monkeypatch.setattr(importlib.metadata, "entry_points", entry_points)
+    assert "installed" in refine.available()
+    assert not loaded
+    assert isinstance(refine.create("installed", FINE.faces, FINE.vertices), Outside)
+
+
+def test_broken_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A package that cannot be imported is named with its reason, and only when it is asked for."""
+    point = importlib.metadata.EntryPoint("far", "nowhere_at_all:X", "risorius.refiners")
+    monkeypatch.setattr(importlib.metadata, "entry_points", lambda *, group: [point])
+    assert "far" in refine.available()
+    with pytest.raises(ValueError, match=r"'far' of 'nowhere_at_all:X' cannot be loaded: Module"):
+        refine.create("far", FINE.faces, FINE.vertices)
+
+
+@pytest.mark.usefixtures("clean_registry")
+@pytest.mark.parametrize(
+    ("name", "factory", "text"),
+    [
+        ("kahler", Outside, "named 'kahler' exists already; taken are"),
+        ("", Outside, "must be a word, got ''"),
+        (3, Outside, "must be a word, got 3"),
+        ("broken", 7, "must be callable, got 7"),
+    ],
+)
+def test_bad_registration(name: object, factory: object, text: str) -> None:
+    """Names cannot be taken twice, and factories have to be callable."""
+    with pytest.raises(ValueError, match=text):
+        refine.register(name, factory)  # type: ignore[arg-type]
+
+
+def test_unknown_name() -> None:
+    """The error lists the names there are."""
+    with pytest.raises(ValueError, match=r"refiner 'khaler' is unknown; there are .*'kahler'"):
+        refine.create("khaler", FINE.faces, FINE.vertices)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        (
+            "kahler",
+            r"it takes \['attributes', 'blend', 'coherent', 'criterion', 'detail', 'scheme'",
+        ),
+        ("loop", r"it takes \['attributes', 'levels'\]"),
+        ("none", r"it takes \['attributes'\]"),
+    ],
+)
+def test_unknown_option(name: str, text: str) -> None:
+    """The error lists the options there are."""
+    with pytest.raises(ValueError, match=f"unknown option 'treshold' for refiner '{name}'; {text}"):
+        refine.create(name, FINE.faces, FINE.vertices, treshold=0.1)
+
+
+NAN = FINE.vertices.copy()
+NAN[4, 1] = np.nan
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        ({"faces": FINE.faces[:, :2]}, r"faces must be integers of shape \(F, 3\), got int32"),
+        ({"faces": FINE.faces.astype(float)}, "faces must be integers .* got float64"),
+        ({"faces": FINE.faces + 1}, r"indices from 0 to 5 into rest_positions, but triangle 4 is"),
+        ({"faces": FINE.faces - 1}, r"but triangle 0 is \[-1, 1, 3\]"),
+        ({"faces": [[0, 1, 2, 3]]}, "cut polygons into triangles"),
+        ({"rest_positions": FINE.vertices[:, :2]}, r"numbers of shape \(V, 3\), got float64"),
+        ({"faces": [[0, 1, 2], [0, 1]]}, "faces must be integers .* is no array"),
+        ({"faces": np.ma.masked_equal(FINE.faces, 3)}, "faces .* has masked entries"),
+        ({"rest_positions": NAN}, "must be finite and below 1e.15, but vertex 4 is"),
+        ({"rest_positions": FINE.vertices * 1e16}, "must be finite and below 1e.15"),
+        ({"rest_positions": FINE.vertices * 1e9}, "must extend over 1e-06 to 1e.09 .* over 2e.09"),
+        ({"rest_positions": FINE.vertices * 1e-7}, "extend over 2e-07; take another unit"),
+        ({"rest_positions": np.ma.masked_equal(FINE.vertices, 1.0)}, "has masked entries"),
+        ({"rest_positions": FINE.vertices.astype(str)}, "rest_positions must be numbers"),
+        ({"face_uv": FINE.faces}, "face_uv points into uv, but uv is None"),
+        ({"uv": np.zeros((6, 3))}, r"uv must be numbers of shape \(U, 2\)"),
+        ({"uv": np.zeros((5, 2))}, "needs one row per vertex"),
+        ({"uv": np.full((6, 2), np.inf)}, "uv must be finite as single precision, but row 0"),
+        ({"uv": np.full((6, 2), 1e39)}, "uv must be finite as single precision"),
+        ({"attributes": [FINE.vertices]}, "attributes must be arrays by name, .* got list"),
+        ({"attributes": {"a": [FINE.vertices, FINE.faces]}}, "a tuple of such values and the row"),
+        ({"uv": np.zeros((3, 2)), "face_uv": FINE.faces}, "face_uv must hold indices from 0 to 2"),
+        ({"uv": np.zeros((6, 2)), "face_uv": FINE.faces[:3]}, "one row per triangle .8., got 3"),
+    ],
+)
+@pytest.mark.parametrize("name", ["none", "kahler", "loop"])
+def test_bad_binding(name: str, changes: dict[str, object], text: str) -> None:
+    """Arrays that do not fit together are refused with what, where, and what is allowed."""
+    arguments: dict[str, object] = {"faces": FINE.faces, "rest_positions": FINE.vertices}
+    arguments |= changes
+    with pytest.raises(ValueError, match=text):
+        refine.create(name, **arguments)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["none", "kahler", "loop"])
+def test_binding_copies(name: str) -> None:
+    """Changing the bound arrays afterwards changes nothing, and they are not changed."""
+    faces, rest = FINE.faces.copy(), FINE.vertices.copy()
+    refiner = refine.create(name, faces, rest)
+    deformed = FINE.vertices * 1.5
+    expected = refiner.refine(deformed).positions.copy()
+    faces[:] = 0
+    rest[:] = 7.0
+    assert (refiner.refine(deformed).positions == expected).all()
+    assert (deformed == FINE.vertices * 1.5).all()
+
+
+@pytest.mark.parametrize("name", ["none", "kahler", "loop"])
+def test_splits_cannot_be_written(name: str) -> None:
+    """The splits of the last frame are for reading."""
+    refiner = refine.create(name, FINE.faces, FINE.vertices)
+    assert refiner.splits.dtype == np.uint8
+    assert refiner.splits.shape == (12,)
+    with pytest.raises(ValueError, match="read-only"):
+        refiner.splits[0] = 1
+
+
+@pytest.mark.parametrize("name", ["none", "kahler", "loop"])
+def test_mesh_without_triangles(name: str) -> None:
+    """No triangles in, no triangles out."""
+    refiner = refine.create(name, np.zeros((0, 3), dtype=int), FINE.vertices)
+    refined = refiner.refine(FINE.vertices)
+    assert len(refined.triangles) == 0
+    refine.check(refiner, refined, FINE.vertices)
+
+
+@pytest.mark.parametrize("name", ["none", "kahler", "loop"])
+def test_lists_are_welcome(name: str) -> None:
+    """Faces and positions may be nested lists."""
+    refiner = refine.create(name, FINE.faces.tolist(), FINE.vertices.tolist())
+    assert len(refiner.refine(FINE.vertices).triangles) >= 8
+
+
+@pytest.mark.parametrize("name", ["none", "kahler", "loop"])
+@pytest.mark.parametrize("faces", [[], ()])
+def test_empty_lists_are_no_triangles(name: str, faces: object) -> None:
+    """An empty list has no second dimension, and says what it means all the same."""
+    refiner = refine.create(name, faces, FINE.vertices)
+    assert len(refiner.refine(FINE.vertices).triangles) == 0
+
+
+@pytest.mark.parametrize("scheme", ["loop", "cubic"])
+@pytest.mark.parametrize("unit", [1e-6, 5e7])
+def test_units_of_length(unit: float, scheme: str) -> None:
+    """Whatever the unit, between the limits that binding sets, the same triangles come out."""
+    sheet = meshes.irregular(3)
+    deformed = meshes.wrinkled(sheet, 4)
+
+    def refined(scale: float) -> refine.RefinedMesh:
+        refiner = refine.create("kahler", sheet.faces, scale * sheet.vertices, scheme=scheme)
+        return refiner.refine(scale * deformed)
+
+    here, there = refined(1.0), refined(unit)
+    np.testing.assert_array_equal(there.triangles, here.triangles)
+    np.testing.assert_allclose(there.positions / unit, here.positions, atol=1e-5)
+    np.testing.assert_allclose(there.normals, here.normals, atol=1e-3)
+
+
+def test_frames_can_be_kept() -> None:
+    """Deep copies and pickles of a frame have arrays of their own, which no later frame touches."""
+    refiner = refine.create(
+        "kahler", FINE.faces, FINE.vertices, attributes={"rest": FINE.vertices}, threshold_once=0.0
+    )
+    refined = refiner.refine(FINE.vertices * [1.0, 1.0, 4.0])
+    kept = [copy.deepcopy(refined), pickle.loads(pickle.dumps(refined))]
+    expected = refined.positions.copy(), refined.attributes["rest"].copy()
+    refiner.refine(FINE.vertices)
+    for mesh in kept:
+        assert isinstance(mesh, refine.RefinedMesh)
+        np.testing.assert_array_equal(mesh.positions, expected[0])
+        np.testing.assert_array_equal(mesh.attributes["rest"], expected[1])
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"threshold_once": "a"}, "threshold_once and threshold_twice are .*got 'a'"),
+        ({"threshold_twice": True}, "got .*True"),
+        ({"blend": "no"}, "blend must be True or False, got 'no'"),
+        ({"coherent": "no"}, "coherent must be True or False, got 'no'"),
+        ({"criterion": refine.Curvature}, "criterion must be a name, an object .*Curvature"),
+        ({"scheme": LoopScheme}, "scheme must be one of .*LoopScheme"),
+    ],
+)
+def test_options_of_another_kind(options: dict[str, object], text: str) -> None:
+    """A word for a number, or a class for an object, is refused with what it is."""
+    with pytest.raises(ValueError, match=text):
+        refine.create("kahler", FINE.faces, FINE.vertices, **options)
+
+
+@pytest.mark.parametrize("view", [refine.View((0, 0, 5), "x"), refine.View("eye"), refine.View(5)])
+def test_views_of_another_kind(view: refine.View) -> None:
+    """An eye is a point, and a focal length a number."""
+    refiner = refine.create("kahler", FINE.faces, FINE.vertices, criterion="screen")
+    with pytest.raises(ValueError, match="view must have an eye of shape"):
+        refiner.refine(FINE.vertices, view=view)

@@ -1,0 +1,174 @@
+"""Time-coherent splitting: the 271 sequences, their triangulations, and the way between them."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from risorius.refine import Coherent
+from risorius.refine.kahler import coherence, table
+
+TABLES = coherence.sequence_tables()
+NUMBER = {sequence: k for k, sequence in enumerate(TABLES.sequences)}
+ALL_SPLITS = list(itertools.product(range(3), repeat=3))
+
+
+def states_of(length: int) -> list[int]:
+    """Numbers of the sequences with so many splits."""
+    return [k for k, sequence in enumerate(TABLES.sequences) if len(sequence) == length]
+
+
+def inner_lines(state: int) -> set[tuple[int, int]]:
+    """Sides of subtriangles inside the triangle, as pairs of points."""
+    triangles = TABLES.patterns.of(state).tolist()
+    sides = [(t[k], t[(k + 1) % 3]) for t in triangles for k in range(3)]
+    return {(a, b) for a, b in sides if a < b and (b, a) in sides}
+
+
+def test_271_sequences() -> None:
+    """There are 271 sequences (section 4.4), counted in another way: by multinomials."""
+    factorial = np.array([1, 1, 2, 6, 24, 120, 720])
+    expected = sum(
+        factorial[sum(splits)] // np.prod(factorial[list(splits)]) for splits in ALL_SPLITS
+    )
+    assert len(set(TABLES.sequences)) == coherence.SEQUENCE_COUNT == expected == 271
+    assert TABLES.sequences[0] == ()
+    assert max(map(len, TABLES.sequences)) == 6
+
+
+@pytest.mark.parametrize("length", range(7))
+def test_entries(length: int) -> None:
+    """Every entry is a valid tessellation with as many subtriangles as the 27-entry table has."""
+    for state in states_of(length):
+        splits = coherence._splits_of(TABLES.sequences[state])
+        triangles = TABLES.patterns.of(state)
+        table.verify(splits, [tuple(t) for t in triangles.tolist()])
+        configuration = table.configuration_of(splits)
+        assert len(triangles) == table.CONFIGURATIONS.counts[configuration]
+        areas = np.linalg.det(table.POINTS[triangles] / 4.0)
+        assert (areas > 0.01).all()
+        assert areas.sum() == pytest.approx(1.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("length", range(7))
+def test_splitting_turns_no_line(length: int) -> None:
+    """Whatever is split further, every line inside the triangle stays; nothing is out of order."""
+    for state in states_of(length):
+        has = coherence._splits_of(TABLES.sequences[state])
+        for splits in ALL_SPLITS:
+            if all(want >= had for want, had in zip(splits, has, strict=True)):
+                configuration = table.configuration_of(splits)
+                following = int(TABLES.transitions[state, configuration])
+                assert TABLES.sequences[following][: sum(has)] == TABLES.sequences[state]
+                assert coherence._splits_of(TABLES.sequences[following]) == splits
+                assert inner_lines(state) <= inner_lines(following)
+                assert TABLES.removals[state, configuration] == 0
+
+
+@pytest.mark.parametrize("length", range(7))
+def test_taking_back_in_reverse(length: int) -> None:
+    """Splits taken back from the end lead to the sequence before them, with nothing counted."""
+    for state in states_of(length):
+        sequence = TABLES.sequences[state]
+        for left in range(length):
+            splits = coherence._splits_of(sequence[:left])
+            configuration = table.configuration_of(splits)
+            back = TABLES.transitions[state, configuration]
+            assert TABLES.sequences[back] == sequence[:left]
+            assert TABLES.removals[state, configuration] == 0
+
+
+@pytest.mark.parametrize(
+    ("sequence", "splits", "following", "removed"),
+    [
+        ((0, 1), (0, 1, 0), (1,), 1),
+        ((0, 1), (1, 0, 0), (0,), 0),
+        ((0, 1, 0), (1, 1, 0), (0, 1), 0),
+        ((0, 1, 0), (0, 1, 0), (1,), 1),
+        ((0, 0, 1, 1), (1, 1, 0), (0, 1), 1),
+        ((0, 0, 1, 1), (0, 0, 1), (2,), 0),
+        ((0, 1, 2), (0, 1, 2), (1, 2, 2), 1),
+    ],
+)
+def test_transitions_by_hand(
+    sequence: coherence.Sequence,
+    splits: tuple[int, int, int],
+    following: coherence.Sequence,
+    removed: int,
+) -> None:
+    """Removals in and out of order, and both at once with new splits."""
+    state, configuration = NUMBER[sequence], table.configuration_of(splits)
+    assert TABLES.sequences[TABLES.transitions[state, configuration]] == following
+    assert TABLES.removals[state, configuration] == removed
+
+
+CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]])
+"""Of an equilateral triangle."""
+
+
+def length_of_lines(state: int) -> float:
+    """Length of all inner lines of a sequence."""
+    places = table.POINTS / 4.0 @ CORNERS
+    return sum(float(np.linalg.norm(places[a] - places[b])) for a, b in inner_lines(state))
+
+
+@pytest.mark.parametrize("length", range(4))
+def test_new_splits_make_the_shortest_lines(length: int) -> None:
+    """Of all orders in which splits of one frame can be put, none has shorter lines."""
+    lengths = [length_of_lines(state) for state in range(len(TABLES.sequences))]
+    for state in states_of(length):
+        begun = TABLES.sequences[state]
+        best: dict[int, float] = {}
+        for other, sequence in enumerate(TABLES.sequences):
+            if sequence[:length] == begun:
+                key = table.configuration_of(coherence._splits_of(sequence))
+                best[key] = min(best.get(key, np.inf), lengths[other])
+        for configuration, shortest in best.items():
+            taken = int(TABLES.transitions[state, configuration])
+            assert lengths[taken] == pytest.approx(shortest, abs=1e-9)
+
+
+@given(st.lists(st.sampled_from(ALL_SPLITS), max_size=30))
+def test_any_history(history: list[tuple[int, int, int]]) -> None:
+    """Whatever came before, a triangle has the splits that are wanted, and all gone is all new."""
+    state = 0
+    for splits in history:
+        state = int(TABLES.transitions[state, table.configuration_of(splits)])
+        assert coherence._splits_of(TABLES.sequences[state]) == splits
+    assert TABLES.transitions[state, 0] == 0
+
+
+def test_tables_are_read_only() -> None:
+    """Nobody can change the tables by accident."""
+    for array in (*TABLES.patterns, TABLES.transitions, TABLES.removals):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1
+
+
+def test_third_split() -> None:
+    """An edge is split twice at most, and the error says which."""
+    with pytest.raises(ValueError, match=r"\(1, 1, 1\) splits edge 1 more than 2 times"):
+        coherence.split_in_order((1, 1, 1))
+
+
+def test_states_follow_the_tables() -> None:
+    """The kernel moves all triangles as the tables say, counts, keeps its array, and forgets."""
+    generator = np.random.default_rng(1)
+    face_count = 500
+    coherent = Coherent(face_count)
+    configurations = np.zeros(face_count + 1, dtype=np.uint16)
+    states, removed = np.zeros(face_count, dtype=int), 0
+    for _ in range(12):
+        configurations[:-1] = wanted = generator.integers(0, 27, face_count)
+        rows = coherent.follow(configurations)
+        removed += int(TABLES.removals[states, wanted].sum())
+        states = TABLES.transitions[states, wanted]
+        assert rows is coherent.states and (rows == states).all()
+        assert (coherent.patterns.counts[rows] == table.CONFIGURATIONS.counts[wanted]).all()
+    assert coherent.removals_out_of_order == removed > 0
+    coherent.forget()
+    assert coherent.removals_out_of_order == coherent.states.max() == 0

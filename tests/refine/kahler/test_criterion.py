@@ -1,0 +1,191 @@
+"""When edges split, and when they must not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from risorius import refine
+from risorius.refine.kahler.criterion import ROUNDING
+from risorius.refine.mesh.normals import vertex_normals
+from tests import meshes
+from tests.refine.cases import Forced
+from tests.refine.plain_twin import edge_dots, edge_name
+from tests.refine.plain_twin import vertex_normals as plain_normals
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_undeformed_equals_pass_through(seed: int) -> None:
+    """At threshold 0 the undeformed mesh comes out as from `none`, to the last bit."""
+    mesh = meshes.irregular(seed)
+    kahler = refine.create(
+        "kahler", mesh.faces, mesh.vertices, threshold_once=0.0, threshold_twice=0.0
+    )
+    plain = refine.create("none", mesh.faces, mesh.vertices)
+    for ours, theirs in zip(
+        kahler.refine(mesh.vertices)[:4], plain.refine(mesh.vertices)[:4], strict=True
+    ):
+        assert ours.tobytes() == theirs.tobytes()
+        assert (ours.shape, ours.dtype) == (theirs.shape, theirs.dtype)
+    assert not kahler.splits.any()
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("distance", [0.0, 30.0, 1e5])
+def test_rigid_motion(seed: int, distance: float) -> None:
+    """Turning and moving the undeformed mesh splits nothing, even at threshold 0 and far away."""
+    mesh = meshes.irregular(seed)
+    refiner = refine.create(
+        "kahler", mesh.faces, mesh.vertices, threshold_once=0.0, threshold_twice=0.0
+    )
+    moved = mesh.vertices @ meshes.rotation(seed).T + distance * np.array([1.0, -0.7, 0.4])
+    refiner.refine(moved)
+    assert not refiner.splits.any()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_rigid_motion_in_single_precision(seed: int) -> None:
+    """The same with float32 positions, near the origin."""
+    mesh = meshes.irregular(seed)
+    rest = mesh.vertices.astype(np.float32)
+    refiner = refine.create("kahler", mesh.faces, rest, threshold_once=0.0, threshold_twice=0.0)
+    refiner.refine((rest @ meshes.rotation(seed).T.astype(np.float32)).astype(np.float32))
+    assert not refiner.splits.any()
+
+
+def test_rigid_motion_of_slivers() -> None:
+    """Triangles with collinear corners have no direction to lose, and never split."""
+    line = np.array([[0, 0, 0], [1, 1, 1], [2, 2, 2], [3, 3, 3.0]]) / 3.0
+    faces = np.array([[0, 1, 2], [1, 3, 2]])
+    refiner = refine.create("kahler", faces, line, threshold_once=0.0, threshold_twice=0.0)
+    for seed in range(20):
+        refiner.refine(line @ meshes.rotation(seed).T)
+        assert not refiner.splits.any()
+
+
+def test_rigid_motion_of_a_sliver_on_sound_skin() -> None:
+    """One end of an edge without a direction is enough: the other end's is no measure for it."""
+    points = np.array([[0, 0, 0], [1, 1, 1], [0, 1, 0], [0.3, 0.3, 0.3]]) / 3.0
+    faces = np.array([[0, 1, 2], [1, 0, 3]])
+    refiner = refine.create("kahler", faces, points, threshold_once=0.0, threshold_twice=0.0)
+    for seed in range(20):
+        refiner.refine(points @ meshes.rotation(seed).T)
+        assert not refiner.splits.any()
+
+
+@pytest.mark.parametrize("scale", [1e-4, 1.0, 1e4])
+def test_units_do_not_matter(scale: float) -> None:
+    """The same mesh in other units splits the same edges."""
+    mesh = meshes.irregular(3)
+    deformed = meshes.wrinkled(mesh, 4)
+    splits = []
+    for factor in (1.0, scale):
+        refiner = refine.create("kahler", mesh.faces, factor * mesh.vertices)
+        refiner.refine(factor * deformed)
+        splits.append(refiner.splits.copy())
+    assert (splits[0] == splits[1]).mean() > 0.999
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_splits_follow_drops(seed: int) -> None:
+    """Each edge splits by the drop that plain arithmetic finds."""
+    mesh = meshes.irregular(seed)
+    deformed = meshes.wrinkled(mesh, seed + 100, amplitude=0.5)
+    faces = [tuple(int(v) for v in face) for face in mesh.faces]
+    rest = edge_dots([tuple(p) for p in mesh.vertices], faces)
+    now = edge_dots([tuple(p) for p in deformed], faces)
+    refiner = refine.create(
+        "kahler", mesh.faces, mesh.vertices, threshold_once=0.1, threshold_twice=0.3
+    )
+    refiner.refine(deformed)
+    seen = set()
+    for (a, b), split in zip(refiner.edges, refiner.splits, strict=True):
+        drop = rest[edge_name(int(a), int(b))] - now[edge_name(int(a), int(b))]
+        if min(abs(drop - 0.1), abs(drop - 0.3)) > 1e-5:
+            assert split == int(drop > 0.1) + int(drop > 0.3)
+            seen.add(int(split))
+    assert seen == {0, 1, 2}
+
+
+def test_only_bending_counts() -> None:
+    """Unbending never splits: a flattened cylinder has larger dot products than at rest."""
+    tube = meshes.tube()
+    refiner = refine.create("kahler", tube.faces, tube.vertices, threshold_once=0.0)
+    refiner.refine(tube.vertices * np.array([1.0, 1.0, 0.5]))
+    assert not refiner.splits.any()
+
+
+def test_rounding_guard() -> None:
+    """A drop of the size of rounding does not count at threshold 0, a larger one does."""
+    mesh = meshes.folded_strip()
+    flat = np.array([[0, 0, 0], [0, 1, 0], [1, 0.5, 0], [-1, 0.5, 0.0]])
+    refiner = refine.create("kahler", mesh.faces, flat, threshold_once=0.0, threshold_twice=1.0)
+    for drop, expected in ((0.1 * ROUNDING, 0), (10 * ROUNDING, 4)):
+        # Normals of the outer vertices are perpendicular to the slope, the inner ones upright.
+        bent = flat.copy()
+        bent[2:, 2] = np.tan(np.arccos(1.0 - drop))
+        refiner.refine(bent)
+        assert refiner.splits.sum() == expected
+
+
+def test_normals_are_weighted_by_area() -> None:
+    """Normals are those of the plain twin, and zero at vertices without triangles."""
+    mesh = meshes.with_debris()
+    positions = meshes.wrinkled(mesh, 7)
+    normals = np.zeros(positions.shape, dtype=np.float32)
+    vertex_normals(positions, mesh.faces.astype(np.uint32), normals)
+    expected = plain_normals(
+        [tuple(p) for p in positions], [tuple(int(v) for v in face) for face in mesh.faces]
+    )
+    np.testing.assert_allclose(normals, np.array(expected), rtol=0, atol=1e-6)
+    assert normals[15].tolist() == [0, 0, 0]
+
+
+def test_thresholds_between_frames() -> None:
+    """Thresholds that are set, or replaced as a whole, count from the next frame on."""
+    mesh = meshes.irregular(3)
+    deformed = meshes.wrinkled(mesh, 4)
+    criterion = refine.NormalDrop(0.02, 0.08)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
+    refiner.refine(deformed)
+    assert set(refiner.splits.tolist()) == {0, 1, 2}
+    criterion.thresholds.twice = np.float32(np.inf)
+    refiner.refine(deformed)
+    assert set(refiner.splits.tolist()) == {0, 1}
+    criterion.thresholds = refine.NormalDrop(3.0, 3.0).thresholds
+    refiner.refine(deformed)
+    assert not refiner.splits.any()
+
+
+@pytest.mark.parametrize("thresholds", [(-0.1, 0.2), (0.3, 0.2), (float("nan"), 1.0)])
+def test_bad_thresholds(thresholds: tuple[float, float]) -> None:
+    """Thresholds out of order are refused with the rule they break."""
+    mesh = meshes.triangle()
+    with pytest.raises(ValueError, match=r"0 <= threshold_once <= threshold_twice .* got"):
+        refine.create(
+            "kahler",
+            mesh.faces,
+            mesh.vertices,
+            threshold_once=thresholds[0],
+            threshold_twice=thresholds[1],
+        )
+
+
+def test_infinite_threshold_switches_a_level_off() -> None:
+    """With threshold_twice = inf no edge splits twice."""
+    mesh = meshes.irregular(1)
+    refiner = refine.create(
+        "kahler", mesh.faces, mesh.vertices, threshold_once=0.01, threshold_twice=float("inf")
+    )
+    refiner.refine(meshes.wrinkled(mesh, 2))
+    assert refiner.splits.max() == 1
+
+
+def test_criterion_from_outside() -> None:
+    """Another criterion decides in place of the thresholds, but not on more than two splits."""
+    mesh = meshes.octahedron()
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Forced([1] * 12))
+    assert len(refiner.refine(mesh.vertices).triangles) == 4 * 8
+    wrong = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Forced([1, 3] * 6))
+    with pytest.raises(ValueError, match=r"Forced.mark must write 0, 1 or 2 .* edge 1 got 3"):
+        wrong.refine(mesh.vertices)

@@ -1,0 +1,200 @@
+"""The paper's refiner against its plain twin and against the checker."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from risorius import refine
+from risorius.refine.kahler.table import CONFIGURATIONS
+from tests import meshes
+from tests.refine.cases import Forced, as_lists, assert_equals_twin, soups
+from tests.refine.plain_twin import edge_name
+from tests.refine.plain_twin import refine as refine_plainly
+
+
+def refine_and_check(
+    mesh: meshes.Mesh, deformed: np.ndarray, **options: object
+) -> tuple[refine.Refiner, refine.RefinedMesh]:
+    """Refine one frame, run the checker, and see that nothing that was passed has changed."""
+    inputs = [mesh.faces, mesh.vertices, deformed]
+    before = [array.tobytes() for array in inputs]
+    refiner = refine.create(
+        "kahler", mesh.faces, mesh.vertices, uv=mesh.uv, face_uv=mesh.face_uv, **options
+    )
+    refined = refiner.refine(deformed)
+    refine.check(refiner, refined, deformed)
+    assert [array.tobytes() for array in inputs] == before
+    return refiner, refined
+
+
+def assert_is_twin(
+    mesh: meshes.Mesh,
+    deformed: np.ndarray,
+    refiner: refine.Refiner,
+    refined: refine.RefinedMesh,
+    *,
+    normals_cancel: bool = False,
+) -> None:
+    """Compare with the plain twin for the splits that were found."""
+    ends = [edge_name(int(a), int(b)) for a, b in refiner.edges]
+    splits = dict(zip(ends, refiner.splits.tolist(), strict=True))
+    twin = refine_plainly(*as_lists(deformed, mesh.faces), splits)
+    assert_equals_twin(refiner, refined, twin, normals_cancel=normals_cancel)
+
+
+@pytest.mark.parametrize("name", meshes.NAMED)
+@pytest.mark.parametrize("amplitude", [0.2, 0.8])
+def test_named_meshes(name: str, amplitude: float) -> None:
+    """Every named mesh, deformed: proper, and the twin's."""
+    mesh = meshes.NAMED[name]()
+    for seed in range(6):
+        deformed = meshes.wrinkled(mesh, seed, amplitude)
+        refiner, refined = refine_and_check(mesh, deformed, threshold_once=0.01)
+        assert_is_twin(mesh, deformed, refiner, refined)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_irregular_meshes(seed: int) -> None:
+    """Irregular meshes with holes in random deformations: proper, and the twin's."""
+    mesh = meshes.irregular(seed)
+    deformed = meshes.wrinkled(mesh, seed, amplitude=0.3)
+    refiner, refined = refine_and_check(mesh, deformed)
+    assert len(set(refiner.splits.tolist())) > 1
+    assert_is_twin(mesh, deformed, refiner, refined)
+
+
+@settings(max_examples=200, deadline=None)
+@given(soup=soups(), data=st.data())
+def test_soups(soup: tuple[np.ndarray, np.ndarray], data: st.DataObject) -> None:
+    """Any triangles with any splits: proper, and the twin's; whatever meets at an edge agrees."""
+    positions, faces = soup
+    mesh = meshes.Mesh(positions, faces)
+    edge_count = len(refine.connect(faces, len(positions)).edges)
+    splits = data.draw(st.lists(st.integers(0, 2), min_size=edge_count, max_size=edge_count))
+    refiner, refined = refine_and_check(mesh, positions, criterion=Forced(splits))
+    assert_is_twin(mesh, positions, refiner, refined, normals_cancel=True)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    seed=st.integers(0, 1000),
+    columns=st.integers(1, 8),
+    rows=st.integers(1, 8),
+    holes=st.integers(0, 4),
+    amplitude=st.floats(0.01, 2.0),
+    thresholds=st.tuples(st.floats(0.0, 1.0), st.floats(0.0, 1.0)).map(sorted),
+)
+def test_generated_sheets(
+    seed: int, columns: int, rows: int, holes: int, amplitude: float, thresholds: list[float]
+) -> None:
+    """Sheets of any size, with any deformation and thresholds, come out proper."""
+    mesh = meshes.irregular(seed, columns, rows, holes)
+    deformed = meshes.wrinkled(mesh, seed + 1, amplitude)
+    refine_and_check(mesh, deformed, threshold_once=thresholds[0], threshold_twice=thresholds[1])
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_counts_follow_splits(seed: int) -> None:
+    """Triangles and vertices are as many as the table and the splits say."""
+    mesh = meshes.irregular(seed)
+    refiner, refined = refine_and_check(mesh, meshes.wrinkled(mesh, seed))
+    s = refiner.splits[refiner.triangle_edges].astype(int)
+    assert len(refined.triangles) == CONFIGURATIONS.counts[s @ np.array([1, 3, 9])].sum()
+    times = Counter(refiner.splits.tolist())
+    assert len(refined.positions) == len(mesh.vertices) + times[1] + 3 * times[2]
+
+
+def test_euler_characteristic() -> None:
+    """Refinement keeps the topology: V - E + F does not change."""
+    mesh = meshes.irregular(2)
+    _, refined = refine_and_check(mesh, meshes.wrinkled(mesh, 3))
+    used = len(np.unique(mesh.faces))
+    fine_edges = len(refine.connect(refined.triangles, len(refined.positions)).edges)
+    coarse_edges = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    unused = len(mesh.vertices) - used
+    fine = len(refined.positions) - unused - fine_edges + len(refined.triangles)
+    assert fine == used - coarse_edges + len(mesh.faces)
+
+
+def test_capacity_is_reached() -> None:
+    """With every edge split twice the output fills its capacities: ten for each triangle."""
+    mesh = meshes.octahedron()
+    refiner, refined = refine_and_check(mesh, mesh.vertices, criterion=Forced(np.full(12, 2)))
+    assert len(refined.triangles) == refiner.triangle_capacity == 80
+    assert len(refined.positions) == refiner.vertex_capacity == 6 + 36
+
+
+def test_mirror_image() -> None:
+    """A mirrored mesh in a mirrored deformation has mirrored points and normals."""
+    mesh = meshes.irregular(8)
+    deformed = meshes.wrinkled(mesh, 9)
+    flip = np.array([-1.0, 1.0, 1.0])
+    mirrored = meshes.Mesh(mesh.vertices * flip, mesh.faces[:, ::-1].copy())
+    one, fine = refine_and_check(mesh, deformed)
+    other, fine_mirrored = refine_and_check(mirrored, deformed * flip)
+    number = {edge_name(int(a), int(b)): e for e, (a, b) in enumerate(other.edges)}
+    twin_of = np.array([number[edge_name(int(a), int(b))] for a, b in one.edges])
+    assert (one.splits == other.splits[twin_of]).all()
+    assert one.splits.any()
+    assert len(fine.triangles) == len(fine_mirrored.triangles)
+    rows = [np.concatenate([m.positions, m.normals], axis=1) for m in (fine, fine_mirrored)]
+    rows[1] *= np.concatenate([flip, flip])
+    ordered = [np.array(sorted(np.round(r, 4).tolist())) for r in rows]
+    np.testing.assert_allclose(ordered[0], ordered[1], rtol=0, atol=2e-4)
+
+
+def test_order_of_triangles_does_not_matter() -> None:
+    """Another order of triangles and corners gives the same subtriangles."""
+    mesh = meshes.irregular(4)
+    deformed = meshes.wrinkled(mesh, 5)
+    generator = np.random.default_rng(6)
+    shuffled = np.roll(mesh.faces[generator.permutation(len(mesh.faces))], 1, axis=1)
+    corner_sets = []
+    for faces in (mesh.faces, shuffled):
+        _, refined = refine_and_check(meshes.Mesh(mesh.vertices, faces), deformed)
+        centres = refined.positions[refined.triangles].mean(axis=1)
+        corner_sets.append(np.array(sorted(np.round(centres, 4).tolist())))
+    np.testing.assert_allclose(corner_sets[0], corner_sets[1], rtol=0, atol=2e-4)
+
+
+def test_frames_are_independent() -> None:
+    """A frame does not depend on the frames before it (section 3: no history)."""
+    mesh = meshes.irregular(5)
+    frames = [meshes.wrinkled(mesh, seed) for seed in range(4)]
+    reused = refine.create("kahler", mesh.faces, mesh.vertices)
+    for deformed in [*frames, mesh.vertices, frames[0]]:
+        fresh = refine.create("kahler", mesh.faces, mesh.vertices)
+        for ours, theirs in zip(
+            reused.refine(deformed)[:4], fresh.refine(deformed)[:4], strict=True
+        ):
+            assert ours.tobytes() == theirs.tobytes()
+
+
+def test_origins_carry_attributes() -> None:
+    """The origins interpolate any attribute of the input: here the undeformed positions."""
+    mesh = meshes.irregular(6)
+    refiner, refined = refine_and_check(mesh, meshes.wrinkled(mesh, 7))
+    origins = refiner.origins()
+    at_rest = (mesh.vertices[origins.vertices] * origins.weights[..., None]).sum(axis=1)
+    coarse = mesh.vertices[mesh.faces]
+    fine = at_rest[refined.triangles]
+    areas = [
+        np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1)
+        for t in (coarse, fine)
+    ]
+    totals = np.bincount(refined.source, weights=areas[1])
+    np.testing.assert_allclose(totals, areas[0], rtol=1e-6)
+
+
+@pytest.mark.parametrize("splits", [1, 2])
+def test_normals_look_outward(splits: int) -> None:
+    """Normals of new points have length one and point where the surface looks."""
+    mesh = meshes.octahedron()
+    _, refined = refine_and_check(mesh, mesh.vertices, criterion=Forced(np.full(12, splits)))
+    directions = refined.positions / np.linalg.norm(refined.positions, axis=1, keepdims=True)
+    assert (np.sum(directions * refined.normals, axis=1) > 0.95).all()

@@ -1,0 +1,105 @@
+"""The weights of Figs. 3 and 4, worked out by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from risorius import refine
+from risorius.refine.mesh.rings import Rings, vertex_rings, warren_weight
+from tests import meshes
+from tests.refine.cases import Forced
+
+
+def weights_around(rings: Rings, v: int) -> dict[int, float]:
+    """Weight of every vertex in the rule of vertex v, its own included."""
+    weights = {v: float(rings.own[v])}
+    for u in [*rings.near[v], *rings.others[rings.starts[v] : rings.starts[v + 1]]]:
+        weights[int(u)] = weights.get(int(u), 0.0) + float(rings.ring[v])
+    return weights
+
+
+def test_warren_weights() -> None:
+    """Valence three is special; six is Loop's regular case with 1/16."""
+    assert warren_weight(np.array([3, 4, 6])).tolist() == [3 / 16, 3 / 32, 1 / 16]
+
+
+def test_tetrahedron() -> None:
+    """Every corner moves to 7/16 of itself plus 3/16 of the other three."""
+    rings = vertex_rings(refine.connect(meshes.tetrahedron().faces, 4))
+    for v in range(4):
+        assert weights_around(rings, v) == {u: 7 / 16 if u == v else 3 / 16 for u in range(4)}
+
+
+@pytest.mark.parametrize("valence", [8, 9, 16])
+def test_large_rings(valence: int) -> None:
+    """Vertices that have no place in the table of a ring count as much as those that have."""
+    rings = vertex_rings(refine.connect(meshes.fan(valence).faces, valence + 1))
+    around = weights_around(rings, 0)
+    assert around.pop(0) == pytest.approx(5 / 8)
+    assert around == pytest.approx({v: 3 / 8 / valence for v in range(1, valence + 1)})
+    assert len(rings.others) == valence - 8
+
+
+def test_hexagon() -> None:
+    """The centre of a hexagon keeps 5/8, its border vertices 3/4 along the border."""
+    mesh = meshes.fan(6)
+    rings = vertex_rings(refine.connect(mesh.faces, 7))
+    assert weights_around(rings, 0) == {0: 5 / 8} | {v: 1 / 16 for v in range(1, 7)}
+    assert weights_around(rings, 1) == {1: 3 / 4, 2: 1 / 8, 6: 1 / 8}
+
+
+@pytest.mark.parametrize(("name", "vertex"), [("bow_tie", 0), ("with_debris", 15)])
+def test_vertices_that_stay(name: str, vertex: int) -> None:
+    """A vertex where two borders meet, or without triangles, never moves."""
+    mesh = meshes.NAMED[name]()
+    rings = vertex_rings(refine.connect(mesh.faces, len(mesh.vertices)))
+    assert weights_around(rings, vertex) == {vertex: 1.0}
+
+
+def test_first_level_by_hand() -> None:
+    """One inner edge split once: 3/8, 3/8, 1/8, 1/8, and its ends follow the border rule."""
+    mesh = meshes.two_triangles()
+    connectivity = refine.connect(mesh.faces, 4)
+    refiner = refine.create(
+        "kahler", mesh.faces, mesh.vertices, criterion=Forced(connectivity.around.is_interior)
+    )
+    lifted = mesh.vertices + np.array([[0, 0, 0], [0, 0, 8], [0, 0, 16], [0, 0, 32]])
+    refined = refiner.refine(lifted)
+    assert refined.positions[4].tolist() == [0.5, 0.5, 3 + 6 + 4]
+    assert refined.positions[1].tolist() == [0.75 + 0.125, 0.125, 6 + 4]
+    assert refined.positions[0].tolist() == [0, 0, 0]
+    assert refined.positions[3].tolist() == [1, 1, 32]
+
+
+def test_second_level_by_hand() -> None:
+    """The same edge split twice: quarter points lean on midpoints of edges that are not split."""
+    mesh = meshes.two_triangles()
+    connectivity = refine.connect(mesh.faces, 4)
+    refiner = refine.create(
+        "kahler", mesh.faces, mesh.vertices, criterion=Forced(2 * connectivity.around.is_interior)
+    )
+    lifted = mesh.vertices + np.array([[0, 0, 0], [0, 0, 64], [0, 0, 128], [0, 0, 256]])
+    height = refiner.refine(lifted).positions[:, 2]
+    a, b, c, d = 64.0, 128.0, 0.0, 256.0
+    m = 3 / 8 * (a + b) + 1 / 8 * (c + d)
+    moved_a, moved_b = 3 / 4 * a + (c + d) / 8, 3 / 4 * b + (c + d) / 8
+    p, q, r, s = (a + c) / 2, (b + c) / 2, (a + d) / 2, (b + d) / 2
+    assert height[4] == 3 / 8 * (moved_a + m) + (p + r) / 8
+    assert height[5] == 5 / 8 * m + (moved_a + moved_b + p + q + r + s) / 16
+    assert height[6] == 3 / 8 * (moved_b + m) + (q + s) / 8
+
+
+def test_flat_stays_flat() -> None:
+    """All weights add up to one: a plane refines into itself, and its border stays straight."""
+    mesh = meshes.open_grid(6, 5)
+    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    splits = np.random.default_rng(5).integers(0, 3, edge_count)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Forced(splits))
+    tilted = mesh.vertices @ np.array([[1, 0, 2], [0, 1, -1], [0, 0, 1.0]])
+    positions = refiner.refine(tilted).positions
+    np.testing.assert_allclose(
+        positions[:, 2], 2 * positions[:, 0] - positions[:, 1], rtol=0, atol=1e-5
+    )
+    assert positions[:, :2].min() >= 0.0
+    assert positions[:, 0].max() <= 6.0 + 1e-6

@@ -1,0 +1,96 @@
+"""The 27-entry table."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from risorius import refine
+from risorius.refine.kahler import table
+from tests import meshes
+from tests.refine.cases import Forced, as_lists, assert_equals_twin
+from tests.refine.plain_twin import refine as refine_plainly
+
+ALL_SPLITS = list(itertools.product(range(3), repeat=3))
+COUNTS = {0: 1, 1: 2, 2: 4}
+
+
+def test_configuration_number() -> None:
+    """The entry number has the splits as its ternary digits, and back."""
+    assert table.configuration_of((2, 0, 1)) == 11
+    for splits in ALL_SPLITS:
+        assert table.splits_of(table.configuration_of(splits)) == splits
+
+
+@pytest.mark.parametrize("splits", ALL_SPLITS)
+def test_counts(splits: tuple[int, int, int]) -> None:
+    """Each split adds its points, each point adds a subtriangle: ten for two splits everywhere."""
+    number = table.configuration_of(splits)
+    expected = 1 + sum({0: 0, 1: 1, 2: 3}[s] for s in splits)
+    assert table.CONFIGURATIONS.counts[number] == expected
+    assert len(table.subdivide(splits)) == expected
+
+
+def test_most_subtriangles() -> None:
+    """Ten is the most, and only all edges twice gives it (section 4.3)."""
+    assert table.CONFIGURATIONS.counts.max() == 10
+    assert np.flatnonzero(table.CONFIGURATIONS.counts == 10).tolist() == [26]
+
+
+@pytest.mark.parametrize("splits", ALL_SPLITS)
+def test_exact_cover(splits: tuple[int, int, int]) -> None:
+    """Areas are positive and add up; the border consists of the sub-edges in order."""
+    corners = table.POINTS[np.array(table.subdivide(splits))] / 4.0
+    areas = np.linalg.det(corners)
+    assert (areas > 0.01).all()
+    assert areas.sum() == pytest.approx(1.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("splits", ALL_SPLITS)
+def test_rotation(splits: tuple[int, int, int]) -> None:
+    """Renaming the corners renames the subtriangles, and changes nothing else."""
+    turned_splits = (splits[1], splits[2], splits[0])
+    renamed = [
+        tuple((p + 1) % 3 if p < 3 else 3 + (p - 3 + 3) % 9 for p in t)
+        for t in table.subdivide(turned_splits)
+    ]
+    assert _as_set(renamed) == _as_set(table.subdivide(splits))
+
+
+def _as_set(triangles: list[tuple[int, ...]]) -> set[tuple[int, ...]]:
+    return {min(t, t[1:] + t[:1], t[2:] + t[:2]) for t in triangles}
+
+
+@pytest.mark.parametrize("splits", ALL_SPLITS)
+def test_one_triangle(splits: tuple[int, int, int]) -> None:
+    """A single triangle comes out as the pattern drawn by hand, through the whole refiner."""
+    mesh = meshes.triangle()
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Forced(splits))
+    refined = refiner.refine(mesh.vertices)
+    refine.check(refiner, refined, mesh.vertices)
+    assert len(refined.triangles) == table.CONFIGURATIONS.counts[table.configuration_of(splits)]
+    named_splits = dict(zip([(0, 1), (1, 2), (0, 2)], splits, strict=True))
+    twin = refine_plainly(*as_lists(mesh.vertices, mesh.faces), named_splits)
+    assert_equals_twin(refiner, refined, twin)
+
+
+def test_table_is_read_only() -> None:
+    """Nobody can change the table by accident."""
+    with pytest.raises(ValueError, match="read-only"):
+        table.CONFIGURATIONS.subtriangles[0, 0, 0] = 1
+
+
+def test_verification_can_fail() -> None:
+    """The check at import notices a missing, a flipped and a wrong subtriangle."""
+    good = table.subdivide((1, 1, 0))
+    flipped = [(good[0][1], good[0][0], good[0][2]), *good[1:]]
+    overlapping = [(0, 1, 2), *good[1:]]
+    for wrong, text in (
+        (good[:-1], "2 subtriangles, not 3"),
+        (flipped, "without positive area"),
+        (overlapping, "do not cover"),
+    ):
+        with pytest.raises(AssertionError, match=text):
+            table.verify((1, 1, 0), wrong)

@@ -1,0 +1,145 @@
+"""Edges, neighbourhoods, wedges and rims."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from risorius import refine
+from tests import meshes
+from tests.refine.cases import soups
+from tests.refine.plain_twin import Surroundings, edge_name
+
+
+@pytest.mark.parametrize(
+    ("name", "edge_count", "interior_count"),
+    [
+        ("triangle", 3, 0),
+        ("two_triangles", 5, 1),
+        ("fan", 12, 6),
+        ("tetrahedron", 6, 6),
+        ("octahedron", 12, 12),
+        ("folded_strip", 5, 1),
+        ("pillow", 3, 3),
+        ("bow_tie", 6, 0),
+        ("three_sheets", 7, 0),
+        ("inconsistent_pair", 5, 0),
+    ],
+)
+def test_edge_counts(name: str, edge_count: int, interior_count: int) -> None:
+    """Named meshes have the edges one counts by hand."""
+    mesh = meshes.NAMED[name]()
+    connectivity = refine.connect(mesh.faces, len(mesh.vertices))
+    assert len(connectivity.edges) == edge_count
+    assert connectivity.around.is_interior.sum() == interior_count
+
+
+def test_neighbourhood_of_inner_edge() -> None:
+    """The inner edge of two triangles knows both opposite corners and its four wings."""
+    mesh = meshes.two_triangles()
+    connectivity = refine.connect(mesh.faces, 4)
+    (inner,) = np.flatnonzero(connectivity.around.is_interior)
+    a, b, c, d = connectivity.around.points[inner].tolist()
+    assert (a, b, c, d) == (1, 2, 0, 3)
+    wings = [sorted(connectivity.edges[w].tolist()) for w in connectivity.around.wings[inner]]
+    assert wings == [[0, 1], [0, 2], [1, 3], [2, 3]]
+
+
+@settings(max_examples=150, deadline=None)
+@given(soups())
+def test_soups(soup: tuple[np.ndarray, np.ndarray]) -> None:
+    """For any triangles, edges and neighbourhoods are those found with plain dictionaries."""
+    positions, faces = soup
+    connectivity = refine.connect(faces, len(positions))
+    around = Surroundings([tuple(int(v) for v in face) for face in faces])
+    names = [edge_name(int(a), int(b)) for a, b in connectivity.edges]
+    assert len(set(names)) == len(names)
+    assert set(names) == set(around.opposite)
+    inner = {
+        name for name, is_in in zip(names, connectivity.around.is_interior, strict=True) if is_in
+    }
+    assert inner == around.inner
+    for e in np.flatnonzero(connectivity.around.is_interior):
+        a, b, c, d = (int(v) for v in connectivity.around.points[e])
+        assert sorted((c, d)) == sorted(around.opposite[names[e]])
+        wings = [names[w] for w in connectivity.around.wings[e]]
+        assert wings == [edge_name(*ends) for ends in ((a, c), (b, c), (a, d), (b, d))]
+    for face, edges in zip(faces, connectivity.triangle_edges, strict=True):
+        if len(set(face.tolist())) < 3:
+            assert (edges == -1).all()
+            continue
+        expected = [edge_name(int(face[i]), int(face[(i + 1) % 3])) for i in range(3)]
+        assert [names[e] for e in edges] == expected
+
+
+def test_wedges_of_tube() -> None:
+    """A seam of five vertices and four edges has a copy of each, and no other has."""
+    tube = meshes.tube(segments=8, rings=4)
+    connectivity = refine.connect(tube.faces, len(tube.vertices), tube.face_uv)
+    assert len(connectivity.wedge_vertices) == len(tube.vertices) + 5
+    assert len(connectivity.rim_edges) == len(connectivity.edges) + 4
+    assert connectivity.wedge_vertices[: len(tube.vertices)].tolist() == list(range(40))
+    assert (connectivity.wedge_vertices[connectivity.corners] == tube.faces).all()
+    assert (connectivity.wedge_uv[connectivity.corners] == tube.face_uv).all()
+
+
+def test_edges_on_seam_are_interior() -> None:
+    """A texture seam is no border: geometry does not see it."""
+    tube = meshes.tube(segments=8, rings=4)
+    connectivity = refine.connect(tube.faces, len(tube.vertices), tube.face_uv)
+    assert (~connectivity.around.is_interior).sum() == 2 * 8
+
+
+def test_weld() -> None:
+    """A mesh doubled along its seam becomes closed, and its texture coordinates stay apart."""
+    tube = meshes.tube(segments=6, rings=2)
+    assert tube.uv is not None and tube.face_uv is not None
+    vertex_of_uv = np.zeros(len(tube.uv), dtype=int)
+    vertex_of_uv[tube.face_uv] = tube.faces
+    doubled = tube.vertices[vertex_of_uv]
+    doubled[1::2][doubled[1::2] == 0.0] = -0.0  # equal to 0.0, if not in its bits
+    kept, faces = refine.weld(doubled, tube.face_uv)
+    assert len(kept) == len(tube.vertices)
+    assert (doubled[kept][faces] == tube.vertices[tube.faces]).all()
+    connectivity = refine.connect(faces, len(kept), tube.face_uv)
+    assert (~connectivity.around.is_interior).sum() == 2 * 6
+
+
+def test_empty_mesh() -> None:
+    """Vertices without any triangle give no edges and no error."""
+    connectivity = refine.connect(np.zeros((0, 3), dtype=np.int32), 2)
+    assert len(connectivity.edges) == 0
+    assert connectivity.wedge_vertices.tolist() == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (([[0, 1, 4]], 4), r"from 0 to 3 into the vertices, but triangle 0 is \[0, 1, 4\]"),
+        (([[0, 1, -1]], 4), r"triangle 0 is \[0, 1, -1\]"),
+        (([[0.0, 1.0, 2.0]], 4), "faces must be integers .* got float64"),
+        (([0, 1, 2], 4), r"shape \(F, 3\), got int64 of shape \(3,\)"),
+        (([[0, 1, 2]], 4, [[0, 1, 2]] * 2), r"face_uv must have one row per triangle \(1\), got 2"),
+        (([[0, 1, 2]], 4, [[0, -1, 2]]), r"into the texture coordinates, but triangle 0 is"),
+    ],
+)
+def test_bad_triangles(arguments: tuple[object, ...], text: str) -> None:
+    """Indices that point outside are refused before compiled code follows them."""
+    with pytest.raises(ValueError, match=text):
+        refine.connect(*arguments)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("positions", "faces", "text"),
+    [
+        (np.zeros(9), [[0, 1, 2]], r"positions must be numbers of shape \(V, 3\)"),
+        (np.full((3, 3), np.nan), [[0, 1, 2]], "positions must be finite"),
+        (np.eye(3), [[0, 1, 3]], "from 0 to 2 into positions, but triangle 0 is"),
+        (np.eye(3), [[0, 1, -1]], "triangle 0 is"),
+    ],
+)
+def test_bad_welds(positions: np.ndarray, faces: list[list[int]], text: str) -> None:
+    """What cannot be welded is refused: an index of -1 is not the last vertex."""
+    with pytest.raises(ValueError, match=text):
+        refine.weld(positions, faces)
