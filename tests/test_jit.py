@@ -166,7 +166,14 @@ def test_code_goes_to_the_user_where_the_package_is_read_only(
     assert run() == [RESULT]
 
 
-@pytest.mark.parametrize("home", ["/nonexistent/home", "/dev/null", ""])
+@pytest.mark.parametrize(
+    "home",
+    [
+        "/nonexistent/home",
+        pytest.param("/dev/null", marks=pytest.mark.slow),
+        pytest.param("", marks=pytest.mark.slow),
+    ],
+)
 def test_without_a_folder_code_is_compiled_each_time(run: Run, package: Path, home: str) -> None:
     """No home, none that can be written, none at all: it runs, and one line says what it costs."""
     read_only(package)

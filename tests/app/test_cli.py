@@ -48,10 +48,15 @@ def face() -> FaceScene:
     return FaceScene()
 
 
-@pytest.fixture
+@pytest.fixture(autouse=True)
 def ready_face(face: FaceScene, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Commands that fail before a face moves need none of their own."""
-    monkeypatch.setitem(SCENES, "face", lambda: face)
+    """Commands get the same face, at rest: building one takes longer than most of them."""
+
+    def at_rest() -> FaceScene:
+        face.reset()
+        return face
+
+    monkeypatch.setitem(SCENES, "face", at_rest)
 
 
 def test_a_script_becomes_a_film_and_a_sheet(smile: Path, tmp_path: Path) -> None:
@@ -185,7 +190,6 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["bench", "motion", "--reference", "nowhere"], "Directory 'nowhere' does not exist"),
     ],
 )
-@pytest.mark.usefixtures("ready_face")
 def test_mistakes_are_one_line(
     arguments: list[str], message: str, smile: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -285,7 +289,6 @@ def test_a_pose_needs_no_script(tmp_path: Path) -> None:
         (("--head", "no.obj", "--landmarks", "no.json"), "no.obj: no such mesh file"),
     ],
 )
-@pytest.mark.usefixtures("ready_face")
 def test_mistakes_of_poses_and_heads(
     tmp_path: Path, arguments: tuple[str, ...], message: str
 ) -> None:

@@ -119,6 +119,7 @@ def test_start_is_valid_and_relaxing_improves_it(head: Head) -> None:
     assert np.all(relaxed[patch.on_midline, 0] == 0.0)
 
 
+@pytest.mark.slow
 def test_rounding_does_not_decide_where_the_descent_ends(head: Head) -> None:
     """A start that differs in its last digits leads to the same layout: no force is left there."""
     patch = unwrap.fill_holes(head.vertices, head.faces, head.rings)

@@ -81,6 +81,7 @@ def test_own_motion_is_known_again(scored: tuple[dict[str, Row], list[str]]) -> 
         assert row.residual < 0.25, name  # jawOpen: its mandible is guessed from landmarks
 
 
+@pytest.mark.slow
 def test_what_has_no_score_is_named(scored: tuple[dict[str, Row], list[str]]) -> None:
     """An unknown name and a field that moves nothing are left out, and said to be."""
     assert scored[1] == ["tongueOut", "eyeBlink_L"]

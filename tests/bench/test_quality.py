@@ -116,6 +116,7 @@ def test_scans_are_read(tmp_path: Path) -> None:
     }
 
 
+@pytest.mark.slow
 def test_built_in_head() -> None:
     """The finer head moves by its own muscles, and the coarse one is its first vertices."""
     subject = subjects.built_in(1)

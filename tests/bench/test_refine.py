@@ -17,6 +17,7 @@ from risorius.bench.waving_meshes import waving_mesh
 from risorius.refine import connect, create
 
 
+@pytest.mark.slow
 def test_rows() -> None:
     """Ours with the share of edges that was asked for, a copy, and peers; times that fit."""
     report = refine.run(sizes=["2k"], seconds=0.05, starts=False)

@@ -14,6 +14,7 @@ from risorius.bench.figures import FOLDER
 MOST_PICTURE = 1_500_000  # bytes, at full size
 
 
+@pytest.mark.slow
 def test_some_controls_are_drawn(tmp_path: Path) -> None:
     """Two views of each; a face that does something looks different."""
     controls.main([str(tmp_path), "--width", "48", "--only", "viseme_sil", "AU27"])

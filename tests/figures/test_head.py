@@ -4,6 +4,7 @@ from pathlib import Path
 
 import head
 import numpy as np
+import pytest
 from PIL import Image
 
 from risorius.bench.figures import FOLDER
@@ -11,6 +12,7 @@ from risorius.bench.figures import FOLDER
 MOST_PICTURE = 600_000  # bytes, at full size
 
 
+@pytest.mark.slow
 def test_both_sheets_are_drawn(tmp_path: Path) -> None:
     """Two pictures, four portraits wide, and something is on each portrait."""
     head.main([str(tmp_path), "--width", "48", "--only", "head_views", "head_details"])

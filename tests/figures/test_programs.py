@@ -24,6 +24,7 @@ PROGRAMS = Path(__file__).parents[2] / "docs" / "figures"
     ],
 )
 @pytest.mark.skipif(sys.platform == "win32", reason="paths of POSIX systems")
+@pytest.mark.slow
 def test_mistakes_are_told(program: str, arguments: list[str], told: str, tmp_path: Path) -> None:
     """What cannot be drawn or written is told in one line, before anything is drawn."""
     ended = subprocess.run(

@@ -16,6 +16,7 @@ PICTURES = Path(__file__).parents[2] / "docs" / "pictures"
 MOST_PICTURE = 450_000  # bytes
 
 
+@pytest.mark.slow
 def test_figures_are_drawn(tmp_path: Path) -> None:
     """Every figure of the page, and ink on each; the same again to the last pixel."""
     refinement.main([str(tmp_path)])

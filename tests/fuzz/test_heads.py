@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import time
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,33 +16,21 @@ from risorius.assets.fitting import FittedHead
 from risorius.assets.meshes import Mesh
 
 from .head_inputs import Kind, OddHead, head_inputs, open_brought
+from .sandbox import bounded
 
 pytestmark = pytest.mark.slow
 
 LONGEST = 10.0  # [s] on a busy machine; the slowest takes 1 s on an idle one
 MOST_MEMORY = 400_000_000  # [bytes] more than before
-STATUS = Path("/proc/self/status")
-
-
-def _peak() -> int:
-    """Most memory [bytes] that this process has held since it was last reset; 0 if unknown."""
-    if not STATUS.exists():
-        return 0
-    found = re.search(r"VmHWM:\s+(\d+) kB", STATUS.read_text())
-    return 1024 * int(found[1]) if found else 0
 
 
 @contextmanager
-def bounded() -> Iterator[None]:
+def quiet_and_bounded() -> Iterator[None]:
     """A failure where what is done takes too long or too much memory, or warns on the screen."""
-    if STATUS.exists():
-        Path("/proc/self/clear_refs").write_text("5")  # the peak starts anew
-    before, start = _peak(), time.monotonic()
     with warnings.catch_warnings(record=True) as told, np.errstate(all="warn"):
         warnings.simplefilter("always")
-        yield
-    assert time.monotonic() - start < LONGEST
-    assert _peak() - before < MOST_MEMORY
+        with bounded(LONGEST, MOST_MEMORY):
+            yield
     shown = [str(w.message) for w in told if not issubclass(w.category, DeprecationWarning)]
     assert shown == []
 
@@ -53,14 +40,14 @@ def test_odd_heads(odd: OddHead, tmp_path: Path, capfd: pytest.CaptureFixture[st
     """What it must become is in the table; a refusal is one line that names the file."""
     brought = odd.write(tmp_path)
     if odd.kind is Kind.REFUSED:
-        with bounded(), pytest.raises(AssetError) as refusal:
+        with quiet_and_bounded(), pytest.raises(AssetError) as refusal:
             open_brought(brought)
         told = str(refusal.value)
         assert told.isprintable() and len(told) < 500
         assert str(tmp_path) in told
         assert re.search(odd.says, told), told
     else:
-        with bounded():
+        with quiet_and_bounded():
             found = open_brought(brought)
         assert isinstance(found, Mesh if odd.kind is Kind.MESH else FittedHead)
         assert np.isfinite(found.vertices).all()

@@ -144,7 +144,9 @@ def rough(name: str) -> meshes.Mesh:
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("name", ["flipped", "debris", "valence 60"])
+@pytest.mark.parametrize(
+    "name", ["flipped", "debris", pytest.param("valence 60", marks=pytest.mark.slow)]
+)
 def test_nothing_pops_on_rough_meshes(name: str, scheme: str) -> None:
     """Nor there: no point moves more than in proportion to motion and turn of the input."""
     mesh = rough(name)
