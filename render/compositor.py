@@ -83,9 +83,3 @@ class Compositor:
     def read(self) -> bytes:
         """The pixels, bottom row first, three bytes each."""
         return bytes(self.frame.read(components=3, alignment=1))
-
-    def release(self) -> None:
-        """Give everything back to OpenGL."""
-        self._gl.screen.use()  # moderngl binds what was bound last again, even if it is gone
-        for resource in (self.frame, self._colour, self._triangle, self._program):
-            resource.release()

@@ -25,8 +25,6 @@ class ValueTexture:
         """Hand over the numbers, shape (M,), uint8; the texture grows only when it must."""
         row_count = max(-(-len(values) // VALUES_PER_ROW), 1)
         if self._texture is None or row_count > len(self._rows):
-            if self._texture is not None:
-                self._texture.release()
             rows = max(row_count, 2 * len(self._rows))
             self._rows = np.zeros((rows, VALUES_PER_ROW), np.uint8)
             self._texture = self._gl.texture((VALUES_PER_ROW, rows), 1, dtype="u1", alignment=1)
@@ -40,12 +38,6 @@ class ValueTexture:
         if self._texture is not None:
             self._texture.use(unit)
         return unit
-
-    def release(self) -> None:
-        """Give the texture back to OpenGL; the next upload makes another."""
-        if self._texture is not None:
-            self._texture.release()
-        self._texture, self._rows = None, self._rows[:0]
 
 
 def checked_values(
@@ -104,15 +96,7 @@ class LineBuffer:
         if self._array is not None:
             self._array.render(moderngl.LINES, vertices=self._index_count)
 
-    def release(self) -> None:
-        """Give everything back to OpenGL; the next upload makes it anew."""
-        for resource in (self._array, self._vertices, self._indices):
-            if resource is not None:
-                resource.release()
-        self._array = self._vertices = self._indices = None
-
     def _allocate(self, program: moderngl.Program, vertex_bytes: int, index_bytes: int) -> None:
-        self.release()
         self._vertices = self._gl.buffer(reserve=vertex_bytes, dynamic=True)
         self._indices = self._gl.buffer(reserve=index_bytes, dynamic=True)
         self._array = self._gl.vertex_array(

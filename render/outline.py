@@ -43,7 +43,7 @@ class Outline:
         if not len(rows):
             return False
         if self._buffer is None or rows.nbytes > self._buffer.size:
-            self.release()
+            self._arrays.clear()
             self._buffer = self._gl.buffer(reserve=2 * rows.nbytes, dynamic=True)
         self._buffer.orphan()
         self._buffer.write(rows)
@@ -61,15 +61,6 @@ class Outline:
             content: list[Any] = [(self._buffer, layout, *names)]
             self._arrays[key] = self._gl.vertex_array(program, content, skip_errors=True)
         self._arrays[key].render(moderngl.TRIANGLES, vertices=self._vertex_count)
-
-    def release(self) -> None:
-        """Give everything back to OpenGL; the next upload makes it anew."""
-        for array in self._arrays.values():
-            array.release()
-        self._arrays.clear()
-        if self._buffer is not None:
-            self._buffer.release()
-        self._buffer = None
 
 
 def fringes(vertices: Floats, triangles: npt.NDArray[np.uint32], view: CameraView) -> Floats:

@@ -90,14 +90,6 @@ class PartBuffers:
         self._arrays[program].render(moderngl.TRIANGLES, vertices=3 * self.face_count)
         self._gl.disable(moderngl.CULL_FACE)
 
-    def release(self) -> None:
-        """Give everything back to OpenGL."""
-        for array in self._arrays.values():
-            array.release()
-        self._arrays.clear()
-        self._vertices.release()
-        self._indices.release()
-
 
 PlacedPart = tuple[PartBuffers, npt.NDArray[np.float64]]  # and the matrix of its bone
 
@@ -135,8 +127,6 @@ class PartStore:
         if not touched:
             return []
         if self._depths is None or self._depths.scene is not target:
-            if self._depths is not None:
-                self._depths.release()
             self._depths = DepthReader(self._gl, target)
         self._depths.look(functools.reduce(hull, touched))
         projected = [
@@ -149,15 +139,6 @@ class PartStore:
             for placed_part, faces in zip(placed, projected, strict=True)
             if placed_part[0].choose(depths.seen(faces))
         ]
-
-    def release(self) -> None:
-        """Give everything back to OpenGL; a part that is drawn again is uploaded again."""
-        for buffers in self._known.values():
-            buffers.release()
-        self._known.clear()
-        if self._depths is not None:
-            self._depths.release()
-        self._depths = None
 
 
 def _transform(

@@ -68,15 +68,8 @@ class Renderer:
 
         Streams that were drawn with these programs have to be released, too.
         """
-        self.surface.make_current()
-        self.surface.target.frame.use()  # not what is released: moderngl would bind it again
-        for owner in (self._parts, self._values, self._lines, self._backdrop, self._outline):
-            owner.release()
-        for program in self._programs.values():
-            program.release()
-        self._programs.clear()
-        if self._shadow is not None:
-            self._shadow.release()
+        del self._programs, self._parts, self._values, self._lines
+        del self._backdrop, self._outline, self._shadow
 
     def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
         """Lend arrays for a mesh of at most so many vertices and triangles (see Stream)."""

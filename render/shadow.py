@@ -14,7 +14,6 @@ import numpy.typing as npt
 
 from .camera_view import CameraView
 from .programs import compile_program, write_uniform
-from .render_target import release_target
 from .stream import Stream
 
 RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade within 5 mm
@@ -48,11 +47,6 @@ class ShadowMap:
         gl.viewport, gl.scissor = (0, 0, RESOLUTION, RESOLUTION), None
         self._target.clear(depth=1.0)
         stream.draw(self._program)
-
-    def release(self) -> None:
-        """Give everything back to OpenGL."""
-        release_target(self._target)
-        self._program.release()
 
     def bind(self, unit: int) -> int:
         """Bind the depth texture to a texture unit, and return that unit."""
