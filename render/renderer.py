@@ -27,9 +27,8 @@ from .programs import compile_program, write_uniform
 from .shadow import TEXEL, ShadowMap
 from .stream import Share, Stream
 from .style import Colour, ColourBy, Shading, Style
-from .surface import Surface
-from .texture import Texture
-from .wrinkles import WrinkleMap
+from .surface import Image, Surface
+from .texture import Texture, WrinkleMap
 
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 
@@ -76,9 +75,7 @@ class Renderer:
         self.surface.make_current()
         return Stream(self._gl, vertex_capacity, triangle_capacity, columns)
 
-    def load_texture(
-        self, image: npt.NDArray[np.uint8], openness: npt.NDArray[np.uint8] | None = None
-    ) -> Texture:
+    def load_texture(self, image: Image, openness: Image | None = None) -> Texture:
         """Hand a picture of the skin to OpenGL; draw_mesh takes the albedo from it.
 
         image: sRGB, top row first, shape (H, W, 3), uint8; texture coordinate v is 1 at the top.
@@ -88,7 +85,7 @@ class Renderer:
         self.surface.make_current()
         return Texture(self._gl, image, openness)
 
-    def load_wrinkles(self, texels: npt.NDArray[np.uint8], steepest: float) -> WrinkleMap:
+    def load_wrinkles(self, texels: Image, steepest: float) -> WrinkleMap:
         """Hand a map of wrinkles to OpenGL; draw_mesh takes the furrows of the skin from it.
 
         texels: slope of the skin's height along u and v (128 is level), depth of the furrow, which
