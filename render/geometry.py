@@ -7,7 +7,6 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .camera_view import box_corners
 from .style import Colour
 
 VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl reads it so
@@ -52,59 +51,6 @@ def checked_values(
             f"({triangle_count},) uint8, one per uploaded triangle"
         )
     return values
-
-
-class LineBuffer:
-    """Polylines as coloured segments, rewritten whenever lines are drawn."""
-
-    def __init__(self, gl: moderngl.Context) -> None:
-        self._gl = gl
-        self._vertices: moderngl.Buffer | None = None
-        self._indices: moderngl.Buffer | None = None
-        self._array: moderngl.VertexArray | None = None
-        self._index_count = 0
-        self.corners = np.zeros((8, 3))
-
-    def upload(
-        self,
-        program: moderngl.Program,
-        polylines: Sequence[npt.NDArray[Any]],
-        colour: Colour | npt.NDArray[Any],
-    ) -> bool:
-        """Hand over the lines; whether there is any segment to draw."""
-        rows, segments = line_segments(polylines, colour)
-        self._index_count = segments.size
-        if not self._index_count:
-            return False
-        self.corners = box_corners(rows[:, :3])
-        if (
-            self._vertices is None
-            or self._indices is None
-            or rows.nbytes > self._vertices.size
-            or segments.nbytes > self._indices.size
-        ):
-            self._allocate(program, 2 * rows.nbytes, 2 * segments.nbytes)
-        assert self._vertices is not None and self._indices is not None
-        self._vertices.orphan()
-        self._vertices.write(rows)
-        self._indices.orphan()
-        self._indices.write(segments)
-        return True
-
-    def draw(self) -> None:
-        """Draw the lines with the program they were uploaded for."""
-        if self._array is not None:
-            self._array.render(moderngl.LINES, vertices=self._index_count)
-
-    def _allocate(self, program: moderngl.Program, vertex_bytes: int, index_bytes: int) -> None:
-        self._vertices = self._gl.buffer(reserve=vertex_bytes, dynamic=True)
-        self._indices = self._gl.buffer(reserve=index_bytes, dynamic=True)
-        self._array = self._gl.vertex_array(
-            program,
-            [(self._vertices, "3f 3f", "in_position", "in_colour")],
-            index_buffer=self._indices,
-            index_element_size=4,
-        )
 
 
 def line_segments(

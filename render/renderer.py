@@ -18,10 +18,10 @@ import numpy.typing as npt
 
 from .backdrop import Backdrop
 from .camera import OrbitCamera
-from .camera_view import CameraView
-from .geometry import LineBuffer, ValueTexture, checked_values
+from .camera_view import CameraView, box_corners
+from .geometry import ValueTexture, checked_values, line_segments
 from .materials import COLOUR_DEFINES, TO_KEY, set_palette, set_part, set_skin
-from .outline import Outline
+from .outline import draw_fringes, fringes
 from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
 from .shadow import TEXEL, ShadowMap
@@ -56,9 +56,7 @@ class Renderer:
         self._programs: dict[tuple[str, ...], moderngl.Program] = {}
         self._parts = PartStore(self._gl)
         self._values = ValueTexture(self._gl)
-        self._lines = LineBuffer(self._gl)
         self._backdrop = Backdrop(self._gl)
-        self._outline = Outline(self._gl)
         self._shadow: ShadowMap | None = None
         self._shadow_key: tuple[int, bytes] = (0, b"")
 
@@ -67,8 +65,7 @@ class Renderer:
 
         Streams that were drawn with these programs have to be released, too.
         """
-        del self._programs, self._parts, self._values, self._lines
-        del self._backdrop, self._outline, self._shadow
+        del self._programs, self._parts, self._values, self._backdrop, self._shadow
 
     def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
         """Lend arrays for a mesh of at most so many vertices and triangles (see Stream)."""
@@ -162,13 +159,16 @@ class Renderer:
             return
         texture = texture if style.textured else None
         view = self._camera_view(camera, viewport, clip)
-        if not self._outline.upload(stream, view):
+        rows = fringes(
+            stream.vertices[: stream.vertex_count], stream.triangles[: stream.triangle_count], view
+        )
+        if not len(rows):
             return
         program = self._surface_program(style, texture, None, "FRINGE")
         if self._aim(program, view, stream.corners, np.eye(4)):
             self._set_surface(program, view, style, texture, None)
             with self._blending():
-                self._outline.draw(program)
+                draw_fringes(self._gl, program, rows)
 
     def _draw_sides(self, stream: Stream, shares: Sequence[tuple[moderngl.Program, Share]]) -> None:
         """Draw shares of the mesh; where software draws, what turns to the eye goes first.
@@ -278,22 +278,25 @@ class Renderer:
         """
         view = self._camera_view(camera, viewport, clip)
         program = self._program("lines.glsl")
-        if not self._lines.upload(program, polylines, colour):
+        rows, segments = line_segments(polylines, colour)
+        if not len(segments):
             return
         width *= self._line_scale
-        touched = view.touched_pixels(self._lines.corners, padding=2.0 + width)
+        touched = view.touched_pixels(box_corners(rows[:, :3]), padding=2.0 + width)
         write_uniform(program, "world_to_clip", view.world_to_clip)
         program["viewport_size"] = view.viewport[2:]
         program["half_width"] = 0.5 * width
         if touched[2] < 1 or touched[3] < 1:
             return
         self.surface.target.use_layer(view.viewport, touched)
+        content = [(self._gl.buffer(rows), "3f 3f", "in_position", "in_colour")]
+        lines = self._gl.vertex_array(program, content, self._gl.buffer(segments))
         with self._blending():
             for depth_func, opacity in ((">", hidden_opacity), ("<=", 1.0)):
                 if opacity > 0.0:
                     self._gl.depth_func = depth_func
                     program["opacity"] = opacity
-                    self._lines.draw()
+                    lines.render(moderngl.LINES)
 
     @contextlib.contextmanager
     def _blending(self) -> Iterator[None]:
