@@ -12,31 +12,11 @@ from .style import Colour
 VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl reads it so
 
 
-class ValueTexture:
-    """One small number per triangle, for the fragment shader to look up by gl_PrimitiveID."""
-
-    def __init__(self, gl: moderngl.Context) -> None:
-        self._gl = gl
-        self._texture: moderngl.Texture | None = None
-        self._rows = np.zeros((0, VALUES_PER_ROW), np.uint8)
-
-    def upload(self, values: npt.NDArray[np.uint8]) -> None:
-        """Hand over the numbers, shape (M,), uint8; the texture grows only when it must."""
-        row_count = max(-(-len(values) // VALUES_PER_ROW), 1)
-        if self._texture is None or row_count > len(self._rows):
-            rows = max(row_count, 2 * len(self._rows))
-            self._rows = np.zeros((rows, VALUES_PER_ROW), np.uint8)
-            self._texture = self._gl.texture((VALUES_PER_ROW, rows), 1, dtype="u1", alignment=1)
-        self._rows.reshape(-1)[: len(values)] = values
-        self._texture.write(
-            self._rows[:row_count], viewport=(0, 0, VALUES_PER_ROW, row_count), alignment=1
-        )
-
-    def bind(self, unit: int) -> int:
-        """Bind the texture to a texture unit, and return that unit."""
-        if self._texture is not None:
-            self._texture.use(unit)
-        return unit
+def value_texture(gl: moderngl.Context, values: npt.NDArray[np.uint8]) -> moderngl.Texture:
+    """One small number per triangle, shape (M,), to be looked up by gl_PrimitiveID."""
+    rows = np.zeros((max(-(-len(values) // VALUES_PER_ROW), 1), VALUES_PER_ROW), np.uint8)
+    rows.reshape(-1)[: len(values)] = values
+    return gl.texture((VALUES_PER_ROW, len(rows)), 1, rows.tobytes(), dtype="u1", alignment=1)
 
 
 def checked_values(
