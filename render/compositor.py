@@ -39,7 +39,7 @@ class Compositor:
         self._colour = gl.renderbuffer(size, 4)
         self.frame = gl.framebuffer([self._colour])
         self._program = compile_program(gl, "stretch.glsl")
-        self._program["picture"] = _UNIT
+        self._program["scene"] = _UNIT
         self._triangle = gl.vertex_array(self._program, [])
 
     def lay(

@@ -1,7 +1,7 @@
 """The shadow that the skin throws in the key light: on itself, on eyes, on teeth.
 
-A depth picture of the skin, taken from the key light, which hangs on the camera. Of both sides:
-skin is a sheet, and what lies behind its lit side, in the mouth, has to be dark. It spans the whole
+A depth map of the skin, taken from the key light, which hangs on the camera. Of both sides: skin is
+thin, and what lies behind its lit side, in the mouth, has to be dark. It spans the whole
 scene and depends on nothing that moves, so shadows do not crawl with the face. Its texels are
 coarse on purpose: the look-up blends 4 x 4 of them, and that is how soft the shadow is.
 Source: Williams 1978, "Casting curved shadows on curved surfaces"; filtering of depth tests as in
@@ -42,7 +42,7 @@ class ShadowMap:
         self._drawn_for: tuple[int, bytes] = (0, b"")
 
     def draw(self, stream: Stream, view: CameraView, frame_number: int) -> None:
-        """Take the depth picture of what `stream` uploaded, in the frame of that number."""
+        """Take the depth map of what `stream` uploaded, in the frame of that number."""
         gl = self._gl
         write_uniform(self._program, "light_matrix", view.world_to_view @ self._view_to_light(view))
         self._target.use()

@@ -8,7 +8,6 @@ hidden or covered, and a panel that is drawn after `resolve` is part of it.
 
 import os
 import sys
-from types import TracebackType
 from typing import Any, ClassVar, Self
 
 import moderngl
@@ -110,12 +109,7 @@ class Surface:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def _bind(self) -> None:

@@ -7,7 +7,7 @@ imported before, and a server without a screen never needs it.
 import contextlib
 import sys
 from collections.abc import Iterator, Sequence
-from types import ModuleType, TracebackType
+from types import ModuleType
 from typing import Any
 
 import moderngl
@@ -150,13 +150,8 @@ class _Loader:
     def __enter__(self) -> "_Loader":
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        return None
+    def __exit__(self, *_: object) -> None:
+        pass
 
 
 def open_window(
