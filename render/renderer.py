@@ -57,11 +57,12 @@ class Renderer:
         self._shadow: ShadowMap | None = None
 
     def release(self) -> None:
-        """Give back all that was compiled and uploaded here; streams and textures are not its own.
+        """Let go of all that was compiled and uploaded here; nothing can be drawn any more.
 
-        Streams that were drawn with these programs have to be released, too.
+        The surface gives it back when its next frame begins. Streams and textures are not its own;
+        streams that were drawn with these programs have to be released, too.
         """
-        del self._programs, self._parts, self._values, self._backdrop, self._shadow
+        vars(self).clear()
 
     def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
         """Lend arrays for a mesh of at most so many vertices and triangles (see Stream)."""
