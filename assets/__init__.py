@@ -3,7 +3,7 @@
     head = assets.load("head")
     plane = assets.load("plane")
     mesh = assets.read_mesh("cloth.ply")  # or OBJ, STL, OFF, GLB
-    picture = assets.paint(tone="dark")  # another skin for the head than `head.albedo`
+    image = assets.paint(tone="dark")  # another skin for the head than `head.albedo`
     head = fitting.fit_head("anna.obj", "anna.json")  # from risorius.assets import fitting
 
 The programs that generate them are in this package, too: `python -m risorius.assets.build`.

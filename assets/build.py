@@ -45,9 +45,8 @@ MIRROR = np.array([-1.0, 1.0, 1.0])
 def build_parts() -> list[tuple[str, str, float, Solid]]:
     """Return name, bone, shine and surface of every rigid part."""
     left = eyeball()
-    right = Solid(left.vertices * MIRROR, left.faces[:, ::-1], left.colours)
     left.vertices = left.vertices + EYE_CENTRE
-    right.vertices = right.vertices + EYE_CENTRE * MIRROR
+    right = left.mirrored()
     return [
         ("eyeball_right", "eye_right", 1.0, right),
         ("eyeball_left", "eye_left", 1.0, left),

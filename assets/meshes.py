@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from .errors import AssetError
 from .mesh_claims import CHECKS
+from .topology import unique_points
 from .user_files import MOST_VERTICES, named, read_file
 from .wavefront import read_obj
 
@@ -66,7 +67,9 @@ def read_mesh(path: str | Path) -> Mesh:
         else:
             vertices, faces = _read_by_trimesh(CHECKS[suffix](content), suffix)
         if suffix == "stl":
-            vertices, faces = _welded(vertices, faces)
+            vertices = vertices + 0.0  # no zero with a sign
+            first, number = unique_points(vertices)
+            vertices, faces = vertices[first], number[faces]
         _check(vertices, faces)
     except AssetError as error:
         raise AssetError(f"{named(path)}: {error}") from None
@@ -99,17 +102,6 @@ def _read_by_trimesh(content: bytes, suffix: str) -> tuple[npt.NDArray[Any], npt
     if mesh is None:
         return np.zeros((0, 3)), np.zeros((0, 3), np.int64)
     return np.array(mesh.vertices), np.array(mesh.faces)
-
-
-def _welded(
-    vertices: npt.NDArray[Any], faces: npt.NDArray[Any]
-) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
-    """The same triangles with one vertex for each place, in the order of the file."""
-    places, first, place = np.unique(vertices + 0.0, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    number = np.empty_like(order)
-    number[order] = np.arange(len(order))
-    return places[order], number[place.reshape(-1)][faces]
 
 
 def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:

@@ -4,8 +4,8 @@ Plain frozen dataclasses of plain numpy arrays: every other package takes arrays
 has to import this one. All arrays are read-only. What simulating a head needs not (images, finer
 meshes) is read from its files when it is first asked for.
 
-Frame of the head: millimetres, x toward the subject's left, y up, z toward the viewer, x = 0 is
-the mirror plane. Faces are counter-clockwise seen from outside.
+Coordinates of the head: millimetres, x toward the subject's left, y up, z toward the viewer; x = 0
+is the mirror plane. Faces are counter-clockwise seen from outside.
 Source: Kähler et al. 2003, section 5 (the face mesh with 2030 triangles, the plane with 154);
 landmark numbering after Sagonas et al. 2013, "300 Faces in-the-Wild Challenge" (iBug 68 points).
 """
@@ -34,7 +34,7 @@ class Tone(Enum):
     """Complexions that the skin can be painted in."""
 
     LIGHT = "light"
-    MEDIUM_LIGHT = "medium-light"  # the picture that is shipped
+    MEDIUM_LIGHT = "medium-light"  # the image that is shipped
     MEDIUM = "medium"
     DARK = "dark"
 
@@ -164,7 +164,7 @@ class Head:
         piece without seams, so that U = V.
     face_uv: numbers of the texture coordinates of each face's corners, shape (F, 3), int32; the
         same numbers as `faces`.
-    albedo_file: the picture of the skin.
+    albedo_file: the image of the skin.
     wrinkles_file: the map of its wrinkles.
     openness_file: how open it is to light from all around; app/ambient.py makes it.
     finer_file: what the finer meshes of the same form need; read by `finer`.

@@ -10,7 +10,7 @@ SMALLEST = 64  # [texels] below this an eye would be smaller than a texel
 def paint(*, tone: Tone | str = Tone.MEDIUM_LIGHT, size: int | None = None) -> Image:
     """Paint the skin of the built-in head, shape (size, size, 3), uint8, sRGB; row 0 is v = 1.
 
-    tone: a Tone or its value. size: of the picture [texels]; None for that of the shipped one.
+    tone: a Tone or its value. size: of the image [texels]; None for that of the shipped one.
     It takes about ten seconds. Raises ValueError for an unknown tone and for too small a size.
     """
     # Only who paints needs the generator, and scipy with it.

@@ -51,6 +51,13 @@ def boundary_loops(faces: Faces) -> list[list[int]]:
     return sorted(loops, key=len, reverse=True)
 
 
+def unique_points(points: FloatArray) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """The first of all points (n, 3) that are the same, in their order, and which each one is."""
+    _, first, number = np.unique(points, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    return first[order], np.argsort(order)[number.reshape(-1)]
+
+
 def cross_products(vertices: FloatArray, faces: Faces) -> FloatArray:
     """Face normals times twice the area, shape (F, 3)."""
     corner = vertices[faces]

@@ -40,9 +40,8 @@ from .style import (
     Style,
 )
 from .surface import Image, OffscreenSurface, Surface, open_offscreen
-from .texture import Texture
+from .texture import Texture, WrinkleMap
 from .window import WindowSurface, open_window, size_on_screen
-from .wrinkles import WrinkleMap
 
 __all__ = [
     "CLAY",

@@ -7,7 +7,7 @@ against 8 ms at 1280 x 720), and a tenth of a copy of a part, which is no plain 
 import moderngl
 
 from .programs import compile_program
-from .render_target import Rectangle, RenderTarget, overlap, release_target
+from .render_target import Rectangle, RenderTarget, overlap
 from .style import Background
 
 
@@ -24,7 +24,7 @@ class Backdrop:
     def paint(self, target: RenderTarget, viewport: Rectangle, background: Background) -> None:
         """Paint the background over the viewport; what was drawn there is gone."""
         if self._store is None or self._store.size != target.size:
-            self._forget()
+            self._stored.clear()
             self._store = self._gl.framebuffer([self._gl.renderbuffer(target.size, 4)])
         if self._stored.get(viewport) != background:
             self._stored = {
@@ -52,15 +52,3 @@ class Backdrop:
         self._program["centre"] = background.centre
         self._program["edge"] = background.edge
         self._triangle.render(moderngl.TRIANGLES, vertices=3)
-
-    def release(self) -> None:
-        """Give everything back to OpenGL."""
-        self._forget()
-        self._triangle.release()
-        self._program.release()
-
-    def _forget(self) -> None:
-        if self._store is not None:
-            release_target(self._store)
-            self._store = None
-        self._stored.clear()

@@ -39,7 +39,7 @@ class Compositor:
         self._colour = gl.renderbuffer(size, 4)
         self.frame = gl.framebuffer([self._colour])
         self._program = compile_program(gl, "stretch.glsl")
-        self._program["picture"] = _UNIT
+        self._program["scene"] = _UNIT
         self._triangle = gl.vertex_array(self._program, [])
 
     def lay(
@@ -83,9 +83,3 @@ class Compositor:
     def read(self) -> bytes:
         """The pixels, bottom row first, three bytes each."""
         return bytes(self.frame.read(components=3, alignment=1))
-
-    def release(self) -> None:
-        """Give everything back to OpenGL."""
-        self._gl.screen.use()  # moderngl binds what was bound last again, even if it is gone
-        for resource in (self.frame, self._colour, self._triangle, self._program):
-            resource.release()

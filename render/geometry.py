@@ -7,45 +7,16 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .camera_view import box_corners
 from .style import Colour
 
 VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl reads it so
 
 
-class ValueTexture:
-    """One small number per triangle, for the fragment shader to look up by gl_PrimitiveID."""
-
-    def __init__(self, gl: moderngl.Context) -> None:
-        self._gl = gl
-        self._texture: moderngl.Texture | None = None
-        self._rows = np.zeros((0, VALUES_PER_ROW), np.uint8)
-
-    def upload(self, values: npt.NDArray[np.uint8]) -> None:
-        """Hand over the numbers, shape (M,), uint8; the texture grows only when it must."""
-        row_count = max(-(-len(values) // VALUES_PER_ROW), 1)
-        if self._texture is None or row_count > len(self._rows):
-            if self._texture is not None:
-                self._texture.release()
-            rows = max(row_count, 2 * len(self._rows))
-            self._rows = np.zeros((rows, VALUES_PER_ROW), np.uint8)
-            self._texture = self._gl.texture((VALUES_PER_ROW, rows), 1, dtype="u1", alignment=1)
-        self._rows.reshape(-1)[: len(values)] = values
-        self._texture.write(
-            self._rows[:row_count], viewport=(0, 0, VALUES_PER_ROW, row_count), alignment=1
-        )
-
-    def bind(self, unit: int) -> int:
-        """Bind the texture to a texture unit, and return that unit."""
-        if self._texture is not None:
-            self._texture.use(unit)
-        return unit
-
-    def release(self) -> None:
-        """Give the texture back to OpenGL; the next upload makes another."""
-        if self._texture is not None:
-            self._texture.release()
-        self._texture, self._rows = None, self._rows[:0]
+def value_texture(gl: moderngl.Context, values: npt.NDArray[np.uint8]) -> moderngl.Texture:
+    """One small number per triangle, shape (M,), to be looked up by gl_PrimitiveID."""
+    rows = np.zeros((max(-(-len(values) // VALUES_PER_ROW), 1), VALUES_PER_ROW), np.uint8)
+    rows.reshape(-1)[: len(values)] = values
+    return gl.texture((VALUES_PER_ROW, len(rows)), 1, rows.tobytes(), dtype="u1", alignment=1)
 
 
 def checked_values(
@@ -60,67 +31,6 @@ def checked_values(
             f"({triangle_count},) uint8, one per uploaded triangle"
         )
     return values
-
-
-class LineBuffer:
-    """Polylines as coloured segments, rewritten whenever lines are drawn."""
-
-    def __init__(self, gl: moderngl.Context) -> None:
-        self._gl = gl
-        self._vertices: moderngl.Buffer | None = None
-        self._indices: moderngl.Buffer | None = None
-        self._array: moderngl.VertexArray | None = None
-        self._index_count = 0
-        self.corners = np.zeros((8, 3))
-
-    def upload(
-        self,
-        program: moderngl.Program,
-        polylines: Sequence[npt.NDArray[Any]],
-        colour: Colour | npt.NDArray[Any],
-    ) -> bool:
-        """Hand over the lines; whether there is any segment to draw."""
-        rows, segments = line_segments(polylines, colour)
-        self._index_count = segments.size
-        if not self._index_count:
-            return False
-        self.corners = box_corners(rows[:, :3])
-        if (
-            self._vertices is None
-            or self._indices is None
-            or rows.nbytes > self._vertices.size
-            or segments.nbytes > self._indices.size
-        ):
-            self._allocate(program, 2 * rows.nbytes, 2 * segments.nbytes)
-        assert self._vertices is not None and self._indices is not None
-        self._vertices.orphan()
-        self._vertices.write(rows)
-        self._indices.orphan()
-        self._indices.write(segments)
-        return True
-
-    def draw(self) -> None:
-        """Draw the lines with the program they were uploaded for."""
-        if self._array is not None:
-            self._array.render(moderngl.LINES, vertices=self._index_count)
-
-    def release(self) -> None:
-        """Give everything back to OpenGL; the next upload makes it anew."""
-        for resource in (self._array, self._vertices, self._indices):
-            if resource is not None:
-                resource.release()
-        self._array = self._vertices = self._indices = None
-
-    def _allocate(self, program: moderngl.Program, vertex_bytes: int, index_bytes: int) -> None:
-        self.release()
-        self._vertices = self._gl.buffer(reserve=vertex_bytes, dynamic=True)
-        self._indices = self._gl.buffer(reserve=index_bytes, dynamic=True)
-        self._array = self._gl.vertex_array(
-            program,
-            [(self._vertices, "3f 3f", "in_position", "in_colour")],
-            index_buffer=self._indices,
-            index_element_size=4,
-        )
 
 
 def line_segments(

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .programs import compile_program
-from .render_target import Rectangle, RenderTarget, release_target
+from .render_target import Rectangle, RenderTarget
 
 BLOCK = 8  # pixels each way
 _WINDOWS = 5  # how many tables to look up: of 1, 2, 4, 8, 16 blocks each way
@@ -66,12 +66,6 @@ class DepthReader:
         left, bottom, width, height = self._blocks
         data = self._target.read(viewport=self._blocks, components=1, dtype="f4")
         return FarthestDepths(np.frombuffer(data, np.float32).reshape(height, width), left, bottom)
-
-    def release(self) -> None:
-        """Give everything back to OpenGL."""
-        release_target(self._target)
-        self._triangle.release()
-        self._program.release()
 
 
 class ProjectedFaces:

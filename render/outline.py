@@ -13,7 +13,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .camera_view import CameraView
-from .stream import Stream
 
 WIDTH = 1.0  # [pixels] in which a fringe fades: as far as the steps of its edge reach
 _SHORTEST = 1e-3  # [pixels] of an edge that has a direction
@@ -24,52 +23,14 @@ _SIDES = np.array([0, 1, 1, 0, 1, 0])
 Floats = npt.NDArray[np.float32]
 
 
-class Outline:
-    """The fringes along the contours of one mesh, made anew whenever it is drawn."""
-
-    def __init__(self, gl: moderngl.Context) -> None:
-        self._gl = gl
-        self._buffer: moderngl.Buffer | None = None
-        self._arrays: dict[tuple[moderngl.Program, int], moderngl.VertexArray] = {}
-        self._vertex_count = 0
-        self._columns = 0
-
-    def upload(self, stream: Stream, view: CameraView) -> bool:
-        """Make the fringes for what `stream` last uploaded; whether there are any."""
-        rows = fringes(
-            stream.vertices[: stream.vertex_count], stream.triangles[: stream.triangle_count], view
-        )
-        self._vertex_count, self._columns = len(rows), rows.shape[1]
-        if not len(rows):
-            return False
-        if self._buffer is None or rows.nbytes > self._buffer.size:
-            self.release()
-            self._buffer = self._gl.buffer(reserve=2 * rows.nbytes, dynamic=True)
-        self._buffer.orphan()
-        self._buffer.write(rows)
-        return True
-
-    def draw(self, program: moderngl.Program) -> None:
-        """Draw the fringes with a program that has in_fringe and what a mesh has."""
-        key = program, self._columns
-        if key not in self._arrays:
-            names = ["in_position", "in_normal", "in_uv", "in_fringe"]
-            layout = "3f 3f 2f 3f"
-            if self._columns == 9:
-                names.remove("in_uv")
-                layout = "3f 3f 3f"
-            content: list[Any] = [(self._buffer, layout, *names)]
-            self._arrays[key] = self._gl.vertex_array(program, content, skip_errors=True)
-        self._arrays[key].render(moderngl.TRIANGLES, vertices=self._vertex_count)
-
-    def release(self) -> None:
-        """Give everything back to OpenGL; the next upload makes it anew."""
-        for array in self._arrays.values():
-            array.release()
-        self._arrays.clear()
-        if self._buffer is not None:
-            self._buffer.release()
-        self._buffer = None
+def draw_fringes(gl: moderngl.Context, program: moderngl.Program, rows: Floats) -> None:
+    """Draw rows of `fringes` with a program that has in_fringe and what a mesh has."""
+    names, layout = ["in_position", "in_normal", "in_uv", "in_fringe"], "3f 3f 2f 3f"
+    if rows.shape[1] == 9:
+        names.remove("in_uv")
+        layout = "3f 3f 3f"
+    content: list[Any] = [(gl.buffer(rows), layout, *names)]
+    gl.vertex_array(program, content, skip_errors=True).render(moderngl.TRIANGLES)
 
 
 def fringes(vertices: Floats, triangles: npt.NDArray[np.uint32], view: CameraView) -> Floats:

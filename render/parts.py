@@ -90,14 +90,6 @@ class PartBuffers:
         self._arrays[program].render(moderngl.TRIANGLES, vertices=3 * self.face_count)
         self._gl.disable(moderngl.CULL_FACE)
 
-    def release(self) -> None:
-        """Give everything back to OpenGL."""
-        for array in self._arrays.values():
-            array.release()
-        self._arrays.clear()
-        self._vertices.release()
-        self._indices.release()
-
 
 PlacedPart = tuple[PartBuffers, npt.NDArray[np.float64]]  # and the matrix of its bone
 
@@ -107,20 +99,27 @@ class PartStore:
 
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
-        self._known: dict[int, PartBuffers] = {}
+        self.known: dict[int, PartBuffers] = {}
         self._depths: DepthReader | None = None
-
-    def buffers(self, part: Part) -> PartBuffers:
-        """The buffers of a part, which is uploaded when it is first seen."""
-        if id(part) not in self._known:
-            self._known[id(part)] = PartBuffers(self._gl, part)
-        return self._known[id(part)]
 
     def placed(
         self, parts: Iterable[Part], transforms: Mapping[str, npt.NDArray[np.float64]]
     ) -> list[PlacedPart]:
-        """Each part with the matrix of its bone; ValueError for a bone without one."""
-        return [(self.buffers(part), _transform(part, transforms)) for part in parts]
+        """Each part, uploaded when it is first seen, with the matrix of its bone.
+
+        Raises ValueError for a bone without one.
+        """
+        placed = []
+        for part in parts:
+            if id(part) not in self.known:
+                self.known[id(part)] = PartBuffers(self._gl, part)
+            if part.bone not in transforms:
+                raise ValueError(
+                    f"part '{part.name}' moves with bone '{part.bone}'; transforms has only "
+                    f"{', '.join(sorted(transforms)) or 'none'}"
+                )
+            placed.append((self.known[id(part)], transforms[part.bone]))
+        return placed
 
     def seen(
         self, placed: list[PlacedPart], view: CameraView, target: RenderTarget
@@ -135,8 +134,6 @@ class PartStore:
         if not touched:
             return []
         if self._depths is None or self._depths.scene is not target:
-            if self._depths is not None:
-                self._depths.release()
             self._depths = DepthReader(self._gl, target)
         self._depths.look(functools.reduce(hull, touched))
         projected = [
@@ -149,23 +146,3 @@ class PartStore:
             for placed_part, faces in zip(placed, projected, strict=True)
             if placed_part[0].choose(depths.seen(faces))
         ]
-
-    def release(self) -> None:
-        """Give everything back to OpenGL; a part that is drawn again is uploaded again."""
-        for buffers in self._known.values():
-            buffers.release()
-        self._known.clear()
-        if self._depths is not None:
-            self._depths.release()
-        self._depths = None
-
-
-def _transform(
-    part: Part, transforms: Mapping[str, npt.NDArray[np.float64]]
-) -> npt.NDArray[np.float64]:
-    if part.bone not in transforms:
-        raise ValueError(
-            f"part '{part.name}' moves with bone '{part.bone}'; transforms has only "
-            f"{', '.join(sorted(transforms)) or 'none'}"
-        )
-    return transforms[part.bone]

@@ -113,27 +113,6 @@ class RenderTarget:
         self.flush()
         return bytes(self.frame.read(components=3, alignment=1))
 
-    def release(self) -> None:
-        """Give everything back to OpenGL."""
-        if self.samples:
-            for resource in (
-                self._average,
-                self._average_program,
-                self._layer,
-                self._layer_colour,
-            ):
-                resource.release()
-        for buffer in (self.frame, self.colour, self.depth):
-            buffer.release()
-
-
-def release_target(target: moderngl.Framebuffer) -> None:
-    """Give a framebuffer of one's own back to OpenGL, with what was drawn into."""
-    for attachment in (*target.color_attachments, target.depth_attachment):
-        if attachment is not None:
-            attachment.release()
-    target.release()
-
 
 def overlap(first: Rectangle, second: Rectangle) -> bool:
     """Whether two rectangles share a pixel."""

@@ -18,23 +18,19 @@ import numpy.typing as npt
 
 from .backdrop import Backdrop
 from .camera import OrbitCamera
-from .camera_view import CameraView
-from .geometry import LineBuffer, ValueTexture, checked_values
+from .camera_view import CameraView, box_corners
+from .geometry import checked_values, line_segments, value_texture
 from .materials import COLOUR_DEFINES, TO_KEY, set_palette, set_part, set_skin
-from .outline import Outline
+from .outline import draw_fringes, fringes
 from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
-from .shadow import TEXEL, ShadowMap
+from .shadow import ShadowMap
 from .stream import Share, Stream
 from .style import Colour, ColourBy, Shading, Style
-from .surface import Surface
-from .texture import Texture
-from .wrinkles import WrinkleMap
+from .surface import Image, Surface
+from .texture import Texture, WrinkleMap
 
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
-
-SHADOW_OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
-SHADOW_REACH = 2.0 * TEXEL  # how far the shadow's look-up reaches to each side
 
 _VALUE_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the target uses 1
 _WRINKLE_UNIT = 5  # 4 belongs to a window's enlargement
@@ -56,36 +52,24 @@ class Renderer:
         self._gl = surface.gl
         self._programs: dict[tuple[str, ...], moderngl.Program] = {}
         self._parts = PartStore(self._gl)
-        self._values = ValueTexture(self._gl)
-        self._lines = LineBuffer(self._gl)
+        self._values: moderngl.Texture | None = None
         self._backdrop = Backdrop(self._gl)
-        self._outline = Outline(self._gl)
         self._shadow: ShadowMap | None = None
-        self._shadow_key: tuple[int, bytes] = (0, b"")
 
     def release(self) -> None:
-        """Give back all that was compiled and uploaded here; streams and textures are not its own.
+        """Let go of all that was compiled and uploaded here; nothing can be drawn any more.
 
-        Streams that were drawn with these programs have to be released, too.
+        The surface gives it back when its next frame begins. Streams and textures are not its own;
+        streams that were drawn with these programs have to be released, too.
         """
-        self.surface.make_current()
-        self.surface.target.frame.use()  # not what is released: moderngl would bind it again
-        for owner in (self._parts, self._values, self._lines, self._backdrop, self._outline):
-            owner.release()
-        for program in self._programs.values():
-            program.release()
-        self._programs.clear()
-        if self._shadow is not None:
-            self._shadow.release()
+        vars(self).clear()
 
     def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
         """Lend arrays for a mesh of at most so many vertices and triangles (see Stream)."""
         self.surface.make_current()
         return Stream(self._gl, vertex_capacity, triangle_capacity, columns)
 
-    def load_texture(
-        self, image: npt.NDArray[np.uint8], openness: npt.NDArray[np.uint8] | None = None
-    ) -> Texture:
+    def load_texture(self, image: Image, openness: Image | None = None) -> Texture:
         """Hand a picture of the skin to OpenGL; draw_mesh takes the albedo from it.
 
         image: sRGB, top row first, shape (H, W, 3), uint8; texture coordinate v is 1 at the top.
@@ -95,7 +79,7 @@ class Renderer:
         self.surface.make_current()
         return Texture(self._gl, image, openness)
 
-    def load_wrinkles(self, texels: npt.NDArray[np.uint8], steepest: float) -> WrinkleMap:
+    def load_wrinkles(self, texels: Image, steepest: float) -> WrinkleMap:
         """Hand a map of wrinkles to OpenGL; draw_mesh takes the furrows of the skin from it.
 
         texels: slope of the skin's height along u and v (128 is level), depth of the furrow, which
@@ -131,7 +115,12 @@ class Renderer:
         wrinkles: furrows of the skin, as far as the style and the amounts of wrinkling that were
             uploaded let them show; per-pixel shading alone has them. Needs 8 columns, too.
         """
-        _check_texture(texture or wrinkles, stream)
+        columns = stream.vertices.shape[1]
+        if columns != 8 and (texture is not None or wrinkles is not None):
+            raise ValueError(
+                f"a texture meets a stream of {columns} columns; it needs texture coordinates: "
+                "lend a stream of 8 columns (position, normal, u v), or draw without texture"
+            )
         if not (style.shows_wrinkles and stream.has_wrinkles):
             wrinkles = None
         if not style.textured:
@@ -139,9 +128,12 @@ class Renderer:
         is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
         view = self._camera_view(camera, viewport, clip)
         if is_coloured:
-            self._values.upload(checked_values(values, stream.triangle_count))
+            checked = checked_values(values, stream.triangle_count)
+            self._values = value_texture(self._gl, checked)
         if style.shadows:
-            self._draw_shadow(stream, view)
+            if self._shadow is None:
+                self._shadow = ShadowMap(self._gl, TO_KEY)
+            self._shadow.draw(stream, view, self.surface.target.frame_number)
         shares = [Share.ALL] if wrinkles is None or is_coloured else [Share.WRINKLED, Share.SMOOTH]
         drawn = []
         for share in shares:
@@ -172,13 +164,16 @@ class Renderer:
             return
         texture = texture if style.textured else None
         view = self._camera_view(camera, viewport, clip)
-        if not self._outline.upload(stream, view):
+        rows = fringes(
+            stream.vertices[: stream.vertex_count], stream.triangles[: stream.triangle_count], view
+        )
+        if not len(rows):
             return
         program = self._surface_program(style, texture, None, "FRINGE")
         if self._aim(program, view, stream.corners, np.eye(4)):
             self._set_surface(program, view, style, texture, None)
             with self._blending():
-                self._outline.draw(program)
+                draw_fringes(self._gl, program, rows)
 
     def _draw_sides(self, stream: Stream, shares: Sequence[tuple[moderngl.Program, Share]]) -> None:
         """Draw shares of the mesh; where software draws, what turns to the eye goes first.
@@ -221,8 +216,8 @@ class Renderer:
     ) -> None:
         """Set what the mesh's program asks for beside matrices."""
         set_skin(program, style)
-        if style.shadows:
-            self._set_shadow(program, view)
+        if style.shadows and self._shadow is not None:
+            self._shadow.set_uniforms(program, view, _SHADOW_UNIT)
         if style.wireframe:
             program["viewport_size"] = view.viewport[2:]
             program["wire_half_width"] = 0.5 * style.wire_width * self._line_scale
@@ -236,7 +231,9 @@ class Renderer:
             program["wrinkle_slope"] = wrinkles.steepest
             program["wrinkle_strength"] = style.wrinkles
         if style.colour_by is not ColourBy.NONE:
-            program["triangle_values"] = self._values.bind(_VALUE_UNIT)
+            assert self._values is not None
+            self._values.use(_VALUE_UNIT)
+            program["triangle_values"] = _VALUE_UNIT
             set_palette(program, style.colour_by)
 
     def draw_parts(
@@ -255,12 +252,12 @@ class Renderer:
         is first seen and must not change after. Raises ValueError for a bone without transform.
         """
         view = self._camera_view(camera, viewport, clip)
-        is_shadowed = style.shadows and self._shadow_key == self._key_of_shadow(view)
-        program = self._program(
-            "surface.glsl", "PIXEL", "COLOURED", *(["SHADOWS"] if is_shadowed else [])
-        )
-        if is_shadowed:
-            self._set_shadow(program, view)
+        shadow = self._shadow if style.shadows else None
+        if shadow is not None and not shadow.is_of(view, self.surface.target.frame_number):
+            shadow = None
+        program = self._program("surface.glsl", "PIXEL", "COLOURED", *(["SHADOWS"] * bool(shadow)))
+        if shadow is not None:
+            shadow.set_uniforms(program, view, _SHADOW_UNIT)
         placed = self._parts.placed(parts, transforms)
         if self.surface.is_software:
             placed = self._parts.seen(placed, view, self.surface.target)
@@ -288,22 +285,25 @@ class Renderer:
         """
         view = self._camera_view(camera, viewport, clip)
         program = self._program("lines.glsl")
-        if not self._lines.upload(program, polylines, colour):
+        rows, segments = line_segments(polylines, colour)
+        if not len(segments):
             return
         width *= self._line_scale
-        touched = view.touched_pixels(self._lines.corners, padding=2.0 + width)
+        touched = view.touched_pixels(box_corners(rows[:, :3]), padding=2.0 + width)
         write_uniform(program, "world_to_clip", view.world_to_clip)
         program["viewport_size"] = view.viewport[2:]
         program["half_width"] = 0.5 * width
         if touched[2] < 1 or touched[3] < 1:
             return
         self.surface.target.use_layer(view.viewport, touched)
+        content = [(self._gl.buffer(rows), "3f 3f", "in_position", "in_colour")]
+        lines = self._gl.vertex_array(program, content, self._gl.buffer(segments))
         with self._blending():
             for depth_func, opacity in ((">", hidden_opacity), ("<=", 1.0)):
                 if opacity > 0.0:
                     self._gl.depth_func = depth_func
                     program["opacity"] = opacity
-                    self._lines.draw()
+                    lines.render(moderngl.LINES)
 
     @contextlib.contextmanager
     def _blending(self) -> Iterator[None]:
@@ -368,28 +368,3 @@ class Renderer:
         write_uniform(program, "model_view", model @ view.world_to_view)
         write_uniform(program, "projection", view.projection)
         return True
-
-    def _key_of_shadow(self, view: CameraView) -> tuple[int, bytes]:
-        return self.surface.target.frame_number, view.fingerprint
-
-    def _draw_shadow(self, stream: Stream, view: CameraView) -> None:
-        if self._shadow is None:
-            self._shadow = ShadowMap(self._gl, TO_KEY)
-        self._shadow.draw(stream, view)
-        self._shadow_key = self._key_of_shadow(view)
-
-    def _set_shadow(self, program: moderngl.Program, view: CameraView) -> None:
-        assert self._shadow is not None
-        write_uniform(program, "shadow_matrix", self._shadow.lookup_matrix(view))
-        program["shadow_offset"] = SHADOW_OFFSET * view.camera.scene_radius
-        program["shadow_reach"] = SHADOW_REACH * view.camera.scene_radius
-        program["shadow_map"] = self._shadow.bind(_SHADOW_UNIT)
-
-
-def _check_texture(texture: Texture | WrinkleMap | None, stream: Stream) -> None:
-    columns = stream.vertices.shape[1]
-    if texture is not None and columns != 8:
-        raise ValueError(
-            f"a texture meets a stream of {columns} columns; it needs texture coordinates: lend a "
-            "stream of 8 columns (position, normal, u v), or draw without texture"
-        )

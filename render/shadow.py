@@ -1,7 +1,7 @@
 """The shadow that the skin throws in the key light: on itself, on eyes, on teeth.
 
-A depth picture of the skin, taken from the key light, which hangs on the camera. Of both sides:
-skin is a sheet, and what lies behind its lit side, in the mouth, has to be dark. It spans the whole
+A depth map of the skin, taken from the key light, which hangs on the camera. Of both sides: skin is
+thin, and what lies behind its lit side, in the mouth, has to be dark. It spans the whole
 scene and depends on nothing that moves, so shadows do not crawl with the face. Its texels are
 coarse on purpose: the look-up blends 4 x 4 of them, and that is how soft the shadow is.
 Source: Williams 1978, "Casting curved shadows on curved surfaces"; filtering of depth tests as in
@@ -14,12 +14,12 @@ import numpy.typing as npt
 
 from .camera_view import CameraView
 from .programs import compile_program, write_uniform
-from .render_target import release_target
 from .stream import Stream
 
 RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade within 5 mm
 REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
 TEXEL = 2.0 * REACH / RESOLUTION  # of the scene's radius
+OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -39,30 +39,30 @@ class ShadowMap:
         self._depth.repeat_x = self._depth.repeat_y = False
         self._depth.filter = moderngl.LINEAR, moderngl.LINEAR
         self._target = gl.framebuffer(depth_attachment=self._depth)
+        self._drawn_for: tuple[int, bytes] = (0, b"")
 
-    def draw(self, stream: Stream, view: CameraView) -> None:
-        """Take the depth picture of what `stream` uploaded."""
+    def draw(self, stream: Stream, view: CameraView, frame_number: int) -> None:
+        """Take the depth map of what `stream` uploaded, in the frame of that number."""
         gl = self._gl
         write_uniform(self._program, "light_matrix", view.world_to_view @ self._view_to_light(view))
         self._target.use()
         gl.viewport, gl.scissor = (0, 0, RESOLUTION, RESOLUTION), None
         self._target.clear(depth=1.0)
         stream.draw(self._program)
+        self._drawn_for = frame_number, view.fingerprint
 
-    def release(self) -> None:
-        """Give everything back to OpenGL."""
-        release_target(self._target)
-        self._program.release()
+    def is_of(self, view: CameraView, frame_number: int) -> bool:
+        """Whether it was last drawn for this view, in the frame of that number."""
+        return self._drawn_for == (frame_number, view.fingerprint)
 
-    def bind(self, unit: int) -> int:
-        """Bind the depth texture to a texture unit, and return that unit."""
+    def set_uniforms(self, program: moderngl.Program, view: CameraView, unit: int) -> None:
+        """Let a program look up the shadow, through a texture unit."""
+        radius = view.camera.scene_radius
+        write_uniform(program, "shadow_matrix", self._view_to_light(view) @ _TO_TEXTURE)
+        program["shadow_offset"] = OFFSET * radius
+        program["shadow_reach"] = 2.0 * TEXEL * radius  # of the look-up, to each side
         self._depth.use(unit)
-        return unit
-
-    def lookup_matrix(self, view: CameraView) -> FloatArray:
-        """View space -> texture coordinates and depth, 0..1, for row vectors, shape (4, 4)."""
-        lookup: FloatArray = self._view_to_light(view) @ _TO_TEXTURE
-        return lookup
+        program["shadow_map"] = unit
 
     def _view_to_light(self, view: CameraView) -> FloatArray:
         """View space -> the light's clip space: all that throws and takes shadows fills it."""

@@ -8,7 +8,6 @@ hidden or covered, and a panel that is drawn after `resolve` is part of it.
 
 import os
 import sys
-from types import TracebackType
 from typing import Any, ClassVar, Self
 
 import moderngl
@@ -24,7 +23,8 @@ Image = npt.NDArray[np.uint8]
 class Surface:
     """The interface of both kinds; made by `open_offscreen` and `open_window`.
 
-    gl: the OpenGL context. samples: per pixel, 0 = none. target: where the Renderer draws.
+    gl: the OpenGL context; what nobody holds any more is given back to it when a frame begins.
+    samples: per pixel, 0 = none. target: where the Renderer draws.
     pixel_scale: pixels per unit of line width: 1, or 2 on a dense screen.
     scale: pixels of the target per pixel of the surface; below 1 only in a window in a hurry.
     """
@@ -33,6 +33,7 @@ class Surface:
 
     def __init__(self, gl: moderngl.Context, size: tuple[int, int], samples: int) -> None:
         self.gl = gl
+        gl.gc_mode = "context_gc"
         self.pixel_scale = self.scale = 1.0
         self.samples = clamp_samples(samples, most_samples(gl))
         self.target = RenderTarget(gl, size, self.samples)
@@ -52,11 +53,19 @@ class Surface:
         """Start a frame: empty it, and undo what a GUI may have done to the OpenGL state."""
         self.make_current()
         gl = self.gl
+        self._collect()
         gl.enable_only(moderngl.DEPTH_TEST)
         gl.depth_func = "<="
         gl.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
         gl.wireframe = False
         self.target.start()
+
+    def _collect(self) -> None:
+        """Give back to OpenGL what nobody holds any more, here where its context is current."""
+        while self.gl.objects:
+            lost = self.gl.objects.popleft()
+            if not isinstance(lost, moderngl.InvalidObject):  # released by whoever held it
+                lost.release()
 
     def resolve(self) -> None:
         """End the scene: what is drawn from here on (a panel) lies on top, not multisampled."""
@@ -93,7 +102,6 @@ class Surface:
         if not self._is_open:
             return
         self.make_current()
-        self.target.release()
         self._close_context()
         self._is_open = False
         Surface._current = None
@@ -101,12 +109,7 @@ class Surface:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def _bind(self) -> None:

@@ -7,7 +7,7 @@ imported before, and a server without a screen never needs it.
 import contextlib
 import sys
 from collections.abc import Iterator, Sequence
-from types import ModuleType, TracebackType
+from types import ModuleType
 from typing import Any
 
 import moderngl
@@ -72,16 +72,13 @@ class WindowSurface(Surface):
         self.make_current()
         size = _framebuffer_size(self._glfw, self.handle)
         if size != self.size:
-            self._compositor.release()
             self._compositor = Compositor(self.gl, size)
             self.pixel_scale = max(self._glfw.get_window_content_scale(self.handle))
         self.samples = clamp_samples(self.detail.samples, most_samples(self.gl))
         self.scale = self.detail.scale
         scaled = self.detail.scaled(size)
         if (scaled, self.samples) != (self.target.size, self.target.samples):
-            old_target = self.target
             self.target = RenderTarget(self.gl, scaled, self.samples)
-            old_target.release()
         self._is_resolved = False
         super().begin()
 
@@ -132,7 +129,6 @@ class WindowSurface(Surface):
         self._glfw.make_context_current(None)
 
     def _close_context(self) -> None:
-        self._compositor.release()
         self.gl.release()
         self._glfw.destroy_window(self.handle)
 
@@ -154,13 +150,8 @@ class _Loader:
     def __enter__(self) -> "_Loader":
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        return None
+    def __exit__(self, *_: object) -> None:
+        pass
 
 
 def open_window(

@@ -9,8 +9,8 @@ how a face hangs upright, so an upright head feels no gravity:
 P'' is the second difference of the head pose over the last ticks. Coriolis loads are left out (a
 few per cent: skin moves slowly inside the head).
 
-Source: mechanics of accelerated frames. `heaviness` stands for the ligaments that carry most of a
-cheek's weight and that this model does not have: all of it would make skin sag by 20 mm and more.
+Source: mechanics in accelerated coordinates. `heaviness` stands for the ligaments that carry most
+of a cheek's weight and that this model lacks: all of it would make skin sag by 20 mm and more.
 """
 
 from __future__ import annotations

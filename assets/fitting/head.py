@@ -1,6 +1,6 @@
 """Fit the built-in head's anatomy to another head by 68 landmarks.
 
-    landmarks  ->  similarity to millimetres and the face frame
+    landmarks  ->  similarity to millimetres and the face space
                ->  warp of the built-in head  ->  depth of bone, texture
                                               ->  eyes, teeth, tongue, mouth
 
@@ -141,7 +141,7 @@ def fit(
 
 
 def _placed(points: FloatArray, known: Head) -> Similarity:
-    """The similarity to millimetres and the face frame; AssetError if this is no face."""
+    """The similarity to millimetres and the face space; AssetError if this is no face."""
     template = known.vertices[known.landmarks]
     extent = np.ptp(points[ORIENTING], axis=0).max()
     if extent == 0.0:

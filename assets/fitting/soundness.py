@@ -93,7 +93,7 @@ def check_manifold(faces: IndexArray) -> None:
 
 
 def check_openings(skin: SkinPiece) -> None:
-    """Raise AssetError where lips are welded or skin covers an eye; in the face frame [mm]."""
+    """Raise AssetError where lips are welded or skin covers an eye; in the face space [mm]."""
     over, under = skin.landmarks[list(LIPS)]
     from_above, from_below = ways(skin.vertices, skin.faces, skin.landmarks[list(LIPS)])
     ends = skin.landmarks[list(LIP_CORNERS)]

@@ -8,6 +8,6 @@ what belongs to it, `ambient` the darkness within the mouth. `unwrap` lays the s
 paints it there, with `texels`, `regions`, `pigments`, `brows` and `noise`. `finer` lays more
 triangles on the same form. `assets.build` runs all of them.
 
-No mesh, scan or template of anybody is behind it. Frame: millimetres, x toward the subject's
+No mesh, scan or template of anybody is behind it. Millimetres, x toward the subject's
 left, y up, z toward the viewer; the pupils lie near y = 0 and x = 0 is the mirror plane.
 """

@@ -154,10 +154,9 @@ def teeth(arch: Arch) -> Solid:
             + local[:, 1:2] * [0.0, arch.up, 0.0]
             + local[:, 2:] * outward
         )
-        colours = in_mouth_light(vertices, colours)
-        for side in (1.0, -1.0):
-            faces = _crown_faces() if side * arch.up > 0 else _crown_faces()[:, ::-1]
-            solids.append(Solid(vertices * [side, 1.0, 1.0], faces, colours))
+        faces = _crown_faces() if arch.up > 0 else _crown_faces()[:, ::-1]
+        solid = Solid(vertices, faces, in_mouth_light(vertices, colours))
+        solids += [solid, solid.mirrored()]
     return joined(solids)
 
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from .fields import Points, Values, smooth_step
 from .form import EYE_RADIUS
-from .solids import Solid, grid_faces, joined, mix, welded
+from .solids import Solid, ball, joined, mix, welded
 
 IRIS_RADIUS = 5.9  # [mm]
 PUPIL_RADIUS = 1.8  # in the light of a room
@@ -70,21 +70,12 @@ def _colours(beside: Values, around: Values, ahead: Points) -> npt.NDArray[np.fl
 
 def _ball(angles: Values, segments: int) -> Solid:
     """Rings at angles from the optical axis [rad], around the origin."""
-    around = 2.0 * np.pi * np.arange(segments) / segments
-    grid_angle, grid_around = (grid.ravel() for grid in np.meshgrid(angles, around, indexing="ij"))
-    ahead = np.column_stack(
-        [
-            np.sin(grid_angle) * np.cos(grid_around),
-            np.sin(grid_angle) * np.sin(grid_around),
-            np.cos(grid_angle),
-        ]
-    )
+    ahead, faces, around = ball(angles, segments)
+    away = np.repeat(angles, segments)
     beside = np.where(
-        grid_angle < np.pi / 2, EYE_RADIUS * np.sin(np.minimum(grid_angle, np.pi / 2)), EYE_RADIUS
+        away < np.pi / 2, EYE_RADIUS * np.sin(np.minimum(away, np.pi / 2)), EYE_RADIUS
     )
-    vertices = ahead * _radii(grid_angle)[:, None]
-    faces = grid_faces(len(angles), segments, wrapped=True)[:, ::-1]
-    return Solid(vertices, faces, _colours(beside, grid_around, ahead))
+    return Solid(ahead * _radii(away)[:, None], faces, _colours(beside, around, ahead))
 
 
 def eyeball() -> Solid:
@@ -106,20 +97,7 @@ def eyeball() -> Solid:
 
 def corner_flesh() -> Solid:
     """Return the flesh in the corners of both eyes."""
-    polar, around = np.linspace(0.0, np.pi, 7), 2.0 * np.pi * np.arange(10) / 10
-    grid_polar, grid_around = (grid.ravel() for grid in np.meshgrid(polar, around, indexing="ij"))
-    ball = np.column_stack(
-        [
-            np.sin(grid_polar) * np.cos(grid_around),
-            np.sin(grid_polar) * np.sin(grid_around),
-            np.cos(grid_polar),
-        ]
-    )
-    faces = grid_faces(len(polar), 10, wrapped=True)[:, ::-1]
-    colours = np.tile(np.array(CONJUNCTIVA), (len(ball), 1))
-    solids = []
-    for centre, radii in CORNERS:
-        left = np.array(centre) + ball * radii
-        solids.append(Solid(left, faces, colours))
-        solids.append(Solid(left * [-1.0, 1.0, 1.0], faces[:, ::-1], colours))
-    return welded(joined(solids))
+    directions, faces, _ = ball(np.linspace(0.0, np.pi, 7), 10)
+    colours = np.tile(np.array(CONJUNCTIVA), (len(directions), 1))
+    left = [Solid(np.array(centre) + directions * r, faces, colours) for centre, r in CORNERS]
+    return welded(joined([side for solid in left for side in (solid, solid.mirrored())]))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..topology import Faces
+from ..topology import Faces, unique_points
 from .fields import Points, Values
 
 Colour = tuple[float, float, float]
@@ -23,6 +23,23 @@ class Solid:
     vertices: Points
     faces: Faces
     colours: npt.NDArray[np.float64]
+
+    def mirrored(self) -> "Solid":
+        """Its mirror image on the other side of x = 0."""
+        return Solid(self.vertices * [-1.0, 1.0, 1.0], self.faces[:, ::-1], self.colours)
+
+
+def ball(polar: Values, segments: int) -> tuple[Points, Faces, Values]:
+    """Directions, faces and angles around the z axis of a unit ball; the angles from it: `polar`.
+
+    One row of `segments` vertices for each angle [rad]; all three hold one row after the other.
+    """
+    around = np.tile(2.0 * np.pi * np.arange(segments) / segments, len(polar))
+    away = np.repeat(polar, segments)
+    directions = np.column_stack(
+        [np.sin(away) * np.cos(around), np.sin(away) * np.sin(around), np.cos(away)]
+    )
+    return directions, grid_faces(len(polar), segments, wrapped=True)[:, ::-1], around
 
 
 def grid_faces(rows: int, columns: int, *, wrapped: bool = False) -> Faces:
@@ -49,14 +66,9 @@ def joined(solids: list[Solid]) -> Solid:
 
 def welded(solid: Solid) -> Solid:
     """Join vertices that coincide and drop the faces that vanish, as at the poles of a grid."""
-    rounded = np.round(solid.vertices, 6)
-    _, kept, number = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(kept)
-    rank = np.empty_like(order)
-    rank[order] = np.arange(len(order))
-    faces = rank[number.ravel()][solid.faces]
+    first, number = unique_points(np.round(solid.vertices, 6))
+    faces = number[solid.faces]
     is_face = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
-    first = kept[order]
     return Solid(solid.vertices[first], faces[is_face].astype(np.int32), solid.colours[first])
 
 

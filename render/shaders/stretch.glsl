@@ -1,4 +1,4 @@
-// A picture over the whole target, smoothly enlarged.
+// A scene over the whole target, smoothly enlarged.
 
 #if defined(VERTEX_STAGE)
 
@@ -12,11 +12,11 @@ void main() {
 #elif defined(FRAGMENT_STAGE)
 
 in vec2 place;
-uniform sampler2D picture;
+uniform sampler2D scene;
 out vec4 pixel_colour;
 
 void main() {
-    pixel_colour = vec4(texture(picture, place).rgb, 1.0);
+    pixel_colour = vec4(texture(scene, place).rgb, 1.0);
 }
 
 #endif

@@ -50,7 +50,7 @@ def test_files_are_read_and_fitted(other: Stranger, fitted: FittedHead, tmp_path
     assert np.array_equal(by_point.landmarks, fitted.landmarks)
 
 
-def test_head_comes_to_millimetres_and_the_face_frame(fitted: FittedHead) -> None:
+def test_head_comes_to_millimetres_and_the_face_space(fitted: FittedHead) -> None:
     """Whatever unit and axes the file has, landmarks lie near those of the built-in head."""
     known = assets.load("head")
     off = fitted.vertices[fitted.landmarks] - known.vertices[known.landmarks]

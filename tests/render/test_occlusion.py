@@ -42,7 +42,7 @@ def scene(
         balls, {"cranium": np.eye(4), "jaw": aside}, camera, style, viewport=viewport
     )
     surface.end()
-    return surface.read(), [renderer._parts.buffers(ball).face_count for ball in balls]
+    return surface.read(), [renderer._parts.known[id(ball)].face_count for ball in balls]
 
 
 @pytest.mark.parametrize("samples", [0, 4])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
@@ -21,20 +22,28 @@ KINDS += ("vertex_array", "simple_framebuffer", "depth_renderbuffer", "sampler")
 
 def counting(monkeypatch: pytest.MonkeyPatch) -> Callable[[], Counter[str]]:
     """What says how many objects of each kind were made from now on and not given back."""
-    made: list[Any] = []
+    made: list[weakref.ref[Any]] = []
 
     def noting(make: Callable[..., Any]) -> Callable[..., Any]:
         def noted(*arguments: Any, **options: Any) -> Any:
-            made.append(make(*arguments, **options))
-            return made[-1]
+            found = make(*arguments, **options)
+            made.append(weakref.ref(found))
+            return found
 
         return noted
 
     for name in KINDS:
         monkeypatch.setattr(moderngl.Context, name, noting(getattr(moderngl.Context, name)))
-    return lambda: Counter(
-        type(each).__name__ for each in made if not isinstance(each.mglo, moderngl.InvalidObject)
-    )
+
+    def left() -> Counter[str]:
+        held = [each for each in (seen() for seen in made) if each is not None]
+        return Counter(
+            type(each).__name__
+            for each in held
+            if not isinstance(each.mglo, moderngl.InvalidObject)
+        )
+
+    return left
 
 
 def draw_all(surface: render.Surface) -> np.ndarray:
@@ -73,7 +82,8 @@ def test_a_released_renderer_leaves_nothing(samples: int, monkeypatch: pytest.Mo
     with render.open_offscreen((96, 96), samples=samples) as surface:
         count = counting(monkeypatch)
         pictures = [draw_all(surface) for _ in range(10)]
-        assert count() == {}
+        surface.begin()
+        assert count() == {} and not surface.gl.objects
         assert surface.gl.error == "GL_NO_ERROR"
     assert all((picture == pictures[0]).all() for picture in pictures)
 
