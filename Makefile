@@ -4,6 +4,7 @@
 #   make test     set up everything, check the code and pass the tests
 #   make setup    only make .venv with everything in it
 #   make check    ruff, mypy and the import rules alone
+#   make docs     build the documentation's site into out/site
 #   make clean    remove .venv and what was rendered
 #
 # Slower ones, before a release:
@@ -35,7 +36,7 @@ define debian_packages
 	fi
 endef
 
-.PHONY: demo test test-slow test-lowest test-processors fuzz setup check opengl screen clean
+.PHONY: demo test test-slow test-lowest test-processors fuzz setup check docs opengl screen clean
 
 demo: setup opengl
 	@$(BIN)/risorius demo
@@ -85,6 +86,12 @@ check: setup
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
 	@cd .venv/as_installed && ../bin/lint-imports --config ../../pyproject.toml
+
+# A broken link stops it. The variable silences an advertisement of the theme's makers.
+docs: setup
+	@$(BIN)/python tests/as_installed.py .venv/as_installed
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
+	@echo "out/site/index.html"
 
 setup: $(READY)
 
