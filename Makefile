@@ -4,6 +4,7 @@
 #   make test     set up everything, check the code and pass the tests of the first lane
 #   make setup    only make .venv with everything in it
 #   make check    ruff, mypy and the import rules alone
+#   make docs     build the documentation's site into out/site
 #   make clean    remove .venv and what was rendered
 #
 # Slower ones, before a release:
@@ -34,7 +35,7 @@ define debian_packages
 	fi
 endef
 
-.PHONY: demo test test-all test-lowest test-processors setup check opengl screen clean
+.PHONY: demo test test-all test-lowest test-processors setup check docs opengl screen clean
 
 demo: setup opengl
 	@$(BIN)/risorius demo
@@ -86,6 +87,12 @@ check: setup
 	@$(BIN)/mypy
 	@$(BIN)/mypy docs/figures
 	@cd .venv/as_installed && ../bin/lint-imports --config ../../pyproject.toml
+
+# A broken link stops it. The variable silences an advertisement of the theme's makers.
+docs: setup
+	@$(BIN)/python tests/as_installed.py .venv/as_installed
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
+	@echo "out/site/index.html"
 
 setup: $(READY)
 

@@ -1,20 +1,43 @@
-"""What the pages promise to a reader is there: links, pictures, commands and their options."""
+"""What the pages promise to a reader is there: links, pictures, commands, code, and the site."""
 
 from __future__ import annotations
 
+import importlib
+import os
 import re
 import shlex
+import subprocess
+import sys
 import tomllib
+import unicodedata
 from pathlib import Path
 
 import click
 import pytest
+from click.testing import CliRunner
 
 from risorius.__main__ import command as risorius
+from risorius.refine.border.registry import refiners
+from tests.as_installed import lay
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
-COMMAND = re.compile(r"(?:`|^    (?:xvfb-run -a )?)(risorius [a-z][^`#\n]*)", re.MULTILINE)
+README = ROOT / "README.md"
+TUTORIALS = ROOT / "docs" / "tutorials"
+PAGES = [README, ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+COMMAND = re.compile(r"(?:`|^(?:    )?(?:xvfb-run -a )?)(risorius [a-z][^`#\n]*)", re.MULTILINE)
+
+
+def anchor(title: str) -> str:
+    """What a heading is called in a link: ASCII letters, digits and hyphens, as MkDocs has it."""
+    plain = unicodedata.normalize("NFKD", title).encode("ascii", "ignore").decode()
+    return re.sub(r"[-\s]+", "-", re.sub(r"[^\w\s-]", "", plain).strip().lower())
+
+
+def blocks(page: Path, language: str) -> str:
+    """The fenced blocks of one language on a page, joined."""
+    return "\n".join(
+        re.findall(rf"^```{language}\n(.*?)^```$", page.read_text("utf-8"), re.M | re.S)
+    )
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -28,7 +51,7 @@ def test_links_lead_somewhere(page: Path) -> None:
         assert linked.exists(), target
         if heading:
             titles = re.findall(r"^#+ (.*)", linked.read_text(encoding="utf-8"), re.MULTILINE)
-            assert heading in [title.lower().replace(" ", "-") for title in titles], target
+            assert heading in [anchor(title) for title in titles], target
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -53,12 +76,11 @@ def test_pages_of_the_documentation_are_read() -> None:
     assert any("--compare" in words for words in shown)
 
 
-def test_every_page_and_picture_is_linked() -> None:
-    """No page and no picture of the documentation is forgotten."""
+def test_every_picture_is_shown() -> None:
+    """No picture of the documentation is forgotten; forgotten pages stop the site's build."""
     texts = "".join(page.read_text(encoding="utf-8") for page in PAGES)
-    linked = {Path(target).name for target in re.findall(r"\]\(([^)\s#]+)", texts)}
-    pages_and_pictures = [*(ROOT / "docs").glob("*.md"), *(ROOT / "docs/pictures").iterdir()]
-    assert {path.name for path in pages_and_pictures} <= linked
+    shown = {Path(target).name for target in re.findall(r"\]\(([^)\s#]+)", texts)}
+    assert {path.name for path in (ROOT / "docs/pictures").iterdir()} <= shown
 
 
 def test_the_citation_is_of_this_version() -> None:
@@ -67,3 +89,106 @@ def test_the_citation_is_of_this_version() -> None:
         version = tomllib.load(file)["project"]["version"]
     assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert f"version = {{{version}}}" in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_pages_have_short_lines() -> None:
+    """The README has at most 130 lines; prose has at most 120 columns, tables and code aside."""
+    assert len(README.read_text(encoding="utf-8").splitlines()) <= 130
+    for page in [README, *(ROOT / "docs").rglob("*.md")]:
+        prose = re.sub(r"^```.*?^```$", "", page.read_text("utf-8"), flags=re.M | re.S)
+        for line in prose.splitlines():
+            is_prose = page == README or not line.startswith(("|", "    "))
+            assert len(line) <= 120 or not is_prose, f"{page.name}: {line}"
+
+
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if "```python" in page.read_text("utf-8")], ids=lambda p: p.name
+)
+def test_code_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The Python on a page is one program, and it runs in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(refiners, "_factories", dict(refiners._factories))
+    exec(compile(blocks(page, "python"), page, "exec"), {"__name__": page.stem})
+
+
+def test_a_page_with_code_is_found() -> None:
+    """The pattern above finds fenced blocks."""
+    assert "refiner.refine(positions)" in blocks(README, "python")
+    assert "risorius replay smile.toml" in blocks(TUTORIALS / "first_film.md", "sh")
+
+
+@pytest.mark.slow
+def test_first_film(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The script of the tutorial becomes what its commands name."""
+    page = TUTORIALS / "first_film.md"
+    capture_as_shown(page, {"smile.toml": blocks(page, "toml")}, tmp_path, monkeypatch)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        *("joy.png", "wink.png", "smile.toml", "smile.mp4", "both.mp4", "splits.png")
+    }
+
+
+@pytest.mark.slow
+def test_own_head(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The head that the tutorial writes is fitted and filmed by its commands."""
+    page = TUTORIALS / "own_head.md"
+    monkeypatch.chdir(tmp_path)
+    exec(compile(blocks(page, "python"), page, "exec"), {})
+    hello = (ROOT / "docs" / "hello.toml").read_text(encoding="utf-8")
+    (tmp_path / "docs").mkdir()
+    capture_as_shown(page, {"docs/hello.toml": hello}, tmp_path, monkeypatch)
+    assert (tmp_path / "anna.png").exists() and (tmp_path / "anna.mp4").exists()
+
+
+def capture_as_shown(
+    page: Path, files: dict[str, str], folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Run every `risorius capture` of a page in a folder with these files; pictures are small."""
+    monkeypatch.chdir(folder)
+    for name, text in files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    commands = re.findall(r"^risorius (capture .*)$", blocks(page, "sh"), re.MULTILINE)
+    assert commands
+    for command in commands:
+        words = [*shlex.split(command), "--size", "320x180", "--fps", "5"]
+        result = CliRunner().invoke(risorius(), words, catch_exceptions=False)
+        assert result.exit_code == 0, result.output
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site, built as `make docs` does."""
+    folder = tmp_path_factory.mktemp("site")
+    lay(folder / "as_installed")
+    environment = {
+        **os.environ,
+        "RISORIUS_AS_INSTALLED": str(folder / "as_installed"),
+        "NO_MKDOCS_2_WARNING": "1",
+    }
+    command = [sys.executable, "-m", "mkdocs", "build", "--quiet", "--site-dir", folder / "html"]
+    result = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert not result.stderr
+    return folder / "html"
+
+
+def test_the_site_needs_no_network(site: Path) -> None:
+    """Scripts, styles, fonts and pictures all come from the site itself."""
+    pages = list(site.rglob("*.html"))
+    assert len(pages) > 15
+    loads = re.compile(r"<(?:script|img|link|iframe)\b[^>]*(?:src|href)=[\"']?(?:https?:)?//[^>]*>")
+    for page in pages:
+        assert not loads.findall(page.read_text(encoding="utf-8")), page
+    for style in site.rglob("*.css"):
+        assert not re.search(r"url\([\"']?(?:https?:)?//", style.read_text(encoding="utf-8")), style
+
+
+@pytest.mark.parametrize("package", ["refine", "sim", "render", "assets"])
+def test_the_reference_has_every_public_name(site: Path, package: str) -> None:
+    """What a package exports has a place on its page."""
+    page = (site / "reference" / package / "index.html").read_text(encoding="utf-8")
+    places = set(re.findall(r'id="(risorius[.\w]*)"', page))
+    module = importlib.import_module(f"risorius.{package}")
+    # A function in a module of its own name is shown as that module's.
+    places |= {place.rpartition(".")[0] for place in places}
+    missing = [name for name in module.__all__ if f"{module.__name__}.{name}" not in places]
+    assert not missing

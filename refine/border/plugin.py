@@ -73,7 +73,7 @@ class Stream(Protocol):
 
     @property
     def vertices(self) -> npt.NDArray[np.float32]:
-        """Rows x y z, nx ny nz[, u v][, attributes]; C-contiguous, shape (.., vertex_columns)."""
+        """Rows `x y z, nx ny nz[, u v][, attributes]`; C-contiguous, shape (.., vertex_columns)."""
 
     @property
     def triangles(self) -> npt.NDArray[np.uint32]:
