@@ -8,10 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ...jit import njit
+from ..kahler.criterion import scale_needs
 from ..mesh.connectivity import Connectivity
 from .blending import RAMP
 from .curves import CurveScheme
-from .measuring import Measuring, mean_length, scale_needs
+from .measuring import Measuring, mean_length
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]

@@ -35,10 +35,10 @@ import numpy.typing as npt
 
 from ...jit import njit
 from ..kahler.frame import CENTRES, ONCE, ROWS, FrameBuffers
-from ..kahler.smoothing import growth_of_split, mix, write_normal
+from ..kahler.smoothing import growth_of_split, mix
 from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.normals import Vector, unit
 from ..mesh.validation import checked_indices, checked_positions
+from ..mesh.vectors import HALF, ONE, ZERO, Vector, less, plus, row_of, times, unit, write_row
 from .axes import edge_axes, find_middles, slide_middle, triangle_axes, vertex_axes
 from .closest import Surface
 from .cubic import CubicScheme
@@ -56,13 +56,10 @@ START, MIDDLE, END, ALONE = 0, 1, 2, 3
 """Points of an edge (fit.py)."""
 AXES_OF = [START, MIDDLE, END, MIDDLE]
 """The directions that each point of an edge is stored along: both middles have the same."""
-ZERO = np.float32(0.0)
 THIRD = np.float32(1 / 3)
 FOUR = np.float32(4.0)
 FOUR_NINTHS = np.float32(4 / 9)
 QUARTER = np.float32(0.25)
-HALF = np.float32(0.5)
-ONE = np.float32(1.0)
 
 
 class Stored(NamedTuple):
@@ -109,7 +106,7 @@ class DetailScheme(CubicScheme):
         mesh = connectivity
         self._axes = np.zeros((len(mesh.edges), 3, 3, 3), dtype=np.float32)
         self._vertex_axes = np.zeros((len(rest_normals), 3, 3), dtype=np.float32)
-        self._shown = np.zeros_like(rest_normals)
+        self._fine_normals = np.zeros_like(rest_normals)
         self._towards = _longest_edges(mesh, rest_positions)
         bulges = super()._bulge(
             self._every_edge._replace(positions=rest_positions, normals=rest_normals)
@@ -173,13 +170,13 @@ class DetailScheme(CubicScheme):
         around, normals, stored = self._around, self._tangents.normals, self._stored
         bulges = self._bulge(frame)
         vertex_axes(frame.positions, normals, self._towards, self._vertex_axes)
-        show_vertices(normals, stored.vertex_looks, self._vertex_axes, self._shown)
-        place_on_curves(around, frame, self._shown, bulges)
-        show_points(around, frame, stored.looks, self._axes)
+        turn_vertices(normals, stored.vertex_looks, self._vertex_axes, self._fine_normals)
+        place_on_curves(around, frame, self._fine_normals, bulges)
+        turn_points(around, frame, stored.looks, self._axes)
 
     def place_centres(self, frame: FrameBuffers) -> None:
         """Slide, move and turn the points in the middle of triangles."""
-        show_centres(self._mesh, frame, self._tangents.normals, self._stored)
+        refine_centres(self._mesh, frame, self._tangents.normals, self._stored)
 
     def _bulge(self, frame: FrameBuffers) -> Floats:
         bulges = super()._bulge(frame)
@@ -237,45 +234,33 @@ def add_offsets(frame: FrameBuffers, offsets: Floats, axes: Floats, bulges: Floa
 
 
 @njit
-def turned(from_: Vector, look: Vector, axes: Floats, share: np.float32) -> Vector:
-    """Turn a unit normal a share of the way to the one that is stored as `look` along `axes`.
+def turned(normal: Vector, stored: Vector, axes: Floats, share: np.float32) -> Vector:
+    """Turn a unit normal a share of the way to the one that is stored along `axes`.
 
     `axes`: directions as rows, shape (3, 3). The result has length one.
     """
-    x, y, z = from_
-    u, v, w = look
-    along_x = u * axes[0, 0] + v * axes[1, 0] + w * axes[2, 0]
-    along_y = u * axes[0, 1] + v * axes[1, 1] + w * axes[2, 1]
-    along_z = u * axes[0, 2] + v * axes[1, 2] + w * axes[2, 2]
-    return unit(x + share * (along_x - x), y + share * (along_y - y), z + share * (along_z - z))
-
-
-@njit
-def row_of(rows: Floats, k: int) -> Vector:
-    """Row k of rows of three."""
-    return rows[k, 0], rows[k, 1], rows[k, 2]
+    u, v, w = stored
+    x = u * axes[0, 0] + v * axes[1, 0] + w * axes[2, 0]
+    y = u * axes[0, 1] + v * axes[1, 1] + w * axes[2, 1]
+    z = u * axes[0, 2] + v * axes[1, 2] + w * axes[2, 2]
+    return unit(plus(normal, times(share, less((x, y, z), ONE, normal))))
 
 
 @njit
 def mixed_rows(rows: Floats, k: int, n: int, share: np.float32) -> Vector:
     """A share of the way from row k to row n."""
-    return (
-        mix(rows[k, 0], rows[n, 0], share),
-        mix(rows[k, 1], rows[n, 1], share),
-        mix(rows[k, 2], rows[n, 2], share),
-    )
+    return plus(times(ONE - share, row_of(rows, k)), times(share, row_of(rows, n)))
 
 
 @njit
-def show_vertices(normals: Floats, looks: Floats, axes: Floats, shown: Floats) -> None:
+def turn_vertices(normals: Floats, looks: Floats, axes: Floats, turned_rows: Floats) -> None:
     """Write the finer normal of every vertex, turned with its surroundings."""
     for v in range(normals.shape[0]):
-        x, y, z = turned(row_of(normals, v), row_of(looks, v), axes[v], ONE)
-        shown[v, 0], shown[v, 1], shown[v, 2] = x, y, z
+        write_row(turned_rows, v, turned(row_of(normals, v), row_of(looks, v), axes[v], ONE))
 
 
 @njit
-def show_points(around: Surroundings, frame: FrameBuffers, looks: Floats, axes: Floats) -> None:
+def turn_points(around: Surroundings, frame: FrameBuffers, looks: Floats, axes: Floats) -> None:
     """Turn the normals of the points of split edges to those of the finer mesh.
 
     `looks`: shape (E, 4, 3); `axes`: shape (E, 3, 3, 3), edge, point, direction.
@@ -293,27 +278,23 @@ def show_points(around: Surroundings, frame: FrameBuffers, looks: Floats, axes: 
                 )
             share = min(share, grown)
         twice = frame.growth_twice[e] if frame.splits[e] == 2 else ZERO
-        shown = vertices[row, 3], vertices[row, 4], vertices[row, 5]
         look = mixed_rows(looks[e], ALONE, MIDDLE, twice)
-        x, y, z = turned(shown, look, axes[e, MIDDLE], share)
-        write_normal(vertices, row, x, y, z)
+        middle = turned(row_of(vertices, row, 3), look, axes[e, MIDDLE], share)
+        write_row(vertices, row, middle, 3)
         if frame.splits[e] < 2:
             continue
         for end in range(2):
             # Between its neighbours at first, of which the middle has just been turned.
             a, point = around.points[e, end], START + (END - START) * end
-            between = (
-                HALF * (vertices[a, 3] + x),
-                HALF * (vertices[a, 4] + y),
-                HALF * (vertices[a, 5] + z),
-            )
-            look = row_of(looks[e], point)
-            u, v, w = turned(between, look, axes[e, point], min(share, twice))
-            write_normal(vertices, np.uint32(row - 1 + 2 * end), u, v, w)
+            between = times(HALF, plus(row_of(vertices, a, 3), middle))
+            quarter = turned(between, row_of(looks[e], point), axes[e, point], min(share, twice))
+            write_row(vertices, np.uint32(row - 1 + 2 * end), quarter, 3)
 
 
 @njit
-def show_centres(mesh: Connectivity, frame: FrameBuffers, normals: Floats, stored: Stored) -> None:
+def refine_centres(
+    mesh: Connectivity, frame: FrameBuffers, normals: Floats, stored: Stored
+) -> None:
     """Slide, move and turn the points in the middle of triangles as the least grown edge allows.
 
     They are where blending has them (blending.py): in the centroid. `normals`: of vertices, (V, 3).
@@ -343,7 +324,5 @@ def show_centres(mesh: Connectivity, frame: FrameBuffers, normals: Floats, store
         for j in range(3):
             for i in range(3):
                 vertices[row, i] += once * offset[j] * axes[j, i]
-        shown = vertices[row, 3], vertices[row, 4], vertices[row, 5]
         look = mixed_rows(stored.centre_looks[t], 1, 0, twice)
-        x, y, z = turned(shown, look, axes, once)
-        write_normal(vertices, row, x, y, z)
+        write_row(vertices, row, turned(row_of(vertices, row, 3), look, axes, once), 3)

@@ -114,10 +114,3 @@ def splits_of_needs(need: Floats, splits: Small) -> None:
     """Write 0, 1 or 2 into `splits`, shape (E,): above 0 once, above 1 twice."""
     for e in range(need.shape[0]):
         splits[e] = np.uint8(need[e] > np.float32(0.0)) + np.uint8(need[e] > np.float32(1.0))
-
-
-@njit
-def scale_needs(need: Floats, once: np.float32, width: np.float32, most: np.float32) -> None:
-    """Turn the measures in `need`, shape (E,), into needs."""
-    for e in range(need.shape[0]):
-        need[e] = min((need[e] - once) / width, most)

@@ -11,8 +11,9 @@ import numpy.typing as npt
 
 from ...jit import njit
 from ..border.plugin import View
+from ..kahler.criterion import scale_needs
 from .blending import RAMP
-from .measuring import Measuring, scale_needs
+from .measuring import Measuring
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]

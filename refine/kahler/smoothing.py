@@ -53,8 +53,8 @@ import numpy.typing as npt
 from ...jit import njit
 from ..border.registry import Registry
 from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.normals import Number, unit
 from ..mesh.rings import NEAR, Rings, vertex_rings
+from ..mesh.vectors import HALF, ONE, ZERO, plus, row_of, unit, write_row
 from .frame import ONCE, TWICE, FrameBuffers
 
 Floats = npt.NDArray[np.float32]
@@ -74,10 +74,6 @@ MIDDLE_OWN = np.float32(5 / 8)
 """Middle point of an interior edge split twice: valence six, 1 - 6/16 (Fig. 4 right)."""
 MIDDLE_RING = np.float32(1 / 16)
 """Its six neighbours, 3/(8 x 6) (Fig. 4 right)."""
-
-ZERO = np.float32(0.0)
-HALF = np.float32(0.5)
-ONE = np.float32(1.0)
 
 
 class Scheme(Protocol):
@@ -148,22 +144,9 @@ def mix(start: np.float32, end: np.float32, share: np.float32) -> np.float32:
 
 
 @njit
-def write_normal(
-    vertices: Floats, row: Number, x: np.float32, y: np.float32, z: np.float32
-) -> None:
-    """Write a normal, after its position."""
-    vertices[row, 3], vertices[row, 4], vertices[row, 5] = x, y, z
-
-
-@njit
-def write_mean_normal(vertices: Floats, p: np.uint32, q: np.uint32, row: np.uint32) -> None:
+def write_mean_normal(rows: Floats, p: np.uint32, q: np.uint32, row: np.uint32) -> None:
     """Write the unit mean of the normals of two rows."""
-    x, y, z = unit(
-        vertices[p, 3] + vertices[q, 3],
-        vertices[p, 4] + vertices[q, 4],
-        vertices[p, 5] + vertices[q, 5],
-    )
-    write_normal(vertices, row, x, y, z)
+    write_row(rows, row, unit(plus(row_of(rows, p, 3), row_of(rows, q, 3))), 3)
 
 
 @njit
@@ -186,7 +169,7 @@ def place_vertices(
     `growth`: of each vertex, shape (V,).
     """
     for v in range(points.shape[0]):
-        write_normal(vertices, v, normals[v, 0], normals[v, 1], normals[v, 2])
+        write_row(vertices, v, row_of(normals, v), 3)
         if growth[v] == ZERO:
             for i in range(3):
                 vertices[v, i] = points[v, i]
@@ -220,12 +203,8 @@ def place_middles(around: Surroundings, frame: FrameBuffers, middles: Floats) ->
             if growth < ONE:
                 middle = mix(HALF * (vertices[a, i] + vertices[b, i]), middle, growth)
             vertices[row, i] = middle
-        x, y, z = unit(
-            frame.normals[a, 0] + frame.normals[b, 0],
-            frame.normals[a, 1] + frame.normals[b, 1],
-            frame.normals[a, 2] + frame.normals[b, 2],
-        )
-        write_normal(vertices, row, x, y, z)
+        mean = unit(plus(row_of(frame.normals, a), row_of(frame.normals, b)))
+        write_row(vertices, row, mean, 3)
 
 
 @njit
