@@ -11,10 +11,10 @@ or the other, every second triangle cut across the fold, and small teeth were se
 """
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..kahler.frame import ONCE, FrameBuffers
+from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Surroundings
 from ..mesh.vectors import (
     HALF,
@@ -32,10 +32,6 @@ from ..mesh.vectors import (
     unit,
     write_row,
 )
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
 
 SLIDE = np.float32(0.6)
 """How far the middle of a triangle goes from the centroid to the middle of what bends. Chosen: all

@@ -53,11 +53,9 @@ from ..kahler.table import (
     subdivide,
     table_of,
 )
+from ..mesh.arrays import Floats, Small
 from ..mesh.connectivity import Connectivity
 from ..mesh.vectors import HALF, ONE, ZERO, row_of, unit, write_row
-
-Floats = npt.NDArray[np.float32]
-Small = npt.NDArray[np.uint8]
 
 RAMP = np.float32(0.25)
 """Need over which a point grows, in what lies between the two thresholds. Chosen: points that are

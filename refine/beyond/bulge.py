@@ -5,17 +5,14 @@ unsplit mesh is wrong.
 """
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..kahler.criterion import scale_needs
+from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity
 from .blending import RAMP
 from .curves import CurveScheme
 from .measuring import Measuring, mean_length
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
 
 HASTE = 0.25
 """Share of the first threshold of `bulge` in which a blended point grows. Chosen: a point that is

@@ -33,10 +33,10 @@ folds the errors of one have little to do with those of the other, and both toge
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..kahler.frame import CENTRES, ONCE, ROWS, FrameBuffers
+from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.normals import cross_product, normalise
 from ..mesh.vectors import (
@@ -57,10 +57,6 @@ from ..mesh.vectors import (
     write_row,
 )
 from .curves import MIDDLE, NEAR_END, NEAR_START, CurveScheme
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
 
 FULLNESS = np.float32(1.2)
 """How much more than the cubic an inner edge bulges. Triangles between curves are flat, so the best

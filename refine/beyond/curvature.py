@@ -14,17 +14,13 @@ rims of ears, where long and short edges meet.)
 """
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..kahler.criterion import scale_needs
+from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity
 from .blending import RAMP
 from .measuring import Measuring, mean_length
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
 
 USUAL = 1.0 / 40.0
 """Length of the edge whose measure is its height, in sizes of the mesh: about what a face has."""

@@ -18,12 +18,12 @@ mesh, and correct at borders; these are all, and leave every vertex where the si
 """
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..border.rows import place_unmoved
 from ..kahler.frame import ONCE, FrameBuffers, buffers_for, split_everywhere
 from ..kahler.smoothing import growth_of_split, mix, write_mean_normal
+from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.vectors import (
     HALF,
@@ -37,9 +37,6 @@ from ..mesh.vectors import (
     unit,
     write_row,
 )
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
 
 QUARTER = np.float32(0.25)
 THREE_QUARTERS = np.float32(0.75)

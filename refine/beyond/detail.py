@@ -36,6 +36,7 @@ import numpy.typing as npt
 from ...jit import njit
 from ..kahler.frame import CENTRES, ONCE, ROWS, FrameBuffers
 from ..kahler.smoothing import growth_of_split, mix
+from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.validation import checked_indices, checked_positions
 from ..mesh.vectors import HALF, ONE, ZERO, Vector, less, plus, row_of, times, unit, write_row
@@ -44,10 +45,6 @@ from .closest import Surface
 from .cubic import CubicScheme
 from .curves import place_on_curves
 from .fit import Points, fit, middles_of
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
 
 FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 """Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
@@ -71,13 +68,13 @@ class Stored(NamedTuple):
 
     offsets: Floats
     """What is missing at the points of edges, shape (E, 4, 3)."""
-    looks: Floats
+    normals: Floats
     """Normals there, shape (E, 4, 3)."""
     centre_offsets: Floats
     """What is missing in the middle of triangles, shape (F, 2, 3)."""
-    centre_looks: Floats
+    centre_normals: Floats
     """Normals there, shape (F, 2, 3)."""
-    vertex_looks: Floats
+    vertex_normals: Floats
     """Normals at vertices, shape (V, 3)."""
 
 
@@ -118,15 +115,16 @@ class DetailScheme(CubicScheme):
         find_middles(rest_positions, rest_normals, mesh.faces, shares, centre_axes)
         points, ups = _points_on(bulges, mesh, rest_positions, rest_normals)
         middles = shares.astype(np.float64), centre_axes[:, 0].astype(np.float64)
-        places, looks, saved = fit(
+        places, fine_normals, saved = fit(
             self._surface, mesh, rest_positions, rest_normals, (points, ups), middles
         )
         centres = middles_of(places.of_edges, mesh, rest_positions, middles[0])
         offsets = Points(places.of_edges - points, places.of_triangles - centres)
         self._find_axes(rest_positions, rest_normals)
-        self._stored = self._remember(offsets, looks, centre_axes)
+        self._stored = self._remember(offsets, fine_normals, centre_axes)
         # What is off around an edge; and what turns in its middle, where few finer vertices are.
-        self.turns = np.hypot(saved, self._turns_at(rest_positions, looks)).astype(np.float32)
+        turns = self._turns_at(rest_positions, fine_normals)
+        self.turns = np.hypot(saved, turns).astype(np.float32)
         self._surface = None
 
     def _find_axes(self, rest_positions: Doubles, rest_normals: Floats) -> None:
@@ -136,29 +134,29 @@ class DetailScheme(CubicScheme):
         edge_axes(self._around, everything, rest_normals, self._axes)
         vertex_axes(rest_positions, rest_normals, self._towards, self._vertex_axes)
 
-    def _remember(self, offsets: Points, looks: Doubles, centre_axes: Floats) -> Stored:
+    def _remember(self, offsets: Points, fine_normals: Doubles, centre_axes: Floats) -> Stored:
         """Return offsets and normals along the directions of edges, triangles and vertices."""
         mesh = self._mesh
-        point_looks = Points.unstacked(looks, mesh)
+        point_normals = Points.unstacked(fine_normals, mesh)
         point_axes = self._axes[:, AXES_OF]
         return Stored(
             offsets=_along(point_axes, offsets.of_edges),
-            looks=_along(point_axes, point_looks.of_edges),
+            normals=_along(point_axes, point_normals.of_edges),
             centre_offsets=_along(centre_axes[:, None], offsets.of_triangles),
-            centre_looks=_along(centre_axes[:, None], point_looks.of_triangles),
+            centre_normals=_along(centre_axes[:, None], point_normals.of_triangles),
             # A vertex without a normal has no frame: nothing to show there.
-            vertex_looks=_along(self._vertex_axes, looks[: mesh.vertex_count]),
+            vertex_normals=_along(self._vertex_axes, fine_normals[: mesh.vertex_count]),
         )
 
-    def _turns_at(self, rest_positions: Doubles, looks: Doubles) -> Doubles:
+    def _turns_at(self, rest_positions: Doubles, fine_normals: Doubles) -> Doubles:
         """How far the middle of each edge split once turns from between its ends, shape (E,).
 
         Times the root of the edge's length in mean lengths: a longer edge shows more of it.
         """
         mesh = self._mesh
-        mean = looks[mesh.edges].sum(axis=1)
+        mean = fine_normals[mesh.edges].sum(axis=1)
         mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-12)
-        middles = Points.unstacked(looks, mesh).of_edges[:, ALONE]
+        middles = Points.unstacked(fine_normals, mesh).of_edges[:, ALONE]
         angles = np.arccos(np.clip((mean * middles).sum(axis=1), -1.0, 1.0))
         lengths = np.linalg.norm(np.diff(rest_positions[mesh.edges], axis=1)[:, 0], axis=1)
         share = np.sqrt(lengths / max(float(lengths.mean()), 1e-300)) if len(lengths) else lengths
@@ -170,9 +168,9 @@ class DetailScheme(CubicScheme):
         around, normals, stored = self._around, self._tangents.normals, self._stored
         bulges = self._bulge(frame)
         vertex_axes(frame.positions, normals, self._towards, self._vertex_axes)
-        turn_vertices(normals, stored.vertex_looks, self._vertex_axes, self._fine_normals)
+        turn_vertices(normals, stored.vertex_normals, self._vertex_axes, self._fine_normals)
         place_on_curves(around, frame, self._fine_normals, bulges)
-        turn_points(around, frame, stored.looks, self._axes)
+        turn_points(around, frame, stored.normals, self._axes)
 
     def place_centres(self, frame: FrameBuffers) -> None:
         """Slide, move and turn the points in the middle of triangles."""
@@ -253,17 +251,19 @@ def mixed_rows(rows: Floats, k: int, n: int, share: np.float32) -> Vector:
 
 
 @njit
-def turn_vertices(normals: Floats, looks: Floats, axes: Floats, turned_rows: Floats) -> None:
+def turn_vertices(normals: Floats, fine_normals: Floats, axes: Floats, turned_rows: Floats) -> None:
     """Write the finer normal of every vertex, turned with its surroundings."""
     for v in range(normals.shape[0]):
-        write_row(turned_rows, v, turned(row_of(normals, v), row_of(looks, v), axes[v], ONE))
+        write_row(turned_rows, v, turned(row_of(normals, v), row_of(fine_normals, v), axes[v], ONE))
 
 
 @njit
-def turn_points(around: Surroundings, frame: FrameBuffers, looks: Floats, axes: Floats) -> None:
+def turn_points(
+    around: Surroundings, frame: FrameBuffers, fine_normals: Floats, axes: Floats
+) -> None:
     """Turn the normals of the points of split edges to those of the finer mesh.
 
-    `looks`: shape (E, 4, 3); `axes`: shape (E, 3, 3, 3), edge, point, direction.
+    `fine_normals`: shape (E, 4, 3); `axes`: shape (E, 3, 3, 3), edge, point, direction.
     """
     vertices = frame.rows
     for k in range(frame.counts[ONCE]):
@@ -278,8 +278,8 @@ def turn_points(around: Surroundings, frame: FrameBuffers, looks: Floats, axes: 
                 )
             share = min(share, grown)
         twice = frame.growth_twice[e] if frame.splits[e] == 2 else ZERO
-        look = mixed_rows(looks[e], ALONE, MIDDLE, twice)
-        middle = turned(row_of(vertices, row, 3), look, axes[e, MIDDLE], share)
+        wanted = mixed_rows(fine_normals[e], ALONE, MIDDLE, twice)
+        middle = turned(row_of(vertices, row, 3), wanted, axes[e, MIDDLE], share)
         write_row(vertices, row, middle, 3)
         if frame.splits[e] < 2:
             continue
@@ -287,7 +287,8 @@ def turn_points(around: Surroundings, frame: FrameBuffers, looks: Floats, axes: 
             # Between its neighbours at first, of which the middle has just been turned.
             a, point = around.points[e, end], START + (END - START) * end
             between = times(HALF, plus(row_of(vertices, a, 3), middle))
-            quarter = turned(between, row_of(looks[e], point), axes[e, point], min(share, twice))
+            wanted = row_of(fine_normals[e], point)
+            quarter = turned(between, wanted, axes[e, point], min(share, twice))
             write_row(vertices, np.uint32(row - 1 + 2 * end), quarter, 3)
 
 
@@ -324,5 +325,5 @@ def refine_centres(
         for j in range(3):
             for i in range(3):
                 vertices[row, i] += once * offset[j] * axes[j, i]
-        look = mixed_rows(stored.centre_looks[t], 1, 0, twice)
-        write_row(vertices, row, turned(row_of(vertices, row, 3), look, axes, once), 3)
+        wanted = mixed_rows(stored.centre_normals[t], 1, 0, twice)
+        write_row(vertices, row, turned(row_of(vertices, row, 3), wanted, axes, once), 3)

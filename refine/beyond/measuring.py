@@ -22,16 +22,12 @@ from collections.abc import Sequence
 from typing import cast
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..border.plugin import View
 from ..kahler.criterion import Criterion, Measured, Thresholds
+from ..mesh.arrays import Doubles, Floats, Small
 from ..mesh.connectivity import Connectivity
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Small = npt.NDArray[np.uint8]
 
 
 class Measuring:

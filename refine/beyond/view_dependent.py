@@ -7,17 +7,13 @@ import reprlib
 from typing import cast
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..border.plugin import View
 from ..kahler.criterion import scale_needs
+from ..mesh.arrays import Doubles, Floats, Unsigned
 from .blending import RAMP
 from .measuring import Measuring
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
 
 ONE = np.float32(1.0)
 BAND = 0.3

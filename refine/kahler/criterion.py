@@ -20,17 +20,12 @@ from numbers import Real
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..border.registry import Registry
+from ..mesh.arrays import Doubles, Flags, Floats, Small, Unsigned
 from ..mesh.connectivity import Connectivity
 from ..mesh.vectors import ONE, add_to_row, cross, difference, dot, row_of
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Small = npt.NDArray[np.uint8]
-Unsigned = npt.NDArray[np.uint32]
 
 THRESHOLD_ONCE = 0.02
 """Default drop above which an edge is split once: a flat place bent by 11 degrees along an edge.
@@ -193,9 +188,7 @@ def scale_needs(need: Floats, once: np.float32, width: np.float32, most: np.floa
 
 
 @njit
-def find_undefined_normals(
-    faces: Unsigned, positions: Doubles, undefined: npt.NDArray[np.bool_]
-) -> None:
+def find_undefined_normals(faces: Unsigned, positions: Doubles, undefined: Flags) -> None:
     """Flag the vertices, shape (V,), whose normal is nothing but rounding."""
     sums = np.zeros((positions.shape[0], 4))
     for t in range(faces.shape[0]):

@@ -48,17 +48,14 @@ which edges are split and where in the output their points go.
 from typing import NamedTuple, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..border.registry import Registry
+from ..mesh.arrays import Doubles, Floats, Small
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.rings import NEAR, Rings, vertex_rings
 from ..mesh.vectors import HALF, ONE, ZERO, plus, row_of, unit, write_row
 from .frame import ONCE, TWICE, FrameBuffers
-
-Floats = npt.NDArray[np.float32]
-Small = npt.NDArray[np.uint8]
 
 EDGE_END = np.float32(3 / 8)
 """First and second level, interior: end points of the edge or half-edge (Fig. 3, Fig. 4 left)."""
@@ -90,7 +87,7 @@ class Scheme(Protocol):
     def bind(
         self,
         connectivity: Connectivity,
-        rest_positions: npt.NDArray[np.float64],
+        rest_positions: Doubles,
         rest_normals: Floats,
     ) -> None:
         """Learn the mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
@@ -121,7 +118,7 @@ class LoopScheme:
     def bind(
         self,
         connectivity: Connectivity,
-        rest_positions: npt.NDArray[np.float64],
+        rest_positions: Doubles,
         rest_normals: Floats,
     ) -> None:
         """Work out the weights of every vertex."""

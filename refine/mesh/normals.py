@@ -8,13 +8,11 @@ origin loses nothing. Normals at rest and in a frame come from the same code: se
 """
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
+from .arrays import Doubles, Floats, Unsigned
 from .vectors import (
     ZERO,
-    Doubles,
-    Floats,
     Vector,
     add_to_row,
     between,
@@ -23,8 +21,6 @@ from .vectors import (
     unit,
     write_row,
 )
-
-Unsigned = npt.NDArray[np.uint32]
 
 
 @njit

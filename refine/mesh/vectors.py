@@ -6,9 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...jit import njit
+from .arrays import Doubles
 
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.floating]
 Number = int | np.uint32
 Vector = tuple[Any, Any, Any]

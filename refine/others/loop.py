@@ -25,11 +25,9 @@ from ..border.plugin import Origins, Stream, View
 from ..border.rows import GEOMETRY_COLUMNS, wedge_values, write_wedges
 from ..kahler.frame import ONCE, ROWS, FrameBuffers
 from ..kahler.smoothing import place_middles, place_vertices
+from ..mesh.arrays import Floats, Indices, Small, Wide
 from ..mesh.connectivity import Connectivity, connect
 from ..mesh.rings import vertex_rings
-
-Floats = npt.NDArray[np.float32]
-Wide = npt.NDArray[np.int64]
 
 
 class Level:
@@ -104,7 +102,7 @@ class Loop(BoundRefiner):
             self._wedge_values = wedge_values(self._finest.connectivity, self._finest.values)
 
     @property
-    def splits(self) -> npt.NDArray[np.uint8]:
+    def splits(self) -> Small:
         """The number of levels for every edge, shape (E,), read only."""
         return self._splits
 
@@ -153,7 +151,7 @@ class _Refined:
     connectivity: Connectivity
     values: Floats | None
     """Texture coordinates and attributes, shape (A, k)."""
-    source: npt.NDArray[np.int32]
+    source: Indices
     """Triangle of the input that each triangle is part of, shape (M,)."""
     barycentric: Floats
     """Corners of each triangle in coordinates of its source, shape (M, 3, 3)."""

@@ -14,6 +14,7 @@ from ..border.binding import BoundRefiner
 from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
 from ..border.rows import place_unmoved
+from ..mesh.arrays import Small
 
 
 class PassThrough(BoundRefiner):
@@ -30,7 +31,7 @@ class PassThrough(BoundRefiner):
         self._source = np.arange(len(mesh.faces), dtype=np.int32)
 
     @property
-    def splits(self) -> npt.NDArray[np.uint8]:
+    def splits(self) -> Small:
         """All zero, shape (E,)."""
         return self._splits
 

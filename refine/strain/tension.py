@@ -1,7 +1,7 @@
 r"""Tension map: how far the skin is stretched and compressed at each vertex, and which way.
 
-A by-product for artists: wrinkle maps, blood flow and dirt are driven by it. Not in the paper; the
-quantities are those of continuum mechanics. On a triangle the deformation maps rest edges to edges,
+Wrinkle maps, blood flow and dirt are driven by it. The quantities are those of continuum
+mechanics. On a triangle the deformation maps rest edges to edges,
 
     F = [b - a   c - a] [rest edges in the plane of the rest triangle]^-1,  3 x 2
 
@@ -23,8 +23,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...jit import njit
+from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.normals import vertex_normals
-from ..mesh.validation import checked_indices, checked_positions, not_finite, round_finite
 from ..mesh.vectors import (
     HALF,
     ONE,
@@ -39,15 +39,10 @@ from ..mesh.vectors import (
     times,
     write_row,
 )
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
+from .measure import THINNEST, StrainMeasure
 
 ROWS, COLUMNS = (0, 0, 0, 1, 1, 2), (0, 1, 2, 1, 2, 2)
 """Of the six different entries of a symmetric tensor: xx xy xz yy yz zz."""
-THINNEST = 1e-6
-"""Height over length below which a triangle at rest has no area to measure strain against."""
 OPPOSITE = np.float32(1e-3)
 """1 + cosine below which two normals are opposite and no rotation between them is smallest."""
 ROUND = np.float32(1e-4)
@@ -66,7 +61,7 @@ class TensionMap(NamedTuple):
     where all directions are alike; shape (V, 3)."""
 
 
-class Tension:
+class Tension(StrainMeasure):
     """Measures deformed positions of one mesh against its rest positions.
 
         tension = refine.Tension(faces, rest_positions)
@@ -76,57 +71,36 @@ class Tension:
     """
 
     def __init__(self, faces: npt.ArrayLike, rest_positions: npt.ArrayLike) -> None:
-        """Learn the mesh at rest: `faces`, shape (F, 3), `rest_positions`, shape (V, 3).
-
-        Triangles without area and vertices without triangles are fine and have no tension. Raises
-        ValueError for arrays of other shapes, indices out of range, and positions not finite.
-        """
-        rest = checked_positions(rest_positions)
-        self._faces = checked_indices("faces", faces, len(rest), "rest_positions").astype(np.uint32)
-        self._inverses, weights = _rest_frames(rest, self._faces)
-        totals = np.zeros(len(rest))
+        """Learn the mesh at rest: `faces`, shape (F, 3), `rest_positions`, shape (V, 3)."""
+        super().__init__(faces, rest_positions)
+        count = len(self._positions)
+        self._inverses, weights = _inverse_edges(self._positions, self._faces)
+        totals = np.zeros(count)
         for k in range(3):
             np.add.at(totals, self._faces[:, k], weights)
         self._weights = weights.astype(np.float32)
         self._shares = (1.0 / np.where(totals > 0.0, totals, np.inf)).astype(np.float32)
-        self._positions = rest
-        self._points = np.zeros(rest.shape, dtype=np.float32)
-        self._normals = np.zeros((len(rest), 3), dtype=np.float32)
-        self._sums = np.zeros((len(rest), 6), dtype=np.float32)
-        self._stretch = np.zeros(len(rest), dtype=np.float32)
-        self._compression = np.zeros(len(rest), dtype=np.float32)
-        self._direction = np.zeros((len(rest), 3), dtype=np.float32)
+        self._normals = np.zeros((count, 3), dtype=np.float32)
+        self._sums = np.zeros((count, 6), dtype=np.float32)
+        self._map = TensionMap(
+            np.zeros(count, np.float32), np.zeros(count, np.float32), np.zeros_like(self._normals)
+        )
 
     def measure(self, positions: npt.NDArray[np.floating]) -> TensionMap:
         """Measure deformed `positions`, shape (V, 3), any float type; they are only read.
 
-        Raises ValueError for another shape.
+        Raises ValueError for another shape and for positions that are not finite.
         """
-        positions = np.asarray(positions)
-        if positions.shape != self._positions.shape or positions.dtype.kind != "f":
-            raise ValueError(
-                f"positions must be floats of shape {self._positions.shape} like the rest "
-                f"positions, got {positions.dtype} of shape {positions.shape}"
-            )
-        np.copyto(self._positions, positions)
-        if round_finite(self._positions, self._points) > 0:
-            raise ValueError(not_finite(positions))
+        self._set(positions)
         vertex_normals(self._positions, self._faces, self._normals)
         sum_tensors(
             self._positions, self._faces, self._inverses, self._weights, self._normals, self._sums
         )
-        find_principal(
-            self._sums,
-            self._shares,
-            self._normals,
-            self._stretch,
-            self._compression,
-            self._direction,
-        )
-        return TensionMap(self._stretch, self._compression, self._direction)
+        find_principal(self._sums, self._shares, self._normals, self._map)
+        return self._map
 
 
-def _rest_frames(rest: Doubles, faces: Unsigned) -> tuple[Floats, Doubles]:
+def _inverse_edges(rest: Doubles, faces: Unsigned) -> tuple[Floats, Doubles]:
     """Inverse of the rest edges of each triangle, upper triangular, shape (F, 3), and its area.
 
     Zero for triangles without area: they measure nothing.
@@ -176,15 +150,9 @@ def sum_tensors(
 
 
 @njit
-def find_principal(
-    sums: Floats,
-    shares: Floats,
-    normals: Floats,
-    stretch: Floats,
-    compression: Floats,
-    direction: Floats,
-) -> None:
+def find_principal(sums: Floats, shares: Floats, normals: Floats, out: TensionMap) -> None:
     """Write the principal stretches of the mean tensor in each vertex's tangent plane."""
+    stretch, compression, direction = out
     for v in range(sums.shape[0]):
         share = shares[v]
         x = times(share, (sums[v, 0], sums[v, 1], sums[v, 2]))
