@@ -15,7 +15,7 @@ from typing import Unpack
 import numpy as np
 import numpy.typing as npt
 
-from ..mesh.arrays import Floats, Indices
+from ..mesh.arrays import Floats, Indices, Small
 from ..mesh.connectivity import Connectivity, connect
 from ..mesh.normals import vertex_normals
 from ..mesh.validation import (
@@ -54,6 +54,7 @@ class BoundRefiner(Refiner):
         self._normals = np.zeros_like(self._points)
         self._shape = positions.shape
         self._own_stream: OwnStream | None = None
+        self._splits: Small
         self._accepted: StreamArrays = _NO_ROWS
         self._geometry: tuple[Floats, Floats]
 
@@ -79,6 +80,11 @@ class BoundRefiner(Refiner):
         """Write copies of vertices along texture seams, and the values of all wedges."""
         if self._values is not None:
             write_wedges(self.connectivity, self._wedge_values, rows)
+
+    @property
+    def splits(self) -> Small:
+        """How often each edge was split in the last frame, shape (E,), read only."""
+        return self._splits
 
     @property
     def edges(self) -> Indices:

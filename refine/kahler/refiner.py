@@ -21,7 +21,7 @@ from ..border.binding import BoundRefiner
 from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
 from ..border.stream import StreamArrays
-from ..mesh.arrays import Floats, Small
+from ..mesh.arrays import Floats
 from .coherence import Coherent
 from .criterion import Criterion, NormalDrop
 from .frame import ROWS, TRIANGLES, buffers_for
@@ -66,11 +66,6 @@ class Kahler(BoundRefiner):
         self._find_normals()
         self._criterion.bind(mesh, self._rest_positions, self._normals)
         self._scheme.bind(mesh, self._rest_positions, self._normals)
-
-    @property
-    def splits(self) -> Small:
-        """How often each edge was split in the last frame, shape (E,), read only."""
-        return self._splits
 
     @property
     def vertex_capacity(self) -> int:

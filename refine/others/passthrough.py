@@ -14,7 +14,6 @@ from ..border.binding import BoundRefiner
 from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
 from ..border.rows import place_unmoved
-from ..mesh.arrays import Small
 
 
 class PassThrough(BoundRefiner):
@@ -29,11 +28,6 @@ class PassThrough(BoundRefiner):
         self._splits = np.zeros(len(mesh.edges), dtype=np.uint8)
         self._splits.flags.writeable = False
         self._source = np.arange(len(mesh.faces), dtype=np.int32)
-
-    @property
-    def splits(self) -> Small:
-        """All zero, shape (E,)."""
-        return self._splits
 
     @property
     def vertex_capacity(self) -> int:
