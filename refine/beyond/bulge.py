@@ -7,7 +7,6 @@ unsplit mesh is wrong.
 import numpy as np
 
 from ...jit import njit
-from ..kahler.criterion import scale_needs
 from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity
 from .blending import RAMP
@@ -57,7 +56,7 @@ class Bulge(Measuring):
         bulge_sizes(self._scheme.all_bulges(positions, normals), need)
         if turns is not None and self.turning > 0.0:
             count_turns(need, turns, np.float32(self.turning) * self._unit)
-        scale_needs(need, limits.once * self._unit, limits.width * self._unit, limits.most)
+        limits.scale(need, self._unit)
         hasten(need, np.float32(HASTE) * limits.once / limits.width, RAMP)
 
 

@@ -16,7 +16,6 @@ rims of ears, where long and short edges meet.)
 import numpy as np
 
 from ...jit import njit
-from ..kahler.criterion import scale_needs
 from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity
 from .blending import RAMP
@@ -52,9 +51,8 @@ class Curvature(Measuring):
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
-        limits = self.thresholds
         arc_heights(positions, normals, self._edges, self._rest, need)
-        scale_needs(need, limits.once * self._unit, limits.width * self._unit, limits.most)
+        self.thresholds.scale(need, self._unit)
 
 
 class RestCurvature(Measuring):

@@ -10,7 +10,6 @@ import numpy as np
 
 from ...jit import njit
 from ..border.plugin import View
-from ..kahler.criterion import scale_needs
 from ..mesh.arrays import Doubles, Floats, Unsigned
 from .blending import RAMP
 from .measuring import Measuring
@@ -65,7 +64,7 @@ class Silhouette(ViewDependent):
         limits = self.thresholds
         most = limits.once + (ONE + RAMP) * limits.width
         turns_at_silhouette(positions, normals, self._edges, self._looked()[0], most, need)
-        scale_needs(need, limits.once, limits.width, limits.most)
+        limits.scale(need)
 
 
 class ScreenEdge(ViewDependent):
@@ -77,9 +76,9 @@ class ScreenEdge(ViewDependent):
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
-        limits, (eye, focal) = self.thresholds, self._looked()
+        eye, focal = self._looked()
         lengths_on_screen(positions, self._edges, eye, focal, need)
-        scale_needs(need, limits.once, limits.width, limits.most)
+        self.thresholds.scale(need)
 
 
 @njit

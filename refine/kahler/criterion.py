@@ -114,6 +114,10 @@ class Thresholds:
         """The need that cannot be exceeded: 1 where the second level is switched off."""
         return np.float32(1.0 if np.isinf(self.twice) else np.inf)
 
+    def scale(self, measures: Floats, unit: np.float32 = ONE) -> None:
+        """Turn measures of edges, shape (E,), into needs; `unit`: of the thresholds."""
+        scale_needs(measures, self.once * unit, self.width * unit, self.most)
+
 
 class NormalDrop:
     """The paper's criterion: drop of the dot product of the vertex normals along each edge."""
@@ -149,10 +153,9 @@ class NormalDrop:
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
-        limits = self.thresholds
         edge_dots(normals, self._edges, need)
         np.subtract(self._rest_dots, need, out=need)
-        scale_needs(need, limits.once, limits.width, limits.most)
+        self.thresholds.scale(need)
 
 
 @njit
