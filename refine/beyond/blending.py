@@ -53,11 +53,9 @@ from ..kahler.table import (
     subdivide,
     table_of,
 )
+from ..mesh.arrays import Floats, Small
 from ..mesh.connectivity import Connectivity
-from ..mesh.normals import unit
-
-Floats = npt.NDArray[np.float32]
-Small = npt.NDArray[np.uint8]
+from ..mesh.vectors import HALF, ONE, ZERO, row_of, unit, write_row
 
 RAMP = np.float32(0.25)
 """Need over which a point grows, in what lies between the two thresholds. Chosen: points that are
@@ -66,9 +64,6 @@ ALONE = np.float32(2 / 3)
 """Weight of the only split edge in the place of C."""
 SHARED = np.float32(2 / 9)
 """What it loses where another edge has grown; 2/3 - 2/9 = 4/9."""
-ZERO = np.float32(0.0)
-HALF = np.float32(0.5)
-ONE = np.float32(1.0)
 THIRD = np.float32(1 / 3)
 
 
@@ -198,8 +193,7 @@ def place_centres(mesh: Connectivity, frame: FrameBuffers) -> None:
                 + THIRD * at_c
                 + w * (vertices[r, i] - HALF * (at_c + at_a))
             )
-        x, y, z = unit(vertices[row, 3], vertices[row, 4], vertices[row, 5])
-        vertices[row, 3], vertices[row, 4], vertices[row, 5] = x, y, z
+        write_row(vertices, row, unit(row_of(vertices, row, 3)), 3)
         a, b, c = mesh.corners[t, 0], mesh.corners[t, 1], mesh.corners[t, 2]
         for i in range(6, vertices.shape[1]):
             vertices[row, i] = THIRD * (vertices[a, i] + vertices[b, i] + vertices[c, i])

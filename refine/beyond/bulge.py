@@ -5,16 +5,13 @@ unsplit mesh is wrong.
 """
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
+from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity
 from .blending import RAMP
 from .curves import CurveScheme
-from .measuring import Measuring, mean_length, scale_needs
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
+from .measuring import Measuring, mean_length
 
 HASTE = 0.25
 """Share of the first threshold of `bulge` in which a blended point grows. Chosen: a point that is
@@ -59,7 +56,7 @@ class Bulge(Measuring):
         bulge_sizes(self._scheme.all_bulges(positions, normals), need)
         if turns is not None and self.turning > 0.0:
             count_turns(need, turns, np.float32(self.turning) * self._unit)
-        scale_needs(need, limits.once * self._unit, limits.width * self._unit, limits.most)
+        limits.scale(need, self._unit)
         hasten(need, np.float32(HASTE) * limits.once / limits.width, RAMP)
 
 

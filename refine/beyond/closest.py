@@ -17,12 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...jit import njit
+from ..mesh.arrays import Doubles, Floats, Unsigned, Wide
 from ..mesh.normals import vertex_normals
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
-Wide = npt.NDArray[np.int64]
 
 SAME_WAY = 0.2
 """Cosine between normals above which two surfaces look the same way. Chosen: 78 degrees."""

@@ -33,18 +33,30 @@ folds the errors of one have little to do with those of the other, and both toge
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..kahler.frame import CENTRES, ONCE, ROWS, FrameBuffers
+from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.normals import add, between, cross_product, normalise
+from ..mesh.normals import cross_product, normalise
+from ..mesh.vectors import (
+    HALF,
+    ONE,
+    TINY,
+    ZERO,
+    Vector,
+    add_to_row,
+    between,
+    cross,
+    difference,
+    dot,
+    less,
+    row_of,
+    times,
+    unit,
+    write_row,
+)
 from .curves import MIDDLE, NEAR_END, NEAR_START, CurveScheme
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
-Vector = tuple[np.float32, np.float32, np.float32]
 
 FULLNESS = np.float32(1.2)
 """How much more than the cubic an inner edge bulges. Triangles between curves are flat, so the best
@@ -71,11 +83,7 @@ NEAR, FAR = np.float32(9 / 64), np.float32(3 / 64)
 """Share of the nearer and of the farther tangent at a quarter of a cubic."""
 SLIVER = 1e-9
 """Sine of an angle below which a triangle has no direction."""
-ZERO = np.float32(0.0)
-HALF = np.float32(0.5)
 THIRD = np.float32(1 / 3)
-ONE = np.float32(1.0)
-TINY = np.finfo(np.float32).tiny
 
 
 class Tangents(NamedTuple):
@@ -139,15 +147,11 @@ def weigh_corners(positions: Doubles, faces: Unsigned, weights: Floats) -> None:
     for t in range(faces.shape[0]):
         for i in range(3):
             a, b, c = faces[t, i], faces[t, (i + 1) % 3], faces[t, (i + 2) % 3]
-            ux, vx = positions[b, 0] - positions[a, 0], positions[c, 0] - positions[a, 0]
-            uy, vy = positions[b, 1] - positions[a, 1], positions[c, 1] - positions[a, 1]
-            uz, vz = positions[b, 2] - positions[a, 2], positions[c, 2] - positions[a, 2]
-            x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-            cross, dot = np.sqrt(x * x + y * y + z * z), ux * vx + uy * vy + uz * vz
-            size = np.sqrt((ux * ux + uy * uy + uz * uz) * (vx * vx + vy * vy + vz * vz))
-            weights[t, i] = (
-                np.sqrt(np.arctan2(cross, dot) / cross) if cross > SLIVER * size else 0.0
-            )
+            u, v = difference(positions, a, b), difference(positions, a, c)
+            normal, size = cross(u, v), np.sqrt(dot(u, u) * dot(v, v))
+            area = np.sqrt(dot(normal, normal))
+            angle = np.arctan2(area, dot(u, v))
+            weights[t, i] = np.sqrt(angle / area) if area > SLIVER * size else 0.0
 
 
 @njit
@@ -175,11 +179,9 @@ def weighted_normals(positions: Doubles, faces: Unsigned, weights: Floats, norma
     normals[:] = ZERO
     for t in range(faces.shape[0]):
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        x, y, z = cross_product(positions, a, b, c)
-        at_a, at_b, at_c = weights[t, 0], weights[t, 1], weights[t, 2]
-        add(normals, a, at_a * x, at_a * y, at_a * z)
-        add(normals, b, at_b * x, at_b * y, at_b * z)
-        add(normals, c, at_c * x, at_c * y, at_c * z)
+        normal = cross_product(positions, a, b, c)
+        for i in range(3):
+            add_to_row(normals, faces[t, i], times(weights[t, i], normal))
     normalise(normals)
 
 
@@ -190,24 +192,16 @@ def steepen_normals(around: Surroundings, tangents: Tangents) -> None:
     steeper[:] = ZERO
     for e in range(around.points.shape[0]):
         a, b = around.points[e, 0], around.points[e, 1]
-        add(steeper, a, normals[b, 0], normals[b, 1], normals[b, 2])
-        add(steeper, b, normals[a, 0], normals[a, 1], normals[a, 2])
+        add_to_row(steeper, a, row_of(normals, b))
+        add_to_row(steeper, b, row_of(normals, a))
     for v in range(normals.shape[0]):
-        for i in range(3):
-            steeper[v, i] = normals[v, i] - tangents.off[v] * steeper[v, i]
-    normalise(steeper)
-
-
-@njit
-def along(d: Vector, normals: Floats, v: np.uint32) -> np.float32:
-    """Height of an edge over the plane across a normal."""
-    return np.float32(d[0] * normals[v, 0] + d[1] * normals[v, 1] + d[2] * normals[v, 2])
+        write_row(steeper, v, unit(less(row_of(normals, v), tangents.off[v], row_of(steeper, v))))
 
 
 @njit
 def length_of(d: Vector) -> np.float32:
     """Length of an edge."""
-    return np.float32(np.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]))
+    return np.float32(np.sqrt(dot(d, d)))
 
 
 @njit
@@ -240,9 +234,10 @@ def bulge_cubic(
         a, b = around.points[e, 0], around.points[e, 1]
         d = between(positions, a, b)
         if around.is_interior[e]:
-            height_a, height_b = -FULLNESS * along(d, steeper, a), -FULLNESS * along(d, steeper, b)
+            at_a, at_b = row_of(steeper, a), row_of(steeper, b)
+            height_a, height_b = -FULLNESS * dot(d, at_a), -FULLNESS * dot(d, at_b)
             for i in range(3):
-                write_cubic(bulges, e, i, height_a * steeper[a, i], height_b * steeper[b, i])
+                write_cubic(bulges, e, i, height_a * at_a[i], height_b * at_b[i])
             continue
         p, q = tangents.beyond[e, 0], tangents.beyond[e, 1]
         length = length_of(d)
@@ -262,15 +257,14 @@ def measure_triangles(
     """Write twice the areas, shape (F,), 0 of slivers, and squared edges, shape (F, 3)."""
     for t in range(faces.shape[0]):
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        ux, vx = positions[b, 0] - positions[a, 0], positions[c, 0] - positions[b, 0]
-        uy, vy = positions[b, 1] - positions[a, 1], positions[c, 1] - positions[b, 1]
-        uz, vz = positions[b, 2] - positions[a, 2], positions[c, 2] - positions[b, 2]
-        wx, wy, wz = ux + vx, uy + vy, uz + vz
-        squared[t, 0] = ux * ux + uy * uy + uz * uz
-        squared[t, 1] = vx * vx + vy * vy + vz * vz
-        squared[t, 2] = wx * wx + wy * wy + wz * wz
-        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        area = np.sqrt(x * x + y * y + z * z)
+        u, v, w = (
+            difference(positions, a, b),
+            difference(positions, b, c),
+            difference(positions, a, c),
+        )
+        squared[t, 0], squared[t, 1], squared[t, 2] = dot(u, u), dot(v, v), dot(w, w)
+        normal = cross(u, v)
+        area = np.sqrt(dot(normal, normal))
         total = squared[t, 0] + squared[t, 1] + squared[t, 2]
         doubled[t] = area if area > SLIVER * total else 0.0
 

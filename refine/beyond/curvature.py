@@ -14,16 +14,12 @@ rims of ears, where long and short edges meet.)
 """
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
+from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity
 from .blending import RAMP
-from .measuring import Measuring, mean_length, scale_needs
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
+from .measuring import Measuring, mean_length
 
 USUAL = 1.0 / 40.0
 """Length of the edge whose measure is its height, in sizes of the mesh: about what a face has."""
@@ -55,9 +51,8 @@ class Curvature(Measuring):
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
-        limits = self.thresholds
         arc_heights(positions, normals, self._edges, self._rest, need)
-        scale_needs(need, limits.once * self._unit, limits.width * self._unit, limits.most)
+        self.thresholds.scale(need, self._unit)
 
 
 class RestCurvature(Measuring):

@@ -18,23 +18,28 @@ mesh, and correct at borders; these are all, and leave every vertex where the si
 """
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..border.rows import place_unmoved
 from ..kahler.frame import ONCE, FrameBuffers, buffers_for, split_everywhere
-from ..kahler.smoothing import growth_of_split, mix, write_mean_normal, write_normal
+from ..kahler.smoothing import growth_of_split, mix, write_mean_normal
+from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.normals import unit
+from ..mesh.vectors import (
+    HALF,
+    ONE,
+    TINY,
+    Vector,
+    dot,
+    less,
+    plus,
+    row_of,
+    unit,
+    write_row,
+)
 
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-
-ZERO = np.float32(0.0)
 QUARTER = np.float32(0.25)
-HALF = np.float32(0.5)
 THREE_QUARTERS = np.float32(0.75)
-TINY = np.finfo(np.float32).tiny
 
 UPRIGHT = np.float32(0.95)
 """How much of its slope along the curve a normal in the middle of an edge loses. Chosen: all but a
@@ -86,29 +91,10 @@ class CurveScheme:
 
 
 @njit
-def stand_upright(
-    vertices: Floats,
-    start: np.uint32,
-    end: np.uint32,
-    a: np.uint32,
-    b: np.uint32,
-    share: np.float32,
-) -> tuple[np.float32, np.float32, np.float32]:
-    """The mean normal of a and b, less a share of its slope on the way from start to end.
-
-    All four are rows of the output; the result has length one.
-    """
-    along = slope = ZERO
-    for i in range(3):
-        d = vertices[end, i] - vertices[start, i]
-        along += d * d
-        slope += d * (vertices[a, 3 + i] + vertices[b, 3 + i])
-    slope *= share / max(along, TINY)
-    return unit(
-        vertices[a, 3] + vertices[b, 3] - slope * (vertices[end, 0] - vertices[start, 0]),
-        vertices[a, 4] + vertices[b, 4] - slope * (vertices[end, 1] - vertices[start, 1]),
-        vertices[a, 5] + vertices[b, 5] - slope * (vertices[end, 2] - vertices[start, 2]),
-    )
+def stand_upright(mean: Vector, d: Vector, share: np.float32) -> Vector:
+    """A normal less a share of its slope along d, of length one."""
+    slope = dot(d, mean) * (share / max(dot(d, d), TINY))
+    return unit(less(mean, slope, d))
 
 
 @njit
@@ -142,8 +128,9 @@ def place_on_curves(
                 wing = around.wings[e, i]
                 share = min(share, growth_of_split(frame.splits, frame.growth_once, wing))
         start, end = (near_a, near_b) if is_twice else (a, b)
-        x, y, z = stand_upright(vertices, start, end, a, b, UPRIGHT * share)
-        write_normal(vertices, row, x, y, z)
+        along = less(row_of(vertices, end), ONE, row_of(vertices, start))
+        mean = plus(row_of(vertices, a, 3), row_of(vertices, b, 3))
+        write_row(vertices, row, stand_upright(mean, along, UPRIGHT * share), 3)
         if is_twice:
             write_mean_normal(vertices, a, row, near_a)
             write_mean_normal(vertices, b, row, near_b)

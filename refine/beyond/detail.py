@@ -35,19 +35,16 @@ import numpy.typing as npt
 
 from ...jit import njit
 from ..kahler.frame import CENTRES, ONCE, ROWS, FrameBuffers
-from ..kahler.smoothing import growth_of_split, mix, write_normal
+from ..kahler.smoothing import growth_of_split, mix
+from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.normals import Vector, unit
 from ..mesh.validation import checked_indices, checked_positions
+from ..mesh.vectors import HALF, ONE, ZERO, Vector, less, plus, row_of, times, unit, write_row
 from .axes import edge_axes, find_middles, slide_middle, triangle_axes, vertex_axes
 from .closest import Surface
 from .cubic import CubicScheme
 from .curves import place_on_curves
 from .fit import Points, fit, middles_of
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
 
 FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 """Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
@@ -56,13 +53,10 @@ START, MIDDLE, END, ALONE = 0, 1, 2, 3
 """Points of an edge (fit.py)."""
 AXES_OF = [START, MIDDLE, END, MIDDLE]
 """The directions that each point of an edge is stored along: both middles have the same."""
-ZERO = np.float32(0.0)
 THIRD = np.float32(1 / 3)
 FOUR = np.float32(4.0)
 FOUR_NINTHS = np.float32(4 / 9)
 QUARTER = np.float32(0.25)
-HALF = np.float32(0.5)
-ONE = np.float32(1.0)
 
 
 class Stored(NamedTuple):
@@ -74,13 +68,13 @@ class Stored(NamedTuple):
 
     offsets: Floats
     """What is missing at the points of edges, shape (E, 4, 3)."""
-    looks: Floats
+    normals: Floats
     """Normals there, shape (E, 4, 3)."""
     centre_offsets: Floats
     """What is missing in the middle of triangles, shape (F, 2, 3)."""
-    centre_looks: Floats
+    centre_normals: Floats
     """Normals there, shape (F, 2, 3)."""
-    vertex_looks: Floats
+    vertex_normals: Floats
     """Normals at vertices, shape (V, 3)."""
 
 
@@ -109,7 +103,7 @@ class DetailScheme(CubicScheme):
         mesh = connectivity
         self._axes = np.zeros((len(mesh.edges), 3, 3, 3), dtype=np.float32)
         self._vertex_axes = np.zeros((len(rest_normals), 3, 3), dtype=np.float32)
-        self._shown = np.zeros_like(rest_normals)
+        self._fine_normals = np.zeros_like(rest_normals)
         self._towards = _longest_edges(mesh, rest_positions)
         bulges = super()._bulge(
             self._every_edge._replace(positions=rest_positions, normals=rest_normals)
@@ -121,15 +115,16 @@ class DetailScheme(CubicScheme):
         find_middles(rest_positions, rest_normals, mesh.faces, shares, centre_axes)
         points, ups = _points_on(bulges, mesh, rest_positions, rest_normals)
         middles = shares.astype(np.float64), centre_axes[:, 0].astype(np.float64)
-        places, looks, saved = fit(
+        places, fine_normals, saved = fit(
             self._surface, mesh, rest_positions, rest_normals, (points, ups), middles
         )
         centres = middles_of(places.of_edges, mesh, rest_positions, middles[0])
         offsets = Points(places.of_edges - points, places.of_triangles - centres)
         self._find_axes(rest_positions, rest_normals)
-        self._stored = self._remember(offsets, looks, centre_axes)
+        self._stored = self._remember(offsets, fine_normals, centre_axes)
         # What is off around an edge; and what turns in its middle, where few finer vertices are.
-        self.turns = np.hypot(saved, self._turns_at(rest_positions, looks)).astype(np.float32)
+        turns = self._turns_at(rest_positions, fine_normals)
+        self.turns = np.hypot(saved, turns).astype(np.float32)
         self._surface = None
 
     def _find_axes(self, rest_positions: Doubles, rest_normals: Floats) -> None:
@@ -139,29 +134,29 @@ class DetailScheme(CubicScheme):
         edge_axes(self._around, everything, rest_normals, self._axes)
         vertex_axes(rest_positions, rest_normals, self._towards, self._vertex_axes)
 
-    def _remember(self, offsets: Points, looks: Doubles, centre_axes: Floats) -> Stored:
+    def _remember(self, offsets: Points, fine_normals: Doubles, centre_axes: Floats) -> Stored:
         """Return offsets and normals along the directions of edges, triangles and vertices."""
         mesh = self._mesh
-        point_looks = Points.unstacked(looks, mesh)
+        point_normals = Points.unstacked(fine_normals, mesh)
         point_axes = self._axes[:, AXES_OF]
         return Stored(
             offsets=_along(point_axes, offsets.of_edges),
-            looks=_along(point_axes, point_looks.of_edges),
+            normals=_along(point_axes, point_normals.of_edges),
             centre_offsets=_along(centre_axes[:, None], offsets.of_triangles),
-            centre_looks=_along(centre_axes[:, None], point_looks.of_triangles),
+            centre_normals=_along(centre_axes[:, None], point_normals.of_triangles),
             # A vertex without a normal has no frame: nothing to show there.
-            vertex_looks=_along(self._vertex_axes, looks[: mesh.vertex_count]),
+            vertex_normals=_along(self._vertex_axes, fine_normals[: mesh.vertex_count]),
         )
 
-    def _turns_at(self, rest_positions: Doubles, looks: Doubles) -> Doubles:
+    def _turns_at(self, rest_positions: Doubles, fine_normals: Doubles) -> Doubles:
         """How far the middle of each edge split once turns from between its ends, shape (E,).
 
         Times the root of the edge's length in mean lengths: a longer edge shows more of it.
         """
         mesh = self._mesh
-        mean = looks[mesh.edges].sum(axis=1)
+        mean = fine_normals[mesh.edges].sum(axis=1)
         mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-12)
-        middles = Points.unstacked(looks, mesh).of_edges[:, ALONE]
+        middles = Points.unstacked(fine_normals, mesh).of_edges[:, ALONE]
         angles = np.arccos(np.clip((mean * middles).sum(axis=1), -1.0, 1.0))
         lengths = np.linalg.norm(np.diff(rest_positions[mesh.edges], axis=1)[:, 0], axis=1)
         share = np.sqrt(lengths / max(float(lengths.mean()), 1e-300)) if len(lengths) else lengths
@@ -173,13 +168,13 @@ class DetailScheme(CubicScheme):
         around, normals, stored = self._around, self._tangents.normals, self._stored
         bulges = self._bulge(frame)
         vertex_axes(frame.positions, normals, self._towards, self._vertex_axes)
-        show_vertices(normals, stored.vertex_looks, self._vertex_axes, self._shown)
-        place_on_curves(around, frame, self._shown, bulges)
-        show_points(around, frame, stored.looks, self._axes)
+        turn_vertices(normals, stored.vertex_normals, self._vertex_axes, self._fine_normals)
+        place_on_curves(around, frame, self._fine_normals, bulges)
+        turn_points(around, frame, stored.normals, self._axes)
 
     def place_centres(self, frame: FrameBuffers) -> None:
         """Slide, move and turn the points in the middle of triangles."""
-        show_centres(self._mesh, frame, self._tangents.normals, self._stored)
+        refine_centres(self._mesh, frame, self._tangents.normals, self._stored)
 
     def _bulge(self, frame: FrameBuffers) -> Floats:
         bulges = super()._bulge(frame)
@@ -237,48 +232,38 @@ def add_offsets(frame: FrameBuffers, offsets: Floats, axes: Floats, bulges: Floa
 
 
 @njit
-def turned(from_: Vector, look: Vector, axes: Floats, share: np.float32) -> Vector:
-    """Turn a unit normal a share of the way to the one that is stored as `look` along `axes`.
+def turned(normal: Vector, stored: Vector, axes: Floats, share: np.float32) -> Vector:
+    """Turn a unit normal a share of the way to the one that is stored along `axes`.
 
     `axes`: directions as rows, shape (3, 3). The result has length one.
     """
-    x, y, z = from_
-    u, v, w = look
-    along_x = u * axes[0, 0] + v * axes[1, 0] + w * axes[2, 0]
-    along_y = u * axes[0, 1] + v * axes[1, 1] + w * axes[2, 1]
-    along_z = u * axes[0, 2] + v * axes[1, 2] + w * axes[2, 2]
-    return unit(x + share * (along_x - x), y + share * (along_y - y), z + share * (along_z - z))
-
-
-@njit
-def row_of(rows: Floats, k: int) -> Vector:
-    """Row k of rows of three."""
-    return rows[k, 0], rows[k, 1], rows[k, 2]
+    u, v, w = stored
+    x = u * axes[0, 0] + v * axes[1, 0] + w * axes[2, 0]
+    y = u * axes[0, 1] + v * axes[1, 1] + w * axes[2, 1]
+    z = u * axes[0, 2] + v * axes[1, 2] + w * axes[2, 2]
+    return unit(plus(normal, times(share, less((x, y, z), ONE, normal))))
 
 
 @njit
 def mixed_rows(rows: Floats, k: int, n: int, share: np.float32) -> Vector:
     """A share of the way from row k to row n."""
-    return (
-        mix(rows[k, 0], rows[n, 0], share),
-        mix(rows[k, 1], rows[n, 1], share),
-        mix(rows[k, 2], rows[n, 2], share),
-    )
+    return plus(times(ONE - share, row_of(rows, k)), times(share, row_of(rows, n)))
 
 
 @njit
-def show_vertices(normals: Floats, looks: Floats, axes: Floats, shown: Floats) -> None:
+def turn_vertices(normals: Floats, fine_normals: Floats, axes: Floats, turned_rows: Floats) -> None:
     """Write the finer normal of every vertex, turned with its surroundings."""
     for v in range(normals.shape[0]):
-        x, y, z = turned(row_of(normals, v), row_of(looks, v), axes[v], ONE)
-        shown[v, 0], shown[v, 1], shown[v, 2] = x, y, z
+        write_row(turned_rows, v, turned(row_of(normals, v), row_of(fine_normals, v), axes[v], ONE))
 
 
 @njit
-def show_points(around: Surroundings, frame: FrameBuffers, looks: Floats, axes: Floats) -> None:
+def turn_points(
+    around: Surroundings, frame: FrameBuffers, fine_normals: Floats, axes: Floats
+) -> None:
     """Turn the normals of the points of split edges to those of the finer mesh.
 
-    `looks`: shape (E, 4, 3); `axes`: shape (E, 3, 3, 3), edge, point, direction.
+    `fine_normals`: shape (E, 4, 3); `axes`: shape (E, 3, 3, 3), edge, point, direction.
     """
     vertices = frame.rows
     for k in range(frame.counts[ONCE]):
@@ -293,27 +278,24 @@ def show_points(around: Surroundings, frame: FrameBuffers, looks: Floats, axes: 
                 )
             share = min(share, grown)
         twice = frame.growth_twice[e] if frame.splits[e] == 2 else ZERO
-        shown = vertices[row, 3], vertices[row, 4], vertices[row, 5]
-        look = mixed_rows(looks[e], ALONE, MIDDLE, twice)
-        x, y, z = turned(shown, look, axes[e, MIDDLE], share)
-        write_normal(vertices, row, x, y, z)
+        wanted = mixed_rows(fine_normals[e], ALONE, MIDDLE, twice)
+        middle = turned(row_of(vertices, row, 3), wanted, axes[e, MIDDLE], share)
+        write_row(vertices, row, middle, 3)
         if frame.splits[e] < 2:
             continue
         for end in range(2):
             # Between its neighbours at first, of which the middle has just been turned.
             a, point = around.points[e, end], START + (END - START) * end
-            between = (
-                HALF * (vertices[a, 3] + x),
-                HALF * (vertices[a, 4] + y),
-                HALF * (vertices[a, 5] + z),
-            )
-            look = row_of(looks[e], point)
-            u, v, w = turned(between, look, axes[e, point], min(share, twice))
-            write_normal(vertices, np.uint32(row - 1 + 2 * end), u, v, w)
+            between = times(HALF, plus(row_of(vertices, a, 3), middle))
+            wanted = row_of(fine_normals[e], point)
+            quarter = turned(between, wanted, axes[e, point], min(share, twice))
+            write_row(vertices, np.uint32(row - 1 + 2 * end), quarter, 3)
 
 
 @njit
-def show_centres(mesh: Connectivity, frame: FrameBuffers, normals: Floats, stored: Stored) -> None:
+def refine_centres(
+    mesh: Connectivity, frame: FrameBuffers, normals: Floats, stored: Stored
+) -> None:
     """Slide, move and turn the points in the middle of triangles as the least grown edge allows.
 
     They are where blending has them (blending.py): in the centroid. `normals`: of vertices, (V, 3).
@@ -343,7 +325,5 @@ def show_centres(mesh: Connectivity, frame: FrameBuffers, normals: Floats, store
         for j in range(3):
             for i in range(3):
                 vertices[row, i] += once * offset[j] * axes[j, i]
-        shown = vertices[row, 3], vertices[row, 4], vertices[row, 5]
-        look = mixed_rows(stored.centre_looks[t], 1, 0, twice)
-        x, y, z = turned(shown, look, axes, once)
-        write_normal(vertices, row, x, y, z)
+        wanted = mixed_rows(stored.centre_normals[t], 1, 0, twice)
+        write_row(vertices, row, turned(row_of(vertices, row, 3), wanted, axes, once), 3)

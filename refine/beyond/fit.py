@@ -24,12 +24,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ..kahler.table import CENTRE, CONFIGURATIONS, Patterns
+from ..mesh.arrays import Doubles, Floats, Wide
 from ..mesh.connectivity import Connectivity
 from .blending import FANS
 from .closest import Surface
-
-Doubles = npt.NDArray[np.float64]
-Wide = npt.NDArray[np.int64]
 
 ROUNDS, ONCE_ROUNDS = 4, 2
 """Times that closest triangles are found anew, for all points and for those of edges split once;
@@ -82,14 +80,14 @@ class Fit(NamedTuple):
     """Where points lie on the finer mesh, and what is seen there."""
 
     places: Points
-    looks: Doubles
+    fine_normals: Doubles
     """Unit normals, stacked."""
-    saved: npt.NDArray[np.float32]
+    saved: Floats
     """What a split of each edge mends, shape (E,) (saved_turns)."""
 
 
 def fit(
-    surface: Surface, mesh: Connectivity, positions: Doubles, normals: npt.NDArray[np.float32],
+    surface: Surface, mesh: Connectivity, positions: Doubles, normals: Floats,
     edges: tuple[Doubles, Doubles], middles: tuple[Doubles, Doubles],
 ) -> Fit:  # fmt: skip
     """Fit everything to the finer mesh `surface`.
@@ -106,18 +104,20 @@ def fit(
     start = Points(of_edges, closest_places(surface, centres, corner_ups)[0])
     places = fitted(surface, mesh, positions, start, mesh.vertex_count)
     where = places.stacked(positions)
-    _, looks = closest_places(surface, where, Points(ups, corner_ups).stacked(normals))
-    looks = fitted_normals(surface, mesh, where, looks, 0)
-    saved = saved_turns(surface, mesh, where, looks)
+    _, fine_normals = closest_places(surface, where, Points(ups, corner_ups).stacked(normals))
+    fine_normals = fitted_normals(surface, mesh, where, fine_normals, 0)
+    saved = saved_turns(surface, mesh, where, fine_normals)
 
     first_middle = mesh.vertex_count + 4 * len(mesh.edges)
     centres = middles_of(places.of_edges, mesh, positions, shares)
     start = Points(places.of_edges, closest_places(surface, centres, middle_ups)[0])
     places = fitted(surface, mesh, positions, start, first_middle)
-    _, middle_looks = closest_places(surface, places.of_triangles, middle_ups)
-    looks[first_middle:] = middle_looks.reshape(-1, 3)
-    looks = fitted_normals(surface, mesh, places.stacked(positions), looks, first_middle)
-    return Fit(places, looks, saved)
+    _, middle_normals = closest_places(surface, places.of_triangles, middle_ups)
+    fine_normals[first_middle:] = middle_normals.reshape(-1, 3)
+    fine_normals = fitted_normals(
+        surface, mesh, places.stacked(positions), fine_normals, first_middle
+    )
+    return Fit(places, fine_normals, saved)
 
 
 def middles_of(
@@ -140,10 +140,10 @@ def middles_of(
 def closest_places(surface: Surface, points: Doubles, normals: Doubles) -> tuple[Doubles, Doubles]:
     """Closest points on the finer mesh, and its unit normals there, in the shape of `points`."""
     triangles, weights = surface.closest(points.reshape(-1, 3), normals.reshape(-1, 3))
-    looks = surface.at(surface.normals, triangles, weights)
-    looks /= np.maximum(np.linalg.norm(looks, axis=1, keepdims=True), 1e-12)
+    fine_normals = surface.at(surface.normals, triangles, weights)
+    fine_normals /= np.maximum(np.linalg.norm(fine_normals, axis=1, keepdims=True), 1e-12)
     places = surface.at(surface.positions, triangles, weights)
-    return places.reshape(points.shape), looks.reshape(points.shape)
+    return places.reshape(points.shape), fine_normals.reshape(points.shape)
 
 
 def fitted(
@@ -159,8 +159,12 @@ def fitted(
     for k in range(ROUNDS if len(shapes[0][0]) else 0):
         if k == ONCE_ROUNDS:
             shapes = shapes[:1]
-        corners, weights, pull = _pulls(surface, places, shapes, reach, surface.positions, places)
-        places[first:] += _solved(corners - first, weights, pull, len(places) - first, STIFFNESS)
+        corners, weights, residuals = _residuals(
+            surface, places, shapes, reach, surface.positions, places
+        )
+        places[first:] += _solved(
+            corners - first, weights, residuals, len(places) - first, STIFFNESS
+        )
     return Points.unstacked(places, mesh)
 
 
@@ -177,20 +181,20 @@ def fitted_normals(
     reach = _reach(mesh, places[: mesh.vertex_count])
     shapes = [(split_everywhere(mesh, *row), 1.0) for row in (TWICE, *ONCE)]
     shapes.append((whole, UNSPLIT))
-    corners, weights, pull = _pulls(surface, places, shapes, reach, surface.normals, normals)
+    corners, weights, residuals = _residuals(
+        surface, places, shapes, reach, surface.normals, normals
+    )
     stiffness = np.full((len(normals), 1), NORMAL_STIFFNESS)
     stiffness[: mesh.vertex_count] = CORNER_STIFFNESS
     turned = normals.copy()
     turned[first:] += _solved(
-        corners - first, weights, pull, len(normals) - first, stiffness[first:]
+        corners - first, weights, residuals, len(normals) - first, stiffness[first:]
     )
     lengths = np.linalg.norm(turned, axis=1, keepdims=True)
     return np.where(lengths > LOST, turned / np.maximum(lengths, LOST), normals)
 
 
-def saved_turns(
-    surface: Surface, mesh: Connectivity, places: Doubles, normals: Doubles
-) -> npt.NDArray[np.float32]:
+def saved_turns(surface: Surface, mesh: Connectivity, places: Doubles, normals: Doubles) -> Floats:
     """Return how much a split of each edge saves of the errors of normals [rad], shape (E,).
 
     The root of the squared angles that all finer vertices are off, before less after, each a third
@@ -230,7 +234,7 @@ def _reach(mesh: Connectivity, positions: Doubles) -> float:
     return TOO_FAR * float(lengths.mean()) if len(lengths) else 0.0
 
 
-def _pulls(
+def _residuals(
     surface: Surface, places: Doubles, shapes: list[tuple[Wide, float]], reach: float,
     wanted: npt.NDArray[np.floating], values: Doubles,
 ) -> tuple[Wide, Doubles, Doubles]:  # fmt: skip
@@ -249,8 +253,8 @@ def _pulls(
         missing = wanted - np.einsum("nk,nki->ni", weights, values[corners])
         scale = np.sqrt(share) * is_near
         terms.append((corners, scale * weights, scale * missing))
-    corners, weights, pull = (np.concatenate(part) for part in zip(*terms, strict=True))
-    return corners, weights, pull
+    corners, weights, residuals = (np.concatenate(part) for part in zip(*terms, strict=True))
+    return corners, weights, residuals
 
 
 def _squared_angles(
@@ -266,18 +270,18 @@ def _squared_angles(
 
 
 def _solved(
-    corners: Wide, weights: Doubles, pull: Doubles, count: int, stiffness: float | Doubles
+    corners: Wide, weights: Doubles, residuals: Doubles, count: int, stiffness: float | Doubles
 ) -> Doubles:
     """Return how far each of `count` points moves, shape (count, 3).
 
-    Each pull is answered by the corners, shape (N, 3), of its triangle with their weights; negative
-    numbers are vertices that stay.
+    Each residual is answered by the corners, shape (N, 3), of its triangle with their weights;
+    negative numbers are vertices that stay.
     """
     weights = np.where(corners >= 0, weights, 0.0)
     corners = np.maximum(corners, 0)
 
-    def gathered(residuals: Doubles) -> Doubles:
-        shares = (weights[..., None] * residuals[:, None]).reshape(-1, 3)
+    def gathered(errors: Doubles) -> Doubles:
+        shares = (weights[..., None] * errors[:, None]).reshape(-1, 3)
         columns = [np.bincount(corners.ravel(), shares[:, i], count) for i in range(3)]
         return np.stack(columns, axis=1)
 
@@ -286,15 +290,15 @@ def _solved(
         return gathered(answers) + stiffness * moves
 
     moves = np.zeros((count, 3))
-    residual = gathered(pull)
-    direction, square = residual.copy(), float((residual**2).sum())
+    left = gathered(residuals)
+    direction, square = left.copy(), float((left**2).sum())
     for _ in range(STEPS):
         if square < 1e-20:
             break
         image = applied(direction)
         step = square / float((direction * image).sum())
         moves += step * direction
-        residual -= step * image
-        previous, square = square, float((residual**2).sum())
-        direction = residual + square / previous * direction
+        left -= step * image
+        previous, square = square, float((left**2).sum())
+        direction = left + square / previous * direction
     return moves

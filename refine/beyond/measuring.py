@@ -22,16 +22,12 @@ from collections.abc import Sequence
 from typing import cast
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..border.plugin import View
 from ..kahler.criterion import Criterion, Measured, Thresholds
+from ..mesh.arrays import Doubles, Floats, Small
 from ..mesh.connectivity import Connectivity
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Small = npt.NDArray[np.uint8]
 
 
 class Measuring:
@@ -114,10 +110,3 @@ def splits_of_needs(need: Floats, splits: Small) -> None:
     """Write 0, 1 or 2 into `splits`, shape (E,): above 0 once, above 1 twice."""
     for e in range(need.shape[0]):
         splits[e] = np.uint8(need[e] > np.float32(0.0)) + np.uint8(need[e] > np.float32(1.0))
-
-
-@njit
-def scale_needs(need: Floats, once: np.float32, width: np.float32, most: np.float32) -> None:
-    """Turn the measures in `need`, shape (E,), into needs."""
-    for e in range(need.shape[0]):
-        need[e] = min((need[e] - once) / width, most)

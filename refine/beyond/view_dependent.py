@@ -7,16 +7,12 @@ import reprlib
 from typing import cast
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..border.plugin import View
+from ..mesh.arrays import Doubles, Floats, Unsigned
 from .blending import RAMP
-from .measuring import Measuring, scale_needs
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
+from .measuring import Measuring
 
 ONE = np.float32(1.0)
 BAND = 0.3
@@ -68,7 +64,7 @@ class Silhouette(ViewDependent):
         limits = self.thresholds
         most = limits.once + (ONE + RAMP) * limits.width
         turns_at_silhouette(positions, normals, self._edges, self._looked()[0], most, need)
-        scale_needs(need, limits.once, limits.width, limits.most)
+        limits.scale(need)
 
 
 class ScreenEdge(ViewDependent):
@@ -80,9 +76,9 @@ class ScreenEdge(ViewDependent):
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
-        limits, (eye, focal) = self.thresholds, self._looked()
+        eye, focal = self._looked()
         lengths_on_screen(positions, self._edges, eye, focal, need)
-        scale_needs(need, limits.once, limits.width, limits.most)
+        self.thresholds.scale(need)
 
 
 @njit

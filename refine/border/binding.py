@@ -7,7 +7,7 @@ strides will do, the kernels are compiled for one type only, and a simulation ma
 Source: the plug-in of Kähler, Haber, Seidel 2003, Fig. 1.
 """
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Unpack
@@ -15,6 +15,7 @@ from typing import Unpack
 import numpy as np
 import numpy.typing as npt
 
+from ..mesh.arrays import Floats, Indices, Small
 from ..mesh.connectivity import Connectivity, connect
 from ..mesh.normals import vertex_normals
 from ..mesh.validation import (
@@ -25,14 +26,12 @@ from ..mesh.validation import (
     round_finite,
 )
 from .corner_values import Values, checked_corner_values
-from .plugin import Origins, RefinedMesh, Stream, View
+from .plugin import RefinedMesh, Refiner, Stream, View
 from .rows import GEOMETRY_COLUMNS, wedge_values, write_wedges
 from .stream import OwnStream, StreamArrays, check_lent
 
-Floats = npt.NDArray[np.float32]
 
-
-class BoundRefiner(ABC):
+class BoundRefiner(Refiner):
     """A mesh that was checked and connected, with buffers for one frame."""
 
     def __init__(
@@ -55,6 +54,7 @@ class BoundRefiner(ABC):
         self._normals = np.zeros_like(self._points)
         self._shape = positions.shape
         self._own_stream: OwnStream | None = None
+        self._splits: Small
         self._accepted: StreamArrays = _NO_ROWS
         self._geometry: tuple[Floats, Floats]
 
@@ -64,25 +64,6 @@ class BoundRefiner(ABC):
             "a refiner cannot be copied, pickled or sent to another process; make one there with "
             "refine.create from the same faces and rest positions"
         )
-
-    @property
-    @abstractmethod
-    def splits(self) -> npt.NDArray[np.uint8]:
-        """How often each edge was split in the last frame, shape (E,)."""
-
-    @property
-    @abstractmethod
-    def vertex_capacity(self) -> int:
-        """Most output vertices a frame can have."""
-
-    @property
-    @abstractmethod
-    def triangle_capacity(self) -> int:
-        """Most output triangles a frame can have."""
-
-    @abstractmethod
-    def origins(self) -> Origins:
-        """Say for every vertex of the last frame where it lies on the input mesh."""
 
     @abstractmethod
     def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
@@ -101,12 +82,17 @@ class BoundRefiner(ABC):
             write_wedges(self.connectivity, self._wedge_values, rows)
 
     @property
-    def edges(self) -> npt.NDArray[np.int32]:
+    def splits(self) -> Small:
+        """How often each edge was split in the last frame, shape (E,), read only."""
+        return self._splits
+
+    @property
+    def edges(self) -> Indices:
         """End points of each edge, shape (E, 2)."""
         return self.connectivity.edges
 
     @property
-    def triangle_edges(self) -> npt.NDArray[np.int32]:
+    def triangle_edges(self) -> Indices:
         """Edges of each triangle, shape (F, 3); -1 for a triangle that names a vertex twice."""
         return self.connectivity.triangle_edges
 

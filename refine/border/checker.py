@@ -19,9 +19,8 @@ A triangle of the input that names a vertex twice takes part in none of this; it
 import numpy as np
 import numpy.typing as npt
 
+from ..mesh.arrays import Flags, Floats, Indices, Wide
 from .plugin import Origins, RefinedMesh, Refiner
-
-Wide = npt.NDArray[np.int64]
 
 PARTS = 12
 """Points of the refined mesh lie at quarters of the edges of the input (section 4.1), or in the
@@ -110,7 +109,7 @@ def _number_places(origins: Origins) -> Wide:
     return np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
 
 
-def _in_parts(weights: npt.NDArray[np.float32]) -> Wide:
+def _in_parts(weights: Floats) -> Wide:
     parts = np.rint(weights * PARTS).astype(np.int64)
     exact = (abs(parts - weights * PARTS) < 1e-5) & (parts >= 0)
     _require_all(
@@ -133,7 +132,7 @@ def _check_same_places(mesh: RefinedMesh, points: Wide) -> None:
     )
 
 
-def _check_sources(mesh: RefinedMesh, proper: npt.NDArray[np.bool_]) -> None:
+def _check_sources(mesh: RefinedMesh, proper: Flags) -> None:
     counts = np.bincount(mesh.source, minlength=len(proper))
     _require_all(counts > 0, "every input triangle is part of the output")
     _require_all(
@@ -154,7 +153,7 @@ def _places_in_source(origins: Origins, triangles: Wide, source_faces: Wide) -> 
     return np.asarray(places, dtype=np.int64)
 
 
-def _check_cover(corners: Wide, source: npt.NDArray[np.int32], proper: Wide, rows: Wide) -> None:
+def _check_cover(corners: Wide, source: Indices, proper: Wide, rows: Wide) -> None:
     areas = np.einsum("ni,ni->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
     _require_all(
         areas > 0,
@@ -170,9 +169,7 @@ def _check_cover(corners: Wide, source: npt.NDArray[np.int32], proper: Wide, row
     )
 
 
-def _check_sub_edges(
-    triangles: Wide, corners: Wide, source: npt.NDArray[np.int32], refiner: Refiner
-) -> None:
+def _check_sub_edges(triangles: Wide, corners: Wide, source: Indices, refiner: Refiner) -> None:
     starts, ends = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     # A sub-edge lies on edge i of its source where coordinate i + 2 is zero at both ends.
     is_zero = (corners == 0) & (np.roll(corners, -1, axis=1) == 0)
@@ -246,7 +243,7 @@ def _require(holds: bool, relation: str) -> None:
 
 
 def _require_all(
-    holds: npt.NDArray[np.bool_], relation: str, numbers: npt.NDArray[np.integer] | None = None
+    holds: Flags, relation: str, numbers: npt.NDArray[np.integer] | None = None
 ) -> None:
     """Raise with the relation and the number of the first row for which it does not hold."""
     broken = np.flatnonzero(~holds)

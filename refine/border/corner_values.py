@@ -11,6 +11,7 @@ from typing import TypedDict
 import numpy as np
 import numpy.typing as npt
 
+from ..mesh.arrays import Floats, Wide
 from ..mesh.validation import as_array, checked_indices
 
 AttributeLike = npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]
@@ -29,9 +30,9 @@ class Values(TypedDict, total=False):
 class CornerValues:
     """Texture coordinates and attributes side by side: one row per different corner."""
 
-    values: npt.NDArray[np.float32]
+    values: Floats
     """Shape (A, k)."""
-    corners: npt.NDArray[np.int64] | None
+    corners: Wide | None
     """Row of every corner, shape (F, 3); None if vertex v has row v."""
     columns: Mapping[str, slice]
     """Where the attributes are among the k columns."""
@@ -40,7 +41,7 @@ class CornerValues:
 
 
 def checked_corner_values(
-    faces: npt.NDArray[np.int64],
+    faces: Wide,
     vertex_count: int,
     *,
     uv: npt.ArrayLike | None = None,
@@ -50,8 +51,8 @@ def checked_corner_values(
     """Join texture coordinates and attributes into one table; None if there are none."""
     if uv is None and face_uv is not None:
         raise ValueError("face_uv points into uv, but uv is None; pass both or neither")
-    tables: list[npt.NDArray[np.float32]] = []
-    indices: list[npt.NDArray[np.int64] | None] = []
+    tables: list[Floats] = []
+    indices: list[Wide | None] = []
     columns: dict[str, slice] = {}
     if uv is not None:
         values, corners = _checked_values("uv", uv, "face_uv", face_uv, faces, vertex_count)
@@ -88,9 +89,9 @@ def _checked_values(
     values: npt.ArrayLike,
     what_corners: str,
     corners: npt.ArrayLike | None,
-    faces: npt.NDArray[np.int64],
+    faces: Wide,
     vertex_count: int,
-) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int64] | None]:
+) -> tuple[Floats, Wide | None]:
     wanted = "numbers of shape " + (
         "(U, 2)" if what == "uv" else "(V, k), or a tuple of such values and the row of each corner"
     )

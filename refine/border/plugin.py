@@ -11,6 +11,7 @@ turns positions into triangles, frame by frame:
 New refiners join by name (registry.py).
 """
 
+from abc import abstractmethod
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol, runtime_checkable
@@ -97,14 +98,17 @@ class Refiner(Protocol):
         """Edges of each input triangle, corner i to i + 1, shape (F, 3); -1 if it has no edges."""
 
     @property
+    @abstractmethod
     def splits(self) -> npt.NDArray[np.uint8]:
         """How often each edge was split in the last frame, 0, 1 or 2, shape (E,)."""
 
     @property
+    @abstractmethod
     def vertex_capacity(self) -> int:
         """Most output vertices a frame can have."""
 
     @property
+    @abstractmethod
     def triangle_capacity(self) -> int:
         """Most output triangles a frame can have."""
 
@@ -126,5 +130,6 @@ class Refiner(Protocol):
         child. (`risorius warm`, or a first frame before the fork, and there is nothing to compile.)
         """
 
+    @abstractmethod
     def origins(self) -> Origins:
         """Say for every vertex of the last frame where it lies on the input mesh (allocates)."""

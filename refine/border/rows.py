@@ -5,12 +5,10 @@ wedge (mesh/seams.py), so that vertex v of the input is row v.
 """
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
+from ..mesh.arrays import Floats, Unsigned
 from ..mesh.connectivity import Connectivity
-
-Floats = npt.NDArray[np.float32]
 
 GEOMETRY_COLUMNS = 6
 """x y z, nx ny nz: columns of a row before attributes."""
@@ -26,7 +24,7 @@ def place_unmoved(points: Floats, normals: Floats, rows: Floats) -> None:
 
 
 @njit
-def copy_along_seams(wedge_vertices: npt.NDArray[np.uint32], first: int, rows: Floats) -> None:
+def copy_along_seams(wedge_vertices: Unsigned, first: int, rows: Floats) -> None:
     """Copy position and normal of vertices on texture seams to their other sides.
 
     `wedge_vertices`: the vertex of every wedge, shape (W,), of which copies begin with `first`.

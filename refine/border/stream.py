@@ -3,9 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float32]
+from ..mesh.arrays import Floats, Indices, Unsigned
 
 SPARE = 1.25
 """How much more than it needs a stream of one's own takes when it has to grow."""
@@ -16,9 +15,9 @@ class StreamArrays(NamedTuple):
 
     vertices: Floats
     """Rows of the output (rows.py), shape (.., k)."""
-    triangles: npt.NDArray[np.uint32]
+    triangles: Unsigned
     """Their corners, shape (.., 3)."""
-    source: npt.NDArray[np.int32]
+    source: Indices
     """Input triangle that each is part of, shape (..,)."""
 
 

@@ -39,9 +39,9 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
+from ..mesh.arrays import Short, Small
 from .table import (
     CONFIGURATION_COUNT,
     MOST_SPLITS,
@@ -57,7 +57,6 @@ SEQUENCE_COUNT = 271
 """Sequences of up to two splits on each of three edges (section 4.4)."""
 
 Sequence = tuple[int, ...]
-Numbers = npt.NDArray[np.uint16]
 
 
 @dataclass(frozen=True)
@@ -68,9 +67,9 @@ class SequenceTables:
     """Edges in the order of their splits; number 0 is (), shorter ones come first."""
     patterns: Patterns
     """Subtriangles of each sequence."""
-    transitions: npt.NDArray[np.uint16]
+    transitions: Short
     """Next sequence for each sequence and each configuration wanted, shape (271, 27)."""
-    removals: npt.NDArray[np.uint8]
+    removals: Small
     """How many splits this takes back out of order, shape (271, 27)."""
 
 
@@ -192,12 +191,12 @@ class Coherent:
         self._tables = sequence_tables()
         self.patterns = self._tables.patterns
         """A row for each sequence."""
-        self.states: Numbers = np.zeros(face_count, dtype=np.uint16)
+        self.states: Short = np.zeros(face_count, dtype=np.uint16)
         """The sequence of each triangle, shape (F,): all that lives from frame to frame."""
         self.removals_out_of_order = 0
         """Splits taken back while a later one stayed, in all frames; each may turn lines."""
 
-    def follow(self, configurations: Numbers) -> Numbers:
+    def follow(self, configurations: Short) -> Short:
         """Move every triangle from its sequence to the next one; return these, shape (F,).
 
         `configurations`: s0 + 3 s1 + 9 s2 of each triangle in the frame, shape (F + 1,).
@@ -216,10 +215,10 @@ class Coherent:
 
 @njit
 def follow_splits(
-    configurations: Numbers,
-    transitions: Numbers,
-    removals: npt.NDArray[np.uint8],
-    states: Numbers,
+    configurations: Short,
+    transitions: Short,
+    removals: Small,
+    states: Short,
 ) -> int:
     """Replace every sequence in `states`, shape (F,), by the next one for its configuration.
 

@@ -20,16 +20,12 @@ from numbers import Real
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..border.registry import Registry
+from ..mesh.arrays import Doubles, Flags, Floats, Small, Unsigned
 from ..mesh.connectivity import Connectivity
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Small = npt.NDArray[np.uint8]
-Unsigned = npt.NDArray[np.uint32]
+from ..mesh.vectors import ONE, add_to_row, cross, difference, dot, row_of
 
 THRESHOLD_ONCE = 0.02
 """Default drop above which an edge is split once: a flat place bent by 11 degrees along an edge.
@@ -45,7 +41,6 @@ NARROWEST = 1e-6
 """Least distance of two thresholds; where they are equal there is nothing to blend over."""
 LARGEST_LIMIT = 1e30
 """Largest threshold but infinity: single precision holds what is measured."""
-ZERO, ONE, INFINITE = np.float32(0.0), np.float32(1.0), np.float32(np.inf)
 UNDEFINED_NORMAL = 1e-6
 """A normal shorter than this fraction of the lengths that made it is rounding, not a direction."""
 
@@ -86,10 +81,6 @@ criteria: Registry[Criterion] = Registry("criterion")
 register_criterion = criteria.register
 
 
-def _is_number(limit: object) -> bool:
-    return isinstance(limit, Real) and not isinstance(limit, bool)
-
-
 class Thresholds:
     """Two values of a measure: above the first an edge is split once, above the second twice."""
 
@@ -98,44 +89,34 @@ class Thresholds:
 
         Raises ValueError if the two are out of order.
         """
-        is_right = _is_number(once) and _is_number(twice) and 0.0 <= once <= twice
+        are_numbers = all(isinstance(n, Real) and not isinstance(n, bool) for n in (once, twice))
+        is_right = are_numbers and 0.0 <= once <= twice
         if not is_right or any(LARGEST_LIMIT < limit < np.inf for limit in (once, twice)):
             raise ValueError(
                 f"threshold_once and threshold_twice are {meaning} with "
                 f"0 <= threshold_once <= threshold_twice <= {LARGEST_LIMIT:g} (or inf, which "
                 f"switches a level off), got {reprlib.repr(once)} and {reprlib.repr(twice)}"
             )
-        self.limits = np.array([max(float(once), least), max(float(twice), least)], np.float32)
-
-    @property
-    def once(self) -> np.float32:
+        self.once = np.float32(max(float(once), least))
         """Above this an edge is split; may be set at any time."""
-        return np.float32(self.limits[0])
-
-    @once.setter
-    def once(self, limit: float) -> None:
-        self.limits[0] = limit
-
-    @property
-    def twice(self) -> np.float32:
+        self.twice = np.float32(max(float(twice), least))
         """Above this an edge is split twice; may be set at any time."""
-        return np.float32(self.limits[1])
-
-    @twice.setter
-    def twice(self, limit: float) -> None:
-        self.limits[1] = limit
 
     @property
     def width(self) -> np.float32:
         """What lies between the two: the unit of need."""
         if np.isinf(self.twice):
-            return self.once if 0.0 < self.once < np.inf else np.float32(1.0)
+            return self.once if 0.0 < self.once < np.inf else ONE
         return np.float32(max(float(self.twice - self.once), NARROWEST))
 
     @property
     def most(self) -> np.float32:
         """The need that cannot be exceeded: 1 where the second level is switched off."""
         return np.float32(1.0 if np.isinf(self.twice) else np.inf)
+
+    def scale(self, measures: Floats, unit: np.float32 = ONE) -> None:
+        """Turn measures of edges, shape (E,), into needs; `unit`: of the thresholds."""
+        scale_needs(measures, self.once * unit, self.width * unit, self.most)
 
 
 class NormalDrop:
@@ -167,82 +148,59 @@ class NormalDrop:
 
     def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write the number of splits of every edge into `splits`, shape (E,)."""
-        mark_drops(normals, self._edges, self._rest_dots, self.thresholds.limits, splits)
+        limits = self.thresholds.once, self.thresholds.twice
+        mark_drops(normals, self._edges, self._rest_dots, limits, splits)
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
-        measure_drops(normals, self._edges, self._rest_dots, self.thresholds.limits, need)
-
-
-@njit
-def dot_along(normals: Floats, edges: Unsigned, e: int) -> np.float32:
-    """The dot product of the normals at both ends of an edge."""
-    a, b = edges[e, 0], edges[e, 1]
-    return np.float32(
-        normals[a, 0] * normals[b, 0]
-        + normals[a, 1] * normals[b, 1]
-        + normals[a, 2] * normals[b, 2]
-    )
+        edge_dots(normals, self._edges, need)
+        np.subtract(self._rest_dots, need, out=need)
+        self.thresholds.scale(need)
 
 
 @njit
 def edge_dots(normals: Floats, edges: Unsigned, dots: Floats) -> None:
     """Write the dot product of the normals at both ends of every edge into `dots`, shape (E,)."""
     for e in range(edges.shape[0]):
-        dots[e] = dot_along(normals, edges, e)
+        dots[e] = dot(row_of(normals, edges[e, 0]), row_of(normals, edges[e, 1]))
 
 
 @njit
 def mark_drops(
-    normals: Floats, edges: Unsigned, rest_dots: Floats, limits: Floats, splits: Small
+    normals: Floats,
+    edges: Unsigned,
+    rest_dots: Floats,
+    limits: tuple[np.float32, np.float32],
+    splits: Small,
 ) -> None:
     """Write 0, 1 or 2 into `splits`, shape (E,), by the drop of the dot product (as above).
 
-    `edges`: end points, shape (E, 2); `limits`: the two thresholds, shape (2,).
+    `edges`: end points, shape (E, 2); `limits`: the two thresholds.
     """
-    once, twice = limits[0], limits[1]
+    once, twice = limits
     for e in range(edges.shape[0]):
-        drop = rest_dots[e] - dot_along(normals, edges, e)
+        drop = rest_dots[e] - dot(row_of(normals, edges[e, 0]), row_of(normals, edges[e, 1]))
         splits[e] = np.uint8(drop > once) + np.uint8(drop > twice)
 
 
 @njit
-def measure_drops(
-    normals: Floats, edges: Unsigned, rest_dots: Floats, limits: Floats, need: Floats
-) -> None:
-    """Write needs of edges, shape (E,), by the drop of the dot product (as above).
-
-    `limits`: the two thresholds, shape (2,); need is 0 at the first, and 1 at the second (see
-    `Thresholds`).
-    """
-    once, most = limits[0], INFINITE
-    width = np.float32(max(np.float64(limits[1] - once), NARROWEST))
-    if limits[1] == INFINITE:
-        most = ONE
-        width = once if ZERO < once < INFINITE else ONE
-    for e in range(edges.shape[0]):
-        drop = rest_dots[e] - dot_along(normals, edges, e)
-        need[e] = min((drop - once) / width, most)
+def scale_needs(need: Floats, once: np.float32, width: np.float32, most: np.float32) -> None:
+    """Turn the measures in `need`, shape (E,), into needs (see `Thresholds`)."""
+    for e in range(need.shape[0]):
+        need[e] = min((need[e] - once) / width, most)
 
 
 @njit
-def find_undefined_normals(
-    faces: Unsigned, positions: Doubles, undefined: npt.NDArray[np.bool_]
-) -> None:
+def find_undefined_normals(faces: Unsigned, positions: Doubles, undefined: Flags) -> None:
     """Flag the vertices, shape (V,), whose normal is nothing but rounding."""
     sums = np.zeros((positions.shape[0], 4))
     for t in range(faces.shape[0]):
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        ux, vx = positions[b, 0] - positions[a, 0], positions[c, 0] - positions[a, 0]
-        uy, vy = positions[b, 1] - positions[a, 1], positions[c, 1] - positions[a, 1]
-        uz, vz = positions[b, 2] - positions[a, 2], positions[c, 2] - positions[a, 2]
-        size = np.sqrt((ux * ux + uy * uy + uz * uz) * (vx * vx + vy * vy + vz * vz))
+        u, v = difference(positions, a, b), difference(positions, a, c)
+        size, normal = np.sqrt(dot(u, u) * dot(v, v)), cross(u, v)
         for i in range(3):
-            v = faces[t, i]
-            sums[v, 0] += uy * vz - uz * vy
-            sums[v, 1] += uz * vx - ux * vz
-            sums[v, 2] += ux * vy - uy * vx
-            sums[v, 3] += size
-    for v in range(positions.shape[0]):
-        length = np.sqrt(sums[v, 0] ** 2 + sums[v, 1] ** 2 + sums[v, 2] ** 2)
-        undefined[v] = length <= UNDEFINED_NORMAL * sums[v, 3]
+            add_to_row(sums, faces[t, i], normal)
+            sums[faces[t, i], 3] += size
+    for k in range(positions.shape[0]):
+        normal = row_of(sums, k)
+        undefined[k] = np.sqrt(dot(normal, normal)) <= UNDEFINED_NORMAL * sums[k, 3]

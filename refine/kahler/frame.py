@@ -10,12 +10,9 @@ but for `rows`, which belongs to whoever draws.
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..mesh.arrays import Doubles, Floats, Short, Small, Unsigned, Wide
 from ..mesh.connectivity import Connectivity
-
-Floats = npt.NDArray[np.float32]
-Unsigned = npt.NDArray[np.uint32]
 
 ROWS, ONCE, TWICE, TRIANGLES, CENTRES = range(5)
 """Places in `FrameBuffers.counts`: output rows but centres, edges split, edges split twice,
@@ -25,13 +22,13 @@ subtriangles, triangles with a point in the middle."""
 class FrameBuffers(NamedTuple):
     """One frame of a mesh with V vertices, F triangles, E edges and R rims."""
 
-    positions: npt.NDArray[np.float64]
+    positions: Doubles
     """Deformed vertex positions, shape (V, 3)."""
     points: Floats
     """The same in single precision, which is enough for all but differences."""
     normals: Floats
     """Their unit normals, shape (V, 3)."""
-    splits: npt.NDArray[np.uint8]
+    splits: Small
     """Splits of every rim, edges first, shape (R + 1,); the last stands for where no edge is."""
     growth_once: Floats
     """How far the middle point of an edge is from the straight edge to its place, shape (E,).
@@ -46,12 +43,12 @@ class FrameBuffers(NamedTuple):
     """The edges that are split; the first `counts[ONCE]` count."""
     split_twice: Unsigned
     """The edges that are split twice; the first `counts[TWICE]` count."""
-    configurations: npt.NDArray[np.uint16]
+    configurations: Short
     """s0 + 3 s1 + 9 s2 of each triangle's edges, shape (F + 1,); the last one has no meaning."""
     centre_triangles: Unsigned
     """The triangles with a point in the middle, which only blending has; the first
     `counts[CENTRES]` count. Shape (F + 1,)."""
-    counts: npt.NDArray[np.int64]
+    counts: Wide
     """How many there are of what, shape (5,): see ROWS, ONCE, TWICE, TRIANGLES, CENTRES."""
     rows: Floats
     """The output: x y z, nx ny nz, attributes; row v is vertex v."""
@@ -78,7 +75,7 @@ class FrameBuffers(NamedTuple):
 
 
 def buffers_for(
-    mesh: Connectivity, positions: npt.NDArray[np.float64], points: Floats, normals: Floats
+    mesh: Connectivity, positions: Doubles, points: Floats, normals: Floats
 ) -> FrameBuffers:
     """Make the buffers of a mesh, but for `rows`, of which there are none yet."""
     edge_count, rim_count, face_count = len(mesh.edges), len(mesh.rim_edges), len(mesh.faces)

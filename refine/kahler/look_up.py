@@ -13,18 +13,13 @@ Everything here goes from the edges that are split, not from the triangles: most
 """
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..border.rows import GEOMETRY_COLUMNS
 from ..border.stream import StreamArrays
+from ..mesh.arrays import Floats, Indices, Short, Unsigned
 from .frame import ONCE, ROWS, TRIANGLES, TWICE, FrameBuffers
 from .table import CENTRE, Patterns
-
-Floats = npt.NDArray[np.float32]
-Indices = npt.NDArray[np.int32]
-Unsigned = npt.NDArray[np.uint32]
-Short = npt.NDArray[np.uint16]
 
 QUARTER = np.float32(0.25)
 HALF = np.float32(0.5)

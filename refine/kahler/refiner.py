@@ -21,14 +21,13 @@ from ..border.binding import BoundRefiner
 from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
 from ..border.stream import StreamArrays
+from ..mesh.arrays import Floats
 from .coherence import Coherent
 from .criterion import Criterion, NormalDrop
 from .frame import ROWS, TRIANGLES, buffers_for
 from .look_up import copy_along_rims, look_up_triangles, number_points, place_rim_attributes
 from .smoothing import LoopScheme, Scheme
 from .table import CONFIGURATIONS, MOST_SPLITS, POINTS_OF_EDGE
-
-Floats = npt.NDArray[np.float32]
 
 
 class Kahler(BoundRefiner):
@@ -67,11 +66,6 @@ class Kahler(BoundRefiner):
         self._find_normals()
         self._criterion.bind(mesh, self._rest_positions, self._normals)
         self._scheme.bind(mesh, self._rest_positions, self._normals)
-
-    @property
-    def splits(self) -> npt.NDArray[np.uint8]:
-        """How often each edge was split in the last frame, shape (E,), read only."""
-        return self._splits
 
     @property
     def vertex_capacity(self) -> int:

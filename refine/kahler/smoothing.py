@@ -48,17 +48,14 @@ which edges are split and where in the output their points go.
 from typing import NamedTuple, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from ...jit import njit
 from ..border.registry import Registry
+from ..mesh.arrays import Doubles, Floats, Small
 from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.normals import Number, unit
 from ..mesh.rings import NEAR, Rings, vertex_rings
+from ..mesh.vectors import HALF, ONE, ZERO, plus, row_of, unit, write_row
 from .frame import ONCE, TWICE, FrameBuffers
-
-Floats = npt.NDArray[np.float32]
-Small = npt.NDArray[np.uint8]
 
 EDGE_END = np.float32(3 / 8)
 """First and second level, interior: end points of the edge or half-edge (Fig. 3, Fig. 4 left)."""
@@ -75,10 +72,6 @@ MIDDLE_OWN = np.float32(5 / 8)
 MIDDLE_RING = np.float32(1 / 16)
 """Its six neighbours, 3/(8 x 6) (Fig. 4 right)."""
 
-ZERO = np.float32(0.0)
-HALF = np.float32(0.5)
-ONE = np.float32(1.0)
-
 
 class Scheme(Protocol):
     """Places points; anything with these members can take the place of the built-in schemes.
@@ -94,7 +87,7 @@ class Scheme(Protocol):
     def bind(
         self,
         connectivity: Connectivity,
-        rest_positions: npt.NDArray[np.float64],
+        rest_positions: Doubles,
         rest_normals: Floats,
     ) -> None:
         """Learn the mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
@@ -125,7 +118,7 @@ class LoopScheme:
     def bind(
         self,
         connectivity: Connectivity,
-        rest_positions: npt.NDArray[np.float64],
+        rest_positions: Doubles,
         rest_normals: Floats,
     ) -> None:
         """Work out the weights of every vertex."""
@@ -148,22 +141,9 @@ def mix(start: np.float32, end: np.float32, share: np.float32) -> np.float32:
 
 
 @njit
-def write_normal(
-    vertices: Floats, row: Number, x: np.float32, y: np.float32, z: np.float32
-) -> None:
-    """Write a normal, after its position."""
-    vertices[row, 3], vertices[row, 4], vertices[row, 5] = x, y, z
-
-
-@njit
-def write_mean_normal(vertices: Floats, p: np.uint32, q: np.uint32, row: np.uint32) -> None:
+def write_mean_normal(rows: Floats, p: np.uint32, q: np.uint32, row: np.uint32) -> None:
     """Write the unit mean of the normals of two rows."""
-    x, y, z = unit(
-        vertices[p, 3] + vertices[q, 3],
-        vertices[p, 4] + vertices[q, 4],
-        vertices[p, 5] + vertices[q, 5],
-    )
-    write_normal(vertices, row, x, y, z)
+    write_row(rows, row, unit(plus(row_of(rows, p, 3), row_of(rows, q, 3))), 3)
 
 
 @njit
@@ -186,7 +166,7 @@ def place_vertices(
     `growth`: of each vertex, shape (V,).
     """
     for v in range(points.shape[0]):
-        write_normal(vertices, v, normals[v, 0], normals[v, 1], normals[v, 2])
+        write_row(vertices, v, row_of(normals, v), 3)
         if growth[v] == ZERO:
             for i in range(3):
                 vertices[v, i] = points[v, i]
@@ -220,12 +200,8 @@ def place_middles(around: Surroundings, frame: FrameBuffers, middles: Floats) ->
             if growth < ONE:
                 middle = mix(HALF * (vertices[a, i] + vertices[b, i]), middle, growth)
             vertices[row, i] = middle
-        x, y, z = unit(
-            frame.normals[a, 0] + frame.normals[b, 0],
-            frame.normals[a, 1] + frame.normals[b, 1],
-            frame.normals[a, 2] + frame.normals[b, 2],
-        )
-        write_normal(vertices, row, x, y, z)
+        mean = unit(plus(row_of(frame.normals, a), row_of(frame.normals, b)))
+        write_row(vertices, row, mean, 3)
 
 
 @njit

@@ -63,7 +63,8 @@ have positive area, cover the triangle exactly, use every point, and share inner
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
+
+from ..mesh.arrays import Small, Wide
 
 CENTRE = 12
 """Number of a point in the middle of a triangle, which none of the paper's patterns has."""
@@ -77,7 +78,7 @@ POINTS_OF_EDGE = (0, 1, 3)
 Triangle = tuple[int, int, int]
 
 
-def _point_coordinates() -> npt.NDArray[np.int64]:
+def _point_coordinates() -> Wide:
     """Barycentric coordinates of the 12 points in quarters, shape (12, 3); rows sum to 4."""
     corners = 4 * np.eye(3, dtype=np.int64)
     points = list(corners)
@@ -193,12 +194,12 @@ class Patterns(NamedTuple):
     The paper looks up the row s_0 + 3 s_1 + 9 s_2 (section 4.3).
     """
 
-    counts: npt.NDArray[np.uint8]
+    counts: Small
     """Subtriangles of each row, shape (K,)."""
-    subtriangles: npt.NDArray[np.uint8]
+    subtriangles: Small
     """Their points, numbered as above, unused ones 0, shape (K, most, 3)."""
 
-    def of(self, row: int) -> npt.NDArray[np.uint8]:
+    def of(self, row: int) -> Small:
         """Subtriangles of one row, shape (M, 3)."""
         return self.subtriangles[row, : self.counts[row]]
 

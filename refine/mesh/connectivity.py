@@ -28,12 +28,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ...jit import njit
+from .arrays import Flags, Indices, Unsigned
 from .seams import find_seams
 from .validation import as_indices
-
-Indices = npt.NDArray[np.int32]
-Unsigned = npt.NDArray[np.uint32]
-Flags = npt.NDArray[np.bool_]
 
 
 class Surroundings(NamedTuple):

@@ -19,10 +19,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .arrays import Doubles, Wide
 from .seams import number_by_first_use
 from .validation import checked_indices, checked_positions
-
-Wide = npt.NDArray[np.int64]
 
 BITS = 20
 """Of the grid along one axis that the curve runs through; 3 x 20 fit a number of 64."""
@@ -57,7 +56,7 @@ def reorder(faces: npt.ArrayLike, positions: npt.ArrayLike) -> Order:
     return Order(np.concatenate([used, unused]), triangles, numbers.reshape(-1, 3))
 
 
-def places_on_curve(positions: npt.NDArray[np.float64]) -> Wide:
+def places_on_curve(positions: Doubles) -> Wide:
     """How far along a curve that fills space each position lies, shape (V,)."""
     if len(positions) == 0:
         return np.zeros(0, dtype=np.int64)

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .arrays import Doubles, Floats, Unsigned
 from .connectivity import Connectivity
 
 BORDER_OWN = 3 / 4
@@ -36,15 +37,15 @@ class Rings(NamedTuple):
     it as it is.
     """
 
-    own: npt.NDArray[np.float32]
+    own: Floats
     """Weight of the vertex itself, less what it gets in its ring, shape (V,)."""
-    ring: npt.NDArray[np.float32]
+    ring: Floats
     """Weight of every vertex in the ring, shape (V,); 0 where the vertex never moves."""
-    near: npt.NDArray[np.uint32]
+    near: Unsigned
     """The first eight of the ring, shape (V, 8)."""
-    starts: npt.NDArray[np.uint32]
+    starts: Unsigned
     """The rest: `others[starts[v]:starts[v + 1]]`, shape (V + 1,)."""
-    others: npt.NDArray[np.uint32]
+    others: Unsigned
     """Vertices that are further on in their rings than the eighth."""
 
 
@@ -86,6 +87,6 @@ def vertex_rings(connectivity: Connectivity) -> Rings:
     )
 
 
-def warren_weight(valence: npt.NDArray[np.integer]) -> npt.NDArray[np.float64]:
+def warren_weight(valence: npt.NDArray[np.integer]) -> Doubles:
     """Weight of one neighbour of an interior vertex: 3/16 for valence 3, else 3/(8 valence)."""
     return np.where(valence == 3, 3.0 / 16.0, 3.0 / (8.0 * np.maximum(valence, 1)))

@@ -13,12 +13,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .arrays import Flags, Indices, Unsigned, Wide
 from .validation import as_indices, checked_positions
-
-Indices = npt.NDArray[np.int32]
-Unsigned = npt.NDArray[np.uint32]
-Flags = npt.NDArray[np.bool_]
-Wide = npt.NDArray[np.int64]
 
 
 def find_seams(

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...jit import njit
+from .arrays import Doubles, Floats, Wide
 
 LARGEST = 1e15
 """No coordinate may be larger: cross products of edges have to stay finite in single precision."""
@@ -18,9 +19,7 @@ SIZES = 1e-6, 1e9
 Measured: sheets with edges of a fortieth of that are refined as ever from 1e-7 to 1e9."""
 
 
-def checked_positions(
-    rest_positions: npt.ArrayLike, name: str = "rest_positions"
-) -> npt.NDArray[np.float64]:
+def checked_positions(rest_positions: npt.ArrayLike, name: str = "rest_positions") -> Doubles:
     """Return positions, shape (V, 3), as a copy in double precision."""
     positions = as_array(name, rest_positions, "numbers of shape (V, 3)")
     if positions.ndim != 2 or positions.shape[1] != 3 or positions.dtype.kind not in "fiu":
@@ -60,9 +59,7 @@ def as_array(name: str, given: npt.ArrayLike, wanted: str) -> npt.NDArray[Any]:
     return array
 
 
-def checked_indices(
-    name: str, indices: npt.ArrayLike, limit: int, target: str
-) -> npt.NDArray[np.int64]:
+def checked_indices(name: str, indices: npt.ArrayLike, limit: int, target: str) -> Wide:
     """Return triangles, shape (F, 3), as a copy; all indices are from 0 to `limit` - 1."""
     return as_indices(name, indices, limit, target).astype(np.int64)
 
@@ -98,7 +95,7 @@ def not_finite(positions: npt.NDArray[np.floating]) -> str:
 
 
 @njit
-def round_finite(positions: npt.NDArray[np.float64], points: npt.NDArray[np.float32]) -> int:
+def round_finite(positions: Doubles, points: Floats) -> int:
     """Write positions, shape (V, 3), as single precision; return how many numbers are too large.
 
     That is NaN, or not below LARGEST: 0 unless what moves the mesh has blown up.

@@ -14,7 +14,7 @@ three points in its interior, and the second level smooths all vertices of the f
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Unpack
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -23,13 +23,14 @@ from ..border.binding import BoundRefiner
 from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
 from ..border.rows import GEOMETRY_COLUMNS, wedge_values, write_wedges
-from ..kahler.frame import ONCE, ROWS, FrameBuffers
+from ..kahler.frame import buffers_for, split_everywhere
 from ..kahler.smoothing import place_middles, place_vertices
+from ..mesh.arrays import Floats, Indices
 from ..mesh.connectivity import Connectivity, connect
 from ..mesh.rings import vertex_rings
 
-Floats = npt.NDArray[np.float32]
-Wide = npt.NDArray[np.int64]
+CHILDREN = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
+"""Of a triangle with corners 0 1 2 and middles 3 4 5 of its edges: the triangles it becomes."""
 
 
 class Level:
@@ -37,31 +38,16 @@ class Level:
 
     def __init__(self, connectivity: Connectivity, points: Floats, normals: Floats) -> None:
         """Take `points` and `normals`, shape (V, 3), as buffers that a frame fills."""
-        vertex_count, edge_count = connectivity.vertex_count, len(connectivity.edges)
+        vertex_count = connectivity.vertex_count
         self.points = points
         self.normals = normals
         self._mesh = connectivity
         self._rings = vertex_rings(connectivity)
         self._all_move = np.ones(vertex_count, dtype=np.float32)
-        self._middles = np.zeros((edge_count, 3), dtype=np.float32)
-        every_edge = np.arange(edge_count, dtype=np.uint32)
-        counts = np.zeros(5, dtype=np.int64)
-        counts[ROWS], counts[ONCE] = vertex_count + edge_count, edge_count
-        self._frame = FrameBuffers(
-            positions=np.zeros((0, 3)),
-            points=points,
-            normals=normals,
-            splits=np.ones(edge_count, dtype=np.uint8),
-            growth_once=np.ones(edge_count, dtype=np.float32),
-            growth_twice=np.zeros(0, dtype=np.float32),
-            first_points=every_edge + np.uint32(vertex_count),
-            split_once=every_edge,
-            split_twice=every_edge[:0],
-            configurations=np.zeros(0, dtype=np.uint16),
-            centre_triangles=every_edge[:0],
-            counts=counts,
-            rows=np.zeros((0, GEOMETRY_COLUMNS), dtype=np.float32),
-        )
+        self._middles = np.zeros((len(connectivity.edges), 3), dtype=np.float32)
+        positions = np.zeros((0, 3))  # which no pass of this reads
+        frame = buffers_for(connectivity, positions, points, normals)
+        self._frame = split_everywhere(frame, vertex_count)
 
     def subdivide(self, rows: Floats) -> None:
         """Write the moved vertices, then one point per edge, into the first V + E `rows`."""
@@ -102,11 +88,6 @@ class Loop(BoundRefiner):
         self._triangles = self._finest.connectivity.corners
         if self._finest.values is not None:
             self._wedge_values = wedge_values(self._finest.connectivity, self._finest.values)
-
-    @property
-    def splits(self) -> npt.NDArray[np.uint8]:
-        """The number of levels for every edge, shape (E,), read only."""
-        return self._splits
 
     @property
     def vertex_capacity(self) -> int:
@@ -153,7 +134,7 @@ class _Refined:
     connectivity: Connectivity
     values: Floats | None
     """Texture coordinates and attributes, shape (A, k)."""
-    source: npt.NDArray[np.int32]
+    source: Indices
     """Triangle of the input that each triangle is part of, shape (M,)."""
     barycentric: Floats
     """Corners of each triangle in coordinates of its source, shape (M, 3, 3)."""
@@ -188,9 +169,9 @@ class _Refined:
             corner_rows = np.concatenate([_children(rows[split], middles), rows[whole]])[order]
             values = np.concatenate([values, values[mesh.rim_uv].mean(axis=1, dtype=np.float32)])
 
-        barycentric = np.concatenate(
-            [_children_coordinates(self.barycentric[split]), self.barycentric[whole]]
-        )[order]
+        corners = self.barycentric[split]
+        children = _children(corners, (corners + np.roll(corners, -1, axis=1)) / 2)
+        barycentric = np.concatenate([children, self.barycentric[whole]])[order]
         return _Refined(
             connect(faces, mesh.vertex_count + len(mesh.edges), corner_rows),
             values,
@@ -199,16 +180,10 @@ class _Refined:
         )
 
 
-def _children(corners: Wide, middles: Wide) -> Wide:
-    """Four triangles for each, three at its corners and one of its middle points, (4 F, 3)."""
-    (a, b, c), (ab, bc, ca) = corners.T, middles.T
-    four = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
-    return np.array(four, dtype=np.int64).transpose(2, 0, 1).reshape(-1, 3)
+def _children(corners: npt.NDArray[Any], middles: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Four triangles for each, three at its corners and one of its middle points.
 
-
-def _children_coordinates(corners: Floats) -> Floats:
-    """Corners of the four children from those of their parents, shape (4 F, 3, 3)."""
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
-    four = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
-    return np.array(four, dtype=np.float32).transpose(2, 0, 1, 3).reshape(-1, 3, 3)
+    `corners`: of any kind, shape (F, 3, ..); `middles`: of the edges. Shape (4 F, 3, ..).
+    """
+    points = np.concatenate([corners, middles], axis=1)
+    return points[:, CHILDREN].reshape(-1, *corners.shape[1:])

@@ -30,11 +30,6 @@ class PassThrough(BoundRefiner):
         self._source = np.arange(len(mesh.faces), dtype=np.int32)
 
     @property
-    def splits(self) -> npt.NDArray[np.uint8]:
-        """All zero, shape (E,)."""
-        return self._splits
-
-    @property
     def vertex_capacity(self) -> int:
         """One output vertex per wedge."""
         return len(self.connectivity.wedge_vertices)

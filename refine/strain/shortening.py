@@ -19,17 +19,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ...jit import njit
-from ..mesh.validation import checked_indices, checked_positions
-
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
-
-THINNEST = 1e-6
-"""Height over length below which a triangle at rest has no plane to measure in."""
+from ..mesh.arrays import Doubles, Floats, Unsigned, Wide
+from ..mesh.vectors import difference, dot
+from .measure import THINNEST, StrainMeasure
 
 
-class Shortening:
+class Shortening(StrainMeasure):
     """Measures deformed positions of one mesh along directions that are known at rest.
 
     shortening = refine.Shortening(faces, rest_positions, directions)
@@ -45,8 +40,8 @@ class Shortening:
         skin is left away, and one that is zero measures nothing. Raises ValueError for arrays that
         do not fit together.
         """
-        rest = checked_positions(rest_positions)
-        triangles = checked_indices("faces", faces, len(rest), "rest_positions")
+        super().__init__(faces, rest_positions)
+        rest, triangles = self._positions, self._faces.astype(np.int64)
         wanted = np.asarray(directions, dtype=np.float64)
         if wanted.ndim != 3 or wanted.shape[::2] != (len(rest), 3) or not np.isfinite(wanted).all():
             raise ValueError(
@@ -56,8 +51,7 @@ class Shortening:
         triangles = triangles[asked]
         self._faces = triangles.astype(np.uint32)
         self._weights = _weights(rest, triangles, wanted)
-        self._shape = len(rest), wanted.shape[1]
-        self._squares = np.zeros(self._shape, dtype=np.float32)
+        self._lost = np.zeros(wanted.shape[:2], dtype=np.float32)
         self._rest = np.zeros((len(triangles), 3))
         _square_lengths(rest, self._faces, self._rest)
 
@@ -65,19 +59,14 @@ class Shortening:
         """Loss of length of each vertex along its directions, 0 = none, up to 1, shape (V, k).
 
         `positions`: shape (V, 3), any float type. The result is overwritten by the next call.
-        Raises ValueError for another shape.
+        Raises ValueError for another shape and for positions that are not finite.
         """
-        given = np.asarray(positions, dtype=np.float64)
-        if given.shape != (self._shape[0], 3):
-            raise ValueError(
-                f"positions must be of shape ({self._shape[0]}, 3) like the rest positions, got "
-                f"shape {given.shape}"
-            )
-        _shorten(given, self._faces, self._rest, self._weights, self._squares)
-        return self._squares
+        self._set(positions)
+        _shorten(self._positions, self._faces, self._rest, self._weights, self._lost)
+        return self._lost
 
 
-def _weights(rest: Doubles, faces: npt.NDArray[np.int64], directions: Doubles) -> Floats:
+def _weights(rest: Doubles, faces: Wide, directions: Doubles) -> Floats:
     """Of each triangle's squared edge lengths at its corners, shape (F, 3, k, 3)."""
     a, b, c = (rest[faces[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
@@ -105,20 +94,12 @@ def _weights(rest: Doubles, faces: npt.NDArray[np.int64], directions: Doubles) -
 
 
 @njit
-def _square_length(positions: Doubles, a: int, b: int) -> float:
-    """The squared length of the edge between two vertices."""
-    x = positions[b, 0] - positions[a, 0]
-    y = positions[b, 1] - positions[a, 1]
-    z = positions[b, 2] - positions[a, 2]
-    return float(x * x + y * y + z * z)
-
-
-@njit
 def _square_lengths(positions: Doubles, faces: Unsigned, squares: Doubles) -> None:
     """Write the squared lengths of the edges 01, 12, 20 of each triangle, shape (F, 3)."""
     for t in range(faces.shape[0]):
         for i in range(3):
-            squares[t, i] = _square_length(positions, faces[t, i], faces[t, (i + 1) % 3])
+            edge = difference(positions, faces[t, i], faces[t, (i + 1) % 3])
+            squares[t, i] = dot(edge, edge)
 
 
 @njit
@@ -130,8 +111,8 @@ def _shorten(
     grown = np.empty(3, dtype=np.float32)
     for t in range(faces.shape[0]):
         for i in range(3):
-            squared = _square_length(positions, faces[t, i], faces[t, (i + 1) % 3])
-            grown[i] = squared - rest[t, i]
+            edge = difference(positions, faces[t, i], faces[t, (i + 1) % 3])
+            grown[i] = dot(edge, edge) - rest[t, i]
         for i in range(3):
             v = faces[t, i]
             for k in range(lost.shape[1]):

@@ -1,7 +1,7 @@
 r"""Tension map: how far the skin is stretched and compressed at each vertex, and which way.
 
-A by-product for artists: wrinkle maps, blood flow and dirt are driven by it. Not in the paper; the
-quantities are those of continuum mechanics. On a triangle the deformation maps rest edges to edges,
+Wrinkle maps, blood flow and dirt are driven by it. The quantities are those of continuum
+mechanics. On a triangle the deformation maps rest edges to edges,
 
     F = [b - a   c - a] [rest edges in the plane of the rest triangle]^-1,  3 x 2
 
@@ -23,19 +23,26 @@ import numpy as np
 import numpy.typing as npt
 
 from ...jit import njit
+from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.normals import vertex_normals
-from ..mesh.validation import checked_indices, checked_positions, not_finite, round_finite
+from ..mesh.vectors import (
+    HALF,
+    ONE,
+    TINY,
+    ZERO,
+    between,
+    cross,
+    dot,
+    less,
+    plus,
+    row_of,
+    times,
+    write_row,
+)
+from .measure import THINNEST, StrainMeasure
 
-Floats = npt.NDArray[np.float32]
-Doubles = npt.NDArray[np.float64]
-Unsigned = npt.NDArray[np.uint32]
-
-ZERO = np.float32(0.0)
-HALF = np.float32(0.5)
-ONE = np.float32(1.0)
-TINY = np.finfo(np.float32).tiny
-THINNEST = 1e-6
-"""Height over length below which a triangle at rest has no area to measure strain against."""
+ROWS, COLUMNS = (0, 0, 0, 1, 1, 2), (0, 1, 2, 1, 2, 2)
+"""Of the six different entries of a symmetric tensor: xx xy xz yy yz zz."""
 OPPOSITE = np.float32(1e-3)
 """1 + cosine below which two normals are opposite and no rotation between them is smallest."""
 ROUND = np.float32(1e-4)
@@ -54,7 +61,7 @@ class TensionMap(NamedTuple):
     where all directions are alike; shape (V, 3)."""
 
 
-class Tension:
+class Tension(StrainMeasure):
     """Measures deformed positions of one mesh against its rest positions.
 
         tension = refine.Tension(faces, rest_positions)
@@ -64,57 +71,36 @@ class Tension:
     """
 
     def __init__(self, faces: npt.ArrayLike, rest_positions: npt.ArrayLike) -> None:
-        """Learn the mesh at rest: `faces`, shape (F, 3), `rest_positions`, shape (V, 3).
-
-        Triangles without area and vertices without triangles are fine and have no tension. Raises
-        ValueError for arrays of other shapes, indices out of range, and positions not finite.
-        """
-        rest = checked_positions(rest_positions)
-        self._faces = checked_indices("faces", faces, len(rest), "rest_positions").astype(np.uint32)
-        self._inverses, weights = _rest_frames(rest, self._faces)
-        totals = np.zeros(len(rest))
+        """Learn the mesh at rest: `faces`, shape (F, 3), `rest_positions`, shape (V, 3)."""
+        super().__init__(faces, rest_positions)
+        count = len(self._positions)
+        self._inverses, weights = _inverse_edges(self._positions, self._faces)
+        totals = np.zeros(count)
         for k in range(3):
             np.add.at(totals, self._faces[:, k], weights)
         self._weights = weights.astype(np.float32)
         self._shares = (1.0 / np.where(totals > 0.0, totals, np.inf)).astype(np.float32)
-        self._positions = rest
-        self._points = np.zeros(rest.shape, dtype=np.float32)
-        self._normals = np.zeros((len(rest), 3), dtype=np.float32)
-        self._sums = np.zeros((len(rest), 6), dtype=np.float32)
-        self._stretch = np.zeros(len(rest), dtype=np.float32)
-        self._compression = np.zeros(len(rest), dtype=np.float32)
-        self._direction = np.zeros((len(rest), 3), dtype=np.float32)
+        self._normals = np.zeros((count, 3), dtype=np.float32)
+        self._sums = np.zeros((count, 6), dtype=np.float32)
+        self._map = TensionMap(
+            np.zeros(count, np.float32), np.zeros(count, np.float32), np.zeros_like(self._normals)
+        )
 
     def measure(self, positions: npt.NDArray[np.floating]) -> TensionMap:
         """Measure deformed `positions`, shape (V, 3), any float type; they are only read.
 
-        Raises ValueError for another shape.
+        Raises ValueError for another shape and for positions that are not finite.
         """
-        positions = np.asarray(positions)
-        if positions.shape != self._positions.shape or positions.dtype.kind != "f":
-            raise ValueError(
-                f"positions must be floats of shape {self._positions.shape} like the rest "
-                f"positions, got {positions.dtype} of shape {positions.shape}"
-            )
-        np.copyto(self._positions, positions)
-        if round_finite(self._positions, self._points) > 0:
-            raise ValueError(not_finite(positions))
+        self._set(positions)
         vertex_normals(self._positions, self._faces, self._normals)
         sum_tensors(
             self._positions, self._faces, self._inverses, self._weights, self._normals, self._sums
         )
-        find_principal(
-            self._sums,
-            self._shares,
-            self._normals,
-            self._stretch,
-            self._compression,
-            self._direction,
-        )
-        return TensionMap(self._stretch, self._compression, self._direction)
+        find_principal(self._sums, self._shares, self._normals, self._map)
+        return self._map
 
 
-def _rest_frames(rest: Doubles, faces: Unsigned) -> tuple[Floats, Doubles]:
+def _inverse_edges(rest: Doubles, faces: Unsigned) -> tuple[Floats, Doubles]:
     """Inverse of the rest edges of each triangle, upper triangular, shape (F, 3), and its area.
 
     Zero for triangles without area: they measure nothing.
@@ -145,83 +131,52 @@ def sum_tensors(
     """Add up F F^T (xx xy xz yy yz zz) of the triangles at each vertex into `sums`, (V, 6)."""
     sums[:] = ZERO
     for t in range(faces.shape[0]):
-        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        ux = np.float32(positions[b, 0] - positions[a, 0])
-        uy = np.float32(positions[b, 1] - positions[a, 1])
-        uz = np.float32(positions[b, 2] - positions[a, 2])
-        vx = np.float32(positions[c, 0] - positions[a, 0])
-        vy = np.float32(positions[c, 1] - positions[a, 1])
-        vz = np.float32(positions[c, 2] - positions[a, 2])
-        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        scale = ONE / np.sqrt(max(nx * nx + ny * ny + nz * nz, TINY))
-        nx, ny, nz = scale * nx, scale * ny, scale * nz
-        first, mixed, second = inverses[t, 0], inverses[t, 1], inverses[t, 2]
-        px, py, pz = first * ux, first * uy, first * uz
-        qx, qy, qz = mixed * ux + second * vx, mixed * uy + second * vy, mixed * uz + second * vz
+        u = between(positions, faces[t, 0], faces[t, 1])
+        v = between(positions, faces[t, 0], faces[t, 2])
+        n = cross(u, v)
+        n = times(ONE / np.sqrt(max(dot(n, n), TINY)), n)
+        p = times(inverses[t, 0], u)
+        q = plus(times(inverses[t, 1], u), times(inverses[t, 2], v))
         for i in range(3):
-            v = faces[t, i]
-            mx, my, mz = normals[v, 0], normals[v, 1], normals[v, 2]
+            m = row_of(normals, faces[t, i])
             # The smallest rotation that takes the normal n to m takes p, at right angles to n,
             # to p - (m p) / (1 + n m) (n + m).
-            turn = ONE / max(ONE + nx * mx + ny * my + nz * mz, OPPOSITE)
-            turn_p = turn * (mx * px + my * py + mz * pz)
-            turn_q = turn * (mx * qx + my * qy + mz * qz)
-            sx, sy, sz = nx + mx, ny + my, nz + mz
-            gx, gy, gz = px - turn_p * sx, py - turn_p * sy, pz - turn_p * sz
-            hx, hy, hz = qx - turn_q * sx, qy - turn_q * sy, qz - turn_q * sz
-            sums[v, 0] += weights[t] * (gx * gx + hx * hx)
-            sums[v, 1] += weights[t] * (gx * gy + hx * hy)
-            sums[v, 2] += weights[t] * (gx * gz + hx * hz)
-            sums[v, 3] += weights[t] * (gy * gy + hy * hy)
-            sums[v, 4] += weights[t] * (gy * gz + hy * hz)
-            sums[v, 5] += weights[t] * (gz * gz + hz * hz)
+            both, opening = plus(n, m), ONE + n[0] * m[0] + n[1] * m[1] + n[2] * m[2]
+            turn = ONE / max(opening, OPPOSITE)
+            g, h = less(p, turn * dot(m, p), both), less(q, turn * dot(m, q), both)
+            for k in range(6):
+                r, c = ROWS[k], COLUMNS[k]
+                sums[faces[t, i], k] += weights[t] * (g[r] * g[c] + h[r] * h[c])
 
 
 @njit
-def find_principal(
-    sums: Floats,
-    shares: Floats,
-    normals: Floats,
-    stretch: Floats,
-    compression: Floats,
-    direction: Floats,
-) -> None:
+def find_principal(sums: Floats, shares: Floats, normals: Floats, out: TensionMap) -> None:
     """Write the principal stretches of the mean tensor in each vertex's tangent plane."""
+    stretch, compression, direction = out
     for v in range(sums.shape[0]):
         share = shares[v]
-        xx, xy, xz = share * sums[v, 0], share * sums[v, 1], share * sums[v, 2]
-        yy, yz, zz = share * sums[v, 3], share * sums[v, 4], share * sums[v, 5]
-        nx, ny, nz = normals[v, 0], normals[v, 1], normals[v, 2]
-        if share == ZERO or nx * nx + ny * ny + nz * nz < HALF:
+        x = times(share, (sums[v, 0], sums[v, 1], sums[v, 2]))
+        y = times(share, (sums[v, 1], sums[v, 3], sums[v, 4]))
+        z = times(share, (sums[v, 2], sums[v, 4], sums[v, 5]))
+        n = row_of(normals, v)
+        if share == ZERO or dot(n, n) < HALF:
             stretch[v] = compression[v] = ZERO
-            direction[v, 0] = direction[v, 1] = direction[v, 2] = ZERO
+            direction[v, :] = ZERO
             continue
         # Two axes of the tangent plane without a special case (Duff et al. 2017).
-        sign = ONE if nz >= ZERO else -ONE
-        slope = -ONE / (sign + nz)
-        shear = nx * ny * slope
-        sx, sy, sz = ONE + sign * nx * nx * slope, sign * shear, -sign * nx
-        tx, ty, tz = shear, sign + ny * ny * slope, -ny
-        bx, by, bz = (
-            xx * sx + xy * sy + xz * sz,
-            xy * sx + yy * sy + yz * sz,
-            (xz * sx + yz * sy + zz * sz),
-        )
-        ss, st = sx * bx + sy * by + sz * bz, tx * bx + ty * by + tz * bz
-        tt = (
-            tx * (xx * tx + xy * ty + xz * tz)
-            + ty * (xy * tx + yy * ty + yz * tz)
-            + tz * (xz * tx + yz * ty + zz * tz)
-        )
+        sign = ONE if n[2] >= ZERO else -ONE
+        slope = -ONE / (sign + n[2])
+        shear = n[0] * n[1] * slope
+        s = ONE + sign * n[0] * n[0] * slope, sign * shear, -sign * n[0]
+        t = shear, sign + n[1] * n[1] * slope, -n[1]
+        along_s, along_t = (dot(x, s), dot(y, s), dot(z, s)), (dot(x, t), dot(y, t), dot(z, t))
+        ss, st, tt = dot(s, along_s), dot(t, along_s), dot(t, along_t)
         middle, half = HALF * (ss + tt), HALF * (ss - tt)
         reach = np.sqrt(half * half + st * st)
         stretch[v] = max(np.sqrt(middle + reach) - ONE, ZERO)
         compression[v] = max(ONE - np.sqrt(max(middle - reach, ZERO)), ZERO)
         # Eigenvector of the larger eigenvalue, from the row that cancels less.
-        along_s, along_t = (half + reach, st) if half >= ZERO else (st, reach - half)
-        length = np.sqrt(along_s * along_s + along_t * along_t)
+        of_s, of_t = (half + reach, st) if half >= ZERO else (st, reach - half)
+        length = np.sqrt(of_s * of_s + of_t * of_t)
         turn = ONE / length if reach > ROUND * middle else ZERO
-        along_s, along_t = turn * along_s, turn * along_t
-        direction[v, 0] = along_s * sx + along_t * tx
-        direction[v, 1] = along_s * sy + along_t * ty
-        direction[v, 2] = along_s * sz + along_t * tz
+        write_row(direction, v, plus(times(turn * of_s, s), times(turn * of_t, t)))

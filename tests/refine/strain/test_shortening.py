@@ -89,7 +89,7 @@ def test_what_does_not_fit_is_refused() -> None:
     for directions in (np.zeros((len(rest), 3)), np.full((len(rest), 1, 3), np.nan)):
         with pytest.raises(ValueError, match="directions must be finite"):
             refine.Shortening(faces, rest, directions)
-    with pytest.raises(ValueError, match="positions must be of shape"):
+    with pytest.raises(ValueError, match="positions must be floats of shape"):
         refine.Shortening(faces, rest, both_ways(len(rest))).measure(rest[:-1])
 
 

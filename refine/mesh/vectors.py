@@ -1,0 +1,104 @@
+"""Vectors of three numbers, as kernels take them: tuples, and rows of arrays."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...jit import njit
+from .arrays import Doubles
+
+Rows = npt.NDArray[np.floating]
+Number = int | np.uint32
+Vector = tuple[Any, Any, Any]
+"""Three numbers in one precision, single or double."""
+
+ZERO, HALF, ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
+TINY = np.finfo(np.float32).tiny
+SHORT, LONG = np.float32(1e-30), np.float32(1e37)
+"""Squares of lengths between which single precision tells a length to the last bit."""
+
+
+@njit
+def dot(u: Vector, v: Vector) -> Any:
+    """Scalar product."""
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+@njit
+def cross(u: Vector, v: Vector) -> Vector:
+    """Vector product."""
+    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+
+
+@njit
+def plus(u: Vector, v: Vector) -> Vector:
+    """Sum."""
+    return u[0] + v[0], u[1] + v[1], u[2] + v[2]
+
+
+@njit
+def less(u: Vector, share: Any, v: Vector) -> Vector:
+    """What is left of u without a share of v."""
+    return u[0] - share * v[0], u[1] - share * v[1], u[2] - share * v[2]
+
+
+@njit
+def times(share: Any, v: Vector) -> Vector:
+    """Product with a number."""
+    return share * v[0], share * v[1], share * v[2]
+
+
+@njit
+def unit(v: Vector) -> Vector:
+    """Normalise a vector; zero stays zero."""
+    squared = dot(v, v)
+    if SHORT < squared < LONG:
+        return times(ONE / np.sqrt(squared), v)
+    return unit_of_extreme(np.float64(v[0]), np.float64(v[1]), np.float64(v[2]))
+
+
+@njit
+def unit_of_extreme(x: float, y: float, z: float) -> Vector:
+    """Normalise a vector whose square single precision cannot hold; zero stays zero."""
+    length = np.sqrt(x * x + y * y + z * z)
+    if length == 0.0:
+        return ZERO, ZERO, ZERO
+    return np.float32(x / length), np.float32(y / length), np.float32(z / length)
+
+
+@njit
+def row_of(rows: Rows, k: Number, first: int = 0) -> Vector:
+    """Three numbers of row k, from column `first` on."""
+    return rows[k, first], rows[k, first + 1], rows[k, first + 2]
+
+
+@njit
+def write_row(rows: Rows, k: Number, v: Vector, first: int = 0) -> None:
+    """Write a vector into row k, from column `first` on."""
+    rows[k, first], rows[k, first + 1], rows[k, first + 2] = v
+
+
+@njit
+def add_to_row(rows: Rows, k: Number, v: Vector) -> None:
+    """Add a vector to row k."""
+    rows[k, 0] += v[0]
+    rows[k, 1] += v[1]
+    rows[k, 2] += v[2]
+
+
+@njit
+def difference(positions: Doubles, a: Number, b: Number) -> Vector:
+    """The vector from a to b."""
+    return (
+        positions[b, 0] - positions[a, 0],
+        positions[b, 1] - positions[a, 1],
+        positions[b, 2] - positions[a, 2],
+    )
+
+
+@njit
+def between(positions: Doubles, a: Number, b: Number) -> Vector:
+    """The vector from a to b, rounded when it has been taken."""
+    x, y, z = difference(positions, a, b)
+    return np.float32(x), np.float32(y), np.float32(z)
