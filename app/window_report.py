@@ -21,10 +21,10 @@ from .benchmarks import processor
 from .choices import script_for
 from .script import Pose, Script
 from .viewer import Viewer
-from .viewer.kept import REFRESH
-from .viewer.quality import LEVELS, Quality
+from .viewer.frame_times import PHASES
+from .viewer.level_of_detail import LEVELS, LevelOfDetail
+from .viewer.panel_cache import REFRESH
 from .viewer.settings import Look
-from .viewer.stage import STAGES
 
 PROMISED = 20.0  # frames a second at 1280x720 with software OpenGL on 2 cores
 WARM_UP = 1.0  # [s]
@@ -32,7 +32,7 @@ ROUNDS = 3
 IDLE_SECONDS = 5.0
 
 
-class _FixedQuality(Quality):
+class _FixedLevel(LevelOfDetail):
     """One level of detail, however long a frame takes."""
 
     def __init__(self, level: int) -> None:
@@ -82,7 +82,7 @@ def window_table(seconds: float, size: tuple[int, int]) -> str:
         f"{os.cpu_count()} cores of {processor()}; {ROUNDS} interleaved rounds.",
         "",
         f"{'case':30} {'frames/s':>8} {'median':>7} {'95 %':>7} {'best':>7} {'level':>5}   "
-        + " ".join(f"{stage:>10}" for stage in STAGES)
+        + " ".join(f"{stage:>10}" for stage in PHASES)
         + f" {'the rest':>9}",
         *map(_line, cases),
         "",
@@ -111,11 +111,11 @@ def _words(detail: render.Detail) -> str:
 
 def _play(viewer: Viewer, case: _Case, seconds: float) -> None:
     """Let the window play for a while, and note what its frames took."""
-    viewer.look = Look(compare=case.compare)
-    viewer.kept.refresh = REFRESH if case.are_panels_kept else 0.0
+    viewer.settings.look = Look(compare=case.compare)
+    viewer.panel_cache.refresh = REFRESH if case.are_panels_kept else 0.0
     is_software = viewer.surface.is_software
-    viewer.quality = (
-        Quality(is_software=is_software) if case.level is None else _FixedQuality(case.level)
+    viewer.painter.level_of_detail = (
+        LevelOfDetail(is_software=is_software) if case.level is None else _FixedLevel(case.level)
     )
     if not viewer.session.is_playing:
         viewer.session.toggle_playing()
@@ -123,10 +123,10 @@ def _play(viewer: Viewer, case: _Case, seconds: float) -> None:
 
     def note(taken: float) -> None:
         case.seconds.append(taken)
-        case.stages.append([viewer.stage.times[stage][-1] for stage in STAGES])
+        case.stages.append([viewer.times.milliseconds[stage][-1] for stage in PHASES])
 
     _run(viewer, seconds, note)
-    case.last_level = viewer.quality.level
+    case.last_level = viewer.painter.level_of_detail.level
 
 
 def _run(viewer: Viewer, seconds: float, note: Callable[[float], None]) -> None:

@@ -6,6 +6,7 @@ Source: Fiedler 2004, "Fix your timestep!".
 from __future__ import annotations
 
 STEP = 1.0 / 60.0  # [s] as in films and tests; the simulation divides it further by itself
+CALM = 0.15  # [s] without change before physics rests and the scene is drawn in full
 MOST_STEPS = 6  # a tenth of a second: what a stalled window catches up
 EARLY = 0.25  # of a step that may be taken before it is due: a screen of 60 Hz that is now a little
 # late and now early gets one step for each of its frames, and motion does not judder

@@ -1,7 +1,7 @@
 """Changes of a script's keys: set, move, copy, delete, rename. Each gives a new script.
 
-A key is known by its lane and its time. The whole poses are one lane, each track is another; no
-lane has two keys at one time, so a key that arrives where another is takes its place.
+A key is known by its track and its time. The whole poses count as one track; no track has two keys
+at one time, so a key that arrives where another is takes its place.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from ..errors import UserError
 from ..scenes import within
 from ..script import LARGEST, Channel, Key, Limits, Pose, Script, rounded
 
-POSES = ""  # the lane of whole poses; any other is called as its control is
+POSES = ""  # the track of whole poses; any other is called as its control is
 FRAME = 1.0 / 30.0  # [s] to which times are rounded, as in the films that the window makes
 SAME = 1e-6  # of a value or a time [s]: no difference
 
 
 class KeyPlace(NamedTuple):
-    """Where a key is: the lane, and the time [s] in it."""
+    """Where a key is: the track, and the time [s] in it."""
 
-    lane: str
+    track: str
     time: float
 
 
@@ -34,18 +34,12 @@ Places = Collection[KeyPlace]
 Item = TypeVar("Item", Pose, Key)
 
 
-def lanes_of(script: Script) -> dict[str, tuple[float, ...]]:
-    """The times of the keys in every lane [s]; the poses come first."""
-    lanes = {POSES: tuple(pose.time for pose in script.poses)}
-    return lanes | {
-        name: tuple(key.time for key in track.keys) for name, track in script.tracks.items()
-    }
-
-
 def places_of(script: Script) -> frozenset[KeyPlace]:
     """All keys that a script has."""
-    lanes = lanes_of(script).items()
-    return frozenset(KeyPlace(lane, time) for lane, times in lanes for time in times)
+    poses = frozenset(KeyPlace(POSES, pose.time) for pose in script.poses)
+    return poses.union(
+        KeyPlace(name, key.time) for name, track in script.tracks.items() for key in track.keys
+    )
 
 
 def on_frame(time: float) -> float:
@@ -99,8 +93,9 @@ def eased(script: Script, places: Places, easing: str) -> Script:
     """The script with these keys approached in another way."""
     chosen = frozenset(places)
 
-    def change(lane: str, item: Item) -> Item:
-        is_meant = KeyPlace(lane, item.time) in chosen
+    def change(track: str, item: Item) -> Item:
+        """The key, approached so if it is meant."""
+        is_meant = KeyPlace(track, item.time) in chosen
         return replace(item, easing=easing) if is_meant else item
 
     return _with(
@@ -126,8 +121,8 @@ def keyed(script: Script, time: float, values: Mapping[str, float], limits: Limi
     time = rounded(time)
     plain = script.posed(time)
     added = {name: track.value(time) for name, track in script.tracks.items()}
-    shown = within(limits, script.at(time))
-    changed = [name for name in values if abs(values[name] - shown.get(name, 0.0)) > SAME]
+    before = within(limits, script.at(time))
+    changed = [name for name in values if abs(values[name] - before.get(name, 0.0)) > SAME]
     if script.tracks and not script.poses:
         return _with_track_keys(
             _reaching(script, time), time, {name: values[name] for name in changed or script.tracks}
@@ -136,12 +131,12 @@ def keyed(script: Script, time: float, values: Mapping[str, float], limits: Limi
     posed = {name: rounded(value) for name, value in within(limits, wanted).items()}
     rest = {name: values[name] - posed[name] for name in changed if name in script.tracks}
     differing = {name: value for name, value in rest.items() if abs(value - added[name]) > SAME}
-    before = pose_at(script, time)
+    present = pose_at(script, time)
     pose = Pose(
-        before.time if before else time,
+        present.time if present else time,
         {name: value for name, value in posed.items() if value},
-        before.easing if before else _easing_at(script.poses, time),
-        before.name if before else None,
+        present.easing if present else _easing_at(script.poses, time),
+        present.name if present else None,
     )
     with_pose = replace(script, poses=tuple(_merged(script.poses, [pose])))
     return _reaching(_with_track_keys(with_pose, time, differing), time)
@@ -187,11 +182,12 @@ def _placed(
     shift = max(seconds, -min((place.time for place in places), default=0.0))
     chosen = frozenset(places)
 
-    def arrived(lane: str, items: Iterable[Item]) -> list[Item]:
+    def arrived(track: str, items: Iterable[Item]) -> list[Item]:
+        """Where the chosen keys of a track are then."""
         return [
             replace(item, time=rounded(item.time + shift))
             for item in items
-            if KeyPlace(lane, item.time) in chosen
+            if KeyPlace(track, item.time) in chosen
         ]
 
     poses = arrived(POSES, source.poses)

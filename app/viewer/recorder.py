@@ -17,7 +17,7 @@ class Recorder:
         self._tracks: dict[str, list[tuple[float, float]]] = {}
         self._drafts: dict[str, tuple[list[tuple[float, float]], int]] = {}
 
-    def take(self, seconds: float, values: Mapping[str, float]) -> None:
+    def add(self, seconds: float, values: Mapping[str, float]) -> None:
         """`seconds` went by since the last call, and the controls are now at `values`."""
         before, self.time = self.time, self.time + seconds
         for name, value in values.items():

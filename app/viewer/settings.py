@@ -18,14 +18,18 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from risorius import render
+
 from ..errors import UserError, in_one_line
 from ..inputs import read_text
 from ..outputs import written_aside
 from ..refining import refiner_for
 from ..scenes import Scene
+from .overlays import overlays_of
 from .setting_rules import (
     LOOK,
     SETTINGS,
+    ZOOMS,
     Refused,
     camera,
     flag,
@@ -55,6 +59,28 @@ class Look:
     wrinkles: float = 1.0  # how deep skin wrinkles where it is compressed, 0..1
     overlays: list[str] = field(default_factory=list)  # keys of overlays.OVERLAYS
 
+    def toggle(self, name: str) -> None:
+        """Switch a field that is on or off."""
+        setattr(self, name, not getattr(self, name))
+
+    def switch(self, name: str, value: str, other: str) -> None:
+        """Give a field this value, or the other if it has it already."""
+        setattr(self, name, other if getattr(self, name) == value else value)
+
+    def toggle_overlay(self, name: str) -> None:
+        """Show an overlay or hide it."""
+        others = [each for each in self.overlays if each != name]
+        self.overlays = others if name in self.overlays else [*others, name]
+
+    def next_shading(self) -> None:
+        """Flat, Gouraud, per pixel, and round again."""
+        order = [shading.value for shading in render.Shading]
+        self.shading = order[(order.index(self.shading) + 1) % len(order)]
+
+    def drop_missing_overlays(self, scene: Scene) -> None:
+        """Show none that this scene has no data for."""
+        self.overlays = [name for name in self.overlays if name in overlays_of(scene)]
+
 
 @dataclass
 class Settings:
@@ -69,6 +95,15 @@ class Settings:
     folds: dict[str, bool] = field(default_factory=dict)  # which headings are open, by title
     cameras: dict[str, list[float]] = field(default_factory=dict)  # by scene
     look: Look = field(default_factory=Look)
+
+    def toggle_theme(self) -> None:
+        """Light or dark."""
+        self.theme = "light" if self.theme == "dark" else "dark"
+
+    def enlarge(self, factor: float) -> None:
+        """Make words and sliders larger or smaller."""
+        least, most = ZOOMS
+        self.zoom = min(max(self.zoom * factor, least), most)
 
 
 def look_of(

@@ -14,11 +14,11 @@ from risorius.app.script import load_script, parse_script
 from risorius.app.script_writer import is_pose, pose_script, save_script, script_text
 from risorius.app.viewer import picking
 from risorius.app.viewer.clock import MOST_STEPS, STEP, Clock
+from risorius.app.viewer.control_rows import found, mirrored, rows_of
 from risorius.app.viewer.history import History
+from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.overlays import OVERLAYS, overlays_of
-from risorius.app.viewer.quality import FULL, LEVELS, PATIENCE, Quality
 from risorius.app.viewer.recorder import TOLERANCE, Recorder
-from risorius.app.viewer.rows import found, mirrored, rows_of
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.tour import STOPS
 from risorius.assets.fitting import fit_head
@@ -84,7 +84,7 @@ def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path
     assert not session.unsaved
     session.neutral()
     run(session)
-    session.take(session.read(tmp_path / "take.toml"))
+    session.open(session.read(tmp_path / "take.toml"))
     session.toggle_playing()
     while session.is_playing:
         session.advance(STEP)
@@ -107,7 +107,7 @@ def test_recordings_keep_corners_only() -> None:
     times = np.arange(1, 241) * STEP
     wave = 0.5 - 0.5 * np.cos(3.0 * times)
     for time, value in zip(times, wave, strict=True):
-        recorder.take(STEP, {"wave": value, "ramp": time / 4.0, "rest": 0.0})
+        recorder.add(STEP, {"wave": value, "ramp": time / 4.0, "rest": 0.0})
     script = recorder.script(title="t", scene="face", camera=None)
     assert script is not None and set(script.tracks) == {"wave", "ramp"}
     assert len(script.tracks["ramp"].keys) <= 3
@@ -205,7 +205,7 @@ def test_clock_steps_at_its_own_rate() -> None:
 
 def test_quality_falls_once_and_does_not_flicker() -> None:
     """Slow frames lower the level; fast ones raise it by one, and only as a motion begins."""
-    quality = Quality(is_software=False)
+    quality = LevelOfDetail(is_software=False)
     assert quality.detail == FULL
     for _ in range(2 * PATIENCE):
         quality.note(0.08)

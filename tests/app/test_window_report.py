@@ -7,7 +7,7 @@ import os
 import pytest
 
 from risorius.app import window_report
-from risorius.app.viewer.quality import LEVELS
+from risorius.app.viewer.level_of_detail import LEVELS
 
 pytestmark = [
     pytest.mark.window,
