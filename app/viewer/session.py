@@ -101,17 +101,14 @@ class Session:
     def show(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""
         pose = dict.fromkeys(self.limits, 0.0)
-        if self.sole_control != name:
+        if not self.shows(name):
             pose[name] = self.limits[name][1]
         self._set_pose(pose, is_unsaved=False)
 
-    @property
-    def sole_control(self) -> str | None:
-        """The one control that is not 0, if it is at its most."""
-        active = [name for name, value in self.values.items() if value]
-        if len(active) == 1 and self.values[active[0]] == self.limits[active[0]][1]:
-            return active[0]
-        return None
+    def shows(self, name: str) -> bool:
+        """Whether this control alone is not 0, and at its most."""
+        active = {each: value for each, value in self.values.items() if value}
+        return active == {name: self.limits[name][1]}
 
     def neutral(self) -> None:
         """All controls to zero; the skin swings back by itself."""

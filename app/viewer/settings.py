@@ -59,11 +59,7 @@ class Look:
     wrinkles: float = 1.0  # how deep skin wrinkles where it is compressed, 0..1
     overlays: list[str] = field(default_factory=list)  # keys of overlays.OVERLAYS
 
-    def toggle(self, name: str) -> None:
-        """Switch a field that is on or off."""
-        setattr(self, name, not getattr(self, name))
-
-    def switch(self, name: str, value: str, other: str) -> None:
+    def switch(self, name: str, value: object = True, other: object = False) -> None:
         """Give a field this value, or the other if it has it already."""
         setattr(self, name, other if getattr(self, name) == value else value)
 

@@ -10,7 +10,7 @@ from operator import attrgetter
 
 from ..script import Channel, Pose, Script
 from .control_rows import readable
-from .keys import POSES, SAME, KeyPlace
+from .keys import POSES, SAME, KeyPlace, keys_by_track
 
 TRACKS = "Tracks"
 MOST_LINES = 7  # of a key's values that are told
@@ -62,8 +62,8 @@ def visible_tracks(script: Script, *, is_open: bool) -> tuple[Track, ...]:
 
 
 def _places(script: Script, names: Sequence[str]) -> tuple[KeyPlace, ...]:
-    items = ((name, script.poses if name == POSES else script.tracks[name].keys) for name in names)
-    places = [KeyPlace(name, item.time) for name, keys in items for item in keys]
+    keys = keys_by_track(script)
+    places = [KeyPlace(name, key.time) for name in names for key in keys[name]]
     return tuple(sorted(places, key=attrgetter("time")))
 
 
@@ -80,34 +80,23 @@ def _still(track: Channel) -> tuple[tuple[float, float], ...]:
 
 
 def described(script: Script, places: frozenset[KeyPlace]) -> str:
-    """What there is to say about keys at one time: name and time, then what they hold."""
-    time = min(place.time for place in places)
-    lines = []
-    for place in sorted(places):
-        if place.track == POSES:
-            pose = next(pose for pose in script.poses if pose.time == place.time)
-            lines += [_value(name, value) for name, value in pose.values.items() if value]
-            lines = lines or ["neutral"]
-        else:
-            keys = script.tracks[place.track].keys
-            value = next(key.value for key in keys if key.time == place.time)
-            lines.append(_value(place.track, value))
+    """What there is to say about keys at one time: a title, then the values that they hold."""
+    name, lines, easings = "", list[str](), set[str]()
+    for track, keys in sorted(keys_by_track(script).items()):  # the poses come first
+        for key in keys:
+            if KeyPlace(track, key.time) not in places:
+                continue
+            easings.add(key.easing)
+            if isinstance(key, Pose):
+                name = key.name or ""
+                lines += [_value(*each) for each in key.values.items() if each[1]] or ["neutral"]
+            else:
+                lines.append(_value(track, key.value))
+    time = f"{min(place.time for place in places):.2f} s"
+    title = ", ".join(filter(None, (name, time, *sorted(easings - {"smooth"}))))
     more = [f"and {len(lines) - MOST_LINES} more"] if len(lines) > MOST_LINES else []
-    return "\n".join([_title(script, places, time), *lines[:MOST_LINES], *more])
+    return "\n".join([title, *lines[:MOST_LINES], *more])
 
 
 def _value(name: str, value: float) -> str:
     return f"{readable(name)} {value:.2f}"
-
-
-def _title(script: Script, places: frozenset[KeyPlace], time: float) -> str:
-    """The pose's name if it has one, the time, and how the key is approached if not as usual."""
-    name, easings = "", set()
-    for pose in script.poses:
-        if KeyPlace(POSES, pose.time) in places:
-            name = pose.name or ""
-            easings.add(pose.easing)
-    for control, track in script.tracks.items():
-        easings |= {key.easing for key in track.keys if KeyPlace(control, key.time) in places}
-    special = sorted(easings - {"smooth"})
-    return ", ".join(part for part in (name, f"{time:.2f} s", *special) if part)

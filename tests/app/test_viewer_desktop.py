@@ -120,7 +120,7 @@ def test_full_screen_without_panels_still_acts(viewer: Viewer) -> None:
     xdotool(viewer, "key", "F11", "Tab")
     assert until(viewer, lambda: viewer.view.viewport == (0, 0, *screen_size()), 5.0)
     xdotool(viewer, "key", "3")
-    assert viewer.session.sole_control == list(viewer.session.scene.expressions)[2]
+    assert viewer.session.shows(viewer.session.scene.expressions[2])
     xdotool(viewer, "key", "F11")
     assert until(viewer, lambda: viewer.view.viewport == (0, 0, *SIZE), 5.0)
     xdotool(viewer, "key", "3", "Tab")

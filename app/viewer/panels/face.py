@@ -87,7 +87,7 @@ class FacePanel:
             label = f"{number} {readable(name)}" if number <= 9 else readable(name)
             if number > 1:
                 stay_in_line(button_width(label))
-            is_on = self._session.sole_control == name
+            is_on = self._session.shows(name)
             highlight = colour(self._gui.theme.accent, 0.5) if is_on else None
             if button(self._gui, f"{label}##button", name=f"show {name}", highlight=highlight):
                 self._session.show(name)

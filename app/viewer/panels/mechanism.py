@@ -89,7 +89,7 @@ class MechanismPanel:
 
     def _draw_refinement(self) -> None:
         look, stage = self._look, self._stage
-        self._check("Refine", look.is_refined, partial(look.toggle, "is_refined"))
+        self._check("Refine", look.is_refined, partial(look.switch, "is_refined"))
         names = [name for name in refine.available() if name != "none"]
         self._choose("Refiner", look.refiner, names, partial(setattr, look, "refiner"))
         self._choose("Compare", look.compare, COMPARISONS, partial(setattr, look, "compare"))
@@ -145,9 +145,9 @@ class MechanismPanel:
         if self._stage.scene.wrinkles is not None:
             depth = self._slide("Wrinkles", "wrinkles", look.wrinkles, (0.0, 1.0), 1.0)
             look.wrinkles = look.wrinkles if depth is None else depth
-        self._check("Wireframe", look.wireframe, partial(look.toggle, "wireframe"))
+        self._check("Wireframe", look.wireframe, partial(look.switch, "wireframe"))
         imgui.same_line(_label_width())
-        self._check("Occlusion", look.occlusion, partial(look.toggle, "occlusion"))
+        self._check("Occlusion", look.occlusion, partial(look.switch, "occlusion"))
 
     def _draw_overlays(self) -> None:
         look = self._look
