@@ -16,7 +16,7 @@ import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from risorius import render
 
@@ -25,18 +25,10 @@ from ..inputs import read_text
 from ..outputs import written_aside
 from ..refining import refiner_for
 from ..scenes import Scene
-from .overlays import overlays_of
-from .setting_rules import (
-    LOOK,
-    SETTINGS,
-    ZOOMS,
-    Refused,
-    camera,
-    flag,
-    option,
-    table_of_refiner,
-    whole_number,
-)
+from . import setting_rules as rules
+from .colours import COLOURS
+from .gui import THEMES
+from .overlays import OVERLAYS, overlays_of
 
 FILE_NAME = "viewer.json"
 LONGEST_FILE = 2**20  # [bytes]; those that we write have two thousand
@@ -46,18 +38,19 @@ LONGEST_FILE = 2**20  # [bytes]; those that we write have two thousand
 class Look:
     """How the scene is shown; the names are those that panels show."""
 
-    refiner: str = "kahler"
+    refiner: Annotated[str, rules.refiner] = "kahler"
     options: dict[str, dict[str, Any]] = field(default_factory=dict)  # by refiner
-    is_refined: bool = True
-    compare: str = "off"  # off, wipe, side by side
-    divider: float = 0.5  # of the picture's width
-    shading: str = "pixel"
-    wireframe: bool = False
-    colours: str = "none"  # a key of colours.COLOURS
-    skin: str = "textured"  # textured, plain, clay
-    occlusion: bool = True  # less light in folds; of textured skin
-    wrinkles: float = 1.0  # how deep skin wrinkles where it is compressed, 0..1
-    overlays: list[str] = field(default_factory=list)  # keys of overlays.OVERLAYS
+    is_refined: Annotated[bool, rules.flag] = True
+    compare: Annotated[str, rules.one_of(rules.COMPARISONS)] = "off"
+    divider: Annotated[float, rules.number(0.0, 1.0)] = 0.5  # of the picture's width
+    shading: Annotated[str, rules.one_of([each.value for each in render.Shading])] = "pixel"
+    wireframe: Annotated[bool, rules.flag] = False
+    colours: Annotated[str, rules.one_of(COLOURS)] = "none"
+    skin: Annotated[str, rules.one_of(rules.SKINS)] = "textured"
+    occlusion: Annotated[bool, rules.flag] = True  # less light in folds; of textured skin
+    # How deep skin wrinkles where it is compressed.
+    wrinkles: Annotated[float, rules.number(0.0, 1.0)] = 1.0
+    overlays: Annotated[list[str], rules.several_of(OVERLAYS)] = field(default_factory=list)
 
     def switch(self, name: str, value: object = True, other: object = False) -> None:
         """Give a field this value, or the other if it has it already."""
@@ -82,12 +75,13 @@ class Look:
 class Settings:
     """Everything that is remembered."""
 
-    size: tuple[int, int] | None = None  # of the window [screen units]
-    theme: str = "light"
-    zoom: float = 1.0  # of all words and sliders
-    is_linked: bool = True  # sliders of both sides
-    tab: str = "Face"
-    panel_width: float = 22.5  # [letters' heights]
+    size: Annotated[tuple[int, int] | None, rules.size] = None  # of the window [screen units]
+    theme: Annotated[str, rules.one_of(THEMES)] = "light"
+    zoom: Annotated[float, rules.number(*rules.ZOOMS)] = 1.0  # of all words and sliders
+    is_linked: Annotated[bool, rules.flag] = True  # sliders of both sides
+    tab: Annotated[str, rules.one_of(rules.TABS)] = "Face"
+    # [letters' heights]; layout.py has the limits of a screen.
+    panel_width: Annotated[float, rules.number(0.0, 1000.0)] = 22.5
     folds: dict[str, bool] = field(default_factory=dict)  # which headings are open, by title
     cameras: dict[str, list[float]] = field(default_factory=dict)  # by scene
     look: Look = field(default_factory=Look)
@@ -98,7 +92,7 @@ class Settings:
 
     def enlarge(self, factor: float) -> None:
         """Make words and sliders larger or smaller."""
-        least, most = ZOOMS
+        least, most = rules.ZOOMS
         self.zoom = min(max(self.zoom * factor, least), most)
 
 
@@ -141,25 +135,25 @@ def load_settings(path: Path) -> tuple[Settings, str]:
 
     In that case the file is set aside, and what is of use of it written anew.
     """
-    settings, refused = Settings(), Refused()
+    settings, refused = Settings(), rules.Refused()
     try:
         text = read_text(path, what="file of settings", longest=LONGEST_FILE)
-        stored = json.loads(text, parse_int=whole_number)
+        stored = json.loads(text, parse_int=rules.whole_number)
     except FileNotFoundError:
         return settings, ""
     except UserError as error:
         return settings, f"{error}; all is as at first; {_set_aside(path)}"
     except (ValueError, RecursionError) as error:
         return settings, f"{path}: not valid JSON: {error}; all is as at first; {_set_aside(path)}"
-    kept = refused.table("", stored, SETTINGS.get)
-    look = refused.table("look.", kept.pop("look", {}), LOOK.get)
-    options = refused.table("look.options.", look.pop("options", {}), table_of_refiner)
+    kept = refused.table("", stored, rules.rules_of(Settings).get)
+    look = refused.table("look.", kept.pop("look", {}), rules.rules_of(Look).get)
+    options = refused.table("look.options.", look.pop("options", {}), rules.table_of_refiner)
     look["options"] = {
-        name: refused.table(f"look.options.{name}.", found, lambda _: option)
+        name: refused.table(f"look.options.{name}.", found, lambda _: rules.option)
         for name, found in options.items()
     }
-    kept["folds"] = refused.table("folds.", kept.pop("folds", {}), lambda _: flag)
-    kept["cameras"] = refused.table("cameras.", kept.pop("cameras", {}), lambda _: camera)
+    kept["folds"] = refused.table("folds.", kept.pop("folds", {}), lambda _: rules.flag)
+    kept["cameras"] = refused.table("cameras.", kept.pop("cameras", {}), lambda _: rules.camera)
     settings, told = Settings(**kept, look=Look(**look)), str(refused)
     if not told:
         return settings, ""
