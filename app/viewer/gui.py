@@ -179,8 +179,8 @@ def fixed_panel(
     name: str, place: tuple[float, float], size: tuple[float, float], *, resizes: bool = False
 ) -> Iterator[None]:
     """A panel that stays where it is; its edges may be dragged if it resizes."""
-    imgui.set_next_window_pos(imgui.ImVec2(*place))
-    imgui.set_next_window_size(imgui.ImVec2(max(size[0], 1.0), max(size[1], 1.0)))
+    imgui.set_next_window_pos(place)
+    imgui.set_next_window_size((max(size[0], 1.0), max(size[1], 1.0)))
     flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_scroll_with_mouse
     flags |= imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_move
     flags |= imgui.WindowFlags_.no_scrollbar if resizes else imgui.WindowFlags_.no_resize

@@ -45,7 +45,7 @@ from .panels.mechanism import MechanismPanel
 from .panels.menu_bar import MenuBar
 from .panels.message_line import draw_message
 from .panels.question_box import draw_question
-from .panels.recovery_banner import RecoveryBanner
+from .panels.recovery_banner import draw_recovery
 from .panels.timeline import Timeline
 from .physics import Physics
 from .placement import Placement, first_size
@@ -148,8 +148,7 @@ class Viewer:
             gui,
             session,
             messages,
-            scripts=self.scripts,
-            selection=self.selection,
+            commands=self.commands,
             exporter=self.exporter,
             sheet=DopeSheet(
                 gui,
@@ -170,7 +169,6 @@ class Viewer:
             tabs={"Face": self.face_panel, "Mechanism": mechanism},
             timeline=self.timeline,
         )
-        self._banner = RecoveryBanner(gui, self.recovery, session, self.question, self.view)
         self._chooser = FileChooser(gui, self.files)
         self.mouse = Mouse(self.view, self.stage, self.select_muscle)
 
@@ -299,10 +297,13 @@ class Viewer:
             self._layout.draw(self.view)
             messages.age(imgui.get_io().delta_time)
             draw_message(gui, messages, self.view)
-            self._banner.draw(messages)
-            messages.attempt(self.files.poll)
-            messages.attempt(self._chooser.draw)
-            messages.attempt(lambda: draw_question(gui, self.question, self.session, self.scripts))
+            for draw in (
+                partial(draw_recovery, gui, self.recovery, self.session, self.question, self.view),
+                self.files.poll,
+                self._chooser.draw,
+                partial(draw_question, gui, self.question, self.session, self.scripts),
+            ):
+                messages.attempt(draw)
             if state.is_help_open:
                 state.is_help_open = draw_help(gui, self.commands)
             if not (self.files.is_waiting or self.question.is_open):

@@ -26,96 +26,85 @@ def listing(folder: Path, suffixes: tuple[str, ...]) -> tuple[list[str], list[st
 
 
 class FileChooser:
-    """Answers requests for files that no native dialog takes."""
+    """Answers requests for files that no native dialog takes.
+
+    A line to type in, above it what is in the folder.
+    """
 
     def __init__(self, gui: Gui, files: Files) -> None:
         self._gui, self._files = gui, files
-        self._open: Chooser | None = None
+        self._request: Request | None = None  # for which it is open
 
     def draw(self) -> Line:
-        """Draw a chooser while one is needed, and go on with the file that it gives."""
+        """Draw it while it is needed, and go on with the file that it gives."""
         request = self._files.request
         if request is None or request.dialog is not None:
             return None
-        if self._open is None or self._open.request is not request:
-            self._open = Chooser(self._gui, request)
-        self._open.draw()
-        return self._files.answer(self._open.chosen) if self._open.is_done else None
+        if self._request is not request:
+            self._open(request)
+        is_done, chosen = self._draw_box(request)
+        return self._files.answer(chosen) if is_done else None
 
-
-class Chooser:
-    """Asks for one file: a line to type in, above it what is in the folder.
-
-    chosen: the file, once it is done; None where none is wanted.
-    """
-
-    def __init__(self, gui: Gui, request: Request) -> None:
-        self._gui = gui
-        self.request = request
-        self.chosen: Path | None = None
-        self.is_done = False
+    def _open(self, request: Request) -> None:
+        self._request = request
         self._folders: list[str] = []
         self._found: list[str] = []
         self._complaint = ""
         self._warned: Path | None = None  # what is there already, as was said
         self._wants_focus = True  # of the line: on opening, and after each answer that was none
         self._name = request.proposed.name if request.is_saving else ""
-        self.folder = request.proposed.parent if request.is_saving else request.proposed
-        self._enter(self.folder)
+        self._folder = request.proposed.parent if request.is_saving else request.proposed
+        self._enter(request, self._folder)
 
-    def draw(self) -> None:
-        """Draw it, as a box that must be answered."""
-        title, display = self.request.title, imgui.get_io().display_size
-        if not imgui.is_popup_open(title):
-            imgui.open_popup(title)
-        width, height = min(em(SIZE[0]), display.x), min(em(SIZE[1]), display.y)
-        imgui.set_next_window_size(imgui.ImVec2(width, height))
-        middle = imgui.ImVec2(0.5 * display.x, 0.5 * display.y)
-        imgui.set_next_window_pos(middle, 0, imgui.ImVec2(0.5, 0.5))
+    def _draw_box(self, request: Request) -> tuple[bool, Path | None]:
+        """Draw what must be answered; whether it was, and the file, None where none is wanted."""
+        display = imgui.get_io().display_size
+        if not imgui.is_popup_open(request.title):
+            imgui.open_popup(request.title)
+        imgui.set_next_window_size((min(em(SIZE[0]), display.x), min(em(SIZE[1]), display.y)))
+        imgui.set_next_window_pos((0.5 * display.x, 0.5 * display.y), 0, (0.5, 0.5))
         flags = imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_saved_settings
-        is_open, _ = imgui.begin_popup_modal(title, None, flags)
-        if not is_open:
-            return
-        self._draw_places()
-        self._draw_listing()
-        if self._draw_line() and not self.is_done:
-            self._confirm()
+        if not imgui.begin_popup_modal(request.title, None, flags)[0]:
+            return False, None
+        self._draw_places(request)
+        chosen = self._draw_listing(request)
+        is_confirmed = self._draw_line(request)
+        if is_confirmed and chosen is None:
+            chosen = self._confirmed(request)
         imgui.same_line()
-        if button(self._gui, "Cancel", name="path cancelled") or imgui.is_key_pressed(
-            imgui.Key.escape
-        ):
-            self.chosen, self.is_done = None, True
+        is_cancelled = button(self._gui, "Cancel", name="path cancelled")
+        is_cancelled = is_cancelled or imgui.is_key_pressed(imgui.Key.escape)
         if self._complaint:
             imgui.same_line()
             imgui.text_colored(colour(self._gui.theme.error), self._complaint)
-        if self.is_done:
+        is_done = is_cancelled or chosen is not None
+        if is_done:
             imgui.close_current_popup()
         imgui.end_popup()
+        return is_done, None if is_cancelled else chosen
 
-    def _choose(self, path: Path) -> None:
-        self.chosen, self.is_done = path, True
-
-    def _draw_places(self) -> None:
+    def _draw_places(self, request: Request) -> None:
         """Where one may want to go, and where one is."""
-        places = {"Up": self.folder.parent, "Home": Path.home()}
-        if not self.request.is_saving and SUFFIX in self.request.suffixes:
+        places = {"Up": self._folder.parent, "Home": Path.home()}
+        if not request.is_saving and SUFFIX in request.suffixes:
             places["Examples"] = Path(str(files("risorius.assets") / "scripts"))
         for label, place in places.items():
             if button(self._gui, label, name=f"folder {label}"):
-                self._enter(place)
+                self._enter(request, place)
             imgui.same_line()
         room = imgui.get_content_region_avail().x
-        muted(self._gui, shortened(str(self.folder), room, keeps_end=True))
+        muted(self._gui, shortened(str(self._folder), room, keeps_end=True))
 
-    def _draw_listing(self) -> None:
-        """What is in the folder; a file may be clicked twice."""
+    def _draw_listing(self, request: Request) -> Path | None:
+        """What is in the folder; the file that was clicked twice, if any."""
+        chosen = None
         room = 2.2 * imgui.get_frame_height_with_spacing()
-        imgui.begin_child("listing", imgui.ImVec2(0.0, -room), imgui.ChildFlags_.borders)
+        imgui.begin_child("listing", (0.0, -room), imgui.ChildFlags_.borders)
         for name in self._folders:
             is_clicked, _ = imgui.selectable(f"{_label(name)}/###folder {name}", False)
             self._gui.remember(f"folder {name}")
             if is_clicked:
-                self._enter(self.folder / name)
+                self._enter(request, self._folder / name)
                 break
         for name in self._found:
             flags = imgui.SelectableFlags_.allow_double_click
@@ -125,13 +114,14 @@ class Chooser:
             self._gui.remember(f"file {name}")
             if is_clicked:
                 self._name, self._complaint = name, ""
-                if imgui.is_mouse_double_clicked(0) and not self.request.is_saving:
-                    self._choose(self.folder / name)
+                if imgui.is_mouse_double_clicked(0) and not request.is_saving:
+                    chosen = self._folder / name
         if not self._folders and not self._found:
-            muted(self._gui, f"no folders and no {' '.join(self.request.suffixes)} here")
+            muted(self._gui, f"no folders and no {' '.join(request.suffixes)} here")
         imgui.end_child()
+        return chosen
 
-    def _draw_line(self) -> bool:
+    def _draw_line(self, request: Request) -> bool:
         """The line to type in and the button below it; whether one of them was confirmed."""
         if self._wants_focus:
             imgui.set_keyboard_focus_here()
@@ -143,39 +133,40 @@ class Chooser:
         )
         self._gui.remember("path")
         label = "Open"
-        if self.request.is_saving:
-            label = "Replace" if self._warned == self._target() else "Save"
+        if request.is_saving:
+            label = "Replace" if self._warned == self._target(request) else "Save"
         return button(self._gui, label, name="path confirmed") or bool(is_entered)
 
-    def _target(self) -> Path:
+    def _target(self, request: Request) -> Path:
         """What the line stands for."""
-        target = self.folder / Path(self._name.strip().strip("'\"")).expanduser()
-        if self.request.is_saving and not target.suffix and not target.is_dir():
-            target = target.with_suffix(self.request.suffixes[0])
+        target = self._folder / Path(self._name.strip().strip("'\"")).expanduser()
+        if request.is_saving and not target.suffix and not target.is_dir():
+            target = target.with_suffix(request.suffixes[0])
         return target
 
-    def _confirm(self) -> None:
-        """Choose the file in the line, unless it is a folder, is missing or would be lost."""
-        target, is_saving = self._target(), self.request.is_saving
+    def _confirmed(self, request: Request) -> Path | None:
+        """The file in the line, unless it is a folder, is missing or would be lost unasked."""
+        target = self._target(request)
         if target.is_dir():
-            self._enter(target)
-        elif not is_saving and not target.is_file():
+            self._enter(request, target)
+        elif not request.is_saving and not target.is_file():
             self._complaint = f"there is no {target.name}"
-        elif is_saving and target.exists() and target != self._warned:
+        elif request.is_saving and target.exists() and target != self._warned:
             self._warned, self._complaint = target, f"{target.name} is there already"
         else:
-            self._choose(target)
-        self._wants_focus = not self.is_done
+            return target
+        self._wants_focus = True
+        return None
 
-    def _enter(self, folder: Path) -> None:
+    def _enter(self, request: Request, folder: Path) -> None:
         """Show a folder, if it may be read."""
         try:
-            self._folders, self._found = listing(folder, self.request.suffixes)
+            self._folders, self._found = listing(folder, request.suffixes)
         except OSError as error:
             self._complaint = f"{folder.name}: {error.strerror}"
             return
-        self.folder, self._complaint = folder.resolve(), ""
-        if not self.request.is_saving:
+        self._folder, self._complaint = folder.resolve(), ""
+        if not request.is_saving:
             self._name = ""
 
 

@@ -117,15 +117,15 @@ class DopeSheet:
             axis.fit(max(duration, last))
             if session.is_playing:
                 axis.follow(session.time)
-        imgui.set_cursor_screen_pos(imgui.ImVec2(place.x + self._gutter, place.y))
-        imgui.invisible_button("##time", imgui.ImVec2(room.x - self._gutter, em(RULER)))
+        imgui.set_cursor_screen_pos((place.x + self._gutter, place.y))
+        imgui.invisible_button("##time", (room.x - self._gutter, em(RULER)))
         self._gui.remember("time")
         if imgui.is_item_hovered():
             self._press_in_ruler(io)
             self._turn_wheel(io)
         edges = place.y, place.y + em(RULER)
         key_marks.draw_ruler(self._gui.theme, axis, session.time, duration, edges)
-        imgui.set_cursor_screen_pos(imgui.ImVec2(place.x, edges[1]))
+        imgui.set_cursor_screen_pos((place.x, edges[1]))
         self._draw_rows(io)
         if self._drag is not None:
             self._follow(io, self._drag)
@@ -140,11 +140,11 @@ class DopeSheet:
     def _draw_rows(self, io: Any) -> None:
         flags = imgui.WindowFlags_.no_scroll_with_mouse | imgui.WindowFlags_.no_background
         least = max(imgui.get_content_region_avail().y, em(ROW))
-        imgui.begin_child("keys", imgui.ImVec2(0.0, least), 0, flags)
+        imgui.begin_child("keys", (0.0, least), 0, flags)
         place, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
         heights = [track.height * em(ROW) for track in self._tracks]
         self._tops = list(itertools.accumulate(heights, initial=place.y))
-        size = imgui.ImVec2(room.x, self._tops[-1] - place.y)
+        size = (room.x, self._tops[-1] - place.y)
         imgui.invisible_button("##keys", size)
         self._gui.remember("keys")
         is_hovered = imgui.is_item_hovered()
@@ -153,7 +153,7 @@ class DopeSheet:
             theme, self._axis, self._selection.places, session.script.duration
         )
         for track, (top, bottom) in zip(self._tracks, itertools.pairwise(self._tops), strict=True):
-            corners = imgui.ImVec2(place.x, top), imgui.ImVec2(place.x + room.x, bottom)
+            corners = (place.x, top), (place.x + room.x, bottom)
             if imgui.is_rect_visible(*corners):
                 painter.draw(track, top, em(ROW))
                 arrow = em(0.9) if track.is_sum else 0.0

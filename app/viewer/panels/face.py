@@ -36,7 +36,7 @@ class FacePanel:
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
         self._draw_buttons()
-        imgui.begin_child("controls", imgui.ImVec2(0.0, 0.0))
+        imgui.begin_child("controls", (0.0, 0.0))
         for title, names in self._session.groups.items():
             self._draw_group(title, names)
         imgui.end_child()

@@ -50,10 +50,8 @@ WIDE = 63.0  # [em] that the wide ones take
 def draw_help(gui: Gui, commands: Sequence[Command]) -> bool:
     """Draw the sheet, scrolled where the window is small; whether it stays open."""
     display = imgui.get_io().display_size
-    imgui.set_next_window_pos(
-        imgui.ImVec2(0.5 * display.x, 0.5 * display.y), 0, imgui.ImVec2(0.5, 0.5)
-    )
-    imgui.set_next_window_size_constraints(imgui.ImVec2(0.0, 0.0), display)
+    imgui.set_next_window_pos((0.5 * display.x, 0.5 * display.y), 0, (0.5, 0.5))
+    imgui.set_next_window_size_constraints((0.0, 0.0), display)
     flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_collapse
     flags |= imgui.WindowFlags_.horizontal_scrollbar
     _, stays = imgui.begin("Keys and mouse (F1)", True, flags)

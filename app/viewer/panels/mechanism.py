@@ -75,7 +75,7 @@ class MechanismPanel:
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
-        imgui.begin_child("mechanism", imgui.ImVec2(0.0, 0.0))
+        imgui.begin_child("mechanism", (0.0, 0.0))
         times_label = f"Milliseconds, {self._times.frames_per_second:.0f} frames a second"
         for title, label, draw in (
             ("Refinement", "", self._draw_refinement),
@@ -173,7 +173,7 @@ class MechanismPanel:
                 overlay_text=f"{name}  {median:.2f}",
                 scale_min=0.0,
                 scale_max=max(float(times.max()), 0.1) * 1.3,
-                graph_size=imgui.ImVec2(width, em(2.2)),
+                graph_size=(width, em(2.2)),
             )
         self._gui.remember("plot")
 

@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from imgui_bundle import imgui
 
+from ..command import Command
 from ..export import Exporter
 from ..gui import Gui, colour, em
-from ..key_selection import KeySelection
-from ..messages import Messages, Task
-from ..script_commands import ScriptCommands
+from ..messages import Messages
 from ..session import SPEEDS, Session
 from .dope_sheet import DopeSheet
 from .widgets import button, hint, shortened, stay_in_line
 
 BUTTON_WIDTH, SPEED_WIDTH = 4.0, 4.6  # [em]
 MOST_HEIGHT = 0.4  # of the window
+# By the label of the command: what the button reads while that is on, and a hint.
+BUTTONS = {
+    "Play": ("Pause", "play the script, or pause it (Space)"),
+    "Record": (
+        "Stop",
+        "take every movement of every control, until it is stopped (Ctrl+R)",
+    ),
+    "Loop": ("Loop", "begin again at the end (L)"),
+    "Set key": ("Set key", "the face as it is becomes a key at the time shown (K)"),
+}
 
 
 class Timeline:
@@ -26,14 +37,14 @@ class Timeline:
         session: Session,
         messages: Messages,
         *,
-        scripts: ScriptCommands,
-        selection: KeySelection,
+        commands: Iterable[Command],
         exporter: Exporter,
         sheet: DopeSheet,
     ) -> None:
+        """commands: those of the buttons must be among them."""
         self._gui, self._session, self._messages = gui, session, messages
-        self._scripts, self._selection, self._exporter = scripts, selection, exporter
-        self.sheet = sheet
+        self._commands = {command.label: command for command in commands}
+        self._exporter, self.sheet = exporter, sheet
         self._rows = 1  # of buttons, which go on in a second one where the window is narrow
 
     def height(self) -> float:
@@ -45,28 +56,31 @@ class Timeline:
 
     def draw(self) -> None:
         """Draw everything, inside its window."""
-        session = self._session
         top = imgui.get_cursor_pos_y()
-        label = "Pause" if session.is_playing else "Play"
-        self._button("play", label, session.toggle_playing, "play the script, or pause it (Space)")
-        stay_in_line(em(BUTTON_WIDTH))
-        self._button(
-            "record",
-            "Stop" if session.is_recording else "Record",
-            self._scripts.toggle_recording,
-            "take every movement of every control, until it is stopped (Ctrl+R)",
-            is_on=session.is_recording,
-        )
-        stay_in_line(em(BUTTON_WIDTH))
-        loops, meaning = session.is_looping, "begin again at the end (L)"
-        self._button("loop", "Loop", session.toggle_looping, meaning, is_on=loops)
+        for label in ("Play", "Record", "Loop"):
+            self._draw_button(label)
         self._draw_speed()
-        stay_in_line(em(BUTTON_WIDTH))
-        meaning = "the face as it is becomes a key at the time shown (K)"
-        self._button("set key", "Set key", self._selection.set_key, meaning)
+        self._draw_button("Set key")
         self._draw_words()
         self._rows = round((imgui.get_cursor_pos_y() - top) / imgui.get_frame_height_with_spacing())
         self.sheet.draw()
+
+    def _draw_button(self, label: str) -> None:
+        command, (label_on, meaning) = self._commands[label], BUTTONS[label]
+        is_on = command.is_on is not None and command.is_on()
+        is_first, width = label == "Play", em(BUTTON_WIDTH)
+        if not is_first:
+            stay_in_line(width)
+        highlight = colour(self._gui.theme.accent, 0.6) if is_on and not is_first else None
+        if button(
+            self._gui,
+            label_on if is_on else label,
+            name=label.lower(),
+            width=width,
+            meaning=meaning,
+            highlight=highlight,
+        ):
+            self._messages.attempt(command.run)
 
     def _draw_speed(self) -> None:
         stay_in_line(em(SPEED_WIDTH))
@@ -98,11 +112,3 @@ class Timeline:
         imgui.text_colored(colour(ink), shortened(words, imgui.get_content_region_avail().x))
         where = session.file.path or "not kept in a file yet"
         hint(f"{session.script.title or session.name}: {where}")
-
-    def _button(
-        self, name: str, label: str, run: Task, meaning: str, *, is_on: bool = False
-    ) -> None:
-        highlight = colour(self._gui.theme.accent, 0.6) if is_on else None
-        width = em(BUTTON_WIDTH)
-        if button(self._gui, label, name=name, width=width, meaning=meaning, highlight=highlight):
-            self._messages.attempt(run)

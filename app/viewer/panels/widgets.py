@@ -45,7 +45,7 @@ def button(
     """
     if highlight is not None:
         imgui.push_style_color(imgui.Col_.button, highlight)
-    is_clicked = imgui.button(label, imgui.ImVec2(width, 0.0))
+    is_clicked = imgui.button(label, (width, 0.0))
     if highlight is not None:
         imgui.pop_style_color()
     gui.remember(name or label)
