@@ -25,23 +25,16 @@ POSE_TITLE = "Unsaved pose"
 
 
 class Recovery:
-    """Keeps a session's unsaved work safe in a folder; without one it does nothing.
-
-    found: what a window left behind that ended, to be offered; None where there is nothing.
-    """
-
-    found: Work | None
+    """Keeps a session's unsaved work safe in a folder; without one it does nothing."""
 
     def __init__(self, folder: Path | None, clock: Callable[[], float] = time.monotonic) -> None:
         self._folder, self._clock = folder, clock
         self._place: Place | None = None
         self._found_in: Place | None = None
-        self.found = None
         self._seen: object = None  # the state of the session, and when it became so
         self._changed_at = 0.0
         self._safe: object = None  # the state that the files have, and since when they may lag
         self._lags_since = 0.0
-        self._kept = Work()
         self._writing_took = 0.0
         self._is_failing = False
 
@@ -50,11 +43,16 @@ class Recovery:
         self._leave_found()
         if self._folder is None:
             return
-        for place, work in left_behind(self._folder):
-            if work.fits(session.script.scene, session.limits):
-                self._found_in, self.found = place, work
+        for place in left_behind(self._folder):
+            if place.work.fits(session.script.scene, session.limits):
+                self._found_in = place
                 return
             place.leave()
+
+    @property
+    def found(self) -> Work | None:
+        """What a window left behind that ended, to be offered; None where there is nothing."""
+        return self._found_in.work if self._found_in is not None else None
 
     @property
     def found_at(self) -> float:
@@ -63,13 +61,12 @@ class Recovery:
 
     def take_found(self, session: Session) -> None:
         """What was found is the session's work now, in place of what it had."""
-        if self.found is None or self._found_in is None:
+        if self._found_in is None:
             return
-        session.recover(self.found, self.found_at)
+        session.recover(self._found_in.work, self.found_at)
         self.discard()
-        self._place, self._kept = self._found_in, self.found
+        self._place, self._found_in = self._found_in, None
         self._seen = self._safe = _state(session)
-        self._found_in = self.found = None
 
     def drop_found(self, session: Session) -> None:
         """What was found is given up; there may be more."""
@@ -110,11 +107,9 @@ class Recovery:
         try:
             if self._place is None:
                 self._place = Place.new(self._folder)
-            work = work_of(session)
-            self._place.write(work, self._kept)
-            self._kept, self._is_failing = work, False
+            self._place.write(work_of(session))
+            self._is_failing = False
         except UserError as error:
-            self._kept = Work()
             is_told, self._is_failing = self._is_failing, True
             if not is_told:
                 raise UserError(f"unsaved work is not kept safe: {error}") from None
@@ -126,7 +121,7 @@ class Recovery:
         """All is saved, or knowingly thrown away."""
         if self._place is not None:
             self._place.remove()
-        self._place, self._kept = None, Work()
+        self._place = None
 
     @contextlib.contextmanager
     def guarding(self, session: Session) -> Iterator[None]:
@@ -149,7 +144,7 @@ class Recovery:
     def _leave_found(self) -> None:
         if self._found_in is not None:
             self._found_in.leave()
-        self._found_in = self.found = None
+        self._found_in = None
 
 
 def work_of(session: Session) -> Work:

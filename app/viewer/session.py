@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -276,12 +275,13 @@ class Session:
         return self._recorder is not None
 
     def toggle_recording(self) -> None:
-        """Record the controls from now on, or take what was recorded as the script."""
+        """Record the controls from now on, or make what was recorded the script."""
         if self._recorder is None:
-            self._recorder = Recorder()
-            self._held = {}
+            scene, camera = self.script.scene, self.script.camera
+            empty = Script("Recording", 0.0, "Recording", scene=scene, camera=camera)
+            self._recorder, self._held = Recorder(empty), {}
             return
-        recording = self._recorder.script(**self._recording_head)
+        recording = self._recorder.script()
         self._recorder, self._held = None, {}
         self.is_playing = False
         if recording is None:
@@ -290,12 +290,8 @@ class Session:
 
     @property
     def recording_so_far(self) -> Script | None:
-        """What would be taken as the script if the recording was stopped now, or nearly so."""
-        return self._recorder.draft(**self._recording_head) if self._recorder is not None else None
-
-    @property
-    def _recording_head(self) -> dict[str, Any]:
-        return {"title": "Recording", "scene": self.script.scene, "camera": self.script.camera}
+        """What would be the script if the recording was stopped now, or nearly so."""
+        return self._recorder.draft() if self._recorder is not None else None
 
     @property
     def recorded_seconds(self) -> float:

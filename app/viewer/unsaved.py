@@ -69,10 +69,16 @@ class Work:
 
 
 class Place:
-    """The files of one window; others leave them alone until `leave` or the process's end."""
+    """The files of one window; others leave them alone until `leave` or the process's end.
+
+    work: what is in them.
+    """
+
+    work: Work
 
     def __init__(self, folder: Path, name: str, lock: IO[Any]) -> None:
         self._folder, self._name, self._lock = folder, name, lock
+        self.work = Work()
 
     @classmethod
     def new(cls, folder: Path) -> Place:
@@ -84,8 +90,9 @@ class Place:
         assert lock is not None
         return cls(folder, name, lock)
 
-    def write(self, work: Work, before: Work) -> None:
-        """Keep work in place of what was kept before; UserError where it cannot be written."""
+    def write(self, work: Work) -> None:
+        """Keep work in place of what there is; UserError where it cannot be written."""
+        before, self.work = self.work, Work()  # lest after an error something is thought to be safe
         for kind in KINDS:
             script = getattr(work, kind)
             if script is None:
@@ -96,9 +103,10 @@ class Place:
                 if kind == "script" and work.path is not None:
                     text += f"\n{FILE_LINE}{json.dumps(str(work.path.absolute()))}\n"
                 save_text(self._file(kind), text)
+        self.work = work
 
-    def read(self) -> Work:
-        """What is kept here; UserError or OSError where a file is damaged."""
+    def read(self) -> None:
+        """Find the work that is there; UserError or OSError where a file is damaged."""
         texts = {
             kind: read_text(file, what="script", longest=LONGEST_FILE)
             for kind, file in self._files().items()
@@ -109,7 +117,7 @@ class Place:
         scripts = {
             kind: parse_script(text, source=sources.get(kind, kind)) for kind, text in texts.items()
         }
-        return Work(path=path, **scripts)
+        self.work = Work(path=path, **scripts)
 
     @property
     def time(self) -> float:
@@ -134,8 +142,8 @@ class Place:
         return {kind: self._file(kind) for kind in KINDS if self._file(kind).exists()}
 
 
-def left_behind(folder: Path) -> Iterator[tuple[Place, Work]]:
-    """The places in a folder whose windows ended, and what is in each; the latest first.
+def left_behind(folder: Path) -> Iterator[Place]:
+    """The places in a folder with work in them whose windows ended; the latest first.
 
     What cannot be read stays there and is passed by. Whoever does not want a place leaves it.
     """
@@ -149,11 +157,11 @@ def left_behind(folder: Path) -> Iterator[tuple[Place, Work]]:
             if lock is None:
                 continue
             place = Place(folder, name, lock)
-            work = place.read()
+            place.read()
         except (OSError, UserError):
             continue
-        if work:
-            yield place, work
+        if place.work:
+            yield place
         else:
             place.remove()
 

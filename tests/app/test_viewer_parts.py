@@ -10,7 +10,7 @@ import pytest
 from risorius.app.choices import script_for
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
-from risorius.app.script import load_script, parse_script
+from risorius.app.script import Script, load_script, parse_script
 from risorius.app.script_writer import is_pose, pose_script, save_script, script_text
 from risorius.app.viewer import picking
 from risorius.app.viewer.clock import MOST_STEPS, STEP, Clock
@@ -103,12 +103,12 @@ def test_an_empty_recording_is_refused(session: Session) -> None:
 
 def test_recordings_keep_corners_only() -> None:
     """Straight movements need two keys, and no key is further off than the tolerance."""
-    recorder = Recorder()
+    recorder = Recorder(Script("t", 0.0, "t"))
     times = np.arange(1, 241) * STEP
     wave = 0.5 - 0.5 * np.cos(3.0 * times)
     for time, value in zip(times, wave, strict=True):
         recorder.add(STEP, {"wave": value, "ramp": time / 4.0, "rest": 0.0})
-    script = recorder.script(title="t", scene="face", camera=None)
+    script = recorder.script()
     assert script is not None and set(script.tracks) == {"wave", "ramp"}
     assert len(script.tracks["ramp"].keys) <= 3
     assert len(script.tracks["wave"].keys) < 100

@@ -307,8 +307,9 @@ def test_work_that_fails_to_be_written_leaves_what_was_kept(
 ) -> None:
     """A disk that fills up in the middle of writing: the file of before is still whole."""
     place = Place.new(tmp_path)
-    place.write(Work(script=session.script), Work())
-    before = place.read()
+    place.write(Work(script=session.script))
+    place.read()
+    before = place.work
 
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
@@ -316,8 +317,10 @@ def test_work_that_fails_to_be_written_leaves_what_was_kept(
     monkeypatch.setattr(os, "replace", full)
     longer = replace(session.script, duration=9.0)
     with pytest.raises(UserError, match="No space left"):
-        place.write(Work(script=longer), before)
-    assert place.read() == before
+        place.write(Work(script=longer))
+    assert not place.work
+    place.read()
+    assert place.work == before
     place.remove()
     assert [file.name for file in tmp_path.iterdir()] == ["smile.toml"]
 
