@@ -84,6 +84,7 @@ def highest_first(
     """Expressions, then the other layers above the muscles, then muscles, jaw and gaze."""
 
     def rank(title: str) -> int:
+        """From the top, 0 first."""
         first = groups[title][0]
         return 0 if first in expressions else 1 if first not in muscles else 2
 

@@ -79,7 +79,7 @@ class FileDrop:
         """Whether a head waits to be fitted."""
         return self._announced is not None
 
-    def take(self, paths: Sequence[str]) -> Line:
+    def open(self, paths: Sequence[str]) -> Line:
         """Open files, or announce that a head will be fitted."""
         dropped = DroppedFiles.of([Path(path) for path in paths])
         if not dropped.has_head:
@@ -111,7 +111,7 @@ class FileDrop:
             """Ask for the landmarks."""
             self._files.ask(
                 f"The landmarks of {mesh.name}",
-                lambda landmarks: self.take([str(mesh), str(landmarks)]),
+                lambda landmarks: self.open([str(mesh), str(landmarks)]),
                 saving=False,
                 kind="Landmarks",
                 suffixes=(LANDMARKS,),

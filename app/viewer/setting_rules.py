@@ -41,16 +41,16 @@ class Refused:
         if not isinstance(stored, dict):
             self._found.append(f"{where.rstrip('.') or 'all'} = {reprlib.repr(stored)}")
             return {}
-        kept = {}
+        accepted = {}
         for name, value in stored.items():
             rule = rule_of(name)
             if rule is None:  # of another version of the program
                 continue
             try:
-                kept[name] = rule(value)
+                accepted[name] = rule(value)
             except ValueError:
                 self._found.append(f"{where}{name} = {reprlib.repr(value)}")
-        return kept
+        return accepted
 
 
 def whole_number(digits: str) -> float:
@@ -62,6 +62,7 @@ def number(least: float, most: float) -> Rule:
     """Any from the least to the most."""
 
     def rule(value: Any) -> float:
+        """A finite number, neither on nor off."""
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         if not (is_number and least <= value <= most):  # NaN is not
             raise ValueError
@@ -74,6 +75,7 @@ def one_of(words: Collection[str]) -> Rule:
     """Any of these words."""
 
     def rule(value: Any) -> str:
+        """One of them."""
         if not (isinstance(value, str) and value in words):
             raise ValueError
         return value

@@ -145,16 +145,17 @@ def load_settings(path: Path) -> tuple[Settings, str]:
         return settings, f"{error}; all is as at first; {_set_aside(path)}"
     except (ValueError, RecursionError) as error:
         return settings, f"{path}: not valid JSON: {error}; all is as at first; {_set_aside(path)}"
-    kept = refused.table("", stored, rules.rules_of(Settings).get)
-    look = refused.table("look.", kept.pop("look", {}), rules.rules_of(Look).get)
+    accepted = refused.table("", stored, rules.rules_of(Settings).get)
+    look = refused.table("look.", accepted.pop("look", {}), rules.rules_of(Look).get)
     options = refused.table("look.options.", look.pop("options", {}), rules.table_of_refiner)
     look["options"] = {
         name: refused.table(f"look.options.{name}.", found, lambda _: rules.option)
         for name, found in options.items()
     }
-    kept["folds"] = refused.table("folds.", kept.pop("folds", {}), lambda _: rules.flag)
-    kept["cameras"] = refused.table("cameras.", kept.pop("cameras", {}), lambda _: rules.camera)
-    settings, told = Settings(**kept, look=Look(**look)), str(refused)
+    folds, cameras = accepted.pop("folds", {}), accepted.pop("cameras", {})
+    accepted["folds"] = refused.table("folds.", folds, lambda _: rules.flag)
+    accepted["cameras"] = refused.table("cameras.", cameras, lambda _: rules.camera)
+    settings, told = Settings(**accepted, look=Look(**look)), str(refused)
     if not told:
         return settings, ""
     kept_as = _set_aside(path)
@@ -179,13 +180,13 @@ def drop_refused_options(look: Look, scene: Scene) -> str:
     for refiner, options in look.options.items():
         if not options or _suits(scene, refiner, options):
             continue
-        kept: dict[str, Any] = {}
+        accepted: dict[str, Any] = {}
         for name, value in options.items():
-            if _suits(scene, refiner, {**kept, name: value}):
-                kept[name] = value
+            if _suits(scene, refiner, {**accepted, name: value}):
+                accepted[name] = value
             else:
                 refused.append(f"{refiner} {name} = {reprlib.repr(value)}")
-        look.options[refiner] = kept
+        look.options[refiner] = accepted
     if not _suits(scene, look.refiner, None):
         refused.append(look.refiner)
         look.refiner = Look().refiner

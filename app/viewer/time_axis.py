@@ -63,10 +63,10 @@ class TimeAxis:
 
     def zoom(self, factor: float, x: float) -> None:
         """Show `factor` times as much time; what is at `x` stays there."""
-        kept = self.time(x)
+        fixed = self.time(x)
         self.span = max(self.span * factor, LEAST_SPAN)
         self.is_whole = False
-        self.start = kept - self.seconds(x - self._left)
+        self.start = fixed - self.seconds(x - self._left)
 
     def scroll(self, seconds: float) -> None:
         """Show what comes later."""

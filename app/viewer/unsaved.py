@@ -68,7 +68,7 @@ class Work:
         return f"{', '.join(others)} and {last}" if others else last
 
 
-class Place:
+class WorkFiles:
     """The files of one window; others leave them alone until `leave` or the process's end.
 
     work: what is in them.
@@ -81,8 +81,8 @@ class Place:
         self.work = Work()
 
     @classmethod
-    def new(cls, folder: Path) -> Place:
-        """A place of one's own; UserError where there can be none."""
+    def new(cls, folder: Path) -> WorkFiles:
+        """Files of one's own, none so far; UserError where there can be none."""
         name = f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(3)}"
         with cannot_be_written(folder):
             folder.mkdir(parents=True, exist_ok=True)
@@ -125,14 +125,14 @@ class Place:
         return max((file.stat().st_mtime for file in self._files().values()), default=0.0)
 
     def remove(self) -> None:
-        """Take away all files of this place."""
+        """Take all of them away."""
         self.leave()
         for name in (*(f"{kind}.toml" for kind in KINDS), "lock"):
             with contextlib.suppress(OSError):
                 (self._folder / f"{self._name}.{name}").unlink()
 
     def leave(self) -> None:
-        """Let others have it."""
+        """Let others have them."""
         self._lock.close()
 
     def _file(self, kind: str) -> Path:
@@ -142,10 +142,10 @@ class Place:
         return {kind: self._file(kind) for kind in KINDS if self._file(kind).exists()}
 
 
-def left_behind(folder: Path) -> Iterator[Place]:
-    """The places in a folder with work in them whose windows ended; the latest first.
+def left_behind(folder: Path) -> Iterator[WorkFiles]:
+    """The work in a folder whose windows ended; the latest first.
 
-    What cannot be read stays there and is passed by. Whoever does not want a place leaves it.
+    What cannot be read stays there and is passed by. Whoever does not want some leaves it.
     """
     try:
         names = {file.name.split(".")[0] for file in folder.iterdir() if file.suffix == ".toml"}
@@ -156,14 +156,14 @@ def left_behind(folder: Path) -> Iterator[Place]:
             lock = locked(folder / f"{name}.lock")
             if lock is None:
                 continue
-            place = Place(folder, name, lock)
-            place.read()
+            found = WorkFiles(folder, name, lock)
+            found.read()
         except (OSError, UserError):
             continue
-        if place.work:
-            yield place
+        if found.work:
+            yield found
         else:
-            place.remove()
+            found.remove()
 
 
 def _path_in(text: str) -> Path | None:

@@ -88,7 +88,7 @@ class Viewer:
         scene = build_scene(script.scene, head)
         self.session = Session(scene, script)
         self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
-        self.recovery.look(self.session)
+        self.recovery.find(self.session)
         if look is None:
             refused = drop_refused_options(self.settings.look, scene)
             complaint = "; ".join(filter(None, (complaint, refused)))
@@ -142,33 +142,14 @@ class Viewer:
     def _join_panels(self) -> None:
         """What is around the picture, and the mouse in it."""
         gui, session, settings, messages = self.gui, self.session, self.settings, self.messages
-        bar = MenuBar(gui, session, messages, self.commands)
-        self.face_panel = FacePanel(gui, session, settings, self.view)
-        self.timeline = Timeline(
-            gui,
-            session,
-            messages,
-            commands=self.commands,
-            exporter=self.exporter,
-            sheet=DopeSheet(
-                gui,
-                session,
-                settings,
-                messages,
-                selection=self.selection,
-                axis=self.time_axis,
-                menus=bar,
-            ),
-        )
-        mechanism = MechanismPanel(gui, settings, self.stage, self.view, self.times)
-        self._layout = Layout(
-            gui,
-            settings,
-            self.panel_state,
-            menus=bar,
-            tabs={"Face": self.face_panel, "Mechanism": mechanism},
-            timeline=self.timeline,
-        )
+        view, commands, axis = self.view, self.commands, self.time_axis
+        bar = MenuBar(gui, session, messages, commands)
+        sheet = DopeSheet(gui, session, settings, messages, self.selection, axis, bar)
+        self.timeline = Timeline(gui, session, messages, commands, self.exporter, sheet)
+        self.face_panel = FacePanel(gui, session, settings, view)
+        mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
+        tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw}
+        self._layout = Layout(gui, settings, self.panel_state, bar, tabs, self.timeline)
         self._chooser = FileChooser(gui, self.files)
         self.mouse = Mouse(self.view, self.stage, self.select_muscle)
 
@@ -315,7 +296,7 @@ class Viewer:
     def drop(self, paths: Sequence[str]) -> None:
         """Open files that were dropped onto the window."""
         self._awake = FRAMES_AFTER_EVENT
-        self.messages.attempt(partial(self.file_drop.take, paths))
+        self.messages.attempt(partial(self.file_drop.open, paths))
 
     def show_scene(self, scene: Scene) -> None:
         """Take another scene with the same controls in place of this one."""

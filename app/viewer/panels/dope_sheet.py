@@ -62,7 +62,6 @@ class DopeSheet:
         session: Session,
         settings: Settings,
         messages: Messages,
-        *,
         selection: KeySelection,
         axis: TimeAxis,
         menus: MenuBar,

@@ -5,7 +5,7 @@ Hidden, all of it makes room for the picture; menus come up with the mouse at it
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from imgui_bundle import imgui
 
@@ -13,8 +13,6 @@ from ..gui import Gui, em, fixed_panel
 from ..panel_state import PanelState
 from ..settings import Settings
 from ..view import View
-from .face import FacePanel
-from .mechanism import MechanismPanel
 from .menu_bar import MenuBar
 from .timeline import Timeline
 
@@ -31,12 +29,11 @@ class Layout:
         gui: Gui,
         settings: Settings,
         state: PanelState,
-        *,
         menus: MenuBar,
-        tabs: Mapping[str, FacePanel | MechanismPanel],
+        tabs: Mapping[str, Callable[[], None]],
         timeline: Timeline,
     ) -> None:
-        """tabs: the panels at the left by their titles."""
+        """tabs: what draws the panels at the left, by their titles."""
         self._gui, self._settings, self._state = gui, settings, state
         self._menus, self._tabs, self._timeline = menus, tabs, timeline
 
@@ -74,13 +71,13 @@ class Layout:
         state = self._state
         if not imgui.begin_tab_bar("tabs"):
             return
-        for title, panel in self._tabs.items():
+        for title, draw_panel in self._tabs.items():
             flags = imgui.TabItemFlags_.set_selected if state.wanted_tab == title else 0
             is_open, _ = imgui.begin_tab_item(title, None, flags)
             self._gui.remember(f"tab {title}")
             if is_open:
                 if state.wanted_tab in ("", title):
                     self._settings.tab, state.wanted_tab = title, ""
-                panel.draw()
+                draw_panel()
                 imgui.end_tab_item()
         imgui.end_tab_bar()

@@ -36,12 +36,12 @@ def draw_recovery(
     imgui.pop_text_wrap_pos()
     if imgui.get_item_rect_size().x + em(2.0 * BUTTON_WIDTH + 3.0) < room:
         imgui.same_line()
-    takes = button(gui, "Recover", name="offer: Recover", width=em(BUTTON_WIDTH))
+    is_accepted = button(gui, "Recover", name="offer: Recover", width=em(BUTTON_WIDTH))
     imgui.same_line()
-    drops = button(gui, "Throw away", name="offer: Throw away", width=em(BUTTON_WIDTH))
+    is_discarded = button(gui, "Throw away", name="offer: Throw away", width=em(BUTTON_WIDTH))
     imgui.end()
-    if takes:  # unless work of this window would be lost
-        return question.before("Recover", partial(recovery.take_found, session))
-    if drops:
-        recovery.drop_found(session)
+    if is_accepted:  # unless work of this window would be lost
+        return question.before("Recover", partial(recovery.accept_found, session))
+    if is_discarded:
+        recovery.discard_found(session)
     return None

@@ -19,10 +19,7 @@ MOST_HEIGHT = 0.4  # of the window
 # By the label of the command: what the button reads while that is on, and a hint.
 BUTTONS = {
     "Play": ("Pause", "play the script, or pause it (Space)"),
-    "Record": (
-        "Stop",
-        "take every movement of every control, until it is stopped (Ctrl+R)",
-    ),
+    "Record": ("Stop", "take every movement of every control, until it is stopped (Ctrl+R)"),
     "Loop": ("Loop", "begin again at the end (L)"),
     "Set key": ("Set key", "the face as it is becomes a key at the time shown (K)"),
 }
@@ -36,7 +33,6 @@ class Timeline:
         gui: Gui,
         session: Session,
         messages: Messages,
-        *,
         commands: Iterable[Command],
         exporter: Exporter,
         sheet: DopeSheet,
@@ -68,18 +64,12 @@ class Timeline:
     def _draw_button(self, label: str) -> None:
         command, (label_on, meaning) = self._commands[label], BUTTONS[label]
         is_on = command.is_on is not None and command.is_on()
-        is_first, width = label == "Play", em(BUTTON_WIDTH)
-        if not is_first:
+        name, width, highlight = label.lower(), em(BUTTON_WIDTH), None
+        if label != "Play":
             stay_in_line(width)
-        highlight = colour(self._gui.theme.accent, 0.6) if is_on and not is_first else None
-        if button(
-            self._gui,
-            label_on if is_on else label,
-            name=label.lower(),
-            width=width,
-            meaning=meaning,
-            highlight=highlight,
-        ):
+            highlight = colour(self._gui.theme.accent, 0.6) if is_on else None
+        text = label_on if is_on else label
+        if button(self._gui, text, name=name, width=width, meaning=meaning, highlight=highlight):
             self._messages.attempt(command.run)
 
     def _draw_speed(self) -> None:
