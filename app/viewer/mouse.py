@@ -51,6 +51,10 @@ class SkinPull:
         self.offset = offset * (FARTHEST * np.tanh(length / FARTHEST) / max(length, 1e-9))
         self._scene.simulation.pull(self._vertices, self._from + self.offset, self._firmness)
 
+    def muscle(self) -> str | None:
+        """The one under the finger, if any."""
+        return muscle_at(self.point, self._scene.simulation.fibres())
+
     def let_go(self) -> None:
         """The skin swings back."""
         self._scene.simulation.let_go()
@@ -127,12 +131,10 @@ class Mouse:
             self.pull.to(self._ray(io).at_depth_of(self.pull.point, camera.axes()[2]))
 
     def _release(self, io: Any) -> None:
-        pull, scene = self.pull, self._stage.scene
-        if pull is not None:
-            pull.let_go()
+        if self.pull is not None:
+            self.pull.let_go()
             if not self.is_pulling and not self._has_moved(io):
-                fibres = scene.simulation.fibres()  # type: ignore[attr-defined] # it has muscles
-                name = muscle_at(pull.point, fibres)
+                name = self.pull.muscle()
                 if name is not None:
                     self._select_muscle(name)
         self.forget()

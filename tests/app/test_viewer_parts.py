@@ -203,21 +203,21 @@ def test_clock_steps_at_its_own_rate() -> None:
     assert clock.steps(STEP) == 1
 
 
-def test_quality_falls_once_and_does_not_flicker() -> None:
+def test_detail_falls_once_and_does_not_flicker() -> None:
     """Slow frames lower the level; fast ones raise it by one, and only as a motion begins."""
-    quality = LevelOfDetail(is_software=False)
-    assert quality.detail == FULL
+    chosen = LevelOfDetail(is_software=False)
+    assert chosen.detail == FULL
     for _ in range(2 * PATIENCE):
-        quality.note(0.08)
-    assert quality.level == 2
+        chosen.note(0.08)
+    assert chosen.level == 2
     for _ in range(100):
-        quality.note(0.01)
-    assert quality.level == 2
-    quality.begin_motion()
-    assert quality.level == 1
+        chosen.note(0.01)
+    assert chosen.level == 2
+    chosen.begin_motion()
+    assert chosen.level == 1
     for _ in range(100):
-        quality.note(0.08)
-    assert quality.detail == LEVELS[-1]
+        chosen.note(0.08)
+    assert chosen.detail == LEVELS[-1]
 
 
 def test_the_point_under_the_mouse(scene: FaceScene) -> None:
