@@ -11,7 +11,7 @@ import numpy as np
 from .. import outputs
 from ..errors import UserError
 from ..outputs import Frame, FrameSink
-from .messages import Line, Messages
+from .messages import Message, Messages
 from .stage import Stage
 from .view import View
 
@@ -65,13 +65,13 @@ class Exporter:
         self._stage, self._view = stage, view
         self.film: Film | None = None  # that is being made
 
-    def screenshot(self) -> Line:
+    def screenshot(self) -> Message:
         """Write the picture without panels, in full detail."""
         target = free_name(Path.cwd(), ".png")
         outputs.save_png(target, self._stage.photograph(self._view))
         return f"{target.name}: written to {target.parent}"
 
-    def toggle_film(self) -> Line:
+    def toggle_film(self) -> Message:
         """Begin a film of what is displayed, or finish it."""
         if self.film is None:
             self.film = Film(free_name(Path.cwd(), ".mp4"))

@@ -13,7 +13,7 @@ from ..choices import head_for
 from ..errors import UserError
 from ..scenes import Scene, build_scene
 from .files import Files
-from .messages import Line
+from .messages import Message
 from .script_commands import ScriptCommands
 
 MESHES = tuple(f".{name}" for name in FORMATS)
@@ -79,7 +79,7 @@ class FileDrop:
         """Whether a head waits to be fitted."""
         return self._announced is not None
 
-    def open(self, paths: Sequence[str]) -> Line:
+    def open(self, paths: Sequence[str]) -> Message:
         """Open files, or announce that a head will be fitted."""
         dropped = DroppedFiles.of([Path(path) for path in paths])
         if not dropped.has_head:
@@ -87,12 +87,12 @@ class FileDrop:
         self._announced = dropped
         return "fitting the muscles to this head ..."
 
-    def open_announced(self) -> Line:
+    def open_announced(self) -> Message:
         """Fit the head that was announced; all that was done stays."""
         dropped, self._announced = self._announced, None
         return None if dropped is None else self._open(dropped)
 
-    def _open(self, dropped: DroppedFiles) -> Line:
+    def _open(self, dropped: DroppedFiles) -> Message:
         """Show the head first, then what shall be played on it."""
         line, remark = None, dropped.remark()
         if dropped.has_head:

@@ -12,7 +12,7 @@ from typing import Any
 
 from imgui_bundle import portable_file_dialogs as dialogs
 
-from .messages import Line
+from .messages import Message
 
 LINUX_HELPERS = ("zenity", "kdialog", "matedialog", "qarma")  # one of which draws native dialogs
 SCRIPTS = "Scripts and poses"
@@ -28,7 +28,7 @@ class Request:
     is_saving: bool
     proposed: Path  # where to begin; for saving with a name
     suffixes: tuple[str, ...]  # how the names of such files end
-    then: Callable[[Path], Line]
+    then: Callable[[Path], Message]
     dialog: Any = None  # the native one; None where panels/chooser.py asks
     began: float = 0.0  # [s] when it came up
 
@@ -51,7 +51,7 @@ class Files:
     def ask(
         self,
         title: str,
-        then: Callable[[Path], Line],
+        then: Callable[[Path], Message],
         *,
         saving: bool,
         proposed: str = "",
@@ -68,7 +68,7 @@ class Files:
             self.request.dialog = dialog(title, str(target), filters)
             self.request.began = time.monotonic()
 
-    def poll(self) -> Line:
+    def poll(self) -> Message:
         """Look whether the native dialog has an answer, and go on with it."""
         request = self.request
         if request is None or request.dialog is None or not request.dialog.ready(0):
@@ -87,7 +87,7 @@ class Files:
                 return None
         return self.answer(target if path else None)
 
-    def answer(self, path: Path | None) -> Line:
+    def answer(self, path: Path | None) -> Message:
         """Go on with the file that was chosen; None for none."""
         request, self.request = self.request, None
         if request is None or path is None:

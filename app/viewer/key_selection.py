@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..script import Pose
 from . import keys
 from .keys import POSES, KeyPlace
-from .messages import Line
+from .messages import Message
 from .panel_state import PanelState
 from .session import Session
 
@@ -30,7 +30,7 @@ class KeySelection:
         """Whether there are keys that something could be done with."""
         return bool(self.places) and self.can_edit
 
-    def set_key(self) -> Line:
+    def set_key(self) -> Message:
         """The face as it is becomes a key at the time shown."""
         time = self._session.set_key()
         script = self._session.script
@@ -39,13 +39,13 @@ class KeySelection:
         self.places = poses or frozenset(there)
         return f"key set at {time:.2f} s"
 
-    def delete(self) -> Line:
+    def delete(self) -> Message:
         """Take the selected keys away."""
         places = self.places
         self._session.edit(keys.without(self._session.script, places))
         return f"{counted(len(places))} deleted; Ctrl+Z brings back"
 
-    def duplicate(self) -> Line:
+    def duplicate(self) -> Message:
         """Copies of the selected keys at the time shown, or a little later if they are there."""
         script = self._session.script
         first = min(place.time for place in self.places)

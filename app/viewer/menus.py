@@ -1,6 +1,6 @@
 """Everything that a key or a menu does, as data, a function for each menu.
 
-Menus, the keyboard and the sheet of keys are all made from these tables.
+Menus, the keyboard and the overview of keys are all made from these tables.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from .control_rows import readable
 from .export import Exporter
 from .file_drop import FileDrop
 from .key_selection import KeySelection
-from .messages import Line, Task
+from .messages import Message, Task
 from .panel_state import PanelState
 from .placement import Placement
 from .script_commands import ScriptCommands
@@ -107,7 +107,7 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
             lambda: bool(getattr(settings.look, field) == on),
         )
 
-    def toggle_full() -> Line:
+    def toggle_full() -> Message:
         """Fill the screen, or go back."""
         placement.toggle_full()
         return "F11 leaves the full screen" if placement.is_full else None
@@ -147,6 +147,6 @@ def expression_menu(session: Session) -> Menu:
 
 
 def help_menu(panels: PanelState) -> Menu:
-    """The sheet of keys."""
+    """The overview of keys."""
     is_open = partial(getattr, panels, "is_help_open")
     return (Command("Help", "Keys and mouse", "F1", panels.toggle_help, is_open),)

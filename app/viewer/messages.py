@@ -10,8 +10,8 @@ from ..errors import UserError
 SECONDS = 6.0  # for which a message stays
 LONGEST_FRAME = 0.25  # [s] that counts for a message: a frame that took longer showed nothing
 
-Line = str | None  # to be shown; None for nothing to say
-Task = Callable[[], Line]  # what a user asks for; it may raise UserError or OSError
+Message = str | None  # to be shown; None for nothing to say
+Task = Callable[[], Message]  # what a user asks for; it may raise UserError or OSError
 
 
 @dataclass

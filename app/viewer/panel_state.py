@@ -19,5 +19,5 @@ class PanelState:
         return "Tab brings the panels back" if self.are_hidden else None
 
     def toggle_help(self) -> None:
-        """Show the sheet of keys or hide it."""
+        """Show the overview of keys or hide it."""
         self.is_help_open = not self.is_help_open

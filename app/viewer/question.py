@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .messages import Line, Task
+from .messages import Message, Task
 from .session import Session
 
 
@@ -19,7 +19,7 @@ class Question:
         """Whether an answer is awaited."""
         return self.task is not None
 
-    def before(self, verb: str, task: Task) -> Line:
+    def before(self, verb: str, task: Task) -> Message:
         """Go on with `task` at once, or when what is unsaved was saved or given up."""
         if not self._session.unsaved:
             return task()

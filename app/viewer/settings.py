@@ -142,9 +142,12 @@ def load_settings(path: Path) -> tuple[Settings, str]:
     except FileNotFoundError:
         return settings, ""
     except UserError as error:
-        return settings, f"{error}; all is as at first; {_set_aside(path)}"
+        return settings, f"{error}; all is as at first; {_rename_unusable(path)}"
     except (ValueError, RecursionError) as error:
-        return settings, f"{path}: not valid JSON: {error}; all is as at first; {_set_aside(path)}"
+        return (
+            settings,
+            f"{path}: not valid JSON: {error}; all is as at first; {_rename_unusable(path)}",
+        )
     accepted = refused.table("", stored, rules.rules_of(Settings).get)
     look = refused.table("look.", accepted.pop("look", {}), rules.rules_of(Look).get)
     options = refused.table("look.options.", look.pop("options", {}), rules.table_of_refiner)
@@ -158,20 +161,20 @@ def load_settings(path: Path) -> tuple[Settings, str]:
     settings, told = Settings(**accepted, look=Look(**look)), str(refused)
     if not told:
         return settings, ""
-    kept_as = _set_aside(path)
+    kept_as = _rename_unusable(path)
     with contextlib.suppress(UserError):  # of a full disk others speak
         save_settings(path, settings)
     return settings, in_one_line(f"{path}: of no use and as at first: {told}; {kept_as}")
 
 
-def _set_aside(path: Path) -> str:
+def _rename_unusable(path: Path) -> str:
     """Give a file of no use another name, and say which; it is written anew on closing."""
-    aside = path.with_name(f"{path.stem}-{time.strftime('%Y%m%d-%H%M%S')}.unusable{path.suffix}")
+    unusable = path.with_name(f"{path.stem}-{time.strftime('%Y%m%d-%H%M%S')}.unusable{path.suffix}")
     try:
-        path.rename(aside)
+        path.rename(unusable)
     except OSError as error:
         return f"it cannot be set aside ({error.strerror}), and is written anew on closing"
-    return f"the file is kept as {aside.name}"
+    return f"the file is kept as {unusable.name}"
 
 
 def drop_refused_options(look: Look, scene: Scene) -> str:

@@ -50,7 +50,7 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
 
 def at(viewer: Viewer, place: KeyPlace) -> tuple[int, int]:
     """Where a key is, on the screen."""
-    return on_screen(viewer, *viewer.timeline.sheet.where(place))
+    return on_screen(viewer, *viewer.timeline.dope_sheet.where(place))
 
 
 def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -> None:
@@ -255,7 +255,7 @@ def test_a_key_under_the_mouse_tells_what_it_is(viewer: Viewer) -> None:
 
 def test_tracks_unfold_into_rows(viewer: Viewer) -> None:
     """A click on the arrow gives each track a row; its keys are then selected alone."""
-    sheet = viewer.timeline.sheet
+    sheet = viewer.timeline.dope_sheet
     left = viewer.gui.places["keys"][0]
     rows = viewer.timeline.height()
     _, y = sheet.where(KeyPlace("blink", 2.0))

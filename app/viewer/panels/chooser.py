@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from ..files import SUFFIX, Files, Request
 from ..gui import Gui, colour, em
-from ..messages import Line
+from ..messages import Message
 from .widgets import button, muted, shortened
 
 SIZE = (36.0, 26.0)  # [em]
@@ -35,7 +35,7 @@ class FileChooser:
         self._gui, self._files = gui, files
         self._request: Request | None = None  # for which it is open
 
-    def draw(self) -> Line:
+    def draw(self) -> Message:
         """Draw it while it is needed, and go on with the file that it gives."""
         request = self._files.request
         if request is None or request.dialog is not None:

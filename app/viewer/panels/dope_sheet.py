@@ -19,7 +19,7 @@ from .. import keys
 from ..gui import LEFT, MIDDLE, RIGHT, Gui, em
 from ..key_selection import KeySelection, counted
 from ..keys import KeyPlace
-from ..messages import Line, Messages
+from ..messages import Message, Messages
 from ..session import Session
 from ..settings import Settings
 from ..time_axis import TimeAxis
@@ -280,7 +280,7 @@ class DopeSheet:
         inside = self._tracks[max(rows[0], 0) : max(rows[1] + 1, 0)]
         self._selection.places = drag.selected.union(*(each.between(*times) for each in inside))
 
-    def _release(self, io: Any, drag: Drag) -> Line:
+    def _release(self, io: Any, drag: Drag) -> Message:
         """The mouse has let go; what there is to say about it."""
         session, line = self._session, None
         if drag.doing == "keys" and drag.has_moved:

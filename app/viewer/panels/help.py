@@ -1,4 +1,4 @@
-"""The sheet of keys and mouse."""
+"""The overview of keys and mouse."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ from functools import partial
 from imgui_bundle import imgui
 
 from ..gui import Gui
-from ..messages import Line, Task
+from ..messages import Message, Task
 from ..question import Question
 from ..script_commands import ScriptCommands
 from ..session import Session
@@ -16,7 +16,9 @@ from .widgets import button
 TITLE = "Unsaved work"
 
 
-def draw_question(gui: Gui, question: Question, session: Session, scripts: ScriptCommands) -> Line:
+def draw_question(
+    gui: Gui, question: Question, session: Session, scripts: ScriptCommands
+) -> Message:
     """Draw the question, if there is one, and go on with what was answered."""
     task, verb = question.task, question.verb
     if task is None:

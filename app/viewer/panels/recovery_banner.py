@@ -8,7 +8,7 @@ from functools import partial
 from imgui_bundle import imgui
 
 from ..gui import NOTE_FLAGS, Gui, em
-from ..messages import Line
+from ..messages import Message
 from ..question import Question
 from ..recovery import Recovery
 from ..session import Session
@@ -20,7 +20,7 @@ BUTTON_WIDTH = 7.0  # [em]
 
 def draw_recovery(
     gui: Gui, recovery: Recovery, session: Session, question: Question, view: View
-) -> Line:
+) -> Message:
     """Offer what was left behind, until it is taken or thrown away."""
     if recovery.found is None:
         return None

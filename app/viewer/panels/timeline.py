@@ -35,12 +35,12 @@ class Timeline:
         messages: Messages,
         commands: Iterable[Command],
         exporter: Exporter,
-        sheet: DopeSheet,
+        dope_sheet: DopeSheet,
     ) -> None:
         """commands: those of the buttons must be among them."""
         self._gui, self._session, self._messages = gui, session, messages
         self._commands = {command.label: command for command in commands}
-        self._exporter, self.sheet = exporter, sheet
+        self._exporter, self.dope_sheet = exporter, dope_sheet
         self._rows = 1  # of buttons, which go on in a second one where the window is narrow
 
     def height(self) -> float:
@@ -48,7 +48,7 @@ class Timeline:
         most = MOST_HEIGHT * imgui.get_io().display_size.y
         buttons = self._rows * imgui.get_frame_height_with_spacing()
         buttons += 2.0 * imgui.get_style().window_padding.y
-        return float(min(buttons + self.sheet.height(most - buttons), most))
+        return float(min(buttons + self.dope_sheet.height(most - buttons), most))
 
     def draw(self) -> None:
         """Draw everything, inside its window."""
@@ -59,7 +59,7 @@ class Timeline:
         self._draw_button("Set key")
         self._draw_words()
         self._rows = round((imgui.get_cursor_pos_y() - top) / imgui.get_frame_height_with_spacing())
-        self.sheet.draw()
+        self.dope_sheet.draw()
 
     def _draw_button(self, label: str) -> None:
         command, (label_on, meaning) = self._commands[label], BUTTONS[label]
