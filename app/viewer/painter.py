@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from risorius import render
 
-from .clock import CALM
 from .export import Exporter
 from .level_of_detail import FULL, LevelOfDetail
 from .messages import Messages
+from .physics import CALM
 from .stage import Stage
 from .view import View
 

@@ -1,4 +1,8 @@
-"""When the simulation takes its steps: as real time goes, and none for a face at rest."""
+"""When the simulation takes its steps: as real time goes, and none for a face at rest.
+
+Real time is cut into steps of the same length, which no frame rate can upset. Source: Fiedler 2004,
+"Fix your timestep!".
+"""
 
 from __future__ import annotations
 
@@ -7,11 +11,32 @@ import numpy as np
 from risorius import sim
 
 from ..errors import UserError
-from .clock import CALM, STEP, Clock
 from .frame_times import FrameTimes
 from .session import Session
 
+STEP = 1.0 / 60.0  # [s] as in films and tests; the simulation divides it further by itself
+MOST_STEPS = 6  # a tenth of a second: what a stalled window catches up
+EARLY = 0.25  # of a step that may be taken before it is due: a screen of 60 Hz that is now a little
+# late and now early gets one step for each of its frames, and motion does not judder
+CALM = 0.15  # [s] without change before physics rests and the scene is drawn in full
 STILL = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
+
+
+class Clock:
+    """Says how many steps are due; what is left over waits for the next time."""
+
+    def __init__(self) -> None:
+        self._owed = 0.0
+
+    def steps(self, elapsed: float) -> int:
+        """How many steps to take after `elapsed` more seconds; the rest of a stall is forgotten."""
+        self._owed += max(elapsed, 0.0)
+        due = max(int(self._owed / STEP + EARLY), 0)
+        if due > MOST_STEPS:
+            self._owed = 0.0
+            return MOST_STEPS
+        self._owed -= due * STEP
+        return due
 
 
 class Physics:

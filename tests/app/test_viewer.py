@@ -15,7 +15,7 @@ import pytest
 from PIL import Image
 
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.clock import MOST_STEPS
+from risorius.app.viewer.physics import MOST_STEPS
 from risorius.app.viewer.settings import load_settings
 
 from .driving import (

@@ -13,11 +13,11 @@ from risorius.app.scenes import FaceScene
 from risorius.app.script import Script, load_script, parse_script
 from risorius.app.script_writer import is_pose, pose_script, save_script, script_text
 from risorius.app.viewer import picking
-from risorius.app.viewer.clock import MOST_STEPS, STEP, Clock
 from risorius.app.viewer.control_rows import found, mirrored, rows_of
 from risorius.app.viewer.history import History
 from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.overlays import OVERLAYS, overlays_of
+from risorius.app.viewer.physics import MOST_STEPS, STEP, Clock
 from risorius.app.viewer.recorder import TOLERANCE, Recorder
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.tour import STOPS

@@ -18,7 +18,7 @@ from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import load_script
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.clock import STEP
+from risorius.app.viewer.physics import STEP
 from risorius.app.viewer.recovery import LONGEST, QUIET, Recovery
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.unsaved import Work, WorkFiles

@@ -211,6 +211,10 @@ def test_the_menus_do_the_same(viewer: Viewer) -> None:
     click(viewer, "menu Edit")
     click(viewer, "menu Edit: Undo")
     assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+    press(viewer, at(viewer, REST), button=3)
+    click(viewer, "menu Keys: Name of the pose ...")
+    assert until(viewer, lambda: "pose name" in viewer.gui.places, 3.0)
+    xdotool(viewer, "key", "Escape")
 
 
 def test_the_ruler_scrubs_and_the_wheel_zooms(viewer: Viewer) -> None:
