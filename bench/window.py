@@ -18,10 +18,10 @@ import numpy as np
 from risorius import render
 from risorius.app.script import Pose, Script, script_for
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.kept import REFRESH
-from risorius.app.viewer.quality import LEVELS, Quality
+from risorius.app.viewer.frame_times import PHASES
+from risorius.app.viewer.level_of_detail import LEVELS, LevelOfDetail
+from risorius.app.viewer.panel_cache import REFRESH
 from risorius.app.viewer.settings import Look
-from risorius.app.viewer.stage import STAGES
 
 from .report import processor, table
 
@@ -31,7 +31,7 @@ ROUNDS = 3
 IDLE_SECONDS = 5.0
 
 
-class _FixedQuality(Quality):
+class _FixedLevel(LevelOfDetail):
     """One level of detail, however long a frame takes."""
 
     def __init__(self, level: int) -> None:
@@ -82,7 +82,7 @@ def report(seconds: float, size: tuple[int, int]) -> str:
         "",
         *table(
             "case:<30|frames/s:8.1f|median:7.1f|95 %:7.1f|best:7.1f|level:5d|"
-            f"{STAGES[0]}:12.1f|{'|'.join(f'{stage}:10.1f' for stage in STAGES[1:])}|the rest:9.1f",
+            f"{PHASES[0]}:12.1f|{'|'.join(f'{stage}:10.1f' for stage in PHASES[1:])}|the rest:9.1f",
             map(_cells, cases),
         ),
         "",
@@ -111,11 +111,11 @@ def _described(detail: render.Detail) -> str:
 
 def _play(viewer: Viewer, case: _Case, seconds: float) -> None:
     """Let the window play for a while, and note what its frames took."""
-    viewer.look = Look(compare=case.compare)
-    viewer.kept.refresh = REFRESH if case.are_panels_kept else 0.0
+    viewer.settings.look = Look(compare=case.compare)
+    viewer.panel_cache.refresh = REFRESH if case.are_panels_kept else 0.0
     is_software = viewer.surface.is_software
-    viewer.quality = (
-        Quality(is_software=is_software) if case.level is None else _FixedQuality(case.level)
+    viewer.painter.level_of_detail = (
+        LevelOfDetail(is_software=is_software) if case.level is None else _FixedLevel(case.level)
     )
     if not viewer.session.is_playing:
         viewer.session.toggle_playing()
@@ -123,10 +123,10 @@ def _play(viewer: Viewer, case: _Case, seconds: float) -> None:
 
     def note(taken: float) -> None:
         case.seconds.append(taken)
-        case.stages.append([viewer.stage.times[stage][-1] for stage in STAGES])
+        case.stages.append([viewer.times.milliseconds[stage][-1] for stage in PHASES])
 
     _run(viewer, seconds, note)
-    case.last_level = viewer.quality.level
+    case.last_level = viewer.painter.level_of_detail.level
 
 
 def _run(viewer: Viewer, seconds: float, note: Callable[[float], None]) -> None:

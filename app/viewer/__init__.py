@@ -1,13 +1,14 @@
 """The window: a face that answers to sliders, keys, the mouse and a script.
 
-window.py     one turn of the loop: input, time, picture, panels     (start reading here)
+window.py     joins everything, and one turn of the loop     (start reading here)
 session.py    what the user does: controls, script, recording, undo, unsaved work; knows no window
-keys.py       what can be done with the keys of a script; panels/dope_sheet.py is where
+settings.py   what is remembered, the look among it
+view.py       camera, look and place of the scene in the window
 stage.py      which meshes are drawn where, how they are coloured, what lies over them
-touch.py      the mouse in the picture
-actions.py    every key and menu, as data
-panels/       what stands around the picture
-quality.py, clock.py    the two that keep it smooth: detail by need, physics by steps
+menus.py      every key and menu, as data; what they call:
+              script_commands.py, key_selection.py, file_drop.py, export.py, and the four above
+panels/       what stands around the picture; mouse.py is the mouse in it
+painter.py, physics.py, panel_cache.py     what keeps it smooth: each does no more than is due
 recovery.py, unsaved.py    unsaved work outlives a crash
 """
 

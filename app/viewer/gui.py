@@ -24,6 +24,13 @@ import glfw  # isort: skip - after imgui_bundle, see above
 
 FONT = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.ttf"
 FONT_SIZE = 15.0  # [window units at scale 1]
+LEFT, RIGHT, MIDDLE = 0, 1, 2  # buttons of the mouse
+# Of a window that is a note over the picture: as large as its words, and it takes no keys.
+NOTE_FLAGS = (
+    imgui.WindowFlags_.always_auto_resize
+    | imgui.WindowFlags_.no_decoration
+    | imgui.WindowFlags_.no_focus_on_appearing
+)
 
 
 @dataclass(frozen=True)
@@ -161,13 +168,9 @@ def wait_for_event(seconds: float) -> None:
     glfw.wait_events_timeout(seconds)
 
 
-def on_drop(window: Any, take: Callable[[Sequence[str]], None]) -> None:
-    """Call `take` with the paths of files that are dropped onto the window."""
-
-    def dropped(_: Any, paths: Any) -> None:
-        take(paths)
-
-    callback: Any = dropped  # the stubs have it otherwise than the library calls it
+def on_drop(window: Any, open_files: Callable[[Sequence[str]], None]) -> None:
+    """Call `open_files` with the paths of files that are dropped onto the window."""
+    callback: Any = lambda _, paths: open_files(paths)  # noqa: E731 - the stubs are wrong
     glfw.set_drop_callback(window, callback)
 
 
@@ -176,8 +179,8 @@ def fixed_panel(
     name: str, place: tuple[float, float], size: tuple[float, float], *, resizes: bool = False
 ) -> Iterator[None]:
     """A panel that stays where it is; its edges may be dragged if it resizes."""
-    imgui.set_next_window_pos(imgui.ImVec2(*place))
-    imgui.set_next_window_size(imgui.ImVec2(max(size[0], 1.0), max(size[1], 1.0)))
+    imgui.set_next_window_pos(place)
+    imgui.set_next_window_size((max(size[0], 1.0), max(size[1], 1.0)))
     flags = imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_scroll_with_mouse
     flags |= imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_move
     flags |= imgui.WindowFlags_.no_scrollbar if resizes else imgui.WindowFlags_.no_resize

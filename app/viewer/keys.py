@@ -1,51 +1,47 @@
 """Changes of a script's keys: set, move, copy, delete, rename. Each gives a new script.
 
-A key is known by its lane and its time. The whole poses are one lane, each track is another; no
-lane has two keys at one time, so a key that arrives where another is takes its place.
+A key is known by its track and its time. The whole poses count as one track; no track has two keys
+at one time, so a key that arrives where another is takes its place.
 """
 
 from __future__ import annotations
 
 import bisect
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from operator import attrgetter
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from ..errors import UserError
 from ..scenes import within
 from ..script import LARGEST, Channel, Key, Limits, Pose, Script, rounded
 
-POSES = ""  # the lane of whole poses; any other is called as its control is
+POSES = ""  # the track of whole poses; any other is called as its control is
 FRAME = 1.0 / 30.0  # [s] to which times are rounded, as in the films that the window makes
 SAME = 1e-6  # of a value or a time [s]: no difference
 
 
 class KeyPlace(NamedTuple):
-    """Where a key is: the lane, and the time [s] in it."""
+    """Where a key is: the track, and the time [s] in it."""
 
-    lane: str
+    track: str
     time: float
 
 
 Places = Collection[KeyPlace]
+AnyKey = Pose | Key
+Item = TypeVar("Item", bound=AnyKey)
 
 
-Item = TypeVar("Item", Pose, Key)
-
-
-def lanes_of(script: Script) -> dict[str, tuple[float, ...]]:
-    """The times of the keys in every lane [s]; the poses come first."""
-    lanes = {POSES: tuple(pose.time for pose in script.poses)}
-    return lanes | {
-        name: tuple(key.time for key in track.keys) for name, track in script.tracks.items()
-    }
+def keys_by_track(script: Script) -> dict[str, Sequence[AnyKey]]:
+    """All keys that a script has; the poses come first."""
+    return {POSES: script.poses} | {name: track.keys for name, track in script.tracks.items()}
 
 
 def places_of(script: Script) -> frozenset[KeyPlace]:
-    """All keys that a script has."""
-    lanes = lanes_of(script).items()
-    return frozenset(KeyPlace(lane, time) for lane, times in lanes for time in times)
+    """Where all keys of a script are."""
+    tracks = keys_by_track(script).items()
+    return frozenset(KeyPlace(name, key.time) for name, keys in tracks for key in keys)
 
 
 def on_frame(time: float) -> float:
@@ -70,7 +66,7 @@ def pose_at(script: Script, time: float) -> Pose | None:
 
 def moved(script: Script, places: Places, seconds: float) -> tuple[Script, frozenset[KeyPlace]]:
     """The script with keys later by `seconds` (none before 0), and where they are then."""
-    return _placed(_kept(script, places), script, places, seconds)
+    return _placed(_left(script, places), script, places, seconds)
 
 
 def copied(script: Script, places: Places, seconds: float) -> tuple[Script, frozenset[KeyPlace]]:
@@ -80,7 +76,7 @@ def copied(script: Script, places: Places, seconds: float) -> tuple[Script, froz
 
 def without(script: Script, places: Places) -> Script:
     """The script without these keys; UserError where none would be left."""
-    left = _kept(script, places)
+    left = _left(script, places)
     if not places_of(left):
         raise UserError("a script needs at least one key, so these stay")
     return left
@@ -98,16 +94,7 @@ def renamed(script: Script, time: float, name: str) -> Script:
 def eased(script: Script, places: Places, easing: str) -> Script:
     """The script with these keys approached in another way."""
     chosen = frozenset(places)
-
-    def change(lane: str, item: Item) -> Item:
-        is_meant = KeyPlace(lane, item.time) in chosen
-        return replace(item, easing=easing) if is_meant else item
-
-    return _with(
-        script,
-        [change(POSES, pose) for pose in script.poses],
-        {name: [change(name, key) for key in each.keys] for name, each in script.tracks.items()},
-    )
+    return _each(script, lambda place, key: replace(key, easing=easing) if place in chosen else key)
 
 
 def lasting(script: Script, seconds: float) -> Script:
@@ -126,8 +113,8 @@ def keyed(script: Script, time: float, values: Mapping[str, float], limits: Limi
     time = rounded(time)
     plain = script.posed(time)
     added = {name: track.value(time) for name, track in script.tracks.items()}
-    shown = within(limits, script.at(time))
-    changed = [name for name in values if abs(values[name] - shown.get(name, 0.0)) > SAME]
+    before = within(limits, script.at(time))
+    changed = [name for name in values if abs(values[name] - before.get(name, 0.0)) > SAME]
     if script.tracks and not script.poses:
         return _with_track_keys(
             _reaching(script, time), time, {name: values[name] for name in changed or script.tracks}
@@ -136,12 +123,12 @@ def keyed(script: Script, time: float, values: Mapping[str, float], limits: Limi
     posed = {name: rounded(value) for name, value in within(limits, wanted).items()}
     rest = {name: values[name] - posed[name] for name in changed if name in script.tracks}
     differing = {name: value for name, value in rest.items() if abs(value - added[name]) > SAME}
-    before = pose_at(script, time)
+    present = pose_at(script, time)
     pose = Pose(
-        before.time if before else time,
+        present.time if present else time,
         {name: value for name, value in posed.items() if value},
-        before.easing if before else _easing_at(script.poses, time),
-        before.name if before else None,
+        present.easing if present else _easing_at(script.poses, time),
+        present.name if present else None,
     )
     with_pose = replace(script, poses=tuple(_merged(script.poses, [pose])))
     return _reaching(_with_track_keys(with_pose, time, differing), time)
@@ -167,44 +154,39 @@ def _easing_at(keys: Iterable[Pose] | Iterable[Key], time: float) -> str:
 # How they are made
 
 
-def _kept(script: Script, places: Places) -> Script:
+def _each(script: Script, change: Callable[[KeyPlace, AnyKey], AnyKey | None]) -> Script:
+    """The script with each key as `change` gives it back, without those that it does not."""
+    changed = {
+        name: [change(KeyPlace(name, key.time), key) for key in keys]
+        for name, keys in keys_by_track(script).items()
+    }
+    return _with(script, {name: filter(None, keys) for name, keys in changed.items()})
+
+
+def _left(script: Script, places: Places) -> Script:
     """The script without these keys, of which there may be none left."""
     gone = frozenset(places)
-    return _with(
-        script,
-        [pose for pose in script.poses if KeyPlace(POSES, pose.time) not in gone],
-        {
-            name: [key for key in track.keys if KeyPlace(name, key.time) not in gone]
-            for name, track in script.tracks.items()
-        },
-    )
+    return _each(script, lambda place, key: None if place in gone else key)
 
 
 def _placed(
     base: Script, source: Script, places: Places, seconds: float
 ) -> tuple[Script, frozenset[KeyPlace]]:
-    """`base` with the keys of `source` at these places, later by `seconds`."""
+    """`base` with the keys of `source` at these places, later by `seconds`; and these alone."""
     shift = max(seconds, -min((place.time for place in places), default=0.0))
     chosen = frozenset(places)
 
-    def arrived(lane: str, items: Iterable[Item]) -> list[Item]:
-        return [
-            replace(item, time=rounded(item.time + shift))
-            for item in items
-            if KeyPlace(lane, item.time) in chosen
-        ]
+    def arrive(place: KeyPlace, key: AnyKey) -> AnyKey | None:
+        """The key as it is then, if it is meant."""
+        return replace(key, time=rounded(key.time + shift)) if place in chosen else None
 
-    poses = arrived(POSES, source.poses)
-    tracks = {name: arrived(name, track.keys) for name, track in source.tracks.items()}
-    stays = {name: base.tracks[name].keys if name in base.tracks else () for name in tracks}
-    script = _with(
-        base,
-        _merged(base.poses, poses),
-        {name: _merged(stays[name], keys) for name, keys in tracks.items()},
-    )
-    there = [KeyPlace(POSES, pose.time) for pose in poses]
-    there += [KeyPlace(name, key.time) for name, keys in tracks.items() for key in keys]
-    return _reaching(script, *(place.time for place in there)), frozenset(there)
+    arriving = _each(source, arrive)
+    there, coming = keys_by_track(base), keys_by_track(arriving)
+    merged = {
+        name: _merged(there.get(name, ()), coming.get(name, ())) for name in keys_by_track(source)
+    }
+    arrived = places_of(arriving)
+    return _reaching(_with(base, merged), *(place.time for place in arrived)), arrived
 
 
 def _merged(there: Iterable[Item], arriving: Iterable[Item]) -> list[Item]:
@@ -222,10 +204,11 @@ def _is_among(time: float, times: list[float]) -> bool:
     return after < len(times) and times[after] <= time + SAME
 
 
-def _with(script: Script, poses: Iterable[Pose], tracks: Mapping[str, list[Key]]) -> Script:
+def _with(script: Script, tracks: Mapping[str, Iterable[Any]]) -> Script:
     """The script with other keys; a track without any is none."""
-    channels = {name: Channel(tuple(keys)) for name, keys in tracks.items() if keys}
-    return replace(script, poses=tuple(poses), tracks=channels)
+    keys = {name: tuple(each) for name, each in tracks.items()}
+    channels = {name: Channel(each) for name, each in keys.items() if each and name != POSES}
+    return replace(script, poses=keys.get(POSES, ()), tracks=channels)
 
 
 def _reaching(script: Script, *times: float) -> Script:

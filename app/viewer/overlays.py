@@ -93,19 +93,11 @@ OVERLAYS: dict[str, OverlayMaker] = {
     "skull": skull_lines,
     "landmarks": landmark_lines,
 }
-_NEEDS = {"muscles": "simulation", "skull": "head.bone_depth", "landmarks": "head.landmarks"}
 
 
 def overlays_of(scene: Scene) -> tuple[str, ...]:
-    """The overlays that this scene has the data for."""
-
-    def has(path: str) -> bool:
-        found: Any = scene
-        for name in path.split("."):
-            found = getattr(found, name, None)
-        return found is not None
-
-    return tuple(name for name in OVERLAYS if has(_NEEDS.get(name, "faces")))
+    """The overlays that this scene has the data for: a mesh alone has springs."""
+    return tuple(OVERLAYS) if hasattr(scene, "simulation") else ("springs",)
 
 
 def pointed_lines(scene: Any, names: Collection[str]) -> Lines:

@@ -83,6 +83,7 @@ class Placement:
         left, top, width, height = self._place()
 
         def shared(monitor: Any) -> int:
+            """How much of it the window covers [screen units squared]."""
             x, y = glfw.get_monitor_pos(monitor)
             wide, high = glfw.get_video_mode(monitor).size
             across = min(left + width, x + wide) - max(left, x)

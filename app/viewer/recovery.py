@@ -16,7 +16,7 @@ from ..errors import UserError
 from ..script import pose_script
 from ..stopping import cleaned_up_if_stopped
 from .session import Session
-from .unsaved import Place, Work, left_behind
+from .unsaved import Work, WorkFiles, left_behind
 
 QUIET = 1.0  # [s] without a change after which it is written
 LONGEST = 3.0  # [s] for which changes without a pause are not written
@@ -25,58 +25,55 @@ POSE_TITLE = "Unsaved pose"
 
 
 class Recovery:
-    """Keeps a session's unsaved work safe in a folder; without one it does nothing.
-
-    found: what a window left behind that ended, to be offered; None where there is nothing.
-    """
-
-    found: Work | None
+    """Keeps a session's unsaved work safe in a folder; without one it does nothing."""
 
     def __init__(self, folder: Path | None, clock: Callable[[], float] = time.monotonic) -> None:
         self._folder, self._clock = folder, clock
-        self._place: Place | None = None
-        self._found_in: Place | None = None
-        self.found = None
+        self._own: WorkFiles | None = None
+        self._found: WorkFiles | None = None
         self._seen: object = None  # the state of the session, and when it became so
         self._changed_at = 0.0
         self._safe: object = None  # the state that the files have, and since when they may lag
         self._lags_since = 0.0
-        self._kept = Work()
         self._writing_took = 0.0
         self._is_failing = False
 
-    def look(self, session: Session) -> None:
+    def find(self, session: Session) -> None:
         """Find what was left behind and fits the session's scene."""
         self._leave_found()
         if self._folder is None:
             return
-        for place, work in left_behind(self._folder):
-            if work.fits(session.script.scene, session.limits):
-                self._found_in, self.found = place, work
+        for files in left_behind(self._folder):
+            if files.work.fits(session.script.scene, session.limits):
+                self._found = files
                 return
-            place.leave()
+            files.leave()
+
+    @property
+    def found(self) -> Work | None:
+        """What a window left behind that ended, to be offered; None where there is nothing."""
+        return self._found.work if self._found is not None else None
 
     @property
     def found_at(self) -> float:
         """When what was found was written [s since 1970]."""
-        return self._found_in.time if self._found_in is not None else 0.0
+        return self._found.time if self._found is not None else 0.0
 
-    def take_found(self, session: Session) -> None:
+    def accept_found(self, session: Session) -> None:
         """What was found is the session's work now, in place of what it had."""
-        if self.found is None or self._found_in is None:
+        if self._found is None:
             return
-        session.recover(self.found, self.found_at)
+        session.recover(self._found.work, self.found_at)
         self.discard()
-        self._place, self._kept = self._found_in, self.found
+        self._own, self._found = self._found, None
         self._seen = self._safe = _state(session)
-        self._found_in = self.found = None
 
-    def drop_found(self, session: Session) -> None:
+    def discard_found(self, session: Session) -> None:
         """What was found is given up; there may be more."""
-        if self._found_in is not None:
-            self._found_in.remove()
-            self._found_in = None
-        self.look(session)
+        if self._found is not None:
+            self._found.remove()
+            self._found = None
+        self.find(session)
 
     def watch(self, session: Session) -> None:
         """To be called all the time; UserError, once, where nothing can be written."""
@@ -108,13 +105,11 @@ class Recovery:
             return
         begin = time.perf_counter()
         try:
-            if self._place is None:
-                self._place = Place.new(self._folder)
-            work = work_of(session)
-            self._place.write(work, self._kept)
-            self._kept, self._is_failing = work, False
+            if self._own is None:
+                self._own = WorkFiles.new(self._folder)
+            self._own.write(work_of(session))
+            self._is_failing = False
         except UserError as error:
-            self._kept = Work()
             is_told, self._is_failing = self._is_failing, True
             if not is_told:
                 raise UserError(f"unsaved work is not kept safe: {error}") from None
@@ -124,9 +119,9 @@ class Recovery:
 
     def discard(self) -> None:
         """All is saved, or knowingly thrown away."""
-        if self._place is not None:
-            self._place.remove()
-        self._place, self._kept = None, Work()
+        if self._own is not None:
+            self._own.remove()
+        self._own = None
 
     @contextlib.contextmanager
     def guarding(self, session: Session) -> Iterator[None]:
@@ -143,13 +138,13 @@ class Recovery:
     def close(self) -> None:
         """Leave what is still there to the next window."""
         self._leave_found()
-        if self._place is not None:
-            self._place.leave()
+        if self._own is not None:
+            self._own.leave()
 
     def _leave_found(self) -> None:
-        if self._found_in is not None:
-            self._found_in.leave()
-        self._found_in = self.found = None
+        if self._found is not None:
+            self._found.leave()
+        self._found = None
 
 
 def work_of(session: Session) -> Work:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -17,9 +16,9 @@ from ..errors import UserError
 from ..scenes import Scene, within
 from ..script import Pose, Script, is_pose, load_script, pose_script, rounded, save_script
 from . import keys
+from .control_rows import highest_first, mirrored, twin_of
 from .history import History
 from .recorder import Recorder
-from .rows import highest_first, mirrored, twin_of
 from .script_file import ScriptFile
 from .unsaved import Work
 
@@ -100,28 +99,26 @@ class Session:
     def show(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""
         pose = dict.fromkeys(self.limits, 0.0)
-        if self.shown != name:
+        if not self.shows(name):
             pose[name] = self.limits[name][1]
-        self._take_pose(pose, is_unsaved=False)
+        self._set_pose(pose, is_unsaved=False)
 
-    @property
-    def shown(self) -> str | None:
-        """The one control that is not 0, if it is at its most."""
-        active = [name for name, value in self.values.items() if value]
-        if len(active) == 1 and self.values[active[0]] == self.limits[active[0]][1]:
-            return active[0]
-        return None
+    def shows(self, name: str) -> bool:
+        """Whether this control alone is not 0, and at its most."""
+        active = {each: value for each, value in self.values.items() if value}
+        return active == {name: self.limits[name][1]}
 
     def neutral(self) -> None:
         """All controls to zero; the skin swings back by itself."""
-        self._take_pose(dict.fromkeys(self.limits, 0.0), is_unsaved=False)
+        self._set_pose(dict.fromkeys(self.limits, 0.0), is_unsaved=False)
 
     def mirror(self) -> None:
         """What is left becomes right."""
-        self._take_pose(mirrored(self.values))
+        self._set_pose(mirrored(self.values))
 
-    def randomise(self, generator: np.random.Generator) -> None:
+    def randomise(self, generator: np.random.Generator | None = None) -> None:
         """A few muscles of each group by chance, both sides alike; layers stay at zero."""
+        generator = generator or np.random.default_rng()
         pose = dict.fromkeys(self.limits, 0.0)
         for names in self.scene.groups.values():
             for name in names:
@@ -129,9 +126,9 @@ class Session:
                 if is_muscle and twin_of(name) <= name and generator.random() < RANDOM_SHARE:
                     value = RANDOM_STRENGTH * generator.random() * self.limits[name][1]
                     pose[name] = pose[twin_of(name)] = value
-        self._take_pose(pose)
+        self._set_pose(pose)
 
-    def _take_pose(self, pose: Mapping[str, float], *, is_unsaved: bool = True) -> None:
+    def _set_pose(self, pose: Mapping[str, float], *, is_unsaved: bool = True) -> None:
         self.is_playing = False
         self.values = dict(pose)
         self.pose_is_unsaved, self.is_following = is_unsaved, False
@@ -199,6 +196,10 @@ class Session:
         if self.is_playing and self.time == 0.0:
             self.start_over()
 
+    def toggle_looping(self) -> None:
+        """Play the script again and again, or once."""
+        self.is_looping = not self.is_looping
+
     def start_over(self) -> None:
         """The first pose, as if it had been held for a while: each replay begins alike."""
         self.time = 0.0
@@ -255,7 +256,7 @@ class Session:
                 self.is_playing = self.is_looping
             self._follow_script()
         if self._recorder is not None:
-            self._recorder.take(seconds, self.values)
+            self._recorder.add(seconds, self.values)
         self.scene.pose(self.values)
         self.scene.step(seconds)
 
@@ -273,26 +274,23 @@ class Session:
         return self._recorder is not None
 
     def toggle_recording(self) -> None:
-        """Record the controls from now on, or take what was recorded as the script."""
+        """Record the controls from now on, or make what was recorded the script."""
         if self._recorder is None:
-            self._recorder = Recorder()
-            self._held = {}
+            scene, camera = self.script.scene, self.script.camera
+            empty = Script("Recording", 0.0, "Recording", scene=scene, camera=camera)
+            self._recorder, self._held = Recorder(empty), {}
             return
-        take = self._recorder.script(**self._recording_head)
+        recording = self._recorder.script()
         self._recorder, self._held = None, {}
         self.is_playing = False
-        if take is None:
+        if recording is None:
             raise UserError("nothing was recorded: no control moved")
-        self._open(take, ScriptFile(None, None), take.duration)
+        self._replace_script(recording, ScriptFile(None, None), recording.duration)
 
     @property
     def recording_so_far(self) -> Script | None:
-        """What would be taken as the script if the recording was stopped now, or nearly so."""
-        return self._recorder.draft(**self._recording_head) if self._recorder is not None else None
-
-    @property
-    def _recording_head(self) -> dict[str, Any]:
-        return {"title": "Recording", "scene": self.script.scene, "camera": self.script.camera}
+        """What would be the script if the recording was stopped now, or nearly so."""
+        return self._recorder.draft() if self._recorder is not None else None
 
     @property
     def recorded_seconds(self) -> float:
@@ -312,13 +310,13 @@ class Session:
         script.check(self.limits)
         return script
 
-    def take(self, script: Script) -> None:
+    def open(self, script: Script) -> None:
         """A pose to show, which a recording takes in, or a script to play, which ends it."""
         self.is_playing = False
         if is_pose(script):
-            self._take_pose(self._all(script.at(0.0)), is_unsaved=False)
+            self._set_pose(self._all(script.at(0.0)), is_unsaved=False)
         else:
-            self._open(script, ScriptFile.of(script), 0.0)
+            self._replace_script(script, ScriptFile.of(script), 0.0)
 
     def begin_script(self) -> None:
         """An empty script: the neutral face, to which keys can be added."""
@@ -330,9 +328,9 @@ class Session:
             camera=self.script.camera,
             poses=(Pose(0.0),),
         )
-        self._open(script, ScriptFile(None, script), 0.0)
+        self._replace_script(script, ScriptFile(None, script), 0.0)
 
-    def _open(self, script: Script, file: ScriptFile, time: float) -> None:
+    def _replace_script(self, script: Script, file: ScriptFile, time: float) -> None:
         """Another script in place of this one."""
         self._recorder, self._held = None, {}
         self.script, self.file = script, file
@@ -343,11 +341,11 @@ class Session:
         """Go on with unsaved work of another session, as it was at a time [s since 1970]."""
         self.is_playing = False
         if work.script is not None:
-            self._open(work.script, ScriptFile.recovered(work.path, when), 0.0)
+            self._replace_script(work.script, ScriptFile.recovered(work.path, when), 0.0)
         if work.recording is not None:
-            self._open(work.recording, ScriptFile(None, None), work.recording.duration)
+            self._replace_script(work.recording, ScriptFile(None, None), work.recording.duration)
         if work.pose is not None:
-            self._take_pose(self._all(work.pose.at(0.0)))
+            self._set_pose(self._all(work.pose.at(0.0)))
 
     def save_script(self, path: Path) -> None:
         """Write the script to a file; UserError where it cannot be written."""

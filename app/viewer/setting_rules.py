@@ -6,13 +6,9 @@ import math
 import reprlib
 import sys
 from collections.abc import Callable, Collection
-from typing import Any
+from typing import Any, get_type_hints
 
 from risorius import refine, render
-
-from .colours import COLOURS
-from .gui import THEMES
-from .overlays import OVERLAYS
 
 Rule = Callable[[Any], Any]  # gives back a value that is of use; ValueError for one that is not
 
@@ -45,16 +41,16 @@ class Refused:
         if not isinstance(stored, dict):
             self._found.append(f"{where.rstrip('.') or 'all'} = {reprlib.repr(stored)}")
             return {}
-        kept = {}
+        accepted = {}
         for name, value in stored.items():
             rule = rule_of(name)
             if rule is None:  # of another version of the program
                 continue
             try:
-                kept[name] = rule(value)
+                accepted[name] = rule(value)
             except ValueError:
                 self._found.append(f"{where}{name} = {reprlib.repr(value)}")
-        return kept
+        return accepted
 
 
 def whole_number(digits: str) -> float:
@@ -62,8 +58,11 @@ def whole_number(digits: str) -> float:
     return int(digits) if len(digits) <= LONGEST_NUMBER else math.nan
 
 
-def _number(least: float, most: float) -> Rule:
+def number(least: float, most: float) -> Rule:
+    """Any from the least to the most."""
+
     def rule(value: Any) -> float:
+        """A finite number, neither on nor off."""
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         if not (is_number and least <= value <= most):  # NaN is not
             raise ValueError
@@ -72,8 +71,11 @@ def _number(least: float, most: float) -> Rule:
     return rule
 
 
-def _one_of(words: Collection[str]) -> Rule:
+def one_of(words: Collection[str]) -> Rule:
+    """Any of these words."""
+
     def rule(value: Any) -> str:
+        """One of them."""
         if not (isinstance(value, str) and value in words):
             raise ValueError
         return value
@@ -81,8 +83,9 @@ def _one_of(words: Collection[str]) -> Rule:
     return rule
 
 
-def _several_of(words: Collection[str]) -> Rule:
-    one = _one_of(words)
+def several_of(words: Collection[str]) -> Rule:
+    """A list of these words."""
+    one = one_of(words)
     return lambda value: [one(each) for each in _list(value)]
 
 
@@ -92,6 +95,17 @@ def _list(value: Any) -> list[Any]:
     return value
 
 
+def anything(value: Any) -> Any:
+    """A table, whose entries have rules of their own, or what has no rule."""
+    return value
+
+
+def rules_of(kind: type) -> dict[str, Rule]:
+    """The rules that the fields of a dataclass are annotated with, by their names."""
+    hints = get_type_hints(kind, include_extras=True)
+    return {name: next(iter(getattr(hints[name], "__metadata__", ())), anything) for name in hints}
+
+
 def flag(value: Any) -> bool:
     """On or off."""
     if not isinstance(value, bool):
@@ -99,22 +113,18 @@ def flag(value: Any) -> bool:
     return value
 
 
-def _any(value: Any) -> Any:
-    """A table, whose entries have rules of their own."""
-    return value
-
-
-def _size(value: Any) -> tuple[int, int] | None:
+def size(value: Any) -> tuple[int, int] | None:
+    """Width and height of a window, or None."""
     if value is None:
         return None
-    side = _number(*SIDES)
+    side = number(*SIDES)
     width, height = (int(side(each)) for each in _list(value))
     return width, height
 
 
 def camera(value: Any) -> list[float]:
     """Yaw, pitch, distance, and the point it looks at."""
-    place = [_number(-FURTHEST, FURTHEST)(each) for each in _list(value)]
+    place = [number(-FURTHEST, FURTHEST)(each) for each in _list(value)]
     if len(place) != 6:
         raise ValueError
     return place
@@ -124,11 +134,12 @@ def option(value: Any) -> Any:
     """A number, a word, on or off, or None for what suits; the refiner knows more about it."""
     if isinstance(value, str | bool) or value is None:
         return value
-    finite = _number(-sys.float_info.max, sys.float_info.max)(value)
+    finite = number(-sys.float_info.max, sys.float_info.max)(value)
     return value if isinstance(value, int) else finite
 
 
-def _refiner(value: Any) -> str:
+def refiner(value: Any) -> str:
+    """The name of one, which is not the one that does nothing."""
     if value not in refine.available() or value == "none":
         raise ValueError
     return str(value)
@@ -136,31 +147,4 @@ def _refiner(value: Any) -> str:
 
 def table_of_refiner(name: str) -> Rule | None:
     """The options of a refiner, where there is one of this name."""
-    return _any if name in refine.available() else None
-
-
-LOOK: dict[str, Rule] = {
-    "refiner": _refiner,
-    "options": _any,
-    "is_refined": flag,
-    "compare": _one_of(COMPARISONS),
-    "divider": _number(0.0, 1.0),
-    "shading": _one_of([shading.value for shading in render.Shading]),
-    "wireframe": flag,
-    "colours": _one_of(COLOURS),
-    "skin": _one_of(SKINS),
-    "occlusion": flag,
-    "wrinkles": _number(0.0, 1.0),
-    "overlays": _several_of(OVERLAYS),
-}
-SETTINGS: dict[str, Rule] = {
-    "size": _size,
-    "theme": _one_of(THEMES),
-    "zoom": _number(*ZOOMS),
-    "is_linked": flag,
-    "tab": _one_of(TABS),
-    "panel_width": _number(0.0, 1000.0),  # [letters' heights]; layout.py has the limits of a screen
-    "folds": _any,
-    "cameras": _any,
-    "look": _any,
-}
+    return anything if name in refine.available() else None

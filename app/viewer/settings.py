@@ -16,22 +16,18 @@ import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from risorius import render
 
 from ..errors import UserError, in_one_line
 from ..files import read_text, written_atomically
 from ..refining import refiner_for
 from ..scenes import Scene
-from .setting_rules import (
-    LOOK,
-    SETTINGS,
-    Refused,
-    camera,
-    flag,
-    option,
-    table_of_refiner,
-    whole_number,
-)
+from . import setting_rules as rules
+from .colours import COLOURS
+from .gui import THEMES
+from .overlays import OVERLAYS, overlays_of
 
 FILE_NAME = "viewer.json"
 LONGEST_FILE = 2**20  # [bytes]; those that we write have two thousand
@@ -41,33 +37,62 @@ LONGEST_FILE = 2**20  # [bytes]; those that we write have two thousand
 class Look:
     """How the scene is shown; the names are those that panels show."""
 
-    refiner: str = "kahler"
+    refiner: Annotated[str, rules.refiner] = "kahler"
     options: dict[str, dict[str, Any]] = field(default_factory=dict)  # by refiner
-    is_refined: bool = True
-    compare: str = "off"  # off, wipe, side by side
-    divider: float = 0.5  # of the picture's width
-    shading: str = "pixel"
-    wireframe: bool = False
-    colours: str = "none"  # a key of colours.COLOURS
-    skin: str = "textured"  # textured, plain, clay
-    occlusion: bool = True  # less light in folds; of textured skin
-    wrinkles: float = 1.0  # how deep skin wrinkles where it is compressed, 0..1
-    overlays: list[str] = field(default_factory=list)  # keys of overlays.OVERLAYS
+    is_refined: Annotated[bool, rules.flag] = True
+    compare: Annotated[str, rules.one_of(rules.COMPARISONS)] = "off"
+    divider: Annotated[float, rules.number(0.0, 1.0)] = 0.5  # of the picture's width
+    shading: Annotated[str, rules.one_of([each.value for each in render.Shading])] = "pixel"
+    wireframe: Annotated[bool, rules.flag] = False
+    colours: Annotated[str, rules.one_of(COLOURS)] = "none"
+    skin: Annotated[str, rules.one_of(rules.SKINS)] = "textured"
+    occlusion: Annotated[bool, rules.flag] = True  # less light in folds; of textured skin
+    # How deep skin wrinkles where it is compressed.
+    wrinkles: Annotated[float, rules.number(0.0, 1.0)] = 1.0
+    overlays: Annotated[list[str], rules.several_of(OVERLAYS)] = field(default_factory=list)
+
+    def switch(self, name: str, value: object = True, other: object = False) -> None:
+        """Give a field this value, or the other if it has it already."""
+        setattr(self, name, other if getattr(self, name) == value else value)
+
+    def toggle_overlay(self, name: str) -> None:
+        """Show an overlay or hide it."""
+        others = [each for each in self.overlays if each != name]
+        self.overlays = others if name in self.overlays else [*others, name]
+
+    def next_shading(self) -> None:
+        """Flat, Gouraud, per pixel, and round again."""
+        order = [shading.value for shading in render.Shading]
+        self.shading = order[(order.index(self.shading) + 1) % len(order)]
+
+    def drop_missing_overlays(self, scene: Scene) -> None:
+        """Show none that this scene has no data for."""
+        self.overlays = [name for name in self.overlays if name in overlays_of(scene)]
 
 
 @dataclass
 class Settings:
     """Everything that is remembered."""
 
-    size: tuple[int, int] | None = None  # of the window [screen units]
-    theme: str = "light"
-    zoom: float = 1.0  # of all words and sliders
-    is_linked: bool = True  # sliders of both sides
-    tab: str = "Face"
-    panel_width: float = 22.5  # [letters' heights]
+    size: Annotated[tuple[int, int] | None, rules.size] = None  # of the window [screen units]
+    theme: Annotated[str, rules.one_of(THEMES)] = "light"
+    zoom: Annotated[float, rules.number(*rules.ZOOMS)] = 1.0  # of all words and sliders
+    is_linked: Annotated[bool, rules.flag] = True  # sliders of both sides
+    tab: Annotated[str, rules.one_of(rules.TABS)] = "Face"
+    # [letters' heights]; layout.py has the limits of a screen.
+    panel_width: Annotated[float, rules.number(0.0, 1000.0)] = 22.5
     folds: dict[str, bool] = field(default_factory=dict)  # which headings are open, by title
     cameras: dict[str, list[float]] = field(default_factory=dict)  # by scene
     look: Look = field(default_factory=Look)
+
+    def toggle_theme(self) -> None:
+        """Light or dark."""
+        self.theme = "light" if self.theme == "dark" else "dark"
+
+    def enlarge(self, factor: float) -> None:
+        """Make words and sliders larger or smaller."""
+        least, most = rules.ZOOMS
+        self.zoom = min(max(self.zoom * factor, least), most)
 
 
 def look_of(
@@ -109,42 +134,46 @@ def load_settings(path: Path) -> tuple[Settings, str]:
 
     In that case the file is set aside, and what is of use of it written anew.
     """
-    settings, refused = Settings(), Refused()
+    settings, refused = Settings(), rules.Refused()
     try:
         text = read_text(path, what="file of settings", longest=LONGEST_FILE)
-        stored = json.loads(text, parse_int=whole_number)
+        stored = json.loads(text, parse_int=rules.whole_number)
     except FileNotFoundError:
         return settings, ""
     except UserError as error:
-        return settings, f"{error}; all is as at first; {_set_aside(path)}"
+        return settings, f"{error}; all is as at first; {_rename_unusable(path)}"
     except (ValueError, RecursionError) as error:
-        return settings, f"{path}: not valid JSON: {error}; all is as at first; {_set_aside(path)}"
-    kept = refused.table("", stored, SETTINGS.get)
-    look = refused.table("look.", kept.pop("look", {}), LOOK.get)
-    options = refused.table("look.options.", look.pop("options", {}), table_of_refiner)
+        return (
+            settings,
+            f"{path}: not valid JSON: {error}; all is as at first; {_rename_unusable(path)}",
+        )
+    accepted = refused.table("", stored, rules.rules_of(Settings).get)
+    look = refused.table("look.", accepted.pop("look", {}), rules.rules_of(Look).get)
+    options = refused.table("look.options.", look.pop("options", {}), rules.table_of_refiner)
     look["options"] = {
-        name: refused.table(f"look.options.{name}.", found, lambda _: option)
+        name: refused.table(f"look.options.{name}.", found, lambda _: rules.option)
         for name, found in options.items()
     }
-    kept["folds"] = refused.table("folds.", kept.pop("folds", {}), lambda _: flag)
-    kept["cameras"] = refused.table("cameras.", kept.pop("cameras", {}), lambda _: camera)
-    settings, told = Settings(**kept, look=Look(**look)), str(refused)
+    folds, cameras = accepted.pop("folds", {}), accepted.pop("cameras", {})
+    accepted["folds"] = refused.table("folds.", folds, lambda _: rules.flag)
+    accepted["cameras"] = refused.table("cameras.", cameras, lambda _: rules.camera)
+    settings, told = Settings(**accepted, look=Look(**look)), str(refused)
     if not told:
         return settings, ""
-    kept_as = _set_aside(path)
+    kept_as = _rename_unusable(path)
     with contextlib.suppress(UserError):  # of a full disk others speak
         save_settings(path, settings)
     return settings, in_one_line(f"{path}: of no use and as at first: {told}; {kept_as}")
 
 
-def _set_aside(path: Path) -> str:
+def _rename_unusable(path: Path) -> str:
     """Give a file of no use another name, and say which; it is written anew on closing."""
-    aside = path.with_name(f"{path.stem}-{time.strftime('%Y%m%d-%H%M%S')}.unusable{path.suffix}")
+    unusable = path.with_name(f"{path.stem}-{time.strftime('%Y%m%d-%H%M%S')}.unusable{path.suffix}")
     try:
-        path.rename(aside)
+        path.rename(unusable)
     except OSError as error:
         return f"it cannot be set aside ({error.strerror}), and is written anew on closing"
-    return f"the file is kept as {aside.name}"
+    return f"the file is kept as {unusable.name}"
 
 
 def drop_refused_options(look: Look, scene: Scene) -> str:
@@ -153,13 +182,13 @@ def drop_refused_options(look: Look, scene: Scene) -> str:
     for refiner, options in look.options.items():
         if not options or _suits(scene, refiner, options):
             continue
-        kept: dict[str, Any] = {}
+        accepted: dict[str, Any] = {}
         for name, value in options.items():
-            if _suits(scene, refiner, {**kept, name: value}):
-                kept[name] = value
+            if _suits(scene, refiner, {**accepted, name: value}):
+                accepted[name] = value
             else:
                 refused.append(f"{refiner} {name} = {reprlib.repr(value)}")
-        look.options[refiner] = kept
+        look.options[refiner] = accepted
     if not _suits(scene, look.refiner, None):
         refused.append(look.refiner)
         look.refiner = Look().refiner

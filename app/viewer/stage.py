@@ -1,15 +1,11 @@
 """The scene in the window: which meshes are drawn where, coloured and overlaid as the user wants.
 
-Uses the paper's Figure 1 part by part (simulate, refine, upload, draw) and keeps the time of each.
+Uses the paper's Figure 1 part by part (refine, upload, draw) and keeps the time of each.
 """
 
 from __future__ import annotations
 
-import time
-from collections import deque
-from collections.abc import Collection, Iterator, Sequence
-from contextlib import contextmanager
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,19 +16,15 @@ from ..files import Image
 from ..pipeline import DrawnMesh, Viewport, texture_of
 from ..scenes import Scene
 from ..wrinkling import wrinkling_of
-from .colours import COLOURS
+from .colours import COLOURS, Amounts
+from .frame_times import FrameTimes
+from .level_of_detail import FULL
 from .overlays import OVERLAYS, Lines, pointed_lines
-from .quality import FULL
 from .setting_rules import SKINS
 from .settings import Look
+from .view import View
 
-STAGES = ("simulation", "refinement", "upload", "draw")
-KEPT_TIMES = 180  # frames in the plot
 LEAST_SHARE = 0.08  # of the picture that each side of a comparison keeps
-
-
-# Camera, look, background, viewport, names of muscles that are pointed at.
-SceneView = tuple[render.OrbitCamera, Look, render.Background, Viewport, Collection[str]]
 
 
 class Shot(NamedTuple):
@@ -47,32 +39,25 @@ class Shot(NamedTuple):
 class Stage:
     """Draws a scene into a window's surface."""
 
-    def __init__(self, surface: render.WindowSurface, scene: Scene, look: Look) -> None:
+    def __init__(
+        self, surface: render.WindowSurface, scene: Scene, look: Look, times: FrameTimes
+    ) -> None:
         self.surface = surface
+        self._times = times
+        self._set(scene, look)
+
+    def _set(self, scene: Scene, look: Look) -> None:
         self.scene = scene
-        self.renderer = render.Renderer(surface)
+        self.renderer = render.Renderer(self.surface)
         self._texture = texture_of(scene, self.renderer)
         self._wrinkling = wrinkling_of(scene, self.renderer)
         self.static = DrawnMesh.of(scene, self.renderer, "none", None)
         self.refined = self.static
-        self._adopted: object = None
-        self.adopt(look)
-        self.times = {name: deque([0.0] * KEPT_TIMES, KEPT_TIMES) for name in STAGES}
+        self._bound: object = None
+        self.bind_refiner(look)
 
-    def adopt(self, look: Look) -> None:
-        """Bind the refiner that `look` names, with its options; UserError if it refuses them."""
-        options = look.options.get(look.refiner)
-        wanted = look.refiner, tuple(sorted((options or {}).items()))
-        if wanted == self._adopted:
-            return
-        self._adopted = wanted  # refused options are refused once, not in every frame
-        refined = DrawnMesh.of(self.scene, self.renderer, look.refiner, options)
-        if self.refined is not self.static:
-            self.refined.stream.release()
-        self.refined = refined
-
-    def release(self) -> None:
-        """Give back what only this scene needs; another stage takes its place."""
+    def show(self, scene: Scene, look: Look) -> None:
+        """Take another scene in place of this one."""
         for stream in {id(each): each.stream for each in (self.static, self.refined)}.values():
             stream.release()
         if self._texture is not None:
@@ -80,18 +65,19 @@ class Stage:
         if self._wrinkling is not None:
             self._wrinkling.map.release()
         self.renderer.release()
+        self._set(scene, look)
 
-    @contextmanager
-    def timed(self, name: str) -> Iterator[None]:
-        """Add the milliseconds that the block takes to the present frame's."""
-        start = time.perf_counter()
-        yield
-        self.times[name][-1] += 1e3 * (time.perf_counter() - start)
-
-    def next_frame(self) -> None:
-        """Start new columns in the plot of times."""
-        for times in self.times.values():
-            times.append(0.0)
+    def bind_refiner(self, look: Look) -> None:
+        """Bind the refiner that `look` names, with its options; UserError if it refuses them."""
+        options = look.options.get(look.refiner)
+        wanted = look.refiner, tuple(sorted((options or {}).items()))
+        if wanted == self._bound:
+            return
+        self._bound = wanted  # refused options are refused once, not in every frame
+        refined = DrawnMesh.of(self.scene, self.renderer, look.refiner, options)
+        if self.refined is not self.static:
+            self.refined.stream.release()
+        self.refined = refined
 
     def shots(self, look: Look, viewport: Viewport) -> list[Shot]:
         """What is drawn where."""
@@ -111,34 +97,27 @@ class Stage:
             refined._replace(viewport=second, clip=second),
         ]
 
-    def draw(
-        self,
-        camera: render.OrbitCamera,
-        look: Look,
-        background: render.Background,
-        viewport: Viewport,
-        pointed: Collection[str] = (),
-    ) -> None:
+    def draw(self, view: View) -> None:
         """Draw the scene as it is now; the surface's `detail` says how finely."""
+        camera, look, viewport, times = view.camera, view.look, view.viewport, self._times
         shots = self.shots(look, viewport)
-        style = style_of(look, background)
+        style = style_of(look, view.background)
         amounts = None
         if self._wrinkling is not None and style.shows_wrinkles:
-            with self.timed("refinement"):
+            with times.timed("refinement"):
                 amounts = self._wrinkling.amounts(self.scene.positions)
         for shot in shots:
-            with self.timed("refinement"):
+            with times.timed("refinement"):
                 shot.picture.refine(self.scene.positions, camera, shot.viewport)
-            with self.timed("upload"):
+            with times.timed("upload"):
                 shot.picture.upload(amounts)
-        with self.timed("draw"):
+        with times.timed("draw"):
             self.surface.begin()
-            overlays = self._overlays(look, camera, pointed)
+            overlays = self._overlays(view)
             self.renderer.draw_background(style, viewport)
             for shot in shots:
-                self._draw(
-                    shot, camera, style, COLOURS[look.colours].values(self.scene, shot.picture)
-                )
+                values = COLOURS[look.colours].values(self.scene, shot.picture)
+                self._draw_shot(shot, camera, style, values)
                 for lines in overlays:
                     self.renderer.draw_lines(
                         lines.polylines,
@@ -152,60 +131,41 @@ class Stage:
             self.surface.target.flush()
             self.surface.gl.finish()
 
-    def _draw(
-        self, shot: Shot, camera: render.OrbitCamera, style: render.Style, values: object
+    def _draw_shot(
+        self, shot: Shot, camera: render.OrbitCamera, style: render.Style, values: Amounts | None
     ) -> None:
+        where: dict[str, Any] = {"viewport": shot.viewport, "clip": shot.clip}
         self.renderer.draw_mesh(
             shot.picture.stream,
             camera,
             style,
-            viewport=shot.viewport,
-            clip=shot.clip,
-            values=None if values is None else np.asarray(values, np.uint8),
+            values=values,
             texture=self._texture,
             wrinkles=None if self._wrinkling is None else self._wrinkling.map,
+            **where,
         )
         # After the mesh: the skin throws its shadow on eyes and teeth.
         self.renderer.draw_parts(
-            self.scene.parts,
-            self.scene.bone_transforms(),
-            camera,
-            style,
-            viewport=shot.viewport,
-            clip=shot.clip,
+            self.scene.parts, self.scene.bone_transforms(), camera, style, **where
         )
         if not self.surface.samples:
             self.renderer.draw_outline(
-                shot.picture.stream,
-                camera,
-                style,
-                viewport=shot.viewport,
-                clip=shot.clip,
-                texture=self._texture,
+                shot.picture.stream, camera, style, texture=self._texture, **where
             )
 
-    def _overlays(
-        self, look: Look, camera: render.OrbitCamera, pointed: Collection[str]
-    ) -> list[Lines]:
+    def _overlays(self, view: View) -> list[Lines]:
         edges = self.static.refiner.edges
-        lines = [OVERLAYS[name](self.scene, edges, camera) for name in look.overlays]
-        return [*lines, pointed_lines(self.scene, pointed)] if pointed else lines
+        lines = [OVERLAYS[name](self.scene, edges, view.camera) for name in view.look.overlays]
+        return [*lines, pointed_lines(self.scene, view.pointed)] if view.pointed else lines
 
-    def photograph(
-        self,
-        camera: render.OrbitCamera,
-        look: Look,
-        background: render.Background,
-        viewport: Viewport,
-        pointed: Collection[str] = (),
-    ) -> Image:
+    def photograph(self, view: View) -> Image:
         """The picture without panels, in full detail, with captions where two meshes are seen."""
         self.surface.detail = FULL
-        self.draw(camera, look, background, viewport, pointed)
-        left, bottom, width, height = viewport
+        self.draw(view)
+        left, bottom, width, height = view.viewport
         top = self.surface.size[1] - bottom - height
         frame = self.surface.read_scene()[top : top + height, left : left + width]
-        shots = self.shots(look, viewport)
+        shots = self.shots(view.look, view.viewport)
         if len(shots) == 1:
             return np.ascontiguousarray(frame)
         texts = [f"{shot.label} · {shot.picture.triangle_count} triangles" for shot in shots]
@@ -226,10 +186,3 @@ def style_of(look: Look, background: render.Background) -> render.Style:
         wrinkles=look.wrinkles,
         background=background,
     )
-
-
-def checked(look: Look, refiners: Sequence[str], overlays: Sequence[str]) -> Look:
-    """A look without anything that there is none of for this scene."""
-    look.overlays = [name for name in look.overlays if name in overlays]
-    look.options = {name: dict(found) for name, found in look.options.items() if name in refiners}
-    return look

@@ -66,15 +66,21 @@ class Work:
         return f"{', '.join(others)} and {last}" if others else last
 
 
-class Place:
-    """The files of one window; others leave them alone until `leave` or the process's end."""
+class WorkFiles:
+    """The files of one window; others leave them alone until `leave` or the process's end.
+
+    work: what is in them.
+    """
+
+    work: Work
 
     def __init__(self, folder: Path, name: str, lock: IO[Any]) -> None:
         self._folder, self._name, self._lock = folder, name, lock
+        self.work = Work()
 
     @classmethod
-    def new(cls, folder: Path) -> Place:
-        """A place of one's own; UserError where there can be none."""
+    def new(cls, folder: Path) -> WorkFiles:
+        """Files of one's own, none so far; UserError where there can be none."""
         name = f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(3)}"
         with cannot_be_written(folder):
             folder.mkdir(parents=True, exist_ok=True)
@@ -82,8 +88,9 @@ class Place:
         assert lock is not None
         return cls(folder, name, lock)
 
-    def write(self, work: Work, before: Work) -> None:
-        """Keep work in place of what was kept before; UserError where it cannot be written."""
+    def write(self, work: Work) -> None:
+        """Keep work in place of what there is; UserError where it cannot be written."""
+        before, self.work = self.work, Work()  # lest after an error something is thought to be safe
         for kind in KINDS:
             script = getattr(work, kind)
             if script is None:
@@ -94,9 +101,10 @@ class Place:
                 if kind == "script" and work.path is not None:
                     text += f"\n{FILE_LINE}{json.dumps(str(work.path.absolute()))}\n"
                 save_text(self._file(kind), text)
+        self.work = work
 
-    def read(self) -> Work:
-        """What is kept here; UserError or OSError where a file is damaged."""
+    def read(self) -> None:
+        """Find the work that is there; UserError or OSError where a file is damaged."""
         texts = {
             kind: read_text(file, what="script", longest=LONGEST_FILE)
             for kind, file in self._files().items()
@@ -107,7 +115,7 @@ class Place:
         scripts = {
             kind: parse_script(text, source=sources.get(kind, kind)) for kind, text in texts.items()
         }
-        return Work(path=path, **scripts)
+        self.work = Work(path=path, **scripts)
 
     @property
     def time(self) -> float:
@@ -115,14 +123,14 @@ class Place:
         return max((file.stat().st_mtime for file in self._files().values()), default=0.0)
 
     def remove(self) -> None:
-        """Take away all files of this place."""
+        """Take all of them away."""
         self.leave()
         for name in (*(f"{kind}.toml" for kind in KINDS), "lock"):
             with contextlib.suppress(OSError):
                 (self._folder / f"{self._name}.{name}").unlink()
 
     def leave(self) -> None:
-        """Let others have it."""
+        """Let others have them."""
         self._lock.close()
 
     def _file(self, kind: str) -> Path:
@@ -132,10 +140,10 @@ class Place:
         return {kind: self._file(kind) for kind in KINDS if self._file(kind).exists()}
 
 
-def left_behind(folder: Path) -> Iterator[tuple[Place, Work]]:
-    """The places in a folder whose windows ended, and what is in each; the latest first.
+def left_behind(folder: Path) -> Iterator[WorkFiles]:
+    """The work in a folder whose windows ended; the latest first.
 
-    What cannot be read stays there and is passed by. Whoever does not want a place leaves it.
+    What cannot be read stays there and is passed by. Whoever does not want some leaves it.
     """
     try:
         names = {file.name.split(".")[0] for file in folder.iterdir() if file.suffix == ".toml"}
@@ -146,14 +154,14 @@ def left_behind(folder: Path) -> Iterator[tuple[Place, Work]]:
             lock = locked(folder / f"{name}.lock")
             if lock is None:
                 continue
-            place = Place(folder, name, lock)
-            work = place.read()
+            found = WorkFiles(folder, name, lock)
+            found.read()
         except (OSError, UserError):
             continue
-        if work:
-            yield place, work
+        if found.work:
+            yield found
         else:
-            place.remove()
+            found.remove()
 
 
 def _path_in(text: str) -> Path | None:

@@ -13,10 +13,10 @@ from imgui_bundle import imgui
 
 from risorius.app.files import Image
 from risorius.app.script import script_for
-from risorius.app.viewer import Viewer, commands
+from risorius.app.viewer import Viewer
 from risorius.app.viewer.keys import places_of
+from risorius.app.viewer.mouse import SkinPull
 from risorius.app.viewer.settings import Look
-from risorius.app.viewer.touch import Pull
 from risorius.bench import figures
 
 SIZE = (1160, 700)
@@ -30,7 +30,9 @@ def settled(viewer: Viewer) -> None:
     for _ in range(MOST_FRAMES):
         if viewer.is_idle:
             return
-        viewer.messages.left = 0.0 if viewer.messages.is_fading else viewer.messages.left
+        viewer.messages.seconds_left = (
+            0.0 if viewer.messages.is_fading else viewer.messages.seconds_left
+        )
         viewer.frame()
 
 
@@ -44,70 +46,73 @@ def controls(viewer: Viewer) -> None:
     viewer.settings.is_linked = False
     viewer.face_panel.search = "lip"
     viewer.session.set("levator_labii_superioris_left", 0.9)
-    viewer.look.overlays = ["muscles"]
+    viewer.settings.look.overlays = ["muscles"]
 
 
 def wipe(viewer: Viewer) -> None:
     """Static and refined, divided by a line; the dark theme."""
     viewer.session.show("disgust")
-    viewer.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
-    viewer.look = Look(compare="wipe", divider=0.46, wireframe=True, colours="splits", skin="clay")
-    viewer.camera.zoom(1.5)
+    viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
+    viewer.settings.look = Look(
+        compare="wipe", divider=0.46, wireframe=True, colours="splits", skin="clay"
+    )
+    viewer.view.camera.zoom(1.5)
 
 
 def side_by_side(viewer: Viewer) -> None:
     """Two viewports under one camera, coloured by how far the normals turned apart."""
     viewer.session.show("surprise")
-    viewer.wanted_tab = "Mechanism"
-    viewer.look = Look(compare="side by side", colours="curvature drop", skin="clay")
+    viewer.panel_state.wanted_tab = "Mechanism"
+    viewer.settings.look = Look(compare="side by side", colours="curvature drop", skin="clay")
 
 
 def tension(viewer: Viewer) -> None:
     """What is stretched and what is compressed, with the springs."""
     viewer.session.show("yawn")
-    viewer.wanted_tab = "Mechanism"
-    viewer.look = Look(colours="tension", overlays=["springs"], skin="clay")
+    viewer.panel_state.wanted_tab = "Mechanism"
+    viewer.settings.look = Look(colours="tension", overlays=["springs"], skin="clay")
 
 
 def anatomy(viewer: Viewer) -> None:
     """Skull, muscles and landmarks."""
     viewer.session.set("jaw_open", 0.5)
-    viewer.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
-    viewer.look = Look(overlays=["skull", "muscles", "landmarks"])
+    viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
+    viewer.settings.look = Look(overlays=["skull", "muscles", "landmarks"])
 
 
 def finger(viewer: Viewer) -> None:
     """The skin, pulled by the mouse."""
-    scene = viewer.scene
+    scene = viewer.session.scene
     corner = scene.positions[scene.head.landmarks[48]]  # type: ignore[attr-defined]
-    viewer.touch.pull = Pull(scene, corner.copy())
-    viewer.touch.pull.to(corner + np.array([-30.0, 16.0, 12.0]))
+    viewer.mouse.pull = SkinPull(scene, corner.copy())
+    viewer.mouse.pull.to(corner + np.array([-30.0, 16.0, 12.0]))
     for _ in range(20):
         viewer.frame()
-    viewer.quality.level = 0
+    viewer.painter.level_of_detail.level = 0
     viewer.frame()
 
 
 def timeline(viewer: Viewer) -> None:
     """Keys of poses and tracks, some of them selected; the dark theme."""
     viewer.settings.theme, viewer.settings.folds["Tracks"] = "dark", True
-    sheet = viewer.timeline.sheet
+    axis = viewer.time_axis
     viewer.session.seek(2.3)
     viewer.frame()
-    sheet.view.zoom(0.6, sheet.view.x(0.0))
+    axis.zoom(0.6, axis.x(0.0))
     places = places_of(viewer.session.script)
-    sheet.selected = frozenset(place for place in places if 1.5 < place.time < 3.0)
+    chosen = (place for place in places if 1.5 < place.time < 3.0)
+    viewer.selection.places = frozenset(chosen)
 
 
 def keys(viewer: Viewer) -> None:
     """Help, made of the same table as the menus."""
-    viewer.is_help_open = True
+    viewer.panel_state.is_help_open = True
 
 
 def unsaved(viewer: Viewer) -> None:
     """A question before work is lost."""
     viewer.session.set("jaw_open", 0.4)
-    commands.close_politely(viewer)
+    viewer.ask_to_close()
 
 
 def large(viewer: Viewer) -> None:
@@ -138,7 +143,7 @@ def picture(stop: Callable[[Viewer], None]) -> Image:
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
         settled(viewer)
         stop(viewer)
-        if viewer.touch.pull is None:
+        if viewer.mouse.pull is None:
             settled(viewer)
         return figures.without_noise(viewer.surface.read())
 

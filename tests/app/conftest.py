@@ -12,9 +12,10 @@ from imgui_bundle import imgui
 from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.files import Files
+from risorius.app.viewer.session import Session
 from risorius.app.viewer.settings import Look
 
-from .driving import SIZE, settle, xdotool
+from .driving import SIZE, replace_state, settle, xdotool
 
 
 @pytest.fixture(scope="module")
@@ -34,10 +35,11 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.chdir(tmp_path)
     xdotool(viewer, "mousemove", 2, 2, "key", "Escape")
     script = replace(script_for(None, "face"), duration=0.5)
-    viewer.session = type(viewer.session)(viewer.scene, script)
-    viewer.scene.reset()
-    viewer.look, viewer.face_panel.search = Look(), ""
+    replace_state(viewer.session, Session(viewer.session.scene, script))
+    viewer.session.scene.reset()
+    viewer.settings.look, viewer.face_panel.search = Look(), ""
     viewer.settings.folds.clear()
-    viewer.files, viewer.messages.text = Files(is_native=False), ""
-    viewer.wanted_tab = "Face"
+    replace_state(viewer.files, Files(is_native=False))
+    viewer.messages.text = ""
+    viewer.panel_state.wanted_tab = "Face"
     xdotool(viewer, "key", "f")

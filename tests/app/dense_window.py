@@ -17,7 +17,18 @@ from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.files import Files
 
-from .driving import click, drag, middle, moved, nose, settle, show_controls, until, xdotool
+from .driving import (
+    click,
+    drag,
+    middle,
+    moved,
+    nose,
+    replace_state,
+    settle,
+    show_controls,
+    until,
+    xdotool,
+)
 
 DOTS_PER_INCH = 192
 SIZE = (1200, 800)
@@ -28,14 +39,14 @@ def main() -> None:
     if sys.argv[1:2] == ["first"]:
         with _screen_of(int(sys.argv[2])), Viewer(script_for(None, "plane")) as viewer:
             settle(viewer)
-            found = {"window": viewer.surface.window_size, "panel": viewer.picture_area[0]}
+            found = {"window": viewer.surface.window_size, "panel": viewer.view.area[0]}
             print(json.dumps(found))
         return
     with _screen_of(DOTS_PER_INCH), Viewer(script_for(None, "face"), SIZE) as viewer:
-        first = viewer.viewport[0]
-        viewer.files = Files(is_native=False)
+        first = viewer.view.viewport[0]
+        replace_state(viewer.files, Files(is_native=False))
         settle(viewer)
-        is_settled = viewer.viewport[0] == first
+        is_settled = viewer.view.viewport[0] == first
         print(json.dumps({**_findings(viewer), "is_settled": is_settled}))
 
 

@@ -30,6 +30,12 @@ def settle(viewer: Viewer, frames: int = 4) -> None:
         viewer.frame()
 
 
+def replace_state(part: object, fresh: object) -> None:
+    """Make a part of the window, which others hold on to, like a fresh one of its kind."""
+    vars(part).clear()
+    vars(part).update(vars(fresh))
+
+
 def xdotool(viewer: Viewer, *words: object) -> None:
     """Send real events and let the window take them in."""
     subprocess.run(["xdotool", *map(str, words)], check=True, capture_output=True)
@@ -96,14 +102,14 @@ def clear_search(viewer: Viewer) -> None:
 
 def moved(viewer: Viewer) -> float:
     """How far the farthest vertex is from rest [mm]."""
-    return float(np.abs(viewer.scene.positions - viewer.scene.rest_positions).max())
+    return float(np.abs(viewer.session.scene.positions - viewer.session.scene.rest_positions).max())
 
 
 def nose(viewer: Viewer) -> tuple[int, int]:
     """The tip of the nose, on the screen."""
-    tip = viewer.scene.positions[viewer.scene.positions[:, 2].argmax()]
-    left, top, width, height = viewer.picture_area
-    camera = viewer.camera
+    tip = viewer.session.scene.positions[viewer.session.scene.positions[:, 2].argmax()]
+    left, top, width, height = viewer.view.area
+    camera = viewer.view.camera
     matrix = np.asarray(camera.view_matrix() @ camera.projection_matrix(width / height))
     clip = np.append(tip, 1.0) @ matrix
     x, y = clip[:2] / clip[3]

@@ -15,9 +15,8 @@ import pytest
 from PIL import Image
 
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.clock import MOST_STEPS
+from risorius.app.viewer.physics import MOST_STEPS
 from risorius.app.viewer.settings import load_settings
-from risorius.app.viewer.window import FULL
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -86,12 +85,12 @@ def test_linked_sides_move_together(viewer: Viewer) -> None:
 def test_keys_show_expressions_and_refinement(viewer: Viewer) -> None:
     """1 shows the first expression, 1 again is neutral; R makes refined triangles come and go."""
     xdotool(viewer, "key", "1")
-    assert viewer.session.shown == next(iter(viewer.scene.expressions))
+    assert viewer.session.shows(next(iter(viewer.session.scene.expressions)))
     assert until(viewer, lambda: moved(viewer) > 3.0)
     assert until(viewer, lambda: viewer.stage.refined.triangle_count > 2100)
     xdotool(viewer, "key", "r")
-    shot = viewer.stage.shots(viewer.look, viewer.viewport)[0]
-    assert shot.picture.triangle_count == len(viewer.scene.faces)
+    shot = viewer.stage.shots(viewer.settings.look, viewer.view.viewport)[0]
+    assert shot.picture.triangle_count == len(viewer.session.scene.faces)
     xdotool(viewer, "key", "r")
     xdotool(viewer, "key", "1")
     assert until(viewer, lambda: moved(viewer) < 0.5)
@@ -102,15 +101,15 @@ def test_keys_change_the_picture(viewer: Viewer) -> None:
     viewer.session.show("disgust")
     settle(viewer)
     assert until(viewer, lambda: viewer.is_idle)
-    before, look = viewer.surface.read(), deepcopy(viewer.look)
-    left = round(viewer.picture_area[0])
+    before, look = viewer.surface.read(), deepcopy(viewer.settings.look)
+    left = round(viewer.view.area[0])
     for key, times in (("w", 2), ("c", 2), ("t", 2), ("s", 3), ("d", 2)):
         xdotool(viewer, "key", key)
         changed = viewer.surface.read()[:500, left:].astype(int) - before[:500, left:]
         assert np.abs(changed).max() > 20, key
         for _ in range(times - 1):
             xdotool(viewer, "key", key)
-        assert viewer.look == look, key
+        assert viewer.settings.look == look, key
     assert until(viewer, lambda: viewer.is_idle)
     back = viewer.surface.read()[:500, left:].astype(int) - before[:500, left:]
     assert np.abs(back).mean() < 0.5
@@ -118,17 +117,17 @@ def test_keys_change_the_picture(viewer: Viewer) -> None:
 
 def test_the_mouse_orbits_and_the_wheel_zooms(viewer: Viewer) -> None:
     """The right button turns the camera anywhere, the left beside the face; F frames again."""
-    view = viewer.camera.view_matrix().copy()
+    view = viewer.view.camera.view_matrix().copy()
     for button, place in ((3, nose(viewer)), (1, on_screen(viewer, SIZE[0] - 20, 100))):
         drag(viewer, place, (-80, 20), button=button)
         xdotool(viewer, "mouseup", button)
-        turned = viewer.camera.view_matrix().copy()
+        turned = viewer.view.camera.view_matrix().copy()
         assert np.abs(turned - view).max() > 0.1
         xdotool(viewer, "key", "f")
-        assert np.allclose(viewer.camera.view_matrix(), view)
+        assert np.allclose(viewer.view.camera.view_matrix(), view)
     xdotool(viewer, "mousemove", *nose(viewer))
     xdotool(viewer, "click", 4)
-    assert np.abs(viewer.camera.view_matrix() - view).max() > 1e-3
+    assert np.abs(viewer.view.camera.view_matrix() - view).max() > 1e-3
 
 
 def test_the_skin_is_pulled_and_swings_back(viewer: Viewer) -> None:
@@ -156,11 +155,11 @@ def test_pointing_at_a_slider_shows_its_fibres(viewer: Viewer) -> None:
     """The mouse on a muscle's slider draws its fibres over the face."""
     show_controls(viewer, "zygom maj")
     assert until(viewer, lambda: viewer.is_idle)
-    left = round(viewer.picture_area[0])
+    left = round(viewer.view.area[0])
     before = viewer.surface.read_scene()[:, left:].astype(int)
     xdotool(viewer, "mousemove", *middle(viewer, "zygomaticus_major_left"))
-    assert "zygomaticus_major_left" in viewer.face_panel.pointed
-    assert until(viewer, lambda: viewer._drawn == (viewer._shown(), FULL), 3.0)
+    assert "zygomaticus_major_left" in viewer.view.pointed
+    assert until(viewer, lambda: viewer.painter.is_complete, 3.0)
     changed = np.abs(viewer.surface.read_scene()[:, left:].astype(int) - before).max(axis=2)
     assert (changed > 40).sum() > 30
     clear_search(viewer)
@@ -168,7 +167,7 @@ def test_pointing_at_a_slider_shows_its_fibres(viewer: Viewer) -> None:
 
 def test_a_comparison_has_two_parts_or_one(viewer: Viewer) -> None:
     """In however narrow a picture neither part is empty; a single pixel is not divided."""
-    look = replace(viewer.look, divider=0.02)
+    look = replace(viewer.settings.look, divider=0.02)
     for compare in ("wipe", "side by side"):
         look = replace(look, compare=compare)
         shots = viewer.stage.shots(look, (3, 0, 2, 50))
@@ -180,14 +179,14 @@ def test_the_divider_can_be_dragged(viewer: Viewer) -> None:
     """In a comparison both meshes are drawn, and the line between them follows the mouse."""
     viewer.session.show("disgust")
     xdotool(viewer, "key", "d")
-    assert len(viewer.stage.shots(viewer.look, viewer.viewport)) == 2
-    left, top, width, height = viewer.picture_area
+    assert len(viewer.stage.shots(viewer.settings.look, viewer.view.viewport)) == 2
+    left, top, width, height = viewer.view.area
     place = on_screen(viewer, left + 0.5 * width, top + 0.2 * height)
     drag(viewer, place, (round(0.2 * width), 0))
     xdotool(viewer, "mouseup", 1)
-    assert viewer.look.divider == pytest.approx(0.7, abs=0.02)
+    assert viewer.settings.look.divider == pytest.approx(0.7, abs=0.02)
     assert until(viewer, lambda: viewer.stage.refined.triangle_count > 2100)
-    assert viewer.stage.static.triangle_count == len(viewer.scene.faces)
+    assert viewer.stage.static.triangle_count == len(viewer.session.scene.faces)
 
 
 def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
@@ -197,18 +196,18 @@ def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
     for name in ("curvature drop", "tension", "splits"):
         click(viewer, "Colours")
         click(viewer, f"Colours: {name}")
-        assert viewer.look.colours == name
+        assert viewer.settings.look.colours == name
     for name in ("Muscles", "Springs", "Skull", "Landmarks"):
         click(viewer, name)
-    assert viewer.look.overlays == ["muscles", "springs", "skull", "landmarks"]
+    assert viewer.settings.look.overlays == ["muscles", "springs", "skull", "landmarks"]
     assert until(viewer, lambda: viewer.is_idle)
     few = viewer.stage.refined.triangle_count
-    viewer.look.options["kahler"] = {"threshold_once": 0.0, "threshold_twice": 0.01}
+    viewer.settings.look.options["kahler"] = {"threshold_once": 0.0, "threshold_twice": 0.01}
     settle(viewer)
     assert viewer.stage.refined.triangle_count > 1.5 * few
     click(viewer, "Refiner")
     click(viewer, "Refiner: loop")
-    assert viewer.stage.refined.triangle_count == 4 * len(viewer.scene.faces)
+    assert viewer.stage.refined.triangle_count == 4 * len(viewer.session.scene.faces)
     assert not viewer.messages.text
 
 
@@ -217,14 +216,14 @@ def test_wrinkles_have_a_slider(viewer: Viewer) -> None:
     viewer.session.show("surprise")
     click(viewer, "tab Mechanism")
     assert until(viewer, lambda: viewer.is_idle)
-    assert viewer.look.wrinkles == 1.0 and viewer.stage.refined.stream.has_wrinkles
+    assert viewer.settings.look.wrinkles == 1.0 and viewer.stage.refined.stream.has_wrinkles
     drag(viewer, middle(viewer, "wrinkles"), (-400, 0))
     xdotool(viewer, "mouseup", 1)
-    assert viewer.look.wrinkles == 0.0 and not viewer.stage.refined.stream.has_wrinkles
+    assert viewer.settings.look.wrinkles == 0.0 and not viewer.stage.refined.stream.has_wrinkles
     xdotool(viewer, "click", 3)
     xdotool(viewer, "mousemove", *middle(viewer, "wrinkles"))
     xdotool(viewer, "click", 3)
-    assert viewer.look.wrinkles == 1.0
+    assert viewer.settings.look.wrinkles == 1.0
     assert until(viewer, lambda: viewer.stage.refined.stream.has_wrinkles)
 
 
@@ -234,7 +233,7 @@ def test_recording_survives_a_file(viewer: Viewer, tmp_path: Path) -> None:
     assert viewer.session.is_recording
     viewer.session.set("jaw_open", 0.6)
     assert until(viewer, lambda: viewer.session.recorded_seconds > 1.0)
-    wanted = viewer.scene.positions.copy()
+    wanted = viewer.session.scene.positions.copy()
     xdotool(viewer, "key", "ctrl+r")
     path = tmp_path / "take.toml"
     xdotool(viewer, "key", "ctrl+s")
@@ -250,7 +249,7 @@ def test_recording_survives_a_file(viewer: Viewer, tmp_path: Path) -> None:
     assert viewer.session.script.source == str(path)
     xdotool(viewer, "key", "space")
     assert until(viewer, lambda: not viewer.session.is_playing)
-    assert np.abs(viewer.scene.positions - wanted).max() < 0.05
+    assert np.abs(viewer.session.scene.positions - wanted).max() < 0.05
 
 
 def test_a_bad_file_is_told_and_survived(viewer: Viewer, tmp_path: Path) -> None:
@@ -287,7 +286,7 @@ def test_unsaved_work_is_asked_for(viewer: Viewer) -> None:
 
 def test_screenshot_and_film(viewer: Viewer, tmp_path: Path) -> None:
     """F12 writes the picture without panels; F10 a film, until it is pressed again."""
-    _, _, width, height = viewer.viewport
+    _, _, width, height = viewer.view.viewport
     xdotool(viewer, "key", "F12")
     shots = list(tmp_path.glob("*.png"))
     assert len(shots) == 1 and Image.open(shots[0]).size == (width, height)
@@ -296,7 +295,7 @@ def test_screenshot_and_film(viewer: Viewer, tmp_path: Path) -> None:
     xdotool(viewer, "key", "F10")
     films = list(tmp_path.glob("*.mp4"))
     assert len(films) == 1 and films[0].stat().st_size > 1000
-    assert viewer.film is None
+    assert viewer.exporter.film is None
 
 
 def test_help_and_themes(viewer: Viewer) -> None:
@@ -306,7 +305,7 @@ def test_help_and_themes(viewer: Viewer) -> None:
         xdotool(viewer, "key", key)
         assert np.abs(viewer.surface.read().astype(int) - before).mean() > 3.0, key
         xdotool(viewer, "key", key)
-    assert not viewer.is_help_open and viewer.settings.theme == "light"
+    assert not viewer.panel_state.is_help_open and viewer.settings.theme == "light"
 
 
 def test_a_stalled_window_goes_on_calmly(viewer: Viewer) -> None:
@@ -315,16 +314,16 @@ def test_a_stalled_window_goes_on_calmly(viewer: Viewer) -> None:
     before = viewer.session.time
     viewer._last -= 10.0
     viewer.frame()
-    assert np.isfinite(viewer.scene.positions).all() and moved(viewer) < 60.0
+    assert np.isfinite(viewer.session.scene.positions).all() and moved(viewer) < 60.0
     assert viewer.session.time - before <= MOST_STEPS / 60.0
 
 
 def test_an_idle_window_rests(viewer: Viewer) -> None:
     """With nothing to do neither physics nor the scene is computed again."""
     assert until(viewer, lambda: viewer.is_idle)
-    times = {name: list(column) for name, column in viewer.stage.times.items()}
+    times = {name: list(column) for name, column in viewer.times.milliseconds.items()}
     settle(viewer, 5)
-    assert times == {name: list(column) for name, column in viewer.stage.times.items()}
+    assert times == {name: list(column) for name, column in viewer.times.milliseconds.items()}
 
 
 def test_the_window_remembers(tmp_path: Path) -> None:

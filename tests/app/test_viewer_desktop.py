@@ -93,10 +93,10 @@ def test_full_screen_and_back(viewer: Viewer, key: str) -> None:
 
 def test_panels_hide_and_come_back(viewer: Viewer) -> None:
     """Tab leaves the picture alone; menus come up at its edge; Tab brings all back."""
-    around = viewer.picture_area
+    around = viewer.view.area
     xdotool(viewer, "mousemove", *nose(viewer))
     xdotool(viewer, "key", "Tab")
-    assert viewer.viewport == (0, 0, *SIZE) and "play" not in viewer.gui.places
+    assert viewer.view.viewport == (0, 0, *SIZE) and "play" not in viewer.gui.places
     assert until(viewer, lambda: viewer.is_idle or viewer.messages.is_fading)
     picture = viewer.surface.read()
     assert (np.ptp(picture[:300, :8].astype(int), axis=(0, 1)) > 3).any()  # backdrop, not a panel
@@ -106,10 +106,10 @@ def test_panels_hide_and_come_back(viewer: Viewer) -> None:
     assert "menu View" in viewer.gui.places
     click(viewer, "menu View")
     click(viewer, "menu View: Hide panels")
-    assert viewer.picture_area == around and "play" in viewer.gui.places
+    assert viewer.view.area == around and "play" in viewer.gui.places
     show_controls(viewer, "jaw")
     xdotool(viewer, "key", "Tab")  # which belongs to whoever writes
-    assert not viewer.is_bare
+    assert not viewer.panel_state.are_hidden
     xdotool(viewer, "key", "Escape")
 
 
@@ -118,11 +118,11 @@ def test_full_screen_without_panels_still_acts(viewer: Viewer) -> None:
     xdotool(viewer, "mousemove", *nose(viewer))
     viewer.face_panel.search = ""
     xdotool(viewer, "key", "F11", "Tab")
-    assert until(viewer, lambda: viewer.viewport == (0, 0, *screen_size()), 5.0)
+    assert until(viewer, lambda: viewer.view.viewport == (0, 0, *screen_size()), 5.0)
     xdotool(viewer, "key", "3")
-    assert viewer.session.shown == list(viewer.scene.expressions)[2]
+    assert viewer.session.shows(viewer.session.scene.expressions[2])
     xdotool(viewer, "key", "F11")
-    assert until(viewer, lambda: viewer.viewport == (0, 0, *SIZE), 5.0)
+    assert until(viewer, lambda: viewer.view.viewport == (0, 0, *SIZE), 5.0)
     xdotool(viewer, "key", "3", "Tab")
     assert "play" in viewer.gui.places
 

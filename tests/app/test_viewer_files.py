@@ -23,6 +23,7 @@ from .driving import (
     drag,
     moved,
     nose,
+    replace_state,
     settle,
     until,
     write,
@@ -129,7 +130,7 @@ def test_native_dialogs_are_used_where_they_work(
     dialog.chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
     monkeypatch.delenv("XDG_SESSION_DESKTOP", raising=False)  # by which kdialog may be preferred
-    viewer.files = Files()
+    replace_state(viewer.files, Files())
     xdotool(viewer, "key", "ctrl+o")
     assert viewer.files.is_waiting
     if not comes_up:
@@ -180,7 +181,7 @@ def test_what_cannot_be_written_is_told(viewer: Viewer, monkeypatch: pytest.Monk
         viewer.messages.text = ""
         xdotool(viewer, "key", key)
         assert until(viewer, lambda: "cannot be written" in viewer.messages.text, 3.0), key
-        assert viewer.film is None
+        assert viewer.exporter.film is None
 
 
 def title_of(viewer: Viewer) -> str:
@@ -225,7 +226,7 @@ def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> No
     xdotool(viewer, "key", "Return")
     assert viewer.files.is_waiting and taken.read_text() == "precious"
     xdotool(viewer, "key", "Escape")
-    viewer.session.take(
+    viewer.session.open(
         viewer.session.read(Path(str(resources.files("risorius.assets"))) / EXAMPLE)
     )
     xdotool(viewer, "key", "ctrl+s")
@@ -256,7 +257,7 @@ def test_of_several_scripts_the_first_is_opened(viewer: Viewer, tmp_path: Path) 
 @pytest.mark.slow
 def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path) -> None:
     """The face is another one, the script plays on it; what was unsaved before is still there."""
-    before = viewer.scene
+    before = viewer.session.scene
     mesh, landmarks = stranger().write(tmp_path)
     try:
         viewer.session.set("jaw_open", 0.5)
@@ -265,10 +266,10 @@ def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path
         assert viewer.messages.is_error and "half of a head" in viewer.messages.text
         drop(viewer, landmarks, mesh)
         assert until(viewer, lambda: "opened" in viewer.messages.text, 30.0)
-        assert len(viewer.scene.faces) > len(before.faces)
+        assert len(viewer.session.scene.faces) > len(before.faces)
         assert viewer.session.values["jaw_open"] == 0.5 and viewer.session.has_unsaved_pose
         assert until(viewer, lambda: moved(viewer) > 5.0)
-        assert viewer.stage.refined.triangle_count >= len(viewer.scene.faces)
+        assert viewer.stage.refined.triangle_count >= len(viewer.session.scene.faces)
         xdotool(viewer, "key", "ctrl+z")
         assert viewer.session.values["jaw_open"] == 0.0
         script = tmp_path / "smile.toml"
@@ -278,16 +279,16 @@ def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path
         viewer.session.seek(2.0)
         assert until(viewer, lambda: moved(viewer) > 2.0)
         drag(viewer, nose(viewer), (30, 30))
-        assert until(viewer, lambda: viewer.touch.is_pulling)
+        assert until(viewer, lambda: viewer.mouse.is_pulling)
         xdotool(viewer, "mouseup", 1)
     finally:
-        viewer.move_to(before)
+        viewer.show_scene(before)
     assert until(viewer, lambda: viewer.is_idle)
 
 
 def test_a_head_is_opened_by_the_menu(viewer: Viewer, tmp_path: Path) -> None:
     """The mesh is asked for, then its landmarks; only files of each kind are listed."""
-    before = viewer.scene
+    before = viewer.session.scene
     stranger().write(tmp_path)
     click(viewer, "menu File")
     click(viewer, "menu File: Open head ...")
@@ -297,18 +298,19 @@ def test_a_head_is_opened_by_the_menu(viewer: Viewer, tmp_path: Path) -> None:
     assert until(viewer, lambda: "file stranger.json" in viewer.gui.places, 3.0)
     click(viewer, "file stranger.json")
     click(viewer, "path confirmed")
-    assert until(viewer, lambda: viewer.scene is not before, 30.0)
-    viewer.move_to(before)
+    assert until(viewer, lambda: viewer.session.scene is not before, 30.0)
+    viewer.show_scene(before)
 
 
 def test_a_head_that_is_none_is_told(viewer: Viewer, tmp_path: Path) -> None:
     """Landmarks that do not fit are one line in the window, and the face stays."""
-    before = viewer.scene
+    before = viewer.session.scene
     mesh, landmarks = stranger().write(tmp_path)
     landmarks.write_text('{"landmarks": [1, 2, 3]}')
     drop(viewer, mesh, landmarks)
     assert until(viewer, lambda: viewer.messages.is_error, 20.0)
-    assert "it must be the 68 iBug points" in viewer.messages.text and viewer.scene is before
+    assert "it must be the 68 iBug points" in viewer.messages.text
+    assert viewer.session.scene is before
 
 
 @pytest.mark.slow
@@ -316,15 +318,15 @@ def test_heads_come_and_go_without_leaving_anything(
     viewer: Viewer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Ten changes of head, each drawn until it is at rest: OpenGL holds as much as after one."""
-    scenes = [viewer.scene, build_scene("face", None)]
-    viewer.look.compare, viewer.look.overlays = "wipe", ["muscles", "springs"]
+    scenes = [viewer.session.scene, build_scene("face", None)]
+    viewer.settings.look.compare, viewer.settings.look.overlays = "wipe", ["muscles", "springs"]
     count = counting(monkeypatch)
     held = []
     for turn in range(10):
-        viewer.move_to(scenes[(turn + 1) % 2])
+        viewer.show_scene(scenes[(turn + 1) % 2])
         viewer.session.set("jaw_open", 0.3)
         settle(viewer)
         assert until(viewer, lambda: viewer.is_idle)
         held.append(count())
-    viewer.move_to(scenes[0])
+    viewer.show_scene(scenes[0])
     assert held[-1] == held[0] and held[0]["Program"] > 3

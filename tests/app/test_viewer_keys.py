@@ -20,9 +20,9 @@ from risorius.app.script import (
 )
 from risorius.app.viewer import keys
 from risorius.app.viewer.keys import FRAME, POSES, KeyPlace
-from risorius.app.viewer.lanes import described, lanes_shown
 from risorius.app.viewer.session import Session
-from risorius.app.viewer.time_view import LEAST_SPAN, TimeView
+from risorius.app.viewer.time_axis import LEAST_SPAN, TimeAxis
+from risorius.app.viewer.tracks import described, visible_tracks
 
 HELLO = Path("docs/hello.toml")
 JOY = KeyPlace(POSES, 1.0)
@@ -91,7 +91,7 @@ def test_copies_and_deletions(hello: Script) -> None:
     assert copies == {KeyPlace(POSES, 1.25), KeyPlace("blink", 2.37)}
     assert keys.places_of(script) == keys.places_of(hello) | copies
     assert keys.without(script, copies) == hello
-    blinks = {place for place in keys.places_of(hello) if place.lane == "blink"}
+    blinks = {place for place in keys.places_of(hello) if place.track == "blink"}
     assert keys.without(hello, blinks).tracks == {}
     with pytest.raises(UserError, match="at least one key"):
         keys.without(hello, keys.places_of(hello))
@@ -223,7 +223,7 @@ def test_the_file_goes_with_its_script(session: Session, tmp_path: Path) -> None
     """Undo past opening another script gives back the first one's file, too."""
     own, other = session.file.path, tmp_path / "other.toml"
     other.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")
-    session.take(session.read(other))
+    session.open(session.read(other))
     assert session.file.path == other and session.name == "other.toml"
     session.undo()
     assert session.file.path == own and not session.script_is_unsaved
@@ -242,10 +242,10 @@ def test_what_a_file_would_lose_is_noticed(session: Session) -> None:
     text = path.read_text()
     path.write_text(text + "# mine\n")
     assert "another program" in session.file.objection
-    session.take(session.read(path))
+    session.open(session.read(path))
     assert "comments" in session.file.objection
     path.write_text(text.replace('"Hello"', '"No. #1 \\" # 2"'))
-    session.take(session.read(path))
+    session.open(session.read(path))
     assert session.script.title == 'No. #1 " # 2' and session.file.objection == ""
     path.unlink()
     assert session.file.objection == ""
@@ -253,11 +253,11 @@ def test_what_a_file_would_lose_is_noticed(session: Session) -> None:
 
 def test_rows_of_the_timeline(hello: Script) -> None:
     """Poses with their names, all tracks in one row, and one row for each if it is open."""
-    poses, tracks = lanes_shown(hello, is_open=False)
+    poses, tracks = visible_tracks(hello, is_open=False)
     assert [place.time for place in poses.places] == [0.0, 1.0, 3.0, 4.0]
     assert poses.names == ((1.0, "joy"),) and tracks.is_sum
-    assert [lane.label for lane in lanes_shown(hello, is_open=True)][2:] == ["blink"]
-    assert lanes_shown(hello, is_open=True)[2].held == ((2.12, 2.22),)
+    assert [lane.label for lane in visible_tracks(hello, is_open=True)][2:] == ["blink"]
+    assert visible_tracks(hello, is_open=True)[2].held == ((2.12, 2.22),)
     assert poses.near(1.2, 0.3) == {JOY} and not poses.near(2.0, 0.3)
     assert described(hello, frozenset({JOY})) == "joy, 1.00 s, ease-out\njoy 1.00\njaw open 0.10"
     assert described(hello, frozenset({KeyPlace("blink", 2.12)})) == "2.12 s, ease-in\nblink 1.00"
@@ -268,7 +268,7 @@ def test_rows_of_the_timeline(hello: Script) -> None:
 @pytest.mark.parametrize("width", [5.0, 120.0, 700.0, 4000.0])
 def test_any_length_of_time_can_be_shown(end: float, width: float) -> None:
     """Ruler marks are few and in order, zooming keeps the time under the mouse, limits hold."""
-    view = TimeView()
+    view = TimeAxis()
     view.place(100.0, width)
     view.fit(end)
     assert view.start == 0.0 and view.span > end

@@ -48,12 +48,12 @@ def test_headings_stay_folded(viewer: Viewer) -> None:
 
 def test_the_panel_can_be_made_wider(viewer: Viewer) -> None:
     """Its edge follows the mouse, as far as the picture keeps more than half of the window."""
-    left, top, _, height = viewer.picture_area
+    left, top, _, height = viewer.view.area
     drag(viewer, on_screen(viewer, left - 1, top + 0.5 * height), (-90, 0))
     xdotool(viewer, "mouseup", 1)
-    assert viewer.picture_area[0] == pytest.approx(left - 90, abs=3)
+    assert viewer.view.area[0] == pytest.approx(left - 90, abs=3)
     viewer.settings.panel_width = 22.5
-    drag(viewer, on_screen(viewer, viewer.picture_area[0] - 1, top + 0.5 * height), (5, 0))
+    drag(viewer, on_screen(viewer, viewer.view.area[0] - 1, top + 0.5 * height), (5, 0))
     xdotool(viewer, "mouseup", 1)
 
 
@@ -63,7 +63,7 @@ def test_everything_stays_inside_its_panel(viewer: Viewer, zoom: float) -> None:
     try:
         viewer.settings.zoom = zoom
         xdotool(viewer, "key", "F1")
-        left, _, width, height = viewer.picture_area
+        left, _, width, height = viewer.view.area
         assert width > 0.5 * SIZE[0] and height > 0.4 * SIZE[1]
         for name in ("Random", "Link sides", "search", "show joy", "show blink"):
             assert viewer.gui.places[name][2] <= left, name
@@ -73,13 +73,13 @@ def test_everything_stays_inside_its_panel(viewer: Viewer, zoom: float) -> None:
         x, y, right, bottom = viewer.gui.places["help"]
         assert min(x, y) >= 0.0 and right <= SIZE[0] and bottom <= SIZE[1]
     finally:
-        viewer.settings.zoom, viewer.is_help_open = 1.0, False
+        viewer.settings.zoom, viewer.panel_state.is_help_open = 1.0, False
         settle(viewer)
 
 
 def test_keys_go_from_key_to_key(viewer: Viewer) -> None:
     """Right goes to the script's next key, Left back, Home to the start."""
-    viewer.session.take(script_for(None, "face"))
+    viewer.session.open(script_for(None, "face"))
     times = sorted({place.time for place in places_of(viewer.session.script)})
     for key, place in (("Right", 1), ("Right", 2), ("Left", 1), ("Home", 0)):
         xdotool(viewer, "key", key)

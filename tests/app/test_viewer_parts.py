@@ -11,6 +11,7 @@ from viewer import STOPS
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 from risorius.app.script import (
+    Script,
     is_pose,
     load_script,
     parse_script,
@@ -20,12 +21,12 @@ from risorius.app.script import (
     script_text,
 )
 from risorius.app.viewer import picking
-from risorius.app.viewer.clock import MOST_STEPS, STEP, Clock
+from risorius.app.viewer.control_rows import found, mirrored, rows_of
 from risorius.app.viewer.history import History
+from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.overlays import OVERLAYS, overlays_of
-from risorius.app.viewer.quality import FULL, LEVELS, PATIENCE, Quality
+from risorius.app.viewer.physics import MOST_STEPS, STEP, Clock
 from risorius.app.viewer.recorder import TOLERANCE, Recorder
-from risorius.app.viewer.rows import found, mirrored, rows_of
 from risorius.app.viewer.session import Session
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger
@@ -90,7 +91,7 @@ def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path
     assert not session.unsaved
     session.neutral()
     run(session)
-    session.take(session.read(tmp_path / "take.toml"))
+    session.open(session.read(tmp_path / "take.toml"))
     session.toggle_playing()
     while session.is_playing:
         session.advance(STEP)
@@ -109,12 +110,12 @@ def test_an_empty_recording_is_refused(session: Session) -> None:
 
 def test_recordings_keep_corners_only() -> None:
     """Straight movements need two keys, and no key is further off than the tolerance."""
-    recorder = Recorder()
+    recorder = Recorder(Script("t", 0.0, "t"))
     times = np.arange(1, 241) * STEP
     wave = 0.5 - 0.5 * np.cos(3.0 * times)
     for time, value in zip(times, wave, strict=True):
-        recorder.take(STEP, {"wave": value, "ramp": time / 4.0, "rest": 0.0})
-    script = recorder.script(title="t", scene="face", camera=None)
+        recorder.add(STEP, {"wave": value, "ramp": time / 4.0, "rest": 0.0})
+    script = recorder.script()
     assert script is not None and set(script.tracks) == {"wave", "ramp"}
     assert len(script.tracks["ramp"].keys) <= 3
     assert len(script.tracks["wave"].keys) < 100
@@ -209,21 +210,21 @@ def test_clock_steps_at_its_own_rate() -> None:
     assert clock.steps(STEP) == 1
 
 
-def test_quality_falls_once_and_does_not_flicker() -> None:
+def test_detail_falls_once_and_does_not_flicker() -> None:
     """Slow frames lower the level; fast ones raise it by one, and only as a motion begins."""
-    quality = Quality(is_software=False)
-    assert quality.detail == FULL
+    chosen = LevelOfDetail(is_software=False)
+    assert chosen.detail == FULL
     for _ in range(2 * PATIENCE):
-        quality.note(0.08)
-    assert quality.level == 2
+        chosen.note(0.08)
+    assert chosen.level == 2
     for _ in range(100):
-        quality.note(0.01)
-    assert quality.level == 2
-    quality.begin_motion()
-    assert quality.level == 1
+        chosen.note(0.01)
+    assert chosen.level == 2
+    chosen.begin_motion()
+    assert chosen.level == 1
     for _ in range(100):
-        quality.note(0.08)
-    assert quality.detail == LEVELS[-1]
+        chosen.note(0.08)
+    assert chosen.detail == LEVELS[-1]
 
 
 def test_the_point_under_the_mouse(scene: FaceScene) -> None:

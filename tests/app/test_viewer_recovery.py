@@ -17,10 +17,10 @@ from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import load_script, script_for
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.clock import STEP
+from risorius.app.viewer.physics import STEP
 from risorius.app.viewer.recovery import LONGEST, QUIET, Recovery
 from risorius.app.viewer.session import Session
-from risorius.app.viewer.unsaved import Place, Work
+from risorius.app.viewer.unsaved import Work, WorkFiles
 
 from .driving import NEEDS_A_SCREEN, SIZE, click, settle, xdotool
 
@@ -76,7 +76,7 @@ def kept(folder: Path) -> dict[str, str]:
 def found_by_next(folder: Path, session: Session) -> Work | None:
     """What a window that opens now would offer."""
     other = Recovery(folder / "unsaved")
-    other.look(session)
+    other.find(session)
     found = other.found
     other.close()
     return found
@@ -169,10 +169,10 @@ def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Pa
     recovery.close()
     after = Session(session.scene, script_for(None, "face"))
     next_one = Recovery(tmp_path / "unsaved")
-    next_one.look(after)
+    next_one.find(after)
     assert next_one.found is not None
     assert next_one.found.words == "the script smile.toml, a recording and a pose"
-    next_one.take_found(after)
+    next_one.accept_found(after)
     assert next_one.found is None and after.unsaved == "the pose and the script"
     assert after.values["jaw_open"] == session.values["jaw_open"]
     assert after.script.tracks["jaw_open"].value(1.0) == pytest.approx(1.0 / 3.0, abs=1e-6)
@@ -197,8 +197,8 @@ def test_a_file_that_was_changed_since_is_not_replaced_unasked(
     os.utime(tmp_path / "smile.toml", (later, later))
     after = Session(session.scene, script_for(None, "face"))
     next_one = Recovery(tmp_path / "unsaved")
-    next_one.look(after)
-    next_one.take_found(after)
+    next_one.find(after)
+    next_one.accept_found(after)
     assert "another program" in after.file.objection
     next_one.close()
 
@@ -217,13 +217,13 @@ def test_what_is_thrown_away_is_gone(session: Session, tmp_path: Path) -> None:
     (folder / "20270101-000000-abc.pose.toml").write_text("nonsense")
     (folder / "20270101-000000-abd.pose.toml").write_bytes(bytes(range(256)))
     next_one = Recovery(folder)
-    next_one.look(session)
+    next_one.find(session)
     assert next_one.found is not None and next_one.found.pose is not None
     assert next_one.found.pose.at(0.0)["jaw_open"] == 0.2
-    next_one.drop_found(session)
+    next_one.discard_found(session)
     assert next_one.found is not None and next_one.found.pose is not None
     assert next_one.found.pose.at(0.0)["jaw_open"] == 0.1
-    next_one.drop_found(session)
+    next_one.discard_found(session)
     assert next_one.found is None
     assert {file.name[:8] for file in folder.glob("*.toml")} == {"20270101"}
 
@@ -250,7 +250,7 @@ def test_damaged_work_hides_no_other(session: Session, recovery: Recovery, tmp_p
     file = tmp_path / "not_a_folder"
     file.touch()
     other = Recovery(file)
-    other.look(session)
+    other.find(session)
     assert other.found is None
 
 
@@ -305,9 +305,10 @@ def test_work_that_fails_to_be_written_leaves_what_was_kept(
     session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A disk that fills up in the middle of writing: the file of before is still whole."""
-    place = Place.new(tmp_path)
-    place.write(Work(script=session.script), Work())
-    before = place.read()
+    place = WorkFiles.new(tmp_path)
+    place.write(Work(script=session.script))
+    place.read()
+    before = place.work
 
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
@@ -315,8 +316,10 @@ def test_work_that_fails_to_be_written_leaves_what_was_kept(
     monkeypatch.setattr(os, "replace", full)
     longer = replace(session.script, duration=9.0)
     with pytest.raises(UserError, match="No space left"):
-        place.write(Work(script=longer), before)
-    assert place.read() == before
+        place.write(Work(script=longer))
+    assert not place.work
+    place.read()
+    assert place.work == before
     place.remove()
     assert [file.name for file in tmp_path.iterdir()] == ["smile.toml"]
 

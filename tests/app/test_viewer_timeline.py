@@ -10,8 +10,8 @@ from imgui_bundle import imgui
 
 from risorius.app.script import load_script
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.kept import REFRESH
 from risorius.app.viewer.keys import POSES, KeyPlace, on_frame, places_of
+from risorius.app.viewer.panel_cache import REFRESH
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -39,9 +39,9 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
     """A script of the user's own, opened."""
     path = tmp_path / "own.toml"
     path.write_text(SCRIPT.read_text(encoding="utf-8"))
-    viewer.session.take(viewer.session.read(path))
-    viewer.timeline.sheet.selected = frozenset()
-    viewer.timeline.sheet.view.is_whole = True
+    viewer.session.open(viewer.session.read(path))
+    viewer.selection.places = frozenset()
+    viewer.time_axis.is_whole = True
     # While the face moves, panels are drawn anew a few times a second only.
     end = time.monotonic() + 2.0 * REFRESH
     assert until(viewer, lambda: time.monotonic() > end)
@@ -50,7 +50,7 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
 
 def at(viewer: Viewer, place: KeyPlace) -> tuple[int, int]:
     """Where a key is, on the screen."""
-    return on_screen(viewer, *viewer.timeline.sheet.where(place))
+    return on_screen(viewer, *viewer.timeline.dope_sheet.where(place))
 
 
 def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -> None:
@@ -82,7 +82,7 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer: Viewer, own: Path) -> N
     xdotool(viewer, "mouseup", 1)
     time = pose_times(viewer)[1]
     assert time == on_frame(time) > 1.1
-    assert viewer.timeline.sheet.selected == {KeyPlace(POSES, time)}
+    assert viewer.selection.places == {KeyPlace(POSES, time)}
     assert viewer.session.name == "own.toml" and viewer.session.script_is_unsaved
     xdotool(viewer, "key", "ctrl+s")
     assert not viewer.session.unsaved and load_script(own) == viewer.session.script
@@ -113,15 +113,15 @@ def test_ctrl_leaves_frames_and_escape_leaves_all(viewer: Viewer) -> None:
 def test_a_click_selects_a_key_and_goes_there(viewer: Viewer) -> None:
     """The pose under the mouse is selected and shown; Shift adds another and stays."""
     press(viewer, at(viewer, JOY))
-    assert viewer.timeline.sheet.selected == {JOY}
+    assert viewer.selection.places == {JOY}
     assert viewer.session.time == 1.0 and viewer.session.values["joy"] == 1.0
     press(viewer, at(viewer, REST), "shift")
-    assert viewer.timeline.sheet.selected == {JOY, REST} and viewer.session.time == 1.0
+    assert viewer.selection.places == {JOY, REST} and viewer.session.time == 1.0
     press(viewer, at(viewer, JOY), "shift")
-    assert viewer.timeline.sheet.selected == {REST}
+    assert viewer.selection.places == {REST}
     x, y = at(viewer, KeyPlace(POSES, 1.0))
     press(viewer, (x + 50, y))
-    assert not viewer.timeline.sheet.selected and not viewer.session.unsaved
+    assert not viewer.selection.places and not viewer.session.unsaved
 
 
 def test_a_box_selects_keys_that_then_move_together(viewer: Viewer) -> None:
@@ -130,8 +130,8 @@ def test_a_box_selects_keys_that_then_move_together(viewer: Viewer) -> None:
     right, low = at(viewer, KeyPlace("blink", 2.4))
     drag(viewer, (x - 30, y - 4), (right + 12 - x + 30, low - y + 8))
     xdotool(viewer, "mouseup", 1)
-    chosen = viewer.timeline.sheet.selected
-    assert {place.lane for place in chosen} == {POSES, "blink"} and len(chosen) == 5
+    chosen = viewer.selection.places
+    assert {place.track for place in chosen} == {POSES, "blink"} and len(chosen) == 5
     drag(viewer, at(viewer, JOY), (-30, 0))
     xdotool(viewer, "mouseup", 1)
     by = viewer.session.script.poses[1].time - 1.0
@@ -151,7 +151,7 @@ def test_delete_and_duplicate(viewer: Viewer) -> None:
     xdotool(viewer, "key", "ctrl+d")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert viewer.session.script.poses[2].name == "joy"
-    assert viewer.timeline.sheet.selected == {KeyPlace(POSES, 2.0)}
+    assert viewer.selection.places == {KeyPlace(POSES, 2.0)}
     xdotool(viewer, "key", "Delete")
     assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0] and "1 key deleted" in viewer.messages.text
     xdotool(viewer, "key", "ctrl+a", "BackSpace")
@@ -173,7 +173,7 @@ def test_the_face_becomes_a_key(viewer: Viewer) -> None:
     xdotool(viewer, "key", "k")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert viewer.session.script.at(2.0)["jaw_open"] == pytest.approx(wanted["jaw_open"])
-    assert viewer.timeline.sheet.selected == {KeyPlace(POSES, 2.0)}
+    assert viewer.selection.places == {KeyPlace(POSES, 2.0)}
     assert viewer.session.unsaved == "the script"
     xdotool(viewer, "key", "Home")
     press(viewer, at(viewer, KeyPlace(POSES, 2.0)))
@@ -202,7 +202,7 @@ def test_a_pose_is_named(viewer: Viewer) -> None:
 def test_the_menus_do_the_same(viewer: Viewer) -> None:
     """A right click on a key brings up its menu, in which there is more than keys have."""
     press(viewer, at(viewer, REST), button=3)
-    assert viewer.timeline.sheet.selected == {REST}
+    assert viewer.selection.places == {REST}
     click(viewer, "menu Keys: Approach: hold")
     assert viewer.session.script.poses[2].easing == "hold"
     press(viewer, at(viewer, REST), button=3)
@@ -211,27 +211,31 @@ def test_the_menus_do_the_same(viewer: Viewer) -> None:
     click(viewer, "menu Edit")
     click(viewer, "menu Edit: Undo")
     assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+    press(viewer, at(viewer, REST), button=3)
+    click(viewer, "menu Keys: Name of the pose ...")
+    assert until(viewer, lambda: "pose name" in viewer.gui.places, 3.0)
+    xdotool(viewer, "key", "Escape")
 
 
 def test_the_ruler_scrubs_and_the_wheel_zooms(viewer: Viewer) -> None:
     """A drag in the ruler goes through frames; its end can be dragged; wheels zoom and scroll."""
-    sheet, session = viewer.timeline.sheet, viewer.session
+    axis, session = viewer.time_axis, viewer.session
     x, y = middle(viewer, "time")
     drag(viewer, (x, y), (30, 0))
     assert session.time == on_frame(session.time) > 1.0
     xdotool(viewer, "mouseup", 1)
-    kept = sheet.view.time(x - on_screen(viewer, 0, 0)[0] + 30)
+    kept = axis.time(x - on_screen(viewer, 0, 0)[0] + 30)
     xdotool(viewer, "click", "--repeat", 3, 4)
-    assert sheet.view.span < 3.0 and not sheet.view.is_whole
-    assert sheet.view.time(x - on_screen(viewer, 0, 0)[0] + 30) == pytest.approx(kept, abs=0.02)
-    start = sheet.view.start
+    assert axis.span < 3.0 and not axis.is_whole
+    assert axis.time(x - on_screen(viewer, 0, 0)[0] + 30) == pytest.approx(kept, abs=0.02)
+    start = axis.start
     xdotool(viewer, "keydown", "shift")
     xdotool(viewer, "click", 5)
     xdotool(viewer, "keyup", "shift")
-    assert sheet.view.start > start
+    assert axis.start > start
     xdotool(viewer, "key", "shift+f")
-    assert sheet.view.is_whole and sheet.view.start == 0.0
-    end = on_screen(viewer, sheet.view.x(4.0) + 3, 0)[0]
+    assert axis.is_whole and axis.start == 0.0
+    end = on_screen(viewer, axis.x(4.0) + 3, 0)[0]
     drag(viewer, (end, y), (-60, 0))
     xdotool(viewer, "mouseup", 1)
     assert 2.0 < session.script.duration < 3.9
@@ -255,7 +259,7 @@ def test_a_key_under_the_mouse_tells_what_it_is(viewer: Viewer) -> None:
 
 def test_tracks_unfold_into_rows(viewer: Viewer) -> None:
     """A click on the arrow gives each track a row; its keys are then selected alone."""
-    sheet = viewer.timeline.sheet
+    sheet = viewer.timeline.dope_sheet
     left = viewer.gui.places["keys"][0]
     rows = viewer.timeline.height()
     _, y = sheet.where(KeyPlace("blink", 2.0))
@@ -265,7 +269,7 @@ def test_tracks_unfold_into_rows(viewer: Viewer) -> None:
     settle(viewer)
     x, y = sheet.where(KeyPlace("blink", 2.4))
     press(viewer, on_screen(viewer, x, y + imgui.get_font_size() * 1.35))
-    assert sheet.selected == {KeyPlace("blink", 2.4)}
+    assert viewer.selection.places == {KeyPlace("blink", 2.4)}
 
 
 def test_while_recording_keys_stay(viewer: Viewer) -> None:
@@ -276,4 +280,4 @@ def test_while_recording_keys_stay(viewer: Viewer) -> None:
     xdotool(viewer, "mouseup", 1)
     assert viewer.messages.is_error and "stop the recording" in viewer.messages.text
     assert viewer.session.script is before and viewer.session.is_recording
-    assert places_of(before) >= viewer.timeline.sheet.selected
+    assert places_of(before) >= viewer.selection.places

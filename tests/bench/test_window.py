@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from risorius.app.viewer.quality import LEVELS
+from risorius.app.viewer.level_of_detail import LEVELS
 from risorius.bench import window
 
 pytestmark = [

@@ -10,31 +10,31 @@ import bisect
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from imgui_bundle import imgui
 
-from ...script import Pose, Script
-from .. import key_commands, keys
-from ..gui import em
+from ...script import Script
+from .. import keys
+from ..gui import LEFT, MIDDLE, RIGHT, Gui, em
+from ..key_selection import KeySelection, counted
 from ..keys import KeyPlace
-from ..lanes import TRACKS, Lane, described, lanes_shown
-from ..time_view import TimeView
+from ..messages import Message, Messages
+from ..session import Session
+from ..settings import Settings
+from ..time_axis import TimeAxis
+from ..tracks import TRACKS, Track, described, visible_tracks
 from . import key_marks
-from .chrome import draw_actions
-from .words import shortened
+from .menu_bar import MenuBar
+from .widgets import shortened
 
-if TYPE_CHECKING:
-    from ..window import Viewer
-
-LANE, RULER = 1.35, 1.45  # [em] of a row's and the ruler's height
+ROW, RULER = 1.35, 1.45  # [em] of a row's and the ruler's height
 GUTTER, GUTTER_SHARE = 6.0, 0.2  # [em] for the rows' names, and of the width at most
-MOST_LANES = 6  # that are seen at once; the rest is scrolled to
+MOST_ROWS = 6  # that are seen at once; the rest is scrolled to
 REACH = 0.5  # [em] beside a key that still mean it
 CLICK = 4.0  # [window units] a press that moves less is a click, not a drag
 ZOOM_PER_NOTCH = 0.8
-SCROLL_PER_NOTCH = 0.12  # of the time that is shown
-LEFT, RIGHT, MIDDLE = 0, 1, 2
+SCROLL_PER_NOTCH = 0.12  # of the visible time
 
 
 @dataclass
@@ -45,278 +45,288 @@ class Drag:
     began: tuple[float, float]  # [window units]
     script: Script  # as it was then
     selected: frozenset[KeyPlace]  # then
-    grabbed: frozenset[KeyPlace] = frozenset()  # what the mouse is on
-    button: int = LEFT
     has_moved: bool = False
 
     @property
-    def time(self) -> float:
-        """Of the key that was grabbed [s]."""
-        return min(place.time for place in self.grabbed)
+    def button(self) -> int:
+        """Of the mouse, which is held down."""
+        return MIDDLE if self.doing == "pan" else LEFT
 
 
 class DopeSheet:
     """Draws ruler and rows, and carries out what the mouse does in them."""
 
-    def __init__(self, viewer: Viewer) -> None:
-        self._viewer = viewer
-        self.view = TimeView()
-        self.selected: frozenset[KeyPlace] = frozenset()
+    def __init__(
+        self,
+        gui: Gui,
+        session: Session,
+        settings: Settings,
+        messages: Messages,
+        selection: KeySelection,
+        axis: TimeAxis,
+        menus: MenuBar,
+    ) -> None:
+        self._gui, self._session, self._settings = gui, session, settings
+        self._messages, self._menus = messages, menus
+        self._selection, self._axis = selection, axis
         self._drag: Drag | None = None
-        self._lanes: tuple[Lane, ...] = ()
-        self._known: tuple[Script | None, bool] = None, False  # of which the rows are
+        self._grabbed: frozenset[KeyPlace] = frozenset()  # the keys at one time that are dragged
+        self._tracks: tuple[Track, ...] = ()
+        self._known: tuple[Script | None, bool] = None, False  # of which the tracks are
         self._tops = [0.0]  # of each row, and of what would come below the last [window units]
         self._gutter = 0.0  # the width of their names [window units]
-        self._naming: tuple[float, str] | None = None  # the pose that gets a name, and that
-        self._wants_naming = self._wants_menu = False
+        self._name_line = PoseNameLine(gui, session, messages, selection)
+        self._wants_menu = False
+
+    @property
+    def _is_open(self) -> bool:
+        """Whether each track has a row of its own."""
+        return self._settings.folds.get(TRACKS, False)
 
     def height(self, room: float) -> float:
         """Of ruler and rows [window units], no more than there is room for."""
         self._refresh()
-        wanted = sum(lane.height for lane in self._lanes[:MOST_LANES]) * em(LANE)
-        return em(RULER) + max(min(wanted, room - em(RULER)), em(LANE))
+        wanted = sum(track.height for track in self._tracks[:MOST_ROWS]) * em(ROW)
+        return em(RULER) + max(min(wanted, room - em(RULER)), em(ROW))
 
     def where(self, place: KeyPlace) -> tuple[float, float]:
-        """Where a key is drawn, in the first row that shows it [window units]."""
-        row = next(row for row, lane in enumerate(self._lanes) if place in lane.places)
-        return self.view.x(place.time), self._tops[row + 1] - 0.5 * em(LANE)
-
-    def ask_name(self, pose: Pose) -> None:
-        """Let the user write a name for a pose."""
-        self._naming, self._wants_naming = (pose.time, pose.name or ""), True
+        """Where a key is drawn, in the first row that has it [window units]."""
+        row = next(row for row, track in enumerate(self._tracks) if place in track.places)
+        return self._axis.x(place.time), self._tops[row + 1] - 0.5 * em(ROW)
 
     def _refresh(self) -> None:
         """Bring rows and selection up to date with the script."""
-        script = self._viewer.session.script
-        is_open = self._viewer.settings.folds.get(TRACKS, False)
+        script, is_open = self._session.script, self._is_open
         if self._known[0] is not script or self._known[1] != is_open:
             self._known = script, is_open
-            self._lanes = lanes_shown(script, is_open=is_open)
-            self.selected &= keys.places_of(script)
+            self._tracks = visible_tracks(script, is_open=is_open)
+            self._selection.places &= keys.places_of(script)
 
     def draw(self) -> None:
-        """Draw everything, inside the strip's window."""
+        """Draw everything, inside the timeline's window."""
         self._refresh()
-        viewer, io = self._viewer, imgui.get_io()
+        session, axis, io = self._session, self._axis, imgui.get_io()
         place, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
         self._gutter = min(em(GUTTER), GUTTER_SHARE * room.x)
         inset = em(0.7)
-        self.view.place(
-            place.x + self._gutter + inset, room.x - self._gutter - 2.0 * inset - em(0.6)
-        )
+        axis.place(place.x + self._gutter + inset, room.x - self._gutter - 2.0 * inset - em(0.6))
+        duration = session.script.duration
         if self._drag is None:
-            last = max((each.places[-1].time for each in self._lanes if each.places), default=0.0)
-            self.view.fit(max(viewer.session.script.duration, last))
-            if viewer.session.is_playing:
-                self.view.follow(viewer.session.time)
-        imgui.set_cursor_screen_pos(imgui.ImVec2(place.x + self._gutter, place.y))
-        imgui.invisible_button("##time", imgui.ImVec2(room.x - self._gutter, em(RULER)))
-        viewer.gui.remember("time")
+            last = max((each.places[-1].time for each in self._tracks if each.places), default=0.0)
+            axis.fit(max(duration, last))
+            if session.is_playing:
+                axis.follow(session.time)
+        imgui.set_cursor_screen_pos((place.x + self._gutter, place.y))
+        imgui.invisible_button("##time", (room.x - self._gutter, em(RULER)))
+        self._gui.remember("time")
         if imgui.is_item_hovered():
             self._press_in_ruler(io)
             self._turn_wheel(io)
-        key_marks.draw_ruler(viewer, self.view, place.y, place.y + em(RULER))
-        imgui.set_cursor_screen_pos(imgui.ImVec2(place.x, place.y + em(RULER)))
-        self._draw_lanes(io)
+        edges = place.y, place.y + em(RULER)
+        key_marks.draw_ruler(self._gui.theme, axis, session.time, duration, edges)
+        imgui.set_cursor_screen_pos((place.x, edges[1]))
+        self._draw_rows(io)
         if self._drag is not None:
             self._follow(io, self._drag)
-        self._draw_popups()
+        if self._wants_menu:
+            imgui.open_popup("key menu")
+            self._wants_menu = False
+        if imgui.begin_popup("key menu"):
+            self._menus.draw_menu("Keys")
+            imgui.end_popup()
+        self._name_line.draw()
 
-    def _draw_lanes(self, io: Any) -> None:
+    def _draw_rows(self, io: Any) -> None:
         flags = imgui.WindowFlags_.no_scroll_with_mouse | imgui.WindowFlags_.no_background
-        least = max(imgui.get_content_region_avail().y, em(LANE))
-        imgui.begin_child("keys", imgui.ImVec2(0.0, least), 0, flags)
+        least = max(imgui.get_content_region_avail().y, em(ROW))
+        imgui.begin_child("keys", (0.0, least), 0, flags)
         place, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
-        heights = [lane.height * em(LANE) for lane in self._lanes]
+        heights = [track.height * em(ROW) for track in self._tracks]
         self._tops = list(itertools.accumulate(heights, initial=place.y))
-        size = imgui.ImVec2(room.x, self._tops[-1] - place.y)
+        size = (room.x, self._tops[-1] - place.y)
         imgui.invisible_button("##keys", size)
-        self._viewer.gui.remember("keys")
+        self._gui.remember("keys")
         is_hovered = imgui.is_item_hovered()
-        for lane, (top, bottom) in zip(self._lanes, itertools.pairwise(self._tops), strict=True):
-            corners = imgui.ImVec2(place.x, top), imgui.ImVec2(place.x + room.x, bottom)
+        theme, session = self._gui.theme, self._session
+        painter = key_marks.TrackPainter(
+            theme, self._axis, self._selection.places, session.script.duration
+        )
+        for track, (top, bottom) in zip(self._tracks, itertools.pairwise(self._tops), strict=True):
+            corners = (place.x, top), (place.x + room.x, bottom)
             if imgui.is_rect_visible(*corners):
-                key_marks.draw_lane(self._viewer, self.view, lane, self.selected, top, em(LANE))
-                self._draw_label(lane, place.x, bottom - em(LANE))
-        key_marks.draw_playhead(self._viewer, self.view, place.y, self._tops[-1])
+                painter.draw(track, top, em(ROW))
+                arrow = em(0.9) if track.is_sum else 0.0
+                label = shortened(track.label, self._gutter - arrow - em(0.3))
+                corner = place.x, bottom - em(ROW)
+                key_marks.draw_label(theme, label, corner, em(ROW), arrow, is_open=self._is_open)
+        key_marks.draw_playhead(theme, self._axis, session.time, (place.y, self._tops[-1]))
         if self._drag is not None and self._drag.doing == "box" and self._drag.has_moved:
-            key_marks.draw_box(self._viewer, self._drag.began, (io.mouse_pos.x, io.mouse_pos.y))
+            key_marks.draw_box(theme, self._drag.began, (io.mouse_pos.x, io.mouse_pos.y))
         if is_hovered and self._drag is None:
             self._hover(io, place.x)
         imgui.end_child()
-
-    def _draw_label(self, lane: Lane, left: float, top: float) -> None:
-        arrow = em(0.9) if lane.is_sum else 0.0
-        is_open = bool(self._viewer.settings.folds.get(TRACKS))
-        text = shortened(lane.label, self._gutter - arrow - em(0.3))
-        key_marks.draw_label(self._viewer, text, left, top, em(LANE), arrow, is_open=is_open)
 
     # The mouse
 
     def _hover(self, io: Any, left: float) -> None:
         """The mouse is over the rows and holds nothing yet."""
-        x, y = io.mouse_pos.x, io.mouse_pos.y
-        lane = self._lane_at(y)
+        selection, axis, (x, y) = self._selection, self._axis, io.mouse_pos
+        track = self._track_at(y)
         if x < left + self._gutter:
-            if lane is not None and lane.is_sum and imgui.is_mouse_clicked(LEFT):
-                folds = self._viewer.settings.folds
-                folds[TRACKS] = not folds.get(TRACKS, False)
-            imgui.set_scroll_y(imgui.get_scroll_y() - em(LANE) * io.mouse_wheel)
+            if track is not None and track.is_sum and imgui.is_mouse_clicked(LEFT):
+                self._settings.folds[TRACKS] = not self._is_open
+            imgui.set_scroll_y(imgui.get_scroll_y() - em(ROW) * io.mouse_wheel)
             return
-        under = lane.near(self.view.time(x), self.view.seconds(em(REACH))) if lane else frozenset()
+        under = track.near(axis.time(x), axis.seconds(em(REACH))) if track else frozenset()
         if under and not imgui.is_mouse_down(LEFT):
-            imgui.set_tooltip(described(self._viewer.session.script, under))
+            imgui.set_tooltip(described(self._session.script, under))
         if imgui.is_mouse_clicked(LEFT):
             self._press(io, under)
         elif imgui.is_mouse_clicked(RIGHT):
-            if under and not under <= self.selected:
-                self.selected = under
+            if under and not under <= selection.places:
+                selection.places = under
             self._wants_menu = True
         self._turn_wheel(io)
 
-    def _lane_at(self, y: float) -> Lane | None:
+    def _track_at(self, y: float) -> Track | None:
         row = self._row_at(y)
-        return self._lanes[row] if 0 <= row < len(self._lanes) else None
+        return self._tracks[row] if 0 <= row < len(self._tracks) else None
 
     def _row_at(self, y: float) -> int:
         return bisect.bisect_right(self._tops, y) - 1
 
-    def _press(self, io: Any, under: frozenset[KeyPlace]) -> None:
+    def _begin(self, doing: str, io: Any, selected: frozenset[KeyPlace] | None = None) -> None:
+        """Hold on to something; selected: from now on, where that is not what is selected."""
         began = (io.mouse_pos.x, io.mouse_pos.y)
-        session = self._viewer.session
-        if under and imgui.is_mouse_double_clicked(LEFT) and key_commands.can_rename(self._viewer):
-            key_commands.rename(self._viewer)
-            return
-        if not under:
-            kept = self.selected if io.key_shift else frozenset()
-            self._drag = Drag("box", began, session.script, kept)
-            return
-        if io.key_shift:
-            self.selected = (
-                self.selected - under if under <= self.selected else self.selected | under
-            )
-        elif not under <= self.selected:
-            self.selected = under
-        self._drag = Drag("keys", began, session.script, self.selected, under)
+        places = self._selection.places if selected is None else selected
+        self._drag = Drag(doing, began, self._session.script, places)
+
+    def _press(self, io: Any, under: frozenset[KeyPlace]) -> None:
+        selection = self._selection
+        if under and imgui.is_mouse_double_clicked(LEFT) and selection.can_rename:
+            selection.rename()
+        elif not under:
+            self._begin("box", io, selection.places if io.key_shift else frozenset())
+        else:
+            if io.key_shift and under <= selection.places:
+                selection.places -= under
+            elif io.key_shift:
+                selection.places |= under
+            elif not under <= selection.places:
+                selection.places = under
+            self._begin("keys", io)
+            self._grabbed = under
 
     def _press_in_ruler(self, io: Any) -> None:
-        session, end = self._viewer.session, self.view.x(self._viewer.session.script.duration)
+        end = self._axis.x(self._session.script.duration)
         is_at_end = end < io.mouse_pos.x < end + em(key_marks.FLAG)
         if is_at_end:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
             if self._drag is None:
                 imgui.set_tooltip("drag the script's end")
         if self._drag is None and imgui.is_mouse_clicked(LEFT):
-            began = (io.mouse_pos.x, io.mouse_pos.y)
-            doing = "end" if is_at_end else "scrub"
-            self._drag = Drag(doing, began, session.script, self.selected)
+            self._begin("end" if is_at_end else "scrub", io)
 
     def _turn_wheel(self, io: Any) -> None:
         """Zoom about the mouse; with Shift, or a sideways wheel, scroll; the middle button pans."""
-        x = io.mouse_pos.x
         if self._drag is None and imgui.is_mouse_clicked(MIDDLE):
-            script = self._viewer.session.script
-            self._drag = Drag("pan", (x, 0.0), script, self.selected, button=MIDDLE)
+            self._begin("pan", io)
         sideways = io.mouse_wheel_h or (io.mouse_wheel if io.key_shift else 0.0)
         if sideways:
-            self.view.scroll(-SCROLL_PER_NOTCH * self.view.span * sideways)
+            self._axis.scroll(-SCROLL_PER_NOTCH * self._axis.span * sideways)
         elif io.mouse_wheel:
-            self.view.zoom(ZOOM_PER_NOTCH**io.mouse_wheel, x)
+            self._axis.zoom(ZOOM_PER_NOTCH**io.mouse_wheel, io.mouse_pos.x)
 
     def _follow(self, io: Any, drag: Drag) -> None:
         """Carry out what the mouse does until it lets go; Escape takes back what it did."""
-        x, y = io.mouse_pos.x, io.mouse_pos.y
+        x, y = io.mouse_pos
+        axis, session = self._axis, self._session
         distance = abs(x - drag.began[0]) + abs(y - drag.began[1])
         drag.has_moved = drag.has_moved or distance > CLICK
         act: dict[str, Callable[[], None]] = {
             "keys": lambda: self._move_keys(io, drag),
             "box": lambda: self._select_box(io, drag),
-            "scrub": lambda: self._viewer.session.seek(self._snapped(self.view.time(x), io)),
-            "end": lambda: self._viewer.session.edit(
-                keys.lasting(drag.script, self.view.time(x)), is_done=False
-            ),
-            "pan": lambda: self.view.scroll(-self.view.seconds(io.mouse_delta.x)),
+            "scrub": lambda: session.seek(self._snapped(axis.time(x), io)),
+            "end": lambda: session.edit(keys.lasting(drag.script, axis.time(x)), is_done=False),
+            "pan": lambda: axis.scroll(-axis.seconds(io.mouse_delta.x)),
         }
-        if drag.has_moved or drag.doing == "scrub":
-            self._viewer.attempt(act[drag.doing])
+        if drag.has_moved or drag.doing in ("scrub", "pan"):
+            self._messages.attempt(act[drag.doing])
         if imgui.is_key_pressed(imgui.Key.escape) and drag.doing in ("keys", "end"):
             self._drag = None
-            self._viewer.attempt(lambda: self._viewer.session.edit(drag.script))
-            self.selected = drag.selected
+            self._messages.attempt(lambda: session.edit(drag.script))
+            self._selection.places = drag.selected
         elif not imgui.is_mouse_down(drag.button):
             self._drag = None
-            self._release(io, drag)
+            self._messages.attempt(lambda: self._release(io, drag))
 
     def _snapped(self, time: float, io: Any) -> float:
         """The time of the nearest frame; with Ctrl just that time [s]."""
         return time if io.key_ctrl else keys.on_frame(time)
 
     def _move_keys(self, io: Any, drag: Drag) -> None:
-        target = drag.time + self.view.seconds(io.mouse_pos.x - drag.began[0])
-        last = self.view.start + self.view.span  # further right it would be out of sight
-        offset = self._snapped(min(max(target, 0.0), last), io) - drag.time
+        time = min(place.time for place in self._grabbed)
+        target = time + self._axis.seconds(io.mouse_pos.x - drag.began[0])
+        target = min(max(target, 0.0), self._axis.end)  # further right it would not be seen
+        offset = self._snapped(target, io) - time
         script, places = keys.moved(drag.script, drag.selected, offset)
-        self._viewer.session.edit(script, is_done=False)
-        self.selected = places
-        imgui.set_tooltip(f"{drag.time + offset:.2f} s")
+        self._session.edit(script, is_done=False)
+        self._selection.places = places
+        imgui.set_tooltip(f"{time + offset:.2f} s")
 
     def _select_box(self, io: Any, drag: Drag) -> None:
-        times = sorted(self.view.time(x) for x in (drag.began[0], io.mouse_pos.x))
+        times = sorted(self._axis.time(x) for x in (drag.began[0], io.mouse_pos.x))
         rows = sorted(self._row_at(y) for y in (drag.began[1], io.mouse_pos.y))
-        inside = self._lanes[max(rows[0], 0) : max(rows[1] + 1, 0)]
-        self.selected = drag.selected.union(*(lane.between(*times) for lane in inside))
+        inside = self._tracks[max(rows[0], 0) : max(rows[1] + 1, 0)]
+        self._selection.places = drag.selected.union(*(each.between(*times) for each in inside))
 
-    def _release(self, io: Any, drag: Drag) -> None:
-        session = self._viewer.session
-        if drag.doing == "box" and not drag.has_moved:
-            self.selected = drag.selected
-        elif drag.doing == "keys" and not drag.has_moved:
-            if not io.key_shift:
-                self.selected = drag.grabbed
-                session.is_playing = False
-                session.seek(drag.time)
+    def _release(self, io: Any, drag: Drag) -> Message:
+        """The mouse has let go; what there is to say about it."""
+        session, line = self._session, None
         if drag.doing == "keys" and drag.has_moved:
             lost = len(keys.places_of(drag.script)) - len(keys.places_of(session.script))
-            if lost > 0:
-                words = key_commands.counted(lost)
-                self._viewer.messages.say(f"{words} replaced; Ctrl+Z brings back")
+            line = f"{counted(lost)} replaced; Ctrl+Z brings back" if lost > 0 else None
+        elif drag.doing == "keys" and not io.key_shift:
+            self._selection.places = self._grabbed
+            session.is_playing = False
+            session.seek(min(place.time for place in self._grabbed))
+        elif drag.doing == "box" and not drag.has_moved:
+            self._selection.places = drag.selected
         if drag.doing != "pan":
             session.note()
+        return line
 
-    # What comes up
 
-    def _draw_popups(self) -> None:
-        viewer = self._viewer
-        if self._wants_menu:
-            imgui.open_popup("key menu")
-        if self._wants_naming:
+class PoseNameLine:
+    """A line for a pose's name, which comes up when one is asked for."""
+
+    def __init__(
+        self, gui: Gui, session: Session, messages: Messages, selection: KeySelection
+    ) -> None:
+        self._gui, self._session, self._messages = gui, session, messages
+        self._selection = selection
+        self._time, self._name = 0.0, ""  # [s] of the pose, and what is written so far
+
+    def draw(self) -> None:
+        """Draw it, if it is open or wanted."""
+        pose, self._selection.pose_to_name = self._selection.pose_to_name, None
+        if pose is not None:
+            self._time, self._name = pose.time, pose.name or ""
             imgui.open_popup("pose name")
-        if imgui.begin_popup("key menu"):
-            draw_actions(viewer, viewer.actions, "Keys")
-            imgui.end_popup()
-        if imgui.begin_popup("pose name"):
-            self._draw_naming()
-            imgui.end_popup()
-        self._wants_menu = self._wants_naming = False
-
-    def _draw_naming(self) -> None:
-        """A line for a pose's name."""
-        if self._naming is None:
+        if not imgui.begin_popup("pose name"):
             return
-        time, name = self._naming
-        imgui.text(f"Name of the pose at {time:.2f} s")
-        if self._wants_naming:
+        imgui.text(f"Name of the pose at {self._time:.2f} s")
+        if pose is not None:
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(em(14.0))
         flags = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.auto_select_all
-        is_entered, name = imgui.input_text_with_hint(
-            "##name", "none: no picture on a sheet", name, flags
+        is_entered, self._name = imgui.input_text_with_hint(
+            "##name", "none: no picture on a sheet", self._name, flags
         )
-        self._viewer.gui.remember("pose name")
-        self._naming = time, name
-        session = self._viewer.session
+        self._gui.remember("pose name")
         if is_entered:
-            self._viewer.attempt(lambda: session.edit(keys.renamed(session.script, time, name)))
+            script = keys.renamed(self._session.script, self._time, self._name)
+            self._messages.attempt(lambda: self._session.edit(script))
         if is_entered or imgui.is_key_pressed(imgui.Key.escape):
-            self._naming = None
             imgui.close_current_popup()
+        imgui.end_popup()

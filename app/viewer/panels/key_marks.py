@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Collection
 
 from imgui_bundle import imgui
 
-from ..gui import colour, em
+from ..gui import Theme, colour, em
 from ..keys import KeyPlace
-from ..lanes import Lane
-from ..time_view import TimeView
-from .words import shortened
-
-if TYPE_CHECKING:
-    from ..window import Viewer
+from ..time_axis import TimeAxis
+from ..tracks import Track
+from .widgets import shortened
 
 LABEL_ROOM = 4.2  # [em] between two labels of the ruler
 FLAG = 0.7  # [em] of the handle at the script's end
@@ -32,26 +29,30 @@ def _text_ink() -> int:
     return int(imgui.get_color_u32(imgui.Col_.text))
 
 
-def draw_ruler(viewer: Viewer, view: TimeView, top: float, bottom: float) -> None:
-    """Ticks with seconds, the script's end, and what is dragged to scrub."""
-    lines, theme = imgui.get_window_draw_list(), viewer.gui.theme
+def draw_ruler(
+    theme: Theme, axis: TimeAxis, time: float, duration: float, edges: tuple[float, float]
+) -> None:
+    """Ticks with seconds, the script's end, and at the time shown what is dragged to scrub.
+
+    time, duration: [s]. edges: the upper and the lower one [window units].
+    """
+    lines, (top, bottom) = imgui.get_window_draw_list(), edges
     ink = _ink(theme.muted)
-    for tick in view.ticks(em(LABEL_ROOM)):
-        x = round(view.x(tick.time)) + 0.5
+    for tick in axis.ticks(em(LABEL_ROOM)):
+        x = round(axis.x(tick.time)) + 0.5
         height = em(0.45) if tick.has_label else em(0.22)
         lines.add_line((x, bottom - height), (x, bottom), ink)
         if tick.has_label:
             lines.add_text((x + em(0.2), top), ink, label_of(tick.time))
-    end = view.x(viewer.session.script.duration)
-    if end <= view.x(view.start + view.span):
+    end = axis.x(duration)
+    if end <= axis.x(axis.end):
         tip = end + em(FLAG), bottom - 0.5 * em(FLAG)
         lines.add_triangle_filled((end, bottom - em(FLAG)), tip, (end, bottom), ink)
-    draw_playhead(viewer, view, top, bottom)
-    x = view.x(viewer.session.time)
-    if view.start <= viewer.session.time <= view.start + view.span:
-        accent, half = _ink(theme.accent), em(0.4)
+    draw_playhead(theme, axis, time, edges)
+    if axis.start <= time <= axis.end:
+        x, half = axis.x(time), em(0.4)
         tip = x, top + 1.3 * half
-        lines.add_triangle_filled((x - half, top), (x + half, top), tip, accent)
+        lines.add_triangle_filled((x - half, top), (x + half, top), tip, _ink(theme.accent))
 
 
 def label_of(time: float) -> str:
@@ -62,28 +63,20 @@ def label_of(time: float) -> str:
     return f"{minutes:.0f}:{seconds:02.0f}"
 
 
-def draw_playhead(viewer: Viewer, view: TimeView, top: float, bottom: float) -> None:
-    """The line at the time shown."""
-    time = viewer.session.time
-    if view.start <= time <= view.start + view.span:
-        x = round(view.x(time)) + 0.5
+def draw_playhead(theme: Theme, axis: TimeAxis, time: float, edges: tuple[float, float]) -> None:
+    """The line at the time shown [s], from one edge to the other [window units]."""
+    if axis.start <= time <= axis.end:
+        x = round(axis.x(time)) + 0.5
         width = max(em(0.09), 1.0)
         lines = imgui.get_window_draw_list()
-        lines.add_line((x, top), (x, bottom), _ink(viewer.gui.theme.accent), width)
+        lines.add_line((x, edges[0]), (x, edges[1]), _ink(theme.accent), width)
 
 
 def draw_label(
-    viewer: Viewer,
-    text: str,
-    left: float,
-    top: float,
-    height: float,
-    arrow: float,
-    *,
-    is_open: bool,
+    theme: Theme, text: str, corner: Point, height: float, arrow: float, *, is_open: bool
 ) -> None:
-    """The name of a row, with an arrow where it folds."""
-    lines, ink = imgui.get_window_draw_list(), _ink(viewer.gui.theme.muted)
+    """The name of a row from its upper left corner on, with an arrow where it folds."""
+    lines, ink, (left, top) = imgui.get_window_draw_list(), _ink(theme.muted), corner
     if arrow:
         x, y, size = left + 0.4 * arrow, top + 0.5 * height, 0.28 * arrow
         back, tip = 0.6 * size, size
@@ -94,71 +87,67 @@ def draw_label(
     lines.add_text((left + arrow, top + 0.5 * (height - imgui.get_font_size())), ink, text)
 
 
-def draw_lane(
-    viewer: Viewer,
-    view: TimeView,
-    lane: Lane,
-    selected: frozenset[KeyPlace],
-    top: float,
-    unit: float,
-) -> None:
-    """A row of `unit` times its height: its ground, where nothing moves, keys, names of poses."""
-    lines, theme, bottom = imgui.get_window_draw_list(), viewer.gui.theme, top + lane.height * unit
-    middle = bottom - 0.5 * unit
-    start, shown_end = view.start, view.start + view.span
-    low, high = view.x(start) - em(0.5), view.x(shown_end) + em(0.5)
-    end = min(max(view.x(viewer.session.script.duration), low), high)
-    first, last = (low, top + 1.0), (high, bottom - 1.0)
-    lines.add_rect_filled(first, last, _ink(theme.field, 0.45), em(0.2))
-    lines.add_rect_filled(first, (end, last[1]), _ink(theme.field), em(0.2))
-    for begin, finish in lane.held:
-        if finish > start and begin < shown_end:
-            ends = (max(view.x(begin), low), middle), (min(view.x(finish), high), middle)
-            lines.add_line(*ends, _ink(theme.muted, 0.45), em(0.22))
-    size = em(KEY if lane.is_whole else 0.8 * KEY)
-    ink = _text_ink() if lane.is_whole else _ink(theme.muted)
-    _draw_keys(lines, view, lane, selected, middle, size, (ink, _ink(theme.accent)))
-    _draw_names(lines, view, lane, top, high, _ink(theme.muted))
+class TrackPainter:
+    """Draws tracks along an axis, with the selected keys of a script that lasts so long."""
+
+    def __init__(
+        self, theme: Theme, axis: TimeAxis, selected: Collection[KeyPlace], duration: float
+    ) -> None:
+        """duration: of the script [s]."""
+        self._theme, self._axis, self._selected = theme, axis, selected
+        self._lines = imgui.get_window_draw_list()
+        self._low, self._high = axis.x(axis.start) - em(0.5), axis.x(axis.end) + em(0.5)
+        self._script_end = min(max(axis.x(duration), self._low), self._high)
+
+    def draw(self, track: Track, top: float, unit: float) -> None:
+        """A row of `unit` times its height: its ground, where nothing moves, keys, names."""
+        lines, theme, axis = self._lines, self._theme, self._axis
+        bottom, low, high = top + track.height * unit, self._low, self._high
+        middle = bottom - 0.5 * unit
+        first, last = (low, top + 1.0), (high, bottom - 1.0)
+        lines.add_rect_filled(first, last, _ink(theme.field, 0.45), em(0.2))
+        lines.add_rect_filled(first, (self._script_end, last[1]), _ink(theme.field), em(0.2))
+        for begin, finish in track.held:
+            if finish > axis.start and begin < axis.end:
+                ends = (max(axis.x(begin), low), middle), (min(axis.x(finish), high), middle)
+                lines.add_line(*ends, _ink(theme.muted, 0.45), em(0.22))
+        self._draw_keys(track, middle)
+        self._draw_names(track, top)
+
+    def _draw_keys(self, track: Track, middle: float) -> None:
+        """The visible keys, selected ones last and on top."""
+        axis, lines = self._axis, self._lines
+        size = em(KEY if track.is_whole else 0.8 * KEY)
+        ink = _text_ink() if track.is_whole else _ink(self._theme.muted)
+        margin = axis.seconds(size)
+        plain: dict[int, float] = {}  # where they are, by what is drawn as one
+        chosen: dict[int, float] = {}
+        for key in track.between(axis.start - margin, axis.end + margin):
+            x = axis.x(key.time)
+            (chosen if self._selected and key in self._selected else plain)[int(x / CLOSEST)] = x
+        for marks, fill, reach in (
+            (plain, ink, size),
+            (chosen, _ink(self._theme.accent), 1.2 * size),
+        ):
+            for x in marks.values():
+                left, right = (x - reach, middle), (x + reach, middle)
+                lines.add_quad_filled(left, (x, middle - reach), right, (x, middle + reach), fill)
+
+    def _draw_names(self, track: Track, top: float) -> None:
+        """The names of poses above them, as much of each as there is room for before the next."""
+        axis, ink = self._axis, _ink(self._theme.muted)
+        ends = [axis.x(time) - em(0.6) for time, _ in track.names[1:]] + [self._high]
+        for (time, name), end in zip(track.names, ends, strict=False):
+            if axis.start <= time <= axis.end:
+                x = axis.x(time) - em(KEY)
+                room = min(end, self._high) - x
+                if room >= min(em(LEAST_NAME), imgui.calc_text_size(name).x):
+                    self._lines.add_text((x, top), ink, shortened(name, room))
 
 
-def _draw_keys(
-    lines: Any,
-    view: TimeView,
-    lane: Lane,
-    selected: frozenset[KeyPlace],
-    middle: float,
-    size: float,
-    inks: tuple[int, int],
-) -> None:
-    """The keys that are in sight, selected ones last and on top."""
-    margin = view.seconds(size)
-    shown = lane.between(view.start - margin, view.start + view.span + margin)
-    plain: dict[int, float] = {}  # where they are, by what is drawn as one
-    chosen: dict[int, float] = {}
-    for key in shown:
-        x = view.x(key.time)
-        (chosen if selected and key in selected else plain)[int(x / CLOSEST)] = x
-    for marks, ink, scale in ((plain, inks[0], 1.0), (chosen, inks[1], 1.2)):
-        reach = scale * size
-        for x in marks.values():
-            left, right = (x - reach, middle), (x + reach, middle)
-            lines.add_quad_filled(left, (x, middle - reach), right, (x, middle + reach), ink)
-
-
-def _draw_names(lines: Any, view: TimeView, lane: Lane, top: float, right: float, ink: int) -> None:
-    """The names of poses above them, as much of each as there is room for before the next."""
-    ends = [view.x(time) - em(0.6) for time, _ in lane.names[1:]] + [right]
-    for (time, name), end in zip(lane.names, ends, strict=False):
-        if view.start <= time <= view.start + view.span:
-            x = view.x(time) - em(KEY)
-            room = min(end, right) - x
-            if room >= min(em(LEAST_NAME), imgui.calc_text_size(name).x):
-                lines.add_text((x, top), ink, shortened(name, room))
-
-
-def draw_box(viewer: Viewer, first: Point, last: Point) -> None:
+def draw_box(theme: Theme, first: Point, last: Point) -> None:
     """What a drag over nothing encloses."""
-    lines, accent = imgui.get_window_draw_list(), viewer.gui.theme.accent
+    lines, accent = imgui.get_window_draw_list(), theme.accent
     low = (min(first[0], last[0]), min(first[1], last[1]))
     high = (max(first[0], last[0]), max(first[1], last[1]))
     lines.add_rect_filled(low, high, _ink(accent, 0.15))

@@ -5,69 +5,79 @@ Hidden, all of it makes room for the picture; menus come up with the mouse at it
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
 
 from imgui_bundle import imgui
 
-from ..gui import em, fixed_panel
-from .chrome import draw_menus
-
-if TYPE_CHECKING:
-    from ..window import Viewer
+from ..gui import Gui, em, fixed_panel
+from ..panel_state import PanelState
+from ..settings import Settings
+from ..view import View
+from .menu_bar import MenuBar
+from .timeline import Timeline
 
 PANEL_WIDTHS = 12.0, 60.0  # [em] between which the left panel may be drawn wider
 PANEL_SHARE = 0.45  # of the window, at most
 EDGE = 1.6  # [em] of the picture's upper edge, where menus come up that are hidden
 
 
-def draw(viewer: Viewer) -> None:
-    """Draw what is to be seen around the picture, and say where the picture is."""
-    viewer.face_panel.pointed = ()
-    if viewer.is_bare:
-        _draw_bare(viewer)
-    else:
-        _draw_around(viewer)
+class Layout:
+    """Draws what is around the picture, and says where the picture is."""
 
+    def __init__(
+        self,
+        gui: Gui,
+        settings: Settings,
+        state: PanelState,
+        menus: MenuBar,
+        tabs: Mapping[str, Callable[[], None]],
+        timeline: Timeline,
+    ) -> None:
+        """tabs: what draws the panels at the left, by their titles."""
+        self._gui, self._settings, self._state = gui, settings, state
+        self._menus, self._tabs, self._timeline = menus, tabs, timeline
 
-def _draw_bare(viewer: Viewer) -> None:
-    io = imgui.get_io()
-    viewer.picture_area = (0.0, 0.0, max(io.display_size.x, 1.0), max(io.display_size.y, 1.0))
-    is_in_menu = imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
-    if 0.0 <= io.mouse_pos.y < em(EDGE) or is_in_menu:
-        draw_menus(viewer, viewer.actions)
+    def draw(self, view: View) -> None:
+        """Draw everything, and give the view its place."""
+        view.pointed = ()
+        if self._state.are_hidden:
+            view.area = self._draw_bare()
+        else:
+            view.area = self._draw_around()
 
+    def _draw_bare(self) -> tuple[float, float, float, float]:
+        io = imgui.get_io()
+        is_in_menu = imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
+        if 0.0 <= io.mouse_pos.y < em(EDGE) or is_in_menu:
+            self._menus.draw()
+        return 0.0, 0.0, max(io.display_size.x, 1.0), max(io.display_size.y, 1.0)
 
-def _draw_around(viewer: Viewer) -> None:
-    display = imgui.get_io().display_size
-    top = draw_menus(viewer, viewer.actions)
-    left, strip = _panel_width(viewer, display.x), round(viewer.timeline.height())
-    with fixed_panel("Controls", (0.0, top), (left, display.y - top), resizes=True):
-        if round(imgui.get_window_width()) != left:  # its edge is being dragged
-            viewer.settings.panel_width = imgui.get_window_width() / em()
-        _draw_tabs(viewer)
-    with fixed_panel("Time", (left, display.y - strip), (display.x - left, strip)):
-        viewer.timeline.draw()
-    width, height = max(display.x - left, 1.0), max(display.y - top - strip, 1.0)
-    viewer.picture_area = (left, top, width, height)
+    def _draw_around(self) -> tuple[float, float, float, float]:
+        display = imgui.get_io().display_size
+        top = self._menus.draw()
+        least, most = PANEL_WIDTHS
+        wanted = em(min(max(self._settings.panel_width, least), most))
+        left = round(min(wanted, PANEL_SHARE * display.x))
+        below = round(self._timeline.height())
+        with fixed_panel("Controls", (0.0, top), (left, display.y - top), resizes=True):
+            if round(imgui.get_window_width()) != left:  # its edge is being dragged
+                self._settings.panel_width = imgui.get_window_width() / em()
+            self._draw_tabs()
+        with fixed_panel("Time", (left, display.y - below), (display.x - left, below)):
+            self._timeline.draw()
+        return left, top, max(display.x - left, 1.0), max(display.y - top - below, 1.0)
 
-
-def _panel_width(viewer: Viewer, window_width: float) -> int:
-    """Of the left panel [window units]: as it was dragged, as far as there is room."""
-    least, most = PANEL_WIDTHS
-    wanted = min(max(viewer.settings.panel_width, least), most)
-    return round(min(em(wanted), PANEL_SHARE * window_width))
-
-
-def _draw_tabs(viewer: Viewer) -> None:
-    if not imgui.begin_tab_bar("tabs"):
-        return
-    for title, panel in (("Face", viewer.face_panel), ("Mechanism", viewer.mechanism_panel)):
-        flags = imgui.TabItemFlags_.set_selected if viewer.wanted_tab == title else 0
-        is_open, _ = imgui.begin_tab_item(title, None, flags)
-        viewer.gui.remember(f"tab {title}")
-        if is_open:
-            if viewer.wanted_tab in ("", title):
-                viewer.settings.tab, viewer.wanted_tab = title, ""
-            panel.draw()
-            imgui.end_tab_item()
-    imgui.end_tab_bar()
+    def _draw_tabs(self) -> None:
+        state = self._state
+        if not imgui.begin_tab_bar("tabs"):
+            return
+        for title, draw_panel in self._tabs.items():
+            flags = imgui.TabItemFlags_.set_selected if state.wanted_tab == title else 0
+            is_open, _ = imgui.begin_tab_item(title, None, flags)
+            self._gui.remember(f"tab {title}")
+            if is_open:
+                if state.wanted_tab in ("", title):
+                    self._settings.tab, state.wanted_tab = title, ""
+                draw_panel()
+                imgui.end_tab_item()
+        imgui.end_tab_bar()

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import Any
 
 import numpy as np
 from imgui_bundle import imgui
@@ -11,18 +12,16 @@ from imgui_bundle import imgui
 from risorius import refine, render
 
 from ...refining import DETAIL, can_detail, options_of
-from .. import commands
 from ..colours import COLOURS
-from ..gui import colour, em
+from ..frame_times import PHASES, FrameTimes
+from ..gui import Gui, em
 from ..overlays import overlays_of
 from ..setting_rules import COMPARISONS, SKINS
-from ..stage import STAGES
-from .folds import fold
+from ..settings import Look, Settings
+from ..stage import Stage
+from ..view import View
 from .sliders import Sliders
-from .words import hint
-
-if TYPE_CHECKING:
-    from ..window import Viewer
+from .widgets import heading, hint, muted
 
 # Words that options of refiners may be, asked of the plug-in.
 CHOICES: dict[str, Sequence[str]] = {
@@ -56,132 +55,115 @@ HINTS = {
 }
 LABEL_SHARE = 0.45  # of a row
 HIGHEST = 0.25  # of a slider for a number that is no whole one, as far as it is not more already
+SUITS = {"as it suits": None, "on": True, "off": False}  # values of options that may be left open
 
 
 class MechanismPanel:
     """Everything about how the mesh becomes a picture."""
 
-    def __init__(self, viewer: Viewer) -> None:
-        self._viewer = viewer
-        self._sliders = Sliders(viewer.gui)
+    def __init__(
+        self, gui: Gui, settings: Settings, stage: Stage, view: View, times: FrameTimes
+    ) -> None:
+        self._gui, self._settings = gui, settings
+        self._stage, self._view, self._times = stage, view, times
+        self._sliders = Sliders(gui)
+
+    @property
+    def _look(self) -> Look:
+        return self._settings.look
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
-        imgui.begin_child("mechanism", imgui.ImVec2(0.0, 0.0))
-        self._draw_refinement()
-        self._draw_look()
-        self._draw_overlays()
-        self._draw_times()
+        imgui.begin_child("mechanism", (0.0, 0.0))
+        times_label = f"Milliseconds, {self._times.frames_per_second:.0f} frames a second"
+        for title, label, draw in (
+            ("Refinement", "", self._draw_refinement),
+            ("Look", "", self._draw_look),
+            ("Overlays", "", self._draw_overlays),
+            ("Milliseconds", times_label, self._draw_times),
+        ):
+            if heading(self._gui, self._settings, title, label):
+                draw()
         imgui.end_child()
 
     def _draw_refinement(self) -> None:
-        viewer, look = self._viewer, self._viewer.look
-        if not fold(viewer, "Refinement"):
-            return
-        self._check("Refine", look.is_refined, lambda: commands.toggle(viewer, "is_refined"))
+        look, stage = self._look, self._stage
+        self._check("Refine", look.is_refined, partial(look.switch, "is_refined"))
         names = [name for name in refine.available() if name != "none"]
-        self._choose("Refiner", "refiner", names)
-        self._choose("Compare", "compare", COMPARISONS)
+        self._choose("Refiner", look.refiner, names, partial(setattr, look, "refiner"))
+        self._choose("Compare", look.compare, COMPARISONS, partial(setattr, look, "compare"))
         for name, default in options_of(look.refiner).items():
             self._draw_option(name, default)
-        shots = viewer.stage.shots(look, viewer.viewport)
-        base = len(viewer.scene.faces)
-        for shot in shots:
+        base = len(stage.scene.faces)
+        for shot in stage.shots(look, self._view.viewport):
             count = shot.picture.triangle_count
             imgui.text(f"{shot.label}: {count} triangles")
             imgui.same_line()
-            imgui.text_colored(colour(viewer.gui.theme.muted), f"({count / base:.2f} x)")
-        splits = viewer.stage.refined.refiner.splits
+            muted(self._gui, f"({count / base:.2f} x)")
+        splits = stage.refined.refiner.splits
         once, twice = int((splits == 1).sum()), int((splits == 2).sum())
-        imgui.text_colored(
-            colour(viewer.gui.theme.muted),
-            f"{len(splits)} edges: {once} split once, {twice} twice",
-        )
+        muted(self._gui, f"{len(splits)} edges: {once} split once, {twice} twice")
 
     def _draw_option(self, name: str, default: Any) -> None:
         """A slider, a checkbox or a list for an option, by what its default is."""
-        viewer, look = self._viewer, self._viewer.look
-        stored = look.options.setdefault(look.refiner, {})
-        scenes = viewer.scene.refiner_options.get(look.refiner, {})
+        scene, refiner = self._stage.scene, self._look.refiner
+        stored = self._look.options.setdefault(refiner, {})
+        scenes = scene.refiner_options.get(refiner, {})
         value = stored.get(name, scenes.get(name, default))
-        label = name.replace("_", " ")
+        label, put = name.replace("_", " "), partial(stored.__setitem__, name)
         if isinstance(default, bool):
-            self._check(label, bool(value), lambda: _put(stored, name, not value))
+            self._check(label, bool(value), partial(put, not value))
         elif isinstance(default, int):
             is_changed, chosen = imgui.input_int(label, int(value))
-            viewer.gui.remember(label)
+            self._gui.remember(label)
             if is_changed:
-                stored[name] = chosen
+                put(chosen)
         elif isinstance(default, float):
-            most = max(HIGHEST, 2.0 * default)
-            imgui.align_text_to_frame_padding()
-            imgui.text(label)
-            hint(HINTS.get(label, ""))
-            imgui.same_line(_label_width())
-            slid = self._sliders.draw(
-                name, float(value), (0.0, most), width=-1.0, neutral=default, digits=3
-            )
-            if slid.is_changed:
-                stored[name] = slid.value
-                _keep_in_order(stored, name, slid.value, scenes)
+            limits = 0.0, max(HIGHEST, 2.0 * default)
+            slid = self._slide(label, name, float(value), limits, default, digits=3)
+            if slid is not None:
+                put(slid)
+                _keep_in_order(stored, name, slid, scenes)
         elif isinstance(default, str):
-            has_finer = can_detail(viewer.scene)
+            has_finer = can_detail(scene)
             allowed = [word for word in CHOICES.get(name, ()) if word != DETAIL or has_finer]
             if allowed:
-                self._choose(label, name, allowed, of=stored, default=str(value))
+                self._choose(label, str(value), allowed, put)
         elif default is None:
-            words = {"as it suits": None, "on": True, "off": False}
-            present = next(word for word, each in words.items() if each is value)
-            self._choose_among(label, present, list(words), lambda w: _put(stored, name, words[w]))
+            present = next(word for word, each in SUITS.items() if each is value)
+            self._choose(label, present, list(SUITS), lambda word: put(SUITS[word]))
 
     def _draw_look(self) -> None:
-        viewer, look = self._viewer, self._viewer.look
-        if not fold(viewer, "Look"):
-            return
-        self._choose("Shading", "shading", [shading.value for shading in render.Shading])
-        self._choose("Colours", "colours", tuple(COLOURS))
+        look = self._look
+        shadings = [shading.value for shading in render.Shading]
+        self._choose("Shading", look.shading, shadings, partial(setattr, look, "shading"))
+        self._choose("Colours", look.colours, tuple(COLOURS), partial(setattr, look, "colours"))
         if COLOURS[look.colours].legend:
-            imgui.text_colored(colour(viewer.gui.theme.muted), COLOURS[look.colours].legend)
-        self._choose("Skin", "skin", tuple(SKINS))
-        if viewer.scene.wrinkles is not None:
-            self._draw_wrinkles()
-        self._check("Wireframe", look.wireframe, lambda: commands.toggle(viewer, "wireframe"))
+            muted(self._gui, COLOURS[look.colours].legend)
+        self._choose("Skin", look.skin, tuple(SKINS), partial(setattr, look, "skin"))
+        if self._stage.scene.wrinkles is not None:
+            depth = self._slide("Wrinkles", "wrinkles", look.wrinkles, (0.0, 1.0), 1.0)
+            look.wrinkles = look.wrinkles if depth is None else depth
+        self._check("Wireframe", look.wireframe, partial(look.switch, "wireframe"))
         imgui.same_line(_label_width())
-        self._check("Occlusion", look.occlusion, lambda: commands.toggle(viewer, "occlusion"))
-
-    def _draw_wrinkles(self) -> None:
-        look = self._viewer.look
-        imgui.align_text_to_frame_padding()
-        imgui.text("Wrinkles")
-        hint(HINTS["Wrinkles"])
-        imgui.same_line(_label_width())
-        slid = self._sliders.draw("wrinkles", look.wrinkles, (0.0, 1.0), width=-1.0, neutral=1.0)
-        look.wrinkles = slid.value
+        self._check("Occlusion", look.occlusion, partial(look.switch, "occlusion"))
 
     def _draw_overlays(self) -> None:
-        viewer = self._viewer
-        names = overlays_of(viewer.scene)
-        if not fold(viewer, "Overlays"):
-            return
-        for index, name in enumerate(names):
+        look = self._look
+        for index, name in enumerate(overlays_of(self._stage.scene)):
             if index % 2:
                 imgui.same_line(_label_width())
-            is_on = name in viewer.look.overlays
-            self._check(
-                name.capitalize(), is_on, lambda name=name: commands.toggle_overlay(viewer, name)
-            )
+            is_on = name in look.overlays
+            self._check(name.capitalize(), is_on, partial(look.toggle_overlay, name))
 
     def _draw_times(self) -> None:
-        """A scrolling plot for each stage of the paper's Figure 1, and the median of a second."""
-        stage, rate = self._viewer.stage, self._viewer.frames_per_second
-        if not fold(self._viewer, "Milliseconds", f"Milliseconds, {rate:.0f} frames a second"):
-            return
+        """A scrolling plot for each phase of the paper's Figure 1, and the median of a second."""
         spacing = imgui.get_style().item_spacing.x
         width = 0.5 * (imgui.get_content_region_avail().x - spacing)
-        for index, name in enumerate(STAGES):
+        for index, name in enumerate(PHASES):
             if index % 2:
                 imgui.same_line()
-            times = np.array(stage.times[name], np.float32)
+            times = np.array(self._times.milliseconds[name], np.float32)
             recent = times[-60:][times[-60:] > 0.0]
             median = float(np.median(recent)) if len(recent) else 0.0
             imgui.plot_lines(
@@ -190,64 +172,60 @@ class MechanismPanel:
                 overlay_text=f"{name}  {median:.2f}",
                 scale_min=0.0,
                 scale_max=max(float(times.max()), 0.1) * 1.3,
-                graph_size=imgui.ImVec2(width, em(2.2)),
+                graph_size=(width, em(2.2)),
             )
-        self._viewer.gui.remember("plot")
+        self._gui.remember("plot")
 
-    def _check(self, label: str, is_on: bool, switch: Any) -> None:
-        is_clicked, _ = imgui.checkbox(label, is_on)
-        self._viewer.gui.remember(label)
-        hint(HINTS.get(label, ""))
-        if is_clicked:
-            switch()
-
-    def _choose(
-        self,
-        label: str,
-        name: str,
-        choices: Sequence[str],
-        *,
-        of: dict[str, Any] | None = None,
-        default: str = "",
-    ) -> None:
-        """A list to choose from, for a field of the look or an entry of a table."""
-
-        def take(choice: str) -> None:
-            if of is not None:
-                of[name] = choice
-            else:
-                setattr(self._viewer.look, name, choice)
-
-        present = default if of is not None else getattr(self._viewer.look, name)
-        self._choose_among(label, present, choices, take)
-
-    def _choose_among(
-        self, label: str, present: str, choices: Sequence[str], take: Callable[[str], None]
-    ) -> None:
+    def _begin_row(self, label: str) -> None:
+        """A label in the first column; what comes next is in the second."""
         imgui.align_text_to_frame_padding()
         imgui.text(label)
         hint(HINTS.get(label, ""))
         imgui.same_line(_label_width())
+
+    def _check(self, label: str, is_on: bool, switch: Callable[[], None]) -> None:
+        is_clicked, _ = imgui.checkbox(label, is_on)
+        self._gui.remember(label)
+        hint(HINTS.get(label, ""))
+        if is_clicked:
+            switch()
+
+    def _slide(
+        self,
+        label: str,
+        name: str,
+        value: float,
+        limits: tuple[float, float],
+        neutral: float,
+        *,
+        digits: int = 2,
+    ) -> float | None:
+        """A row with a slider; what it was moved to, None if it was not."""
+        self._begin_row(label)
+        slid = self._sliders.draw(name, value, limits, width=-1.0, neutral=neutral, digits=digits)
+        return slid.value if slid.is_changed else None
+
+    def _choose(
+        self, label: str, present: str, choices: Sequence[str], put: Callable[[str], None]
+    ) -> None:
+        """A row with a list to choose from."""
+        self._begin_row(label)
         imgui.set_next_item_width(-1.0)
         is_open = imgui.begin_combo(f"##{label}", present)
-        self._viewer.gui.remember(label)
+        self._gui.remember(label)
         if not is_open:
             return
         for choice in choices:
             is_clicked, _ = imgui.selectable(choice, choice == present)
-            self._viewer.gui.remember(f"{label}: {choice}")
+            self._gui.remember(f"{label}: {choice}")
             if is_clicked:
-                take(choice)
+                put(choice)
         imgui.end_combo()
 
 
 def _label_width() -> float:
     """Where the second column begins, from the left edge of the panel."""
     return float(LABEL_SHARE * imgui.get_window_width())
-
-
-def _put(stored: dict[str, Any], name: str, value: Any) -> None:
-    stored[name] = value
 
 
 def _keep_in_order(

@@ -1,83 +1,99 @@
-"""The strip below the picture: play, record, loop, speed, key; below them the keys in time."""
+"""The timeline below the picture: play, record, loop, speed, key; below them the keys in time."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 from imgui_bundle import imgui
 
-from .. import commands, key_commands
-from ..gui import colour, em
-from ..session import SPEEDS
+from ..command import Command
+from ..export import Exporter
+from ..gui import Gui, colour, em
+from ..messages import Messages
+from ..session import SPEEDS, Session
 from .dope_sheet import DopeSheet
-from .words import hint, shortened, stay_in_line
-
-if TYPE_CHECKING:
-    from ..window import Viewer
+from .widgets import button, hint, shortened, stay_in_line
 
 BUTTON_WIDTH, SPEED_WIDTH = 4.0, 4.6  # [em]
 MOST_HEIGHT = 0.4  # of the window
-HINTS = {
-    "play": "play the script, or pause it (Space)",
-    "record": "take every movement of every control, until it is stopped (Ctrl+R)",
-    "loop": "begin again at the end (L)",
-    "set key": "the face as it is becomes a key at the time shown (K)",
+# By the label of the command: what the button reads while that is on, and a hint.
+BUTTONS = {
+    "Play": ("Pause", "play the script, or pause it (Space)"),
+    "Record": ("Stop", "take every movement of every control, until it is stopped (Ctrl+R)"),
+    "Loop": ("Loop", "begin again at the end (L)"),
+    "Set key": ("Set key", "the face as it is becomes a key at the time shown (K)"),
 }
 
 
 class Timeline:
-    """Draws the strip and carries out what is done in it."""
+    """Draws buttons and dope sheet, and carries out what is done with the buttons."""
 
-    def __init__(self, viewer: Viewer) -> None:
-        self._viewer = viewer
-        self.sheet = DopeSheet(viewer)
+    def __init__(
+        self,
+        gui: Gui,
+        session: Session,
+        messages: Messages,
+        commands: Iterable[Command],
+        exporter: Exporter,
+        dope_sheet: DopeSheet,
+    ) -> None:
+        """commands: those of the buttons must be among them."""
+        self._gui, self._session, self._messages = gui, session, messages
+        self._commands = {command.label: command for command in commands}
+        self._exporter, self.dope_sheet = exporter, dope_sheet
         self._rows = 1  # of buttons, which go on in a second one where the window is narrow
 
     def height(self) -> float:
-        """Of the strip [window units]; where words are too large for the window, it scrolls."""
+        """Of the timeline [window units]; where words are too large for the window, it scrolls."""
         most = MOST_HEIGHT * imgui.get_io().display_size.y
         buttons = self._rows * imgui.get_frame_height_with_spacing()
         buttons += 2.0 * imgui.get_style().window_padding.y
-        return float(min(buttons + self.sheet.height(most - buttons), most))
+        return float(min(buttons + self.dope_sheet.height(most - buttons), most))
 
     def draw(self) -> None:
-        """Draw everything, inside the strip's window."""
-        viewer, session, gui = self._viewer, self._viewer.session, self._viewer.gui
+        """Draw everything, inside its window."""
         top = imgui.get_cursor_pos_y()
-        self._button("Pause" if session.is_playing else "Play", "play", session.toggle_playing)
-        label = "Stop" if session.is_recording else "Record"
-        self._button(
-            label, "record", lambda: commands.toggle_recording(viewer), is_on=session.is_recording
-        )
-        self._button(
-            "Loop", "loop", lambda: commands.toggle_looping(viewer), is_on=session.is_looping
-        )
-        stay_in_line(em(SPEED_WIDTH))
-        imgui.set_next_item_width(em(SPEED_WIDTH))
-        if imgui.begin_combo("##speed", f"{session.speed:g} x"):
-            for speed in SPEEDS:
-                if imgui.selectable(f"{speed:g} x", speed == session.speed)[0]:
-                    session.speed = speed
-                gui.remember(f"speed {speed:g}")
-            imgui.end_combo()
-        gui.remember("speed")
-        hint("of playing")
-        self._button("Set key", "set key", lambda: key_commands.set_key(viewer))
+        for label in ("Play", "Record", "Loop"):
+            self._draw_button(label)
+        self._draw_speed()
+        self._draw_button("Set key")
         self._draw_words()
         self._rows = round((imgui.get_cursor_pos_y() - top) / imgui.get_frame_height_with_spacing())
-        self.sheet.draw()
+        self.dope_sheet.draw()
+
+    def _draw_button(self, label: str) -> None:
+        command, (label_on, meaning) = self._commands[label], BUTTONS[label]
+        is_on = command.is_on is not None and command.is_on()
+        name, width, highlight = label.lower(), em(BUTTON_WIDTH), None
+        if label != "Play":
+            stay_in_line(width)
+            highlight = colour(self._gui.theme.accent, 0.6) if is_on else None
+        text = label_on if is_on else label
+        if button(self._gui, text, name=name, width=width, meaning=meaning, highlight=highlight):
+            self._messages.attempt(command.run)
+
+    def _draw_speed(self) -> None:
+        stay_in_line(em(SPEED_WIDTH))
+        imgui.set_next_item_width(em(SPEED_WIDTH))
+        if imgui.begin_combo("##speed", f"{self._session.speed:g} x"):
+            for speed in SPEEDS:
+                if imgui.selectable(f"{speed:g} x", speed == self._session.speed)[0]:
+                    self._session.speed = speed
+                self._gui.remember(f"speed {speed:g}")
+            imgui.end_combo()
+        self._gui.remember("speed")
+        hint("of playing")
 
     def _draw_words(self) -> None:
         """The time, and what is being made now, else the script's name."""
-        viewer, session, theme = self._viewer, self._viewer.session, self._viewer.gui.theme
+        session, theme, film = self._session, self._gui.theme, self._exporter.film
         words, ink = session.name, theme.muted
         if session.script_is_unsaved:
             words += " *"
         if session.is_recording:
             words, ink = f"recording {session.recorded_seconds:.1f} s", theme.error
-        if viewer.film is not None:
-            words, ink = f"filming {viewer.film.seconds:.1f} s", theme.error
+        if film is not None:
+            words, ink = f"filming {film.seconds:.1f} s", theme.error
         imgui.same_line()
         time = f"{session.time:.2f} s of {session.script.duration:.2f}"
         imgui.text(shortened(time, imgui.get_content_region_avail().x))
@@ -86,18 +102,3 @@ class Timeline:
         imgui.text_colored(colour(ink), shortened(words, imgui.get_content_region_avail().x))
         where = session.file.path or "not kept in a file yet"
         hint(f"{session.script.title or session.name}: {where}")
-
-    def _button(
-        self, label: str, name: str, run: Callable[[], None], *, is_on: bool = False
-    ) -> None:
-        if name != "play":
-            stay_in_line(em(BUTTON_WIDTH))
-        if is_on:
-            imgui.push_style_color(imgui.Col_.button, colour(self._viewer.gui.theme.accent, 0.6))
-        is_clicked = imgui.button(label, imgui.ImVec2(em(BUTTON_WIDTH), 0.0))
-        if is_on:
-            imgui.pop_style_color()
-        self._viewer.gui.remember(name)
-        hint(HINTS[name])
-        if is_clicked:
-            self._viewer.attempt(run)

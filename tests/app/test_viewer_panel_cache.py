@@ -12,8 +12,7 @@ import pytest
 
 from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.kept import REFRESH
-from risorius.app.viewer.window import FULL
+from risorius.app.viewer.panel_cache import REFRESH
 
 from .driving import clear_search, drag, middle, settle, show_controls, until, xdotool
 
@@ -40,21 +39,21 @@ def test_kept_panels_look_like_new_ones(viewer: Viewer) -> None:
     settle(viewer)
     assert until(viewer, lambda: viewer.is_idle)
     drawn = []
-    note = viewer.kept.note_drawn
-    viewer.kept.note_drawn = lambda *size, **over: (drawn.append(True), note(*size, **over))
-    viewer.kept.refresh = 60.0
+    note = viewer.panel_cache.note_drawn
+    viewer.panel_cache.note_drawn = lambda *size, **over: (drawn.append(True), note(*size, **over))
+    viewer.panel_cache.refresh = 60.0
     try:
         for _ in range(5):
-            viewer.camera.orbit(3.0, 0.0)
+            viewer.view.camera.orbit(3.0, 0.0)
             viewer.frame()
         assert not drawn
         kept = viewer.surface.read()
-        viewer.kept.refresh = 0.0
-        viewer._drawn = (None, FULL)  # the same picture, drawn again with new panels
+        viewer.panel_cache.refresh = 0.0
+        viewer.painter.forget()  # the same picture, drawn again with new panels
         viewer.frame()
         assert drawn
     finally:
-        viewer.kept.note_drawn, viewer.kept.refresh = note, REFRESH
+        viewer.panel_cache.note_drawn, viewer.panel_cache.refresh = note, REFRESH
     changed = np.abs(viewer.surface.read().astype(int) - kept)
     assert changed.max() == 0
 
@@ -64,19 +63,19 @@ def test_a_slider_answers_at_once_while_the_face_moves(viewer: Viewer) -> None:
     show_controls(viewer, "jaw open")
     place = middle(viewer, "jaw_open")
     left, top, right, bottom = map(round, viewer.gui.places["jaw_open"])
-    viewer.kept.refresh = 60.0
+    viewer.panel_cache.refresh = 60.0
     try:
-        viewer.camera.orbit(3.0, 0.0)
+        viewer.view.camera.orbit(3.0, 0.0)
         drag(viewer, place, (1, 0))
         for _ in range(3):
             before = viewer.surface.read()[top:bottom, left:right].astype(int)
             value = viewer.session.values["jaw_open"]
             subprocess.run(["xdotool", "mousemove_relative", "--", "12", "0"], check=True)
-            viewer.camera.orbit(3.0, 0.0)
+            viewer.view.camera.orbit(3.0, 0.0)
             assert until(viewer, lambda old=value: viewer.session.values["jaw_open"] != old, 3.0)
             after = viewer.surface.read()[top:bottom, left:right].astype(int)
             assert (np.abs(after - before).max(axis=2) > 40).sum() > 20
     finally:
-        viewer.kept.refresh = REFRESH
+        viewer.panel_cache.refresh = REFRESH
         xdotool(viewer, "mouseup", 1)
         clear_search(viewer)

@@ -1,4 +1,4 @@
-"""Which part of the script the timeline shows, and where in it a time is."""
+"""Which part of the script the timeline displays, and where in it a time is."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Tick(NamedTuple):
     has_label: bool
 
 
-class TimeView:
+class TimeAxis:
     """From `start` on, `span` seconds; the whole script as long as nobody zooms in."""
 
     def __init__(self) -> None:
@@ -27,6 +27,10 @@ class TimeView:
         self.span = 1.0
         self.is_whole = True
         self._left, self._width = 0.0, 1.0
+
+    def show_whole(self) -> None:
+        """All of the script, however long it is."""
+        self.is_whole = True
 
     def place(self, left: float, width: float) -> None:
         """Where it is drawn [window units]."""
@@ -39,6 +43,11 @@ class TimeView:
         if self.is_whole:
             self.start, self.span = 0.0, whole
         self.start = min(max(self.start, 0.0), whole - self.span)
+
+    @property
+    def end(self) -> float:
+        """The last time that is visible [s]."""
+        return self.start + self.span
 
     def x(self, time: float) -> float:
         """Where a time is [window units]."""
@@ -54,10 +63,10 @@ class TimeView:
 
     def zoom(self, factor: float, x: float) -> None:
         """Show `factor` times as much time; what is at `x` stays there."""
-        kept = self.time(x)
+        fixed = self.time(x)
         self.span = max(self.span * factor, LEAST_SPAN)
         self.is_whole = False
-        self.start = kept - self.seconds(x - self._left)
+        self.start = fixed - self.seconds(x - self._left)
 
     def scroll(self, seconds: float) -> None:
         """Show what comes later."""
@@ -65,17 +74,17 @@ class TimeView:
 
     def follow(self, time: float) -> None:
         """Turn the page if a time is not to be seen."""
-        if not self.start <= time <= self.start + self.span:
+        if not self.start <= time <= self.end:
             self.start = time - 0.1 * self.span
 
     def ticks(self, label_width: float) -> list[Tick]:
-        """The marks of the part that is shown, with labels no closer than their width."""
+        """The marks of the visible part, with labels no closer than their width."""
         labelled = next((s for s in STEPS[1:] if s >= self.seconds(label_width)), STEPS[-1])
         least = self.seconds(CLOSEST_TICKS * label_width)
         finer = [s for s in STEPS if least <= s < labelled and _divides(s, labelled)]
         marked = finer[0] if finer else labelled
         count = round(labelled / marked)
-        first, last = (int(t / marked) for t in (self.start, self.start + self.span))
+        first, last = (int(t / marked) for t in (self.start, self.end))
         return [
             Tick(number * marked, number % count == 0)
             for number in range(first, last + 1)

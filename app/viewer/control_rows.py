@@ -56,9 +56,9 @@ def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) 
             if not known.issuperset(sides):
                 rows.append(Row(readable(name), (name,)))
                 continue
-            shown = [name] if linked or values[name] else []
+            whole = [name] if linked or values[name] else []
             is_apart = not linked or any(values[one] for one in sides)
-            rows.append(Row(readable(name), (*shown, *(sides if is_apart else ()))))
+            rows.append(Row(readable(name), (*whole, *(sides if is_apart else ()))))
         elif base not in known and (side == "left" or twin_of(name) not in known):
             both = (twin_of(name), name) if twin_of(name) in known else (name,)
             rows.append(Row(readable(base), both))
@@ -84,6 +84,7 @@ def highest_first(
     """Expressions, then the other layers above the muscles, then muscles, jaw and gaze."""
 
     def rank(title: str) -> int:
+        """From the top, 0 first."""
         first = groups[title][0]
         return 0 if first in expressions else 1 if first not in muscles else 2
 

@@ -6,30 +6,28 @@ wheel zooms. Pulled skin hangs on springs between the vertices under the mouse a
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from imgui_bundle import imgui
 
-from . import commands
-from .gui import em
+from .gui import LEFT, MIDDLE, RIGHT, em
 from .picking import Ray, muscle_at, skin_under
-
-if TYPE_CHECKING:
-    from .window import Viewer
+from .stage import Stage
+from .view import View
 
 DEGREES_PER_EM = 5.5
 ZOOM_PER_NOTCH = 1.1
 FINGER = 16.0  # [mm] the finger's radius
 FARTHEST = 45.0  # [mm] that a finger drags, lest the skin turns inside out
 CLICK = 4.0  # [window units] a press that moves less is a click, not a drag
-LEFT, RIGHT, MIDDLE = 0, 1, 2
 
 FloatArray = npt.NDArray[np.float64]
 
 
-class Pull:
+class SkinPull:
     """A finger that holds on to the skin."""
 
     def __init__(self, scene: Any, point: FloatArray) -> None:
@@ -53,19 +51,28 @@ class Pull:
         self.offset = offset * (FARTHEST * np.tanh(length / FARTHEST) / max(length, 1e-9))
         self._scene.simulation.pull(self._vertices, self._from + self.offset, self._firmness)
 
+    def muscle(self) -> str | None:
+        """The one under the finger, if any."""
+        return muscle_at(self.point, self._scene.simulation.fibres())
+
     def let_go(self) -> None:
         """The skin swings back."""
         self._scene.simulation.let_go()
 
 
-class Touch:
+class Mouse:
     """Follows the mouse from press to release."""
 
-    def __init__(self, viewer: Viewer) -> None:
-        self._viewer = viewer
+    def __init__(self, view: View, stage: Stage, select_muscle: Callable[[str], None]) -> None:
+        """select_muscle: called with the name of one that was clicked."""
+        self._view, self._stage, self._select_muscle = view, stage, select_muscle
+        self.forget()
+
+    def forget(self) -> None:
+        """Hold on to nothing any more: what it was on is not there."""
         self._doing = ""  # orbit, pan, divider, pull
         self._pressed_at = (0.0, 0.0)
-        self.pull: Pull | None = None
+        self.pull: SkinPull | None = None
 
     @property
     def is_pulling(self) -> bool:
@@ -91,7 +98,7 @@ class Touch:
                 if imgui.is_mouse_clicked(button):
                     self._press(io, button)
             if io.mouse_wheel:
-                self._viewer.camera.zoom(ZOOM_PER_NOTCH**io.mouse_wheel)
+                self._view.camera.zoom(ZOOM_PER_NOTCH**io.mouse_wheel)
 
     def _press(self, io: Any, button: int) -> None:
         self._pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
@@ -102,60 +109,52 @@ class Touch:
         elif self._is_at_divider(io.mouse_pos.x):
             self._doing = "divider"
         else:
-            point = self._skin(io) if hasattr(self._viewer.scene, "simulation") else None
+            scene = self._stage.scene
+            point = None
+            if hasattr(scene, "simulation"):
+                point = skin_under(self._ray(io), scene.positions, scene.faces)
             self._doing = "orbit" if point is None else "pull"
             if point is not None:
-                self.pull = Pull(self._viewer.scene, point)
+                self.pull = SkinPull(scene, point)
 
     def _drag(self, io: Any) -> None:
-        viewer, delta = self._viewer, io.mouse_delta
+        camera, delta = self._view.camera, io.mouse_delta
+        left, _, width, height = self._view.area
         if self._doing == "orbit":
             degrees = DEGREES_PER_EM / em()
-            viewer.camera.orbit(-delta.x * degrees, delta.y * degrees)
+            camera.orbit(-delta.x * degrees, delta.y * degrees)
         elif self._doing == "pan":
-            height = max(viewer.picture_area[3], 1.0)
-            viewer.camera.pan(-delta.x / height, delta.y / height)
+            camera.pan(-delta.x / max(height, 1.0), delta.y / max(height, 1.0))
         elif self._doing == "divider":
-            left, _, width, _ = viewer.picture_area
-            viewer.look.divider = min(max((io.mouse_pos.x - left) / width, 0.0), 1.0)
+            self._view.look.divider = min(max((io.mouse_pos.x - left) / width, 0.0), 1.0)
         elif self.pull is not None and (self._has_moved(io) or self.is_pulling):
-            axis = viewer.camera.axes()[2]
-            self.pull.to(self._ray(io).at_depth_of(self.pull.point, axis))
+            self.pull.to(self._ray(io).at_depth_of(self.pull.point, camera.axes()[2]))
 
     def _release(self, io: Any) -> None:
         if self.pull is not None:
             self.pull.let_go()
             if not self.is_pulling and not self._has_moved(io):
-                commands.select_muscle(self._viewer, self._muscle_at(self.pull.point))
-            self.pull = None
-        self._doing = ""
+                name = self.pull.muscle()
+                if name is not None:
+                    self._select_muscle(name)
+        self.forget()
 
     def _has_moved(self, io: Any) -> bool:
         x, y = self._pressed_at
         return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > CLICK)
 
-    def _muscle_at(self, point: FloatArray) -> str | None:
-        scene: Any = self._viewer.scene
-        return muscle_at(point, scene.simulation.fibres())
-
     def _is_at_divider(self, x: float) -> bool:
-        look = self._viewer.look
-        left, _, width, _ = self._viewer.picture_area
+        look = self._view.look
+        left, _, width, _ = self._view.area
         return look.compare != "off" and abs(x - left - look.divider * width) < 0.4 * em()
 
     def _ray(self, io: Any) -> Ray:
         """Through the mouse, in the viewport that it is in."""
-        viewer = self._viewer
-        window_width, window_height = imgui.get_io().display_size
-        width, height = viewer.surface.size
+        width, height = self._stage.surface.size
         place = (
-            io.mouse_pos.x * width / max(window_width, 1.0),
-            height - io.mouse_pos.y * height / max(window_height, 1.0),
+            io.mouse_pos.x * width / max(io.display_size.x, 1.0),
+            height - io.mouse_pos.y * height / max(io.display_size.y, 1.0),
         )
-        shots = viewer.stage.shots(viewer.look, viewer.viewport)
+        shots = self._stage.shots(self._view.look, self._view.viewport)
         under = [shot for shot in shots if place[0] >= shot.clip[0]] or shots[:1]
-        return Ray.through(viewer.camera, under[-1].viewport, place)
-
-    def _skin(self, io: Any) -> FloatArray | None:
-        scene = self._viewer.scene
-        return skin_under(self._ray(io), scene.positions, scene.faces)
+        return Ray.through(self._view.camera, under[-1].viewport, place)

@@ -25,7 +25,7 @@ AMPLE = 0.024  # [s] a frame at which the next finer level is safe
 PATIENCE = 4  # frames in a row that decide
 
 
-class Quality:
+class LevelOfDetail:
     """Picks a level of detail by the time that frames took."""
 
     def __init__(self, *, is_software: bool) -> None:

@@ -13,7 +13,7 @@ import math
 REFRESH = 0.1  # [s] that a picture of the panels may be old while the face moves
 
 
-class KeptPanels:
+class PanelCache:
     """Says whether panels are due; the window tells when it has drawn them."""
 
     def __init__(self) -> None:

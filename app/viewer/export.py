@@ -1,4 +1,4 @@
-"""Take away: a picture or a film of what is shown, written as `risorius capture` writes them."""
+"""Pictures and films of what is displayed, written as `risorius capture` writes them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ import numpy as np
 from ..capture import outputs
 from ..capture.outputs import FrameSink
 from ..errors import UserError
-from ..files import Image
+from ..files import Image, save_png
+from .messages import Message, Messages
+from .stage import Stage
+from .view import View
 
 FRAMES_PER_SECOND = 30.0
 
@@ -54,3 +57,39 @@ class Film:
         """Finish the file."""
         self._files.close()
         self._sink = None
+
+
+class Exporter:
+    """Screenshots and films of a stage, into the present folder."""
+
+    def __init__(self, stage: Stage, view: View) -> None:
+        self._stage, self._view = stage, view
+        self.film: Film | None = None  # that is being made
+
+    def screenshot(self) -> Message:
+        """Write the picture without panels, in full detail."""
+        target = free_name(Path.cwd(), ".png")
+        save_png(target, self._stage.photograph(self._view))
+        return f"{target.name}: written to {target.parent}"
+
+    def toggle_film(self) -> Message:
+        """Begin a film of what is displayed, or finish it."""
+        if self.film is None:
+            self.film = Film(free_name(Path.cwd(), ".mp4"))
+            return None
+        film, self.film = self.film, None
+        film.close()
+        if not film.frame_count:
+            return None
+        return f"{film.target.name}: {film.seconds:.1f} s in {film.target.parent}"
+
+    def add_to_film(self, messages: Messages) -> None:
+        """Draw the next frame of the film, which ends where that cannot be written."""
+        film, frame = self.film, self._stage.photograph(self._view)
+        if film is not None:
+            messages.attempt(lambda: film.add(frame), otherwise=self.toggle_film)
+
+    def close(self) -> None:
+        """Finish a film that is being made."""
+        if self.film is not None:
+            self.film.close()

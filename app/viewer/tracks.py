@@ -1,4 +1,4 @@
-"""The rows of the timeline: which keys each shows, and which of them are meant."""
+"""The rows of the timeline, a track each: which keys each has, and which of them are meant."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ from dataclasses import dataclass
 from operator import attrgetter
 
 from ..script import Channel, Pose, Script
-from .keys import POSES, SAME, KeyPlace
-from .rows import readable
+from .control_rows import readable
+from .keys import POSES, SAME, KeyPlace, keys_by_track
 
 TRACKS = "Tracks"
+MOST_LINES = 7  # of a key's values that are told
 
 
 @dataclass(frozen=True)
-class Lane:
+class Track:
     """One row: the keys of the poses, of a track, or of all tracks together."""
 
     label: str
@@ -43,26 +44,26 @@ class Lane:
         return self.places[begin : bisect.bisect_right(self.places, last, key=attrgetter("time"))]
 
 
-def lanes_shown(script: Script, *, is_open: bool) -> tuple[Lane, ...]:
+def visible_tracks(script: Script, *, is_open: bool) -> tuple[Track, ...]:
     """The poses, then the tracks: one row for all of them, and if it is open one for each."""
-    shown = []
+    tracks = []
     if script.poses or not script.tracks:
         names = tuple((pose.time, pose.name) for pose in script.poses if pose.name)
         held = _held(script.poses)
-        shown.append(Lane("Poses", _places(script, (POSES,)), names, held, is_whole=True))
+        tracks.append(Track("Poses", _places(script, (POSES,)), names, held, is_whole=True))
     if script.tracks:
-        shown.append(Lane(TRACKS, _places(script, tuple(script.tracks)), is_sum=True))
+        tracks.append(Track(TRACKS, _places(script, tuple(script.tracks)), is_sum=True))
     if is_open:
-        shown += [
-            Lane(readable(name), _places(script, (name,)), held=_still(track))
+        tracks += [
+            Track(readable(name), _places(script, (name,)), held=_still(track))
             for name, track in script.tracks.items()
         ]
-    return tuple(shown)
+    return tuple(tracks)
 
 
-def _places(script: Script, lanes: Sequence[str]) -> tuple[KeyPlace, ...]:
-    items = ((lane, script.poses if lane == POSES else script.tracks[lane].keys) for lane in lanes)
-    places = [KeyPlace(lane, item.time) for lane, keys in items for item in keys]
+def _places(script: Script, names: Sequence[str]) -> tuple[KeyPlace, ...]:
+    keys = keys_by_track(script)
+    places = [KeyPlace(name, key.time) for name in names for key in keys[name]]
     return tuple(sorted(places, key=attrgetter("time")))
 
 
@@ -79,37 +80,23 @@ def _still(track: Channel) -> tuple[tuple[float, float], ...]:
 
 
 def described(script: Script, places: frozenset[KeyPlace]) -> str:
-    """What there is to say about keys at one time: name and time, then what they hold."""
-    time = min(place.time for place in places)
-    lines = []
-    for place in sorted(places):
-        if place.lane == POSES:
-            pose = next(pose for pose in script.poses if pose.time == place.time)
-            lines += [_value(name, value) for name, value in pose.values.items() if value]
-            lines = lines or ["neutral"]
-        else:
-            keys = script.tracks[place.lane].keys
-            value = next(key.value for key in keys if key.time == place.time)
-            lines.append(_value(place.lane, value))
+    """What there is to say about keys at one time: a title, then the values that they hold."""
+    name, lines, easings = "", list[str](), set[str]()
+    for track, keys in sorted(keys_by_track(script).items()):  # the poses come first
+        for key in keys:
+            if KeyPlace(track, key.time) not in places:
+                continue
+            easings.add(key.easing)
+            if isinstance(key, Pose):
+                name = key.name or ""
+                lines += [_value(*each) for each in key.values.items() if each[1]] or ["neutral"]
+            else:
+                lines.append(_value(track, key.value))
+    time = f"{min(place.time for place in places):.2f} s"
+    title = ", ".join(filter(None, (name, time, *sorted(easings - {"smooth"}))))
     more = [f"and {len(lines) - MOST_LINES} more"] if len(lines) > MOST_LINES else []
-    return "\n".join([_title(script, places, time), *lines[:MOST_LINES], *more])
-
-
-MOST_LINES = 7  # of a key's values that are told
+    return "\n".join([title, *lines[:MOST_LINES], *more])
 
 
 def _value(name: str, value: float) -> str:
     return f"{readable(name)} {value:.2f}"
-
-
-def _title(script: Script, places: frozenset[KeyPlace], time: float) -> str:
-    """The pose's name if it has one, the time, and how the key is approached if not as usual."""
-    name, easings = "", set()
-    for pose in script.poses:
-        if KeyPlace(POSES, pose.time) in places:
-            name = pose.name or ""
-            easings.add(pose.easing)
-    for lane, track in script.tracks.items():
-        easings |= {key.easing for key in track.keys if KeyPlace(lane, key.time) in places}
-    special = sorted(easings - {"smooth"})
-    return ", ".join(part for part in (name, f"{time:.2f} s", *special) if part)

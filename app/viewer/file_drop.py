@@ -1,0 +1,119 @@
+"""Several files let go over the window at once: a script or pose, a head, and what is too much."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from risorius import assets
+from risorius.assets.meshes import FORMATS
+
+from ..errors import UserError
+from ..scenes import Scene, build_scene, head_for
+from .files import Files
+from .messages import Message
+from .script_commands import ScriptCommands
+
+MESHES = tuple(f".{name}" for name in FORMATS)
+LANDMARKS = ".json"
+
+
+@dataclass(frozen=True)
+class DroppedFiles:
+    """What the files are taken for."""
+
+    script: Path | None = None  # or a pose; anything else is tried as one, and told what is wrong
+    mesh: Path | None = None
+    landmarks: Path | None = None
+    left_over: tuple[Path, ...] = ()  # of each kind the first one counts
+
+    @classmethod
+    def of(cls, paths: Sequence[Path]) -> DroppedFiles:
+        """Sort out files by the ends of their names."""
+        meshes = [path for path in paths if path.suffix.lower() in MESHES]
+        landmarks = [path for path in paths if path.suffix.lower() == LANDMARKS]
+        scripts = [path for path in paths if path not in (*meshes, *landmarks)]
+        firsts = [next(iter(kind), None) for kind in (scripts, meshes, landmarks)]
+        left_over = (*scripts[1:], *meshes[1:], *landmarks[1:])
+        return cls(firsts[0], firsts[1], firsts[2], left_over)
+
+    @property
+    def has_head(self) -> bool:
+        """Whether there is any part of a head."""
+        return self.mesh is not None or self.landmarks is not None
+
+    def remark(self) -> str:
+        """The end of a message: which files were not opened."""
+        names = [path.name for path in self.left_over]
+        return f"; not opened, as one is enough: {', '.join(names)}" if names else ""
+
+    def scene(self) -> Scene:
+        """A face with the head, fitted; UserError for one that cannot be."""
+        mesh, landmarks = self.mesh, self.landmarks
+        if mesh is None or landmarks is None:
+            given, missing = (
+                (mesh, "landmarks, a .json") if mesh else (landmarks, "mesh, an .obj say")
+            )
+            name = given.name if given else ""
+            raise UserError(f"{name}: is half of a head; drop it together with its {missing}")
+        try:
+            return build_scene("face", head_for(mesh, landmarks))
+        except assets.AssetError as error:
+            raise UserError(str(error)) from None
+
+
+class FileDrop:
+    """Opens dropped files; a head, which takes a while, in a frame after it was announced."""
+
+    def __init__(
+        self, files: Files, scripts: ScriptCommands, show_scene: Callable[[Scene], None]
+    ) -> None:
+        """show_scene: puts a scene with another head in place of the present one."""
+        self._files, self._scripts, self._show_scene = files, scripts, show_scene
+        self._announced: DroppedFiles | None = None
+
+    @property
+    def has_announced(self) -> bool:
+        """Whether a head waits to be fitted."""
+        return self._announced is not None
+
+    def open(self, paths: Sequence[str]) -> Message:
+        """Open files, or announce that a head will be fitted."""
+        dropped = DroppedFiles.of([Path(path) for path in paths])
+        if not dropped.has_head:
+            return self._open(dropped)
+        self._announced = dropped
+        return "fitting the muscles to this head ..."
+
+    def open_announced(self) -> Message:
+        """Fit the head that was announced; all that was done stays."""
+        dropped, self._announced = self._announced, None
+        return None if dropped is None else self._open(dropped)
+
+    def _open(self, dropped: DroppedFiles) -> Message:
+        """Show the head first, then what shall be played on it."""
+        line, remark = None, dropped.remark()
+        if dropped.has_head:
+            self._show_scene(dropped.scene())
+            assert dropped.mesh is not None
+            line = f"{dropped.mesh.name}: opened{remark}"
+            remark = f" with {dropped.mesh.name}{remark}"
+        if dropped.script is not None:
+            line = self._scripts.open(dropped.script, remark) or line
+        return line
+
+    def ask_head(self) -> None:
+        """Ask for a mesh, then for its landmarks, and show them as if they had been dropped."""
+
+        def go_on(mesh: Path) -> None:
+            """Ask for the landmarks."""
+            self._files.ask(
+                f"The landmarks of {mesh.name}",
+                lambda landmarks: self.open([str(mesh), str(landmarks)]),
+                saving=False,
+                kind="Landmarks",
+                suffixes=(LANDMARKS,),
+            )
+
+        self._files.ask("Open head", go_on, saving=False, kind="Meshes", suffixes=MESHES)

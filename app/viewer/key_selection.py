@@ -1,0 +1,103 @@
+"""The keys that are selected in the timeline, and what menus and keys do with them."""
+
+from __future__ import annotations
+
+from ..script import Pose
+from . import keys
+from .keys import POSES, KeyPlace
+from .messages import Message
+from .panel_state import PanelState
+from .session import Session
+
+COPY_OFFSET = 10  # frames by which a copy comes later, if it is not wanted elsewhere
+
+
+class KeySelection:
+    """Some keys of a session's script; menus, the keyboard and the timeline share it."""
+
+    def __init__(self, session: Session, panels: PanelState) -> None:
+        self._session, self._panels = session, panels
+        self.places: frozenset[KeyPlace] = frozenset()
+        self.pose_to_name: Pose | None = None  # for which the timeline is to ask a name
+
+    @property
+    def can_edit(self) -> bool:
+        """Whether the script may be changed now."""
+        return not self._session.is_recording
+
+    @property
+    def can_change(self) -> bool:
+        """Whether there are keys that something could be done with."""
+        return bool(self.places) and self.can_edit
+
+    def set_key(self) -> Message:
+        """The face as it is becomes a key at the time shown."""
+        time = self._session.set_key()
+        script = self._session.script
+        there = [place for place in keys.places_of(script) if abs(place.time - time) < 1e-9]
+        poses = frozenset(place for place in there if place.track == POSES)
+        self.places = poses or frozenset(there)
+        return f"key set at {time:.2f} s"
+
+    def delete(self) -> Message:
+        """Take the selected keys away."""
+        places = self.places
+        self._session.edit(keys.without(self._session.script, places))
+        return f"{counted(len(places))} deleted; Ctrl+Z brings back"
+
+    def duplicate(self) -> Message:
+        """Copies of the selected keys at the time shown, or a little later if they are there."""
+        script = self._session.script
+        first = min(place.time for place in self.places)
+        offset = keys.key_time(script, self._session.time) - first
+        if abs(offset) < 0.5 * keys.FRAME:
+            offset = COPY_OFFSET * keys.FRAME
+        script, copies = keys.copied(script, self.places, offset)
+        self._session.edit(script)
+        self.places = copies
+        return f"{counted(len(copies))} copied to {first + offset:.2f} s"
+
+    def nudge(self, frames: int) -> None:
+        """Move the selected keys by so many frames."""
+        first = min(place.time for place in self.places)
+        offset = keys.on_frame(first + frames * keys.FRAME) - first
+        script, places = keys.moved(self._session.script, self.places, offset)
+        self._session.edit(script)
+        self.places = places
+
+    def select_all(self) -> None:
+        """All keys of the script."""
+        self.places = keys.places_of(self._session.script)
+
+    def _nameable(self) -> Pose | None:
+        """The one pose that is selected, or else the one at the time shown."""
+        poses = [place.time for place in self.places if place.track == POSES]
+        if len(poses) > 1:
+            return None
+        time = poses[0] if poses else self._session.time
+        return keys.pose_at(self._session.script, time)
+
+    @property
+    def can_rename(self) -> bool:
+        """Whether it is clear which pose would get a name."""
+        return self.can_edit and self._nameable() is not None
+
+    def rename(self) -> None:
+        """Ask for the name of a pose, in the timeline."""
+        self.pose_to_name = self._nameable()
+        if self.pose_to_name is not None:
+            self._panels.are_hidden = False
+
+    def ease(self, easing: str) -> None:
+        """How the selected keys are approached."""
+        self._session.edit(keys.eased(self._session.script, self.places, easing))
+
+    def is_eased(self, easing: str) -> bool:
+        """Whether all selected keys are approached so."""
+        script = self._session.script
+        return bool(self.places) and keys.eased(script, self.places, easing) == script
+
+
+def counted(number: int) -> str:
+    """So many keys, in words."""
+    return "1 key" if number == 1 else f"{number} keys"

@@ -1,0 +1,152 @@
+"""Everything that a key or a menu does, as data, a function for each menu.
+
+Menus, the keyboard and the overview of keys are all made from these tables.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+from ..script.easing import EASINGS
+from .command import Command
+from .control_rows import readable
+from .export import Exporter
+from .file_drop import FileDrop
+from .key_selection import KeySelection
+from .messages import Message, Task
+from .panel_state import PanelState
+from .placement import Placement
+from .script_commands import ScriptCommands
+from .session import Session
+from .settings import Settings
+from .time_axis import TimeAxis
+from .view import View
+
+Menu = tuple[Command, ...]
+
+
+def file_menu(
+    scripts: ScriptCommands, file_drop: FileDrop, exporter: Exporter, close: Task
+) -> Menu:
+    """Files that come and go, and the end."""
+    command = partial(Command, "File")
+    return (
+        command("New script", "Ctrl+N", scripts.new),
+        command("Open script or pose ...", "Ctrl+O", scripts.ask_open),
+        command("Open head ...", "Ctrl+H", file_drop.ask_head),
+        command("Save script", "Ctrl+S", scripts.save),
+        command("Save script as ...", "Ctrl+Shift+S", scripts.save_as),
+        command("Save pose ...", "Ctrl+P", scripts.save_pose),
+        command("Screenshot", "F12", exporter.screenshot),
+        command("Film", "F10", exporter.toggle_film, lambda: exporter.film is not None),
+        command("Quit", "Ctrl+Q", close),
+    )
+
+
+def edit_menu(session: Session) -> Menu:
+    """Undo, and whole faces."""
+    command = partial(Command, "Edit")
+    return (
+        command("Undo", "Ctrl+Z", session.undo, can_run=lambda: session.can_undo),
+        command("Redo", "Ctrl+Shift+Z", session.redo, can_run=lambda: session.can_redo),
+        command("Neutral", "N", session.neutral),
+        command("Mirror", "M", session.mirror),
+        command("Randomise", "X", session.randomise),
+    )
+
+
+def time_menu(session: Session, scripts: ScriptCommands, axis: TimeAxis) -> Menu:
+    """Playing, recording, and ways through the script."""
+    command = partial(Command, "Time")
+    return (
+        command("Play", "Space", session.toggle_playing, lambda: session.is_playing),
+        command("Record", "Ctrl+R", scripts.toggle_recording, lambda: session.is_recording),
+        command("Loop", "L", session.toggle_looping, lambda: session.is_looping),
+        command("To the start", "Home", partial(session.seek, 0.0)),
+        command("To the key before", "Left", partial(session.seek_key, -1)),
+        command("To the next key", "Right", partial(session.seek_key, 1)),
+        command("Show the whole script", "Shift+F", axis.show_whole),
+    )
+
+
+def keys_menu(selection: KeySelection) -> Menu:
+    """What is done with the keys that are selected in the timeline."""
+    command = partial(Command, "Keys")
+    change = partial(command, can_run=lambda: selection.can_change)
+    name = partial(command, can_run=lambda: selection.can_rename)
+    return (
+        command("Set key", "K", selection.set_key, can_run=lambda: selection.can_edit),
+        name("Name of the pose ...", "Shift+K", selection.rename),
+        change("Duplicate", "Ctrl+D", selection.duplicate),
+        change("Delete", "Delete", selection.delete, other_key="Backspace"),
+        change("A frame earlier", "Shift+Left", partial(selection.nudge, -1)),
+        change("A frame later", "Shift+Right", partial(selection.nudge, 1)),
+        command("Select all keys", "Ctrl+A", selection.select_all),
+        *(
+            change(
+                f"Approach: {easing}",
+                "",
+                partial(selection.ease, easing),
+                partial(selection.is_eased, easing),
+            )
+            for easing in EASINGS
+        ),
+    )
+
+
+def view_menu(settings: Settings, view: View, placement: Placement, panels: PanelState) -> Menu:
+    """How the scene is drawn, and what is around it."""
+    command = partial(Command, "View")
+
+    def switch(label: str, key: str, field: str, on: object = True, off: object = False) -> Command:
+        """A field of the look that has this value or the other."""
+        return command(
+            label,
+            key,
+            lambda: settings.look.switch(field, on, off),
+            lambda: bool(getattr(settings.look, field) == on),
+        )
+
+    def toggle_full() -> Message:
+        """Fill the screen, or go back."""
+        placement.toggle_full()
+        return "F11 leaves the full screen" if placement.is_full else None
+
+    muscles = partial(command, is_on=lambda: "muscles" in settings.look.overlays)
+    full = partial(command, is_on=lambda: placement.is_full, other_key="Alt+Enter")
+    return (
+        switch("Refine", "R", "is_refined"),
+        switch("Compare: wipe", "D", "compare", "wipe", "off"),
+        switch("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
+        switch("Wireframe", "W", "wireframe"),
+        switch("Colour by splits", "C", "colours", "splits", "none"),
+        command("Next shading", "S", lambda: settings.look.next_shading()),
+        switch("Texture", "T", "skin", "textured", "plain"),
+        muscles("Muscles", "U", lambda: settings.look.toggle_overlay("muscles")),
+        command("Frame the face", "F", view.frame_scene),
+        command("Hide panels", "Tab", panels.toggle_hidden, lambda: panels.are_hidden),
+        full("Full screen", "F11", toggle_full),
+        command("Dark theme", "F2", settings.toggle_theme, lambda: settings.theme == "dark"),
+        command("Larger words", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
+        command("Smaller words", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
+    )
+
+
+def expression_menu(session: Session) -> Menu:
+    """Keys 1 to 9 show the first expressions of the scene."""
+    command = partial(Command, "Expression")
+    return tuple(
+        command(
+            readable(name),
+            str(number),
+            partial(session.show, name),
+            partial(session.shows, name),
+        )
+        for number, name in enumerate(session.scene.expressions[:9], start=1)
+    )
+
+
+def help_menu(panels: PanelState) -> Menu:
+    """The overview of keys."""
+    is_open = partial(getattr, panels, "is_help_open")
+    return (Command("Help", "Keys and mouse", "F1", panels.toggle_help, is_open),)

@@ -1,0 +1,52 @@
+"""What the window says in a line, and where errors that a user may mend become such lines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ..errors import UserError
+
+SECONDS = 6.0  # for which a message stays
+LONGEST_FRAME = 0.25  # [s] that counts for a message: a frame that took longer showed nothing
+
+Message = str | None  # to be shown; None for nothing to say
+Task = Callable[[], Message]  # what a user asks for; it may raise UserError or OSError
+
+
+@dataclass
+class Messages:
+    """One line at a time, at the foot of the picture; an error stays until it is clicked."""
+
+    text: str = ""
+    is_error: bool = False
+    seconds_left: float = 0.0
+
+    def say(self, text: str, *, error: bool = False) -> None:
+        """Show a line in place of the one before."""
+        self.text, self.is_error, self.seconds_left = text, error, SECONDS
+
+    def attempt(self, task: Task, otherwise: Task = lambda: None) -> None:
+        """Do something, and show what it has to say or what the user may have to mend.
+
+        otherwise: what to do after an error.
+        """
+        try:
+            line = task()
+        except (UserError, OSError) as error:
+            self.say(str(error), error=True)
+            line = otherwise()
+        if line:
+            self.say(line)
+
+    def age(self, seconds: float) -> None:
+        """Time has passed since the last frame: a line that is no error goes away."""
+        if not self.is_error:
+            self.seconds_left -= min(seconds, LONGEST_FRAME)
+        if self.seconds_left <= 0.0:
+            self.text = ""
+
+    @property
+    def is_fading(self) -> bool:
+        """Whether it goes away by itself."""
+        return bool(self.text) and not self.is_error

@@ -1,0 +1,62 @@
+"""When the scene is drawn: if it has changed, with less detail while it moves."""
+
+from __future__ import annotations
+
+from risorius import render
+
+from .export import Exporter
+from .level_of_detail import FULL, LevelOfDetail
+from .messages import Messages
+from .physics import CALM
+from .stage import Stage
+from .view import View
+
+
+class Painter:
+    """Keeps the picture of the scene up to date, as finely as the machine can."""
+
+    def __init__(self, stage: Stage, view: View, exporter: Exporter, messages: Messages) -> None:
+        self._stage, self._view, self._exporter = stage, view, exporter
+        self._messages = messages
+        self.level_of_detail = LevelOfDetail(is_software=stage.surface.is_software)
+        self._calm_for = 0.0  # [s] that the picture has not changed
+        self.forget()
+
+    def forget(self) -> None:
+        """What was drawn last is not what should be seen."""
+        self._painted: tuple[object, render.Detail] = (None, FULL)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the picture shows the present view, in full detail."""
+        return self._painted == (self._view.state, FULL)
+
+    def paint(self, elapsed: float, *, has_moved: bool) -> bool:
+        """Draw the scene if it has changed, or is not drawn in full yet; whether it changed.
+
+        elapsed: since the last frame [s]. has_moved: whether the simulation went on.
+        """
+        surface = self._stage.surface
+        surface.area = self._view.viewport
+        surface.rules = self._view.divider()
+        state = self._view.state
+        painted, detail = self._painted
+        has_changed = state != painted or has_moved or surface.is_resized
+        if has_changed and self._calm_for > CALM:
+            self.level_of_detail.begin_motion()
+        self._calm_for = 0.0 if has_changed else self._calm_for + elapsed
+        if has_changed or self._exporter.film is not None:
+            self._draw(self.level_of_detail.detail, state)
+        elif detail != FULL and self._calm_for > CALM:
+            self._draw(FULL, state)
+        return has_changed
+
+    def _draw(self, detail: render.Detail, state: object) -> None:
+        self._messages.attempt(lambda: self._stage.bind_refiner(self._view.look))
+        if self._exporter.film is None:
+            self._stage.surface.detail = detail
+            self._stage.draw(self._view)
+        else:
+            detail = FULL
+            self._exporter.add_to_film(self._messages)
+        self._painted = state, detail

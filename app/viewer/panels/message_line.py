@@ -1,0 +1,29 @@
+"""The line of messages, at the foot of the picture."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from ..gui import NOTE_FLAGS, Gui, colour, em
+from ..messages import Messages
+from ..view import View
+
+
+def draw_message(gui: Gui, messages: Messages, view: View) -> None:
+    """Draw the line, if there is one; a click takes it away."""
+    if not messages.text:
+        return
+    left, top, width, height = view.area
+    imgui.set_next_window_pos((left + em(0.8), top + height - em(0.8)), 0, (0.0, 1.0))
+    imgui.set_next_window_size_constraints((0.0, 0.0), (max(width - em(1.6), 50.0), em(20)))
+    imgui.begin("##message", None, NOTE_FLAGS)
+    imgui.push_text_wrap_pos(min(width - em(2.4), em(46)))
+    if messages.is_error:
+        imgui.text_colored(colour(gui.theme.error), messages.text)
+    else:
+        imgui.text_unformatted(messages.text)
+    imgui.pop_text_wrap_pos()
+    if imgui.is_window_hovered() and imgui.is_mouse_clicked(0):
+        messages.text = ""
+    imgui.end()
+    gui.places["message"] = (left, top, left + width, top + height)

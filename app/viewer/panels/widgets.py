@@ -1,0 +1,91 @@
+"""Small things that panels are made of: headings, buttons, hints, words that fit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from imgui_bundle import imgui
+
+from ..gui import Gui, colour, em
+from ..settings import Settings
+
+# Headings that are open as long as nobody has folded them.
+FIRST_OPEN = frozenset({"Expressions", "Refinement", "Look", "Overlays", "Milliseconds"})
+
+
+def heading(
+    gui: Gui, settings: Settings, title: str, label: str = "", *, must_open: bool = False
+) -> bool:
+    """Draw a heading, which stays folded as it was left; whether what belongs to it is displayed.
+
+    label: what it reads, where that is more than the title. must_open: for now, as in a search.
+    """
+    was_open = must_open or settings.folds.get(title, title in FIRST_OPEN)
+    imgui.set_next_item_open(was_open)
+    is_open = imgui.collapsing_header(f"{label or title}###{title}")
+    gui.remember(title)
+    if is_open != was_open and not must_open:
+        settings.folds[title] = is_open
+    return is_open
+
+
+def button(
+    gui: Gui,
+    label: str,
+    *,
+    name: str = "",
+    width: float = 0.0,
+    meaning: str = "",
+    highlight: Any = None,
+) -> bool:
+    """Draw a button; whether it was clicked.
+
+    name: under which its place is remembered, where that is not its label. width: [window units],
+    0 for as much as the label takes. meaning: a hint. highlight: its colour while it is on.
+    """
+    if highlight is not None:
+        imgui.push_style_color(imgui.Col_.button, highlight)
+    is_clicked = imgui.button(label, (width, 0.0))
+    if highlight is not None:
+        imgui.pop_style_color()
+    gui.remember(name or label)
+    hint(meaning)
+    return bool(is_clicked)
+
+
+def button_width(label: str) -> float:
+    """Of a button that reads so [window units]."""
+    return float(imgui.calc_text_size(label).x + 2.0 * imgui.get_style().frame_padding.x)
+
+
+def hint(text: str) -> None:
+    """Tell more about the item drawn last, while the mouse is on it."""
+    if text and imgui.is_item_hovered(imgui.HoveredFlags_.allow_when_disabled):
+        imgui.begin_tooltip()
+        imgui.push_text_wrap_pos(em(24))
+        imgui.text_unformatted(text)
+        imgui.pop_text_wrap_pos()
+        imgui.end_tooltip()
+
+
+def muted(gui: Gui, text: str) -> None:
+    """Text of less weight."""
+    imgui.text_colored(colour(gui.theme.muted), text)
+
+
+def shortened(text: str, room: float, *, keeps_end: bool = False) -> str:
+    """The text, or as much of its beginning (or end) as fits into the room [window units]."""
+    cut = text
+    for lost in range(1, len(text) + 1):
+        if imgui.calc_text_size(cut).x <= room:
+            return cut
+        cut = f"..{text[lost:]}" if keeps_end else f"{text[:-lost]}.."
+    return ""
+
+
+def stay_in_line(width: float) -> None:
+    """Go on beside the item drawn last, if the next one has room there."""
+    spacing = imgui.get_style().item_spacing.x
+    right = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
+    if imgui.get_item_rect_max().x + spacing + width <= right:
+        imgui.same_line()

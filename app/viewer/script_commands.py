@@ -1,0 +1,97 @@
+"""What menus and questions do with scripts: begin, open, record, save."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..script import is_pose
+from .files import Files
+from .messages import Message, Task
+from .question import Question
+from .session import Session
+
+
+class ScriptCommands:
+    """Opens and saves the session's script and pose, and asks where that needs an answer.
+
+    A command's `then` is what to do after saving; it is not done where nothing was saved.
+    """
+
+    def __init__(self, session: Session, files: Files, question: Question) -> None:
+        self._session, self._files, self._question = session, files, question
+
+    def new(self) -> Message:
+        """Begin with an empty script, unless work would be lost: then ask first."""
+
+        def begin() -> Message:
+            """Do so."""
+            self._session.begin_script()
+            return "a new script; K makes the face as it is a key"
+
+        return self._question.before("Begin", begin)
+
+    def ask_open(self) -> None:
+        """Ask for a script or a pose, and show it."""
+        self._files.ask("Open script or pose", self.open, saving=False)
+
+    def open(self, path: Path, remark: str = "") -> Message:
+        """Show the script or pose of a file, unless work would be lost: then ask first.
+
+        remark: what else there is to say when it is opened.
+        """
+        script = self._session.read(path)
+
+        def show() -> Message:
+            """Do so."""
+            self._session.open(script)
+            return f"{path.name}: opened{remark}"
+
+        if is_pose(script) and not self._session.has_unsaved_pose:
+            return show()  # whatever else is unsaved stays
+        return self._question.before("Open", show)
+
+    def save(self, then: Task = lambda: None) -> Message:
+        """Write the script to its own file, or ask for one."""
+        file = self._session.file
+        if file.path is not None and not file.objection:
+            return self._write(file.path, then)
+        self.save_as(then)
+        if file.path is None:
+            return None
+        return f"{file.path.name}: {file.objection}; replace it, or choose another name"
+
+    def save_as(self, then: Task = lambda: None) -> None:
+        """Ask for a name, and write the script."""
+        path = self._session.file.path
+        self._files.ask(
+            "Save script",
+            lambda chosen: self._write(chosen, then),
+            saving=True,
+            proposed=str(path.absolute()) if path is not None else "script.toml",
+        )
+
+    def _write(self, path: Path, then: Task) -> Message:
+        self._session.save_script(path)
+        apart = self._session.has_unsaved_pose
+        rest = "; the pose is not part of it: K makes it a key" if apart else ""
+        return then() or f"{path}: script written{rest}"
+
+    def save_pose(self, then: Task = lambda: None) -> None:
+        """Ask for a name, and write the pose."""
+
+        def write(path: Path) -> Message:
+            """Do so."""
+            self._session.save_pose(path)
+            return then() or f"{path}: pose written"
+
+        self._files.ask("Save pose", write, saving=True, proposed="pose.toml")
+
+    def toggle_recording(self) -> Message:
+        """Record the sliders, or make the recording the script."""
+        self._session.toggle_recording()
+        return None if self._session.is_recording else "recorded; Space plays it, Ctrl+S saves it"
+
+    def save_recording(self, then: Task) -> Message:
+        """End the recording, and save it."""
+        line = self.toggle_recording()
+        return self.save(then) or line

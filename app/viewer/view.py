@@ -1,0 +1,91 @@
+"""What is looked at and how: the camera, the look, and where in the window the scene is."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+import numpy as np
+from imgui_bundle import imgui
+
+from risorius import render
+
+from ..cameras import whole_scene
+from ..pipeline import Viewport
+from .gui import THEMES, em
+from .session import Session
+from .settings import Look, Settings
+
+WHITE = (1.0, 1.0, 1.0)
+
+
+class View:
+    """One view of a session's scene.
+
+    area: the scene's part of the window: left, top, width, height [window units].
+    pointed: the muscles whose sliders the mouse is on.
+    """
+
+    camera: render.OrbitCamera
+    area: tuple[float, float, float, float]
+    pointed: tuple[str, ...]
+
+    def __init__(self, session: Session, settings: Settings, surface: render.WindowSurface) -> None:
+        self._session, self._settings, self._surface = session, settings, surface
+        self.area = (0.0, 0.0, 1.0, 1.0)
+        self.pointed = ()
+        self.frame_scene()
+        place = settings.cameras.get(session.scene.name)
+        if place is not None:  # as it stood when this scene's window was closed
+            yaw, pitch, distance, *target = place
+            radius = self.camera.scene_radius
+            self.camera.orbit(yaw - self.camera.yaw, pitch - self.camera.pitch)
+            self.camera.target = np.array(target)
+            self.camera.distance = min(max(distance, radius), 20.0 * radius)
+
+    def frame_scene(self) -> None:
+        """The camera as at first: all of the scene."""
+        self.camera = whole_scene(self._session.scene, self._session.script.camera)
+
+    @property
+    def look(self) -> Look:
+        """How the scene is drawn."""
+        return self._settings.look
+
+    @property
+    def background(self) -> render.Background:
+        """What is behind it."""
+        return THEMES[self._settings.theme].background
+
+    @property
+    def viewport(self) -> Viewport:
+        """Its part of the framebuffer."""
+        display = imgui.get_io().display_size
+        width, height = self._surface.size
+        across, along = width / max(display.x, 1.0), height / max(display.y, 1.0)
+        left, top, wide, high = self.area
+        x, y = round(left * across), round((display.y - top - high) * along)
+        return max(x, 0), max(y, 0), max(round(wide * across), 1), max(round(high * along), 1)
+
+    @property
+    def camera_place(self) -> list[float]:
+        """Yaw, pitch, distance and target of the camera, to be remembered."""
+        camera = self.camera
+        place = [camera.yaw, camera.pitch, camera.distance, *camera.target.tolist()]
+        return [float(number) for number in place]
+
+    @property
+    def state(self) -> object:
+        """Everything that the picture depends on, but for the motion of the scene."""
+        look = repr(asdict(self.look))
+        return self.camera_place, look, self._settings.theme, self.viewport, self.pointed
+
+    def divider(self) -> list[tuple[Viewport, render.Colour]]:
+        """The line between the two halves of a comparison, and what to drag it by."""
+        if self.look.compare == "off":
+            return []
+        left, bottom, width, height = self.viewport
+        unit = max(round(em(0.13) * width / max(self.area[2], 1.0)), 2)
+        x, y = left + round(self.look.divider * width), bottom + height // 2
+        line = (x - unit // 2, bottom, unit, height)
+        grip = (x - unit // 2 - unit, y - 10 * unit, 3 * unit, 20 * unit)
+        return [(line, WHITE), (grip, THEMES[self._settings.theme].accent)]
