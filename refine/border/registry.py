@@ -77,7 +77,19 @@ class Refiners(Registry[Refiner]):
 
 
 refiners = Refiners("refiner")
-register, available = refiners.register, refiners.available
+
+
+def register(name: str, factory: Callable[..., Refiner]) -> None:
+    """Make a refiner known to `create`; raises ValueError if the name is empty or taken.
+
+    `factory`: called as factory(faces, rest_positions, uv=..., face_uv=..., **options).
+    """
+    refiners.register(name, factory)
+
+
+def available() -> tuple[str, ...]:
+    """Names of refiners, sorted: built in, registered, and from entry points."""
+    return refiners.available()
 
 
 def create(
