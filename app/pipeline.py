@@ -22,6 +22,7 @@ from .refining import refiner_for
 from .scenes import Scene
 from .wrinkling import Amounts, on_rows, wrinkling_of
 
+TEXTURED_COLUMNS = 8  # position, normal, u v
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 
 
@@ -62,6 +63,11 @@ class DrawnMesh:
         assert self.mesh is not None
         rows = None if wrinkling is None else on_rows(wrinkling, self.refiner)
         self.stream.upload(len(self.mesh.positions), len(self.mesh.triangles), rows)
+
+    @property
+    def has_uv(self) -> bool:
+        """Whether rows carry texture coordinates, which a refiner from outside may leave out."""
+        return self.refiner.vertex_columns == TEXTURED_COLUMNS
 
     @property
     def triangle_count(self) -> int:
@@ -122,8 +128,8 @@ class Pipeline:
             style,
             viewport=viewport,
             values=values,
-            texture=self.texture,
-            wrinkles=None if self.wrinkling is None else self.wrinkling.map,
+            texture=self.texture if drawn.has_uv else None,
+            wrinkles=self.wrinkling.map if self.wrinkling and drawn.has_uv else None,
         )
         # After the mesh: the skin throws its shadow on eyes and teeth.
         self.renderer.draw_parts(self.scene.parts, bones, camera, style, viewport=viewport)

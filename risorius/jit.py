@@ -7,6 +7,7 @@ file was torn. So here numba compiles, and this file keeps what it made:
 
     valid    for all source files of the kernel's package together, these options, the versions of
              numba and Python, and the processor; each file has a check sum
+    of       kernels of this distribution; those of other programs are compiled in each process
     where    the first of: the folder named by NUMBA_CACHE_DIR, beside the code, the user's cache
     trusted  only a folder that belongs to this user, that nobody else may write, move or replace
     else     code is compiled in each process anew, and a warning in the log says so once
@@ -50,7 +51,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 """Of all kernels: other threads may run meanwhile, and 1 / 0 is infinite as it is in numpy."""
 PACKAGES = (f"{__package__}.refine", f"{__package__}.sim")
-"""Where kernels lie that call one another. One from elsewhere may call any of them."""
+"""Where kernels lie that call one another. Those of other packages may call any of them."""
 PATIENCE = 30.0
 """Seconds to wait for another process that compiles; the slowest kernel takes a few."""
 PAUSE = 0.02
@@ -81,7 +82,9 @@ def njit(function: Any = None, /, **options: Any) -> Any:
 
 def _compiled(function: Callable[..., Any], **options: Any) -> Any:
     dispatcher = numba.njit(**OPTIONS, **options)(function)
-    if not getattr(numba.config, "DISABLE_JIT", 0):
+    # Of other code nobody knows what it depends on; nor what a function has closed over.
+    is_ours = function.__module__.partition(".")[0] == __package__ and not function.__closure__
+    if is_ours and not getattr(numba.config, "DISABLE_JIT", 0):
         with suppress(OSError):  # without a source nothing tells when kept code has become old
             dispatcher._cache = KeptCode(function, repr(sorted(options.items())))
     return dispatcher
@@ -164,7 +167,7 @@ class KeptCode(_Cache):
 
 @functools.cache
 def _digest(file: str) -> str:
-    """Digest of a kernel's own file, which need not be in this package."""
+    """Digest of a kernel's own file, which need not be in one of these packages."""
     return hashlib.sha256(Path(file).read_bytes()).hexdigest()
 
 

@@ -51,6 +51,36 @@ def test_fresh_import(package: str, banned: set[str]) -> None:
     assert not modules & (banned | neighbours)
 
 
+@pytest.mark.parametrize(
+    ("folder", "allowed"),
+    [
+        ("risorius", {"click", "numba"}),
+        ("refine", {"numpy"}),
+        ("sim", {"numpy", "scipy"}),
+        ("render", {"glfw", "moderngl", "numpy", "pyrr"}),
+        ("assets", {"PIL", "numpy", "scipy", "trimesh"}),
+    ],
+)
+def test_packages_import_only_what_they_may(folder: str, allowed: set[str]) -> None:
+    """Not even within a function; a package can be lifted out, and needs no more than this."""
+    found = {
+        name.partition(".")[0]
+        for path in (ROOT / folder).rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        for name in _imported(node)
+    }
+    assert found - sys.stdlib_module_names - {"risorius"} == allowed
+
+
+def _imported(node: ast.AST) -> list[str]:
+    """Names of the modules that a statement imports, but for relative ones."""
+    if isinstance(node, ast.Import):
+        return [alias.name for alias in node.names]
+    if isinstance(node, ast.ImportFrom) and node.level == 0:
+        return [str(node.module)]
+    return []
+
+
 def test_files_and_functions_are_short() -> None:
     """One screen for a function, a few for a file; what is excused is too long indeed."""
     sources = [path for folder in FOLDERS for path in (ROOT / folder).rglob("*.py")]

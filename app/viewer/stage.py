@@ -14,6 +14,7 @@ from risorius import render
 from ..capture.captions import captioned
 from ..files import Image
 from ..pipeline import DrawnMesh, Viewport, texture_of
+from ..refining import options_of
 from ..scenes import Scene
 from ..wrinkling import wrinkling_of
 from .colours import COLOURS, Amounts
@@ -53,6 +54,7 @@ class Stage:
         self._wrinkling = wrinkling_of(scene, self.renderer)
         self.static = DrawnMesh.of(scene, self.renderer, "none", None)
         self.refined = self.static
+        self.refiner_options: dict[str, Any] = {}  # of `refined`, with their defaults
         self._bound: object = None
         self.bind_refiner(look)
 
@@ -77,7 +79,7 @@ class Stage:
         refined = DrawnMesh.of(self.scene, self.renderer, look.refiner, options)
         if self.refined is not self.static:
             self.refined.stream.release()
-        self.refined = refined
+        self.refined, self.refiner_options = refined, options_of(look.refiner)
 
     def shots(self, look: Look, viewport: Viewport) -> list[Shot]:
         """What is drawn where."""
@@ -135,13 +137,15 @@ class Stage:
         self, shot: Shot, camera: render.OrbitCamera, style: render.Style, values: Amounts | None
     ) -> None:
         where: dict[str, Any] = {"viewport": shot.viewport, "clip": shot.clip}
+        has_uv = shot.picture.has_uv
+        texture = self._texture if has_uv else None
         self.renderer.draw_mesh(
             shot.picture.stream,
             camera,
             style,
             values=values,
-            texture=self._texture,
-            wrinkles=None if self._wrinkling is None else self._wrinkling.map,
+            texture=texture,
+            wrinkles=self._wrinkling.map if self._wrinkling and has_uv else None,
             **where,
         )
         # After the mesh: the skin throws its shadow on eyes and teeth.
@@ -149,9 +153,7 @@ class Stage:
             self.scene.parts, self.scene.bone_transforms(), camera, style, **where
         )
         if not self.surface.samples:
-            self.renderer.draw_outline(
-                shot.picture.stream, camera, style, texture=self._texture, **where
-            )
+            self.renderer.draw_outline(shot.picture.stream, camera, style, texture=texture, **where)
 
     def _overlays(self, view: View) -> list[Lines]:
         edges = self.static.refiner.edges

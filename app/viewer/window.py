@@ -301,12 +301,16 @@ class Viewer:
     def show_scene(self, scene: Scene) -> None:
         """Take another scene with the same controls in place of this one."""
         self.session.move_to(scene)
-        self.settings.look.drop_missing_overlays(scene)
-        self.stage.show(scene, self.settings.look)
+        look = self.settings.look
+        look.drop_missing_overlays(scene)
+        refused = drop_refused_options(look, scene)
+        self.stage.show(scene, look)
         self.view.frame_scene()
         self.mouse.forget()
         self.physics.begin_anew()
         self.painter.forget()
+        if refused:
+            self.messages.say(refused)
 
     def select_muscle(self, name: str) -> None:
         """Show a muscle's slider."""

@@ -11,6 +11,7 @@ from abc import abstractmethod
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Unpack
+from weakref import WeakValueDictionary
 
 import numpy as np
 import numpy.typing as npt
@@ -146,6 +147,16 @@ class BoundRefiner(Refiner):
             attributes,
         )
 
+    def _own(self, *things: object) -> None:
+        """Raise ValueError if one of these, which learn one mesh, serves another refiner."""
+        for thing in things:
+            if _owners.get(id(thing), self) is not self:
+                raise ValueError(
+                    f"this {type(thing).__name__} serves another refiner, whose mesh it knows; "
+                    "make one for each refiner"
+                )
+            _owners[id(thing)] = self
+
     def _reserve(self, stream: Stream, vertex_count: int, triangle_count: int) -> StreamArrays:
         """Let the stream grow if it can, and return its arrays, checked.
 
@@ -189,6 +200,9 @@ class BoundRefiner(Refiner):
         values = vertices[:, GEOMETRY_COLUMNS:]
         uv = values[:, :2] if self._values.has_uv else None
         return uv, {name: values[:, columns] for name, columns in self._values.columns.items()}
+
+
+_owners: "WeakValueDictionary[int, BoundRefiner]" = WeakValueDictionary()
 
 
 _NO_ROWS = StreamArrays(

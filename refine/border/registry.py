@@ -4,8 +4,9 @@ Whoever makes a new one registers it; what the package brings itself goes no oth
 found by an entry point in group `risorius.refiners` too, which is imported when it is asked for.
 """
 
+import functools
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, Unpack, get_args, get_origin
 
 import numpy.typing as npt
@@ -127,15 +128,22 @@ def parameters(name: str) -> tuple[inspect.Parameter, ...]:
         signature = inspect.signature(factory, eval_str=True)
     except (NameError, AttributeError, SyntaxError, TypeError):  # of imports for type checkers only
         signature = inspect.signature(factory)
-    keywords = (p for p in signature.parameters.values() if p.kind is p.KEYWORD_ONLY)
-    return tuple(p for p in keywords if p.name not in ("uv", "face_uv"))
+    return tuple(_options(signature))
+
+
+def _options(signature: inspect.Signature) -> Iterator[inspect.Parameter]:
+    """What can be handed by name, but for the mesh and its texture coordinates."""
+    for place, parameter in enumerate(signature.parameters.values()):
+        is_of_mesh = place < 2 or parameter.name in ("uv", "face_uv")
+        is_named = parameter.kind in (parameter.KEYWORD_ONLY, parameter.POSITIONAL_OR_KEYWORD)
+        if is_named and not is_of_mesh:
+            yield parameter
 
 
 def _check_options(name: str, factory: Callable[..., Refiner], options: dict[str, Any]) -> None:
-    allowed = set()
-    for parameter in inspect.signature(factory).parameters.values():
-        if parameter.kind is parameter.KEYWORD_ONLY:
-            allowed.add(parameter.name)
+    signature = inspect.signature(factory)
+    allowed = {parameter.name for parameter in _options(signature)}
+    for parameter in signature.parameters.values():
         if parameter.kind is parameter.VAR_KEYWORD:
             if get_origin(parameter.annotation) is not Unpack:
                 return  # it takes anything
@@ -148,6 +156,7 @@ def _check_options(name: str, factory: Callable[..., Refiner], options: dict[str
         raise ValueError(f"unknown option {unknown[0]!r} for refiner {name!r}; {takes}")
 
 
+@functools.cache
 def _entry_points() -> "dict[str, EntryPoint]":
     from importlib.metadata import entry_points  # takes as long to import as all of this package
 

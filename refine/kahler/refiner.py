@@ -63,6 +63,7 @@ class Kahler(BoundRefiner):
         self._splits.flags.writeable = False
         if hasattr(self._criterion, "use"):
             self._criterion.use(self._scheme)
+        self._own(self._criterion, self._scheme, *getattr(self._criterion, "criteria", ()))
         self._find_normals()
         self._criterion.bind(mesh, self._rest_positions, self._normals)
         self._scheme.bind(mesh, self._rest_positions, self._normals)
@@ -90,7 +91,7 @@ class Kahler(BoundRefiner):
         """Decide how often every edge is split (section 4.1)."""
         self._show(view)
         self._criterion.mark(self._frame.positions, self._frame.normals, self._edge_splits)
-        if not isinstance(self._criterion, NormalDrop):
+        if type(self._criterion) is not NormalDrop:
             self._check_splits()
 
     def _number(self) -> tuple[int, int]:

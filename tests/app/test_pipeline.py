@@ -13,6 +13,7 @@ from risorius.app.capture import SETTLING, Capture, CaptureOptions
 from risorius.app.pipeline import Pipeline, side_by_side, splits_of_source
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import parse_script
+from risorius.refine.border.registry import refiners
 
 SIZE = (320, 240)
 
@@ -48,6 +49,21 @@ class DoubleRefiner:
             source=out.source[: 2 * count],
             uv=None,
         )
+
+
+def test_rows_without_texture_coordinates_are_drawn(
+    surface: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A refiner from outside may hand out positions and normals alone: it is drawn untextured."""
+    monkeypatch.setattr(refiners, "_factories", dict(refiners._factories))
+    refine.register("bare", lambda faces, rest, **_: refine.PassThrough(faces, rest))
+    scene = FaceScene()
+    pipeline = Pipeline(scene, render.Renderer(surface), {"bare": None})
+    surface.begin()
+    camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
+    pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
+    surface.end()
+    assert surface.read().std() > 10.0
 
 
 def test_a_registered_refiner_is_drawn(surface: Any, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -22,6 +22,7 @@ from risorius.app.viewer.settings import (
     load_settings,
     save_settings,
 )
+from risorius.refine.border.registry import refiners
 
 from .driving import NEEDS_A_SCREEN, SIZE, settle
 
@@ -200,3 +201,21 @@ def test_no_settings_keep_the_window_shut(path: Path) -> None:
         settle(viewer, 3)
         assert viewer.messages.is_error and "theme = 'zzz'" in viewer.messages.text
         assert "kahler threshold_once = 'x'" in viewer.messages.text
+
+
+@NEEDS_A_SCREEN[0]
+@NEEDS_A_SCREEN[1]
+def test_a_refiner_that_cannot_be_loaded_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The package of somebody else is broken: a line says so, and the window goes on."""
+
+    def broken(*_: Any, **__: Any) -> Any:
+        raise ValueError("refiner 'far' of 'nowhere:X' cannot be loaded")
+
+    with Viewer(script_for(None, "face"), SIZE, look=Look()) as viewer:
+        settle(viewer)
+        monkeypatch.setattr(refiners, "find", broken)
+        viewer.settings.look.refiner = "far"
+        viewer.panel_state.wanted_tab = "Mechanism"
+        settle(viewer, 6)
+        assert viewer.messages.is_error and "cannot be loaded" in viewer.messages.text
+        assert viewer.stage.refined.triangle_count > 0

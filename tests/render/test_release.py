@@ -82,6 +82,7 @@ def test_a_released_renderer_leaves_nothing(samples: int, monkeypatch: pytest.Mo
     with render.open_offscreen((96, 96), samples=samples) as surface:
         count = counting(monkeypatch)
         pictures = [draw_all(surface) for _ in range(10)]
+        assert surface.gl.objects  # let go, and waiting to be given back
         surface.begin()
         assert count() == {} and not surface.gl.objects
         assert surface.gl.error == "GL_NO_ERROR"

@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 
 from risorius import refine, render
 
-from ...refining import DETAIL, can_detail, options_of
+from ...refining import DETAIL, can_detail
 from ..colours import COLOURS
 from ..frame_times import PHASES, FrameTimes
 from ..gui import Gui, em
@@ -92,7 +92,7 @@ class MechanismPanel:
         names = [name for name in refine.available() if name != "none"]
         self._choose("Refiner", look.refiner, names, partial(setattr, look, "refiner"))
         self._choose("Compare", look.compare, COMPARISONS, partial(setattr, look, "compare"))
-        for name, default in options_of(look.refiner).items():
+        for name, default in stage.refiner_options.items():
             self._draw_option(name, default)
         base = len(stage.scene.faces)
         for shot in stage.shots(look, self._view.viewport):

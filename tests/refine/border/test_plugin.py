@@ -5,7 +5,9 @@ from __future__ import annotations
 import copy
 import importlib.metadata
 import pickle
+from collections.abc import Iterator
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -76,7 +78,15 @@ def test_registered_refiner() -> None:
         refine.check(moved, moved.refine(FINE.vertices), FINE.vertices)
 
 
-@pytest.mark.usefixtures("clean_registry")
+@pytest.fixture
+def fresh_entry_points() -> Iterator[None]:
+    """Entry points are looked for anew in this test, and once more after it."""
+    registry._entry_points.cache_clear()
+    yield
+    registry._entry_points.cache_clear()
+
+
+@pytest.mark.usefixtures("clean_registry", "fresh_entry_points")
 def test_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
     """An installed package brings a refiner by entry point, loaded when it is first asked for."""
     loaded = []
@@ -91,6 +101,7 @@ def test_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
     assert isinstance(refine.create("installed", FINE.faces, FINE.vertices), Outside)
 
 
+@pytest.mark.usefixtures("fresh_entry_points")
 def test_broken_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
     """A package that cannot be imported is named with its reason, and only when it is asked for."""
     point = importlib.metadata.EntryPoint("far", "nowhere_at_all:X", "risorius.refiners")
@@ -274,6 +285,33 @@ def test_options_of_another_kind(options: dict[str, object], text: str) -> None:
     """A word for a number, or a class for an object, is refused with what it is."""
     with pytest.raises(ValueError, match=text):
         refine.create("kahler", FINE.faces, FINE.vertices, **options)
+
+
+@pytest.mark.usefixtures("clean_registry")
+def test_options_by_place_or_by_name() -> None:
+    """A factory may name its options in any way that can be called by name."""
+
+    def leveled(faces: Any, rest: Any, uv: Any = None, face_uv: Any = None, level: int = 1) -> Any:
+        assert level == 2
+        return refine.PassThrough(faces, rest)
+
+    refine.register("leveled", leveled)
+    assert [option.name for option in refine.parameters("leveled")] == ["level"]
+    refine.create("leveled", FINE.faces, FINE.vertices, level=2)
+    with pytest.raises(ValueError, match=r"unknown option 'levels' .* it takes \['level'\]"):
+        refine.create("leveled", FINE.faces, FINE.vertices, levels=2)
+
+
+@pytest.mark.parametrize("name", ["criterion", "scheme"])
+def test_an_object_knows_one_mesh(name: str) -> None:
+    """A criterion or scheme that serves a refiner is refused to another, alone or in a list."""
+    thing = refine.Curvature() if name == "criterion" else LoopScheme()
+    first = refine.create("kahler", FINE.faces, FINE.vertices, **{name: thing})
+    for shared in (thing, [thing, "normal"])[: 2 if name == "criterion" else 1]:
+        with pytest.raises(ValueError, match=r"serves another refiner.*make one for each"):
+            refine.create("kahler", FINE.faces, FINE.vertices, **{name: shared})
+    del first
+    refine.create("kahler", FINE.faces, FINE.vertices, **{name: thing})
 
 
 @pytest.mark.parametrize("view", [refine.View((0, 0, 5), "x"), refine.View("eye"), refine.View(5)])
