@@ -142,7 +142,6 @@ def test_changed_options_count(run: Run, package: Path) -> None:
     assert run() == [COMPILED, RESULT]
 
 
-@pytest.mark.slow
 def test_damaged_file_is_made_again(run: Run, package: Path) -> None:
     """A file that is empty, foreign or cut off costs a compilation, nothing else."""
     run()
@@ -255,7 +254,6 @@ def test_files_of_others_are_not_trusted(run: Run, package: Path) -> None:
     assert run() == [COMPILED, RESULT]
 
 
-@pytest.mark.slow
 def test_function_without_a_source(tmp_path: Path, package: Path) -> None:
     """What is typed in by hand is compiled, and not kept."""
     program = "from risorius.jit import njit\n@njit\ndef one(x):\n    return x\nprint(one(1))"

@@ -254,7 +254,6 @@ def test_of_several_scripts_the_first_is_opened(viewer: Viewer, tmp_path: Path) 
     assert not viewer.messages.is_error
 
 
-@pytest.mark.slow
 def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path) -> None:
     """The face is another one, the script plays on it; what was unsaved before is still there."""
     before = viewer.session.scene
@@ -313,16 +312,15 @@ def test_a_head_that_is_none_is_told(viewer: Viewer, tmp_path: Path) -> None:
     assert viewer.session.scene is before
 
 
-@pytest.mark.slow
 def test_heads_come_and_go_without_leaving_anything(
     viewer: Viewer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Ten changes of head, each drawn until it is at rest: OpenGL holds as much as after one."""
+    """Changes of head, each drawn until it is at rest: OpenGL holds as much as after one."""
     scenes = [viewer.session.scene, build_scene("face", None)]
     viewer.settings.look.compare, viewer.settings.look.overlays = "wipe", ["muscles", "springs"]
     count = counting(monkeypatch)
     held = []
-    for turn in range(10):
+    for turn in range(4):
         viewer.show_scene(scenes[(turn + 1) % 2])
         viewer.session.set("jaw_open", 0.3)
         settle(viewer)
