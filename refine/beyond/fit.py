@@ -13,7 +13,7 @@ The middles of triangles are fitted twice: with all else where the edges meet ha
 unblended frame has none of them; then alone, where they slide to (axes.py).
 
 Normals: in the folds of lips and lids, where the vertices of a decimated face often lie, the normal
-of one place says nothing about the triangles around it. So the normals that are shown are fitted
+of one place says nothing about the triangles around it. So the normals that are drawn are fitted
 too, at vertices and points at once, to those of all finer vertices; unsplit, split once and split
 twice, because a frame shows something between them.
 """
@@ -263,9 +263,9 @@ def _squared_angles(
     """The triangle that is closest to each finer vertex, and how far the normal there is off."""
     refined = Surface(places, triangles.astype(np.uint32))
     hit, weights = refined.closest(surface.positions, np.zeros_like(surface.positions))
-    shown = np.einsum("nk,nki->ni", weights, normals[triangles[hit]])
-    shown /= np.maximum(np.linalg.norm(shown, axis=1, keepdims=True), LOST)
-    cosines = np.einsum("ni,ni->n", shown, surface.normals)
+    drawn = np.einsum("nk,nki->ni", weights, normals[triangles[hit]])
+    drawn /= np.maximum(np.linalg.norm(drawn, axis=1, keepdims=True), LOST)
+    cosines = np.einsum("ni,ni->n", drawn, surface.normals)
     return hit, np.arccos(np.clip(cosines, -1.0, 1.0)) ** 2
 
 
