@@ -5,7 +5,7 @@ rectangles that geometry touched are averaged: on software OpenGL, where a head 
 frame, that halves the cost of multisampling (measured: 16 -> 7.5 ms at 1280 x 720). The layer is
 wiped just before it is drawn on, when software OpenGL does both tile by tile in the cache.
 
-Invariant: unless `_is_worn`, the layer is transparent and its depth is 1 outside `_touched`.
+Invariant: unless `_is_worn`, the layer is transparent and its depth is 1 outside `_drawn_on`.
 """
 
 import moderngl
@@ -33,7 +33,7 @@ class RenderTarget:
         self._gl = gl
         self.frame_number = 0  # counts the frames since the target was made
         self.is_empty = False  # nothing was drawn since `start`
-        self._touched: list[Rectangle] = []  # apart from each other
+        self._drawn_on: list[Rectangle] = []  # apart from each other
         self._is_worn = False
         self.colour = gl.texture(size, 4)
         self.colour.repeat_x = self.colour.repeat_y = False
@@ -62,18 +62,18 @@ class RenderTarget:
 
     def use_frame(self, viewport: Rectangle) -> None:
         """Direct drawing to the frame, over all that was drawn so far in the viewport."""
-        if any(overlap(viewport, touched) for touched in self._touched):
+        if any(overlap(viewport, rectangle) for rectangle in self._drawn_on):
             self.flush()
         self.frame.use()
         self._gl.viewport = self._gl.scissor = viewport
 
-    def use_layer(self, viewport: Rectangle, touched: Rectangle) -> None:
-        """Direct drawing to the layer, within the part `touched` of the viewport."""
+    def use_layer(self, viewport: Rectangle, part: Rectangle) -> None:
+        """Direct drawing to the layer, within `part` of the viewport."""
         self._wipe()
         self._layer.use()
         self.is_empty = False
-        self._gl.viewport, self._gl.scissor = viewport, touched
-        self._touched = _apart(self._touched, touched)
+        self._gl.viewport, self._gl.scissor = viewport, part
+        self._drawn_on = _apart(self._drawn_on, part)
 
     def use_depth(self, unit: int) -> None:
         """Bind the depth of what was drawn on the layer so far to a texture unit."""
@@ -82,7 +82,7 @@ class RenderTarget:
 
     def flush(self) -> None:
         """Average the layer onto the frame where it was touched."""
-        rectangles, self._touched = self._touched, []
+        rectangles, self._drawn_on = self._drawn_on, []
         if not self.samples or not rectangles:
             return
         gl = self._gl

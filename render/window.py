@@ -85,7 +85,7 @@ class WindowSurface(Surface):
     def resolve(self) -> None:
         """End the scene: panels lie on top. Again: forget the panels, keep the scene."""
         self.make_current()
-        self._compositor.lay(self.target, self.area)
+        self._compositor.compose(self.target, self.area)
         self._rule(self._compositor.frame)
         self._is_resolved = self._is_laid = True
 
@@ -102,7 +102,7 @@ class WindowSurface(Surface):
         if self._is_resolved:
             self._compositor.copy_to(self.gl.screen)
         else:
-            self._compositor.lay(self.target, self.area, self.gl.screen)
+            self._compositor.compose(self.target, self.area, self.gl.screen)
             self._rule(self.gl.screen)
             if self.area is not None:
                 self._compositor.copy_to(self.gl.screen, around=self.area)
@@ -118,7 +118,7 @@ class WindowSurface(Surface):
         """Return the frame as it is seen, with the panels; see `Surface.read`."""
         self.make_current()
         if not self._is_laid:
-            self._compositor.lay(self.target, self.area)
+            self._compositor.compose(self.target, self.area)
             self._rule(self._compositor.frame)
         return image_of(self._compositor.read(), self.size)
 
