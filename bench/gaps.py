@@ -40,7 +40,7 @@ class Pose:
     sunk: float  # mm that skin is deeper in an eyeball than at rest
 
 
-def run() -> list[Pose]:
+def measure() -> list[Pose]:
     """Measure every pose."""
     head = assets.load("head")
     simulation = sim.create(head)

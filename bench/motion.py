@@ -73,7 +73,7 @@ class Shape:
     cut: Side | None  # the side of a one-sided field for which there is no one-sided control
 
 
-def run(directory: str | Path) -> tuple[list[Row], list[str]]:
+def measure(directory: str | Path) -> tuple[list[Row], list[str]]:
     """Score every shape of the reference in `directory` that shapes.toml knows.
 
     Returns the scores, and the names of fields that have none: unknown ones, and those in which

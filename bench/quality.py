@@ -99,7 +99,7 @@ class _Everywhere:
         splits[:] = 2
 
 
-def run(
+def measure(
     subject: Subject,
     *,
     schemes: Sequence[str] = SCHEMES,

@@ -49,7 +49,7 @@ class Soak:
     mirror_error: float  # mm
 
 
-def run(*, minutes: float = 60.0, seed: int = SEED) -> Soak:
+def measure(*, minutes: float = 60.0, seed: int = SEED) -> Soak:
     """Soak the built-in head for `minutes` of simulated time; ValueError for none."""
     if not minutes > 0.0:
         raise ValueError(f"minutes: was {minutes:g}, must be above 0")
@@ -77,8 +77,10 @@ def run(*, minutes: float = 60.0, seed: int = SEED) -> Soak:
 def moved(simulation: sim.Simulation) -> Array:
     """Displacements [mm] as seen from the cranium, shape (V, 3)."""
     head = simulation.bone_transforms()["cranium"]
-    seen: Array = (simulation.positions - head[:3, 3]) @ head[:3, :3] - simulation.rest_positions
-    return seen
+    displacement: Array = (simulation.positions - head[:3, 3]) @ head[
+        :3, :3
+    ] - simulation.rest_positions
+    return displacement
 
 
 def mirrored_values(values: Mapping[str, float]) -> dict[str, float]:
@@ -154,17 +156,17 @@ def _mirror_error(simulation: sim.Simulation, mirror: npt.NDArray[np.int32], see
     return float(np.abs(runs[1][:, mirror] * (-1.0, 1.0, 1.0) - runs[0]).max())
 
 
-def report(seen: Soak) -> str:
+def report(soak: Soak) -> str:
     """The text to print."""
     return "\n".join(
         [
-            f"{seen.seconds / 60.0:.1f} simulated minutes, {seen.frames} frames of 1/240 to",
+            f"{soak.seconds / 60.0:.1f} simulated minutes, {soak.frames} frames of 1/240 to",
             "1/20 s, every control at random in every frame:",
-            f"finite            {'yes' if seen.finite else 'NO'}",
-            f"furthest          {seen.furthest:.2f} mm from rest",
-            f"2 s after release {seen.left_over:.6f} mm from rest",
-            f"energy growth     {seen.growth:.1e} of a blow, most in a frame without input",
-            f"same bytes        {'yes' if seen.same_bytes else 'NO'}",
-            f"mirrored input    {seen.mirror_error:.1e} mm from the mirrored motion",
+            f"finite            {'yes' if soak.finite else 'NO'}",
+            f"furthest          {soak.furthest:.2f} mm from rest",
+            f"2 s after release {soak.left_over:.6f} mm from rest",
+            f"energy growth     {soak.growth:.1e} of a blow, most in a frame without input",
+            f"same bytes        {'yes' if soak.same_bytes else 'NO'}",
+            f"mirrored input    {soak.mirror_error:.1e} mm from the mirrored motion",
         ]
     )

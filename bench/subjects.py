@@ -97,8 +97,8 @@ def built_in(level: int) -> Subject:
             landmarks=head.landmarks,
             rig=head.rig,
             layers=head.layers,
-            bone_depth=fine.carried(head.bone_depth),
-            mandible_weight=fine.carried(head.mandible_weight),
+            bone_depth=fine.interpolate(head.bone_depth),
+            mandible_weight=fine.interpolate(head.mandible_weight),
             jaw_axis=head.jaw_axis,
             eyes=head.eyes,
         )

@@ -37,7 +37,7 @@ class Pose:
     teeth: float  # mm deep in the teeth
 
 
-def run(*, mixtures: int = MIXTURES, seed: int = SEED) -> list[Pose]:
+def measure(*, mixtures: int = MIXTURES, seed: int = SEED) -> list[Pose]:
     """Put the built-in head into each pose and `mixtures` random ones; ValueError below 0."""
     if mixtures < 0:
         raise ValueError(f"mixtures: was {mixtures}, must be 0 or more")

@@ -15,7 +15,7 @@ from .teeth import Teeth
 from .tissue import TissueSprings
 
 
-class Skin(NamedTuple):
+class SkinModel(NamedTuple):
     """Point masses, springs and contacts of one face; none of it changes while it is simulated."""
 
     rest: Array  # (V, 3) mm, positions of the undeformed mesh

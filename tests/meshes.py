@@ -143,7 +143,7 @@ NAMED = {
 
 
 def irregular(seed: int, columns: int = 12, rows: int = 10, holes: int = 3) -> Mesh:
-    """A bumpy sheet with uneven valences and holes; vertices, triangles and corners shuffled."""
+    """A bumpy grid with uneven valences and holes; vertices, triangles and corners shuffled."""
     generator = np.random.default_rng(seed)
     grid = open_grid(columns, rows)
     x, y = grid.vertices[:, 0], grid.vertices[:, 1]

@@ -73,9 +73,9 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
         """Move every control a little, and pull the skin."""
         face.pose(dict.fromkeys(face.limits, 0.1))
         face.step(1 / 60)
-        face.simulation.pull([0], face.positions[:1] + 1.0, [1.0])
+        face.simulation.drag([0], face.positions[:1] + 1.0, [1.0])
         face.step(1 / 60)
-        face.simulation.let_go()
+        face.simulation.end_drag()
         face.simulation.fibres()
         face.reset()
 

@@ -192,8 +192,8 @@ def _placed(
 def _merged(there: Iterable[Item], arriving: Iterable[Item]) -> list[Item]:
     """Both in the order of time; what arrives takes the place of what is there."""
     result: list[Item] = list(arriving)
-    taken = sorted(item.time for item in result)
-    result += [item for item in there if not _is_among(item.time, taken)]
+    taken_times = sorted(item.time for item in result)
+    result += [item for item in there if not _is_among(item.time, taken_times)]
     result.sort(key=attrgetter("time"))
     return result
 

@@ -30,7 +30,7 @@ LONGER = (
 WALL_DEPTH = 6.0  # [mm] of a wall of the mouth behind the skin
 BESIDE, AROUND = 9.0, 8  # [mm] and number of skin vertices that are in front of a wall
 FACING = 0.2  # forward share of a normal from which skin is in front of teeth
-TOUCHING = 4.0, 3  # [mm] and number of skin vertices that teeth and gums must keep away from
+TEETH_CLEARANCE = 4.0, 3  # [mm] and number of skin vertices that teeth and gums must keep away from
 STIFF_DEPTH = 2.5  # [mm] of teeth and gums behind the skin: the least that lips and cheeks are
 FARTHEST_BACK = 10.0  # [mm] that the teeth are set back for it
 JAW_SHARES = (0.0, 0.5, 1.0)  # of the way that the jaw opens
@@ -118,8 +118,10 @@ def _mouth_of(known: Head, place: Place, warp: Warp) -> Similarity:
     mouth = Similarity.between(stiff, warp.points(stiff))
     placed = mouth.points(np.vstack(found)) if found else np.zeros((0, 3))
     skin = place.vertices[place.normals[:, 2] > FACING]
-    distance, beside = cKDTree(skin[:, :2]).query(placed[:, :2], k=TOUCHING[1])
-    depth = np.where(distance < TOUCHING[0], skin[beside, 2], np.inf).min(axis=1) - STIFF_DEPTH
+    distance, beside = cKDTree(skin[:, :2]).query(placed[:, :2], k=TEETH_CLEARANCE[1])
+    depth = (
+        np.where(distance < TEETH_CLEARANCE[0], skin[beside, 2], np.inf).min(axis=1) - STIFF_DEPTH
+    )
     back = float(np.clip((placed[:, 2] - depth).max(initial=0.0), 0.0, FARTHEST_BACK))
     return replace(mouth, shift=mouth.shift - np.array([0.0, 0.0, back]))
 

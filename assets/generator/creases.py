@@ -34,7 +34,7 @@ CHIN_HEIGHT = -101.0
 UP, ASIDE = np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])
 
 
-class Lines(NamedTuple):
+class LineFamily(NamedTuple):
     """How the furrows of a family lie."""
 
     spacing: float  # [mm] from one to the next, about
@@ -62,8 +62,8 @@ class Crease(NamedTuple):
     furrows: Furrows
 
 
-def lay(
-    lines: Lines,
+def furrows_of(
+    lines: LineFamily,
     place: Values,
     along: Values,
     seed: int,
@@ -118,8 +118,8 @@ def forehead(points: Points, seed: int) -> Crease:
     place = y + 0.05 * np.maximum(y - 45.0, 0.0) ** 1.5  # the forehead leans back
     place = place - 2.4 * (bump(x, 27.0, 17.0) + bump(x, -27.0, 17.0))  # arches over the brows
     place = place + stray(points, 1.7, 23.0, seed)
-    main = lay(Lines(9.0, 1.3, 0.37, 30.0), place, points[:, 0], seed + 10)
-    fine = lay(Lines(4.1, 0.7, 0.11, 15.0, 0.25), place + 2.6, points[:, 0], seed + 20)
+    main = furrows_of(LineFamily(9.0, 1.3, 0.37, 30.0), place, points[:, 0], seed + 10)
+    fine = furrows_of(LineFamily(4.1, 0.7, 0.11, 15.0, 0.25), place + 2.6, points[:, 0], seed + 20)
     near = smooth_step(16.0, 30.0, y) + 1e-3 * (y > 10.0)
     return Crease(0, near, np.tile(UP, (len(points), 1)), 1.0, cover, both(main, fine))
 
@@ -132,8 +132,10 @@ def glabella(points: Points, seed: int) -> Crease:
     place = x - 0.13 * (y - 18.0) * smooth_step(0.0, 6.0, x)
     wander = stray(points, 0.9, 13.0, seed)
     # Two main lines rise from the heads of the brows; fainter ones stand beside.
-    main = lay(Lines(11.0, 1.1, 0.48, 30.0, 0.85), place - 5.6 + wander, y, seed + 10, side < 0.0)
-    fine = lay(Lines(3.3, 0.6, 0.09, 12.0, 0.35), side * place + wander, y, seed + 20)
+    main = furrows_of(
+        LineFamily(11.0, 1.1, 0.48, 30.0, 0.85), place - 5.6 + wander, y, seed + 10, side < 0.0
+    )
+    fine = furrows_of(LineFamily(3.3, 0.6, 0.09, 12.0, 0.35), side * place + wander, y, seed + 20)
     near = band(y, 5.0, 12.0, 36.0, 50.0) * smooth_step(24.0, 14.0, x)
     return Crease(1, near, np.tile(ASIDE, (len(points), 1)), 1.0, cover, both(main, fine))
 
@@ -146,8 +148,8 @@ def nose_root(points: Points, seed: int) -> Crease:
     # Across the root they are level; on the sides they sink toward the cheek.
     place = y + 0.42 * np.maximum(x - 4.0, 0.0) * smooth_step(2.0, -6.0, y)
     place = place + 0.012 * x**2 + stray(points, 0.8, 9.0, seed)
-    main = lay(Lines(4.4, 0.85, 0.28, 10.0), place, points[:, 0], seed + 10)
-    fine = lay(Lines(2.0, 0.45, 0.06, 6.0, 0.35), place + 1.0, points[:, 0], seed + 20)
+    main = furrows_of(LineFamily(4.4, 0.85, 0.28, 10.0), place, points[:, 0], seed + 10)
+    fine = furrows_of(LineFamily(2.0, 0.45, 0.06, 6.0, 0.35), place + 1.0, points[:, 0], seed + 20)
     tilt = smooth_step(3.0, 8.0, x) * smooth_step(4.0, -6.0, y)
     across = unit(UP + 0.42 * tilt[:, None] * ASIDE)
     near = smooth_step(20.0, 12.0, x) * band(y, -36.0, -26.0, 8.0, 16.0)
@@ -163,8 +165,10 @@ def crows_feet(points: Points, seed: int) -> Crease:
     radius, angle = np.hypot(aside, up), np.arctan2(up, aside)
     cover = band(radius, 11.0, 16.0, 20.0, 34.0) * band(angle, -1.05, -0.65, 0.50, 0.80)
     place = 17.0 * angle + stray(points, 0.9, 12.0, seed)
-    main = lay(Lines(3.9, 0.58, 0.26, 11.0), place, radius, seed + 10, is_other)
-    fine = lay(Lines(2.0, 0.45, 0.06, 7.0, 0.4), place + 1.3, radius, seed + 20, is_other)
+    main = furrows_of(LineFamily(3.9, 0.58, 0.26, 11.0), place, radius, seed + 10, is_other)
+    fine = furrows_of(
+        LineFamily(2.0, 0.45, 0.06, 7.0, 0.4), place + 1.3, radius, seed + 20, is_other
+    )
     level = unit(away * [1.0, 0.0, 1.0])
     across = np.cos(angle)[:, None] * UP - np.sin(angle)[:, None] * level
     near = band(radius, 6.0, 11.0, 36.0, 48.0) * band(angle, -1.5, -1.1, 0.8, 1.3) * (aside > 0.0)
@@ -179,7 +183,9 @@ def lower_lid(points: Points, seed: int) -> Crease:
     cover = band(radius, 11.0, 13.5, 20.0, 27.0) * smooth_step(-4.0, -8.0, y)
     cover = cover * band(x, 17.5, 22.0, 42.0, 50.0)
     place = radius + 1.2 * angle + stray(points, 0.7, 11.0, seed)
-    found = lay(Lines(3.1, 0.55, 0.17, 9.0), place, 14.0 * angle, seed + 10, points[:, 0] < 0.0)
+    found = furrows_of(
+        LineFamily(3.1, 0.55, 0.17, 9.0), place, 14.0 * angle, seed + 10, points[:, 0] < 0.0
+    )
     across = unit(np.column_stack([away, np.zeros_like(x)]))
     near = band(radius, 8.0, 11.0, 28.0, 36.0) * smooth_step(2.0, -4.0, y)
     near = near * smooth_step(8.0, 14.0, x)
@@ -242,7 +248,7 @@ def above_lip(points: Points, seed: int, mouth_row: Values) -> Crease:
     cover = cover * smooth_step(24.0, 14.0, x) * (1.0 - 0.75 * bump(x, 0.0, 3.0))  # the philtrum
     angle = np.arctan2(1.55 * away[:, 1], x)
     place = 21.0 * side * (0.5 * np.pi - angle) + stray(points, 0.6, 7.0, seed)
-    found = lay(Lines(2.8, 0.55, 0.20, 14.0, 0.8), place, 16.0 * off, seed + 10)
+    found = furrows_of(LineFamily(2.8, 0.55, 0.20, 14.0, 0.8), place, 16.0 * off, seed + 10)
     across = unit(np.column_stack([-away[:, 1], x, np.zeros_like(x)]))
     return Crease(1, smooth_step(3.2, 2.2, off), across, 1.0, cover, found)
 

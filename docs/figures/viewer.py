@@ -15,7 +15,7 @@ from risorius.app.files import Image
 from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.keys import places_of
-from risorius.app.viewer.mouse import SkinPull
+from risorius.app.viewer.mouse import SkinDrag
 from risorius.app.viewer.settings import Look
 from risorius.bench import figures
 
@@ -38,7 +38,7 @@ def settled(viewer: Viewer) -> None:
 
 def face(viewer: Viewer) -> None:
     """The window as it opens, smiling."""
-    viewer.session.show("joy")
+    viewer.session.toggle_alone("joy")
 
 
 def controls(viewer: Viewer) -> None:
@@ -51,7 +51,7 @@ def controls(viewer: Viewer) -> None:
 
 def wipe(viewer: Viewer) -> None:
     """Static and refined, divided by a line; the dark theme."""
-    viewer.session.show("disgust")
+    viewer.session.toggle_alone("disgust")
     viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
     viewer.settings.look = Look(
         compare="wipe", divider=0.46, wireframe=True, colours="splits", skin="clay"
@@ -61,14 +61,14 @@ def wipe(viewer: Viewer) -> None:
 
 def side_by_side(viewer: Viewer) -> None:
     """Two viewports under one camera, coloured by how far the normals turned apart."""
-    viewer.session.show("surprise")
+    viewer.session.toggle_alone("surprise")
     viewer.panel_state.wanted_tab = "Mechanism"
     viewer.settings.look = Look(compare="side by side", colours="curvature drop", skin="clay")
 
 
 def tension(viewer: Viewer) -> None:
     """What is stretched and what is compressed, with the springs."""
-    viewer.session.show("yawn")
+    viewer.session.toggle_alone("yawn")
     viewer.panel_state.wanted_tab = "Mechanism"
     viewer.settings.look = Look(colours="tension", overlays=["springs"], skin="clay")
 
@@ -84,8 +84,8 @@ def finger(viewer: Viewer) -> None:
     """The skin, pulled by the mouse."""
     scene = viewer.session.scene
     corner = scene.positions[scene.head.landmarks[48]]  # type: ignore[attr-defined]
-    viewer.mouse.pull = SkinPull(scene, corner.copy())
-    viewer.mouse.pull.to(corner + np.array([-30.0, 16.0, 12.0]))
+    viewer.mouse.skin_drag = SkinDrag(scene, corner.copy())
+    viewer.mouse.skin_drag.to(corner + np.array([-30.0, 16.0, 12.0]))
     for _ in range(20):
         viewer.frame()
     viewer.painter.level_of_detail.level = 0
@@ -118,7 +118,7 @@ def unsaved(viewer: Viewer) -> None:
 def large(viewer: Viewer) -> None:
     """Everything as on a screen of twice the density."""
     viewer.settings.zoom = 2.0
-    viewer.session.show("kiss")
+    viewer.session.toggle_alone("kiss")
 
 
 STOPS: dict[str, Callable[[Viewer], None]] = {
@@ -136,14 +136,14 @@ STOPS: dict[str, Callable[[Viewer], None]] = {
 }
 
 
-def picture(stop: Callable[[Viewer], None]) -> Image:
+def draw_image(stop: Callable[[Viewer], None]) -> Image:
     """A window, brought to a stop of the tour."""
     with Viewer(script_for(None, "face"), SIZE) as viewer:
         # Wherever the mouse happens to be, it points at nothing: no hint comes up.
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
         settled(viewer)
         stop(viewer)
-        if viewer.mouse.pull is None:
+        if viewer.mouse.skin_drag is None:
             settled(viewer)
         return figures.without_noise(viewer.surface.read())
 
@@ -151,7 +151,7 @@ def picture(stop: Callable[[Viewer], None]) -> Image:
 def main(arguments: Sequence[str]) -> None:
     """Draw the pictures into the folder given."""
     given = figures.parse(arguments, __doc__)
-    every = {name: partial(picture, stop) for name, stop in STOPS.items()}
+    every = {name: partial(draw_image, stop) for name, stop in STOPS.items()}
     figures.draw(given.folder, figures.chosen(every, given.only))
 
 

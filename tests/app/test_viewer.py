@@ -85,12 +85,12 @@ def test_linked_sides_move_together(viewer: Viewer) -> None:
 def test_keys_show_expressions_and_refinement(viewer: Viewer) -> None:
     """1 shows the first expression, 1 again is neutral; R makes refined triangles come and go."""
     xdotool(viewer, "key", "1")
-    assert viewer.session.shows(next(iter(viewer.session.scene.expressions)))
+    assert viewer.session.is_alone(next(iter(viewer.session.scene.expressions)))
     assert until(viewer, lambda: moved(viewer) > 3.0)
     assert until(viewer, lambda: viewer.stage.refined.triangle_count > 2100)
     xdotool(viewer, "key", "r")
     shot = viewer.stage.shots(viewer.settings.look, viewer.view.viewport)[0]
-    assert shot.picture.triangle_count == len(viewer.session.scene.faces)
+    assert shot.drawn.triangle_count == len(viewer.session.scene.faces)
     xdotool(viewer, "key", "r")
     xdotool(viewer, "key", "1")
     assert until(viewer, lambda: moved(viewer) < 0.5)
@@ -98,7 +98,7 @@ def test_keys_show_expressions_and_refinement(viewer: Viewer) -> None:
 
 def test_keys_change_the_picture(viewer: Viewer) -> None:
     """W, C, T, S and D each change what is seen, and back."""
-    viewer.session.show("disgust")
+    viewer.session.toggle_alone("disgust")
     settle(viewer)
     assert until(viewer, lambda: viewer.is_idle)
     before, look = viewer.surface.read(), deepcopy(viewer.settings.look)
@@ -177,7 +177,7 @@ def test_a_comparison_has_two_parts_or_one(viewer: Viewer) -> None:
 
 def test_the_divider_can_be_dragged(viewer: Viewer) -> None:
     """In a comparison both meshes are drawn, and the line between them follows the mouse."""
-    viewer.session.show("disgust")
+    viewer.session.toggle_alone("disgust")
     xdotool(viewer, "key", "d")
     assert len(viewer.stage.shots(viewer.settings.look, viewer.view.viewport)) == 2
     left, top, width, height = viewer.view.area
@@ -191,7 +191,7 @@ def test_the_divider_can_be_dragged(viewer: Viewer) -> None:
 
 def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
     """Whatever the second panel offers makes a picture; thresholds act at once."""
-    viewer.session.show("disgust")
+    viewer.session.toggle_alone("disgust")
     click(viewer, "tab Mechanism")
     for name in ("curvature drop", "tension", "splits"):
         click(viewer, "Colours")
@@ -213,7 +213,7 @@ def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
 
 def test_wrinkles_have_a_slider(viewer: Viewer) -> None:
     """Dragged to the left they are gone from the picture; a right click brings them back."""
-    viewer.session.show("surprise")
+    viewer.session.toggle_alone("surprise")
     click(viewer, "tab Mechanism")
     assert until(viewer, lambda: viewer.is_idle)
     assert viewer.settings.look.wrinkles == 1.0 and viewer.stage.refined.stream.has_wrinkles
@@ -261,9 +261,9 @@ def test_a_bad_file_is_told_and_survived(viewer: Viewer, tmp_path: Path) -> None
     assert "no_such_muscle" in viewer.messages.text and "message" in viewer.gui.places
     viewer.drop([str(tmp_path / "none.toml")])
     assert "no such script" in viewer.messages.text
-    picture = tmp_path / "picture.toml"
-    picture.write_bytes(bytes(range(256)))
-    viewer.drop([str(picture)])
+    file = tmp_path / "picture.toml"
+    file.write_bytes(bytes(range(256)))
+    viewer.drop([str(file)])
     assert "cannot be read" in viewer.messages.text
     good = tmp_path / "good.toml"
     good.write_text("duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n")

@@ -98,8 +98,8 @@ def test_panels_hide_and_come_back(viewer: Viewer) -> None:
     xdotool(viewer, "key", "Tab")
     assert viewer.view.viewport == (0, 0, *SIZE) and "play" not in viewer.gui.places
     assert until(viewer, lambda: viewer.is_idle or viewer.messages.is_fading)
-    picture = viewer.surface.read()
-    assert (np.ptp(picture[:300, :8].astype(int), axis=(0, 1)) > 3).any()  # backdrop, not a panel
+    image = viewer.surface.read()
+    assert (np.ptp(image[:300, :8].astype(int), axis=(0, 1)) > 3).any()  # backdrop, not a panel
     assert "menu View" not in viewer.gui.places
     x = nose(viewer)[0]
     xdotool(viewer, "mousemove", x, viewer.placement._place()[1] + 5)
@@ -114,13 +114,13 @@ def test_panels_hide_and_come_back(viewer: Viewer) -> None:
 
 
 def test_full_screen_without_panels_still_acts(viewer: Viewer) -> None:
-    """Keys act on the bare picture, and both ways back work in any order."""
+    """Keys act on the bare image, and both ways back work in any order."""
     xdotool(viewer, "mousemove", *nose(viewer))
     viewer.face_panel.search = ""
     xdotool(viewer, "key", "F11", "Tab")
     assert until(viewer, lambda: viewer.view.viewport == (0, 0, *screen_size()), 5.0)
     xdotool(viewer, "key", "3")
-    assert viewer.session.shows(viewer.session.scene.expressions[2])
+    assert viewer.session.is_alone(viewer.session.scene.expressions[2])
     xdotool(viewer, "key", "F11")
     assert until(viewer, lambda: viewer.view.viewport == (0, 0, *SIZE), 5.0)
     xdotool(viewer, "key", "3", "Tab")

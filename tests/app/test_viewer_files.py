@@ -279,7 +279,7 @@ def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path
         viewer.session.seek(2.0)
         assert until(viewer, lambda: moved(viewer) > 2.0)
         drag(viewer, nose(viewer), (30, 30))
-        assert until(viewer, lambda: viewer.mouse.is_pulling)
+        assert until(viewer, lambda: viewer.mouse.is_dragging_skin)
         xdotool(viewer, "mouseup", 1)
     finally:
         viewer.show_scene(before)

@@ -35,7 +35,7 @@ def viewer() -> Iterator[Viewer]:
 
 def test_kept_panels_look_like_new_ones(viewer: Viewer) -> None:
     """While the camera moves, panels are kept; the window looks as if they had been drawn."""
-    viewer.session.show("disgust")
+    viewer.session.toggle_alone("disgust")
     settle(viewer)
     assert until(viewer, lambda: viewer.is_idle)
     drawn = []

@@ -164,7 +164,7 @@ def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Pa
     session.toggle_recording()
     session.set("jaw_open", 1.0 / 3.0)
     session.advance(STEP)
-    recovery.keep(session)
+    recovery.save(session)
     assert found_by_next(tmp_path, session) is None  # its window still lives
     recovery.close()
     after = Session(session.scene, script_for(None, "face"))
@@ -180,7 +180,7 @@ def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Pa
     after.undo()  # the recording
     assert after.script == edited and after.script.preface == "# mine"
     assert after.file.path == tmp_path / "smile.toml" and after.file.objection == ""
-    next_one.keep(after)
+    next_one.save(after)
     next_one.close()
     assert found_by_next(tmp_path, session) == Work(edited, tmp_path / "smile.toml")
 
@@ -191,7 +191,7 @@ def test_a_file_that_was_changed_since_is_not_replaced_unasked(
     """Between the crash and the recovery somebody wrote the script's file: saving says so."""
     session.set("jaw_open", 0.25)
     session.set_key()
-    recovery.keep(session)
+    recovery.save(session)
     recovery.close()
     later = time.time() + 10.0
     os.utime(tmp_path / "smile.toml", (later, later))
@@ -209,7 +209,7 @@ def test_what_is_thrown_away_is_gone(session: Session, tmp_path: Path) -> None:
     for value in (0.1, 0.2):
         one = Recovery(folder)
         session.set("jaw_open", value)
-        one.keep(session)
+        one.save(session)
         one.close()
         new = [file for file in folder.iterdir() if not file.name.startswith("2020010")]
         for file in new:  # begun in one second, names are by chance
@@ -232,7 +232,7 @@ def test_what_is_thrown_away_is_gone(session: Session, tmp_path: Path) -> None:
 def test_damaged_work_hides_no_other(session: Session, recovery: Recovery, tmp_path: Path) -> None:
     """Pipes, folders, circles of links, monsters among the files: passed by, none is waited for."""
     session.set("jaw_open", 0.4)
-    recovery.keep(session)
+    recovery.save(session)
     recovery.close()
     folder = tmp_path / "unsaved"
     os.mkfifo(folder / "20270101-000000-aaa.pose.toml")
@@ -262,7 +262,7 @@ def test_a_damaged_name_of_its_file_loses_no_script(
     """Where the file of a script cannot be that, the script is offered without one."""
     session.set("jaw_open", 0.25)
     session.set_key()
-    recovery.keep(session)
+    recovery.save(session)
     recovery.close()
     os.mkfifo(tmp_path / "pipe")
     [kept_script] = (tmp_path / "unsaved").glob("*.script.toml")
@@ -279,7 +279,7 @@ def test_only_what_fits_the_scene_is_offered(
 ) -> None:
     """A window with the plane leaves a face's pose to the next window with a face."""
     session.set("jaw_open", 0.4)
-    recovery.keep(session)
+    recovery.save(session)
     recovery.close()
     plane = Session(PlaneScene(), script_for(None, "plane"))
     assert found_by_next(tmp_path, plane) is None
@@ -439,7 +439,7 @@ def test_work_that_is_given_up_is_not_offered(tmp_path: Path) -> None:
     with Viewer(script_for(None, "face"), SIZE, settings_path=tmp_path / "viewer.json") as viewer:
         settle(viewer, 8)
         viewer.session.set("jaw_open", 0.4)
-        viewer.recovery.keep(viewer.session)
+        viewer.recovery.save(viewer.session)
         assert kept(tmp_path)
         xdotool(viewer, "key", "ctrl+q")
         click(viewer, "question: Close without saving")
@@ -453,7 +453,7 @@ def test_recovering_asks_before_other_work_is_lost(session: Session, tmp_path: P
     """With something unsaved of its own, the window asks; going back keeps both."""
     recovery = Recovery(tmp_path / "unsaved")
     session.set("jaw_open", 0.4)
-    recovery.keep(session)
+    recovery.save(session)
     recovery.close()
     script = script_for(None, "face")
     with Viewer(script, SIZE, settings_path=tmp_path / "viewer.json") as viewer:

@@ -18,8 +18,8 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import (
     Look,
     Settings,
-    drop_refused_options,
     load_settings,
+    remove_refused_options,
     save_settings,
 )
 
@@ -181,11 +181,11 @@ def test_options_that_a_refiner_refuses_give_way_alone() -> None:
             "loop": {"levels": 50},
         }
     )
-    told = drop_refused_options(look, FaceScene())
+    told = remove_refused_options(look, FaceScene())
     assert look.options == {"kahler": {"scheme": "cubic", "blend": True}, "loop": {}}
     for words in ("kahler threshold_once = 'x'", "kahler foo = 3", "loop levels = 50"):
         assert words in told
-    assert drop_refused_options(look, FaceScene()) == ""
+    assert remove_refused_options(look, FaceScene()) == ""
 
 
 @pytest.mark.window

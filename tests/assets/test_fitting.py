@@ -281,8 +281,8 @@ def test_nearest_point_agrees_with_a_plain_search(generator: np.random.Generator
     """Feet on a mesh are as near as those on a dense sampling of it."""
     plane = assets.load("plane")
     points = plane.vertices[:40] + generator.normal(scale=4.0, size=(40, 3))
-    foot = nearest_on(points, np.tile([0.0, 0.0, 1.0], (40, 1)), plane.vertices, plane.faces)
-    found = np.linalg.norm(foot.carry(plane.vertices) - points, axis=1)
+    nearest = nearest_on(points, np.tile([0.0, 0.0, 1.0], (40, 1)), plane.vertices, plane.faces)
+    found = np.linalg.norm(nearest.interpolate(plane.vertices) - points, axis=1)
     a, b = np.meshgrid(np.linspace(0.0, 1.0, 21), np.linspace(0.0, 1.0, 21))
     inside = a + b <= 1.0 + 1e-9
     weights = np.stack([1.0 - a - b, a, b], axis=-1)[inside]
@@ -290,4 +290,4 @@ def test_nearest_point_agrees_with_a_plain_search(generator: np.random.Generator
     sampled = np.linalg.norm(points[:, None] - dense[None], axis=2).min(axis=1)
     assert (found <= sampled + 1e-9).all()
     assert (sampled - found < 0.5).all()
-    assert np.allclose(foot.weights.sum(axis=1), 1.0)
+    assert np.allclose(nearest.weights.sum(axis=1), 1.0)

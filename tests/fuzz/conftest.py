@@ -63,8 +63,8 @@ def pytest_terminal_summary(
 def face() -> FaceScene:
     """The built-in face, with its light already baked."""
     scene = FaceScene()
-    picture = scene.openness()
-    scene.openness = lambda: picture  # type: ignore[method-assign]
+    image = scene.openness()
+    scene.openness = lambda: image  # type: ignore[method-assign]
     return scene
 
 

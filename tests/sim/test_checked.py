@@ -220,8 +220,8 @@ def test_arrays_of_any_layout_are_taken(layout: Callable[[Any], Any]) -> None:
     push, rows = np.arange(3.0 * COUNT).reshape(COUNT, 3), np.array([1, 2])
     plain.kick(push)
     other.kick(layout(push))
-    plain.pull(rows, push[:2], [1.0, 1.0])
-    other.pull(layout(rows), layout(push[:2]), layout(np.ones(2)))
+    plain.drag(rows, push[:2], [1.0, 1.0])
+    other.drag(layout(rows), layout(push[:2]), layout(np.ones(2)))
     for each in (plain, other):
         each.step(1 / 60)
     assert np.array_equal(plain.positions, other.positions)

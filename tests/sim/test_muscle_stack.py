@@ -116,9 +116,9 @@ def test_carrying_is_the_formula(simulation: sim.Simulation) -> None:
     stack, bundle, motion = muscles.stack, muscles.bundle, muscles.motion
     move_lines(bundle, stack, activation, pose, motion)
     active = np.maximum(activation, 0.0)[bundle.muscle]
-    ride = np.zeros_like(motion.carried)
-    shares = np.zeros(ride.shape[:2])
-    owner = np.repeat(np.arange(len(ride)), np.diff(stack.rows))
+    carried = np.zeros_like(motion.carried)
+    shares = np.zeros(carried.shape[:2])
+    owner = np.repeat(np.arange(len(carried)), np.diff(stack.rows))
     for row, b in enumerate(owner):
         p, c = int(stack.point[row]), int(stack.line[row])
         assert c < b
@@ -129,9 +129,9 @@ def test_carrying_is_the_formula(simulation: sim.Simulation) -> None:
             if active[c] > 0.0:
                 along = motion.contracted[c, :, k]
                 beneath[k] += np.interp(stack.sample[row], np.arange(SAMPLES), along)
-            beneath[k] += np.interp(stack.place[row], np.arange(FIBRE_POINTS), ride[c, :, k])
-        ride[b, p] += steady + stack.share[row] * beneath
+            beneath[k] += np.interp(stack.place[row], np.arange(FIBRE_POINTS), carried[c, :, k])
+        carried[b, p] += steady + stack.share[row] * beneath
         shares[b, p] += stack.share[row]
     assert 0.9 < shares.max() < 1.0 + 1e-9
-    assert np.array_equal(motion.is_carried, np.abs(ride).max(axis=(1, 2)) > 0.0)
-    assert np.allclose(motion.carried[motion.is_carried], ride[motion.is_carried], atol=1e-9)
+    assert np.array_equal(motion.is_carried, np.abs(carried).max(axis=(1, 2)) > 0.0)
+    assert np.allclose(motion.carried[motion.is_carried], carried[motion.is_carried], atol=1e-9)

@@ -14,7 +14,7 @@ from risorius.sim.contact import Grip, watch_eyeballs
 from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
 from risorius.sim.integrator import substeps_in
 from risorius.sim.lids import turn_lids
-from risorius.sim.skin import Tick
+from risorius.sim.skin_model import Tick
 from risorius.sim.skull import REST
 from risorius.sim.substep import SEAL_AXES, edge_forces, hold_lips, tissue_forces
 from risorius.sim.tissue import carry, tissue_energy
