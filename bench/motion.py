@@ -35,7 +35,7 @@ from risorius.sim.landmarks import Side
 from risorius.sim.rig import LinearMuscle, RingMuscle
 
 from .report import table
-from .subjects import DENSE, read_arrays, settled
+from .subjects import DENSE, read_arrays, settled_positions
 
 Array = npt.NDArray[np.float64]
 
@@ -171,7 +171,7 @@ def _controls(
 
 def _posed(simulation: sim.Simulation, values: Mapping[str, float]) -> Array:
     """Displacement [mm] of the settled pose, shape (V, 3)."""
-    return settled(simulation, values, SETTLE) - simulation.rest_positions
+    return settled_positions(simulation, values, SETTLE) - simulation.rest_positions
 
 
 class _Ruler:

@@ -26,7 +26,7 @@ from risorius import assets, refine, sim
 
 from .peers import peers_for
 from .starts import Starts, measure_peak, measure_starts
-from .subjects import settled
+from .subjects import settled_positions
 from .timing import interleaved
 from .waving_meshes import Load, waving_mesh
 
@@ -170,7 +170,9 @@ def face_load() -> Load:
     """The built-in face in each of the six basic expressions, at full strength."""
     head = assets.load("head")
     simulation = sim.create(head)
-    frames = [settled(simulation, head.expressions[name], SETTLED) for name in FULL_EXPRESSIONS]
+    frames = [
+        settled_positions(simulation, head.expressions[name], SETTLED) for name in FULL_EXPRESSIONS
+    ]
     return Load("face", head.faces, head.vertices, frames)
 
 

@@ -147,7 +147,7 @@ def _idle_share(viewer: Viewer) -> float:
         viewer.frame()
     begin, used = time.perf_counter(), time.process_time()
     while time.perf_counter() - begin < IDLE_SECONDS:
-        viewer.rest()
+        viewer.wait_for_frame()
     return (time.process_time() - used) / (time.perf_counter() - begin)
 
 

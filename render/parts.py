@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from .camera_view import CameraView, box_corners
 from .occlusion import DepthReader, ProjectedFaces
-from .render_target import Rectangle, RenderTarget, hull
+from .render_target import Rectangle, RenderTarget, bounding_rectangle
 from .style import linear
 
 
@@ -135,7 +135,7 @@ class PartStore:
             return []
         if self._depths is None or self._depths.scene is not target:
             self._depths = DepthReader(self._gl, target)
-        self._depths.find_farthest(functools.reduce(hull, covered))
+        self._depths.find_farthest(functools.reduce(bounding_rectangle, covered))
         projected = [
             buffers.projected(model @ view.world_to_clip, view.viewport)
             for (buffers, _), model in zip(placed, models, strict=True)

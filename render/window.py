@@ -86,7 +86,7 @@ class WindowSurface(Surface):
         """End the scene: panels lie on top. Again: forget the panels, keep the scene."""
         self.make_current()
         self._compositor.compose(self.target, self.area)
-        self._rule(self._compositor.frame)
+        self._draw_rules(self._compositor.frame)
         self._is_resolved = self._is_laid = True
 
     def fill(self, area: Rectangle, colour: Colour) -> None:
@@ -103,14 +103,14 @@ class WindowSurface(Surface):
             self._compositor.copy_to(self.gl.screen)
         else:
             self._compositor.compose(self.target, self.area, self.gl.screen)
-            self._rule(self.gl.screen)
+            self._draw_rules(self.gl.screen)
             if self.area is not None:
                 self._compositor.copy_to(self.gl.screen, around=self.area)
             self._is_laid = False
         self._glfw.swap_buffers(self.handle)
         self._is_resolved = False
 
-    def _rule(self, target: moderngl.Framebuffer) -> None:
+    def _draw_rules(self, target: moderngl.Framebuffer) -> None:
         for rectangle, colour in self.rules:
             target.clear(*colour, viewport=rectangle)
 
@@ -119,7 +119,7 @@ class WindowSurface(Surface):
         self.make_current()
         if not self._is_laid:
             self._compositor.compose(self.target, self.area)
-            self._rule(self._compositor.frame)
+            self._draw_rules(self._compositor.frame)
         return image_of(self._compositor.read(), self.size)
 
     def _bind(self) -> None:

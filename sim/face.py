@@ -35,7 +35,7 @@ from .coordinates import to_posed_head
 from .drive import MuscleDrive
 from .lids import turn_lids
 from .skin_model import Tick
-from .skull import REST, Pose
+from .skull import REST, RigidMotion
 from .state import State
 from .substep import advance
 from .tissue import carry, tissue_energy
@@ -58,9 +58,9 @@ class Simulation:
         self._state = State.at_rest(surface)
         self._grip = SEALED
         self._jaw = (0.0, 0.0, 0.0)
-        self._mandible: Pose = REST
+        self._mandible: RigidMotion = REST
         self._head_values = (0.0, 0.0, 0.0)
-        self._head: Pose = REST
+        self._head: RigidMotion = REST
         self._turn = np.eye(4)
         self._axes = anatomy.space.axes * anatomy.space.scale
         heaviness = anatomy.rig.tissue.heaviness
@@ -235,11 +235,11 @@ class Simulation:
         jaw = now("jaw_open"), now("jaw_forward"), now("jaw_sideways")
         if jaw != self._jaw:
             self._jaw = jaw
-            self._mandible = anatomy.skull.mandible_pose(*jaw)
+            self._mandible = anatomy.skull.mandible_motion(*jaw)
         head = now("head_pitch"), now("head_yaw"), now("head_roll")
         if head != self._head_values:
             self._head_values = head
-            self._head = anatomy.skull.head_pose(*head)
+            self._head = anatomy.skull.head_motion(*head)
             self._turn = np.eye(4) if self._head is REST else self._head.matrix(anatomy.space)
         weight, closed = anatomy.skull.mandible_weight, now("lips_closed")
         if closed > 0.0:
@@ -281,8 +281,8 @@ class Simulation:
         }
         gaze = self._controls.now("gaze_horizontal"), self._controls.now("gaze_vertical")
         for ball in anatomy.skull.eyeballs:
-            pose = anatomy.skull.eye_pose(ball, *gaze)
-            transforms[f"eye_{ball.side.value}"] = self._head.after(pose).matrix(anatomy.space)
+            motion = anatomy.skull.eye_motion(ball, *gaze)
+            transforms[f"eye_{ball.side.value}"] = self._head.after(motion).matrix(anatomy.space)
         return transforms
 
     def fibres(self) -> dict[str, list[npt.NDArray[np.float64]]]:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from .contact import EyeContact, Grip, LipPairs
 from .landmarks import Array
-from .skull import Pose
+from .skull import RigidMotion
 from .springs import EdgeSprings
 from .teeth import Teeth
 from .tissue import TissueSprings
@@ -33,4 +33,4 @@ class Tick(NamedTuple):
     substeps: int
     h: float  # s, length of each
     grip: Grip  # how firmly the lips hold each other
-    mandible: Pose
+    mandible: RigidMotion

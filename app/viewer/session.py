@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
-from ..scenes import Scene, within
+from ..scenes import Scene, clamped
 from ..script import Pose, Script, is_pose, load_script, pose_script, rounded, save_script
 from . import keys
 from .control_rows import highest_first, mirrored, twin_of
@@ -266,7 +266,7 @@ class Session:
 
     def _all(self, values: Mapping[str, float]) -> dict[str, float]:
         """A value for each control, within its limits; 0 where none is given."""
-        return {**dict.fromkeys(self.limits, 0.0), **within(self.limits, values)}
+        return {**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, values)}
 
     @property
     def is_recording(self) -> bool:

@@ -187,14 +187,14 @@ class Viewer:
                     self.ask_to_close()
                     if self.surface.should_close:
                         break
-                    self.placement.bring_back()  # to be asked
+                    self.placement.restore()  # to be asked
                 is_over = playing and not self.session.is_playing
                 if once and is_over and not self.session.unsaved:
                     break
                 if self.is_idle:
                     self._wait()
 
-    def rest(self) -> None:
+    def wait_for_frame(self) -> None:
         """Wait until something happens, or it is time to look around; then show a frame."""
         self._wait()
         self.frame()
@@ -210,7 +210,7 @@ class Viewer:
         elapsed, self._last = now - self._last, now
         self.times.note_frame(elapsed)
         mark = " *" if self.session.unsaved else ""
-        self.placement.call(f"Risorius: {self.session.name}{mark}")
+        self.placement.set_title(f"Risorius: {self.session.name}{mark}")
         is_filming = self.exporter.film is not None
         seconds = 1.0 / FRAMES_PER_SECOND if is_filming else elapsed
         is_skin_dragged = self.mouse.is_dragging_skin

@@ -21,7 +21,7 @@ from risorius.app.files import Image
 from risorius.app.scenes import FaceScene
 from risorius.bench import figures
 from risorius.bench.canvas import Canvas, Drawing
-from risorius.bench.subjects import settled
+from risorius.bench.subjects import settled_positions
 
 CELL = (260, 320)  # [pixels] of one portrait: a contact sheet stays below 600 kB
 VIEWS = ("front", "three-quarter", "profile", "below")
@@ -74,7 +74,7 @@ def portrait(
 def opened_jaw() -> tuple[Points, Bones]:
     """Positions [mm], shape (V, 3), and bone matrices with the jaw quite open."""
     simulation = sim.create(assets.load("head"))
-    return settled(simulation, {"jaw_open": 1.0}, OPENED), simulation.bone_transforms()
+    return settled_positions(simulation, {"jaw_open": 1.0}, OPENED), simulation.bone_transforms()
 
 
 def views(draw: Callable[..., Image]) -> list[tuple[str, Image]]:

@@ -23,7 +23,7 @@ SIZE = (1160, 700)
 MOST_FRAMES = 400
 
 
-def settled(viewer: Viewer) -> None:
+def wait_until_settled(viewer: Viewer) -> None:
     """Let the face come to rest, and the picture be drawn in full."""
     for _ in range(8):
         viewer.frame()
@@ -141,10 +141,10 @@ def draw_image(stop: Callable[[Viewer], None]) -> Image:
     with Viewer(script_for(None, "face"), SIZE) as viewer:
         # Wherever the mouse happens to be, it points at nothing: no hint comes up.
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
-        settled(viewer)
+        wait_until_settled(viewer)
         stop(viewer)
         if viewer.mouse.skin_drag is None:
-            settled(viewer)
+            wait_until_settled(viewer)
         return figures.without_noise(viewer.surface.read())
 
 

@@ -53,7 +53,7 @@ class Tree(NamedTuple):
     """Numbers of vertices."""
 
 
-class Surface:
+class SearchSurface:
     """A mesh to find closest points on: `positions`, shape (V, 3), `faces`, shape (F, 3)."""
 
     def __init__(self, positions: Doubles, faces: Unsigned) -> None:

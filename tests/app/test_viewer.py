@@ -24,11 +24,11 @@ from .driving import (
     clear_search,
     click,
     drag,
+    draw_frames,
     middle,
     moved,
     nose,
     on_screen,
-    settle,
     show_controls,
     until,
     write,
@@ -99,7 +99,7 @@ def test_keys_show_expressions_and_refinement(viewer: Viewer) -> None:
 def test_keys_change_the_picture(viewer: Viewer) -> None:
     """W, C, T, S and D each change what is seen, and back."""
     viewer.session.toggle_alone("disgust")
-    settle(viewer)
+    draw_frames(viewer)
     assert until(viewer, lambda: viewer.is_idle)
     before, look = viewer.surface.read(), deepcopy(viewer.settings.look)
     left = round(viewer.view.area[0])
@@ -203,7 +203,7 @@ def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
     assert until(viewer, lambda: viewer.is_idle)
     few = viewer.stage.refined.triangle_count
     viewer.settings.look.options["kahler"] = {"threshold_once": 0.0, "threshold_twice": 0.01}
-    settle(viewer)
+    draw_frames(viewer)
     assert viewer.stage.refined.triangle_count > 1.5 * few
     click(viewer, "Refiner")
     click(viewer, "Refiner: loop")
@@ -257,7 +257,7 @@ def test_a_bad_file_is_told_and_survived(viewer: Viewer, tmp_path: Path) -> None
     bad = tmp_path / "bad.toml"
     bad.write_text("duration = 1.0\n[[pose]]\ntime = 0.0\nno_such_muscle = 1.0\n")
     viewer.drop([str(bad)])
-    settle(viewer)
+    draw_frames(viewer)
     assert "no_such_muscle" in viewer.messages.text and "message" in viewer.gui.places
     viewer.drop([str(tmp_path / "none.toml")])
     assert "no such script" in viewer.messages.text
@@ -291,7 +291,7 @@ def test_screenshot_and_film(viewer: Viewer, tmp_path: Path) -> None:
     shots = list(tmp_path.glob("*.png"))
     assert len(shots) == 1 and Image.open(shots[0]).size == (width, height)
     xdotool(viewer, "key", "F10")
-    settle(viewer, 3)
+    draw_frames(viewer, 3)
     xdotool(viewer, "key", "F10")
     films = list(tmp_path.glob("*.mp4"))
     assert len(films) == 1 and films[0].stat().st_size > 1000
@@ -322,7 +322,7 @@ def test_an_idle_window_rests(viewer: Viewer) -> None:
     """With nothing to do neither physics nor the scene is computed again."""
     assert until(viewer, lambda: viewer.is_idle)
     times = {name: list(column) for name, column in viewer.times.milliseconds.items()}
-    settle(viewer, 5)
+    draw_frames(viewer, 5)
     assert times == {name: list(column) for name, column in viewer.times.milliseconds.items()}
 
 

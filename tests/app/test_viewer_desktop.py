@@ -25,7 +25,7 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.placement import FIRST_SIZE
 from risorius.app.viewer.settings import load_settings
 
-from .driving import NEEDS_A_SCREEN, SIZE, click, nose, settle, show_controls, until, xdotool
+from .driving import NEEDS_A_SCREEN, SIZE, click, draw_frames, nose, show_controls, until, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("desktop")]
 
@@ -58,7 +58,7 @@ def viewer(desktop: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
     """One window for all tests of this file, amid the desktop."""
     path = tmp_path_factory.mktemp("settings") / "viewer.json"
     with Viewer(script_for(None, "face"), SIZE, settings_path=path) as opened:
-        settle(opened, 8)
+        draw_frames(opened, 8)
         yield opened
 
 
@@ -70,7 +70,7 @@ def screen_size() -> tuple[int, int]:
 
 def place_of(viewer: Viewer) -> tuple[int, int, int, int]:
     """Where the window is, as the window itself knows it."""
-    settle(viewer, 3)
+    draw_frames(viewer, 3)
     return viewer.placement._place()
 
 

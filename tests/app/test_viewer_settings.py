@@ -23,7 +23,7 @@ from risorius.app.viewer.settings import (
     save_settings,
 )
 
-from .driving import NEEDS_A_SCREEN, SIZE, settle
+from .driving import NEEDS_A_SCREEN, SIZE, draw_frames
 
 GOOD = {"theme": "dark", "zoom": 1.5, "folds": {"Jaw": True}, "look": {"wireframe": True}}
 
@@ -197,6 +197,6 @@ def test_no_settings_keep_the_window_shut(path: Path) -> None:
     wrong["look"]["options"] = {"kahler": {"threshold_once": "x"}}
     path.write_text(json.dumps(wrong))
     with Viewer(script_for(None, "face"), SIZE, settings_path=path) as viewer:
-        settle(viewer, 3)
+        draw_frames(viewer, 3)
         assert viewer.messages.is_error and "theme = 'zzz'" in viewer.messages.text
         assert "kahler threshold_once = 'x'" in viewer.messages.text

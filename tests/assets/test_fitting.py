@@ -18,7 +18,7 @@ from risorius.assets.meshes import Mesh
 from risorius.bench.lines_of_sight import lid_gaps
 from risorius.sim.landmarks import MIRRORED
 from tests.heads import Stranger, closed, stranger
-from tests.sim.poses import inverted_triangles, lip_gap, moved_landmarks, settle
+from tests.sim.poses import inverted_triangles, lip_gap, moved_landmarks, settled_displacement
 
 
 @pytest.fixture(scope="module")
@@ -103,14 +103,14 @@ def test_depth_and_texture_come_from_the_same_place(fitted: FittedHead) -> None:
 
 def test_a_fitted_head_makes_faces(fitted: FittedHead, simulation: sim.Simulation) -> None:
     """A smile pulls the corners, a blink closes the eyes, the jaw opens, lips stay closed."""
-    smile = settle(simulation, {"AU12": 1.0})
+    smile = settled_displacement(simulation, {"AU12": 1.0})
     assert moved_landmarks(fitted, smile, 54)[1] > 4.0
     assert lip_gap(simulation, fitted) < 0.8
-    settle(simulation, {"AU43": 1.0})
+    settled_displacement(simulation, {"AU43": 1.0})
     landmarks = simulation.positions[fitted.landmarks]
     gaps = lid_gaps(simulation.positions, simulation.faces, landmarks)
     assert max(gaps.values()) < 0.8
-    settle(simulation, {"AU27": 1.0})
+    settled_displacement(simulation, {"AU27": 1.0})
     assert lip_gap(simulation, fitted) > 20.0
 
 
@@ -119,7 +119,7 @@ def test_expressions_keep_a_fitted_mesh_sound(
     fitted: FittedHead, simulation: sim.Simulation, name: str
 ) -> None:
     """Hardly a triangle of eight thousand is turned over."""
-    settle(simulation, {name: 1.0})
+    settled_displacement(simulation, {name: 1.0})
     assert inverted_triangles(fitted.faces, fitted.vertices, simulation.positions) <= 40
 
 

@@ -11,7 +11,7 @@ import pytest
 from risorius import assets
 from risorius.bench import quality, subjects
 from risorius.bench.quality_report import error_curves, text
-from risorius.bench.subjects import Pose, Subject
+from risorius.bench.subjects import PosePair, Subject
 
 Points = npt.NDArray[np.float64]
 
@@ -33,8 +33,10 @@ def rolled_plane() -> Subject:
         upper = np.stack([a, a + cells + 2, a + cells + 1], axis=1)
         meshes.append((points, np.concatenate([lower, upper]).astype(np.int32)))
     (coarse, coarse_faces), (dense, dense_faces) = meshes
-    poses = {f"roll {angle:g}": Pose(bent(dense, angle), bent(coarse, angle)) for angle in (0.5, 1)}
-    return Subject("plane", dense_faces, coarse_faces, Pose(dense, coarse), poses)
+    poses = {
+        f"roll {angle:g}": PosePair(bent(dense, angle), bent(coarse, angle)) for angle in (0.5, 1)
+    }
+    return Subject("plane", dense_faces, coarse_faces, PosePair(dense, coarse), poses)
 
 
 def test_scores_of_a_cylinder() -> None:
@@ -69,8 +71,8 @@ def test_error_of_the_truth_is_zero() -> None:
         "same",
         subject.dense_faces,
         subject.dense_faces,
-        Pose(subject.rest.dense, subject.rest.dense),
-        {"roll": Pose(pose.dense, pose.dense)},
+        PosePair(subject.rest.dense, subject.rest.dense),
+        {"roll": PosePair(pose.dense, pose.dense)},
     )
     (coarse, *_) = quality.measure(same, schemes=(), budgets=())
     assert coarse.method == quality.COARSE

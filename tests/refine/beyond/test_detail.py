@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import refine
-from risorius.refine.beyond.closest import Surface
+from risorius.refine.beyond.closest import SearchSurface
 from tests import meshes
 from tests.refine import plain_twin
 from tests.refine.cases import Needed, as_lists, assert_equals_twin, point_names
@@ -31,7 +31,7 @@ COARSE, FINE = bumpy(8, 6), bumpy(48, 36)
 
 def distances(points: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Distance of each point from a mesh."""
-    surface = Surface(positions.astype(np.float64), triangles.astype(np.uint32))
+    surface = SearchSurface(positions.astype(np.float64), triangles.astype(np.uint32))
     hit, weights = surface.closest(points, np.zeros_like(points))
     return np.linalg.norm(surface.at(surface.positions, hit, weights) - points, axis=1)
 
@@ -80,7 +80,7 @@ def test_closest_looks_the_same_way() -> None:
     vertices = np.concatenate([grid.vertices, below])
     faces = np.concatenate([grid.faces, grid.faces[:, ::-1] + count]).astype(np.uint32)
     points = np.tile([[3.3, 2.2, -0.005]], (2, 1))
-    hit, _ = Surface(vertices, faces).closest(points, np.array([[0, 0, 1.0], [0, 0, -1.0]]))
+    hit, _ = SearchSurface(vertices, faces).closest(points, np.array([[0, 0, 1.0], [0, 0, -1.0]]))
     assert hit[0] < len(grid.faces) <= hit[1]
 
 
@@ -99,7 +99,7 @@ def test_lies_on_the_finer_mesh(blend: bool) -> None:
 def test_shows_finer_normals() -> None:
     """Normals are those of the finer mesh where the vertices of the refined one are."""
     mesh = refined("detail", COARSE.vertices)
-    surface = Surface(FINE.vertices, FINE.faces.astype(np.uint32))
+    surface = SearchSurface(FINE.vertices, FINE.faces.astype(np.uint32))
     hit, weights = surface.closest(mesh.positions.astype(np.float64), np.zeros(mesh.normals.shape))
     expected = surface.at(surface.normals, hit, weights)
     expected /= np.linalg.norm(expected, axis=1, keepdims=True)
