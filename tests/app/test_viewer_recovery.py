@@ -171,7 +171,7 @@ def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Pa
     next_one = Recovery(tmp_path / "unsaved")
     next_one.find(after)
     assert next_one.found is not None
-    assert next_one.found.words == "the script smile.toml, a recording and a pose"
+    assert next_one.found.summary == "the script smile.toml, a recording and a pose"
     next_one.accept_found(after)
     assert next_one.found is None and after.unsaved == "the pose and the script"
     assert after.values["jaw_open"] == session.values["jaw_open"]

@@ -47,16 +47,16 @@ WRONG: list[tuple[str, str, str, tuple[Any, ...]]] = [
     ("pose", "values", "values", TABLES),
     ("pose", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
     ("kick", "velocities", "velocities", ARRAYS),
-    ("pull", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # none is as many as any
-    ("pull", "targets", "targets", ARRAYS),
-    ("pull", "firmness", "firmness", SHARES),
+    ("drag", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # none is as many as any
+    ("drag", "targets", "targets", ARRAYS),
+    ("drag", "firmness", "firmness", SHARES),
     ("step", "dt", "dt", (*NO_NUMBER, 0, -1, 1, True)),
 ]
 RIGHT: dict[str, dict[str, Any]] = {
     "set": {"name": "jaw_open", "value": 0.5},
     "set_all": {"values": {"jaw_open": 0.5}},
     "pose": {"values": {"jaw_open": 0.5}},
-    "pull": {"vertices": [0, 1], "targets": POINTS, "firmness": [0.5, 1.0]},
+    "drag": {"vertices": [0, 1], "targets": POINTS, "firmness": [0.5, 1.0]},
     "kick": {"velocities": np.zeros((COUNT, 3))},
     "step": {"dt": 1 / 60},
 }
