@@ -2,7 +2,7 @@
 
 Every call takes a viewport, (x, y, width, height) in pixels from the lower left corner, and leaves
 all other pixels alone; None is the whole surface. The camera's aspect is that of the viewport. A
-`clip` draws only a part of what the viewport shows: two clips make one picture of two meshes.
+`clip` draws only a part of what the viewport shows: two clips make one image of two meshes.
 Programs are compiled on first use, one per combination of shading and options.
 Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the figures are shaded).
 """
@@ -70,7 +70,7 @@ class Renderer:
         return Stream(self._gl, vertex_capacity, triangle_capacity, columns)
 
     def load_texture(self, image: Image, openness: Image | None = None) -> Texture:
-        """Hand a picture of the skin to OpenGL; draw_mesh takes the albedo from it.
+        """Hand an image of the skin to OpenGL; draw_mesh takes the albedo from it.
 
         image: sRGB, top row first, shape (H, W, 3), uint8; texture coordinate v is 1 at the top.
         openness: how much of the light from all around gets there, 255 = all, shape (H, W), uint8.

@@ -70,7 +70,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     face, plane = FaceScene(), PlaneScene()
 
     def simulate() -> None:
-        """Move every control a little, and pull the skin."""
+        """Move every control a little, and drag the skin."""
         face.pose(dict.fromkeys(face.limits, 0.1))
         face.step(1 / 60)
         face.simulation.drag([0], face.positions[:1] + 1.0, [1.0])

@@ -1,7 +1,7 @@
-"""The mouse in the picture: pull the skin, click a muscle, turn the camera, drag the divider.
+"""The mouse in the picture: drag the skin, click a muscle, turn the camera, drag the divider.
 
-Left on the skin pulls it, left beside it orbits, right orbits anywhere, middle or Shift pans, the
-wheel zooms. Pulled skin hangs on springs between the vertices under the mouse and where it drags.
+Left on the skin drags it, left beside it orbits, right orbits anywhere, middle or Shift pans, the
+wheel zooms. Dragged skin hangs on springs between the vertices under the mouse and where it drags.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class Mouse:
 
     def forget(self) -> None:
         """Hold on to nothing any more: what it was on is not there."""
-        self._doing = ""  # orbit, pan, divider, pull
+        self._doing = ""  # orbit, pan, divider, skin
         self._pressed_at = (0.0, 0.0)
         self.skin_drag: SkinDrag | None = None
 

@@ -44,9 +44,9 @@ class Stage:
     ) -> None:
         self.surface = surface
         self._times = times
-        self._set(scene, look)
+        self._bind_scene(scene, look)
 
-    def _set(self, scene: Scene, look: Look) -> None:
+    def _bind_scene(self, scene: Scene, look: Look) -> None:
         self.scene = scene
         self.renderer = render.Renderer(self.surface)
         self._texture = texture_of(scene, self.renderer)
@@ -65,7 +65,7 @@ class Stage:
         if self._wrinkling is not None:
             self._wrinkling.map.release()
         self.renderer.release()
-        self._set(scene, look)
+        self._bind_scene(scene, look)
 
     def bind_refiner(self, look: Look) -> None:
         """Bind the refiner that `look` names, with its options; UserError if it refuses them."""

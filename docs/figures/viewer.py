@@ -81,7 +81,7 @@ def anatomy(viewer: Viewer) -> None:
 
 
 def finger(viewer: Viewer) -> None:
-    """The skin, pulled by the mouse."""
+    """The skin, dragged by the mouse."""
     scene = viewer.session.scene
     corner = scene.positions[scene.head.landmarks[48]]  # type: ignore[attr-defined]
     viewer.mouse.skin_drag = SkinDrag(scene, corner.copy())

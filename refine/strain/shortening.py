@@ -61,7 +61,7 @@ class Shortening(StrainMeasure):
         `positions`: shape (V, 3), any float type. The result is overwritten by the next call.
         Raises ValueError for another shape and for positions that are not finite.
         """
-        self._set(positions)
+        self._set_positions(positions)
         _shorten(self._positions, self._faces, self._rest, self._weights, self._lost)
         return self._lost
 

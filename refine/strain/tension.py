@@ -91,7 +91,7 @@ class Tension(StrainMeasure):
 
         Raises ValueError for another shape and for positions that are not finite.
         """
-        self._set(positions)
+        self._set_positions(positions)
         vertex_normals(self._positions, self._faces, self._normals)
         sum_tensors(
             self._positions, self._faces, self._inverses, self._weights, self._normals, self._sums

@@ -75,7 +75,7 @@ def _findings(viewer: Viewer) -> dict[str, object]:
     until(viewer, lambda: moved(viewer) < 0.5)
     drag(viewer, nose(viewer), (50, 40))
     until(viewer, lambda: moved(viewer) > 4.0, 5.0)
-    pulled = moved(viewer)
+    dragged = moved(viewer)
     xdotool(viewer, "mouseup", 1)
     return {
         "button": (right - left, bottom - top),
@@ -83,7 +83,7 @@ def _findings(viewer: Viewer) -> dict[str, object]:
         "frame": viewer.surface.size,
         "window": viewer.surface.window_size,
         "slid": slid,
-        "pulled": pulled,
+        "dragged": dragged,
     }
 
 

@@ -130,7 +130,7 @@ def test_the_mouse_orbits_and_the_wheel_zooms(viewer: Viewer) -> None:
     assert np.abs(viewer.view.camera.view_matrix() - view).max() > 1e-3
 
 
-def test_the_skin_is_pulled_and_swings_back(viewer: Viewer) -> None:
+def test_the_skin_is_dragged_and_swings_back(viewer: Viewer) -> None:
     """Drag the tip of the nose: it comes along; let go, and it is back soon."""
     drag(viewer, nose(viewer), (40, 30))
     assert until(viewer, lambda: moved(viewer) > 4.0)

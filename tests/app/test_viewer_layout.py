@@ -119,7 +119,7 @@ def test_a_dense_screen_has_everything_twice_as_large(viewer: Viewer) -> None:
     assert found["is_settled"]  # the first picture is where all others are
     assert found["frame"] == found["window"] == [1200, 800]
     assert found["slid"] > 0.3
-    assert found["pulled"] > 4.0
+    assert found["dragged"] > 4.0
 
 
 @pytest.mark.slow

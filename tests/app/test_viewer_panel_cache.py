@@ -33,7 +33,7 @@ def viewer() -> Iterator[Viewer]:
         yield opened
 
 
-def test_kept_panels_look_like_new_ones(viewer: Viewer) -> None:
+def test_cached_panels_look_like_new_ones(viewer: Viewer) -> None:
     """While the camera moves, panels are kept; the window looks as if they had been drawn."""
     viewer.session.toggle_alone("disgust")
     draw_frames(viewer)
