@@ -98,7 +98,8 @@ def image_table(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Imag
     first = rows[0][1][0][1]
     height, width = first.shape[:2]
     columns = max(len(cells) for _, cells in rows)
-    size = max(13.0, min(width, height) / 17.0)
+    # Pages show it about 1000 pixels wide: then a caption is no smaller than about 12.
+    size = max(16.0, min(width, height) / 17.0, columns * width / 72.0)
     title, caption_height = round(2.0 * size), round(1.7 * size)
     page = PIL.Image.new(
         "RGB", (columns * width, len(rows) * (title + height + caption_height)), SHADE

@@ -1,10 +1,8 @@
 """One substep of the face, compiled: all forces on the skin, Euler's step, all contacts.
 
-The physics is explained where its data is made: tissue.py, springs.py, contact.py, teeth.py; the
-arguments are the named tuples of state.py and skin_model.py. The kernels stand together because
-numba caches compiled code by the file it is written in and freezes what it finds outside it: a
-kernel may use constants and kernels of its own file only, or an update runs old code. A test holds
-this for the whole package.
+The physics is explained where its data is made: tissue.py, springs.py, contact.py, teeth.py. The
+arguments are the named tuples of state.py and skin_model.py. All kernels stand here, so that
+a substep can be read from top to bottom.
 
 Source: Kähler et al. 2001, section 3 (mass-spring skin); semi-implicit Euler instead of Verlet.
 """

@@ -14,6 +14,7 @@ from ..pipeline import Viewport
 
 INK = (245, 245, 245)
 SHADE = (24, 26, 30)
+LEAST_CAPTION = 28  # [pixels] below a cell of a contact sheet: text of 15 pixels stays readable
 LANCZOS = PIL.Image.Resampling.LANCZOS
 
 
@@ -44,7 +45,7 @@ def contact_sheet(
     rows = math.ceil(len(poses) / columns)
     first = poses[0][1]
     cell_height = round(cell_width * first.shape[0] / first.shape[1])
-    caption_height = cell_width // 16
+    caption_height = max(LEAST_CAPTION, cell_width // 16)
     sheet = PIL.Image.new(
         "RGB", (columns * cell_width, rows * (cell_height + caption_height)), SHADE
     )

@@ -79,18 +79,18 @@ def main(arguments: Sequence[str]) -> None:
     """Draw the contact sheets into the folder given."""
     given = figures.parse(arguments, __doc__, width=CELL[0])
     scene = FaceScene()
-    contact_sheets = {
+    names_by_file = {
         file: without_sides(scene.groups.get(layer, ())) for layer, file in LAYERS.items()
     }
     if given.only:
-        contact_sheets = {"some": given.only}
+        names_by_file = {"some": given.only}
     size = given.width, given.width * CELL[1] // CELL[0]
     with Capture(scene, CaptureOptions(size=size, style=render.Style())) as capture:
         figures.draw(
             given.folder,
             {
                 file: partial(contact_sheet_of, capture, names)
-                for file, names in contact_sheets.items()
+                for file, names in names_by_file.items()
             },
         )
 

@@ -137,32 +137,20 @@ def lookup() -> Image:
 def masks() -> Image:
     """Weights of the paper's rules (its Figs. 3 and 4)."""
     diagram = Diagram(900, 330)
-    _first_level(diagram, 120, 210)
-    _vertex_rule(diagram, 345, 210)
-    _second_level(diagram, 570, 210)
-    _middle_again(diagram, 790, 210)
-    titles = (
-        (120, "first level"),
-        (345, "vertex, valence n"),
-        (570, "second level"),
-        (790, "middle, moved again"),
-    )
-    for x, title in titles:
-        diagram.text((x, 316), title, size=14)
-    for x, rule in (
-        (120, "border: 1/2, 1/2"),
-        (345, "border: 3/4, 1/8, 1/8"),
-        (570, "border: 1/2, 1/2"),
-        (790, "border: 3/4, 1/8, 1/8"),
+    a_half, a_vertex = "border: 1/2, 1/2", "border: 3/4, 1/8, 1/8"
+    for x, title, rule, border, marks in (
+        (120, "first level", _first_level, a_half, (INK, NEW, INK)),
+        (345, "vertex, valence n", _vertex_rule, a_vertex, (INK, MOVED, INK)),
+        (570, "second level", _second_level, a_half, (MOVED, SECOND, NEW)),
+        (790, "middle, moved again", _middle_again, a_vertex, (MOVED, NEW, MOVED)),
     ):
-        left, right = (x - 70, 52), (x + 70, 52)
-        diagram.line([left, right])
-        marks = (left, right) if "1/2," in rule else (left, (x, 52), right)
-        for place in marks:
-            diagram.disc(place, INK)
-        if "1/2," in rule:
-            diagram.square((x, 52), NEW if x == 120 else SECOND)
-        diagram.text((x, 26), rule, size=12)
+        diagram.text((x, 316), title, size=14)
+        rule(diagram, x, 210)
+        diagram.line([(x - 70, 52), (x + 70, 52)])
+        for place, colour in zip((x - 70, x, x + 70), marks, strict=True):
+            mark = diagram.square if colour == NEW else diagram.disc
+            mark((place, 52), colour)
+        diagram.text((x, 26), border, size=12)
     return diagram.image()
 
 

@@ -11,6 +11,7 @@ from functools import partial
 import numpy as np
 from imgui_bundle import imgui
 
+from risorius.app.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
@@ -42,7 +43,7 @@ def face(viewer: Viewer) -> None:
 
 
 def controls(viewer: Viewer) -> None:
-    """Search, sides apart, and a muscle that was clicked in the face."""
+    """Search, sides apart, and one muscle at work among all of them."""
     viewer.settings.is_linked = False
     viewer.face_panel.search = "lip"
     viewer.session.set("levator_labii_superioris_left", 0.9)
@@ -50,19 +51,20 @@ def controls(viewer: Viewer) -> None:
 
 
 def wipe(viewer: Viewer) -> None:
-    """Static and refined, divided by a line; the dark theme."""
+    """Static and refined, half a face each, divided by a line; the dark theme."""
     viewer.session.toggle_alone("disgust")
     viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
-    viewer.settings.look = Look(
-        compare="wipe", divider=0.46, wireframe=True, colours="splits", skin="clay"
-    )
-    viewer.view.camera.zoom(1.5)
+    viewer.settings.folds["Overlays"] = False  # or the plots below it would be cut off
+    viewer.settings.look = Look(compare="wipe", wireframe=True, colours="splits", skin="clay")
+    viewer.view.camera = camera_for(viewer.session.scene, "front")
+    viewer.view.camera.zoom(1.08)
 
 
 def side_by_side(viewer: Viewer) -> None:
     """Two viewports under one camera, coloured by how far the normals turned apart."""
-    viewer.session.toggle_alone("surprise")
+    viewer.session.toggle_alone("joy")
     viewer.panel_state.wanted_tab = "Mechanism"
+    viewer.settings.folds["Overlays"] = False  # or the plots below it would be cut off
     viewer.settings.look = Look(compare="side by side", colours="curvature drop", skin="clay")
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from risorius.app.capture.captions import captioned, contact_sheet
+from risorius.app.capture.captions import LEAST_CAPTION, captioned, contact_sheet
 from risorius.app.pipeline import side_by_side
 
 GREY = np.full((200, 400, 3), 128, np.uint8)
@@ -34,9 +34,10 @@ def test_a_sheet_has_a_cell_for_each_pose() -> None:
     """Row by row, pictures in their proportions, each with its name below."""
     shades = [np.full((60, 80, 3), shade, np.uint8) for shade in (90, 140, 190)]
     sheet = contact_sheet(list(zip("abc", shades, strict=True)), columns=2, cell_width=160)
-    assert sheet.shape == (2 * (120 + 10), 320, 3)
-    middles = [sheet[60, 80], sheet[60, 240], sheet[190, 80]]
+    row = 120 + LEAST_CAPTION
+    assert sheet.shape == (2 * row, 320, 3)
+    middles = [sheet[60, 80], sheet[60, 240], sheet[row + 60, 80]]
     assert [middle.tolist() for middle in middles] == [[90] * 3, [140] * 3, [190] * 3]
-    names = [sheet[120:130, :160], sheet[120:130, 160:], sheet[250:, :160]]
+    names = [sheet[120:row, :160], sheet[120:row, 160:], sheet[row + 120 :, :160]]
     assert all((name > 60).any() for name in names)
-    assert not (sheet[130:, 160:] > 60).any()
+    assert not (sheet[row:, 160:] > 60).any()
