@@ -40,15 +40,16 @@ def create_kahler(
 ) -> Kahler:
     """Bind the paper's refiner, or what the options make of it, to a mesh (`registry.create`).
 
-    `threshold_once`, `threshold_twice`: drop of the normal dot product above which an edge is
-    split once or twice, for the paper's criterion, "normal".
-    `criterion`: "normal", "curvature", "rest", "silhouette", "screen", "bulge", an object, or a
-    list of them, of which the one counts that asks for most; "normal+rest" is such a list.
-    `scheme`: "loop", the paper's, "cubic", "detail", or an object.
-    `detail`: for "detail" the finer mesh at rest, its positions and its triangles.
-    `blend`: whether points grow out of their edges, so that nothing pops. None stands for what
-    costs nothing in faithfulness: True for the schemes that interpolate, False for the paper's.
-    `coherent`: whether triangulations continue those of the frame before (section 4.4).
+    - `threshold_once`, `threshold_twice`: drop of the normals' dot product above which an edge is
+      split once or twice, for the paper's criterion, "normal".
+    - `criterion`: "normal", "curvature", "rest", "silhouette", "screen", "bulge", an object, or a
+      list of them, of which the one counts that asks for most; "normal+rest" is such a list.
+    - `scheme`: "loop", the paper's, "cubic", "detail", or an object.
+    - `detail`: for "detail" the finer mesh at rest, its positions and its triangles.
+    - `blend`: whether points grow out of their edges, so that nothing pops. None, the default,
+      chooses True for the schemes that interpolate, and False for the paper's.
+    - `coherent`: whether triangulations continue those of the frame before (section 4.4).
+    - `values`: `uv`, `face_uv` and `attributes`, as `create` takes them.
     """
     chosen = scheme_of(scheme, detail)
     decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))
