@@ -30,7 +30,7 @@ from risorius.jit import njit
 
 from .errors import told_in_one_line
 from .files import cannot_be_written, check_file, written_atomically
-from .stopping import listen
+from .stopping import handle_signals
 
 REACH = 45.0  # [mm] beyond which nothing shades
 RAYS = 48  # from each vertex
@@ -250,6 +250,6 @@ def main(arguments: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
-    listen()
+    handle_signals()
     with told_in_one_line():
         main(sys.argv[1:])

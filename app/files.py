@@ -107,7 +107,7 @@ def check_file(target: Path) -> None:
             (folder / whole.name).touch()
 
 
-def check_picture(target: Path) -> None:
+def check_png(target: Path) -> None:
     """Raise UserError, before any work is done, where no picture can be written."""
     if target.suffix.lower() != ".png":
         raise UserError(f"{target}: pictures are written as .png; choose a name that ends so")
@@ -126,7 +126,7 @@ def save_png(target: Path, image: Image, *, is_small: bool = False) -> None:
 
     is_small: take time, so that the file gets as small as it can.
     """
-    check_picture(target)
+    check_png(target)
     with written_atomically(target) as part, cannot_be_written(target):
         PIL.Image.fromarray(image).save(part, format="PNG", optimize=is_small)
 

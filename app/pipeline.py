@@ -33,7 +33,7 @@ class DrawnMesh:
     refiner_name: str
     refiner: refine.Refiner
     stream: render.Stream
-    takes_view: bool  # whether the refiner has a use for where the eye is
+    uses_view: bool  # whether the refiner has a use for where the eye is
     mesh: refine.RefinedMesh | None = None  # what was refined last
 
     @classmethod
@@ -45,18 +45,18 @@ class DrawnMesh:
         stream = renderer.lend_stream(
             refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
         )
-        takes_view = "view" in inspect.signature(refiner.refine).parameters
-        return cls(name, refiner, stream, takes_view)
+        uses_view = "view" in inspect.signature(refiner.refine).parameters
+        return cls(name, refiner, stream, uses_view)
 
     def refine(
         self, positions: npt.NDArray[np.float64], camera: render.OrbitCamera, viewport: Viewport
     ) -> None:
         """Fill the lent buffers with refined triangles, for whoever looks through the viewport."""
-        looked_from = {}
-        if self.takes_view:
+        view_option = {}
+        if self.uses_view:
             focal = camera.focal(viewport[2] / viewport[3], viewport[3])
-            looked_from["view"] = refine.View(camera.eye, focal)
-        self.mesh = self.refiner.refine(positions, out=self.stream, **looked_from)
+            view_option["view"] = refine.View(camera.eye, focal)
+        self.mesh = self.refiner.refine(positions, out=self.stream, **view_option)
 
     def upload(self, wrinkling: Amounts | None = None) -> None:
         """Hand over what was refined last, and how far the scene's vertices wrinkle."""

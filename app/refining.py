@@ -16,7 +16,7 @@ from .scenes import Scene
 
 LARGEST = 1e30  # of a number in an option: in single precision it is still one
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
-WORDS = {"on": True, "true": True, "off": False, "false": False}
+SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 
 def refiner_for(scene: Scene, name: str, options: Mapping[str, Any] | None) -> refine.Refiner:
@@ -56,13 +56,13 @@ def _is_switch(annotation: object) -> bool:
     return set(get_args(annotation)) == {bool, NoneType}
 
 
-def _check(name: str, offered: Mapping[str, Any], options: Mapping[str, Any]) -> None:
+def _check(name: str, defaults: Mapping[str, Any], options: Mapping[str, Any]) -> None:
     """UserError for an option that the refiner does not offer, or of another kind."""
     for option, value in options.items():
-        if option not in offered:
-            takes = f"it takes {', '.join(offered)}" if offered else "it has no options"
+        if option not in defaults:
+            takes = f"it takes {', '.join(defaults)}" if defaults else "it has no options"
             raise UserError(f"refiner {name}: unknown option {option}; {takes}")
-        default = offered[option]
+        default = defaults[option]
         if default is None or isinstance(default, bool):
             is_right, wanted = value is None or isinstance(value, bool), "on or off"
         elif isinstance(default, str):
@@ -87,7 +87,7 @@ def finer_mesh(scene: Scene) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.in
     return finer.vertices, finer.faces
 
 
-def options_in_words(name: str, settings: Sequence[str]) -> dict[str, Any] | None:
+def parse_options(name: str, settings: Sequence[str]) -> dict[str, Any] | None:
     """What `--option NAME=VALUE ...` tells the refiner `name`; None for nothing.
 
     Numbers, on and off, or words. Raises UserError for an unknown refiner, and where the mesh is
@@ -113,8 +113,8 @@ def options_in_words(name: str, settings: Sequence[str]) -> dict[str, Any] | Non
 
 
 def _value(text: str) -> bool | int | float | str:
-    if text.lower() in WORDS:
-        return WORDS[text.lower()]
+    if text.lower() in SWITCHES:
+        return SWITCHES[text.lower()]
     for kind in (int, float):
         try:
             return kind(text)

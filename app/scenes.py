@@ -125,7 +125,7 @@ class FaceScene(Scene):
         return openness(head, simulation)
 
     def pose(self, channels: Mapping[str, float]) -> None:
-        self.simulation.pose(within(self.limits, channels))
+        self.simulation.pose(clamped(self.limits, channels))
 
     def step(self, seconds: float) -> None:
         count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))
@@ -180,7 +180,7 @@ class PlaneScene(Scene):
         return self._values
 
     def pose(self, channels: Mapping[str, float]) -> None:
-        self._values.update({**dict.fromkeys(self.limits, 0.0), **within(self.limits, channels)})
+        self._values.update({**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, channels)})
 
     def step(self, seconds: float) -> None:
         wave = np.sin(2.0 * np.pi * (self._turns - self._values["phase"]))
@@ -192,7 +192,7 @@ class PlaneScene(Scene):
         self._positions[:] = self.rest_positions
 
 
-def within(
+def clamped(
     limits: Mapping[str, tuple[float, float]], channels: Mapping[str, float]
 ) -> dict[str, float]:
     """The channels, each cut off at its limits. Raises UserError on one that has none."""

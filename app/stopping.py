@@ -40,7 +40,7 @@ def done_whole() -> Iterator[None]:
             _stop(_postponed[0], None)
 
 
-def listen() -> None:
+def handle_signals() -> None:
     """Let signals end this process as described above; those that are ignored stay ignored."""
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):  # Windows has not the last
         number = getattr(signal, name, None)

@@ -29,7 +29,7 @@ from .generator.form import EYE_CENTRE, EYE_RADIUS
 from .generator.landmarks import anatomy, landmark_vertices
 from .generator.oral import lower_cavity, tongue, upper_cavity
 from .generator.painting import SIZE, paint_skin
-from .generator.skin import Skin, build_half, mirrored
+from .generator.skin import SkinMesh, build_half, mirrored
 from .generator.solids import Solid
 from .generator.unwrap import unwrap
 from .generator.wrinkling import paint_wrinkles
@@ -80,7 +80,7 @@ def part_arrays() -> dict[str, npt.NDArray[np.generic]]:
     }
 
 
-def skin_arrays(skin: Skin) -> dict[str, npt.NDArray[np.generic]]:
+def skin_arrays(skin: SkinMesh) -> dict[str, npt.NDArray[np.generic]]:
     """Return the skin, its names and its bone data as arrays."""
     named = anatomy(skin)
     arrays: dict[str, npt.NDArray[np.generic]] = {
@@ -120,7 +120,7 @@ def build_finer(head: Head) -> dict[str, npt.NDArray[np.generic]]:
         for name, row in head.rings.items()
         if name.endswith("_left")
     }
-    added, normals = refine_skin(Skin(head.vertices, head.faces, {}, rings, head.mirror))
+    added, normals = refine_skin(SkinMesh(head.vertices, head.faces, {}, rings, head.mirror))
     return {
         "added_vertices": added.astype(np.float32),
         "normals": normals.astype(np.float16),  # 0.03 degrees; full precision would double the file

@@ -31,26 +31,28 @@ def check_ply(content: bytes) -> bytes:
         raise AssetError("is no PLY file: it must begin with 'ply' and have an 'end_header'")
     header = plain_text(content[: end.end()]).split(b"\n")
     lines = [line.split() for line in header if line.split()]
-    kind = next((words[1] for words in lines if words[0] == b"format" and len(words) > 1), b"")
+    kind = next((fields[1] for fields in lines if fields[0] == b"format" and len(fields) > 1), b"")
     if kind not in PLY_FORMATS:
         raise AssetError("has no PLY format that is known: ascii, or binary with its byte order")
     ends = {b"": 0}  # name of an element -> number of the row behind its last one
-    for words in lines:
-        if words[0] == b"element":
-            if len(words) != 3:
+    for fields in lines:
+        if fields[0] == b"element":
+            if len(fields) != 3:
                 raise AssetError("its PLY header is broken: an element must have a name and count")
-            count = _count(words[2], f"element {words[1][:20].decode()}")
-            ends[words[1]] = max(ends.values()) + count
+            count = _count(fields[2], f"element {fields[1][:20].decode()}")
+            ends[fields[1]] = max(ends.values()) + count
     if kind != b"ascii":
-        return b"\n".join(b" ".join(words) for words in lines) + b"\n" + content[end.end() :]
+        return b"\n".join(b" ".join(fields) for fields in lines) + b"\n" + content[end.end() :]
     text = _BLANK_LINES.sub(b"\n", plain_text(content[end.end() :])).strip()
     rows = text.split(b"\n") if text else []
     _check_rows(len(rows), max(ends.values()))
-    face = next((at for at, words in enumerate(lines) if words[:2] == [b"element", b"face"]), None)
+    face = next(
+        (at for at, fields in enumerate(lines) if fields[:2] == [b"element", b"face"]), None
+    )
     if face is not None and lines[face + 1][:2] == [b"property", b"list"]:
         last = ends[b"face"]
         _check_polygons(rows[last - int(lines[face][2]) : last])
-    return b"\n".join(b" ".join(words) for words in lines) + b"\n" + text + b"\n"
+    return b"\n".join(b" ".join(fields) for fields in lines) + b"\n" + text + b"\n"
 
 
 def check_off(content: bytes) -> bytes:

@@ -129,7 +129,7 @@ class FineMesh:
     normals: FloatArray
     coarse_faces: IndexArray
 
-    def carried(self, values: FloatArray | SingleArray) -> FloatArray:
+    def interpolate(self, values: FloatArray | SingleArray) -> FloatArray:
         """Carry values of the head's vertices (depth, weight, motion) over to the fine ones.
 
         values: shape (V,) or (V, k). Returns shape (n,) or (n, k).

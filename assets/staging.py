@@ -23,7 +23,7 @@ OLD = 86_400.0  # [s] since the last change in a folder that is swept away
 MARK = "made-by-risorius"  # the file in it that says so, and is locked
 INSIDE = "new"  # the folder in it that holds what is made
 _NAME = re.compile(re.escape(PREFIX) + "[0-9a-f]{12}")
-_WORDS = b"Risorius makes files here, and takes this folder away when they are made.\n"
+_MARK_TEXT = b"Risorius makes files here, and takes this folder away when they are made.\n"
 
 
 class StagingFolder:
@@ -42,7 +42,7 @@ class StagingFolder:
             self._folder.mkdir(mode=0o700)
             self._lock = locked(self._folder / MARK)
             if self._lock is not None:
-                self._lock.write(_WORDS)
+                self._lock.write(_MARK_TEXT)
                 self._lock.flush()
             (self._folder / INSIDE).mkdir()
         except BaseException:
@@ -74,7 +74,7 @@ def is_staging_folder(path: Path) -> bool:
             return False
         if INSIDE in names and not stat.S_ISDIR((path / INSIDE).lstat().st_mode):
             return False
-        return mark.st_size == len(_WORDS) and (path / MARK).read_bytes() == _WORDS
+        return mark.st_size == len(_MARK_TEXT) and (path / MARK).read_bytes() == _MARK_TEXT
     except OSError:
         return False
 

@@ -30,12 +30,12 @@ def read_obj(content: bytes, *, most: int) -> tuple[npt.NDArray[np.float64], npt
     most: vertices and triangles that are allowed. Raises AssetError, which names the line.
     """
     coordinates, corners = array("d"), array("q")
-    for number, words in _statements(plain_text(content)):
+    for number, fields in _statements(plain_text(content)):
         try:
-            if words[0] == b"v":
-                coordinates.extend(_point(words))
+            if fields[0] == b"v":
+                coordinates.extend(_point(fields))
             else:
-                _add_fan(corners, words, len(coordinates) // 3)
+                _add_fan(corners, fields, len(coordinates) // 3)
             if max(len(coordinates), len(corners)) > 3 * most:
                 raise AssetError(
                     f"more than {most} vertices or triangles; reduce it in a modelling program"
@@ -49,7 +49,7 @@ def read_obj(content: bytes, *, most: int) -> tuple[npt.NDArray[np.float64], npt
 
 
 def _statements(text: bytes) -> Iterator[tuple[int, list[bytes]]]:
-    """Number and words of each line that tells a vertex or a face; a backslash joins lines."""
+    """Number and fields of each line that tells a vertex or a face; a backslash joins lines."""
     parts: list[bytes] = []
     start = length = 0
     for number, line in enumerate(io.BytesIO(text), start=1):
@@ -72,31 +72,31 @@ def _statements(text: bytes) -> Iterator[tuple[int, list[bytes]]]:
         yield start, b" ".join(parts).split()
 
 
-def _point(words: list[bytes]) -> tuple[float, float, float]:
-    if len(words) < 4:
-        raise AssetError(f"a vertex has {len(words) - 1} coordinates; it must have 3")
+def _point(fields: list[bytes]) -> tuple[float, float, float]:
+    if len(fields) < 4:
+        raise AssetError(f"a vertex has {len(fields) - 1} coordinates; it must have 3")
     try:
-        return float(words[1]), float(words[2]), float(words[3])
+        return float(fields[1]), float(fields[2]), float(fields[3])
     except ValueError:
-        raise AssetError(f"'{_excerpt(words)}' is no vertex; it must be 'v x y z'") from None
+        raise AssetError(f"'{_excerpt(fields)}' is no vertex; it must be 'v x y z'") from None
 
 
-def _add_fan(corners: array[int], words: list[bytes], vertex_count: int) -> None:
+def _add_fan(corners: array[int], fields: list[bytes], vertex_count: int) -> None:
     """Append the triangles of a polygon; numbers count from 1, or back from the last vertex."""
-    if len(words) < 4:
-        raise AssetError(f"a face has {len(words) - 1} corners; it must have at least 3")
+    if len(fields) < 4:
+        raise AssetError(f"a face has {len(fields) - 1} corners; it must have at least 3")
     try:
-        found = [int(word.split(b"/", 1)[0]) for word in words[1:]]
+        found = [int(word.split(b"/", 1)[0]) for word in fields[1:]]
     except ValueError:
         raise AssetError(
-            f"'{_excerpt(words)}' is no face; it must be 'f' and whole vertex numbers"
+            f"'{_excerpt(fields)}' is no face; it must be 'f' and whole vertex numbers"
         ) from None
     for place, number in enumerate(found):
         if number == 0 or number < -vertex_count or number >= 2**31:
             back = f"-1 to -{vertex_count}" if vertex_count else "no number below 0"
             raise AssetError(
-                f"no vertex has the number {words[place + 1][:EXCERPT].decode()}; allowed are 1 to "
-                f"the number of vertices, and {back} at this line"
+                f"no vertex has the number {fields[place + 1][:EXCERPT].decode()}; allowed are 1 "
+                f"to the number of vertices, and {back} at this line"
             )
         found[place] = number - 1 if number > 0 else vertex_count + number
     first = found[0]
@@ -104,6 +104,6 @@ def _add_fan(corners: array[int], words: list[bytes], vertex_count: int) -> None
         corners.extend((first, second, third))
 
 
-def _excerpt(words: list[bytes]) -> str:
-    line = b" ".join(words[:8])
+def _excerpt(fields: list[bytes]) -> str:
+    line = b" ".join(fields[:8])
     return line.decode() if len(line) <= EXCERPT else line[:EXCERPT].decode() + " ..."

@@ -85,7 +85,7 @@ class Canvas:
         self.surface.end()
         return stream.triangle_count
 
-    def picture(
+    def draw_image(
         self, refiner: refine.Refiner, positions: npt.NDArray[np.floating], drawing: Drawing
     ) -> Image:
         """Draw and read back."""
@@ -93,7 +93,7 @@ class Canvas:
         return self.surface.read()
 
 
-def table_of_pictures(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Image:
+def image_table(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Image:
     """Lay pictures of one size out in rows, each row with a title above and each cell a caption."""
     first = rows[0][1][0][1]
     height, width = first.shape[:2]

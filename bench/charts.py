@@ -61,8 +61,8 @@ def chart(
 ) -> Image:
     """Draw curves over two axes, named at their right ends; shape (height, width, 3)."""
     width, height = size[0] * SCALE, size[1] * SCALE
-    picture = PIL.Image.new("RGB", (width, height), PAPER)
-    draw = ImageDraw.Draw(picture)
+    page = PIL.Image.new("RGB", (width, height), PAPER)
+    draw = ImageDraw.Draw(page)
     left, top, right, bottom = (round(margin * height) for margin in MARGINS)
     right += round(0.06 * height)
     text = font(0.036 * height)
@@ -97,7 +97,7 @@ def chart(
             draw.ellipse([x - radius, y - radius, x + radius, y + radius], fill=colour)
         names.append((places[-1][1], one.name, colour))
     _name_curves(draw, names, width - right + 5 * SCALE, 0.047 * height, text)
-    small = picture.resize(size, PIL.Image.Resampling.LANCZOS)
+    small = page.resize(size, PIL.Image.Resampling.LANCZOS)
     return np.asarray(small)
 
 

@@ -54,11 +54,11 @@ def reproduce() -> None:
 )
 @json_option
 def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None) -> None:
-    """Time refinement on the face and on sheets of up to a million triangles, beside peers."""
+    """Time refinement on the face and on meshes of up to a million triangles, beside peers."""
     from . import refine, refine_report
 
     save = _json(json_file)
-    report = refine.run(
+    report = refine.measure(
         sizes=sizes or refine.SIZES, seconds=seconds, starts=not sizes, progress=_progress
     )
     click.echo(refine_report.text(report))
@@ -84,12 +84,12 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None)
 )
 def bench_quality(reference: Path | None, finer: str, apart: bool, curves: Path | None) -> None:
     """Measure how near every scheme comes to a dense face, for the triangles it spends."""
-    from risorius.app.files import check_picture, save_png
+    from risorius.app.files import check_png, save_png
 
     from . import quality, quality_report, subjects
 
     if curves is not None:
-        check_picture(curves)
+        check_png(curves)
     measured: list[subjects.Subject] = []
     if reference is not None:
         with _told():
@@ -100,7 +100,7 @@ def bench_quality(reference: Path | None, finer: str, apart: bool, curves: Path 
         raise UserError("nothing to measure: give --reference FOLDER, or --finer 4 or 16")
     budgets = quality.BUDGETS if curves is None else quality.CURVE_BUDGETS
     for subject in measured:
-        scores = quality.run(subject, budgets=budgets, progress=_progress)
+        scores = quality.measure(subject, budgets=budgets, progress=_progress)
         click.echo(quality_report.text(subject, scores) + "\n")
         if curves is None:
             continue
@@ -117,7 +117,7 @@ def bench_simulate(rounds: int) -> None:
     """Time a 60 Hz frame of the simulation: the head, and plain meshes up to 100k vertices."""
     from . import simulate
 
-    click.echo(simulate.report(simulate.run(rounds=rounds), rounds))
+    click.echo(simulate.report(simulate.measure(rounds=rounds), rounds))
 
 
 @bench.command("motion")
@@ -132,7 +132,7 @@ def bench_motion(reference: Path) -> None:
     from . import motion
 
     with _told("--reference: "):
-        click.echo(motion.report(*motion.run(reference)))
+        click.echo(motion.report(*motion.measure(reference)))
 
 
 @bench.command("soak")
@@ -143,7 +143,7 @@ def bench_soak(minutes: float) -> None:
     """Drive the face with random input for a simulated hour: does it stay sound, and come back."""
     from . import soak
 
-    click.echo(soak.report(soak.run(minutes=minutes)))
+    click.echo(soak.report(soak.measure(minutes=minutes)))
 
 
 @bench.command("gaps")
@@ -153,7 +153,7 @@ def bench_gaps(json_file: Path | None) -> None:
     from . import gaps
 
     save = _json(json_file)
-    poses = gaps.run()
+    poses = gaps.measure()
     click.echo(gaps.report(poses))
     save([asdict(pose) for pose in poses])
 
@@ -164,7 +164,7 @@ def bench_tearing(mixtures: int) -> None:
     """Look for torn skin and for contacts that fail, in all expressions and random mixtures."""
     from . import tearing
 
-    click.echo(tearing.report(tearing.run(mixtures=mixtures), mixtures))
+    click.echo(tearing.report(tearing.measure(mixtures=mixtures), mixtures))
 
 
 @bench.command("meshes")
@@ -185,11 +185,11 @@ def bench_meshes(folder: Path, seed: int, seconds: float, most: int) -> None:
     from . import meshes
 
     with _told():
-        seen = meshes.run(
+        results = meshes.measure(
             folder, seed=seed, seconds=seconds, most_triangles=most, progress=_progress
         )
-    click.echo(meshes.report(seen))
-    sys.exit(1 if any(each.broken for each in seen) else 0)
+    click.echo(meshes.report(results))
+    sys.exit(1 if any(each.broken for each in results) else 0)
 
 
 @bench.command("window")
@@ -210,7 +210,7 @@ def reproduce_table1(rounds: int) -> None:
     """Print Table 1 of the paper beside our own figures."""
     from . import table1
 
-    click.echo(table1.report(*table1.run(rounds=rounds)))
+    click.echo(table1.report(*table1.measure(rounds=rounds)))
 
 
 def _figure(name: str, function: str, help_text: str) -> None:
@@ -219,13 +219,13 @@ def _figure(name: str, function: str, help_text: str) -> None:
     @reproduce.command(name, help=help_text)
     @click.option("-o", "--output", type=PATH, default=Path(f"out/{name}.png"), show_default=True)
     def draw(output: Path) -> None:
-        from risorius.app.files import check_picture, save_png
+        from risorius.app.files import check_png, save_png
 
         from . import paper_figures
 
-        check_picture(output)
-        picture: Callable[[], Image] = getattr(paper_figures, function)
-        save_png(output, picture())
+        check_png(output)
+        draw: Callable[[], Image] = getattr(paper_figures, function)
+        save_png(output, draw())
         click.echo(f"{in_one_line(output)}: written")
 
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from risorius.app.cli.parameters import LEAST, MOST
 from risorius.app.errors import UserError, told_in_one_line
-from risorius.app.files import Image, check_picture, save_png
-from risorius.app.stopping import listen
+from risorius.app.files import Image, check_png, save_png
+from risorius.app.stopping import handle_signals
 
 Figure = Callable[[], Image]
 FOLDER = Path("docs/pictures")
@@ -43,7 +43,7 @@ def chosen(figures: Mapping[str, Figure], only: Sequence[str]) -> dict[str, Figu
 def draw(folder: Path, figures: Mapping[str, Figure]) -> None:
     """Draw each figure into NAME.png in the folder, which is looked at before anything is drawn."""
     for name in figures:
-        check_picture(folder / f"{name}.png")
+        check_png(folder / f"{name}.png")
     for name, figure in figures.items():
         save_png(folder / f"{name}.png", figure(), is_small=True)
 
@@ -55,6 +55,6 @@ def without_noise(image: Image) -> Image:
 
 def run(main: Callable[[Sequence[str]], None]) -> None:
     """Run a program by the rules of the command: mistakes are one line, signals are heard."""
-    listen()
+    handle_signals()
     with told_in_one_line():
         main(sys.argv[1:])

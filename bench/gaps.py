@@ -17,7 +17,7 @@ from risorius import assets, refine, sim
 
 from .lines_of_sight import lid_gaps, meshes_of, sunk_in_eyeballs, widest_slit
 from .report import table
-from .subjects import settled
+from .subjects import settled_positions
 
 SETTLE = 45  # frames of 1/60 s until a pose is still
 UNITS = "Action units"
@@ -31,7 +31,7 @@ LIPS_MOST, LIDS_MOST = 0.5, 0.3  # mm: what may stay open
 
 
 @dataclass(frozen=True)
-class Pose:
+class PoseGaps:
     """What stays open in one pose; None where nothing ought to be shut."""
 
     name: str
@@ -40,14 +40,14 @@ class Pose:
     sunk: float  # mm that skin is deeper in an eyeball than at rest
 
 
-def run() -> list[Pose]:
+def measure() -> list[PoseGaps]:
     """Measure every pose."""
     head = assets.load("head")
     simulation = sim.create(head)
     refiner = refine.create("kahler", head.faces, head.vertices, criterion="normal+rest")
     poses = []
     for name, is_shut in _rows(simulation):
-        landmarks = settled(simulation, {name: 1.0}, SETTLE)[head.landmarks]
+        landmarks = settled_positions(simulation, {name: 1.0}, SETTLE)[head.landmarks]
         shut = [side for side in ("right", "left") if simulation.sums[f"{CLOSER}_{side}"] >= SHUT]
         lips, lids = [], []
         for positions, triangles in meshes_of(simulation, refiner).values():
@@ -59,11 +59,11 @@ def run() -> list[Pose]:
         sunk = sunk_in_eyeballs(
             simulation.positions, simulation.rest_positions, simulation.faces, head.eyes
         )
-        poses.append(Pose(name, max(lips, default=None), max(lids, default=None), sunk))
+        poses.append(PoseGaps(name, max(lips, default=None), max(lids, default=None), sunk))
     return poses
 
 
-def worst(poses: Sequence[Pose], part: str) -> tuple[float, Pose]:
+def worst(poses: Sequence[PoseGaps], part: str) -> tuple[float, PoseGaps]:
     """The greatest value of `part` ("lips", "lids" or "sunk") [mm] and the pose that has it."""
     found = [(value, pose) for pose in poses if (value := getattr(pose, part)) is not None]
     return max(found, key=lambda pair: pair[0])
@@ -80,7 +80,7 @@ def _rows(simulation: sim.Simulation) -> Iterator[tuple[str, bool]]:
         yield name, name in MOUTH_SHUT
 
 
-def report(poses: Sequence[Pose]) -> str:
+def report(poses: Sequence[PoseGaps]) -> str:
     """The text to print."""
     asked = {"lips": LIPS_MOST, "lids": LIDS_MOST, "sunk": None}
     rows = []

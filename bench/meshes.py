@@ -43,8 +43,8 @@ BUMP = 0.2  # [of an edge] on the finer mesh that detail is taken from
 
 
 @dataclass(frozen=True)
-class Seen:
-    """What was seen of one file."""
+class MeshResult:
+    """What was found on one file."""
 
     name: str
     triangles: int = 0
@@ -54,23 +54,23 @@ class Seen:
     is_cut_short: bool = False  # by the time a mesh has
 
 
-def run(
+def measure(
     folder: Path,
     *,
     seed: int = SEED,
     seconds: float = SECONDS,
     most_triangles: int = MOST_TRIANGLES,
     progress: Callable[[str], object] = lambda _: None,
-) -> list[Seen]:
+) -> list[MeshResult]:
     """Look at every mesh in a folder and those below it; ValueError where there is none."""
-    seen = []
+    found = []
     for path in _mesh_files(folder):
         name = str(path.relative_to(folder))
         progress(name)
-        seen.append(_file(path, name, seed, seconds, most_triangles))
-    if not seen:
+        found.append(_measure_file(path, name, seed, seconds, most_triangles))
+    if not found:
         raise ValueError(f"{folder}: holds no file that could be a mesh (.obj, .ply, .stl, ...)")
-    return seen
+    return found
 
 
 def refined(
@@ -100,14 +100,14 @@ def refined(
         for number, pose in enumerate(poses):
             if time.perf_counter() > end:
                 return frames, broken, True
-            wrong = _frame(refiner, vertices, faces, pose)
+            wrong = _fault_in_pose(refiner, vertices, faces, pose)
             frames += 1
             if wrong:
                 broken.append(f"{method}, pose {number}: {wrong}")
     return frames, broken, False
 
 
-def _frame(refiner: refine.Refiner, vertices: Points, faces: Faces, pose: Points) -> str:
+def _fault_in_pose(refiner: refine.Refiner, vertices: Points, faces: Faces, pose: Points) -> str:
     """Refine one pose: what is wrong with it, "" if nothing."""
     before = [array.tobytes() for array in (vertices, faces, pose)]
     mesh = refiner.refine(pose)
@@ -143,23 +143,25 @@ def _mesh_files(folder: Path) -> Iterator[Path]:
                 yield Path(parent) / name
 
 
-def _file(path: Path, name: str, seed: int, seconds: float, most_triangles: int) -> Seen:
+def _measure_file(
+    path: Path, name: str, seed: int, seconds: float, most_triangles: int
+) -> MeshResult:
     try:
         if path.is_file() and path.stat().st_size > LARGEST_FILE:
-            return Seen(name, left_out=f"has more than {LARGEST_FILE >> 20} MB")
+            return MeshResult(name, left_out=f"has more than {LARGEST_FILE >> 20} MB")
         mesh = assets.read_mesh(path)
         count = len(mesh.faces)
         if count > most_triangles:
-            return Seen(name, count, left_out=f"has more than {most_triangles} triangles")
+            return MeshResult(name, count, left_out=f"has more than {most_triangles} triangles")
         own_seed = zlib.crc32(f"{seed} {name}".encode())
         frames, broken, is_cut_short = refined(
             mesh.vertices, mesh.faces, seed=own_seed, seconds=seconds
         )
     except (assets.AssetError, OSError) as error:
-        return Seen(name, left_out=str(error).removeprefix(f"{path}: "))
+        return MeshResult(name, left_out=str(error).removeprefix(f"{path}: "))
     except ValueError as error:  # of refine.create and refine
-        return Seen(name, count, left_out=f"refused: {error}")
-    return Seen(name, count, frames, tuple(broken), is_cut_short=is_cut_short)
+        return MeshResult(name, count, left_out=f"refused: {error}")
+    return MeshResult(name, count, frames, tuple(broken), is_cut_short=is_cut_short)
 
 
 def _poses(vertices: Points, faces: Faces, generator: np.random.Generator) -> list[Points]:
@@ -191,11 +193,11 @@ def _finer(vertices: Points, faces: Faces, generator: np.random.Generator) -> tu
     return np.concatenate([vertices, vertices[finer.edges].mean(axis=1) + bumps]), finer.faces
 
 
-def report(seen: Sequence[Seen]) -> str:
+def report(found: Sequence[MeshResult]) -> str:
     """The text to print."""
-    refined = [each for each in seen if not each.left_out]
+    refined = [each for each in found if not each.left_out]
     lines = [f"{'triangles':>9} {'frames':>6} {'broken':>6}  mesh"]
-    for each in seen:
+    for each in found:
         note = f": left out, {each.left_out}" if each.left_out else ""
         note += ": cut short" if each.is_cut_short else ""
         lines.append(
@@ -206,10 +208,10 @@ def report(seen: Sequence[Seen]) -> str:
         [
             *lines,
             "",
-            f"{len(seen)} files: {len(refined)} refined, {len(seen) - len(refined)} left out, "
-            f"{sum(each.is_cut_short for each in seen)} cut short;",
+            f"{len(found)} files: {len(refined)} refined, {len(found) - len(refined)} left out, "
+            f"{sum(each.is_cut_short for each in found)} cut short;",
             f"{sum(each.triangles for each in refined)} triangles, "
-            f"{sum(each.frames for each in seen)} frames, "
-            f"{sum(len(each.broken) for each in seen)} of them broken",
+            f"{sum(each.frames for each in found)} frames, "
+            f"{sum(len(each.broken) for each in found)} of them broken",
         ]
     )

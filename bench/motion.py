@@ -35,7 +35,7 @@ from risorius.sim.landmarks import Side
 from risorius.sim.rig import LinearMuscle, RingMuscle
 
 from .report import table
-from .subjects import DENSE, read_arrays, settled
+from .subjects import DENSE, read_arrays, settled_positions
 
 Array = npt.NDArray[np.float64]
 
@@ -73,7 +73,7 @@ class Shape:
     cut: Side | None  # the side of a one-sided field for which there is no one-sided control
 
 
-def run(directory: str | Path) -> tuple[list[Row], list[str]]:
+def measure(directory: str | Path) -> tuple[list[Row], list[str]]:
     """Score every shape of the reference in `directory` that shapes.toml knows.
 
     Returns the scores, and the names of fields that have none: unknown ones, and those in which
@@ -171,7 +171,7 @@ def _controls(
 
 def _posed(simulation: sim.Simulation, values: Mapping[str, float]) -> Array:
     """Displacement [mm] of the settled pose, shape (V, 3)."""
-    return settled(simulation, values, SETTLE) - simulation.rest_positions
+    return settled_positions(simulation, values, SETTLE) - simulation.rest_positions
 
 
 class _Ruler:

@@ -17,7 +17,7 @@ from risorius.app.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.scenes import FaceScene, PlaneScene
 
-from .canvas import Canvas, Drawing, table_of_pictures
+from .canvas import Canvas, Drawing, image_table
 from .turned_lines import Line, inner_lines, point_rows, turned
 
 FRAME_SECONDS = 1.0 / 30.0
@@ -54,10 +54,10 @@ def figure_9(size: tuple[int, int] = (380, 230)) -> Image:
                 for phase in WAVE_PHASES:
                     scene.pose({"amplitude": 1.0, "phase": phase})
                     scene.step(FRAME_SECONDS)
-                    image = canvas.picture(refiner, scene.positions, Drawing(camera, style))
+                    image = canvas.draw_image(refiner, scene.positions, Drawing(camera, style))
                     cells.append((f"{canvas.stream_for(refiner).triangle_count} triangles", image))
                 rows.append((f"{title}, {shading} shading", cells))
-    return table_of_pictures(rows)
+    return image_table(rows)
 
 
 def figure_10(size: tuple[int, int] = (360, 270), *, poses: Sequence[str] = MOUTH_POSES) -> Image:
@@ -89,10 +89,10 @@ def figure_10(size: tuple[int, int] = (360, 270), *, poses: Sequence[str] = MOUT
             cells = []
             for refiner, (title, _, _, style) in zip(refiners, looks, strict=True):
                 drawing = Drawing(_mouth_camera(scene), style, parts=scene.parts, bones=bones)
-                image = canvas.picture(refiner, scene.positions, drawing)
+                image = canvas.draw_image(refiner, scene.positions, drawing)
                 cells.append((f"{title} · {canvas.stream_for(refiner).triangle_count}", image))
             rows.append((pose, cells))
-    return table_of_pictures(rows)
+    return image_table(rows)
 
 
 def _mouth_camera(scene: FaceScene) -> render.OrbitCamera:
@@ -124,7 +124,7 @@ def coherence(size: tuple[int, int] = (250, 200)) -> Image:
                 **scene.refiner_options["kahler"],
             )
             rows.append((title, _moments(scene, refiner, canvas)))
-    return table_of_pictures(rows)
+    return image_table(rows)
 
 
 def _moments(scene: PlaneScene, refiner: refine.Refiner, canvas: Canvas) -> list[tuple[str, Image]]:
@@ -148,7 +148,7 @@ def _moments(scene: PlaneScene, refiner: refine.Refiner, canvas: Canvas) -> list
         if step % STEPS_BETWEEN == 0:
             lines = [_lifted(mesh, points[a], points[b]) for _, a, b in sorted(gone)]
             drawing = Drawing(camera, GROWING, lines=lines, line_width=2.4)
-            image = canvas.picture(refiner, scene.positions, drawing)
+            image = canvas.draw_image(refiner, scene.positions, drawing)
             cells.append((f"{len(mesh.triangles)} triangles, {len(gone)} turned", image))
             gone = set()
     return cells

@@ -33,7 +33,7 @@ from risorius.refine.kahler.criterion import Thresholds
 
 from .nearest import nearest_points
 from .pn import tessellate
-from .subjects import Pose, Subject
+from .subjects import PosePair, Subject
 
 Array = npt.NDArray[np.float64]
 Narrow = npt.NDArray[np.float32]
@@ -99,7 +99,7 @@ class _Everywhere:
         splits[:] = 2
 
 
-def run(
+def measure(
     subject: Subject,
     *,
     schemes: Sequence[str] = SCHEMES,
@@ -189,7 +189,7 @@ def _scores_of(
     sliding: Sequence[_Sliding],
     budgets: tuple[float, ...],
     expression: str,
-    pose: Pose,
+    pose: PosePair,
 ) -> list[Score]:
     normals = vertex_normals(pose.dense, subject.dense_faces)
 
@@ -235,7 +235,7 @@ def _scores_of(
 
 
 def _on_truth(
-    mesh: refine.RefinedMesh, pose: Pose, subject: Subject, normals: Array
+    mesh: refine.RefinedMesh, pose: PosePair, subject: Subject, normals: Array
 ) -> tuple[Array, Array, npt.NDArray[np.uint32]]:
     """The mesh with each vertex moved to the nearest point of the true surface."""
     found = nearest_points(mesh.positions, pose.dense, subject.dense_faces)

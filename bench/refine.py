@@ -3,8 +3,8 @@
 Kähler, Haber, Seidel 2003, Table 1 compares the static with the refined mesh. Here the time of the
 refiner is taken, from positions to a filled stream, everything counted: normals, criterion, points,
 table, output and the call from Python. Meshes: the built-in face in six full expressions with the
-default thresholds, and sheets (waving_meshes.py) with thresholds that split 10, 50 or 100 % of the
-edges.
+default thresholds, and large ones (waving_meshes.py) with thresholds that split 10, 50 or 100 %
+of the edges.
 
 The methods of a mesh are run interleaved, forwards and backwards in turn, with garbage collection
 off, and medians are reported: on a shared machine times drift by a third within a run, and so only
@@ -26,7 +26,7 @@ from risorius import assets, refine, sim
 
 from .peers import peers_for
 from .starts import Starts, measure_peak, measure_starts
-from .subjects import settled
+from .subjects import settled_positions
 from .timing import interleaved
 from .waving_meshes import Load, waving_mesh
 
@@ -36,9 +36,9 @@ FULL_EXPRESSIONS = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
 SETTLED = 90  # steps of 1/60 s after which the face stands still
 SHARES = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
 """Per cent of the edges that are split -> quantiles of the drops that are the two thresholds."""
-SHEETS = {"2k": 2_000, "20k": 20_000, "200k": 200_000, "1M": 1_000_000}
+TRIANGLE_COUNTS = {"2k": 2_000, "20k": 20_000, "200k": 200_000, "1M": 1_000_000}
 SHUFFLED = ("200k shuffled", "1M shuffled")
-"""The same sheets with vertices, triangles and corners in any order; at 10 % only."""
+"""The same meshes with vertices, triangles and corners in any order; at 10 % only."""
 SIZES = ("face", "20k", "200k", "1M", *SHUFFLED)
 """What is measured unless told; 2k is for a quick look."""
 LARGE = 500_000  # triangles from which on two frames must do
@@ -126,7 +126,7 @@ class _Case:
             self.call(frame)
 
 
-def run(
+def measure(
     *,
     sizes: Sequence[str] = SIZES,
     seconds: float = SECONDS,
@@ -137,7 +137,7 @@ def run(
 
     Raises ValueError for a size that there is not.
     """
-    known = ("face", *SHEETS, *SHUFFLED)
+    known = ("face", *TRIANGLE_COUNTS, *SHUFFLED)
     unknown = [size for size in sizes if size not in known]
     if unknown:
         raise ValueError(f"unknown size {unknown[0]!r}; there are {', '.join(known)}")
@@ -149,7 +149,7 @@ def run(
             cases = _face_cases(load, report)
         else:
             shares = SHARES if size not in SHUFFLED else {10: SHARES[10]}
-            cases = _sheet_cases(load, report, shares)
+            cases = _waving_cases(load, report, shares)
         report.rows += _timed(load, cases, seconds)
     if starts:
         progress("starts")
@@ -161,7 +161,7 @@ def load_of(size: str) -> Load:
     """The mesh of a size and the frames that it goes through."""
     if size == "face":
         return face_load()
-    count = SHEETS[size.partition(" ")[0]]
+    count = TRIANGLE_COUNTS[size.partition(" ")[0]]
     frame_count = 4 if count < LARGE else 2
     return waving_mesh(size, count, frame_count=frame_count, shuffled=size in SHUFFLED)
 
@@ -170,7 +170,9 @@ def face_load() -> Load:
     """The built-in face in each of the six basic expressions, at full strength."""
     head = assets.load("head")
     simulation = sim.create(head)
-    frames = [settled(simulation, head.expressions[name], SETTLED) for name in FULL_EXPRESSIONS]
+    frames = [
+        settled_positions(simulation, head.expressions[name], SETTLED) for name in FULL_EXPRESSIONS
+    ]
     return Load("face", head.faces, head.vertices, frames)
 
 
@@ -198,7 +200,7 @@ def _face_cases(load: Load, report: Report) -> list[_Case]:
     return cases + _peer_cases(load, report, cases[1].triangles)
 
 
-def _sheet_cases(
+def _waving_cases(
     load: Load, report: Report, shares: Mapping[int, tuple[float, float]]
 ) -> list[_Case]:
     thresholds = thresholds_of(load, shares)

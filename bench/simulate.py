@@ -68,7 +68,7 @@ class _Subject:
         self.prepare()
 
 
-def run(*, rounds: int = 200, sizes: Sequence[int] = SIZES) -> list[Row]:
+def measure(*, rounds: int = 200, sizes: Sequence[int] = SIZES) -> list[Row]:
     """Time one frame of each subject in each of `rounds` rounds and return one row for each.
 
     `sizes`: about how many vertices the plain meshes have. Raises ValueError without rounds.

@@ -43,13 +43,13 @@ class Soak:
     frames: int
     finite: bool
     furthest: float  # mm from rest, seen from the cranium
-    left_over: float  # mm from rest, 2 s after release
+    rest_error: float  # mm from rest, 2 s after release
     growth: float  # greatest growth of the energy in a frame without input, as a share of it
     same_bytes: bool
     mirror_error: float  # mm
 
 
-def run(*, minutes: float = 60.0, seed: int = SEED) -> Soak:
+def measure(*, minutes: float = 60.0, seed: int = SEED) -> Soak:
     """Soak the built-in head for `minutes` of simulated time; ValueError for none."""
     if not minutes > 0.0:
         raise ValueError(f"minutes: was {minutes:g}, must be above 0")
@@ -61,24 +61,26 @@ def run(*, minutes: float = 60.0, seed: int = SEED) -> Soak:
         while seconds < 60.0 * minutes:
             seconds += _wild_frame(simulation, generator)
             frames += 1
-            furthest = max(furthest, float(np.abs(moved(simulation)).max()))
+            furthest = max(furthest, float(np.abs(displacements(simulation)).max()))
     except sim.SimulationUnstable:
         finite = False
         simulation.reset()
-    left_over = _left_over(simulation)
+    rest_error = _rest_error(simulation)
     again = min(REPEATED, 60.0 * minutes)
     return Soak(
-        seconds, frames, finite, furthest, left_over, _energy_growth(simulation),
+        seconds, frames, finite, furthest, rest_error, _energy_growth(simulation),
         _digest(simulation, again, seed) == _digest(sim.create(head), again, seed),
         _mirror_error(simulation, head.mirror, seed),
     )  # fmt: skip
 
 
-def moved(simulation: sim.Simulation) -> Array:
+def displacements(simulation: sim.Simulation) -> Array:
     """Displacements [mm] as seen from the cranium, shape (V, 3)."""
     head = simulation.bone_transforms()["cranium"]
-    seen: Array = (simulation.positions - head[:3, 3]) @ head[:3, :3] - simulation.rest_positions
-    return seen
+    displacement: Array = (simulation.positions - head[:3, 3]) @ head[
+        :3, :3
+    ] - simulation.rest_positions
+    return displacement
 
 
 def mirrored_values(values: Mapping[str, float]) -> dict[str, float]:
@@ -107,12 +109,12 @@ def _wild_frame(
     return dt
 
 
-def _left_over(simulation: sim.Simulation) -> float:
+def _rest_error(simulation: sim.Simulation) -> float:
     """How far the face is from rest [mm] two seconds after all controls went to zero."""
     simulation.set_all(dict.fromkeys(simulation.controls, 0.0))
     for _ in range(round(SETTLE / FRAME)):
         simulation.step(FRAME)
-    return float(np.abs(moved(simulation)).max())
+    return float(np.abs(displacements(simulation)).max())
 
 
 def _energy_growth(simulation: sim.Simulation) -> float:
@@ -154,17 +156,17 @@ def _mirror_error(simulation: sim.Simulation, mirror: npt.NDArray[np.int32], see
     return float(np.abs(runs[1][:, mirror] * (-1.0, 1.0, 1.0) - runs[0]).max())
 
 
-def report(seen: Soak) -> str:
+def report(soak: Soak) -> str:
     """The text to print."""
     return "\n".join(
         [
-            f"{seen.seconds / 60.0:.1f} simulated minutes, {seen.frames} frames of 1/240 to",
+            f"{soak.seconds / 60.0:.1f} simulated minutes, {soak.frames} frames of 1/240 to",
             "1/20 s, every control at random in every frame:",
-            f"finite            {'yes' if seen.finite else 'NO'}",
-            f"furthest          {seen.furthest:.2f} mm from rest",
-            f"2 s after release {seen.left_over:.6f} mm from rest",
-            f"energy growth     {seen.growth:.1e} of a blow, most in a frame without input",
-            f"same bytes        {'yes' if seen.same_bytes else 'NO'}",
-            f"mirrored input    {seen.mirror_error:.1e} mm from the mirrored motion",
+            f"finite            {'yes' if soak.finite else 'NO'}",
+            f"furthest          {soak.furthest:.2f} mm from rest",
+            f"2 s after release {soak.rest_error:.6f} mm from rest",
+            f"energy growth     {soak.growth:.1e} of a blow, most in a frame without input",
+            f"same bytes        {'yes' if soak.same_bytes else 'NO'}",
+            f"mirrored input    {soak.mirror_error:.1e} mm from the mirrored motion",
         ]
     )

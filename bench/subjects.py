@@ -32,7 +32,7 @@ SETTLE = 90  # frames of 1/60 s until a pose is still
 
 
 @dataclass(frozen=True)
-class Pose:
+class PosePair:
     """One expression, on both meshes [mm]."""
 
     dense: Points
@@ -46,8 +46,8 @@ class Subject:
     name: str
     dense_faces: Faces
     coarse_faces: Faces
-    rest: Pose
-    poses: Mapping[str, Pose]
+    rest: PosePair
+    poses: Mapping[str, PosePair]
 
 
 def scanned(folder: str | Path, *, apart: bool = False) -> Subject:
@@ -62,8 +62,8 @@ def scanned(folder: str | Path, *, apart: bool = False) -> Subject:
     corners = dense["triangles"][coarse["fine_triangle"]]
     weights = coarse["barycentric"].astype(np.float64)
 
-    def pose(points: Points) -> Pose:
-        return Pose(points, np.einsum("vi,vij->vj", weights, points[corners]))
+    def pose(points: Points) -> PosePair:
+        return PosePair(points, np.einsum("vi,vij->vj", weights, points[corners]))
 
     fields: dict[str, Points] = {}
     for name, array in dense.items():
@@ -97,8 +97,8 @@ def built_in(level: int) -> Subject:
             landmarks=head.landmarks,
             rig=head.rig,
             layers=head.layers,
-            bone_depth=fine.carried(head.bone_depth),
-            mandible_weight=fine.carried(head.mandible_weight),
+            bone_depth=fine.interpolate(head.bone_depth),
+            mandible_weight=fine.interpolate(head.mandible_weight),
             jaw_axis=head.jaw_axis,
             eyes=head.eyes,
         )
@@ -106,18 +106,20 @@ def built_in(level: int) -> Subject:
     count = len(head.vertices)
     poses = {}
     for name, values in head.expressions.items():
-        moved = settled(simulation, values, SETTLE)
-        poses[name] = Pose(moved, moved[:count])
+        moved = settled_positions(simulation, values, SETTLE)
+        poses[name] = PosePair(moved, moved[:count])
     return Subject(
         f"head x {4**level}",
         fine.faces,
         head.faces,
-        Pose(fine.vertices, fine.vertices[:count]),
+        PosePair(fine.vertices, fine.vertices[:count]),
         poses,
     )
 
 
-def settled(simulation: sim.Simulation, values: Mapping[str, float], frames: int) -> Points:
+def settled_positions(
+    simulation: sim.Simulation, values: Mapping[str, float], frames: int
+) -> Points:
     """Hold controls from rest for some frames of 1/60 s; a copy of the vertices [mm], (V, 3)."""
     simulation.reset()
     simulation.set_all(values)

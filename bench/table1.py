@@ -59,7 +59,7 @@ PAPER = {
 ALLOWED = {"face": 1.5, "plane": 2.0}  # our limits for c_rt
 
 
-def run(*, rounds: int = 60) -> tuple[dict[str, list[Row]], str]:
+def measure(*, rounds: int = 60) -> tuple[dict[str, list[Row]], str]:
     """Measure our rows for face and plane, by scene; returns them and the name of what draws."""
     with Canvas(SIZE) as canvas:
         scenes: tuple[Scene, ...] = (FaceScene(), PlaneScene())

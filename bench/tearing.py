@@ -15,7 +15,7 @@ import numpy.typing as npt
 from risorius import assets, sim
 
 from .report import table
-from .subjects import settled
+from .subjects import settled_positions
 
 Array = npt.NDArray[np.float64]
 
@@ -27,7 +27,7 @@ AROUND = 12.0  # mm around a triangle whose mean turn it is compared with
 
 
 @dataclass(frozen=True)
-class Pose:
+class PoseDefects:
     """What one pose does to the skin."""
 
     name: str
@@ -37,7 +37,7 @@ class Pose:
     teeth: float  # mm deep in the teeth
 
 
-def run(*, mixtures: int = MIXTURES, seed: int = SEED) -> list[Pose]:
+def measure(*, mixtures: int = MIXTURES, seed: int = SEED) -> list[PoseDefects]:
     """Put the built-in head into each pose and `mixtures` random ones; ValueError below 0."""
     if mixtures < 0:
         raise ValueError(f"mixtures: was {mixtures}, must be 0 or more")
@@ -45,10 +45,10 @@ def run(*, mixtures: int = MIXTURES, seed: int = SEED) -> list[Pose]:
     simulation = sim.create(head)
     poses = []
     for name, values in _values(simulation, mixtures, np.random.default_rng(seed)):
-        now = settled(simulation, values, SETTLE)
+        now = settled_positions(simulation, values, SETTLE)
         deep = simulation.penetrations()
         inverted = _inverted(simulation.rest_positions, now, head.faces)
-        poses.append(Pose(name, inverted, deep["lips"], deep["lids"], deep["teeth"]))
+        poses.append(PoseDefects(name, inverted, deep["lips"], deep["lids"], deep["teeth"]))
     return poses
 
 
@@ -89,7 +89,7 @@ def _normals(x: Array, faces: npt.NDArray[np.int32]) -> Array:
     return normals
 
 
-def report(poses: Sequence[Pose], mixtures: int) -> str:
+def report(poses: Sequence[PoseDefects], mixtures: int) -> str:
     """The text to print."""
     rows = []
     for part in ("inverted", "lips", "lids", "teeth"):

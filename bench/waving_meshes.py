@@ -1,8 +1,8 @@
-"""Large meshes in motion: sheets with uneven valences and holes, under waves that travel.
+"""Large meshes in motion: grids with uneven valences and holes, under waves that travel.
 
 Cells are jittered squares cut along a random diagonal, so valences run from 4 to 8; three holes
 give inner borders. Flat at rest, so that every edge bends. Lengths are in cells: a wave is as many
-triangles long in a small sheet as in a large one, and edges bend alike.
+triangles long in a small mesh as in a large one, and edges bend alike.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Faces = npt.NDArray[np.int32]
 SEED = 2003
 WAVES = ((13.0, 0.4), (29.0, 1.1), (9.0, 2.5))  # length [cells], direction [radians]
 HEIGHT = 1.0  # of the waves [cells]; bends most edges by 2 to 20 degrees
-HOLE = 0.06  # radius of the holes over the length of the sheet
+HOLE = 0.06  # radius of the holes over the length of the mesh
 HOLES = ((0.3, 0.7), (0.7, 0.7), (0.5, 0.25))  # their centres: two eyes and a mouth
 
 
@@ -36,7 +36,7 @@ class Load:
 def waving_mesh(
     name: str, triangle_count: int, *, frame_count: int = 4, shuffled: bool = False
 ) -> Load:
-    """Make a sheet of about `triangle_count` triangles.
+    """Make a grid of about `triangle_count` triangles.
 
     In scan order, neighbours in the mesh are neighbours in memory; `shuffled`, vertices, triangles
     and corners come in any order, as a careless export leaves them.
@@ -46,10 +46,10 @@ def waving_mesh(
     rest = _jittered(side, generator)
     faces = _cut_cells(side, generator)
     centres = rest[faces].mean(axis=1)[:, :2] / side
-    is_kept = np.ones(len(faces), dtype=bool)
+    is_solid = np.ones(len(faces), dtype=bool)
     for hole in HOLES:
-        is_kept &= np.linalg.norm(centres - hole, axis=1) > HOLE
-    faces = faces[is_kept]
+        is_solid &= np.linalg.norm(centres - hole, axis=1) > HOLE
+    faces = faces[is_solid]
     used, faces = np.unique(faces, return_inverse=True)
     rest, faces = rest[used], faces.reshape(-1, 3)
     if shuffled:
@@ -86,7 +86,7 @@ def _shuffled(
 
 
 def _waved(rest: Points, phase: float) -> Points:
-    """The sheet at a moment of its waves, stronger in some places than in others."""
+    """The mesh at a moment of its waves, stronger in some places than in others."""
     x, y = rest[:, 0], rest[:, 1]
     strength = 0.15 + np.sin(x / 61.0) ** 2 * np.sin(y / 47.0) ** 2
     height = np.zeros(len(rest))

@@ -52,7 +52,7 @@ class _Case:
     name: str
     level: int | None = None  # None: as the window chooses
     compare: str = "off"
-    are_panels_kept: bool = True
+    are_panels_cached: bool = True
     seconds: list[float] = field(default_factory=list)  # of each frame
     stages: list[list[float]] = field(default_factory=list)  # [ms] of each frame
     last_level: int = 0
@@ -64,7 +64,7 @@ def report(seconds: float, size: tuple[int, int]) -> str:
         _Case("smile"),
         _Case("smile, wipe", compare="wipe"),
         _Case("smile, side by side", compare="side by side"),
-        _Case("panels in each frame", are_panels_kept=False),
+        _Case("panels in each frame", are_panels_cached=False),
         *(_Case(f"level {level}: {_described(each)}", level) for level, each in enumerate(LEVELS)),
     ]
     with Viewer(_smile(), size, Look()) as viewer:
@@ -112,7 +112,7 @@ def _described(detail: render.Detail) -> str:
 def _play(viewer: Viewer, case: _Case, seconds: float) -> None:
     """Let the window play for a while, and note what its frames took."""
     viewer.settings.look = Look(compare=case.compare)
-    viewer.panel_cache.refresh = REFRESH if case.are_panels_kept else 0.0
+    viewer.panel_cache.refresh = REFRESH if case.are_panels_cached else 0.0
     is_software = viewer.surface.is_software
     viewer.painter.level_of_detail = (
         LevelOfDetail(is_software=is_software) if case.level is None else _FixedLevel(case.level)
@@ -121,8 +121,8 @@ def _play(viewer: Viewer, case: _Case, seconds: float) -> None:
         viewer.session.toggle_playing()
     _run(viewer, WARM_UP, lambda _: None)
 
-    def note(taken: float) -> None:
-        case.seconds.append(taken)
+    def note(elapsed: float) -> None:
+        case.seconds.append(elapsed)
         case.stages.append([viewer.times.milliseconds[stage][-1] for stage in PHASES])
 
     _run(viewer, seconds, note)
@@ -147,7 +147,7 @@ def _idle_share(viewer: Viewer) -> float:
         viewer.frame()
     begin, used = time.perf_counter(), time.process_time()
     while time.perf_counter() - begin < IDLE_SECONDS:
-        viewer.rest()
+        viewer.wait_for_frame()
     return (time.process_time() - used) / (time.perf_counter() - begin)
 
 
@@ -157,8 +157,8 @@ def _rate(case: _Case) -> float:
 
 def _cells(case: _Case) -> list[object]:
     """The row of a case."""
-    taken = 1e3 * np.array(case.seconds)
-    rest = np.median(taken - np.sum(case.stages, axis=1))
-    times = [np.median(taken), np.percentile(taken, 95), taken.min()]
+    elapsed = 1e3 * np.array(case.seconds)
+    rest = np.median(elapsed - np.sum(case.stages, axis=1))
+    times = [np.median(elapsed), np.percentile(elapsed, 95), elapsed.min()]
     stages = np.median(case.stages, axis=0)
     return [case.name, _rate(case), *times, case.last_level, *stages, rest]

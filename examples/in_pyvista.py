@@ -35,7 +35,7 @@ def as_polydata(mesh: refine.RefinedMesh) -> pyvista.PolyData:
     return polydata
 
 
-def main(picture: Path) -> list[int]:
+def main(target: Path) -> list[int]:
     """Draw 12 frames offscreen, keep a picture of the last, return the triangles of each."""
     plane = assets.load("plane")
     refiner = refine.create(
@@ -51,7 +51,7 @@ def main(picture: Path) -> list[int]:
         polydata.copy_from(as_polydata(mesh))  # the plotter keeps the object it was given
         plotter.render()
         counts.append(len(mesh.triangles))
-    plotter.screenshot(str(picture))
+    plotter.screenshot(str(target))
     plotter.close()
     return counts
 

@@ -137,7 +137,7 @@ def _normals(
 
 
 def main() -> list[int]:
-    """Stretch a strip under the registered refiner; returns the triangles of each frame."""
+    """Stretch a grid under the registered refiner; returns the triangles of each frame."""
     if "quarters" not in available():
         register("quarters", Quarters)
     x, y = np.meshgrid(np.arange(5.0), np.arange(2.0))

@@ -28,7 +28,7 @@ class Backdrop:
             self._store = self._gl.framebuffer([self._gl.renderbuffer(target.size, 4)])
         if self._stored.get(viewport) != background:
             self._stored = {
-                other: kept for other, kept in self._stored.items() if not overlap(other, viewport)
+                area: stored for area, stored in self._stored.items() if not overlap(area, viewport)
             }
             self._store.use()
             if not self._stored:

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .camera import OrbitCamera
-from .render_target import Rectangle, common
+from .render_target import Rectangle, intersection
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -26,7 +26,7 @@ class CameraView:
     ) -> None:
         self.camera = camera
         self.viewport = viewport
-        self.clip = viewport if clip is None else common(viewport, clip)
+        self.clip = viewport if clip is None else intersection(viewport, clip)
         self.world_to_view: FloatArray = np.asarray(camera.view_matrix())
         self.projection: FloatArray = np.asarray(
             camera.projection_matrix(viewport[2] / viewport[3])
@@ -42,7 +42,7 @@ class CameraView:
         """The same for views of the same, whoever made them."""
         return self.world_to_clip.tobytes()
 
-    def touched_pixels(
+    def covered_pixels(
         self, corners: FloatArray, *, model: FloatArray | None = None, padding: float = 2.0
     ) -> Rectangle:
         """The pixels of the clip that the hull of `corners`, shape (n, 3), can touch.
@@ -59,8 +59,8 @@ class CameraView:
         place = 0.5 * (clip[:, :2] / clip[:, 3:] + 1.0) * (width, height)
         low = np.clip(np.floor(place.min(axis=0) - padding), 0.0, (width, height))
         high = np.clip(np.ceil(place.max(axis=0) + padding), 0.0, (width, height))
-        touched = x + int(low[0]), y + int(low[1]), int(high[0] - low[0]), int(high[1] - low[1])
-        return common(touched, self.clip)
+        covered = x + int(low[0]), y + int(low[1]), int(high[0] - low[0]), int(high[1] - low[1])
+        return intersection(covered, self.clip)
 
 
 def box_corners(points: npt.NDArray[Any]) -> FloatArray:

@@ -42,7 +42,7 @@ class Compositor:
         self._program["scene"] = _UNIT
         self._triangle = gl.vertex_array(self._program, [])
 
-    def lay(
+    def compose(
         self,
         scene: RenderTarget,
         area: Rectangle | None,

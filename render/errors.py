@@ -44,7 +44,7 @@ _DIAGNOSES: tuple[tuple[str, str, str], ...] = (
     ),
 )
 
-_KNOBS = (
+_DRIVER_VARIABLES = (
     "GLCONTEXT_LINUX_LIBEGL",
     "GLCONTEXT_LINUX_LIBGL",
     "GLCONTEXT_LINUX_LIBX11",
@@ -62,17 +62,23 @@ def diagnose(what: str, raw: object) -> GLError:
     text = " ".join(str(raw).split()) or "no reason given"
     for pattern, why, cure in _DIAGNOSES:
         if re.search(pattern, text):
-            return GLError(f'{what} failed: {why} ("{text}"). Cure: {_unset_knob(text) or cure}')
+            return GLError(
+                f'{what} failed: {why} ("{text}"). Cure: {_variable_to_unset(text) or cure}'
+            )
     return GLError(f'{what} failed ("{text}"). Cure: `risorius doctor` shows what there is')
 
 
-def _unset_knob(text: str) -> str:
+def _variable_to_unset(text: str) -> str:
     """The cure when a glcontext variable of the environment, and not the machine, is at fault."""
-    for knob in _KNOBS:
-        value = os.environ.get(knob)
+    for variable in _DRIVER_VARIABLES:
+        value = os.environ.get(variable)
         if not value:
             continue
-        is_version = knob == "GLCONTEXT_GLVERSION" and "Context" in text
-        if is_version or (knob != "GLCONTEXT_GLVERSION" and value in text) or "not found" in text:
-            return f"unset {knob} (it is '{value}')"
+        is_version = variable == "GLCONTEXT_GLVERSION" and "Context" in text
+        if (
+            is_version
+            or (variable != "GLCONTEXT_GLVERSION" and value in text)
+            or "not found" in text
+        ):
+            return f"unset {variable} (it is '{value}')"
     return ""

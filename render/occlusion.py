@@ -1,6 +1,6 @@
 """Which triangles of the parts cannot be seen, found before they are drawn.
 
-Teeth behind closed lips cost software OpenGL as much as teeth that are seen: it walks over every
+Teeth behind closed lips cost software OpenGL as much as teeth that are visible: it walks over every
 triangle and tests each sample. So the depths of what was drawn before are read back, the farthest
 of each block of pixels, and triangles that lie behind are left out; not one pixel changes. Graphics
 cards do without: they would wait for the answer longer than they take to draw.
@@ -44,9 +44,9 @@ class DepthReader:
         self._program["last"] = width - 1, height - 1
         self._triangle = gl.vertex_array(self._program, [])
         self._target = gl.framebuffer([gl.texture(self._size, 1, dtype="f4")])
-        self._blocks: Rectangle = (0, 0, 0, 0)  # of the last look
+        self._blocks: Rectangle = (0, 0, 0, 0)  # of the last search
 
-    def look(self, pixels: Rectangle) -> None:
+    def find_farthest(self, pixels: Rectangle) -> None:
         """Find the farthest depths of the blocks that hold the rectangle `pixels`."""
         gl = self._gl
         left, bottom = pixels[0] // BLOCK, pixels[1] // BLOCK
@@ -62,7 +62,7 @@ class DepthReader:
         gl.scissor = None
 
     def read(self) -> "FarthestDepths":
-        """Return what the last look found; waits until all is drawn, so find other work before."""
+        """Return what was found; waits until all is drawn, so find other work before."""
         left, bottom, width, height = self._blocks
         data = self._target.read(viewport=self._blocks, components=1, dtype="f4")
         return FarthestDepths(np.frombuffer(data, np.float32).reshape(height, width), left, bottom)
@@ -96,8 +96,8 @@ class ProjectedFaces:
         self.candidates = np.flatnonzero(area > -1e-3)  # [pixels^2]
         a, b, c = corners[:, self.candidates]
         self.nearest = np.minimum(np.minimum(depth[a], depth[b]), depth[c]) - np.float32(_TOLERANCE)
-        self.left, self.right = _touched_blocks(x[a], x[b], x[c])
-        self.bottom, self.top = _touched_blocks(y[a], y[b], y[c])
+        self.left, self.right = _covered_blocks(x[a], x[b], x[c])
+        self.bottom, self.top = _covered_blocks(y[a], y[b], y[c])
 
 
 class FarthestDepths:
@@ -110,7 +110,7 @@ class FarthestDepths:
             tables.append(_doubled(tables[-1], 1 << level))
         self._tables = np.stack([*tables, depths])  # the last stands for "too large a face"
 
-    def seen(self, faces: ProjectedFaces) -> npt.NDArray[np.bool_]:
+    def visible(self, faces: ProjectedFaces) -> npt.NDArray[np.bool_]:
         """Which faces turn their front to the eye and may be seen, shape (m,).
 
         What the viewport shows of the faces has to lie within the blocks that were read.
@@ -123,13 +123,13 @@ class FarthestDepths:
         bottom = np.clip(faces.bottom - self._bottom, 0, rows - 1)
         top = np.clip(faces.top - self._bottom, 0, rows - 1)
         level = _LEVELS[np.minimum(np.maximum(right - left, top - bottom), len(_LEVELS) - 1)]
-        is_seen = np.zeros(faces.count, np.bool_)
+        is_visible = np.zeros(faces.count, np.bool_)
         farthest = self._tables[level, bottom, left]
-        is_seen[faces.candidates] = (faces.nearest <= farthest) | (level == _WINDOWS)
-        return is_seen
+        is_visible[faces.candidates] = (faces.nearest <= farthest) | (level == _WINDOWS)
+        return is_visible
 
 
-def _touched_blocks(a: Depths, b: Depths, c: Depths) -> tuple[Indices, Indices]:
+def _covered_blocks(a: Depths, b: Depths, c: Depths) -> tuple[Indices, Indices]:
     """First and last block of faces whose corners have these coordinates along one axis."""
     low = np.minimum(np.minimum(a, b), c) - _PADDING
     high = np.maximum(np.maximum(a, b), c) + _PADDING

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from .camera_view import CameraView, box_corners
 from .occlusion import DepthReader, ProjectedFaces
-from .render_target import Rectangle, RenderTarget, hull
+from .render_target import Rectangle, RenderTarget, bounding_rectangle
 from .style import linear
 
 
@@ -69,12 +69,12 @@ class PartBuffers:
             self._projection = key, faces
         return self._projection[1]
 
-    def choose(self, is_seen: npt.NDArray[np.bool_]) -> int:
-        """Draw only the faces that are seen, shape (m,), from now on; return their number."""
-        seen = self._faces[is_seen]
-        self.face_count = len(seen)
+    def choose(self, is_visible: npt.NDArray[np.bool_]) -> int:
+        """Draw only the faces that are visible, shape (m,), from now on; return their number."""
+        visible = self._faces[is_visible]
+        self.face_count = len(visible)
         self._indices.orphan()
-        self._indices.write(seen)
+        self._indices.write(visible)
         return self.face_count
 
     def draw(self, program: moderngl.Program) -> None:
@@ -121,21 +121,21 @@ class PartStore:
             placed.append((self.known[id(part)], transforms[part.bone]))
         return placed
 
-    def seen(
+    def visible(
         self, placed: list[PlacedPart], view: CameraView, target: RenderTarget
     ) -> list[PlacedPart]:
         """Leave out all triangles of the parts that are hidden by what was drawn so far."""
         models = [np.asarray(transform, np.float64).T for _, transform in placed]
-        touched = [
-            view.touched_pixels(buffers.corners, model=model)
+        covered = [
+            view.covered_pixels(buffers.corners, model=model)
             for (buffers, _), model in zip(placed, models, strict=True)
         ]
-        touched = [pixels for pixels in touched if pixels[2] and pixels[3]]
-        if not touched:
+        covered = [pixels for pixels in covered if pixels[2] and pixels[3]]
+        if not covered:
             return []
         if self._depths is None or self._depths.scene is not target:
             self._depths = DepthReader(self._gl, target)
-        self._depths.look(functools.reduce(hull, touched))
+        self._depths.find_farthest(functools.reduce(bounding_rectangle, covered))
         projected = [
             buffers.projected(model @ view.world_to_clip, view.viewport)
             for (buffers, _), model in zip(placed, models, strict=True)
@@ -144,5 +144,5 @@ class PartStore:
         return [
             placed_part
             for placed_part, faces in zip(placed, projected, strict=True)
-            if placed_part[0].choose(depths.seen(faces))
+            if placed_part[0].choose(depths.visible(faces))
         ]

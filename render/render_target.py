@@ -5,7 +5,7 @@ rectangles that geometry touched are averaged: on software OpenGL, where a head 
 frame, that halves the cost of multisampling (measured: 16 -> 7.5 ms at 1280 x 720). The layer is
 wiped just before it is drawn on, when software OpenGL does both tile by tile in the cache.
 
-Invariant: unless `_is_worn`, the layer is transparent and its depth is 1 outside `_touched`.
+Invariant: unless `_is_stale`, the layer is transparent and its depth is 1 outside `_drawn_on`.
 """
 
 import moderngl
@@ -33,8 +33,8 @@ class RenderTarget:
         self._gl = gl
         self.frame_number = 0  # counts the frames since the target was made
         self.is_empty = False  # nothing was drawn since `start`
-        self._touched: list[Rectangle] = []  # apart from each other
-        self._is_worn = False
+        self._drawn_on: list[Rectangle] = []  # apart from each other
+        self._is_stale = False
         self.colour = gl.texture(size, 4)
         self.colour.repeat_x = self.colour.repeat_y = False
         self.depth = gl.depth_texture(size, samples=samples)
@@ -62,27 +62,27 @@ class RenderTarget:
 
     def use_frame(self, viewport: Rectangle) -> None:
         """Direct drawing to the frame, over all that was drawn so far in the viewport."""
-        if any(overlap(viewport, touched) for touched in self._touched):
+        if any(overlap(viewport, rectangle) for rectangle in self._drawn_on):
             self.flush()
         self.frame.use()
         self._gl.viewport = self._gl.scissor = viewport
 
-    def use_layer(self, viewport: Rectangle, touched: Rectangle) -> None:
-        """Direct drawing to the layer, within the part `touched` of the viewport."""
-        self._wipe()
+    def use_layer(self, viewport: Rectangle, part: Rectangle) -> None:
+        """Direct drawing to the layer, within `part` of the viewport."""
+        self._clear_layer()
         self._layer.use()
         self.is_empty = False
-        self._gl.viewport, self._gl.scissor = viewport, touched
-        self._touched = _apart(self._touched, touched)
+        self._gl.viewport, self._gl.scissor = viewport, part
+        self._drawn_on = _apart(self._drawn_on, part)
 
     def use_depth(self, unit: int) -> None:
         """Bind the depth of what was drawn on the layer so far to a texture unit."""
-        self._wipe()
+        self._clear_layer()
         self.depth.use(unit)
 
     def flush(self) -> None:
         """Average the layer onto the frame where it was touched."""
-        rectangles, self._touched = self._touched, []
+        rectangles, self._drawn_on = self._drawn_on, []
         if not self.samples or not rectangles:
             return
         gl = self._gl
@@ -96,17 +96,17 @@ class RenderTarget:
             self._average.render(moderngl.TRIANGLES, vertices=3)
         gl.enable_only(moderngl.DEPTH_TEST)
         gl.scissor = None
-        self._is_worn = True
+        self._is_stale = True
 
-    def _wipe(self) -> None:
+    def _clear_layer(self) -> None:
         """Empty the layer, if all that is on it was averaged onto the frame."""
-        if not self._is_worn:
+        if not self._is_stale:
             return
         self._layer.use()
         self._gl.scissor = None
         self._layer.depth_mask = True
         self._layer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
-        self._is_worn = False
+        self._is_stale = False
 
     def read(self) -> bytes:
         """The frame, bottom row first, three bytes per pixel."""
@@ -124,7 +124,7 @@ def overlap(first: Rectangle, second: Rectangle) -> bool:
     )
 
 
-def common(first: Rectangle, second: Rectangle) -> Rectangle:
+def intersection(first: Rectangle, second: Rectangle) -> Rectangle:
     """The pixels of both rectangles; a width or height of 0 where they share none."""
     left, bottom = max(first[0], second[0]), max(first[1], second[1])
     right = min(first[0] + first[2], second[0] + second[2])
@@ -132,7 +132,7 @@ def common(first: Rectangle, second: Rectangle) -> Rectangle:
     return left, bottom, max(right - left, 0), max(top - bottom, 0)
 
 
-def hull(first: Rectangle, second: Rectangle) -> Rectangle:
+def bounding_rectangle(first: Rectangle, second: Rectangle) -> Rectangle:
     """The smallest rectangle that holds both."""
     left, bottom = min(first[0], second[0]), min(first[1], second[1])
     right = max(first[0] + first[2], second[0] + second[2])
@@ -144,5 +144,7 @@ def _apart(rectangles: list[Rectangle], added: Rectangle) -> list[Rectangle]:
     """Rectangles without common pixels that hold those given, which have none, and one more."""
     for index, other in enumerate(rectangles):
         if overlap(other, added):
-            return _apart(rectangles[:index] + rectangles[index + 1 :], hull(other, added))
+            return _apart(
+                rectangles[:index] + rectangles[index + 1 :], bounding_rectangle(other, added)
+            )
     return [*rectangles, added]

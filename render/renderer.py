@@ -2,7 +2,7 @@
 
 Every call takes a viewport, (x, y, width, height) in pixels from the lower left corner, and leaves
 all other pixels alone; None is the whole surface. The camera's aspect is that of the viewport. A
-`clip` draws only a part of what the viewport shows: two clips make one picture of two meshes.
+`clip` draws only a part of what the viewport shows: two clips make one image of two meshes.
 Programs are compiled on first use, one per combination of shading and options.
 Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the figures are shaded).
 """
@@ -70,7 +70,7 @@ class Renderer:
         return Stream(self._gl, vertex_capacity, triangle_capacity, columns)
 
     def load_texture(self, image: Image, openness: Image | None = None) -> Texture:
-        """Hand a picture of the skin to OpenGL; draw_mesh takes the albedo from it.
+        """Hand an image of the skin to OpenGL; draw_mesh takes the albedo from it.
 
         image: sRGB, top row first, shape (H, W, 3), uint8; texture coordinate v is 1 at the top.
         openness: how much of the light from all around gets there, 255 = all, shape (H, W), uint8.
@@ -137,11 +137,11 @@ class Renderer:
         shares = [Share.ALL] if wrinkles is None or is_coloured else [Share.WRINKLED, Share.SMOOTH]
         drawn = []
         for share in shares:
-            shown = None if share is Share.SMOOTH else wrinkles
-            program = self._surface_program(style, texture, shown)
-            if not self._aim(program, view, stream.corners, np.eye(4)):
+            share_wrinkles = None if share is Share.SMOOTH else wrinkles
+            program = self._surface_program(style, texture, share_wrinkles)
+            if not self._set_view(program, view, stream.corners, np.eye(4)):
                 return
-            self._set_surface(program, view, style, texture, shown)
+            self._set_surface(program, view, style, texture, share_wrinkles)
             drawn.append((program, share))
         self._draw_sides(stream, drawn)
 
@@ -170,7 +170,7 @@ class Renderer:
         if not len(rows):
             return
         program = self._surface_program(style, texture, None, "FRINGE")
-        if self._aim(program, view, stream.corners, np.eye(4)):
+        if self._set_view(program, view, stream.corners, np.eye(4)):
             self._set_surface(program, view, style, texture, None)
             with self._blending():
                 draw_fringes(self._gl, program, rows)
@@ -260,9 +260,9 @@ class Renderer:
             shadow.set_uniforms(program, view, _SHADOW_UNIT)
         placed = self._parts.placed(parts, transforms)
         if self.surface.is_software:
-            placed = self._parts.seen(placed, view, self.surface.target)
+            placed = self._parts.visible(placed, view, self.surface.target)
         for buffers, transform in placed:
-            if self._aim(program, view, buffers.corners, transform):
+            if self._set_view(program, view, buffers.corners, transform):
                 set_part(program, buffers.part.shine)
                 buffers.draw(program)
 
@@ -289,13 +289,13 @@ class Renderer:
         if not len(segments):
             return
         width *= self._line_scale
-        touched = view.touched_pixels(box_corners(rows[:, :3]), padding=2.0 + width)
+        covered = view.covered_pixels(box_corners(rows[:, :3]), padding=2.0 + width)
         write_uniform(program, "world_to_clip", view.world_to_clip)
         program["viewport_size"] = view.viewport[2:]
         program["half_width"] = 0.5 * width
-        if touched[2] < 1 or touched[3] < 1:
+        if covered[2] < 1 or covered[3] < 1:
             return
-        self.surface.target.use_layer(view.viewport, touched)
+        self.surface.target.use_layer(view.viewport, covered)
         content = [(self._gl.buffer(rows), "3f 3f", "in_position", "in_colour")]
         lines = self._gl.vertex_array(program, content, self._gl.buffer(segments))
         with self._blending():
@@ -352,7 +352,7 @@ class Renderer:
             )
         return self._programs[key]
 
-    def _aim(
+    def _set_view(
         self,
         program: moderngl.Program,
         view: CameraView,
@@ -361,10 +361,10 @@ class Renderer:
     ) -> bool:
         """Set matrices and drawing area for geometry in a box; False where it is not seen."""
         model = np.asarray(transform, np.float64).T
-        touched = view.touched_pixels(corners, model=model)
-        if touched[2] < 1 or touched[3] < 1:
+        covered = view.covered_pixels(corners, model=model)
+        if covered[2] < 1 or covered[3] < 1:
             return False
-        self.surface.target.use_layer(view.viewport, touched)
+        self.surface.target.use_layer(view.viewport, covered)
         write_uniform(program, "model_view", model @ view.world_to_view)
         write_uniform(program, "projection", view.projection)
         return True

@@ -207,7 +207,7 @@ def _offscreen_context() -> tuple[moderngl.Context, bool]:
 
 
 def image_of(pixels: bytes, size: tuple[int, int]) -> Image:
-    """OpenGL's bytes, bottom row first, as a picture with the top row first, (H, W, 3) uint8."""
+    """OpenGL's bytes, bottom row first, as an image with the top row first, (H, W, 3) uint8."""
     width, height = size
     return np.frombuffer(pixels, np.uint8).reshape(height, width, 3)[::-1].copy()
 

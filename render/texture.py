@@ -13,7 +13,7 @@ from .style import linear
 from .surface import Image, is_software
 
 _SRGB8_ALPHA8 = 0x8C43  # the constant of OpenGL; moderngl has no name for it
-_LOOKED_AT = 10_000  # about so many texels decide what is red
+_SAMPLED_TEXELS = 10_000  # about so many texels decide what is red
 ANISOTROPY = 8.0  # most texels that one sample averages along its longest axis
 
 
@@ -84,7 +84,7 @@ class WrinkleMap(_Mipmaps):
 
 def _median_redness(image: Image) -> float:
     """The median of red over green light of an image (H, W, 3)."""
-    every = max(1, image.shape[0] * image.shape[1] // _LOOKED_AT)
+    every = max(1, image.shape[0] * image.shape[1] // _SAMPLED_TEXELS)
     light = linear(image.reshape(-1, 3)[::every] / 255.0)
     return float(np.median(light[:, 0] / np.maximum(light[:, 1], 1e-3)))
 

@@ -85,8 +85,8 @@ class WindowSurface(Surface):
     def resolve(self) -> None:
         """End the scene: panels lie on top. Again: forget the panels, keep the scene."""
         self.make_current()
-        self._compositor.lay(self.target, self.area)
-        self._rule(self._compositor.frame)
+        self._compositor.compose(self.target, self.area)
+        self._draw_rules(self._compositor.frame)
         self._is_resolved = self._is_laid = True
 
     def fill(self, area: Rectangle, colour: Colour) -> None:
@@ -102,15 +102,15 @@ class WindowSurface(Surface):
         if self._is_resolved:
             self._compositor.copy_to(self.gl.screen)
         else:
-            self._compositor.lay(self.target, self.area, self.gl.screen)
-            self._rule(self.gl.screen)
+            self._compositor.compose(self.target, self.area, self.gl.screen)
+            self._draw_rules(self.gl.screen)
             if self.area is not None:
                 self._compositor.copy_to(self.gl.screen, around=self.area)
             self._is_laid = False
         self._glfw.swap_buffers(self.handle)
         self._is_resolved = False
 
-    def _rule(self, target: moderngl.Framebuffer) -> None:
+    def _draw_rules(self, target: moderngl.Framebuffer) -> None:
         for rectangle, colour in self.rules:
             target.clear(*colour, viewport=rectangle)
 
@@ -118,8 +118,8 @@ class WindowSurface(Surface):
         """Return the frame as it is seen, with the panels; see `Surface.read`."""
         self.make_current()
         if not self._is_laid:
-            self._compositor.lay(self.target, self.area)
-            self._rule(self._compositor.frame)
+            self._compositor.compose(self.target, self.area)
+            self._draw_rules(self._compositor.frame)
         return image_of(self._compositor.read(), self.size)
 
     def _bind(self) -> None:

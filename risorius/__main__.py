@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from risorius.app.stopping import listen
+from risorius.app.stopping import handle_signals
 
 if TYPE_CHECKING:
     import click
@@ -22,7 +22,7 @@ def command() -> click.Group:
 
 def run() -> None:
     """Run the command; whoever stops it is heard before anything else is loaded."""
-    listen()
+    handle_signals()
     command()()
 
 

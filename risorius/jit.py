@@ -85,12 +85,12 @@ def _compiled(function: Callable[..., Any], **options: Any) -> Any:
     # Of other code nobody knows what it depends on; nor what a function has closed over.
     is_ours = function.__module__.partition(".")[0] == __package__ and not function.__closure__
     if is_ours and not getattr(numba.config, "DISABLE_JIT", 0):
-        with suppress(OSError):  # without a source nothing tells when kept code has become old
-            dispatcher._cache = KeptCode(function, repr(sorted(options.items())))
+        with suppress(OSError):  # without a source nothing tells when stored code has become old
+            dispatcher._cache = CodeCache(function, repr(sorted(options.items())))
     return dispatcher
 
 
-class KeptCode(_Cache):
+class CodeCache(_Cache):
     """The machine code of one kernel on disk, in the form in which numba asks for a cache.
 
     Numba calls it while it holds the lock of its compiler, so one thread at a time.
@@ -106,36 +106,36 @@ class KeptCode(_Cache):
     @property
     def cache_path(self) -> str:
         """The folder; empty if there is none."""
-        return str(kept_in() or "")
+        return str(cache_folder() or "")
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return compiled code for these types of arguments, None if it has to be made."""
         target_context.refresh()
-        kept = self._read(sig, target_context)
-        if kept is None:
+        stored = self._read(sig, target_context)
+        if stored is None:
             log.info("compiling %s", self._name)
             if _wait_to_compile(self._name):
-                kept = self._read(sig, target_context)  # which the other process has made
-                if kept is not None:
+                stored = self._read(sig, target_context)  # which the other process has made
+                if stored is not None:
                     _done(self._name)
-        return kept
+        return stored
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Write compiled code; other processes see the whole file or none."""
-        folder = kept_in()
+        folder = cache_folder()
         if folder is None:
-            _say_not_kept("there is no folder that belongs to this user alone")
+            _warn_not_cached("there is no folder that belongs to this user alone")
             return
         code = dumps(data._reduce())
         content = self._stamp(sig, data.codegen) + hashlib.sha256(code).digest() + code
         try:
             _write(folder / self._file(sig), content)
         except OSError as error:
-            _say_not_kept(f"{error.filename2 or error.filename or folder}: {error.strerror}")
+            _warn_not_cached(f"{error.filename2 or error.filename or folder}: {error.strerror}")
         _done(self._name)
 
     def _read(self, sig: Any, target_context: Any) -> Any:
-        folder = kept_in()
+        folder = cache_folder()
         if folder is None:
             return None
         try:
@@ -192,8 +192,8 @@ def _digest_of_sources(*packages: str) -> str:
 
 
 @functools.cache
-def kept_in() -> Path | None:
-    """The folder that machine code is kept in; None if there is none that can be trusted."""
+def cache_folder() -> Path | None:
+    """The folder that machine code is stored in; None if there is none that can be trusted."""
     here = Path(__file__).resolve().parent
     own = f"{here.name}-{hashlib.sha256(str(here).encode()).hexdigest()[:12]}"
     folders = [here / "__pycache__" / "machine_code"]
@@ -254,7 +254,7 @@ def _write(file: Path, content: bytes) -> None:
 
 
 @functools.cache
-def _say_not_kept(why: str) -> None:
+def _warn_not_cached(why: str) -> None:
     log.warning(
         "compiled code is not kept (%s), so every start compiles again; "
         "name a folder of your own in NUMBA_CACHE_DIR",
@@ -271,7 +271,7 @@ _compiling = ""
 def _wait_to_compile(name: str) -> bool:
     """Wait until no other process compiles code for this folder; whether there was one."""
     global _lock, _compiling
-    folder = kept_in()
+    folder = cache_folder()
     if folder is None or fcntl is None or _compiling:
         return False
     try:

@@ -42,7 +42,7 @@ from .muscle_forces import MuscleForces, build_muscle_forces
 from .muscles import place_muscles, sides_of
 from .rig import Rig
 from .rig_reader import read_rig
-from .skin import Skin
+from .skin_model import SkinModel
 from .skull import (
     HEAD_CONTROLS,
     HEAD_RATE,
@@ -78,7 +78,7 @@ class Anatomy:
     skull: Skull
     muscles: MuscleForces
     lids: Lids | None
-    skin: Skin
+    skin: SkinModel
     turns: Array  # (V, 1) share of the head's pose: 1, fading to 0 down the neck
     passive_hold: Array  # (V,)
     closed_weight: Array  # (V,) of the mandible while the lips are kept closed over an open jaw
@@ -134,7 +134,7 @@ def build_anatomy(head: Any) -> Anatomy:
     passive, greatest = _holds(muscles, lids, surface.vertex_count)
     bound = edges.row_bound(surface.vertex_count)
     bound += np.maximum(springs.tangential, springs.normal) + greatest
-    skin = Skin(
+    skin = SkinModel(
         rest=surface.positions,
         mass=masses_for_step(surface.areas, bound, LONGEST_SUBSTEP * STEP_MARGIN),
         tissue=springs,

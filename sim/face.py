@@ -34,8 +34,8 @@ from .controls import Controls
 from .coordinates import to_posed_head
 from .drive import MuscleDrive
 from .lids import turn_lids
-from .skin import Tick
-from .skull import REST, Pose
+from .skin_model import Tick
+from .skull import REST, RigidMotion
 from .state import State
 from .substep import advance
 from .tissue import carry, tissue_energy
@@ -58,9 +58,9 @@ class Simulation:
         self._state = State.at_rest(surface)
         self._grip = SEALED
         self._jaw = (0.0, 0.0, 0.0)
-        self._mandible: Pose = REST
+        self._mandible: RigidMotion = REST
         self._head_values = (0.0, 0.0, 0.0)
-        self._head: Pose = REST
+        self._head: RigidMotion = REST
         self._turn = np.eye(4)
         self._axes = anatomy.space.axes * anatomy.space.scale
         heaviness = anatomy.rig.tissue.heaviness
@@ -72,7 +72,7 @@ class Simulation:
         self._rest.flags.writeable = False
         self._view = self._positions.view()
         self._view.flags.writeable = False
-        self.let_go()
+        self.end_drag()
         self._place_targets()
 
     # What a caller may set and read.
@@ -154,7 +154,7 @@ class Simulation:
         self._state.x[:] = self._anatomy.surface.positions
         self._state.v[:] = 0.0
         self._positions[:] = self._rest
-        self.let_go()
+        self.end_drag()
         self._place_targets()
         self._weight.forget()
 
@@ -166,10 +166,10 @@ class Simulation:
         added = checked.numbers("velocities", velocities, self._state.v.shape)
         self._state.v[:] += self._anatomy.space.vectors_to_standard(added) @ self._head.rotation
 
-    def pull(
+    def drag(
         self, vertices: npt.ArrayLike, targets: npt.ArrayLike, firmness: npt.ArrayLike
     ) -> None:
-        """Hang vertices on springs until the next `pull` or `let_go`: a finger draws at the skin.
+        """Hang vertices on springs until the next `drag` or `end_drag`: a finger draws at the skin.
 
         vertices: their numbers, shape (n,), none twice. targets: where each is drawn to [head
         units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),
@@ -186,15 +186,15 @@ class Simulation:
         if len(np.unique(numbers)) < len(numbers):
             raise ValueError(f"vertices: some are there twice, must be {wanted}")
         away = self._anatomy.space.vectors_to_standard(points - self._positions[numbers])
-        self._pulled = numbers
-        self._pulled_to = self._state.x[numbers] + away @ self._head.rotation
-        self._pulled_by = share * self._anatomy.skin.mass[numbers] * FINGER_RATE**2
+        self._dragged = numbers
+        self._dragged_to = self._state.x[numbers] + away @ self._head.rotation
+        self._drag_stiffness = share * self._anatomy.skin.mass[numbers] * FINGER_RATE**2
 
-    def let_go(self) -> None:
-        """End every `pull`; the skin swings back."""
-        self._pulled = np.zeros(0, np.int64)
-        self._pulled_to = np.zeros((0, 3))
-        self._pulled_by = np.zeros(0)
+    def end_drag(self) -> None:
+        """End every `drag`; the skin swings back."""
+        self._dragged = np.zeros(0, np.int64)
+        self._dragged_to = np.zeros((0, 3))
+        self._drag_stiffness = np.zeros(0)
 
     # The simulation.
 
@@ -235,11 +235,11 @@ class Simulation:
         jaw = now("jaw_open"), now("jaw_forward"), now("jaw_sideways")
         if jaw != self._jaw:
             self._jaw = jaw
-            self._mandible = anatomy.skull.mandible_pose(*jaw)
+            self._mandible = anatomy.skull.mandible_motion(*jaw)
         head = now("head_pitch"), now("head_yaw"), now("head_roll")
         if head != self._head_values:
             self._head_values = head
-            self._head = anatomy.skull.head_pose(*head)
+            self._head = anatomy.skull.head_motion(*head)
             self._turn = np.eye(4) if self._head is REST else self._head.matrix(anatomy.space)
         weight, closed = anatomy.skull.mandible_weight, now("lips_closed")
         if closed > 0.0:
@@ -253,10 +253,10 @@ class Simulation:
         state.hold[:] = anatomy.passive_hold
         state.pull[:] = 0.0
         muscles.add(self._drive.pull(activation), self._mandible, weight, state)
-        if len(self._pulled):
-            drawn = self._pulled_to - state.carried[self._pulled]
-            state.hold[self._pulled] += self._pulled_by
-            state.pull[self._pulled] += self._pulled_by[:, None] * drawn
+        if len(self._dragged):
+            drawn = self._dragged_to - state.carried[self._dragged]
+            state.hold[self._dragged] += self._drag_stiffness
+            state.pull[self._dragged] += self._drag_stiffness[:, None] * drawn
         self._grip = anatomy.grip(activation, jaw, closed)
 
     def _advance(self, tick: float) -> None:
@@ -281,8 +281,8 @@ class Simulation:
         }
         gaze = self._controls.now("gaze_horizontal"), self._controls.now("gaze_vertical")
         for ball in anatomy.skull.eyeballs:
-            pose = anatomy.skull.eye_pose(ball, *gaze)
-            transforms[f"eye_{ball.side.value}"] = self._head.after(pose).matrix(anatomy.space)
+            motion = anatomy.skull.eye_motion(ball, *gaze)
+            transforms[f"eye_{ball.side.value}"] = self._head.after(motion).matrix(anatomy.space)
         return transforms
 
     def fibres(self) -> dict[str, list[npt.NDArray[np.float64]]]:

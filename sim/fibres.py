@@ -153,7 +153,7 @@ CUT = 2.2  # widths at which the Gaussian (0.8 %) is cut to zero
 def move_lines(bundle, stack, activation, mandible, motion):  # type: ignore[no-untyped-def]
     """Move all lines for one tick, each after those it lies on, and contract the active ones.
 
-    activation: of each muscle, (M,); mandible: its Pose. Fills `motion`.
+    activation: of each muscle, (M,); mandible: its RigidMotion. Fills `motion`.
     """
     muscle, contraction, rows, lines = bundle.muscle, bundle.contraction, stack.rows, stack.line
     is_carried, carried, contracted = motion.is_carried, motion.carried, motion.contracted

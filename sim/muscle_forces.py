@@ -39,7 +39,7 @@ from .landmarks import Array
 from .muscle_stack import bottom_up, points_along, stack_muscles
 from .muscles import Line, PlacedMuscle
 from .rig import LinearMuscle, Rig
-from .skull import Pose
+from .skull import RigidMotion
 from .state import State
 from .surface import Surface
 
@@ -89,7 +89,7 @@ class MuscleForces:
         hold = np.bincount(holds.vertex, weight, minlength=vertex_count)
         return hold.astype(np.float64)
 
-    def add(self, activation: Array, mandible: Pose, weight: Array, state: State) -> None:
+    def add(self, activation: Array, mandible: RigidMotion, weight: Array, state: State) -> None:
         """Add the active muscles' stiffness to `state.hold` and their pull to `state.pull`.
 
         activation: of each muscle, shape (M,); weight: mandible's share of each vertex, shape (V,).
@@ -97,7 +97,7 @@ class MuscleForces:
         move_lines(self.bundle, self.stack, activation, mandible, self.motion)
         gather(state, activation, self.skin, self.motion, mandible.rotation, weight)
 
-    def lines(self, activation: Array, mandible: Pose, x: Array) -> dict[str, list[Array]]:
+    def lines(self, activation: Array, mandible: RigidMotion, x: Array) -> dict[str, list[Array]]:
         """Polylines [mm] to draw: contracted fibres of linear muscles, skin rows of rings."""
         lines: dict[str, list[Array]] = {name: [] for name in self.names}
         move_lines(self.bundle, self.stack, activation, mandible, self.motion)

@@ -74,7 +74,7 @@ def stack_muscles(
             )
             found += _entries(beneath, landmarks, places)
             rows.append(len(found))
-    return _riding(rows, found)
+    return _stack_of(rows, found)
 
 
 def _is_under(below: PlacedMuscle, above: PlacedMuscle) -> bool:
@@ -114,7 +114,7 @@ def points_along(line: Line, arc: Array) -> Array:
     return places
 
 
-def _riding(rows: Sequence[int], found: Sequence[Entry]) -> Stack:
+def _stack_of(rows: Sequence[int], found: Sequence[Entry]) -> Stack:
     """Arrays of what was found."""
     point, line, sample, place, share, steady = zip(*found, strict=True) if found else [()] * 6
     return Stack(

@@ -34,14 +34,14 @@ LATERAL, UP, FORWARD = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 SEED_HOLD = 3.0  # seeds are advice, not nails: a soft hold gives a smooth border
 
 
-class Pose(NamedTuple):
+class RigidMotion(NamedTuple):
     """A rigid motion x -> rotation x + shift in the standard space [mm]."""
 
     rotation: Array  # (3, 3)
     shift: Array  # (3,)
 
     @classmethod
-    def about(cls, pivot: Array, rotation: Array) -> Pose:
+    def about(cls, pivot: Array, rotation: Array) -> RigidMotion:
         """Turn about `pivot`."""
         return cls(rotation, pivot - rotation @ pivot)
 
@@ -49,9 +49,9 @@ class Pose(NamedTuple):
         """How far points (..., 3) move."""
         return points @ self.rotation.T + self.shift - points
 
-    def after(self, first: Pose) -> Pose:
+    def after(self, first: RigidMotion) -> RigidMotion:
         """This motion done after another."""
-        return Pose(self.rotation @ first.rotation, self.rotation @ first.shift + self.shift)
+        return RigidMotion(self.rotation @ first.rotation, self.rotation @ first.shift + self.shift)
 
     def matrix(self, space: FaceSpace) -> Array:
         """The motion in head coordinates as a (4, 4) matrix for column vectors."""
@@ -59,7 +59,7 @@ class Pose(NamedTuple):
         return result
 
 
-REST = Pose(np.eye(3), np.zeros(3))
+REST = RigidMotion(np.eye(3), np.zeros(3))
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class Skull:
     eyes: Eyes
     head: Head
 
-    def head_pose(self, pitch: float, yaw: float, roll: float) -> Pose:
+    def head_motion(self, pitch: float, yaw: float, roll: float) -> RigidMotion:
         """The whole head for head_pitch (up), head_yaw (left), head_roll (to the left shoulder)."""
         if pitch == yaw == roll == 0.0:
             return REST
@@ -92,21 +92,23 @@ class Skull:
             -math.radians(head.pitch_deg) * pitch,
             -math.radians(head.roll_deg) * roll,
         )
-        return Pose(*turn_head(self.condyles, head.joint, angles))
+        return RigidMotion(*turn_head(self.condyles, head.joint, angles))
 
-    def mandible_pose(self, opening: float, forward: float, sideways: float) -> Pose:
+    def mandible_motion(self, opening: float, forward: float, sideways: float) -> RigidMotion:
         """The mandible for jaw_open (0..1), jaw_forward and jaw_sideways (-1..1)."""
         jaw = self.jaw
         ways = jaw.opening_glide, jaw.forward_glide, jaw.sideways_glide
         angles = math.radians(jaw.opening_deg), math.radians(jaw.sideways_deg)
-        return Pose(*move_mandible(self.condyles, ways, angles, (opening, forward, sideways)))
+        return RigidMotion(
+            *move_mandible(self.condyles, ways, angles, (opening, forward, sideways))
+        )
 
-    def eye_pose(self, eyeball: Eyeball, horizontal: float, vertical: float) -> Pose:
+    def eye_motion(self, eyeball: Eyeball, horizontal: float, vertical: float) -> RigidMotion:
         """An eyeball looking to the subject's left (+1) and up (+1)."""
         most = math.radians(self.eyes.gaze_deg)
         yaw = rotation(UP, most * horizontal)
         pitch = rotation(LATERAL, -most * vertical)
-        return Pose.about(eyeball.centre, yaw @ pitch)
+        return RigidMotion.about(eyeball.centre, yaw @ pitch)
 
 
 # In every tick the mandible and the head are placed anew: numpy takes ten times as long for so few
@@ -150,7 +152,7 @@ def turned(turn, point):  # type: ignore[no-untyped-def]
 
 @njit
 def turn_head(condyles, joint, angles):  # type: ignore[no-untyped-def]
-    """Rotation and shift of the head; `joint`: off the middle of the condyles; see head_pose."""
+    """Rotation and shift of the head; `joint`: off the middle of the condyles; see head_motion."""
     turn = times(rotation(UP, angles[0]), rotation(LATERAL, angles[1]))
     turn = times(turn, rotation(FORWARD, angles[2]))
     pivot = (condyles[0] + condyles[1]) / 2.0
@@ -161,7 +163,7 @@ def turn_head(condyles, joint, angles):  # type: ignore[no-untyped-def]
 
 @njit
 def move_mandible(condyles, ways, angles, values):  # type: ignore[no-untyped-def]
-    """Rotation and shift of the mandible; `ways`: glides [mm] of its `values`; see mandible_pose.
+    """Rotation and shift of the mandible; `ways`: glides [mm] of its `values`; see mandible_motion.
 
     angles: of full opening and of full sideways motion [rad].
     """

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from . import checked
 from .coordinates import FaceSpace
 from .landmarks import Array
-from .skull import Pose
+from .skull import RigidMotion
 from .surface import Surface
 
 REACH = 18.0  # mm around an arch in which skin is watched
@@ -35,7 +35,7 @@ class Teeth(NamedTuple):
     arch: Array  # (C, 5) mm: half width, depth, z of the axis, lowest and highest tooth
     least: Array  # (C,) how near to the axis it may come, 1 = the arch
 
-    def deepest(self, x: Array, mandible: Pose) -> float:
+    def deepest(self, x: Array, mandible: RigidMotion) -> float:
         """How deep skin at `x` (V, 3) sits in the teeth at most, less what it did at rest [mm]."""
         if not len(self.vertex):
             return 0.0

@@ -4,9 +4,9 @@ Skin is simulated in coordinates of the cranium. While the head turns, these are
 the skin feels it as a load; a tilted head also feels gravity from another side. The rest shape is
 how a face hangs upright, so an upright head feels no gravity:
 
-    load = m h [ R^T g - g - R^T P'' r ]      m skin mass, h heaviness, P = (R, shift) head pose
+    load = m h [ R^T g - g - R^T P'' r ]      m skin mass, h heaviness, P = (R, shift) head motion
 
-P'' is the second difference of the head pose over the last ticks. Coriolis loads are left out (a
+P'' is the second difference of the head motion over the last ticks. Coriolis loads are left out (a
 few per cent: skin moves slowly inside the head).
 
 Source: mechanics in accelerated coordinates. `heaviness` stands for the ligaments that carry most
@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from .landmarks import Array
-from .skull import REST, Pose
+from .skull import REST, RigidMotion
 from .tissue import AREAL_MASS
 
 GRAVITY = np.array([0.0, -9810.0, 0.0])  # mm/s2 in the standard space
@@ -34,20 +34,20 @@ class Weight:
 
     def forget(self) -> None:
         """Start again from an upright head that does not move."""
-        self._pose = REST
+        self._motion = REST
         self._turning, self._moving = np.zeros((3, 3)), np.zeros(3)
 
-    def add(self, pose: Pose, dt: float, x: Array, force: Array) -> None:
-        """Add to `force` (V, 3) the load on skin at `x` (V, 3) [mm] while the head comes to `pose`.
+    def add(self, motion: RigidMotion, dt: float, x: Array, force: Array) -> None:
+        """Add to `force` (V, 3) the load on skin at `x` (V, 3) [mm] of a head at `motion`.
 
-        dt: time since the pose of the last call [s].
+        dt: time since the motion of the last call [s].
         """
-        turning = (pose.rotation - self._pose.rotation) / dt
-        moving = (pose.shift - self._pose.shift) / dt
+        turning = (motion.rotation - self._motion.rotation) / dt
+        moving = (motion.shift - self._motion.shift) / dt
         if self._inertia and (turning.any() or self._turning.any()):
-            spin = pose.rotation.T @ (turning - self._turning) / dt
-            push = pose.rotation.T @ (moving - self._moving) / dt
+            spin = motion.rotation.T @ (turning - self._turning) / dt
+            push = motion.rotation.T @ (moving - self._moving) / dt
             force -= self._mass[:, None] * (x @ spin.T + push)
-        if self._gravity and pose is not REST:
-            force += self._mass[:, None] * (pose.rotation.T @ GRAVITY - GRAVITY)
-        self._pose, self._turning, self._moving = pose, turning, moving
+        if self._gravity and motion is not REST:
+            force += self._mass[:, None] * (motion.rotation.T @ GRAVITY - GRAVITY)
+        self._motion, self._turning, self._moving = motion, turning, moving

@@ -80,7 +80,7 @@ def open_grid(columns: int = 4, rows: int = 3) -> Mesh:
     return _mesh(vertices, np.stack([lower, upper], axis=1).reshape(-1, 3))
 
 
-def folded_strip() -> Mesh:
+def half_shut_book() -> Mesh:
     """Two triangles folded towards each other like a book that is half shut."""
     return _mesh([(0, 0, 0), (0, 1, 0), (1, 0.5, 0.3), (1, 0.5, -0.3)], [(0, 2, 1), (0, 1, 3)])
 
@@ -96,7 +96,7 @@ def bow_tie() -> Mesh:
     return _mesh(vertices, [(0, 1, 2), (0, 3, 4)])
 
 
-def three_sheets() -> Mesh:
+def three_on_an_edge() -> Mesh:
     """Three triangles on the edge 0-1: an edge that is no manifold."""
     vertices = [(0, 0, 0), (0, 0, 1), (1, 0, 0), (-1, 1, 0), (-1, -1, 0)]
     return _mesh(vertices, [(0, 1, 2), (0, 1, 3), (1, 0, 4)])
@@ -131,10 +131,10 @@ NAMED = {
         tetrahedron,
         octahedron,
         open_grid,
-        folded_strip,
+        half_shut_book,
         pillow,
         bow_tie,
-        three_sheets,
+        three_on_an_edge,
         inconsistent_pair,
         with_debris,
     )
@@ -143,7 +143,7 @@ NAMED = {
 
 
 def irregular(seed: int, columns: int = 12, rows: int = 10, holes: int = 3) -> Mesh:
-    """A bumpy sheet with uneven valences and holes; vertices, triangles and corners shuffled."""
+    """A bumpy grid with uneven valences and holes; vertices, triangles and corners shuffled."""
     generator = np.random.default_rng(seed)
     grid = open_grid(columns, rows)
     x, y = grid.vertices[:, 0], grid.vertices[:, 1]

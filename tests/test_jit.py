@@ -1,4 +1,4 @@
-"""Compiled code: kept on disk where that can be trusted, made again where it cannot."""
+"""Compiled code: stored on disk where that can be trusted, made again where it cannot."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def start(package: Path, home: Path, **environment: str) -> list[str]:
     return result.stdout.splitlines()
 
 
-def kept(folder: Path) -> list[Path]:
+def stored_files(folder: Path) -> list[Path]:
     """Files of machine code anywhere below a folder."""
     return sorted(folder.rglob("*.code"))
 
@@ -95,7 +95,7 @@ def kept(folder: Path) -> list[Path]:
 def test_second_start_compiles_nothing(run: Run, package: Path) -> None:
     """Code lies beside the package, closed to others, and is read the next time."""
     assert run() == [COMPILED, RESULT]
-    (file,) = kept(package)
+    (file,) = stored_files(package)
     assert file.parent.stat().st_mode & 0o077 == 0
     assert run() == [RESULT]
 
@@ -105,7 +105,7 @@ def test_change_in_another_file_counts(run: Run, package: Path) -> None:
     run()
     (package / "refine" / "other.py").write_text("FACTOR = 3.0\n")
     assert run() == [COMPILED, "[0.0, 3.0, 6.0]"]
-    assert len(kept(package)) == 1  # the old code was written over
+    assert len(stored_files(package)) == 1  # the old code was written over
 
 
 def test_code_of_other_programs_is_not_kept(tmp_path: Path, package: Path) -> None:
@@ -115,7 +115,6 @@ def test_code_of_other_programs_is_not_kept(tmp_path: Path, package: Path) -> No
         "from risorius.jit import njit\n"
         "def times(factor):\n"
         "    @njit\n    def scale(x):\n        return factor * x\n    return scale\n"
-        "times.__module__ = __name__\n"
         "print(times(3.0)(1.0), times(5.0)(1.0))\n"
     )
     inside = package / "refine" / "scaling.py"
@@ -130,7 +129,7 @@ def test_code_of_other_programs_is_not_kept(tmp_path: Path, package: Path) -> No
             timeout=120,
         )
         assert result.stdout == "3.0 5.0\n", result.stderr
-    assert not kept(package)
+    assert not stored_files(package)
 
 
 @pytest.mark.slow
@@ -145,7 +144,7 @@ def test_changed_options_count(run: Run, package: Path) -> None:
 def test_damaged_file_is_made_again(run: Run, package: Path) -> None:
     """A file that is empty, foreign or cut off costs a compilation, nothing else."""
     run()
-    (file,) = kept(package)
+    (file,) = stored_files(package)
     whole = file.read_bytes()
     for damaged in (b"", b"torn", whole[: len(whole) // 2]):
         file.write_bytes(damaged)
@@ -164,7 +163,7 @@ def test_code_goes_to_the_user_where_the_package_is_read_only(
     """An installation that belongs to somebody else is left alone."""
     read_only(package)
     assert run() == [COMPILED, RESULT]
-    (file,) = kept(tmp_path / ".cache")
+    (file,) = stored_files(tmp_path / ".cache")
     assert "risorius" in str(file.parent.name)
     assert run() == [RESULT]
 
@@ -214,7 +213,7 @@ def test_folders_of_others_are_not_trusted(
 ) -> None:
     """What others could have written is neither run nor written over."""
     run(NUMBA_CACHE_DIR=str(tmp_path / "shared"))
-    (file,) = kept(tmp_path / "shared")
+    (file,) = stored_files(tmp_path / "shared")
     if fault == "open":
         file.parent.chmod(0o777)
     elif fault == "open above":  # where others could move it away and put their own in its place
@@ -227,7 +226,7 @@ def test_folders_of_others_are_not_trusted(
     else:
         pytest.skip("only root can give a folder away")
     assert run(NUMBA_CACHE_DIR=str(tmp_path / "shared")) == [COMPILED, RESULT]
-    assert kept(package)  # beside the code instead
+    assert stored_files(package)  # beside the code instead
 
 
 @pytest.mark.parametrize("name", ["code", "lock"])
@@ -235,7 +234,7 @@ def test_folders_of_others_are_not_trusted(
 def test_pipes_in_the_folder_do_not_hang(run: Run, package: Path, name: str) -> None:
     """A pipe in the place of a file is no code, and nothing waits for what it will say."""
     run()
-    (file,) = kept(package)
+    (file,) = stored_files(package)
     pipe = file if name == "code" else file.with_name("lock")
     pipe.unlink()
     if name == "lock":
@@ -249,24 +248,24 @@ def test_pipes_in_the_folder_do_not_hang(run: Run, package: Path, name: str) -> 
 def test_files_of_others_are_not_trusted(run: Run, package: Path) -> None:
     """Nor is a file in a folder of ours that somebody else owns."""
     run()
-    (file,) = kept(package)
+    (file,) = stored_files(package)
     os.chown(file, 12345, 12345)
     assert run() == [COMPILED, RESULT]
 
 
 def test_function_without_a_source(tmp_path: Path, package: Path) -> None:
-    """What is typed in by hand is compiled, and not kept."""
+    """What is typed in by hand is compiled, and not stored."""
     program = "from risorius.jit import njit\n@njit\ndef one(x):\n    return x\nprint(one(1))"
     result = subprocess.run(
         [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=120
     )
     assert result.stdout == "1\n", result.stderr
-    assert not kept(package)
+    assert not stored_files(package)
 
 
 @pytest.mark.slow
 def test_edited_after_import(package: Path, run: Run) -> None:
-    """Code is kept under the sources that it was made of, not those that lie there by now."""
+    """Code is stored under the sources that it was made of, not those that lie there by now."""
     edit = "(open('risorius/refine/other.py', 'w').write('FACTOR = 7.0\\n'))\n"
     program = PROGRAM.replace("scaled = np.zeros(3)\n", f"scaled = np.zeros(3)\n{edit}")
     result = subprocess.run(
@@ -310,7 +309,7 @@ def test_a_lock_that_is_never_given_back(package: Path, tmp_path: Path) -> None:
     """Patience ends: a process that hangs does not keep others from working."""
     fcntl = pytest.importorskip("fcntl")
     start(package, tmp_path)
-    (file,) = kept(package)
+    (file,) = stored_files(package)
     file.unlink()
     text = (package / "jit.py").read_text()
     (package / "jit.py").write_text(text.replace("PATIENCE = 30.0", "PATIENCE = 0.5"))
@@ -322,9 +321,9 @@ def test_a_lock_that_is_never_given_back(package: Path, tmp_path: Path) -> None:
 
 
 def test_runs_as_python(package: Path, run: Run) -> None:
-    """With NUMBA_DISABLE_JIT=1 kernels are the functions that are written, and nothing is kept."""
+    """With NUMBA_DISABLE_JIT=1 kernels are the functions that are written; nothing is stored."""
     assert run(NUMBA_DISABLE_JIT="1") == [RESULT]
-    assert not kept(package)
+    assert not stored_files(package)
 
 
 REFINE = """

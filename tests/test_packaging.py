@@ -229,8 +229,8 @@ def test_installed_wheel_works_beside_files_of_the_same_names(built: Built, tmp_
     assert run(built.python, "-m", "risorius", "--version", **surroundings) == version
     for words in (["--help"], ["demo", "--help"], ["doctor", "--offscreen", "--quiet"]):
         run(command, *words, **surroundings)
-    picture = ["capture", "--set", "joy", "--size", "64x64", "--quiet", "-o"]
-    run(command, *picture, tmp_path / "joy.png", **surroundings)
+    arguments = ["capture", "--set", "joy", "--size", "64x64", "--quiet", "-o"]
+    run(command, *arguments, tmp_path / "joy.png", **surroundings)
     assert (tmp_path / "joy.png").stat().st_size > 1000
     code = "from risorius import assets, refine, render, sim; print(sim.__file__)"
     site = Path(run(built.python, "-c", code, **surroundings)).parents[2]

@@ -25,8 +25,8 @@ def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
 
 def captioned(image: Image, texts: Sequence[str], viewports: Sequence[Viewport]) -> Image:
     """Write one line at the lower left of each viewport and draw a line between viewports."""
-    picture = PIL.Image.fromarray(image)
-    draw = ImageDraw.Draw(picture)
+    page = PIL.Image.fromarray(image)
+    draw = ImageDraw.Draw(page)
     height = image.shape[0]
     size = max(11.0, height / 36.0)
     for text, (left, bottom, _, _) in zip(texts, viewports, strict=True):
@@ -35,7 +35,7 @@ def captioned(image: Image, texts: Sequence[str], viewports: Sequence[Viewport])
         draw.text(place, text, font=font(size), fill=INK)
         if left:
             draw.line([(left, 0), (left, height)], fill=INK, width=1)
-    return np.asarray(picture)
+    return np.asarray(page)
 
 
 def contact_sheet(

@@ -14,7 +14,7 @@ from risorius.assets.fitting import FittedHead
 
 from ..cameras import camera_for
 from ..errors import UserError
-from ..files import Image, check_file, check_picture, save_png
+from ..files import Image, check_file, check_png, save_png
 from ..pipeline import Pipeline, side_by_side
 from ..scenes import Scene, build_scene
 from ..script import Script
@@ -64,7 +64,7 @@ class Capture:
     def __exit__(self, *_: object) -> None:
         self.surface.close()
 
-    def picture(self) -> Image:
+    def draw_image(self) -> Image:
         """Draw the scene as it is now, and read the picture back."""
         self.surface.begin()
         self.pipeline.draw(self.camera, self.options.style, self.viewports)
@@ -122,7 +122,7 @@ def capture(
     """
     _check(script, output, sheet, time)
     wanted = list(script.key_poses) if sheet else []
-    still = output if _is_picture(output) else None
+    still = output if _is_image(output) else None
     if time is None:
         time = script.key_poses[0].time if script.key_poses else script.duration
     rate = options.frames_per_second
@@ -138,7 +138,7 @@ def capture(
             is_wanted = bool(wanted) and wanted[0].time <= now + 0.5 / rate
             if film is None and not is_wanted and now != still_at:
                 continue
-            image = recording.picture()
+            image = recording.draw_image()
             if film is not None:
                 film(image)
             if still and now == still_at:
@@ -150,22 +150,22 @@ def capture(
         return recording.most_triangles
 
 
-def _is_picture(output: Path | None) -> bool:
+def _is_image(output: Path | None) -> bool:
     return output is not None and output.suffix.lower() == ".png"
 
 
 def _check(script: Script, output: Path | None, sheet: Path | None, time: float | None) -> None:
     """Raise UserError, before any work is done, where one of the outputs cannot be."""
-    if time is not None and not _is_picture(output):
+    if time is not None and not _is_image(output):
         raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
     if output is None and sheet is None:
         raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")
     if sheet and not script.key_poses:
         raise UserError(f"{script.source}: no pose has a name, so there is nothing for a sheet")
     if sheet is not None:
-        check_picture(sheet)
-    if output is not None and _is_picture(output):
-        check_picture(output)
+        check_png(sheet)
+    if output is not None and _is_image(output):
+        check_png(output)
     elif output is not None and output.suffix.lower() in outputs.FILM_SUFFIXES:
         check_file(output)
 

@@ -70,12 +70,12 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     face, plane = FaceScene(), PlaneScene()
 
     def simulate() -> None:
-        """Move every control a little, and pull the skin."""
+        """Move every control a little, and drag the skin."""
         face.pose(dict.fromkeys(face.limits, 0.1))
         face.step(1 / 60)
-        face.simulation.pull([0], face.positions[:1] + 1.0, [1.0])
+        face.simulation.drag([0], face.positions[:1] + 1.0, [1.0])
         face.step(1 / 60)
-        face.simulation.let_go()
+        face.simulation.end_drag()
         face.simulation.fibres()
         face.reset()
 

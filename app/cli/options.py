@@ -61,9 +61,9 @@ class Drawing:
 
     def refiner_options(self) -> dict[str, Any] | None:
         """What the refiner is told; UserError where there is no such refiner."""
-        from ..refining import options_in_words
+        from ..refining import parse_options
 
-        return options_in_words(self.refiner, self.refiner_settings)
+        return parse_options(self.refiner, self.refiner_settings)
 
     @property
     def look(self) -> dict[str, Any]:

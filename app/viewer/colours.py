@@ -34,14 +34,14 @@ class Colours:
     legend: str
     of_source: Callable[[Scene, refine.Refiner], Amounts] | None = None
 
-    def values(self, scene: Scene, picture: DrawnMesh) -> Amounts | None:
+    def values(self, scene: Scene, drawn: DrawnMesh) -> Amounts | None:
         """One value for each drawn triangle, as `kind` wants it."""
-        assert picture.mesh is not None
+        assert drawn.mesh is not None
         if self.kind is render.ColourBy.SPLITS:
-            return splits_of_source(picture.refiner, picture.mesh)
+            return splits_of_source(drawn.refiner, drawn.mesh)
         if self.of_source is None:
             return None
-        return self.of_source(scene, picture.refiner)[picture.mesh.source]
+        return self.of_source(scene, drawn.refiner)[drawn.mesh.source]
 
 
 def curvature_drops(scene: Scene, refiner: refine.Refiner) -> Amounts:

@@ -65,9 +65,11 @@ def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) 
     return rows
 
 
-def found(rows: Iterable[Row], words: str, *, group: str, actions: Mapping[str, str]) -> list[Row]:
-    """The rows in which all words occur: in name, group, or what the control does."""
-    wanted = words.lower().split()
+def search_rows(
+    rows: Iterable[Row], query: str, *, group: str, actions: Mapping[str, str]
+) -> list[Row]:
+    """The rows in which all words of the query occur: in name, group, or what the control does."""
+    wanted = query.lower().split()
     return [
         row
         for row in rows

@@ -69,7 +69,7 @@ class Exporter:
     def screenshot(self) -> Message:
         """Write the picture without panels, in full detail."""
         target = free_name(Path.cwd(), ".png")
-        save_png(target, self._stage.photograph(self._view))
+        save_png(target, self._stage.draw_image(self._view))
         return f"{target.name}: written to {target.parent}"
 
     def toggle_film(self) -> Message:
@@ -85,7 +85,7 @@ class Exporter:
 
     def add_to_film(self, messages: Messages) -> None:
         """Draw the next frame of the film, which ends where that cannot be written."""
-        film, frame = self.film, self._stage.photograph(self._view)
+        film, frame = self.film, self._stage.draw_image(self._view)
         if film is not None:
             messages.attempt(lambda: film.add(frame), otherwise=self.toggle_film)
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 PHASES = ("simulation", "refinement", "upload", "draw")
-KEPT_FRAMES = 180  # in the plot
+PLOTTED_FRAMES = 180  # in the plot
 SMOOTHING = 0.9  # of the frame rate, from frame to frame
 
 
@@ -16,7 +16,7 @@ class FrameTimes:
     """Milliseconds by phase of the paper's Figure 1 and by frame, and the rate of frames."""
 
     def __init__(self) -> None:
-        self.milliseconds = {name: deque([0.0] * KEPT_FRAMES, KEPT_FRAMES) for name in PHASES}
+        self.milliseconds = {name: deque([0.0] * PLOTTED_FRAMES, PLOTTED_FRAMES) for name in PHASES}
         self.frames_per_second = 0.0
 
     @contextmanager

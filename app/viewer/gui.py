@@ -90,7 +90,7 @@ class Gui:
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330")
 
-    def dress(self, theme: str, zoom: float) -> None:
+    def set_theme(self, theme: str, zoom: float) -> None:
         """Take on a theme; everything is `zoom` times as large, and more on a dense screen."""
         scale = zoom * self._screen_scale()
         if self._dressed == (theme, scale):
@@ -98,7 +98,7 @@ class Gui:
         self._dressed = theme, scale
         self.theme = THEMES[theme]
         style = imgui.get_style()
-        _dress(style, self.theme)
+        _set_colours(style, self.theme)
         style.scale_all_sizes(scale)
         style.font_scale_main = scale
 
@@ -130,10 +130,10 @@ class Gui:
         return False
 
     @contextlib.contextmanager
-    def frame(self, *, is_seen: bool = True) -> Iterator[None]:
+    def frame(self, *, is_visible: bool = True) -> Iterator[None]:
         """Everything drawn with imgui in this block appears over what was drawn before.
 
-        is_seen: False only answers the user; nothing is drawn.
+        is_visible: False only answers the user; nothing is drawn.
         """
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
@@ -143,7 +143,7 @@ class Gui:
             yield
         finally:
             imgui.render()
-            if is_seen:
+            if is_visible:
                 imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
 
     def remember(self, name: str) -> None:
@@ -202,7 +202,7 @@ def colour(rgb: tuple[float, float, float], opacity: float = 1.0) -> Any:
     return imgui.ImVec4(*rgb, opacity)
 
 
-def _dress(style: Any, theme: Theme) -> None:
+def _set_colours(style: Any, theme: Theme) -> None:
     """Quiet panels: the face is what is looked at."""
     fresh = imgui.Style()
     for name in dir(fresh):  # every size anew, or scaling would add up

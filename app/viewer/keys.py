@@ -13,7 +13,7 @@ from operator import attrgetter
 from typing import Any, NamedTuple, TypeVar
 
 from ..errors import UserError
-from ..scenes import within
+from ..scenes import clamped
 from ..script import LARGEST, Channel, Key, Limits, Pose, Script, rounded
 
 POSES = ""  # the track of whole poses; any other is called as its control is
@@ -113,14 +113,14 @@ def keyed(script: Script, time: float, values: Mapping[str, float], limits: Limi
     time = rounded(time)
     plain = script.posed(time)
     added = {name: track.value(time) for name, track in script.tracks.items()}
-    before = within(limits, script.at(time))
+    before = clamped(limits, script.at(time))
     changed = [name for name in values if abs(values[name] - before.get(name, 0.0)) > SAME]
     if script.tracks and not script.poses:
         return _with_track_keys(
             _reaching(script, time), time, {name: values[name] for name in changed or script.tracks}
         )
     wanted = plain | {name: values[name] - added.get(name, 0.0) for name in changed}
-    posed = {name: rounded(value) for name, value in within(limits, wanted).items()}
+    posed = {name: rounded(value) for name, value in clamped(limits, wanted).items()}
     rest = {name: values[name] - posed[name] for name in changed if name in script.tracks}
     differing = {name: value for name, value in rest.items() if abs(value - added[name]) > SAME}
     present = pose_at(script, time)
@@ -192,8 +192,8 @@ def _placed(
 def _merged(there: Iterable[Item], arriving: Iterable[Item]) -> list[Item]:
     """Both in the order of time; what arrives takes the place of what is there."""
     result: list[Item] = list(arriving)
-    taken = sorted(item.time for item in result)
-    result += [item for item in there if not _is_among(item.time, taken)]
+    taken_times = sorted(item.time for item in result)
+    result += [item for item in there if not _is_among(item.time, taken_times)]
     result.sort(key=attrgetter("time"))
     return result
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from risorius import render
 
 FULL = render.Detail(samples=4, scale=1.0)
-# One sample, outlines smoothed by strips (render/outline.py); then a little blurred, too.
+# One sample, outlines smoothed by fringes (render/outline.py); then a little blurred, too.
 # Two samples would not help: software draws four. Processor time of a whole frame at 1280 x 720,
 # as parts of the first: 1, 0.53, 0.47, 0.39 (measured 2026-11-21); with four samples at 0.75: 0.8.
 LEVELS = (

@@ -123,7 +123,7 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         command("Next shading", "S", lambda: settings.look.next_shading()),
         switch("Texture", "T", "skin", "textured", "plain"),
         muscles("Muscles", "U", lambda: settings.look.toggle_overlay("muscles")),
-        command("Frame the face", "F", view.frame_scene),
+        command("Frame the face", "F", view.fit_scene),
         command("Hide panels", "Tab", panels.toggle_hidden, lambda: panels.are_hidden),
         full("Full screen", "F11", toggle_full),
         command("Dark theme", "F2", settings.toggle_theme, lambda: settings.theme == "dark"),
@@ -139,8 +139,8 @@ def expression_menu(session: Session) -> Menu:
         command(
             readable(name),
             str(number),
-            partial(session.show, name),
-            partial(session.shows, name),
+            partial(session.toggle_alone, name),
+            partial(session.is_alone, name),
         )
         for number, name in enumerate(session.scene.expressions[:9], start=1)
     )

@@ -1,7 +1,7 @@
-"""The mouse in the picture: pull the skin, click a muscle, turn the camera, drag the divider.
+"""The mouse in the picture: drag the skin, click a muscle, turn the camera, drag the divider.
 
-Left on the skin pulls it, left beside it orbits, right orbits anywhere, middle or Shift pans, the
-wheel zooms. Pulled skin hangs on springs between the vertices under the mouse and where it drags.
+Left on the skin drags it, left beside it orbits, right orbits anywhere, middle or Shift pans, the
+wheel zooms. Dragged skin hangs on springs between the vertices under the mouse and where it drags.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ CLICK = 4.0  # [window units] a press that moves less is a click, not a drag
 FloatArray = npt.NDArray[np.float64]
 
 
-class SkinPull:
+class SkinDrag:
     """A finger that holds on to the skin."""
 
     def __init__(self, scene: Any, point: FloatArray) -> None:
@@ -49,15 +49,15 @@ class SkinPull:
         offset = point - self.point
         length = float(np.linalg.norm(offset))
         self.offset = offset * (FARTHEST * np.tanh(length / FARTHEST) / max(length, 1e-9))
-        self._scene.simulation.pull(self._vertices, self._from + self.offset, self._firmness)
+        self._scene.simulation.drag(self._vertices, self._from + self.offset, self._firmness)
 
     def muscle(self) -> str | None:
         """The one under the finger, if any."""
         return muscle_at(self.point, self._scene.simulation.fibres())
 
-    def let_go(self) -> None:
+    def end_drag(self) -> None:
         """The skin swings back."""
-        self._scene.simulation.let_go()
+        self._scene.simulation.end_drag()
 
 
 class Mouse:
@@ -70,14 +70,14 @@ class Mouse:
 
     def forget(self) -> None:
         """Hold on to nothing any more: what it was on is not there."""
-        self._doing = ""  # orbit, pan, divider, pull
+        self._doing = ""  # orbit, pan, divider, skin
         self._pressed_at = (0.0, 0.0)
-        self.pull: SkinPull | None = None
+        self.skin_drag: SkinDrag | None = None
 
     @property
-    def is_pulling(self) -> bool:
+    def is_dragging_skin(self) -> bool:
         """Whether the skin is being dragged."""
-        return self.pull is not None and bool(self.pull.offset.any())
+        return self.skin_drag is not None and bool(self.skin_drag.offset.any())
 
     @property
     def is_dragging(self) -> bool:
@@ -113,9 +113,9 @@ class Mouse:
             point = None
             if hasattr(scene, "simulation"):
                 point = skin_under(self._ray(io), scene.positions, scene.faces)
-            self._doing = "orbit" if point is None else "pull"
+            self._doing = "orbit" if point is None else "skin"
             if point is not None:
-                self.pull = SkinPull(scene, point)
+                self.skin_drag = SkinDrag(scene, point)
 
     def _drag(self, io: Any) -> None:
         camera, delta = self._view.camera, io.mouse_delta
@@ -127,14 +127,14 @@ class Mouse:
             camera.pan(-delta.x / max(height, 1.0), delta.y / max(height, 1.0))
         elif self._doing == "divider":
             self._view.look.divider = min(max((io.mouse_pos.x - left) / width, 0.0), 1.0)
-        elif self.pull is not None and (self._has_moved(io) or self.is_pulling):
-            self.pull.to(self._ray(io).at_depth_of(self.pull.point, camera.axes()[2]))
+        elif self.skin_drag is not None and (self._has_moved(io) or self.is_dragging_skin):
+            self.skin_drag.to(self._ray(io).at_depth_of(self.skin_drag.point, camera.axes()[2]))
 
     def _release(self, io: Any) -> None:
-        if self.pull is not None:
-            self.pull.let_go()
-            if not self.is_pulling and not self._has_moved(io):
-                name = self.pull.muscle()
+        if self.skin_drag is not None:
+            self.skin_drag.end_drag()
+            if not self.is_dragging_skin and not self._has_moved(io):
+                name = self.skin_drag.muscle()
                 if name is not None:
                     self._select_muscle(name)
         self.forget()

@@ -1,9 +1,9 @@
-"""When the panels are drawn anew while the face moves; in between, their last picture is kept.
+"""When the panels are drawn anew while the face moves; in between, their last image is stored.
 
 On software OpenGL the panels cost as much as a quarter of the face, and while a script plays only
 sliders creep in them: ten times a second is enough for these. Whatever the user does is answered in
-the same frame. The kept picture is simply what stands around the scene in the window's frame, so it
-can only be kept while nothing (a menu, a message, help) lies over the scene.
+the same frame. The stored image is simply what stands around the scene in the window's frame, so it
+can only be reused while nothing (a menu, a message, help) lies over the scene.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ class PanelCache:
         """Time has passed."""
         self._age += seconds
 
-    def are_due(self, size: tuple[int, int], *, is_moving: bool, is_touched: bool) -> bool:
+    def are_due(self, size: tuple[int, int], *, is_moving: bool, has_input: bool) -> bool:
         """Whether to draw them in this frame, in a window of `size` pixels.
 
-        is_moving: whether the scene has changed; else there is time. is_touched: by the user.
+        is_moving: whether the scene has changed; else there is time. has_input: from the user.
         """
         return (
             not is_moving
-            or is_touched
+            or has_input
             or self._is_over_scene
             or self._age >= self.refresh
             or size != self._size

@@ -58,15 +58,15 @@ class Physics:
         """Whether nothing has moved for some time."""
         return self._still_for > CALM
 
-    def advance(self, seconds: float, *, is_pulled: bool) -> None:
+    def advance(self, seconds: float, *, is_skin_dragged: bool) -> None:
         """As many steps as are due; none for a face at rest that nobody moves.
 
-        is_pulled: whether the mouse drags the skin. UserError where the simulation gave up.
+        is_skin_dragged: whether the mouse drags the skin. UserError where the simulation gave up.
         """
         steps = self._clock.steps(seconds)
         session, scene = self._session, self._session.scene
         wanted = dict(session.values)
-        is_driven = session.is_playing or session.is_recording or is_pulled
+        is_driven = session.is_playing or session.is_recording or is_skin_dragged
         is_driven = is_driven or wanted != self._posed
         self.has_stepped = steps > 0 and (is_driven or not self.is_at_rest)
         if not self.has_stepped:

@@ -29,7 +29,7 @@ class Placement:
         # A file dialog of the system's comes up over a full screen, which must not vanish then.
         glfw.set_window_attrib(window, glfw.AUTO_ICONIFY, glfw.FALSE)
 
-    def call(self, title: str) -> None:
+    def set_title(self, title: str) -> None:
         """Give the window a title, if it has another one."""
         if title != self._title:
             self._title = title
@@ -68,7 +68,7 @@ class Placement:
         """Whether nothing of the window is to be seen."""
         return bool(glfw.get_window_attrib(self._window, glfw.ICONIFIED))
 
-    def bring_back(self) -> None:
+    def restore(self) -> None:
         """Show a window that was minimised."""
         if self.is_minimised:
             glfw.restore_window(self._window)

@@ -88,7 +88,7 @@ class Recovery:
             self.discard()
             self._safe = state
         elif self.due_in() <= 0.0:
-            self.keep(session)
+            self.save(session)
 
     def due_in(self) -> float:
         """How long until something is to be written [s]; infinite if nothing is."""
@@ -98,7 +98,7 @@ class Recovery:
         due = min(self._changed_at + QUIET, self._lags_since + longest)
         return due - self._clock()
 
-    def keep(self, session: Session) -> None:
+    def save(self, session: Session) -> None:
         """Write what is unsaved; UserError, once, where that cannot be."""
         state = _state(session)
         if self._folder is None or state == self._safe:
@@ -127,11 +127,11 @@ class Recovery:
     def guarding(self, session: Session) -> Iterator[None]:
         """Keep what is unsaved if the block is stopped or fails; where it just ends, discard it."""
         try:
-            with cleaned_up_if_stopped(lambda: self.keep(session)):
+            with cleaned_up_if_stopped(lambda: self.save(session)):
                 yield
         except BaseException:
             with contextlib.suppress(UserError):
-                self.keep(session)
+                self.save(session)
             raise
         self.discard()
 

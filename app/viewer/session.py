@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
-from ..scenes import Scene, within
+from ..scenes import Scene, clamped
 from ..script import Pose, Script, is_pose, load_script, pose_script, rounded, save_script
 from . import keys
 from .control_rows import highest_first, mirrored, twin_of
@@ -96,14 +96,14 @@ class Session:
             self.is_playing = False
         self.pose_is_unsaved, self.is_following = True, False
 
-    def show(self, name: str) -> None:
+    def toggle_alone(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""
         pose = dict.fromkeys(self.limits, 0.0)
-        if not self.shows(name):
+        if not self.is_alone(name):
             pose[name] = self.limits[name][1]
         self._set_pose(pose, is_unsaved=False)
 
-    def shows(self, name: str) -> bool:
+    def is_alone(self, name: str) -> bool:
         """Whether this control alone is not 0, and at its most."""
         active = {each: value for each, value in self.values.items() if value}
         return active == {name: self.limits[name][1]}
@@ -266,7 +266,7 @@ class Session:
 
     def _all(self, values: Mapping[str, float]) -> dict[str, float]:
         """A value for each control, within its limits; 0 where none is given."""
-        return {**dict.fromkeys(self.limits, 0.0), **within(self.limits, values)}
+        return {**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, values)}
 
     @property
     def is_recording(self) -> bool:

@@ -71,21 +71,21 @@ def number(least: float, most: float) -> Rule:
     return rule
 
 
-def one_of(words: Collection[str]) -> Rule:
-    """Any of these words."""
+def one_of(allowed: Collection[str]) -> Rule:
+    """One of the words `allowed`."""
 
     def rule(value: Any) -> str:
         """One of them."""
-        if not (isinstance(value, str) and value in words):
+        if not (isinstance(value, str) and value in allowed):
             raise ValueError
         return value
 
     return rule
 
 
-def several_of(words: Collection[str]) -> Rule:
-    """A list of these words."""
-    one = one_of(words)
+def several_of(allowed: Collection[str]) -> Rule:
+    """A list of the words `allowed`."""
+    one = one_of(allowed)
     return lambda value: [one(each) for each in _list(value)]
 
 

@@ -65,7 +65,7 @@ class Look:
         order = [shading.value for shading in render.Shading]
         self.shading = order[(order.index(self.shading) + 1) % len(order)]
 
-    def drop_missing_overlays(self, scene: Scene) -> None:
+    def remove_missing_overlays(self, scene: Scene) -> None:
         """Show none that this scene has no data for."""
         self.overlays = [name for name in self.overlays if name in overlays_of(scene)]
 
@@ -160,10 +160,10 @@ def load_settings(path: Path) -> tuple[Settings, str]:
     settings, told = Settings(**accepted, look=Look(**look)), str(refused)
     if not told:
         return settings, ""
-    kept_as = _rename_unusable(path)
+    renamed = _rename_unusable(path)
     with contextlib.suppress(UserError):  # of a full disk others speak
         save_settings(path, settings)
-    return settings, in_one_line(f"{path}: of no use and as at first: {told}; {kept_as}")
+    return settings, in_one_line(f"{path}: of no use and as at first: {told}; {renamed}")
 
 
 def _rename_unusable(path: Path) -> str:
@@ -176,7 +176,7 @@ def _rename_unusable(path: Path) -> str:
     return f"the file is kept as {unusable.name}"
 
 
-def drop_refused_options(look: Look, scene: Scene) -> str:
+def remove_refused_options(look: Look, scene: Scene) -> str:
     """Take what refiners refuse for this scene out of a look; a line names it, "" for nothing."""
     refused = []
     for refiner, options in look.options.items():
@@ -192,8 +192,8 @@ def drop_refused_options(look: Look, scene: Scene) -> str:
     if not _suits(scene, look.refiner, None):
         refused.append(look.refiner)
         look.refiner = Look().refiner
-    words = f"of no use and as at first: refiner {', '.join(refused)}"
-    return in_one_line(words) if refused else ""
+    line = f"of no use and as at first: refiner {', '.join(refused)}"
+    return in_one_line(line) if refused else ""
 
 
 def _suits(scene: Scene, refiner: str, options: Mapping[str, Any] | None) -> bool:

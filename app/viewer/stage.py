@@ -31,7 +31,7 @@ LEAST_SHARE = 0.08  # of the picture that each side of a comparison keeps
 class Shot(NamedTuple):
     """One mesh in the picture, and the part of it in which it is seen."""
 
-    picture: DrawnMesh
+    drawn: DrawnMesh
     viewport: Viewport
     clip: Viewport
     label: str
@@ -45,9 +45,9 @@ class Stage:
     ) -> None:
         self.surface = surface
         self._times = times
-        self._set(scene, look)
+        self._bind_scene(scene, look)
 
-    def _set(self, scene: Scene, look: Look) -> None:
+    def _bind_scene(self, scene: Scene, look: Look) -> None:
         self.scene = scene
         self.renderer = render.Renderer(self.surface)
         self._texture = texture_of(scene, self.renderer)
@@ -58,7 +58,7 @@ class Stage:
         self._bound: object = None
         self.bind_refiner(look)
 
-    def show(self, scene: Scene, look: Look) -> None:
+    def set_scene(self, scene: Scene, look: Look) -> None:
         """Take another scene in place of this one."""
         for stream in {id(each): each.stream for each in (self.static, self.refined)}.values():
             stream.release()
@@ -67,7 +67,7 @@ class Stage:
         if self._wrinkling is not None:
             self._wrinkling.map.release()
         self.renderer.release()
-        self._set(scene, look)
+        self._bind_scene(scene, look)
 
     def bind_refiner(self, look: Look) -> None:
         """Bind the refiner that `look` names, with its options; UserError if it refuses them."""
@@ -110,15 +110,15 @@ class Stage:
                 amounts = self._wrinkling.amounts(self.scene.positions)
         for shot in shots:
             with times.timed("refinement"):
-                shot.picture.refine(self.scene.positions, camera, shot.viewport)
+                shot.drawn.refine(self.scene.positions, camera, shot.viewport)
             with times.timed("upload"):
-                shot.picture.upload(amounts)
+                shot.drawn.upload(amounts)
         with times.timed("draw"):
             self.surface.begin()
             overlays = self._overlays(view)
             self.renderer.draw_background(style, viewport)
             for shot in shots:
-                values = COLOURS[look.colours].values(self.scene, shot.picture)
+                values = COLOURS[look.colours].values(self.scene, shot.drawn)
                 self._draw_shot(shot, camera, style, values)
                 for lines in overlays:
                     self.renderer.draw_lines(
@@ -137,10 +137,10 @@ class Stage:
         self, shot: Shot, camera: render.OrbitCamera, style: render.Style, values: Amounts | None
     ) -> None:
         where: dict[str, Any] = {"viewport": shot.viewport, "clip": shot.clip}
-        has_uv = shot.picture.has_uv
+        has_uv = shot.drawn.has_uv
         texture = self._texture if has_uv else None
         self.renderer.draw_mesh(
-            shot.picture.stream,
+            shot.drawn.stream,
             camera,
             style,
             values=values,
@@ -153,14 +153,14 @@ class Stage:
             self.scene.parts, self.scene.bone_transforms(), camera, style, **where
         )
         if not self.surface.samples:
-            self.renderer.draw_outline(shot.picture.stream, camera, style, texture=texture, **where)
+            self.renderer.draw_outline(shot.drawn.stream, camera, style, texture=texture, **where)
 
     def _overlays(self, view: View) -> list[Lines]:
         edges = self.static.refiner.edges
         lines = [OVERLAYS[name](self.scene, edges, view.camera) for name in view.look.overlays]
         return [*lines, pointed_lines(self.scene, view.pointed)] if view.pointed else lines
 
-    def photograph(self, view: View) -> Image:
+    def draw_image(self, view: View) -> Image:
         """The picture without panels, in full detail, with captions where two meshes are seen."""
         self.surface.detail = FULL
         self.draw(view)
@@ -170,7 +170,7 @@ class Stage:
         shots = self.shots(view.look, view.viewport)
         if len(shots) == 1:
             return np.ascontiguousarray(frame)
-        texts = [f"{shot.label} · {shot.picture.triangle_count} triangles" for shot in shots]
+        texts = [f"{shot.label} · {shot.drawn.triangle_count} triangles" for shot in shots]
         places = [(shot.clip[0] - left, shot.clip[1] - bottom, *shot.clip[2:]) for shot in shots]
         return captioned(frame, texts, places)
 

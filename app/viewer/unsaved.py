@@ -54,7 +54,7 @@ class Work:
         return False
 
     @property
-    def words(self) -> str:
+    def summary(self) -> str:
         """What there is of it."""
         name = self.path.name if self.path else self.script.title if self.script else ""
         lost = {

@@ -33,7 +33,7 @@ class View:
         self._session, self._settings, self._surface = session, settings, surface
         self.area = (0.0, 0.0, 1.0, 1.0)
         self.pointed = ()
-        self.frame_scene()
+        self.fit_scene()
         place = settings.cameras.get(session.scene.name)
         if place is not None:  # as it stood when this scene's window was closed
             yaw, pitch, distance, *target = place
@@ -42,7 +42,7 @@ class View:
             self.camera.target = np.array(target)
             self.camera.distance = min(max(distance, radius), 20.0 * radius)
 
-    def frame_scene(self) -> None:
+    def fit_scene(self) -> None:
         """The camera as at first: all of the scene."""
         self.camera = whole_scene(self._session.scene, self._session.script.camera)
 

@@ -53,7 +53,7 @@ from .question import Question
 from .recovery import Recovery
 from .script_commands import ScriptCommands
 from .session import Session
-from .settings import Look, Settings, drop_refused_options, load_settings, save_settings
+from .settings import Look, Settings, load_settings, remove_refused_options, save_settings
 from .stage import Stage
 from .time_axis import TimeAxis
 from .view import View
@@ -90,11 +90,11 @@ class Viewer:
         self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
         self.recovery.find(self.session)
         if look is None:
-            refused = drop_refused_options(self.settings.look, scene)
+            refused = remove_refused_options(self.settings.look, scene)
             complaint = "; ".join(filter(None, (complaint, refused)))
         else:
             self.settings.look = look
-        self.settings.look.drop_missing_overlays(scene)
+        self.settings.look.remove_missing_overlays(scene)
         self.times = FrameTimes()
         with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
             title = f"Risorius: {self.session.name}"
@@ -113,7 +113,7 @@ class Viewer:
         if complaint:
             self.messages.say(complaint, error=True)
         for _ in range(2):  # panels and tabs find their places before the first picture
-            self._draw_gui(is_seen=False)
+            self._draw_gui(is_visible=False)
 
     def _join_commands(self) -> None:
         """What can be done, each with what it needs for that."""
@@ -144,8 +144,8 @@ class Viewer:
         gui, session, settings, messages = self.gui, self.session, self.settings, self.messages
         view, commands, axis = self.view, self.commands, self.time_axis
         bar = MenuBar(gui, session, messages, commands)
-        sheet = DopeSheet(gui, session, settings, messages, self.selection, axis, bar)
-        self.timeline = Timeline(gui, session, messages, commands, self.exporter, sheet)
+        dope_sheet = DopeSheet(gui, session, settings, messages, self.selection, axis, bar)
+        self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
         self.face_panel = FacePanel(gui, session, settings, view)
         mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
         tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw}
@@ -187,14 +187,14 @@ class Viewer:
                     self.ask_to_close()
                     if self.surface.should_close:
                         break
-                    self.placement.bring_back()  # to be asked
+                    self.placement.restore()  # to be asked
                 is_over = playing and not self.session.is_playing
                 if once and is_over and not self.session.unsaved:
                     break
                 if self.is_idle:
                     self._wait()
 
-    def rest(self) -> None:
+    def wait_for_frame(self) -> None:
         """Wait until something happens, or it is time to look around; then show a frame."""
         self._wait()
         self.frame()
@@ -210,11 +210,13 @@ class Viewer:
         elapsed, self._last = now - self._last, now
         self.times.note_frame(elapsed)
         mark = " *" if self.session.unsaved else ""
-        self.placement.call(f"Risorius: {self.session.name}{mark}")
+        self.placement.set_title(f"Risorius: {self.session.name}{mark}")
         is_filming = self.exporter.film is not None
         seconds = 1.0 / FRAMES_PER_SECOND if is_filming else elapsed
-        is_pulled = self.mouse.is_pulling
-        self.messages.attempt(lambda: self.physics.advance(seconds, is_pulled=is_pulled))
+        is_skin_dragged = self.mouse.is_dragging_skin
+        self.messages.attempt(
+            lambda: self.physics.advance(seconds, is_skin_dragged=is_skin_dragged)
+        )
         is_moving = self.painter.paint(elapsed, has_moved=self.physics.has_stepped)
         self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
@@ -252,29 +254,29 @@ class Viewer:
             self._awake = FRAMES_AFTER_EVENT
 
     def _show_panels(self, elapsed: float, *, is_moving: bool) -> None:
-        """Answer the user, and draw the panels around the scene where their picture is not kept."""
+        """Answer the user, and draw the panels around the scene where their image is not stored."""
         size, is_answering = self.surface.size, self._awake > 0 or imgui.is_any_item_active()
         self.panel_cache.age(elapsed)
         # What is dragged in the scene moves no slider.
-        is_touched = is_answering and not self.mouse.is_dragging
-        is_seen = self.panel_cache.are_due(size, is_moving=is_moving, is_touched=is_touched)
-        if not (is_seen or is_answering):
+        has_input = is_answering and not self.mouse.is_dragging
+        is_visible = self.panel_cache.are_due(size, is_moving=is_moving, has_input=has_input)
+        if not (is_visible or is_answering):
             return
-        if is_seen:
+        if is_visible:
             self.surface.resolve()
             left, bottom, width, _ = self.view.viewport
             if not self.panel_state.are_hidden:
                 self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
                 self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
-        self._draw_gui(is_seen=is_seen)
-        if is_seen:
+        self._draw_gui(is_visible=is_visible)
+        if is_visible:
             self.panel_cache.note_drawn(size, is_over_scene=self.gui.covers(self.view.area))
 
-    def _draw_gui(self, *, is_seen: bool) -> None:
-        """Panels, and what the user does to them and to the face; is_seen: see Gui.frame."""
+    def _draw_gui(self, *, is_visible: bool) -> None:
+        """Panels, and what the user does to them and to the face; is_visible: see Gui.frame."""
         messages, gui, state = self.messages, self.gui, self.panel_state
-        with gui.frame(is_seen=is_seen):
-            gui.dress(self.settings.theme, self.settings.zoom)
+        with gui.frame(is_visible=is_visible):
+            gui.set_theme(self.settings.theme, self.settings.zoom)
             self._layout.draw(self.view)
             messages.age(imgui.get_io().delta_time)
             draw_message(gui, messages, self.view)
@@ -302,10 +304,10 @@ class Viewer:
         """Take another scene with the same controls in place of this one."""
         self.session.move_to(scene)
         look = self.settings.look
-        look.drop_missing_overlays(scene)
-        refused = drop_refused_options(look, scene)
-        self.stage.show(scene, look)
-        self.view.frame_scene()
+        look.remove_missing_overlays(scene)
+        refused = remove_refused_options(look, scene)
+        self.stage.set_scene(scene, look)
+        self.view.fit_scene()
         self.mouse.forget()
         self.physics.begin_anew()
         self.painter.forget()

@@ -37,7 +37,7 @@ from ..model import (
 from ..topology import vertex_normals
 from ..user_files import named
 from .landmark_file import COUNT, read_landmarks
-from .organs import Place, place_eyes, place_parts
+from .organs import FittedSkin, place_eyes, place_parts
 from .soundness import SkinPiece, check_manifold, check_openings, skin_of
 from .warp import Similarity, Warp, nearest_on
 
@@ -116,22 +116,22 @@ def fit(
     target = similarity.points(points)
     warp = Warp(*_distinct(known.vertices[known.landmarks], target))
     warped = warp.points(known.vertices)
-    foot = nearest_on(skin.vertices, normals, warped, known.faces)
-    weight = foot.carry(known.mandible_weight)
-    place = Place(skin.vertices, normals, target, weight)
-    eyes = place_eyes(known, place)
+    nearest = nearest_on(skin.vertices, normals, warped, known.faces)
+    weight = nearest.interpolate(known.mandible_weight)
+    fitted = FittedSkin(skin.vertices, normals, target, weight)
+    eyes = place_eyes(known, fitted)
     return FittedHead(
         vertices=skin.vertices,
         faces=skin.faces,
         landmarks=skin.landmarks,
-        bone_depth=foot.carry(known.bone_depth),
+        bone_depth=nearest.interpolate(known.bone_depth),
         eyes=eyes,
-        parts=place_parts(known, place, warp, eyes),
-        uv=foot.carry(known.uv).astype(np.float32),
+        parts=place_parts(known, fitted, warp, eyes),
+        uv=nearest.interpolate(known.uv).astype(np.float32),
         face_uv=skin.faces,
         albedo=known.albedo,
         wrinkles=replace(
-            known.wrinkles, across=foot.carry(known.wrinkles.across).astype(np.float32)
+            known.wrinkles, across=nearest.interpolate(known.wrinkles.across).astype(np.float32)
         ),
         rig=known.rig,
         layers=known.layers,

@@ -21,7 +21,7 @@ from ..errors import AssetError
 from ..meshes import FARTHEST, Mesh
 from ..model import FloatArray, IndexArray
 from ..user_files import named, read_file
-from .soundness import ways
+from .soundness import path_lengths
 from .warp import nearest_on
 
 COUNT = 68
@@ -130,7 +130,7 @@ def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:
     to the nearest vertex that is nearer, along the skin, to the outside of its own lip.
     """
     on_mesh = nearest_on(points, np.zeros_like(points), mesh.vertices, mesh.faces)
-    distance = np.linalg.norm(on_mesh.carry(mesh.vertices) - points, axis=1)
+    distance = np.linalg.norm(on_mesh.interpolate(mesh.vertices) - points, axis=1)
     allowed = FARTHEST_OFF * float(np.linalg.norm(np.diff(points[OUTER_EYE_CORNERS], axis=0)))
     if distance.max() > allowed:
         place = int(distance.argmax())
@@ -140,7 +140,8 @@ def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:
         )
     numbers: IndexArray = cKDTree(mesh.vertices).query(points)[1].astype(np.int32)
     to_upper, to_lower = (
-        ways(mesh.vertices, mesh.faces, numbers[list(lip)]).min(axis=0) for lip in OUTER_LIPS
+        path_lengths(mesh.vertices, mesh.faces, numbers[list(lip)]).min(axis=0)
+        for lip in OUTER_LIPS
     )
     for lip, is_own in zip(INNER_LIPS, (to_upper < to_lower, to_lower < to_upper), strict=True):
         own = np.flatnonzero(is_own)

@@ -30,14 +30,14 @@ LONGER = (
 WALL_DEPTH = 6.0  # [mm] of a wall of the mouth behind the skin
 BESIDE, AROUND = 9.0, 8  # [mm] and number of skin vertices that are in front of a wall
 FACING = 0.2  # forward share of a normal from which skin is in front of teeth
-TOUCHING = 4.0, 3  # [mm] and number of skin vertices that teeth and gums must keep away from
+TEETH_CLEARANCE = 4.0, 3  # [mm] and number of skin vertices that teeth and gums must keep away from
 STIFF_DEPTH = 2.5  # [mm] of teeth and gums behind the skin: the least that lips and cheeks are
 FARTHEST_BACK = 10.0  # [mm] that the teeth are set back for it
 JAW_SHARES = (0.0, 0.5, 1.0)  # of the way that the jaw opens
 
 
 @dataclass(frozen=True)
-class Place:
+class FittedSkin:
     """What the organs of the built-in head are fitted into.
 
     vertices, normals: the skin at rest [mm], shape (V, 3).
@@ -51,7 +51,7 @@ class Place:
     mandible_weight: FloatArray
 
 
-def place_eyes(known: Head, place: Place) -> tuple[Eye, ...]:
+def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
     """The eyes of a head, round and behind its lids.
 
     Eyeballs differ less than the openings in front of them: by the root of the ratio.
@@ -60,14 +60,14 @@ def place_eyes(known: Head, place: Place) -> tuple[Eye, ...]:
     for eye in known.eyes:
         around = EYE_LANDMARKS[eye.name]
         source = known.vertices[known.landmarks[around]]
-        target = place.landmarks[around]
+        target = fitted.landmarks[around]
         scale = _extent(target) / _extent(source)
         centre = target.mean(axis=0) + scale * (eye.centre - source.mean(axis=0))
         scale = float(np.sqrt(scale))
         radius = scale * eye.radius
         lids = target[[1, 2, 4, 5]]
-        near = cKDTree(lids).query(place.vertices)[0] < LID_DEPTH
-        skin = np.vstack([lids, place.vertices[near]])
+        near = cKDTree(lids).query(fitted.vertices)[0] < LID_DEPTH
+        skin = np.vstack([lids, fitted.vertices[near]])
         centre[2] += _way_forward(centre, radius + LID_CLEARANCE, skin)
         eyes.append(Eye(eye.name, centre, radius, scale * eye.iris_radius))
     return tuple(eyes)
@@ -89,9 +89,11 @@ def _way_forward(centre: FloatArray, radius: float, skin: FloatArray) -> float:
     return float((away[in_front, 2] - height).min())
 
 
-def place_parts(known: Head, place: Place, warp: Warp, eyes: tuple[Eye, ...]) -> tuple[Part, ...]:
+def place_parts(
+    known: Head, fitted: FittedSkin, warp: Warp, eyes: tuple[Eye, ...]
+) -> tuple[Part, ...]:
     """The rigid parts of the built-in head, in another one."""
-    mouth = _mouth_of(known, place, warp)
+    mouth = _mouth_of(known, fitted, warp)
     balls = {}
     for old, new in zip(known.eyes, eyes, strict=True):
         scale = new.radius / old.radius
@@ -101,15 +103,15 @@ def place_parts(known: Head, place: Place, warp: Warp, eyes: tuple[Eye, ...]) ->
         stiffly = balls.get(part.bone) or (mouth if part.name.startswith(STIFF) else None)
         placed = _bent(part, warp) if stiffly is None else _moved(part, stiffly)
         if part.name.startswith(WALLS) and part.bone == "cranium":
-            lips = place.landmarks[MOUTH].mean(axis=0)
+            lips = fitted.landmarks[MOUTH].mean(axis=0)
             walls = _lengthened(placed.vertices.astype(np.float64), lips)
-            walls = _behind_skin(walls, _opening(known, place, warp))
+            walls = _behind_skin(walls, _opening(known, fitted, warp))
             placed = replace(placed, vertices=walls.astype(np.float32))
         parts.append(placed)
     return tuple(parts)
 
 
-def _mouth_of(known: Head, place: Place, warp: Warp) -> Similarity:
+def _mouth_of(known: Head, fitted: FittedSkin, warp: Warp) -> Similarity:
     """Where the stiff parts of the mouth come to lie: behind the skin, as one."""
     found = [
         part.vertices.astype(np.float64) for part in known.parts if part.name.startswith(STIFF)
@@ -117,9 +119,11 @@ def _mouth_of(known: Head, place: Place, warp: Warp) -> Similarity:
     stiff = np.vstack([*found, known.vertices[known.landmarks[MOUTH]]])
     mouth = Similarity.between(stiff, warp.points(stiff))
     placed = mouth.points(np.vstack(found)) if found else np.zeros((0, 3))
-    skin = place.vertices[place.normals[:, 2] > FACING]
-    distance, beside = cKDTree(skin[:, :2]).query(placed[:, :2], k=TOUCHING[1])
-    depth = np.where(distance < TOUCHING[0], skin[beside, 2], np.inf).min(axis=1) - STIFF_DEPTH
+    skin = fitted.vertices[fitted.normals[:, 2] > FACING]
+    distance, beside = cKDTree(skin[:, :2]).query(placed[:, :2], k=TEETH_CLEARANCE[1])
+    depth = (
+        np.where(distance < TEETH_CLEARANCE[0], skin[beside, 2], np.inf).min(axis=1) - STIFF_DEPTH
+    )
     back = float(np.clip((placed[:, 2] - depth).max(initial=0.0), 0.0, FARTHEST_BACK))
     return replace(mouth, shift=mouth.shift - np.array([0.0, 0.0, back]))
 
@@ -151,7 +155,7 @@ def _lengthened(walls: FloatArray, lips: FloatArray) -> FloatArray:
     return longer
 
 
-def _opening(known: Head, place: Place, warp: Warp) -> FloatArray:
+def _opening(known: Head, fitted: FittedSkin, warp: Warp) -> FloatArray:
     """Points of the skin that faces forward while the jaw opens [mm], shape (n, 3).
 
     As coarse as need be: each vertex turns about the condyles by its share of the jaw's angle.
@@ -159,8 +163,8 @@ def _opening(known: Head, place: Place, warp: Warp) -> FloatArray:
     jaw = known.rig.get("jaw", {})
     right, left = warp.points(known.jaw_axis)
     hinge = (left - right) / np.linalg.norm(left - right)
-    facing = place.normals[:, 2] > 0.0
-    skin, weight = place.vertices[facing], place.mandible_weight[facing]
+    facing = fitted.normals[:, 2] > 0.0
+    skin, weight = fitted.vertices[facing], fitted.mandible_weight[facing]
     seen = []
     for share in JAW_SHARES:
         angle = share * np.radians(float(jaw.get("opening_deg", 20.0)))

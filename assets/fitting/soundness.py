@@ -60,10 +60,12 @@ def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> S
             f"landmark {others[0]} lies on another piece of the mesh than most; the skin must hang "
             "together (weld its seams)"
         )
-    is_kept = piece == piece[landmarks[0]]
-    kept = np.flatnonzero(is_kept).astype(np.int32)
-    number = np.cumsum(is_kept).astype(np.int32) - 1
-    return SkinPiece(vertices[kept], number[faces[is_kept[faces[:, 0]]]], number[landmarks], kept)
+    is_in_piece = piece == piece[landmarks[0]]
+    used = np.flatnonzero(is_in_piece).astype(np.int32)
+    number = np.cumsum(is_in_piece).astype(np.int32) - 1
+    return SkinPiece(
+        vertices[used], number[faces[is_in_piece[faces[:, 0]]]], number[landmarks], used
+    )
 
 
 def check_manifold(faces: IndexArray) -> None:
@@ -83,9 +85,9 @@ def check_manifold(faces: IndexArray) -> None:
             f"the mesh is not manifold: {uses.max()} triangles meet at the edge of its vertices "
             f"{a} and {b}; remove doubled faces and inner walls"
         )
-    ways, uses = np.unique(directed, axis=0, return_counts=True)
+    half_edges, uses = np.unique(directed, axis=0, return_counts=True)
     if (uses > 1).any():
-        a, b = ways[uses.argmax()]
+        a, b = half_edges[uses.argmax()]
         raise AssetError(
             f"the mesh is not oriented: both triangles at the edge of its vertices {a} and {b} run "
             "along it the same way; make its normals agree"
@@ -95,7 +97,7 @@ def check_manifold(faces: IndexArray) -> None:
 def check_openings(skin: SkinPiece) -> None:
     """Raise AssetError where lips are welded or skin covers an eye; in the face space [mm]."""
     over, under = skin.landmarks[list(LIPS)]
-    from_above, from_below = ways(skin.vertices, skin.faces, skin.landmarks[list(LIPS)])
+    from_above, from_below = path_lengths(skin.vertices, skin.faces, skin.landmarks[list(LIPS)])
     ends = skin.landmarks[list(LIP_CORNERS)]
     across, around = from_above[under], (from_above[ends] + from_below[ends]).min()
     if over == under or across < WELDED * around:
@@ -122,10 +124,10 @@ def _is_covered(corners: FloatArray, point: FloatArray) -> bool:
     return bool((corners[hit, :, 2].mean(axis=1) > point[2] - COVERED).any())
 
 
-def ways(
+def path_lengths(
     vertices: FloatArray, faces: IndexArray, starts: npt.NDArray[np.integer[Any]]
 ) -> FloatArray:
-    """Shortest ways along edges from each start to all vertices, shape (n, V)."""
+    """Lengths of the shortest paths along edges from each start to all vertices, shape (n, V)."""
     count = len(vertices)
     links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     links = np.unique(np.sort(links, axis=1), axis=0)

@@ -88,13 +88,13 @@ def _distances(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class Foot:
+class SurfacePoints:
     """For each of n points, where on a triangle mesh it lies nearest."""
 
     corners: IndexArray  # (n, 3) vertices of the triangle
     weights: FloatArray  # (n, 3) barycentric coordinates in it
 
-    def carry(self, values: npt.NDArray[np.floating]) -> FloatArray:
+    def interpolate(self, values: npt.NDArray[np.floating]) -> FloatArray:
         """Values of the mesh's vertices, (V,) or (V, k), at the points."""
         carried: FloatArray = np.einsum(
             "nc,nc...->n...", self.weights, np.asarray(values, dtype=np.float64)[self.corners]
@@ -104,7 +104,7 @@ class Foot:
 
 def nearest_on(
     points: FloatArray, normals: FloatArray, vertices: FloatArray, faces: IndexArray
-) -> Foot:
+) -> SurfacePoints:
     """Feet of points (n, 3) on a mesh; a surface that faces away from a point's normal is farther.
 
     So the lower lip's points find the lower lip though the upper one is nearer.
@@ -126,7 +126,7 @@ def nearest_on(
         best = np.where(is_better, cost, best)
         chosen = np.where(is_better, column, chosen)
         weights = np.where(is_better[:, None], found, weights)
-    return Foot(faces[chosen], weights)
+    return SurfacePoints(faces[chosen], weights)
 
 
 def _barycentric(points: FloatArray, corners: FloatArray) -> FloatArray:

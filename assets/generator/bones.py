@@ -19,7 +19,7 @@ from ..topology import cross_products, edge_faces
 from .fields import Points, Values
 from .form import from_front
 from .mouth_rows import BORDER_ROW, COLUMNS, SEAM_ROW
-from .skin import Skin
+from .skin import SkinMesh
 
 DEPTH_BY_NAME = {
     "vertex": 5.0, "trichion": 4.5, "metopion": 5.0, "glabella": 5.5, "nasion": 6.5,
@@ -61,7 +61,7 @@ def jaw_axis() -> Points:
     return np.array([CONDYLE * [-1.0, 1.0, 1.0], CONDYLE])
 
 
-def _laplacian(skin: Skin) -> tuple[sparse.csr_matrix, Values]:
+def _laplacian(skin: SkinMesh) -> tuple[sparse.csr_matrix, Values]:
     """Graph Laplacian with weights area / length^2 and the area that belongs to each vertex."""
     area = 0.5 * np.linalg.norm(cross_products(skin.vertices, skin.faces), axis=1)
     beside = edge_faces(skin.faces)
@@ -78,7 +78,7 @@ def _laplacian(skin: Skin) -> tuple[sparse.csr_matrix, Values]:
     return (sparse.diags(degree) - weights).tocsr(), mass
 
 
-def _interpolate(skin: Skin, seeds: dict[int, float]) -> Values:
+def _interpolate(skin: SkinMesh, seeds: dict[int, float]) -> Values:
     """The smoothest values over the mesh that meet the seeds, the same on both sides."""
     laplacian, mass = _laplacian(skin)
     both = seeds | {int(skin.mirror[vertex]): value for vertex, value in seeds.items()}
@@ -92,11 +92,11 @@ def _interpolate(skin: Skin, seeds: dict[int, float]) -> Values:
     return np.asarray(0.5 * (values + values[skin.mirror]), dtype=np.float64)
 
 
-def _nearest(skin: Skin, points: Points) -> npt.NDArray[np.int64]:
+def _nearest(skin: SkinMesh, points: Points) -> npt.NDArray[np.int64]:
     return np.asarray(cKDTree(skin.vertices).query(points)[1])
 
 
-def bone_depth(skin: Skin) -> Values:
+def bone_depth(skin: SkinMesh) -> Values:
     """Distance from the skin to the bone beneath [mm], shape (V,)."""
     seeds = {skin.names[name]: depth for name, depth in DEPTH_BY_NAME.items()}
     x, y, depths = np.array(DEPTH_IN_FRONT).T
@@ -110,7 +110,7 @@ def bone_depth(skin: Skin) -> Values:
     return np.clip(_interpolate(skin, seeds), LEAST_DEPTH, LARGEST_DEPTH)
 
 
-def mandible_weight(skin: Skin) -> Values:
+def mandible_weight(skin: SkinMesh) -> Values:
     """Share of the mandible in the motion of each vertex, 0 to 1, shape (V,)."""
     _, y, z = skin.vertices.T
     is_still = (y > STILL_ABOVE) | (z < STILL_BEHIND) | (y < STILL_BELOW)

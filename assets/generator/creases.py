@@ -34,7 +34,7 @@ CHIN_HEIGHT = -101.0
 UP, ASIDE = np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])
 
 
-class Lines(NamedTuple):
+class LineFamily(NamedTuple):
     """How the furrows of a family lie."""
 
     spacing: float  # [mm] from one to the next, about
@@ -62,8 +62,8 @@ class Crease(NamedTuple):
     furrows: Furrows
 
 
-def lay(
-    lines: Lines,
+def furrows_of(
+    lines: LineFamily,
     place: Values,
     along: Values,
     seed: int,
@@ -92,18 +92,18 @@ def lay(
     return Furrows(depth, 0.3 * deepest * bump(off, 2.1, 1.2) - depth)
 
 
-def both(first: Furrows, second: Furrows) -> Furrows:
+def add_furrows(first: Furrows, second: Furrows) -> Furrows:
     """Two families of furrows in one skin."""
     return Furrows(first.depth + second.depth, first.height + second.height)
 
 
-def stray(points: Points, reach: float, size: float, seed: int) -> Values:
+def line_wander(points: Points, reach: float, size: float, seed: int) -> Values:
     """How far lines wander from their course [mm], shape (n,)."""
     fine = noise(points, 0.35 * size, seed=seed + 1)
     return reach * (noise(points, size, seed=seed) + 0.35 * fine)
 
 
-def band(values: Values, start: float, full: float, fade: float, end: float) -> Values:
+def plateau(values: Values, start: float, full: float, fade: float, end: float) -> Values:
     """Rise from `start` to `full` and fall from `fade` to `end`, from 0 to 1 and back."""
     return smooth_step(start, full, values) * smooth_step(end, fade, values)
 
@@ -117,41 +117,43 @@ def forehead(points: Points, seed: int) -> Crease:
     cover = cover * (1.0 - smooth_step(41.0, 36.0, y) * smooth_step(19.0, 12.0, x))  # glabella
     place = y + 0.05 * np.maximum(y - 45.0, 0.0) ** 1.5  # the forehead leans back
     place = place - 2.4 * (bump(x, 27.0, 17.0) + bump(x, -27.0, 17.0))  # arches over the brows
-    place = place + stray(points, 1.7, 23.0, seed)
-    main = lay(Lines(9.0, 1.3, 0.37, 30.0), place, points[:, 0], seed + 10)
-    fine = lay(Lines(4.1, 0.7, 0.11, 15.0, 0.25), place + 2.6, points[:, 0], seed + 20)
+    place = place + line_wander(points, 1.7, 23.0, seed)
+    main = furrows_of(LineFamily(9.0, 1.3, 0.37, 30.0), place, points[:, 0], seed + 10)
+    fine = furrows_of(LineFamily(4.1, 0.7, 0.11, 15.0, 0.25), place + 2.6, points[:, 0], seed + 20)
     near = smooth_step(16.0, 30.0, y) + 1e-3 * (y > 10.0)
-    return Crease(0, near, np.tile(UP, (len(points), 1)), 1.0, cover, both(main, fine))
+    return Crease(0, near, np.tile(UP, (len(points), 1)), 1.0, cover, add_furrows(main, fine))
 
 
 def glabella(points: Points, seed: int) -> Crease:
     """Upright lines between the brows: corrugator (AU4)."""
     x, y = np.abs(points[:, 0]), points[:, 1]
     side = np.where(points[:, 0] < 0.0, -1.0, 1.0)
-    cover = band(y, 9.0, 15.0, 26.0, 36.0) * smooth_step(15.0, 9.0, x)
+    cover = plateau(y, 9.0, 15.0, 26.0, 36.0) * smooth_step(15.0, 9.0, x)
     place = x - 0.13 * (y - 18.0) * smooth_step(0.0, 6.0, x)
-    wander = stray(points, 0.9, 13.0, seed)
+    wander = line_wander(points, 0.9, 13.0, seed)
     # Two main lines rise from the heads of the brows; fainter ones stand beside.
-    main = lay(Lines(11.0, 1.1, 0.48, 30.0, 0.85), place - 5.6 + wander, y, seed + 10, side < 0.0)
-    fine = lay(Lines(3.3, 0.6, 0.09, 12.0, 0.35), side * place + wander, y, seed + 20)
-    near = band(y, 5.0, 12.0, 36.0, 50.0) * smooth_step(24.0, 14.0, x)
-    return Crease(1, near, np.tile(ASIDE, (len(points), 1)), 1.0, cover, both(main, fine))
+    main = furrows_of(
+        LineFamily(11.0, 1.1, 0.48, 30.0, 0.85), place - 5.6 + wander, y, seed + 10, side < 0.0
+    )
+    fine = furrows_of(LineFamily(3.3, 0.6, 0.09, 12.0, 0.35), side * place + wander, y, seed + 20)
+    near = plateau(y, 5.0, 12.0, 36.0, 50.0) * smooth_step(24.0, 14.0, x)
+    return Crease(1, near, np.tile(ASIDE, (len(points), 1)), 1.0, cover, add_furrows(main, fine))
 
 
 def nose_root(points: Points, seed: int) -> Crease:
     """Lines across the root of the nose and down its sides: procerus, nasalis (AU9)."""
     x, y = np.abs(points[:, 0]), points[:, 1]
-    on_bridge = smooth_step(12.0, 3.5, x) * band(y, -8.0, -2.0, 6.0, 10.0)
-    beside = band(x, 3.0, 6.5, 12.5, 17.0) * band(y, -27.0, -20.0, -4.0, 1.0)
+    on_bridge = smooth_step(12.0, 3.5, x) * plateau(y, -8.0, -2.0, 6.0, 10.0)
+    beside = plateau(x, 3.0, 6.5, 12.5, 17.0) * plateau(y, -27.0, -20.0, -4.0, 1.0)
     # Across the root they are level; on the sides they sink toward the cheek.
     place = y + 0.42 * np.maximum(x - 4.0, 0.0) * smooth_step(2.0, -6.0, y)
-    place = place + 0.012 * x**2 + stray(points, 0.8, 9.0, seed)
-    main = lay(Lines(4.4, 0.85, 0.28, 10.0), place, points[:, 0], seed + 10)
-    fine = lay(Lines(2.0, 0.45, 0.06, 6.0, 0.35), place + 1.0, points[:, 0], seed + 20)
+    place = place + 0.012 * x**2 + line_wander(points, 0.8, 9.0, seed)
+    main = furrows_of(LineFamily(4.4, 0.85, 0.28, 10.0), place, points[:, 0], seed + 10)
+    fine = furrows_of(LineFamily(2.0, 0.45, 0.06, 6.0, 0.35), place + 1.0, points[:, 0], seed + 20)
     tilt = smooth_step(3.0, 8.0, x) * smooth_step(4.0, -6.0, y)
     across = unit(UP + 0.42 * tilt[:, None] * ASIDE)
-    near = smooth_step(20.0, 12.0, x) * band(y, -36.0, -26.0, 8.0, 16.0)
-    return Crease(0, near, across, 1.0, np.maximum(on_bridge, beside), both(main, fine))
+    near = smooth_step(20.0, 12.0, x) * plateau(y, -36.0, -26.0, 8.0, 16.0)
+    return Crease(0, near, across, 1.0, np.maximum(on_bridge, beside), add_furrows(main, fine))
 
 
 def crows_feet(points: Points, seed: int) -> Crease:
@@ -161,14 +163,20 @@ def crows_feet(points: Points, seed: int) -> Crease:
     aside = np.hypot(away[:, 0], away[:, 2]) * np.sign(away[:, 0])
     up = away[:, 1] + 0.10 * aside  # the fan sinks a little outward
     radius, angle = np.hypot(aside, up), np.arctan2(up, aside)
-    cover = band(radius, 11.0, 16.0, 20.0, 34.0) * band(angle, -1.05, -0.65, 0.50, 0.80)
-    place = 17.0 * angle + stray(points, 0.9, 12.0, seed)
-    main = lay(Lines(3.9, 0.58, 0.26, 11.0), place, radius, seed + 10, is_other)
-    fine = lay(Lines(2.0, 0.45, 0.06, 7.0, 0.4), place + 1.3, radius, seed + 20, is_other)
+    cover = plateau(radius, 11.0, 16.0, 20.0, 34.0) * plateau(angle, -1.05, -0.65, 0.50, 0.80)
+    place = 17.0 * angle + line_wander(points, 0.9, 12.0, seed)
+    main = furrows_of(LineFamily(3.9, 0.58, 0.26, 11.0), place, radius, seed + 10, is_other)
+    fine = furrows_of(
+        LineFamily(2.0, 0.45, 0.06, 7.0, 0.4), place + 1.3, radius, seed + 20, is_other
+    )
     level = unit(away * [1.0, 0.0, 1.0])
     across = np.cos(angle)[:, None] * UP - np.sin(angle)[:, None] * level
-    near = band(radius, 6.0, 11.0, 36.0, 48.0) * band(angle, -1.5, -1.1, 0.8, 1.3) * (aside > 0.0)
-    return Crease(0, near, unit(across), 1.7, cover, both(main, fine))
+    near = (
+        plateau(radius, 6.0, 11.0, 36.0, 48.0)
+        * plateau(angle, -1.5, -1.1, 0.8, 1.3)
+        * (aside > 0.0)
+    )
+    return Crease(0, near, unit(across), 1.7, cover, add_furrows(main, fine))
 
 
 def lower_lid(points: Points, seed: int) -> Crease:
@@ -176,12 +184,14 @@ def lower_lid(points: Points, seed: int) -> Crease:
     x, y = np.abs(points[:, 0]), points[:, 1]
     away = np.column_stack([x, y]) - EYE_CENTRE[:2]
     radius, angle = np.hypot(away[:, 0], 1.25 * away[:, 1]), np.arctan2(away[:, 1], away[:, 0])
-    cover = band(radius, 11.0, 13.5, 20.0, 27.0) * smooth_step(-4.0, -8.0, y)
-    cover = cover * band(x, 17.5, 22.0, 42.0, 50.0)
-    place = radius + 1.2 * angle + stray(points, 0.7, 11.0, seed)
-    found = lay(Lines(3.1, 0.55, 0.17, 9.0), place, 14.0 * angle, seed + 10, points[:, 0] < 0.0)
+    cover = plateau(radius, 11.0, 13.5, 20.0, 27.0) * smooth_step(-4.0, -8.0, y)
+    cover = cover * plateau(x, 17.5, 22.0, 42.0, 50.0)
+    place = radius + 1.2 * angle + line_wander(points, 0.7, 11.0, seed)
+    found = furrows_of(
+        LineFamily(3.1, 0.55, 0.17, 9.0), place, 14.0 * angle, seed + 10, points[:, 0] < 0.0
+    )
     across = unit(np.column_stack([away, np.zeros_like(x)]))
-    near = band(radius, 8.0, 11.0, 28.0, 36.0) * smooth_step(2.0, -4.0, y)
+    near = plateau(radius, 8.0, 11.0, 28.0, 36.0) * smooth_step(2.0, -4.0, y)
     near = near * smooth_step(8.0, 14.0, x)
     return Crease(1, near, across, 1.0, cover, found)
 
@@ -193,16 +203,16 @@ def smile_lines(points: Points, seed: int) -> Crease:
     beside = x - np.interp(y, heights, sides)
     slope = np.interp(y, heights, np.gradient(sides, heights))
     lean = 1.0 / np.sqrt(1.0 + slope**2)
-    place = lean * beside + stray(points, 0.6, 16.0, seed)
-    fold = bump(place, -0.4, 1.5) * band(y, -80.0, -64.0, -44.0, -38.0)
-    bracket = bump(place - 0.08 * (y + 66.0), 7.5, 1.4) * band(y, -82.0, -70.0, -57.0, -47.0)
-    outer = bump(place - 0.12 * (y + 62.0), 14.5, 1.0) * band(y, -76.0, -66.0, -54.0, -44.0)
+    place = lean * beside + line_wander(points, 0.6, 16.0, seed)
+    fold = bump(place, -0.4, 1.5) * plateau(y, -80.0, -64.0, -44.0, -38.0)
+    bracket = bump(place - 0.08 * (y + 66.0), 7.5, 1.4) * plateau(y, -82.0, -70.0, -57.0, -47.0)
+    outer = bump(place - 0.12 * (y + 62.0), 14.5, 1.0) * plateau(y, -76.0, -66.0, -54.0, -44.0)
     ragged = np.clip(0.75 + 0.35 * noise(points, 9.0, seed=seed + 3), 0.0, 1.0)
     depth = ragged * (0.42 * fold + 0.20 * bracket + 0.12 * outer)
     across = np.column_stack([lean, -lean * slope, np.zeros_like(x)])
-    near = band(beside, -16.0, -8.0, 24.0, 34.0) * band(y, -98.0, -88.0, -40.0, -33.0)
-    cover = smooth_step(40.0, 56.0, z) * band(place, -6.0, -3.0, 17.0, 20.0)
-    cover = cover * band(y, -85.0, -82.0, -38.0, -34.0)
+    near = plateau(beside, -16.0, -8.0, 24.0, 34.0) * plateau(y, -98.0, -88.0, -40.0, -33.0)
+    cover = smooth_step(40.0, 56.0, z) * plateau(place, -6.0, -3.0, 17.0, 20.0)
+    cover = cover * plateau(y, -85.0, -82.0, -38.0, -34.0)
     return Crease(0, near, across, 1.6, cover, Furrows(depth, -depth))
 
 
@@ -221,10 +231,10 @@ def chin(points: Points, seed: int) -> Crease:
 def mental_crease(points: Points, seed: int) -> Crease:
     """The crease between lower lip and chin: mentalis, depressor anguli oris (AU15, AU17)."""
     x, y = points[:, 0], points[:, 1]
-    place = y + 87.5 + 0.012 * x**2 + stray(points, 0.5, 9.0, seed)
+    place = y + 87.5 + 0.012 * x**2 + line_wander(points, 0.5, 9.0, seed)
     ragged = np.clip(0.75 + 0.3 * noise(points, 8.0, seed=seed + 3), 0.0, 1.0)
     depth = ragged * (0.40 * bump(place, 0.0, 1.5) + 0.14 * bump(place, -4.2, 0.9))
-    cover = smooth_step(19.0, 8.0, np.abs(x)) * band(place, -8.0, -5.0, 4.0, 6.0)
+    cover = smooth_step(19.0, 8.0, np.abs(x)) * plateau(place, -8.0, -5.0, 4.0, 6.0)
     near = smooth_step(9.0, 4.0, np.abs(place)) * smooth_step(30.0, 20.0, np.abs(x))
     return Crease(0, near, np.tile(UP, (len(points), 1)), 1.0, cover, Furrows(depth, -depth))
 
@@ -241,8 +251,8 @@ def above_lip(points: Points, seed: int, mouth_row: Values) -> Crease:
     cover = smooth_step(6.02, 6.4, mouth_row) * smooth_step(1.65, 1.0, off) * (away[:, 1] > 0.0)
     cover = cover * smooth_step(24.0, 14.0, x) * (1.0 - 0.75 * bump(x, 0.0, 3.0))  # the philtrum
     angle = np.arctan2(1.55 * away[:, 1], x)
-    place = 21.0 * side * (0.5 * np.pi - angle) + stray(points, 0.6, 7.0, seed)
-    found = lay(Lines(2.8, 0.55, 0.20, 14.0, 0.8), place, 16.0 * off, seed + 10)
+    place = 21.0 * side * (0.5 * np.pi - angle) + line_wander(points, 0.6, 7.0, seed)
+    found = furrows_of(LineFamily(2.8, 0.55, 0.20, 14.0, 0.8), place, 16.0 * off, seed + 10)
     across = unit(np.column_stack([-away[:, 1], x, np.zeros_like(x)]))
     return Crease(1, smooth_step(3.2, 2.2, off), across, 1.0, cover, found)
 

@@ -23,7 +23,7 @@ from ..subdivision import quarter
 from ..topology import Faces, cross_products, edge_faces, edge_key, vertex_normals
 from .fields import Points, Values, gradient, project, unit
 from .form import distance
-from .skin import Skin
+from .skin import SkinMesh
 
 LEVELS = 2
 ON_FORM = 0.03  # [mm] such a vertex lies on the form
@@ -76,7 +76,7 @@ class Level:
     rows: list[Row]
 
 
-def refine_skin(skin: Skin) -> tuple[Points, Points]:
+def refine_skin(skin: SkinMesh) -> tuple[Points, Points]:
     """Refine as often as LEVELS says.
 
     Returns the vertices that are new, level by level, shape (m, 3), rounded to float32, and the
@@ -155,7 +155,7 @@ def _values_between(first: Values, second: Values) -> Values:
     return np.where(runs_out, RUN_OUT, 0.5) * (first + second)
 
 
-def _form_values(skin: Skin) -> Values:
+def _form_values(skin: SkinMesh) -> Values:
     normal = vertex_normals(skin.vertices, skin.faces)
     along = (normal * unit(gradient(distance, skin.vertices))).sum(axis=1)
     away = _miss(skin.vertices, 0.0)
@@ -172,7 +172,7 @@ def _normals(level: Level) -> Points:
     return normals
 
 
-def _rows(skin: Skin) -> list[Row]:
+def _rows(skin: SkinMesh) -> list[Row]:
     """All named rows of both sides; halves that end in the mid-plane are joined.
 
     A row whose neighbours are no neighbours in the mesh is only a list of names: left out.

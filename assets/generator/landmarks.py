@@ -9,7 +9,7 @@ import numpy as np
 from ..topology import Faces
 from .eye_rows import COLUMNS as EYE_COLUMNS
 from .mouth_rows import BORDER_ROW, CREST_ROW, SEAM_ROW, SIDE
-from .skin import Skin
+from .skin import SkinMesh
 
 # Landmarks of the mid-plane and of the left half by the name of their vertex.
 BY_NAME = {
@@ -41,7 +41,7 @@ PAIRED_NAMES = (
 )  # fmt: skip
 
 
-def landmark_vertices(skin: Skin) -> Faces:
+def landmark_vertices(skin: SkinMesh) -> Faces:
     """Vertex numbers of the 68 landmarks, shape (68,), int32."""
     left = {number: skin.names[name] for number, name in BY_NAME.items()}
     rows = (
@@ -59,7 +59,7 @@ def landmark_vertices(skin: Skin) -> Faces:
     return vertices
 
 
-def anatomy(skin: Skin) -> dict[str, int]:
+def anatomy(skin: SkinMesh) -> dict[str, int]:
     """Named anatomical points; those of both sides end in _left and _right."""
     border, seam = skin.rings[f"mouth_{BORDER_ROW}"], skin.rings[f"mouth_{SEAM_ROW}"]
     margin, half = skin.rings["eye_1"], EYE_COLUMNS // 2
@@ -83,7 +83,7 @@ def anatomy(skin: Skin) -> dict[str, int]:
     return single
 
 
-def _alare(skin: Skin) -> int:
+def _alare(skin: SkinMesh) -> int:
     """The most lateral vertex of the left wing of the nose, in front of its crease."""
     crease = skin.vertices[skin.rings["alar_crease"]]
     points = skin.vertices

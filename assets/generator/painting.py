@@ -78,13 +78,13 @@ def _pigments(texels: Texels, complexion: Complexion) -> tuple[Values, Values, V
     melanin = complexion.melanin + tan(texels) * (0.7 + complexion.melanin)
     redness = complexion.blood * blood(texels)
 
-    # The red: fine folds run across the lips; toward the line between them it is darker.
-    folds = noise(points * [1.0, 0.2, 0.4], 0.75, seed=22)
+    # The red: fine lines run across the lips; toward the line between them it is darker.
+    lines = noise(points * [1.0, 0.2, 0.4], 0.75, seed=22)
     x = np.minimum(np.abs(points[:, 0]), lips.HALF_WIDTH)
     from_line = np.abs(points[:, 1] - lips.seam_height(x))
     deep = smooth_step(6.0, 0.5, from_line)
-    lip_blood = LIP_BLOOD + 0.16 * deep + 0.05 * folds - 0.10 * bump(x, 0.0, 9.0)
-    melanin = melanin + lip * (LIP_MELANIN + 0.12 * deep + 0.05 * folds - 0.14 * complexion.melanin)
+    lip_blood = LIP_BLOOD + 0.16 * deep + 0.05 * lines - 0.10 * bump(x, 0.0, 9.0)
+    melanin = melanin + lip * (LIP_MELANIN + 0.12 * deep + 0.05 * lines - 0.14 * complexion.melanin)
     redness = redness + lip * complexion.blood * lip_blood
     melanin = melanin + 0.06 * lip * (1.0 - texels.is_upper_lip)  # it faces the light
     # The skin just outside the red of the upper lip catches the light.

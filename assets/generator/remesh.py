@@ -67,9 +67,9 @@ def flip_edges(mesh: InfillMesh, *, rounds: int = 6) -> None:
         faces = np.array(triangles, dtype=np.int32)
         beside, angles = edge_faces(faces), _corner_angles(mesh.vertices, faces)
         existing, flips = set(beside), 0
-        touched: set[int] = set()
+        changed: set[int] = set()
         for edge, pair in beside.items():
-            if len(pair) != 2 or edge in mesh.locked or touched & set(pair):
+            if len(pair) != 2 or edge in mesh.locked or changed & set(pair):
                 continue
             opposite = [angles[t, triangles[t].index(_opposite(triangles[t], edge))] for t in pair]
             if sum(opposite) <= np.pi + 1e-3:
@@ -77,7 +77,7 @@ def flip_edges(mesh: InfillMesh, *, rounds: int = 6) -> None:
             new = _flipped(mesh.vertices, triangles[pair[0]], triangles[pair[1]], edge, existing)
             if new is not None:
                 triangles[pair[0]], triangles[pair[1]] = new
-                touched |= set(pair)
+                changed |= set(pair)
                 existing.discard(edge)
                 existing.add(edge_key(new[0][0], new[0][1]))
                 flips += 1
@@ -196,24 +196,30 @@ def collapse_edges(
     for edge in sorted(lengths, key=lambda key: (lengths[key], key)):
         if lengths[edge] > shortest or len(replaced) >= limit:
             break
-        gone, kept = sorted(edge, key=lambda vertex: mesh.freedom[vertex], reverse=True)
-        if mesh.freedom[gone] != Freedom.FREE or gone in chained or blocked & {gone, kept}:
+        removed, remaining = sorted(edge, key=lambda vertex: mesh.freedom[vertex], reverse=True)
+        if (
+            mesh.freedom[removed] != Freedom.FREE
+            or removed in chained
+            or blocked & {removed, remaining}
+        ):
             continue
-        if len(neighbours[gone] & neighbours[kept]) != 2 or not _may_merge(mesh, gone, kept):
+        if len(neighbours[removed] & neighbours[remaining]) != 2 or not _may_merge(
+            mesh, removed, remaining
+        ):
             continue
-        replaced[gone] = kept
-        blocked |= neighbours[gone] | neighbours[kept] | {gone, kept}
+        replaced[removed] = remaining
+        blocked |= neighbours[removed] | neighbours[remaining] | {removed, remaining}
     merged = [[replaced.get(v, v) for v in face] for face in mesh.faces.tolist()]
     mesh.faces = np.array([face for face in merged if len(set(face)) == 3], dtype=np.int32)
     return len(replaced)
 
 
-def _may_merge(mesh: InfillMesh, gone: int, kept: int) -> bool:
-    """Whether no face around `gone` turns over when it moves onto `kept`."""
-    around = mesh.faces[(mesh.faces == gone).any(axis=1)]
-    around = around[~(around == kept).any(axis=1)]
+def _may_merge(mesh: InfillMesh, removed: int, remaining: int) -> bool:
+    """Whether no face around `removed` turns over when it moves onto `remaining`."""
+    around = mesh.faces[(mesh.faces == removed).any(axis=1)]
+    around = around[~(around == remaining).any(axis=1)]
     before = cross_products(mesh.vertices, around)
-    after = cross_products(mesh.vertices, np.where(around == gone, kept, around))
+    after = cross_products(mesh.vertices, np.where(around == removed, remaining, around))
     lengths = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
     return bool(((before * after).sum(axis=1) > COLLAPSE_NORMAL_COSINE * lengths).all())
 

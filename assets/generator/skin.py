@@ -37,7 +37,7 @@ RIM_SCALE, CROWN_SCALE = 0.50, 0.62  # rim and crown are seen as an outline: fin
 
 
 @dataclass
-class Skin:
+class SkinMesh:
     """A mesh with names.
 
     vertices: [mm], shape (V, 3).
@@ -109,7 +109,7 @@ def _border(
     return outline, rim, upper_names | lower_names
 
 
-def build_half(*, scale: float = SCALE, seed: int = SEED, target: int = TARGET_HALF) -> Skin:
+def build_half(*, scale: float = SCALE, seed: int = SEED, target: int = TARGET_HALF) -> SkinMesh:
     """Build the left half: the infill first, then the rows that hang on it."""
     eye, mouth, ring = eye_rows(), mouth_rows(), nostril_ring()
     book = PointList()
@@ -136,7 +136,7 @@ def build_half(*, scale: float = SCALE, seed: int = SEED, target: int = TARGET_H
     remesh(mesh, scale=scale, target_faces=target - row_faces)
     rings = {"rim": rim, "alar_crease": crease, "nasolabial_fold": fold}
     rings |= {f"neck_{n}": row for n, row in enumerate(neck)}
-    half = Skin(mesh.vertices, mesh.faces, names, rings)
+    half = SkinMesh(mesh.vertices, mesh.faces, names, rings)
     _hang_rows(half, "eye", eye, eye_outer, closed=True)
     _hang_rows(half, "mouth", mouth, mouth_outer, closed=False)
     _close_nostril(half, nostril)
@@ -150,14 +150,14 @@ def _on_midline(mesh: InfillMesh, edge: tuple[int, int]) -> bool:
     )
 
 
-def _append(half: Skin, points: Points) -> list[int]:
+def _append(half: SkinMesh, points: Points) -> list[int]:
     start = len(half.vertices)
     half.vertices = np.vstack([half.vertices, points])
     return list(range(start, start + len(points)))
 
 
 def _hang_rows(
-    half: Skin, title: str, rows: list[Points], outer: list[int], *, closed: bool
+    half: SkinMesh, title: str, rows: list[Points], outer: list[int], *, closed: bool
 ) -> None:
     """Add all rows but the outer one, which the infill has, and the quadrilaterals between them."""
     numbered = [_append(half, row) for row in rows[:-1]] + [outer]
@@ -166,7 +166,7 @@ def _hang_rows(
     half.rings |= {f"{title}_{i}": row for i, row in enumerate(numbered)}
 
 
-def _join(half: Skin, faces: Faces, outer_edge: tuple[int, int]) -> None:
+def _join(half: SkinMesh, faces: Faces, outer_edge: tuple[int, int]) -> None:
     """Append faces, turned so that they run along the outer edge against the infill."""
 
     def runs_along(triangles: Faces) -> bool:
@@ -179,7 +179,7 @@ def _join(half: Skin, faces: Faces, outer_edge: tuple[int, int]) -> None:
     half.faces = np.vstack([half.faces, faces]).astype(np.int32)
 
 
-def _close_nostril(half: Skin, ring: list[int]) -> None:
+def _close_nostril(half: SkinMesh, ring: list[int]) -> None:
     inner, end = nostril_cap(half.vertices[ring])
     rows = [ring, *(_append(half, row) for row in inner)]
     centre = _append(half, end[None])[0]
@@ -192,7 +192,7 @@ def _close_nostril(half: Skin, ring: list[int]) -> None:
     half.names["nostril_roof"] = centre
 
 
-def _hang_ear(half: Skin, root: list[int]) -> None:
+def _hang_ear(half: SkinMesh, root: list[int]) -> None:
     """Add the ear to its root; where a row falls onto the one before, quads become triangles."""
     points, floor = ear_rows()
     rows = [root]
@@ -213,17 +213,17 @@ def _hang_ear(half: Skin, root: list[int]) -> None:
     half.rings["concha"] = [upper, lower]
 
 
-def _compressed(half: Skin) -> Skin:
+def _compressed(half: SkinMesh) -> SkinMesh:
     """Drop vertices that no face uses any more."""
     used = np.unique(half.faces)
     number = np.full(len(half.vertices), -1, dtype=np.int32)
     number[used] = np.arange(len(used))
     names = {name: int(number[vertex]) for name, vertex in half.names.items()}
     rings = {name: number[row].tolist() for name, row in half.rings.items()}
-    return Skin(half.vertices[used], number[half.faces], names, rings)
+    return SkinMesh(half.vertices[used], number[half.faces], names, rings)
 
 
-def mirrored(half: Skin) -> Skin:
+def mirrored(half: SkinMesh) -> SkinMesh:
     """The whole skin: the left half, then the right one; vertices with x = 0 are shared."""
     count = len(half.vertices)
     beside = np.flatnonzero(half.vertices[:, 0] != 0.0)
@@ -232,4 +232,4 @@ def mirrored(half: Skin) -> Skin:
     vertices = np.vstack([half.vertices, half.vertices[beside] * [-1.0, 1.0, 1.0]])
     faces = np.vstack([half.faces, image[half.faces][:, ::-1]]).astype(np.int32)
     mirror = np.concatenate([image, beside]).astype(np.int32)
-    return Skin(vertices, faces, half.names, half.rings, mirror)
+    return SkinMesh(vertices, faces, half.names, half.rings, mirror)

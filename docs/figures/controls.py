@@ -56,7 +56,7 @@ def portrait(capture: Capture, pose: Mapping[str, float]) -> Image:
         capture.camera = camera_for(scene, view)
         if not is_turned:
             capture.camera.target += np.array([0.0, RAISED, 0.0])
-        images.append(capture.picture())
+        images.append(capture.draw_image())
     return np.concatenate(images, axis=1)
 
 
@@ -67,7 +67,7 @@ def title_of(scene: Scene, name: str) -> str:
     return f"{title}  {action}" if name[:2] == "AU" else title.replace("_", " ")
 
 
-def sheet_of(capture: Capture, names: Sequence[str]) -> Image:
+def contact_sheet_of(capture: Capture, names: Sequence[str]) -> Image:
     """A labelled portrait of each control at full value."""
     cells = [(title_of(capture.scene, name), portrait(capture, {name: 1.0})) for name in names]
     width = len(VIEWS) * capture.surface.size[0]
@@ -79,14 +79,19 @@ def main(arguments: Sequence[str]) -> None:
     """Draw the contact sheets into the folder given."""
     given = figures.parse(arguments, __doc__, width=CELL[0])
     scene = FaceScene()
-    sheets = {file: without_sides(scene.groups.get(layer, ())) for layer, file in LAYERS.items()}
+    names_by_file = {
+        file: without_sides(scene.groups.get(layer, ())) for layer, file in LAYERS.items()
+    }
     if given.only:
-        sheets = {"some": given.only}
+        names_by_file = {"some": given.only}
     size = given.width, given.width * CELL[1] // CELL[0]
     with Capture(scene, CaptureOptions(size=size, style=render.Style())) as capture:
         figures.draw(
             given.folder,
-            {file: partial(sheet_of, capture, names) for file, names in sheets.items()},
+            {
+                file: partial(contact_sheet_of, capture, names)
+                for file, names in names_by_file.items()
+            },
         )
 
 

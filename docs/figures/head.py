@@ -21,7 +21,7 @@ from risorius.app.files import Image
 from risorius.app.scenes import FaceScene
 from risorius.bench import figures
 from risorius.bench.canvas import Canvas, Drawing
-from risorius.bench.subjects import settled
+from risorius.bench.subjects import settled_positions
 
 CELL = (260, 320)  # [pixels] of one portrait: a contact sheet stays below 600 kB
 VIEWS = ("front", "three-quarter", "profile", "below")
@@ -64,17 +64,17 @@ def portrait(
     fine = head.finer(level) if level else None
     faces = head.faces if fine is None else fine.faces
     vertices = head.vertices if fine is None else fine.vertices
-    uv = head.uv if fine is None else fine.carried(head.uv).astype(np.float32)
+    uv = head.uv if fine is None else fine.interpolate(head.uv).astype(np.float32)
     refiner = refine.create("none", faces, vertices, uv, faces)
     camera = render.OrbitCamera.framing(head.vertices, view=view)
     drawing = Drawing(camera, style, parts=head.parts, bones=bones, texture=texture)
-    return canvas.picture(refiner, vertices if positions is None else positions, drawing)
+    return canvas.draw_image(refiner, vertices if positions is None else positions, drawing)
 
 
 def opened_jaw() -> tuple[Points, Bones]:
     """Positions [mm], shape (V, 3), and bone matrices with the jaw quite open."""
     simulation = sim.create(assets.load("head"))
-    return settled(simulation, {"jaw_open": 1.0}, OPENED), simulation.bone_transforms()
+    return settled_positions(simulation, {"jaw_open": 1.0}, OPENED), simulation.bone_transforms()
 
 
 def views(draw: Callable[..., Image]) -> list[tuple[str, Image]]:
@@ -102,7 +102,7 @@ def details(draw: Callable[..., Image]) -> list[tuple[str, Image]]:
     ]
 
 
-def head_sheet(
+def head_contact_sheet(
     size: tuple[int, int], cells: Callable[[Callable[..., Image]], list[tuple[str, Image]]]
 ) -> Image:
     """One contact sheet of portraits of `size` pixels."""
@@ -125,7 +125,7 @@ def wrinkles() -> Image:
             options = CaptureOptions(size=WRINKLED, camera=view, style=style)
             with Capture(scene, options) as capture:
                 capture.camera.target = np.array(target)
-                cells.append((f"{pose}, {how}", capture.picture()))
+                cells.append((f"{pose}, {how}", capture.draw_image()))
     return contact_sheet(cells, columns=4, cell_width=WRINKLED[0])
 
 
@@ -134,8 +134,8 @@ def main(arguments: Sequence[str]) -> None:
     given = figures.parse(arguments, __doc__, width=CELL[0])
     size = given.width, given.width * CELL[1] // CELL[0]
     every: dict[str, figures.Figure] = {
-        "head_views": partial(head_sheet, size, views),
-        "head_details": partial(head_sheet, size, details),
+        "head_views": partial(head_contact_sheet, size, views),
+        "head_details": partial(head_contact_sheet, size, details),
         "wrinkles": wrinkles,
     }
     figures.draw(given.folder, figures.chosen(every, given.only))

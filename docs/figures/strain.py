@@ -12,7 +12,7 @@ from risorius import refine, render
 from risorius.app.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.scenes import FaceScene
-from risorius.bench.canvas import table_of_pictures
+from risorius.bench.canvas import image_table
 from risorius.refine import Tension, TensionMap
 
 POSES = ("joy", "surprise", "disgust")
@@ -53,7 +53,7 @@ def tension_map(size: tuple[int, int] = SIZE, poses: Sequence[str] = POSES) -> I
             surface.end()
             title = f"{pose}: +{found.stretch.max():.0%}, -{found.compression.max():.0%} at most"
             cells.append((title, surface.read()))
-    return table_of_pictures([("stretch (orange) and compression (blue) against rest", cells)])
+    return image_table([("stretch (orange) and compression (blue) against rest", cells)])
 
 
 def _coloured(name: str, mesh: refine.RefinedMesh, found: TensionMap) -> SimpleNamespace:

@@ -16,7 +16,7 @@ from risorius.app.files import Image
 from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.keys import places_of
-from risorius.app.viewer.mouse import SkinPull
+from risorius.app.viewer.mouse import SkinDrag
 from risorius.app.viewer.settings import Look
 from risorius.bench import figures
 
@@ -24,7 +24,7 @@ SIZE = (1160, 700)
 MOST_FRAMES = 400
 
 
-def settled(viewer: Viewer) -> None:
+def wait_until_settled(viewer: Viewer) -> None:
     """Let the face come to rest, and the picture be drawn in full."""
     for _ in range(8):
         viewer.frame()
@@ -39,7 +39,7 @@ def settled(viewer: Viewer) -> None:
 
 def face(viewer: Viewer) -> None:
     """The window as it opens, smiling."""
-    viewer.session.show("joy")
+    viewer.session.toggle_alone("joy")
 
 
 def controls(viewer: Viewer) -> None:
@@ -52,7 +52,7 @@ def controls(viewer: Viewer) -> None:
 
 def wipe(viewer: Viewer) -> None:
     """Static and refined, half a face each, divided by a line; the dark theme."""
-    viewer.session.show("disgust")
+    viewer.session.toggle_alone("disgust")
     viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
     viewer.settings.folds["Overlays"] = False  # or the plots below it would be cut off
     viewer.settings.look = Look(compare="wipe", wireframe=True, colours="splits", skin="clay")
@@ -62,7 +62,7 @@ def wipe(viewer: Viewer) -> None:
 
 def side_by_side(viewer: Viewer) -> None:
     """Two viewports under one camera, coloured by how far the normals turned apart."""
-    viewer.session.show("joy")
+    viewer.session.toggle_alone("joy")
     viewer.panel_state.wanted_tab = "Mechanism"
     viewer.settings.folds["Overlays"] = False  # or the plots below it would be cut off
     viewer.settings.look = Look(compare="side by side", colours="curvature drop", skin="clay")
@@ -70,7 +70,7 @@ def side_by_side(viewer: Viewer) -> None:
 
 def tension(viewer: Viewer) -> None:
     """What is stretched and what is compressed, with the springs."""
-    viewer.session.show("yawn")
+    viewer.session.toggle_alone("yawn")
     viewer.panel_state.wanted_tab = "Mechanism"
     viewer.settings.look = Look(colours="tension", overlays=["springs"], skin="clay")
 
@@ -83,11 +83,11 @@ def anatomy(viewer: Viewer) -> None:
 
 
 def finger(viewer: Viewer) -> None:
-    """The skin, pulled by the mouse."""
+    """The skin, dragged by the mouse."""
     scene = viewer.session.scene
     corner = scene.positions[scene.head.landmarks[48]]  # type: ignore[attr-defined]
-    viewer.mouse.pull = SkinPull(scene, corner.copy())
-    viewer.mouse.pull.to(corner + np.array([-30.0, 16.0, 12.0]))
+    viewer.mouse.skin_drag = SkinDrag(scene, corner.copy())
+    viewer.mouse.skin_drag.to(corner + np.array([-30.0, 16.0, 12.0]))
     for _ in range(20):
         viewer.frame()
     viewer.painter.level_of_detail.level = 0
@@ -120,7 +120,7 @@ def unsaved(viewer: Viewer) -> None:
 def large(viewer: Viewer) -> None:
     """Everything as on a screen of twice the density."""
     viewer.settings.zoom = 2.0
-    viewer.session.show("kiss")
+    viewer.session.toggle_alone("kiss")
 
 
 STOPS: dict[str, Callable[[Viewer], None]] = {
@@ -138,22 +138,22 @@ STOPS: dict[str, Callable[[Viewer], None]] = {
 }
 
 
-def picture(stop: Callable[[Viewer], None]) -> Image:
+def draw_image(stop: Callable[[Viewer], None]) -> Image:
     """A window, brought to a stop of the tour."""
     with Viewer(script_for(None, "face"), SIZE) as viewer:
         # Wherever the mouse happens to be, it points at nothing: no hint comes up.
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
-        settled(viewer)
+        wait_until_settled(viewer)
         stop(viewer)
-        if viewer.mouse.pull is None:
-            settled(viewer)
+        if viewer.mouse.skin_drag is None:
+            wait_until_settled(viewer)
         return figures.without_noise(viewer.surface.read())
 
 
 def main(arguments: Sequence[str]) -> None:
     """Draw the pictures into the folder given."""
     given = figures.parse(arguments, __doc__)
-    every = {name: partial(picture, stop) for name, stop in STOPS.items()}
+    every = {name: partial(draw_image, stop) for name, stop in STOPS.items()}
     figures.draw(given.folder, figures.chosen(every, given.only))
 
 

@@ -108,7 +108,7 @@ class Blended(Kahler):
     def _mark(self, view: View | None) -> None:
         """Decide how far the points of every edge have grown, and so how often it is split."""
         frame = self._frame
-        self._show(view)
+        self._pass_view(view)
         self._criterion.measure(frame.positions, frame.normals, self._need)
         grow(self._need, self._edge_splits, frame.growth_once, frame.growth_twice)
 

@@ -34,7 +34,7 @@ class Bulge(Measuring):
         super().__init__(once, twice, "distances in mean edge lengths")
         self.turning = turning
 
-    def use(self, scheme: object) -> None:
+    def set_scheme(self, scheme: object) -> None:
         """Take the scheme of the refiner; raises ValueError for one without curves."""
         if not isinstance(scheme, CurveScheme):
             raise ValueError(
@@ -57,7 +57,7 @@ class Bulge(Measuring):
         if turns is not None and self.turning > 0.0:
             count_turns(need, turns, np.float32(self.turning) * self._unit)
         limits.scale(need, self._unit)
-        hasten(need, np.float32(HASTE) * limits.once / limits.width, RAMP)
+        advance_needs(need, np.float32(HASTE) * limits.once / limits.width, RAMP)
 
 
 @njit
@@ -77,7 +77,7 @@ def count_turns(sizes: Floats, turns: Floats, scale: np.float32) -> None:
 
 
 @njit
-def hasten(need: Floats, soon: np.float32, ramp: np.float32) -> None:
+def advance_needs(need: Floats, soon: np.float32, ramp: np.float32) -> None:
     """Stretch the needs, shape (E,), so that `soon` becomes `ramp`, where points have grown."""
     if soon >= ramp:
         return

@@ -24,7 +24,7 @@ SAME_WAY = 0.2
 """Cosine between normals above which two surfaces look the same way. Chosen: 78 degrees."""
 GIVE_UP = 100.0
 """Ten times as far as the closest vertex nothing is searched for any more (squared)."""
-MOST_SEEN = 4096
+MOST_VISITED = 4096
 """Vertices that are looked at for one that looks the same way, before the closest of all counts: a
 bound for thousands of vertices in one place."""
 LEAF = 8
@@ -53,7 +53,7 @@ class Tree(NamedTuple):
     """Numbers of vertices."""
 
 
-class Surface:
+class SearchSurface:
     """A mesh to find closest points on: `positions`, shape (V, 3), `faces`, shape (F, 3)."""
 
     def __init__(self, positions: Doubles, faces: Unsigned) -> None:
@@ -179,10 +179,10 @@ def closest_vertex(
 ) -> int:
     """Return the closest vertex that looks the same way, or the closest of all if none does."""
     waiting, distances = np.empty(128, np.int64), np.empty(128)
-    waiting[0], distances[0], count, seen = 0, 0.0, 1, 0
+    waiting[0], distances[0], count, visited = 0, 0.0, 1, 0
     best, any_best = -1, -1
     distance, any_distance = np.inf, np.inf
-    while count > 0 and (best >= 0 or seen < MOST_SEEN):
+    while count > 0 and (best >= 0 or visited < MOST_VISITED):
         count -= 1
         k = waiting[count]
         if distances[count] > min(distance, GIVE_UP * any_distance):
@@ -202,7 +202,7 @@ def closest_vertex(
                 square += (positions[v, i] - point[i]) ** 2
                 same += normals[v, i] * normal[i]
                 size += normal[i] * normal[i]
-            seen += 1
+            visited += 1
             if square < any_distance:
                 any_distance, any_best = square, v
             if square < distance and (same > SAME_WAY or size == 0.0):

@@ -41,7 +41,7 @@ from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.validation import checked_indices, checked_positions
 from ..mesh.vectors import HALF, ONE, ZERO, Vector, less, plus, row_of, times, unit, write_row
 from .axes import edge_axes, find_middles, slide_middle, triangle_axes, vertex_axes
-from .closest import Surface
+from .closest import SearchSurface
 from .cubic import CubicScheme
 from .curves import place_on_curves
 from .fit import Points, fit, middles_of
@@ -92,7 +92,7 @@ class DetailScheme(CubicScheme):
         faces = checked_indices("detail[1]", finer[1], len(positions), "detail[0]")
         if len(faces) == 0:
             raise ValueError("detail[1] must have triangles, got none")
-        self._surface: Surface | None = Surface(positions, faces.astype(np.uint32))
+        self._surface: SearchSurface | None = SearchSurface(positions, faces.astype(np.uint32))
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats

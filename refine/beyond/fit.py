@@ -13,7 +13,7 @@ The middles of triangles are fitted twice: with all else where the edges meet ha
 unblended frame has none of them; then alone, where they slide to (axes.py).
 
 Normals: in the folds of lips and lids, where the vertices of a decimated face often lie, the normal
-of one place says nothing about the triangles around it. So the normals that are shown are fitted
+of one place says nothing about the triangles around it. So the normals that are drawn are fitted
 too, at vertices and points at once, to those of all finer vertices; unsplit, split once and split
 twice, because a frame shows something between them.
 """
@@ -27,7 +27,7 @@ from ..kahler.table import CENTRE, CONFIGURATIONS, Patterns
 from ..mesh.arrays import Doubles, Floats, Wide
 from ..mesh.connectivity import Connectivity
 from .blending import FANS
-from .closest import Surface
+from .closest import SearchSurface
 
 ROUNDS, ONCE_ROUNDS = 4, 2
 """Times that closest triangles are found anew, for all points and for those of edges split once;
@@ -87,7 +87,7 @@ class Fit(NamedTuple):
 
 
 def fit(
-    surface: Surface, mesh: Connectivity, positions: Doubles, normals: Floats,
+    surface: SearchSurface, mesh: Connectivity, positions: Doubles, normals: Floats,
     edges: tuple[Doubles, Doubles], middles: tuple[Doubles, Doubles],
 ) -> Fit:  # fmt: skip
     """Fit everything to the finer mesh `surface`.
@@ -137,7 +137,9 @@ def middles_of(
     return middles
 
 
-def closest_places(surface: Surface, points: Doubles, normals: Doubles) -> tuple[Doubles, Doubles]:
+def closest_places(
+    surface: SearchSurface, points: Doubles, normals: Doubles
+) -> tuple[Doubles, Doubles]:
     """Closest points on the finer mesh, and its unit normals there, in the shape of `points`."""
     triangles, weights = surface.closest(points.reshape(-1, 3), normals.reshape(-1, 3))
     fine_normals = surface.at(surface.normals, triangles, weights)
@@ -147,7 +149,7 @@ def closest_places(surface: Surface, points: Doubles, normals: Doubles) -> tuple
 
 
 def fitted(
-    surface: Surface, mesh: Connectivity, positions: Doubles, points: Points, first: int
+    surface: SearchSurface, mesh: Connectivity, positions: Doubles, points: Points, first: int
 ) -> Points:
     """Return points that fit better.
 
@@ -169,7 +171,7 @@ def fitted(
 
 
 def fitted_normals(
-    surface: Surface, mesh: Connectivity, places: Doubles, normals: Doubles, first: int
+    surface: SearchSurface, mesh: Connectivity, places: Doubles, normals: Doubles, first: int
 ) -> Doubles:
     """Return unit normals of vertices and points that fit better, stacked, shape (N, 3).
 
@@ -194,7 +196,9 @@ def fitted_normals(
     return np.where(lengths > LOST, turned / np.maximum(lengths, LOST), normals)
 
 
-def saved_turns(surface: Surface, mesh: Connectivity, places: Doubles, normals: Doubles) -> Floats:
+def saved_turns(
+    surface: SearchSurface, mesh: Connectivity, places: Doubles, normals: Doubles
+) -> Floats:
     """Return how much a split of each edge saves of the errors of normals [rad], shape (E,).
 
     The root of the squared angles that all finer vertices are off, before less after, each a third
@@ -235,7 +239,7 @@ def _reach(mesh: Connectivity, positions: Doubles) -> float:
 
 
 def _residuals(
-    surface: Surface, places: Doubles, shapes: list[tuple[Wide, float]], reach: float,
+    surface: SearchSurface, places: Doubles, shapes: list[tuple[Wide, float]], reach: float,
     wanted: npt.NDArray[np.floating], values: Doubles,
 ) -> tuple[Wide, Doubles, Doubles]:  # fmt: skip
     """What the finer vertices want at the triangles that they are closest to, in every shape.
@@ -245,7 +249,7 @@ def _residuals(
     """
     terms = []
     for triangles, share in shapes:
-        refined = Surface(places, triangles.astype(np.uint32))
+        refined = SearchSurface(places, triangles.astype(np.uint32))
         hit, weights = refined.closest(surface.positions, surface.normals.astype(np.float64))
         away = surface.positions - refined.at(places, hit, weights)
         is_near = np.linalg.norm(away, axis=1, keepdims=True) <= reach
@@ -258,14 +262,14 @@ def _residuals(
 
 
 def _squared_angles(
-    surface: Surface, places: Doubles, normals: Doubles, triangles: Wide
+    surface: SearchSurface, places: Doubles, normals: Doubles, triangles: Wide
 ) -> tuple[Wide, Doubles]:
     """The triangle that is closest to each finer vertex, and how far the normal there is off."""
-    refined = Surface(places, triangles.astype(np.uint32))
+    refined = SearchSurface(places, triangles.astype(np.uint32))
     hit, weights = refined.closest(surface.positions, np.zeros_like(surface.positions))
-    shown = np.einsum("nk,nki->ni", weights, normals[triangles[hit]])
-    shown /= np.maximum(np.linalg.norm(shown, axis=1, keepdims=True), LOST)
-    cosines = np.einsum("ni,ni->n", shown, surface.normals)
+    drawn = np.einsum("nk,nki->ni", weights, normals[triangles[hit]])
+    drawn /= np.maximum(np.linalg.norm(drawn, axis=1, keepdims=True), LOST)
+    cosines = np.einsum("ni,ni->n", drawn, surface.normals)
     return hit, np.arccos(np.clip(cosines, -1.0, 1.0)) ** 2
 
 

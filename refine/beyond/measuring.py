@@ -73,17 +73,17 @@ class Maximum:
         self._splits = np.zeros(len(connectivity.edges), dtype=np.uint8)
         self._need = np.zeros(len(connectivity.edges), dtype=np.float32)
 
-    def use(self, scheme: object) -> None:
+    def set_scheme(self, scheme: object) -> None:
         """Show the scheme to those that want it."""
         for criterion in self.criteria:
-            if hasattr(criterion, "use"):
-                criterion.use(scheme)
+            if hasattr(criterion, "set_scheme"):
+                criterion.set_scheme(scheme)
 
-    def look(self, view: View | None) -> None:
+    def set_view(self, view: View | None) -> None:
         """Show the view to those that want it."""
         for criterion in self.criteria:
-            if hasattr(criterion, "look"):
-                criterion.look(view)
+            if hasattr(criterion, "set_view"):
+                criterion.set_view(view)
 
     def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write the largest number of splits of every edge into `splits`, shape (E,)."""

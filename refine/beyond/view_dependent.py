@@ -24,7 +24,7 @@ class ViewDependent(Measuring):
 
     _view: View | None = None
 
-    def look(self, view: View | None) -> None:
+    def set_view(self, view: View | None) -> None:
         """Take the view of this frame; raises ValueError if there is none, or no place for it."""
         if view is None:
             raise ValueError(
@@ -42,9 +42,11 @@ class ViewDependent(Measuring):
             )
         self._view = View(eye, focal)
 
-    def _looked(self) -> tuple[Doubles, np.float32]:
+    def _eye_and_focal(self) -> tuple[Doubles, np.float32]:
         if self._view is None:
-            raise ValueError(f"{type(self).__name__}.look(view) must be called before every frame")
+            raise ValueError(
+                f"{type(self).__name__}.set_view(view) must be called before every frame"
+            )
         return cast(Doubles, self._view.eye), np.float32(self._view.focal)
 
 
@@ -63,7 +65,7 @@ class Silhouette(ViewDependent):
         """Write the need of every edge, shape (E,)."""
         limits = self.thresholds
         most = limits.once + (ONE + RAMP) * limits.width
-        turns_at_silhouette(positions, normals, self._edges, self._looked()[0], most, need)
+        turns_at_silhouette(positions, normals, self._edges, self._eye_and_focal()[0], most, need)
         limits.scale(need)
 
 
@@ -76,7 +78,7 @@ class ScreenEdge(ViewDependent):
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
-        eye, focal = self._looked()
+        eye, focal = self._eye_and_focal()
         lengths_on_screen(positions, self._edges, eye, focal, need)
         self.thresholds.scale(need)
 

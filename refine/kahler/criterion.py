@@ -49,8 +49,8 @@ class Criterion(Protocol):
     """Decides on splits; anything with these two methods can take the place of the paper's rule.
 
     More methods are used where they are there: `measure(positions, normals, need)`, which blending
-    asks for (see `Measured`); `look(view)`, which gets the `view` of every frame; `use(scheme)`,
-    which gets the smoothing scheme, once, before anything else.
+    asks for (see `Measured`); `set_view(view)`, which gets the `view` of every frame;
+    `set_scheme(scheme)`, which gets the smoothing scheme, once, before anything else.
     """
 
     def bind(

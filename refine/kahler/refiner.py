@@ -61,8 +61,8 @@ class Kahler(BoundRefiner):
         self._edge_splits = self._frame.splits[: len(mesh.edges)]
         self._splits = self._edge_splits.view()
         self._splits.flags.writeable = False
-        if hasattr(self._criterion, "use"):
-            self._criterion.use(self._scheme)
+        if hasattr(self._criterion, "set_scheme"):
+            self._criterion.set_scheme(self._scheme)
         self._own(self._criterion, self._scheme, *getattr(self._criterion, "criteria", ()))
         self._find_normals()
         self._criterion.bind(mesh, self._rest_positions, self._normals)
@@ -89,7 +89,7 @@ class Kahler(BoundRefiner):
 
     def _mark(self, view: View | None) -> None:
         """Decide how often every edge is split (section 4.1)."""
-        self._show(view)
+        self._pass_view(view)
         self._criterion.mark(self._frame.positions, self._frame.normals, self._edge_splits)
         if type(self._criterion) is not NormalDrop:
             self._check_splits()
@@ -120,10 +120,10 @@ class Kahler(BoundRefiner):
             mesh.corners, mesh.triangle_rims, self._frame, self._patterns, self._table_rows, out
         )
 
-    def _show(self, view: View | None) -> None:
+    def _pass_view(self, view: View | None) -> None:
         """Show the criterion where the eye is, if it wants to know."""
-        if hasattr(self._criterion, "look"):
-            self._criterion.look(view)
+        if hasattr(self._criterion, "set_view"):
+            self._criterion.set_view(view)
 
     def _check_splits(self) -> None:
         """Raise ValueError if a criterion asks for more than the table has."""

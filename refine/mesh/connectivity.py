@@ -56,7 +56,7 @@ class Connectivity(NamedTuple):
     edge_sides: Unsigned
     """The first two sides of each edge, 4 x triangle + i, shape (E, 2); 4 F where there is none."""
     more_sides: Unsigned
-    """Edge and side beyond the first two, shape (X, 2): edges of three sheets."""
+    """Edge and side beyond the first two, shape (X, 2): edges of three triangles."""
     triangle_edges: Indices
     """Edges of each triangle, shape (F, 3); -1 for a triangle that names a vertex twice."""
     corners: Unsigned
@@ -99,7 +99,7 @@ def connect(
                 f"face_uv must have one row per triangle ({len(corners)}), got {len(face_uv)}"
             )
     edge_of, edges, sides, side_counts = find_edges(corners, vertex_count)
-    around = Surroundings(*look_around(corners, edge_of, edges, sides, side_counts))
+    around = Surroundings(*find_surroundings(corners, edge_of, edges, sides, side_counts))
     seams = find_seams(corners, edge_of, edges, sides, vertex_count, face_uv)
     triangle_edges = edge_of.reshape(-1, 3)
     for handed_out in (edges, triangle_edges):
@@ -159,7 +159,7 @@ def find_edges(faces: Unsigned, vertex_count: int) -> tuple[Indices, Indices, Un
 
 
 @njit
-def look_around(
+def find_surroundings(
     faces: Unsigned, edge_of: Indices, edges: Indices, sides: Unsigned, side_counts: Indices
 ) -> tuple[Unsigned, Unsigned, Flags]:
     """Find the fields of `Surroundings` (see the picture)."""

@@ -16,7 +16,7 @@ LARGEST = 1e15
 """No coordinate may be larger: cross products of edges have to stay finite in single precision."""
 SIZES = 1e-6, 1e9
 """Sizes of a mesh, longest side of its box, in which single precision tells normals from rounding.
-Measured: sheets with edges of a fortieth of that are refined as ever from 1e-7 to 1e9."""
+Measured: grids with edges of a fortieth of that are refined as ever from 1e-7 to 1e9."""
 
 
 def checked_positions(rest_positions: npt.ArrayLike, name: str = "rest_positions") -> Doubles:

@@ -23,7 +23,7 @@ class StrainMeasure:
         self._faces = triangles.astype(np.uint32)
         self._points = np.zeros(self._positions.shape, dtype=np.float32)
 
-    def _set(self, positions: npt.NDArray[np.floating]) -> None:
+    def _set_positions(self, positions: npt.NDArray[np.floating]) -> None:
         """Copy deformed positions, shape (V, 3); ValueError for another shape or not finite."""
         given = np.asarray(positions)
         if given.shape != self._positions.shape or given.dtype.kind != "f":

@@ -61,7 +61,7 @@ class Shortening(StrainMeasure):
         `positions`: shape (V, 3), any float type. The result is overwritten by the next call.
         Raises ValueError for another shape and for positions that are not finite.
         """
-        self._set(positions)
+        self._set_positions(positions)
         _shorten(self._positions, self._faces, self._rest, self._weights, self._lost)
         return self._lost
 
@@ -84,12 +84,12 @@ def _weights(rest: Doubles, faces: Wide, directions: Doubles) -> Floats:
     )
     in_plane = np.einsum("tcsi,ti->tcs", sides, lengths)  # |d|^2, without what stands on the skin
     whole = (directions[faces] ** 2).sum(axis=3)
-    is_seen = is_proper[:, None, None] & (in_plane > 0.05 * whole) & (whole > 0.0)
-    weight = np.where(is_seen, area[:, None, None], 0.0)
+    is_visible = is_proper[:, None, None] & (in_plane > 0.05 * whole) & (whole > 0.0)
+    weight = np.where(is_visible, area[:, None, None], 0.0)
     totals = np.zeros(directions.shape[:2])
     for k in range(3):
         np.add.at(totals, faces[:, k], weight[:, k])
-    share = weight / np.maximum(totals[faces], 1e-300) / np.where(is_seen, in_plane, 1.0)
+    share = weight / np.maximum(totals[faces], 1e-300) / np.where(is_visible, in_plane, 1.0)
     return np.ascontiguousarray(share[..., None] * sides, dtype=np.float32)
 
 

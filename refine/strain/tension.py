@@ -91,7 +91,7 @@ class Tension(StrainMeasure):
 
         Raises ValueError for another shape and for positions that are not finite.
         """
-        self._set(positions)
+        self._set_positions(positions)
         vertex_normals(self._positions, self._faces, self._normals)
         sum_tensors(
             self._positions, self._faces, self._inverses, self._weights, self._normals, self._sums
@@ -141,8 +141,8 @@ def sum_tensors(
             m = row_of(normals, faces[t, i])
             # The smallest rotation that takes the normal n to m takes p, at right angles to n,
             # to p - (m p) / (1 + n m) (n + m).
-            both, opening = plus(n, m), ONE + n[0] * m[0] + n[1] * m[1] + n[2] * m[2]
-            turn = ONE / max(opening, OPPOSITE)
+            both, one_plus_cosine = plus(n, m), ONE + n[0] * m[0] + n[1] * m[1] + n[2] * m[2]
+            turn = ONE / max(one_plus_cosine, OPPOSITE)
             g, h = less(p, turn * dot(m, p), both), less(q, turn * dot(m, q), both)
             for k in range(6):
                 r, c = ROWS[k], COLUMNS[k]

@@ -15,7 +15,7 @@ from risorius.app.viewer.files import Files
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.settings import Look
 
-from .driving import SIZE, replace_state, settle, xdotool
+from .driving import SIZE, draw_frames, replace_state, xdotool
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,7 @@ def viewer() -> Iterator[Viewer]:
     with Viewer(script, SIZE) as opened:
         io = imgui.get_io()  # slower than people, for a machine that is busy [s]
         io.mouse_single_click_delay, io.mouse_double_click_time = 1.5, 1.0
-        settle(opened)
+        draw_frames(opened)
         yield opened
 
 

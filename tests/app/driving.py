@@ -24,7 +24,7 @@ DELIVERY = 0.02  # [s] that the screen may take to hand on what xdotool sent bef
 SIZE = (900, 600)  # of the window that tests share
 
 
-def settle(viewer: Viewer, frames: int = 4) -> None:
+def draw_frames(viewer: Viewer, frames: int = 4) -> None:
     """Let the window run for a few frames."""
     for _ in range(frames):
         viewer.frame()
@@ -40,7 +40,7 @@ def xdotool(viewer: Viewer, *words: object) -> None:
     """Send real events and let the window take them in."""
     subprocess.run(["xdotool", *map(str, words)], check=True, capture_output=True)
     time.sleep(DELIVERY)
-    settle(viewer)
+    draw_frames(viewer)
 
 
 def until(viewer: Viewer, condition: Callable[[], bool], seconds: float = 10.0) -> bool:
@@ -72,7 +72,7 @@ def click(viewer: Viewer, name: str, *, times: int = 1) -> None:
     """Click in the middle of an item."""
     xdotool(viewer, "mousemove", *middle(viewer, name))
     xdotool(viewer, "click", "--repeat", times, "--delay", 50, 1)
-    settle(viewer)
+    draw_frames(viewer)
 
 
 def drag(viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button: int = 1) -> None:
@@ -85,7 +85,7 @@ def drag(viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button:
 def write(viewer: Viewer, text: str) -> None:
     """Type into the line that has the focus; the window takes in about a key in two frames."""
     xdotool(viewer, "type", text)
-    settle(viewer, 2 * len(text))
+    draw_frames(viewer, 2 * len(text))
 
 
 def show_controls(viewer: Viewer, words: str) -> None:

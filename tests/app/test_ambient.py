@@ -54,13 +54,13 @@ def test_outside_and_inside_of_a_ball() -> None:
 def test_light_on_the_head(face: FaceScene) -> None:
     """Forehead and crown are open, nostrils, lips that touch and the back of ears are not."""
     before = face.positions.copy()
-    picture = face.openness()
-    assert picture is not None and picture.shape == face.head.albedo.shape[:2]
-    height, width = picture.shape
+    image = face.openness()
+    assert image is not None and image.shape == face.head.albedo.shape[:2]
+    height, width = image.shape
     places = face.head.uv * [width, -height] + [0, height]
     columns, rows = np.clip(places.astype(int), 0, width - 1).T
     shade = np.full(len(before), 255)
-    shade[face.faces] = picture[rows, columns][face.head.face_uv]
+    shade[face.faces] = image[rows, columns][face.head.face_uv]
     crown = before[:, 1] > before[:, 1].max() - 40.0
     assert shade[crown].min() > 240
     assert (shade < 100).any()
@@ -113,14 +113,14 @@ def test_the_built_in_head_waits_for_no_baking(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_baking_leaves_a_posed_face_alone(unbaked: FaceScene) -> None:
-    """Baking moves a face: one that is posed already keeps its pose, and gets the same picture."""
+    """Baking moves a face: one that is posed already keeps its pose, and gets the same image."""
     rest = unbaked.positions.copy()
-    picture = unbaked.openness()
+    image = unbaked.openness()
     assert np.array_equal(unbaked.positions, rest)
     unbaked.pose({"joy": 1.0})
     unbaked.step(0.3)
     before = unbaked.positions.copy()
-    assert np.array_equal(unbaked.openness(), picture)
+    assert np.array_equal(unbaked.openness(), image)
     assert np.array_equal(unbaked.positions, before) and unbaked.values["joy"] == 1.0
 
 

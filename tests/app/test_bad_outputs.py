@@ -44,8 +44,8 @@ def idle(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     for name in (
         "risorius.app.capture.Capture.play",
         "risorius.bench.paper_figures.figure_9",
-        "risorius.bench.refine.run",
-        "risorius.bench.quality.run",
+        "risorius.bench.refine.measure",
+        "risorius.bench.quality.measure",
     ):
         monkeypatch.setattr(name, work)
     monkeypatch.chdir(tmp_path)

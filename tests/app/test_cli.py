@@ -81,9 +81,9 @@ def test_frames_and_one_picture(smile: Path, tmp_path: Path) -> None:
     result = risorius("capture", smile, "-o", still, "--time", "0.4", "--fps", "20", *size)
     assert result.exit_code == 0, result.output
     last = np.asarray(Image.open(frames / "frame_00008.png")).astype(int)
-    picture = np.asarray(Image.open(still)).astype(int)
-    assert picture.shape == (120, 160, 3)
-    assert np.abs(last - picture).max() == 0
+    image = np.asarray(Image.open(still)).astype(int)
+    assert image.shape == (120, 160, 3)
+    assert np.abs(last - image).max() == 0
 
 
 def test_the_same_script_gives_the_same_pictures(smile: Path, tmp_path: Path) -> None:
@@ -97,9 +97,9 @@ def test_the_same_script_gives_the_same_pictures(smile: Path, tmp_path: Path) ->
 def test_a_picture_beside_a_sheet(smile: Path, tmp_path: Path) -> None:
     """Both of one run, also of a moment after the script's end, are what each would be alone."""
     size = ("--size", "160x120", "--samples", "0", "--quiet")
-    picture, sheet = ("-o", tmp_path / "a.png", "--time", "0.6"), ("--sheet", tmp_path / "b.png")
+    image, sheet = ("-o", tmp_path / "a.png", "--time", "0.6"), ("--sheet", tmp_path / "b.png")
     counts, written = [], []
-    for outputs in ((*picture, *sheet), picture, sheet):
+    for outputs in ((*image, *sheet), image, sheet):
         result = risorius("capture", smile, *outputs, *size)
         assert result.exit_code == 0, result.output
         counts.append(int(result.output.split(": ")[1].split()[0]))
@@ -267,14 +267,14 @@ def test_controls_lists_what_scripts_may_name() -> None:
 def test_a_pose_needs_no_script(tmp_path: Path) -> None:
     """`--set` holds controls of any layer; a bare name is at full value."""
     size = ("--size", "160x120", "--samples", "0", "--quiet")
-    pictures = []
+    images = []
     for settings in (("jaw_open=0",), ("AU27",), ("AU27=1", "AU4_left=0.5")):
-        picture = tmp_path / "held.png"
+        image = tmp_path / "held.png"
         options = [word for setting in settings for word in ("--set", setting)]
-        result = risorius("capture", *options, "-o", picture, *size)
+        result = risorius("capture", *options, "-o", image, *size)
         assert result.exit_code == 0, result.output
-        pictures.append(picture.read_bytes())
-    assert len(set(pictures)) == 3
+        images.append(image.read_bytes())
+    assert len(set(images)) == 3
 
 
 @pytest.mark.parametrize(
@@ -310,16 +310,16 @@ def test_a_head_of_ones_own_is_filmed(tmp_path: Path) -> None:
     """`--head` and `--landmarks`: another head, in metres and z up, smiles; errors are one line."""
     other = stranger()
     mesh, landmarks = other.write(tmp_path)
-    picture = tmp_path / "smile.png"
+    image = tmp_path / "smile.png"
     arguments = ("capture", "--head", mesh, "--landmarks", landmarks, "--set", "joy")
-    result = risorius(*arguments, "-o", picture, "--size", "160x120", "--quiet")
+    result = risorius(*arguments, "-o", image, "--size", "160x120", "--quiet")
     assert result.exit_code == 0, result.output
-    assert np.asarray(Image.open(picture)).std() > 10.0
+    assert np.asarray(Image.open(image)).std() > 10.0
     other.write(tmp_path, landmarks=other.landmarks[::-1])
-    result = risorius(*arguments, "-o", picture, "--quiet")
+    result = risorius(*arguments, "-o", image, "--quiet")
     assert result.exit_code == 2
     assert len(result.stderr.strip().splitlines()) == 1
-    result = risorius(*arguments[:5], "--scene", "plane", "-o", picture, "--quiet")
+    result = risorius(*arguments[:5], "--scene", "plane", "-o", image, "--quiet")
     assert "--head goes with the scene face" in result.stderr or result.exit_code == 2
 
 

@@ -67,7 +67,7 @@ def test_rows_without_texture_coordinates_are_drawn(
 
 
 def test_a_registered_refiner_is_drawn(surface: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A refiner from outside goes through the real pipeline to a picture."""
+    """A refiner from outside goes through the real pipeline to a image."""
     refine.register("double", DoubleRefiner)
     scene = PlaneScene()
     pipeline = Pipeline(scene, render.Renderer(surface), {"double": None})
@@ -104,14 +104,14 @@ def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:
     scene = FaceScene()
     renderer = render.Renderer(surface)
     camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
-    pictures = []
+    images = []
     for name, options in (("none", None), ("kahler", {"criterion": "normal"})):
         pipeline = Pipeline(scene, renderer, {name: options})
         surface.begin()
         pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
         surface.end()
-        pictures.append(surface.read())
-    assert np.array_equal(*pictures)
+        images.append(surface.read())
+    assert np.array_equal(*images)
 
 
 def test_splits_of_source() -> None:

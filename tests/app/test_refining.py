@@ -7,7 +7,7 @@ import pytest
 
 from risorius import refine
 from risorius.app.errors import UserError
-from risorius.app.refining import options_in_words, options_of
+from risorius.app.refining import options_of, parse_options
 from risorius.refine.border import registry
 
 
@@ -69,5 +69,5 @@ def test_options_of_the_papers_refiner() -> None:
 def test_numbers_beyond_single_precision(text: str) -> None:
     """No number gets to a refiner that is none in the precision in which that computes."""
     with pytest.raises(UserError, match="is not a finite number up to 1e\\+30"):
-        options_in_words("kahler", [f"threshold_twice={text}"])
-    assert options_in_words("kahler", ["threshold_twice=1e30"]) == {"threshold_twice": 1e30}
+        parse_options("kahler", [f"threshold_twice={text}"])
+    assert parse_options("kahler", ["threshold_twice=1e30"]) == {"threshold_twice": 1e30}

@@ -8,7 +8,7 @@ import pytest
 from risorius import refine
 from risorius.app.errors import UserError
 from risorius.app.refining import refiner_for
-from risorius.app.scenes import FaceScene, PlaneScene, within
+from risorius.app.scenes import FaceScene, PlaneScene, clamped
 from risorius.bench.lines_of_sight import meshes_of, widest_slit
 
 LIMITS = {"a": (0.0, 1.0), "b": (-1.0, 1.0)}
@@ -16,10 +16,10 @@ LIMITS = {"a": (0.0, 1.0), "b": (-1.0, 1.0)}
 
 def test_values_are_cut_off_at_their_limits() -> None:
     """What a script adds up to may be too much; a name without limits is an error."""
-    assert within(LIMITS, {"a": 1.4, "b": -3.0}) == {"a": 1.0, "b": -1.0}
-    assert within(LIMITS, {"a": 0.4}) == {"a": 0.4}
+    assert clamped(LIMITS, {"a": 1.4, "b": -3.0}) == {"a": 1.0, "b": -1.0}
+    assert clamped(LIMITS, {"a": 0.4}) == {"a": 0.4}
     with pytest.raises(UserError, match="unknown control 'c'"):
-        within(LIMITS, {"c": 1.0})
+        clamped(LIMITS, {"c": 1.0})
 
 
 def test_the_plane_waves() -> None:

@@ -64,7 +64,8 @@ def test_a_signal_is_heard_where_errors_are_dropped() -> None:
     """C code that calls Python and ignores what it raises does not lose the signal."""
     code = (
         "import ctypes, signal\n"
-        "from risorius.app.stopping import cleaned_up_if_stopped, listen\nlisten()\n"
+        "from risorius.app.stopping import cleaned_up_if_stopped, handle_signals\n"
+        "handle_signals()\n"
         "callback = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGTERM))\n"
         "cleanups = lambda: print('clean'), lambda: 1 / 0\n"
         "with cleaned_up_if_stopped(cleanups[0]), cleaned_up_if_stopped(cleanups[1]):\n"
@@ -85,7 +86,7 @@ def test_a_film_can_be_stopped_while_it_is_finished(tmp_path: Path) -> None:
     folder = tmp_path / "films"
     code = (
         "import numpy, pathlib\nfrom risorius.app import stopping\n"
-        "from risorius.app.capture import outputs\nstopping.listen()\n"
+        "from risorius.app.capture import outputs\nstopping.handle_signals()\n"
         f"with outputs.film(pathlib.Path({str(folder / 'film.mp4')!r}), (16, 16), 30) as add:\n"
         "    add(numpy.zeros((16, 16, 3), numpy.uint8))"
     )
@@ -112,7 +113,7 @@ def test_frames_give_way_whole(tmp_path: Path) -> None:
     code = (
         "import numpy, os, pathlib, signal, sys\nfrom risorius.app import stopping\n"
         "from risorius.app.capture import outputs\n"
-        "stopping.listen()\nreplace, target = os.replace, pathlib.Path(sys.argv[1])\n"
+        "stopping.handle_signals()\nreplace, target = os.replace, pathlib.Path(sys.argv[1])\n"
         "def disturbed(*paths):\n    replace(*paths)\n    signal.raise_signal(signal.SIGTERM)\n"
         "for os.replace in (replace, disturbed):\n"
         "    with outputs.folder(target, overwrite=True) as add:\n"

@@ -24,11 +24,11 @@ from .driving import (
     clear_search,
     click,
     drag,
+    draw_frames,
     middle,
     moved,
     nose,
     on_screen,
-    settle,
     show_controls,
     until,
     write,
@@ -85,12 +85,12 @@ def test_linked_sides_move_together(viewer: Viewer) -> None:
 def test_keys_show_expressions_and_refinement(viewer: Viewer) -> None:
     """1 shows the first expression, 1 again is neutral; R makes refined triangles come and go."""
     xdotool(viewer, "key", "1")
-    assert viewer.session.shows(next(iter(viewer.session.scene.expressions)))
+    assert viewer.session.is_alone(next(iter(viewer.session.scene.expressions)))
     assert until(viewer, lambda: moved(viewer) > 3.0)
     assert until(viewer, lambda: viewer.stage.refined.triangle_count > 2100)
     xdotool(viewer, "key", "r")
     shot = viewer.stage.shots(viewer.settings.look, viewer.view.viewport)[0]
-    assert shot.picture.triangle_count == len(viewer.session.scene.faces)
+    assert shot.drawn.triangle_count == len(viewer.session.scene.faces)
     xdotool(viewer, "key", "r")
     xdotool(viewer, "key", "1")
     assert until(viewer, lambda: moved(viewer) < 0.5)
@@ -98,8 +98,8 @@ def test_keys_show_expressions_and_refinement(viewer: Viewer) -> None:
 
 def test_keys_change_the_picture(viewer: Viewer) -> None:
     """W, C, T, S and D each change what is seen, and back."""
-    viewer.session.show("disgust")
-    settle(viewer)
+    viewer.session.toggle_alone("disgust")
+    draw_frames(viewer)
     assert until(viewer, lambda: viewer.is_idle)
     before, look = viewer.surface.read(), deepcopy(viewer.settings.look)
     left = round(viewer.view.area[0])
@@ -130,7 +130,7 @@ def test_the_mouse_orbits_and_the_wheel_zooms(viewer: Viewer) -> None:
     assert np.abs(viewer.view.camera.view_matrix() - view).max() > 1e-3
 
 
-def test_the_skin_is_pulled_and_swings_back(viewer: Viewer) -> None:
+def test_the_skin_is_dragged_and_swings_back(viewer: Viewer) -> None:
     """Drag the tip of the nose: it comes along; let go, and it is back soon."""
     drag(viewer, nose(viewer), (40, 30))
     assert until(viewer, lambda: moved(viewer) > 4.0)
@@ -177,7 +177,7 @@ def test_a_comparison_has_two_parts_or_one(viewer: Viewer) -> None:
 
 def test_the_divider_can_be_dragged(viewer: Viewer) -> None:
     """In a comparison both meshes are drawn, and the line between them follows the mouse."""
-    viewer.session.show("disgust")
+    viewer.session.toggle_alone("disgust")
     xdotool(viewer, "key", "d")
     assert len(viewer.stage.shots(viewer.settings.look, viewer.view.viewport)) == 2
     left, top, width, height = viewer.view.area
@@ -191,7 +191,7 @@ def test_the_divider_can_be_dragged(viewer: Viewer) -> None:
 
 def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
     """Whatever the second panel offers makes a picture; thresholds act at once."""
-    viewer.session.show("disgust")
+    viewer.session.toggle_alone("disgust")
     click(viewer, "tab Mechanism")
     for name in ("curvature drop", "tension", "splits"):
         click(viewer, "Colours")
@@ -203,7 +203,7 @@ def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
     assert until(viewer, lambda: viewer.is_idle)
     few = viewer.stage.refined.triangle_count
     viewer.settings.look.options["kahler"] = {"threshold_once": 0.0, "threshold_twice": 0.01}
-    settle(viewer)
+    draw_frames(viewer)
     assert viewer.stage.refined.triangle_count > 1.5 * few
     click(viewer, "Refiner")
     click(viewer, "Refiner: loop")
@@ -213,7 +213,7 @@ def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
 
 def test_wrinkles_have_a_slider(viewer: Viewer) -> None:
     """Dragged to the left they are gone from the picture; a right click brings them back."""
-    viewer.session.show("surprise")
+    viewer.session.toggle_alone("surprise")
     click(viewer, "tab Mechanism")
     assert until(viewer, lambda: viewer.is_idle)
     assert viewer.settings.look.wrinkles == 1.0 and viewer.stage.refined.stream.has_wrinkles
@@ -257,13 +257,13 @@ def test_a_bad_file_is_told_and_survived(viewer: Viewer, tmp_path: Path) -> None
     bad = tmp_path / "bad.toml"
     bad.write_text("duration = 1.0\n[[pose]]\ntime = 0.0\nno_such_muscle = 1.0\n")
     viewer.drop([str(bad)])
-    settle(viewer)
+    draw_frames(viewer)
     assert "no_such_muscle" in viewer.messages.text and "message" in viewer.gui.places
     viewer.drop([str(tmp_path / "none.toml")])
     assert "no such script" in viewer.messages.text
-    picture = tmp_path / "picture.toml"
-    picture.write_bytes(bytes(range(256)))
-    viewer.drop([str(picture)])
+    file = tmp_path / "picture.toml"
+    file.write_bytes(bytes(range(256)))
+    viewer.drop([str(file)])
     assert "cannot be read" in viewer.messages.text
     good = tmp_path / "good.toml"
     good.write_text("duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n")
@@ -291,7 +291,7 @@ def test_screenshot_and_film(viewer: Viewer, tmp_path: Path) -> None:
     shots = list(tmp_path.glob("*.png"))
     assert len(shots) == 1 and Image.open(shots[0]).size == (width, height)
     xdotool(viewer, "key", "F10")
-    settle(viewer, 3)
+    draw_frames(viewer, 3)
     xdotool(viewer, "key", "F10")
     films = list(tmp_path.glob("*.mp4"))
     assert len(films) == 1 and films[0].stat().st_size > 1000
@@ -322,7 +322,7 @@ def test_an_idle_window_rests(viewer: Viewer) -> None:
     """With nothing to do neither physics nor the scene is computed again."""
     assert until(viewer, lambda: viewer.is_idle)
     times = {name: list(column) for name, column in viewer.times.milliseconds.items()}
-    settle(viewer, 5)
+    draw_frames(viewer, 5)
     assert times == {name: list(column) for name, column in viewer.times.milliseconds.items()}
 
 

@@ -25,7 +25,7 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.placement import FIRST_SIZE
 from risorius.app.viewer.settings import load_settings
 
-from .driving import NEEDS_A_SCREEN, SIZE, click, nose, settle, show_controls, until, xdotool
+from .driving import NEEDS_A_SCREEN, SIZE, click, draw_frames, nose, show_controls, until, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("desktop")]
 
@@ -58,7 +58,7 @@ def viewer(desktop: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
     """One window for all tests of this file, amid the desktop."""
     path = tmp_path_factory.mktemp("settings") / "viewer.json"
     with Viewer(script_for(None, "face"), SIZE, settings_path=path) as opened:
-        settle(opened, 8)
+        draw_frames(opened, 8)
         yield opened
 
 
@@ -70,7 +70,7 @@ def screen_size() -> tuple[int, int]:
 
 def place_of(viewer: Viewer) -> tuple[int, int, int, int]:
     """Where the window is, as the window itself knows it."""
-    settle(viewer, 3)
+    draw_frames(viewer, 3)
     return viewer.placement._place()
 
 
@@ -98,8 +98,8 @@ def test_panels_hide_and_come_back(viewer: Viewer) -> None:
     xdotool(viewer, "key", "Tab")
     assert viewer.view.viewport == (0, 0, *SIZE) and "play" not in viewer.gui.places
     assert until(viewer, lambda: viewer.is_idle or viewer.messages.is_fading)
-    picture = viewer.surface.read()
-    assert (np.ptp(picture[:300, :8].astype(int), axis=(0, 1)) > 3).any()  # backdrop, not a panel
+    image = viewer.surface.read()
+    assert (np.ptp(image[:300, :8].astype(int), axis=(0, 1)) > 3).any()  # backdrop, not a panel
     assert "menu View" not in viewer.gui.places
     x = nose(viewer)[0]
     xdotool(viewer, "mousemove", x, viewer.placement._place()[1] + 5)
@@ -114,13 +114,13 @@ def test_panels_hide_and_come_back(viewer: Viewer) -> None:
 
 
 def test_full_screen_without_panels_still_acts(viewer: Viewer) -> None:
-    """Keys act on the bare picture, and both ways back work in any order."""
+    """Keys act on the bare image, and both ways back work in any order."""
     xdotool(viewer, "mousemove", *nose(viewer))
     viewer.face_panel.search = ""
     xdotool(viewer, "key", "F11", "Tab")
     assert until(viewer, lambda: viewer.view.viewport == (0, 0, *screen_size()), 5.0)
     xdotool(viewer, "key", "3")
-    assert viewer.session.shows(viewer.session.scene.expressions[2])
+    assert viewer.session.is_alone(viewer.session.scene.expressions[2])
     xdotool(viewer, "key", "F11")
     assert until(viewer, lambda: viewer.view.viewport == (0, 0, *SIZE), 5.0)
     xdotool(viewer, "key", "3", "Tab")

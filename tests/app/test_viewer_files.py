@@ -21,10 +21,10 @@ from .driving import (
     NEEDS_A_SCREEN,
     click,
     drag,
+    draw_frames,
     moved,
     nose,
     replace_state,
-    settle,
     until,
     write,
     xdotool,
@@ -46,7 +46,7 @@ def drop(viewer: Viewer, *paths: Path) -> None:
     )  # fmt: skip
     assert until(viewer, lambda: source.poll() is not None, 20.0)
     assert source.returncode == 0, source.communicate()[1]
-    settle(viewer)
+    draw_frames(viewer)
 
 
 def test_files_can_be_dropped_onto_the_window(viewer: Viewer, tmp_path: Path) -> None:
@@ -186,7 +186,7 @@ def test_what_cannot_be_written_is_told(viewer: Viewer, monkeypatch: pytest.Monk
 
 def title_of(viewer: Viewer) -> str:
     """What the desktop shows above the window."""
-    settle(viewer)
+    draw_frames(viewer)
     command = ["xdotool", "search", "--onlyvisible", "--name", "^Risorius: "]
     window = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()[-1]
     name = ["xdotool", "getwindowname", window]
@@ -278,7 +278,7 @@ def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path
         viewer.session.seek(2.0)
         assert until(viewer, lambda: moved(viewer) > 2.0)
         drag(viewer, nose(viewer), (30, 30))
-        assert until(viewer, lambda: viewer.mouse.is_pulling)
+        assert until(viewer, lambda: viewer.mouse.is_dragging_skin)
         xdotool(viewer, "mouseup", 1)
     finally:
         viewer.show_scene(before)
@@ -323,7 +323,7 @@ def test_heads_come_and_go_without_leaving_anything(
     for turn in range(4):
         viewer.show_scene(scenes[(turn + 1) % 2])
         viewer.session.set("jaw_open", 0.3)
-        settle(viewer)
+        draw_frames(viewer)
         assert until(viewer, lambda: viewer.is_idle)
         held.append(count())
     viewer.show_scene(scenes[0])

@@ -14,7 +14,7 @@ from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.panel_cache import REFRESH
 
-from .driving import clear_search, drag, middle, settle, show_controls, until, xdotool
+from .driving import clear_search, drag, draw_frames, middle, show_controls, until, xdotool
 
 pytestmark = [
     pytest.mark.window,
@@ -29,14 +29,14 @@ pytestmark = [
 def viewer() -> Iterator[Viewer]:
     """One window for all tests of this file."""
     with Viewer(script_for(None, "face"), (900, 600)) as opened:
-        settle(opened)
+        draw_frames(opened)
         yield opened
 
 
-def test_kept_panels_look_like_new_ones(viewer: Viewer) -> None:
+def test_cached_panels_look_like_new_ones(viewer: Viewer) -> None:
     """While the camera moves, panels are kept; the window looks as if they had been drawn."""
-    viewer.session.show("disgust")
-    settle(viewer)
+    viewer.session.toggle_alone("disgust")
+    draw_frames(viewer)
     assert until(viewer, lambda: viewer.is_idle)
     drawn = []
     note = viewer.panel_cache.note_drawn

@@ -21,7 +21,7 @@ from risorius.app.script import (
     script_text,
 )
 from risorius.app.viewer import picking
-from risorius.app.viewer.control_rows import found, mirrored, rows_of
+from risorius.app.viewer.control_rows import mirrored, rows_of, search_rows
 from risorius.app.viewer.history import History
 from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.overlays import OVERLAYS, overlays_of
@@ -129,7 +129,7 @@ def test_undo_and_redo(session: Session) -> None:
     session.set("jaw_open", 0.6)
     session.note()
     session.mirror()
-    session.show("joy")
+    session.toggle_alone("joy")
     session.undo()
     assert session.values["jaw_open"] == 0.6 and not session.values["joy"]
     session.undo()
@@ -194,9 +194,9 @@ def test_rows_join_sides() -> None:
     values["AU12_left"] = 0.5
     assert len(rows_of(names, values, linked=True)[0].names) == 3
     rows = rows_of(names, values, linked=True)
-    assert [row.label for row in found(rows, "smile au", group="", actions={"AU12": "Smile"})] == [
-        "AU12"
-    ]
+    assert [
+        row.label for row in search_rows(rows, "smile au", group="", actions={"AU12": "Smile"})
+    ] == ["AU12"]
 
 
 def test_clock_steps_at_its_own_rate() -> None:
@@ -258,9 +258,9 @@ def test_the_page_shows_every_picture_of_the_tour() -> None:
     """docs/viewer.md and the program that draws its pictures agree, and the files are there."""
     page = Path("docs/viewer.md").read_text(encoding="utf-8")
     for name in STOPS:
-        picture = Path("docs/pictures") / f"{name}.png"
+        image = Path("docs/pictures") / f"{name}.png"
         assert f"pictures/{name}.png" in page
-        assert 10_000 < picture.stat().st_size < 450_000
+        assert 10_000 < image.stat().st_size < 450_000
 
 
 def test_a_head_that_somebody_brings_has_every_overlay(tmp_path: Path) -> None:

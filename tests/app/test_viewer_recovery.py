@@ -22,7 +22,7 @@ from risorius.app.viewer.recovery import LONGEST, QUIET, Recovery
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.unsaved import Work, WorkFiles
 
-from .driving import NEEDS_A_SCREEN, SIZE, click, settle, xdotool
+from .driving import NEEDS_A_SCREEN, SIZE, click, draw_frames, xdotool
 
 ROOT = Path(__file__).parents[2]
 POSED = {"jaw_open": 0.4}
@@ -68,7 +68,7 @@ def recovery(tmp_path: Path, clock: Clock) -> Iterator[Recovery]:
     made.close()
 
 
-def kept(folder: Path) -> dict[str, str]:
+def stored_work(folder: Path) -> dict[str, str]:
     """The texts that are kept there, by kind."""
     return {file.name.split(".")[1]: file.read_text() for file in folder.glob("unsaved/*.toml")}
 
@@ -90,13 +90,13 @@ def test_work_is_written_after_a_pause(
     assert recovery.due_in() == float("inf") and not (tmp_path / "unsaved").exists()
     session.set("jaw_open", 0.4)
     recovery.watch(session)
-    assert kept(tmp_path) == {} and recovery.due_in() == pytest.approx(QUIET)
+    assert stored_work(tmp_path) == {} and recovery.due_in() == pytest.approx(QUIET)
     clock.now += 0.9 * QUIET
     recovery.watch(session)
-    assert kept(tmp_path) == {}
+    assert stored_work(tmp_path) == {}
     clock.now += 0.2 * QUIET
     recovery.watch(session)
-    assert "jaw_open = 0.4" in kept(tmp_path)["pose"] and recovery.due_in() == float("inf")
+    assert "jaw_open = 0.4" in stored_work(tmp_path)["pose"] and recovery.due_in() == float("inf")
     session.note()
     session.undo()
     recovery.watch(session)
@@ -145,12 +145,12 @@ def test_saved_work_is_kept_no_more(
     recovery.watch(session)
     clock.now += QUIET
     recovery.watch(session)
-    assert set(kept(tmp_path)) == {"script", "pose"}
+    assert set(stored_work(tmp_path)) == {"script", "pose"}
     session.save_script(tmp_path / "smile.toml")
     recovery.watch(session)
     clock.now += QUIET
     recovery.watch(session)
-    assert set(kept(tmp_path)) == {"pose"}
+    assert set(stored_work(tmp_path)) == {"pose"}
     session.save_pose(tmp_path / "pose.toml")
     recovery.watch(session)
     assert list((tmp_path / "unsaved").iterdir()) == []
@@ -164,14 +164,14 @@ def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Pa
     session.toggle_recording()
     session.set("jaw_open", 1.0 / 3.0)
     session.advance(STEP)
-    recovery.keep(session)
+    recovery.save(session)
     assert found_by_next(tmp_path, session) is None  # its window still lives
     recovery.close()
     after = Session(session.scene, script_for(None, "face"))
     next_one = Recovery(tmp_path / "unsaved")
     next_one.find(after)
     assert next_one.found is not None
-    assert next_one.found.words == "the script smile.toml, a recording and a pose"
+    assert next_one.found.summary == "the script smile.toml, a recording and a pose"
     next_one.accept_found(after)
     assert next_one.found is None and after.unsaved == "the pose and the script"
     assert after.values["jaw_open"] == session.values["jaw_open"]
@@ -180,7 +180,7 @@ def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Pa
     after.undo()  # the recording
     assert after.script == edited and after.script.preface == "# mine"
     assert after.file.path == tmp_path / "smile.toml" and after.file.objection == ""
-    next_one.keep(after)
+    next_one.save(after)
     next_one.close()
     assert found_by_next(tmp_path, session) == Work(edited, tmp_path / "smile.toml")
 
@@ -191,7 +191,7 @@ def test_a_file_that_was_changed_since_is_not_replaced_unasked(
     """Between the crash and the recovery somebody wrote the script's file: saving says so."""
     session.set("jaw_open", 0.25)
     session.set_key()
-    recovery.keep(session)
+    recovery.save(session)
     recovery.close()
     later = time.time() + 10.0
     os.utime(tmp_path / "smile.toml", (later, later))
@@ -209,7 +209,7 @@ def test_what_is_thrown_away_is_gone(session: Session, tmp_path: Path) -> None:
     for value in (0.1, 0.2):
         one = Recovery(folder)
         session.set("jaw_open", value)
-        one.keep(session)
+        one.save(session)
         one.close()
         new = [file for file in folder.iterdir() if not file.name.startswith("2020010")]
         for file in new:  # begun in one second, names are by chance
@@ -232,7 +232,7 @@ def test_what_is_thrown_away_is_gone(session: Session, tmp_path: Path) -> None:
 def test_damaged_work_hides_no_other(session: Session, recovery: Recovery, tmp_path: Path) -> None:
     """Pipes, folders, circles of links, monsters among the files: passed by, none is waited for."""
     session.set("jaw_open", 0.4)
-    recovery.keep(session)
+    recovery.save(session)
     recovery.close()
     folder = tmp_path / "unsaved"
     os.mkfifo(folder / "20270101-000000-aaa.pose.toml")
@@ -262,13 +262,13 @@ def test_a_damaged_name_of_its_file_loses_no_script(
     """Where the file of a script cannot be that, the script is offered without one."""
     session.set("jaw_open", 0.25)
     session.set_key()
-    recovery.keep(session)
+    recovery.save(session)
     recovery.close()
     os.mkfifo(tmp_path / "pipe")
-    [kept_script] = (tmp_path / "unsaved").glob("*.script.toml")
-    lines = kept_script.read_text().splitlines()
+    [stored_script] = (tmp_path / "unsaved").glob("*.script.toml")
+    lines = stored_script.read_text().splitlines()
     lines[-1] = "# Its file: " + name.replace("PIPE", str(tmp_path / "pipe"))
-    kept_script.write_text("\n".join(lines) + "\n")
+    stored_script.write_text("\n".join(lines) + "\n")
     found = found_by_next(tmp_path, session)
     assert found is not None and found.script is not None
     assert found.path is None
@@ -279,7 +279,7 @@ def test_only_what_fits_the_scene_is_offered(
 ) -> None:
     """A window with the plane leaves a face's pose to the next window with a face."""
     session.set("jaw_open", 0.4)
-    recovery.keep(session)
+    recovery.save(session)
     recovery.close()
     plane = Session(PlaneScene(), script_for(None, "plane"))
     assert found_by_next(tmp_path, plane) is None
@@ -393,19 +393,19 @@ def test_a_window_that_is_told_to_stop_loses_nothing(
 def test_a_window_that_crashed_is_recovered(at_work: subprocess.Popen[str], tmp_path: Path) -> None:
     """Killed some seconds after the last change; the next windows offer it until it is answered."""
     folder = tmp_path / "risorius"
-    wait_for(lambda: kept(folder))
+    wait_for(lambda: stored_work(folder))
     at_work.kill()
     at_work.wait()
     [pose] = [load_script(file) for file in folder.glob("unsaved/*.pose.toml")]
     script = script_for(None, "face")
     for answer in ("Recover", "Throw away"):
         with Viewer(script, SIZE, settings_path=folder / "viewer.json") as viewer:
-            settle(viewer, 8)
+            draw_frames(viewer, 8)
             assert not viewer.session.unsaved
             click(viewer, f"offer: {answer}")
             assert "offer: Recover" not in viewer.gui.places
             if answer == "Recover":
-                assert viewer.session.unsaved == "the pose" and kept(folder)
+                assert viewer.session.unsaved == "the pose" and stored_work(folder)
                 values = viewer.session.values
                 assert all(values[name] == value for name, value in pose.at(0.0).items())
     assert list((folder / "unsaved").iterdir()) == []
@@ -419,9 +419,9 @@ def test_work_that_is_undone_is_kept_no_more(
 ) -> None:
     """In a window that nobody touches any more, files come and go within seconds."""
     folder = tmp_path / "risorius"
-    wait_for(lambda: kept(folder))
+    wait_for(lambda: stored_work(folder))
     press("n")
-    wait_for(lambda: not kept(folder))
+    wait_for(lambda: not stored_work(folder))
 
     def has_ended() -> bool:
         press("ctrl+q")  # again where a busy window missed it, as whoever sits there would
@@ -437,10 +437,10 @@ def test_work_that_is_undone_is_kept_no_more(
 def test_work_that_is_given_up_is_not_offered(tmp_path: Path) -> None:
     """Closed without saving, after the question: nothing is left."""
     with Viewer(script_for(None, "face"), SIZE, settings_path=tmp_path / "viewer.json") as viewer:
-        settle(viewer, 8)
+        draw_frames(viewer, 8)
         viewer.session.set("jaw_open", 0.4)
-        viewer.recovery.keep(viewer.session)
-        assert kept(tmp_path)
+        viewer.recovery.save(viewer.session)
+        assert stored_work(tmp_path)
         xdotool(viewer, "key", "ctrl+q")
         click(viewer, "question: Close without saving")
         viewer.run()
@@ -453,11 +453,11 @@ def test_recovering_asks_before_other_work_is_lost(session: Session, tmp_path: P
     """With something unsaved of its own, the window asks; going back keeps both."""
     recovery = Recovery(tmp_path / "unsaved")
     session.set("jaw_open", 0.4)
-    recovery.keep(session)
+    recovery.save(session)
     recovery.close()
     script = script_for(None, "face")
     with Viewer(script, SIZE, settings_path=tmp_path / "viewer.json") as viewer:
-        settle(viewer, 8)
+        draw_frames(viewer, 8)
         viewer.session.set("AU12", 0.7)
         click(viewer, "offer: Recover")
         click(viewer, "question: Back")

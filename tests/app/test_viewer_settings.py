@@ -18,13 +18,13 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import (
     Look,
     Settings,
-    drop_refused_options,
     load_settings,
+    remove_refused_options,
     save_settings,
 )
 from risorius.refine.border.registry import refiners
 
-from .driving import NEEDS_A_SCREEN, SIZE, settle
+from .driving import NEEDS_A_SCREEN, SIZE, draw_frames
 
 GOOD = {"theme": "dark", "zoom": 1.5, "folds": {"Jaw": True}, "look": {"wireframe": True}}
 
@@ -182,11 +182,11 @@ def test_options_that_a_refiner_refuses_give_way_alone() -> None:
             "loop": {"levels": 50},
         }
     )
-    told = drop_refused_options(look, FaceScene())
+    told = remove_refused_options(look, FaceScene())
     assert look.options == {"kahler": {"scheme": "cubic", "blend": True}, "loop": {}}
     for words in ("kahler threshold_once = 'x'", "kahler foo = 3", "loop levels = 50"):
         assert words in told
-    assert drop_refused_options(look, FaceScene()) == ""
+    assert remove_refused_options(look, FaceScene()) == ""
 
 
 @pytest.mark.window
@@ -198,7 +198,7 @@ def test_no_settings_keep_the_window_shut(path: Path) -> None:
     wrong["look"]["options"] = {"kahler": {"threshold_once": "x"}}
     path.write_text(json.dumps(wrong))
     with Viewer(script_for(None, "face"), SIZE, settings_path=path) as viewer:
-        settle(viewer, 3)
+        draw_frames(viewer, 3)
         assert viewer.messages.is_error and "theme = 'zzz'" in viewer.messages.text
         assert "kahler threshold_once = 'x'" in viewer.messages.text
 
@@ -212,10 +212,10 @@ def test_a_refiner_that_cannot_be_loaded_is_told(monkeypatch: pytest.MonkeyPatch
         raise ValueError("refiner 'far' of 'nowhere:X' cannot be loaded")
 
     with Viewer(script_for(None, "face"), SIZE, look=Look()) as viewer:
-        settle(viewer)
+        draw_frames(viewer)
         monkeypatch.setattr(refiners, "find", broken)
         viewer.settings.look.refiner = "far"
         viewer.panel_state.wanted_tab = "Mechanism"
-        settle(viewer, 6)
+        draw_frames(viewer, 6)
         assert viewer.messages.is_error and "cannot be loaded" in viewer.messages.text
         assert viewer.stage.refined.triangle_count > 0

@@ -18,9 +18,9 @@ from .driving import (
     clear_search,
     click,
     drag,
+    draw_frames,
     middle,
     on_screen,
-    settle,
     show_controls,
     until,
     write,
@@ -266,7 +266,7 @@ def test_tracks_unfold_into_rows(viewer: Viewer) -> None:
     xdotool(viewer, "mousemove", *on_screen(viewer, left + 8, y))
     xdotool(viewer, "click", 1)
     assert viewer.timeline.height() > rows and viewer.settings.folds["Tracks"]
-    settle(viewer)
+    draw_frames(viewer)
     x, y = sheet.where(KeyPlace("blink", 2.4))
     press(viewer, on_screen(viewer, x, y + imgui.get_font_size() * 1.35))
     assert viewer.selection.places == {KeyPlace("blink", 2.4)}

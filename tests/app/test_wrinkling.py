@@ -152,7 +152,9 @@ def test_lines_of_the_forehead_are_level(scene: FaceScene) -> None:
     assert around[..., 1].sum() > 4.0 * around[..., 0].sum()
 
 
-def pictures(scene: FaceScene, pose: dict[str, float], camera: str) -> tuple[Array, Array, Capture]:
+def draw_images(
+    scene: FaceScene, pose: dict[str, float], camera: str
+) -> tuple[Array, Array, Capture]:
     """The pose without and with wrinkles."""
     options = CaptureOptions(size=(260, 300), camera=camera)
     with Capture(scene, options) as capture:
@@ -162,20 +164,20 @@ def pictures(scene: FaceScene, pose: dict[str, float], camera: str) -> tuple[Arr
         frames = []
         for strength in (0.0, 1.0):
             capture.options = replace(options, style=render.Style(wrinkles=strength))
-            frames.append(capture.picture().astype(np.float64))
+            frames.append(capture.draw_image().astype(np.float64))
     return frames[0], frames[1], capture
 
 
 def test_the_picture_at_rest_is_the_one_without(scene: FaceScene) -> None:
     """To the byte, and so is that of a pose that compresses nothing."""
-    smooth, wrinkled, _ = pictures(scene, {}, "front")
+    smooth, wrinkled, _ = draw_images(scene, {}, "front")
     assert (smooth == wrinkled).all()
 
 
 def test_only_skin_that_wrinkles_is_drawn_differently(scene: FaceScene) -> None:
     """Neither eyes nor the red of the lips, nor ears, scalp or background."""
     pose = {"AU1": 1.0, "AU2": 1.0, "AU6": 1.0, "AU9": 0.6, "AU18": 0.7}
-    smooth, wrinkled, capture = pictures(scene, pose, "0,0,1.1")
+    smooth, wrinkled, capture = draw_images(scene, pose, "0,0,1.1")
     differs = np.abs(wrinkled - smooth).max(axis=2) > 6
     assert 0.004 < differs.mean() < 0.15
     assert isinstance(scene.head, assets.Head)
@@ -215,13 +217,13 @@ def test_other_heads_wrinkle_too(tmp_path: Path, scene: FaceScene, wrinkling: Wr
         layers=head.layers,
         vertices=fine.vertices,
         faces=fine.faces,
-        bone_depth=fine.carried(head.bone_depth),
-        mandible_weight=fine.carried(head.mandible_weight),
-        uv=fine.carried(head.uv).astype(np.float32),
+        bone_depth=fine.interpolate(head.bone_depth),
+        mandible_weight=fine.interpolate(head.mandible_weight),
+        uv=fine.interpolate(head.uv).astype(np.float32),
         face_uv=fine.faces,
         albedo=head.albedo,
         wrinkles=replace(
-            head.wrinkles, across=fine.carried(head.wrinkles.across).astype(np.float32)
+            head.wrinkles, across=fine.interpolate(head.wrinkles.across).astype(np.float32)
         ),
     )
     built_in = amounts(scene, wrinkling, AU1=1.0, AU2=1.0)[forehead(scene).astype(bool), 0].mean()

@@ -99,9 +99,9 @@ def test_tone_and_size_are_options(
     light = tmp_path / "dark_openness.npz"
     light.write_bytes(b"baked for a larger picture")
     build.main([str(tmp_path / "dark.npz"), "--tone", "dark", "--size", "96"])
-    picture = load_head(tmp_path / "dark.npz").albedo
-    assert picture.shape == (96, 96, 3) and not light.exists()
-    assert picture.mean() < load("head").albedo.mean() - 30
+    image = load_head(tmp_path / "dark.npz").albedo
+    assert image.shape == (96, 96, 3) and not light.exists()
+    assert image.mean() < load("head").albedo.mean() - 30
     with pytest.raises(SystemExit):
         build.main([str(tmp_path / "pink.npz"), "--tone", "pink"])
     assert "medium-light" in capsys.readouterr().err

@@ -54,17 +54,17 @@ def test_map_reproduces_the_coarse_mesh(head: Head, fine: FineMesh) -> None:
     assert fine.coarse_triangle.shape == (len(fine.vertices),)
     assert fine.barycentric.shape == (len(fine.vertices), 3)
     assert np.all(fine.barycentric.sum(axis=1) == 1.0) and fine.barycentric.min() == 0.0
-    mapped = fine.carried(head.vertices)
+    mapped = fine.interpolate(head.vertices)
     assert np.array_equal(mapped[: len(head.vertices)], head.vertices)
-    number = fine.carried(np.arange(len(head.vertices), dtype=np.float64))
+    number = fine.interpolate(np.arange(len(head.vertices), dtype=np.float64))
     assert np.array_equal(number[: len(head.vertices)], np.arange(len(head.vertices)))
-    assert fine.carried(head.bone_depth).shape == (len(fine.vertices),)
+    assert fine.interpolate(head.bone_depth).shape == (len(fine.vertices),)
 
 
 def test_children_stand_in_the_place_of_their_parent(head: Head, fine: FineMesh) -> None:
     """Face k of the fine mesh lies in face k / 4^level of the coarse one, and covers its share."""
     share = len(fine.faces) // len(head.faces)
-    flat = fine.carried(head.vertices)
+    flat = fine.interpolate(head.vertices)
     parent = np.repeat(cross_products(head.vertices, head.faces), share, axis=0) / share
     assert np.allclose(cross_products(flat, fine.faces), parent, atol=1e-9)
 

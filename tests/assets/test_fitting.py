@@ -18,7 +18,7 @@ from risorius.assets.meshes import Mesh
 from risorius.bench.lines_of_sight import lid_gaps
 from risorius.sim.landmarks import MIRRORED
 from tests.heads import Stranger, closed, stranger
-from tests.sim.poses import inverted_triangles, lip_gap, moved_landmarks, settle
+from tests.sim.poses import inverted_triangles, lip_gap, moved_landmarks, settled_displacement
 
 
 @pytest.fixture(scope="module")
@@ -103,14 +103,14 @@ def test_depth_and_texture_come_from_the_same_place(fitted: FittedHead) -> None:
 
 def test_a_fitted_head_makes_faces(fitted: FittedHead, simulation: sim.Simulation) -> None:
     """A smile pulls the corners, a blink closes the eyes, the jaw opens, lips stay closed."""
-    smile = settle(simulation, {"AU12": 1.0})
+    smile = settled_displacement(simulation, {"AU12": 1.0})
     assert moved_landmarks(fitted, smile, 54)[1] > 4.0
     assert lip_gap(simulation, fitted) < 0.8
-    settle(simulation, {"AU43": 1.0})
+    settled_displacement(simulation, {"AU43": 1.0})
     landmarks = simulation.positions[fitted.landmarks]
     gaps = lid_gaps(simulation.positions, simulation.faces, landmarks)
     assert max(gaps.values()) < 0.8
-    settle(simulation, {"AU27": 1.0})
+    settled_displacement(simulation, {"AU27": 1.0})
     assert lip_gap(simulation, fitted) > 20.0
 
 
@@ -119,7 +119,7 @@ def test_expressions_keep_a_fitted_mesh_sound(
     fitted: FittedHead, simulation: sim.Simulation, name: str
 ) -> None:
     """Hardly a triangle of eight thousand is turned over."""
-    settle(simulation, {name: 1.0})
+    settled_displacement(simulation, {name: 1.0})
     assert inverted_triangles(fitted.faces, fitted.vertices, simulation.positions) <= 40
 
 
@@ -281,8 +281,8 @@ def test_nearest_point_agrees_with_a_plain_search(generator: np.random.Generator
     """Feet on a mesh are as near as those on a dense sampling of it."""
     plane = assets.load("plane")
     points = plane.vertices[:40] + generator.normal(scale=4.0, size=(40, 3))
-    foot = nearest_on(points, np.tile([0.0, 0.0, 1.0], (40, 1)), plane.vertices, plane.faces)
-    found = np.linalg.norm(foot.carry(plane.vertices) - points, axis=1)
+    nearest = nearest_on(points, np.tile([0.0, 0.0, 1.0], (40, 1)), plane.vertices, plane.faces)
+    found = np.linalg.norm(nearest.interpolate(plane.vertices) - points, axis=1)
     a, b = np.meshgrid(np.linspace(0.0, 1.0, 21), np.linspace(0.0, 1.0, 21))
     inside = a + b <= 1.0 + 1e-9
     weights = np.stack([1.0 - a - b, a, b], axis=-1)[inside]
@@ -290,4 +290,4 @@ def test_nearest_point_agrees_with_a_plain_search(generator: np.random.Generator
     sampled = np.linalg.norm(points[:, None] - dense[None], axis=2).min(axis=1)
     assert (found <= sampled + 1e-9).all()
     assert (sampled - found < 0.5).all()
-    assert np.allclose(foot.weights.sum(axis=1), 1.0)
+    assert np.allclose(nearest.weights.sum(axis=1), 1.0)

@@ -19,7 +19,7 @@ from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import Head
 
 Colours = npt.NDArray[np.float64]
-MOST_PICTURE = 1_000_000  # bytes
+LARGEST_IMAGE_FILE = 1_000_000  # bytes
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +30,7 @@ def head() -> Head:
 
 @pytest.fixture(scope="module")
 def texels(head: Head) -> Texels:
-    """The texels of the shipped picture."""
+    """The texels of the shipped image."""
     return left_texels(head, len(head.albedo))
 
 
@@ -51,7 +51,7 @@ def test_albedo_is_a_picture(head: Head) -> None:
     assert head.albedo.dtype == np.uint8 and head.albedo.ndim == 3
     assert head.albedo.shape[0] == head.albedo.shape[1] >= 1024 and head.albedo.shape[2] == 3
     assert head.albedo is head.albedo
-    assert head.albedo_file.stat().st_size < MOST_PICTURE
+    assert head.albedo_file.stat().st_size < LARGEST_IMAGE_FILE
     with pytest.raises(ValueError, match="read-only"):
         head.albedo[0] = 0
 
@@ -93,11 +93,11 @@ def test_inside_of_mouth_and_nostril_is_dark(head: Head, texels: Texels) -> None
 
 def test_picture_is_mirrored_but_for_its_grain(head: Head) -> None:
     """Pores and freckles differ; nothing that could be seen from afar does."""
-    picture = head.albedo.astype(np.int64)
-    difference = np.abs(picture - picture[:, ::-1])
+    image = head.albedo.astype(np.int64)
+    difference = np.abs(image - image[:, ::-1])
     assert 0.0 < difference.mean() < 4.0
-    size = len(picture) // 40
-    blocks = picture[: 40 * size, : 40 * size].reshape(40, size, 40, size, 3).mean(axis=(1, 3))
+    size = len(image) // 40
+    blocks = image[: 40 * size, : 40 * size].reshape(40, size, 40, size, 3).mean(axis=(1, 3))
     assert np.abs(blocks - blocks[:, ::-1]).max() < 6.0  # a freckle
 
 
@@ -119,10 +119,10 @@ def test_picture_goes_on_outside_the_skin(head: Head) -> None:
 def test_tones_are_ordered_and_all_have_lips() -> None:
     """From light to dark, each clearly darker than the one before; values and names both work."""
     sizes = 256
-    pictures = [assets.paint(tone=tone, size=sizes) for tone in assets.Tone]
-    lightness = [float(picture.mean()) for picture in pictures]
+    images = [assets.paint(tone=tone, size=sizes) for tone in assets.Tone]
+    lightness = [float(image.mean()) for image in images]
     assert all(first > second + 8.0 for first, second in pairwise(lightness))
-    assert np.array_equal(assets.paint(tone="dark", size=sizes), pictures[-1])
+    assert np.array_equal(assets.paint(tone="dark", size=sizes), images[-1])
 
 
 def test_wrong_tone_or_size_is_refused() -> None:

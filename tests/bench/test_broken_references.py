@@ -45,7 +45,7 @@ def test_broken_references_are_named(
         tmp_path / "face.npz", **{key: kept for key, kept in changed.items() if kept is not None}
     )
     with pytest.raises(ValueError, match=message):
-        motion.run(tmp_path)
+        motion.measure(tmp_path)
 
 
 @pytest.mark.parametrize("content", [b"hello", b"PK\x03\x04 cut short", b""])
@@ -53,4 +53,4 @@ def test_files_that_hold_no_arrays_are_named(tmp_path: Path, content: bytes) -> 
     """Neither text nor half an archive is a traceback."""
     (tmp_path / "face.npz").write_bytes(content)
     with pytest.raises(ValueError, match=r"face.npz: is broken, or no file of arrays"):
-        motion.run(tmp_path)
+        motion.measure(tmp_path)

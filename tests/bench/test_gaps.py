@@ -7,18 +7,18 @@ from dataclasses import asdict
 import pytest
 
 from risorius import assets
-from risorius.bench.gaps import LIDS_MOST, LIPS_MOST, Pose, report, run, worst
+from risorius.bench.gaps import LIDS_MOST, LIPS_MOST, PoseGaps, measure, report, worst
 from risorius.bench.lines_of_sight import sunk_in_eyeballs
 
 
 @pytest.fixture(scope="module")
-def poses() -> dict[str, Pose]:
+def poses() -> dict[str, PoseGaps]:
     """Every pose, measured once."""
-    return {pose.name: pose for pose in run()}
+    return {pose.name: pose for pose in measure()}
 
 
 @pytest.mark.slow
-def test_closed_lips_stay_closed(poses: dict[str, Pose]) -> None:
+def test_closed_lips_stay_closed(poses: dict[str, PoseGaps]) -> None:
     """No unit parts the lips but those that are there for it, on either side or on both."""
     slits = {name: pose.lips for name, pose in poses.items() if pose.lips is not None}
     assert len(slits) > 70
@@ -27,7 +27,7 @@ def test_closed_lips_stay_closed(poses: dict[str, Pose]) -> None:
 
 
 @pytest.mark.slow
-def test_shut_eyes_are_shut(poses: dict[str, Pose]) -> None:
+def test_shut_eyes_are_shut(poses: dict[str, PoseGaps]) -> None:
     """No eyeball is seen through closed lids, whatever else the face does, nor cut by them."""
     gaps = {name: pose.lids for name, pose in poses.items() if pose.lids is not None}
     assert {"AU43", "AU43_left", "AU45_right", "AU46_left", "blink", "wink", "yawn"} <= set(gaps)
@@ -36,9 +36,9 @@ def test_shut_eyes_are_shut(poses: dict[str, Pose]) -> None:
 
 
 @pytest.mark.slow
-def test_the_worst_is_named(poses: dict[str, Pose]) -> None:
+def test_the_worst_is_named(poses: dict[str, PoseGaps]) -> None:
     """The table and the file for programs hold every pose; one that fails is called so."""
-    wide = Pose("wide", LIPS_MOST, None, 0.0)
+    wide = PoseGaps("wide", LIPS_MOST, None, 0.0)
     assert worst([*poses.values(), wide], "lips") == (LIPS_MOST, wide)
     table = report([*poses.values(), wide])
     assert "MISSED  wide" in table

@@ -31,7 +31,7 @@ def write(path: Path, vertices: npt.ArrayLike, faces: npt.ArrayLike) -> None:
 
 def test_a_folder_of_meshes(tmp_path: Path) -> None:
     """Sound and broken meshes are refined, what cannot be read is named, nothing cracks."""
-    for name in ("with_debris", "three_sheets", "inconsistent_pair"):
+    for name in ("with_debris", "three_on_an_edge", "inconsistent_pair"):
         mesh = NAMED[name]()
         write(tmp_path / f"{name}.obj", mesh.vertices, mesh.faces)
     (tmp_path / "below").mkdir()
@@ -195,7 +195,7 @@ def test_a_broken_refiner_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Pat
         return _whole_again(frame, mesh.faces) if is_split else frame
 
     monkeypatch.setattr(refine.Kahler, "refine", cracked)
-    write(tmp_path / "sheet.obj", mesh.vertices, mesh.faces)
+    write(tmp_path / "grid.obj", mesh.vertices, mesh.faces)
     result = CliRunner().invoke(command(), ["bench", "meshes", str(tmp_path), *CALM])
     assert result.exit_code == 1, result.output
     assert ": a sub-edge on an input edge has the same sides" in result.output

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from risorius import assets, sim
-from risorius.bench.motion import Row, run
+from risorius.bench.motion import Row, measure
 from tests.heads import METRES, SHIFT, TURN, shape
-from tests.sim.poses import both_sides, settle
+from tests.sim.poses import both_sides, settled_displacement
 
 # What a field is called -> the controls that make it on the built-in head.
 WHOLE = {
@@ -49,10 +49,10 @@ def scored(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Row], li
         return changed * METRES
 
     for name, values in {**WHOLE, **HALVES}.items():
-        fields[name] = field(settle(simulation, both_sides(simulation, values)))
-    closed = settle(simulation, {"jaw_open": 1.0, "lips_closed": 1.0})
-    fields["mouthClose"] = field(closed - settle(simulation, {"jaw_open": 1.0}))
-    raised = settle(simulation, {"gaze_vertical": 1.0})
+        fields[name] = field(settled_displacement(simulation, both_sides(simulation, values)))
+    closed = settled_displacement(simulation, {"jaw_open": 1.0, "lips_closed": 1.0})
+    fields["mouthClose"] = field(closed - settled_displacement(simulation, {"jaw_open": 1.0}))
+    raised = settled_displacement(simulation, {"gaze_vertical": 1.0})
     fields["eyeLookUpLeft"] = field(np.where(head.vertices[:, :1] > 0.0, raised, 0.0))
     folder = tmp_path_factory.mktemp("reference")
     np.savez(
@@ -64,7 +64,7 @@ def scored(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Row], li
         eyeBlink_L=np.zeros_like(head.vertices),
         **fields,
     )
-    rows, left_out = run(folder)
+    rows, left_out = measure(folder)
     return {row.shape: row for row in rows}, left_out
 
 
@@ -98,4 +98,4 @@ def test_reference_without_a_known_shape(tmp_path: Path) -> None:
         earWiggle=np.ones_like(head.vertices),
     )
     with pytest.raises(ValueError, match="holds none of the shapes"):
-        run(tmp_path)
+        measure(tmp_path)

@@ -11,19 +11,19 @@ import pytest
 from risorius import assets
 from risorius.bench import quality, subjects
 from risorius.bench.quality_report import error_curves, text
-from risorius.bench.subjects import Pose, Subject
+from risorius.bench.subjects import PosePair, Subject
 
 Points = npt.NDArray[np.float64]
 
 
 def bent(points: Points, angle: float) -> Points:
-    """A sheet rolled up to an arc of `angle` [radians] per unit of length."""
+    """A plane rolled up to an arc of `angle` [radians] per unit of length."""
     x = points[:, 0] * angle
     return np.stack([np.sin(x), points[:, 1] * angle, np.cos(x) - 1.0], axis=1) / angle
 
 
-def rolled_sheet() -> Subject:
-    """A flat sheet, coarse and dense, and both rolled up: the truth is a cylinder."""
+def rolled_plane() -> Subject:
+    """A flat plane, coarse and dense, and both rolled up: the truth is a cylinder."""
     meshes = []
     for cells in (6, 48):
         x, y = np.meshgrid(np.linspace(0.0, 3.0, cells + 1), np.linspace(0.0, 2.0, cells + 1))
@@ -33,14 +33,16 @@ def rolled_sheet() -> Subject:
         upper = np.stack([a, a + cells + 2, a + cells + 1], axis=1)
         meshes.append((points, np.concatenate([lower, upper]).astype(np.int32)))
     (coarse, coarse_faces), (dense, dense_faces) = meshes
-    poses = {f"roll {angle:g}": Pose(bent(dense, angle), bent(coarse, angle)) for angle in (0.5, 1)}
-    return Subject("sheet", dense_faces, coarse_faces, Pose(dense, coarse), poses)
+    poses = {
+        f"roll {angle:g}": PosePair(bent(dense, angle), bent(coarse, angle)) for angle in (0.5, 1)
+    }
+    return Subject("plane", dense_faces, coarse_faces, PosePair(dense, coarse), poses)
 
 
 def test_scores_of_a_cylinder() -> None:
     """Cubic edges follow a cylinder, Loop shrinks it; what splits more is never coarser."""
-    subject = rolled_sheet()
-    scores = quality.run(subject, budgets=(1.6, 2.0))
+    subject = rolled_plane()
+    scores = quality.measure(subject, budgets=(1.6, 2.0))
     average = quality.means(scores)
     coarse = average[quality.COARSE, "", 1.0]
     assert coarse.triangles == 72
@@ -55,7 +57,7 @@ def test_scores_of_a_cylinder() -> None:
     assert average["uniform Loop", "", 2].triangles == 16 * 72
 
     printed = text(subject, scores)
-    for part in ("sheet: 72 tri", "roll 0.5", f"{coarse.distance:.3f}", "cubic, height"):
+    for part in ("plane: 72 tri", "roll 0.5", f"{coarse.distance:.3f}", "cubic, height"):
         assert part in printed
     assert "cubic: never worse than coarse" in printed
     assert error_curves(subject, scores, "drop", (300, 200)).shape == (200, 300, 3)
@@ -63,16 +65,16 @@ def test_scores_of_a_cylinder() -> None:
 
 def test_error_of_the_truth_is_zero() -> None:
     """A coarse mesh that is the dense one has no error, by any way of splitting nothing."""
-    subject = rolled_sheet()
+    subject = rolled_plane()
     pose = subject.poses["roll 1"]
     same = Subject(
         "same",
         subject.dense_faces,
         subject.dense_faces,
-        Pose(subject.rest.dense, subject.rest.dense),
-        {"roll": Pose(pose.dense, pose.dense)},
+        PosePair(subject.rest.dense, subject.rest.dense),
+        {"roll": PosePair(pose.dense, pose.dense)},
     )
-    (coarse, *_) = quality.run(same, schemes=(), budgets=())
+    (coarse, *_) = quality.measure(same, schemes=(), budgets=())
     assert coarse.method == quality.COARSE
     assert coarse.distance < 1e-9
     assert coarse.angle < 1e-3
@@ -132,7 +134,7 @@ def test_built_in_head() -> None:
 @pytest.mark.slow
 def test_targets_on_the_built_in_head() -> None:
     """Schemes that interpolate come nearer in every expression, by as much as was aimed at."""
-    scores = quality.run(
+    scores = quality.measure(
         subjects.built_in(1),
         schemes=("cubic", "detail"),
         budgets=quality.BUDGETS,

@@ -20,7 +20,7 @@ from risorius.refine import connect, create
 @pytest.mark.slow
 def test_rows() -> None:
     """Ours with the share of edges that was asked for, a copy, and peers; times that fit."""
-    report = refine.run(sizes=["2k"], seconds=0.05, starts=False)
+    report = refine.measure(sizes=["2k"], seconds=0.05, starts=False)
     rows = {row.method: row for row in report.rows}
     count = rows["kahler 10 %"].triangles_in
     assert abs(count - 2_000) < 100
@@ -42,19 +42,19 @@ def test_rows() -> None:
 def test_unknown_size() -> None:
     """A size that there is not is refused with those that there are."""
     with pytest.raises(ValueError, match="unknown size '3k'; there are face, 2k, 20k"):
-        refine.run(sizes=["3k"])
+        refine.measure(sizes=["3k"])
 
 
 @pytest.mark.parametrize("shuffled", [False, True])
 def test_waving_meshes(shuffled: bool) -> None:
-    """A sheet is one piece with four borders, no triangle twice, the same however it is stored."""
-    load = waving_mesh("sheet", 3_000, shuffled=shuffled)
+    """A grid is one piece with four borders, no triangle twice, the same however it is stored."""
+    load = waving_mesh("grid", 3_000, shuffled=shuffled)
     mesh = connect(load.faces, len(load.rest))
     assert len(load.rest) - len(mesh.edges) + len(load.faces) == 1 - 3
     assert np.array_equal(np.unique(load.faces), np.arange(len(load.rest)))
     corners = load.rest[load.faces]
     assert (np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 0).all()
-    plain = waving_mesh("sheet", 3_000)
+    plain = waving_mesh("grid", 3_000)
     assert len(load.faces) == len(plain.faces)
     assert np.allclose(np.sort(load.frames[1][:, 2]), np.sort(plain.frames[1][:, 2]))
 
@@ -62,7 +62,7 @@ def test_waving_meshes(shuffled: bool) -> None:
 @pytest.mark.parametrize("levels", [1, 2])
 def test_sparse_loop_is_loop(levels: int) -> None:
     """The matrices give what our uniform Loop gives."""
-    load = waving_mesh("sheet", 600)
+    load = waving_mesh("grid", 600)
     ours = create("loop", load.faces, load.rest, levels=levels).refine(load.frames[1])
     frame, triangle_count = sparse_loop(load, levels=levels)
     assert triangle_count == len(ours.triangles)
@@ -87,7 +87,7 @@ def test_missing_peers_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
         return found(name, globals_, locals_, names, level)
 
     monkeypatch.setattr(builtins, "__import__", without_vtk)
-    peers, missing = peers_for(waving_mesh("sheet", 600), 900)
+    peers, missing = peers_for(waving_mesh("grid", 600), 900)
     left_out = "left out, vtkmodules is not installed (extra 'peers')"
     assert missing == [
         f"VTK adaptive: {left_out}",

@@ -14,7 +14,7 @@ from risorius.bench.report import table
 
 def test_simulate() -> None:
     """Head and plain meshes each get a row with their sizes."""
-    text = simulate.report(simulate.run(rounds=2, sizes=(400,)), 2)
+    text = simulate.report(simulate.measure(rounds=2, sizes=(400,)), 2)
     assert "head, all muscles" in text
     assert "2030" in text
     assert "plain mesh" in text
@@ -44,7 +44,7 @@ def test_motion_table(tmp_path: Path) -> None:
         earWiggle=lift,
         **fields,
     )
-    text = motion.report(*motion.run(tmp_path))
+    text = motion.report(*motion.measure(tmp_path))
     rows, _, unknown = text.partition("mean")
     scores = {line.split()[0]: float(line.split()[1]) for line in rows.splitlines()[6:]}
     for side in "LR":
@@ -57,7 +57,7 @@ def test_motion_table(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_soak_table() -> None:
     """A few seconds of wild input are reported, and the face stays sound."""
-    text = soak.report(soak.run(minutes=0.05))
+    text = soak.report(soak.measure(minutes=0.05))
     assert "NO" not in text
     assert "0.1 simulated minutes" in text or "0.0 simulated minutes" in text
 
@@ -65,7 +65,7 @@ def test_soak_table() -> None:
 @pytest.mark.slow
 def test_tearing_table() -> None:
     """Expressions and mixtures are looked at, and the worst is named."""
-    text = tearing.report(tearing.run(mixtures=3), 3)
+    text = tearing.report(tearing.measure(mixtures=3), 3)
     assert "3 random mixtures" in text
     assert text.splitlines()[-1].startswith("teeth")
 

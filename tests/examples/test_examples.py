@@ -58,13 +58,13 @@ def test_in_trimesh() -> None:
 
 
 def test_in_pyvista(tmp_path: Path) -> None:
-    """The plotter draws the refined plane; there is something in its picture."""
+    """The plotter draws the refined plane; there is something in its image."""
     pytest.importorskip("pyvista", reason="needs the extra 'peers': pip install risorius[peers]")
-    picture = tmp_path / "plane.png"
-    counts = example("in_pyvista").main(picture)
+    image = tmp_path / "plane.png"
+    counts = example("in_pyvista").main(image)
     assert len(counts) == 12
     assert min(counts) > 154
-    assert picture.stat().st_size > 5_000
+    assert image.stat().st_size > 5_000
 
 
 def test_own_refiner(monkeypatch: pytest.MonkeyPatch) -> None:

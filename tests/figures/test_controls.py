@@ -11,16 +11,16 @@ from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 from risorius.bench.figures import FOLDER
 
-MOST_PICTURE = 1_500_000  # bytes, at full size
+LARGEST_IMAGE_FILE = 1_500_000  # bytes, at full size
 
 
 @pytest.mark.slow
 def test_some_controls_are_drawn(tmp_path: Path) -> None:
     """Two views of each; a face that does something looks different."""
     controls.main([str(tmp_path), "--width", "48", "--only", "viseme_sil", "AU27"])
-    picture = np.asarray(Image.open(tmp_path / "some.png").convert("RGB"))
-    assert picture.shape[1] == 4 * 48
-    rest, opened = picture[:50, :96].astype(int), picture[:50, 96:].astype(int)
+    image = np.asarray(Image.open(tmp_path / "some.png").convert("RGB"))
+    assert image.shape[1] == 4 * 48
+    rest, opened = image[:50, :96].astype(int), image[:50, 96:].astype(int)
     assert rest.std() > 10.0
     assert np.abs(rest - opened).max() > 50
 
@@ -56,5 +56,5 @@ def test_every_sheet_is_full() -> None:
 def test_pictures_of_the_page_are_small() -> None:
     """They travel with the source."""
     for name in controls.LAYERS.values():
-        picture = Path(__file__).parents[2] / FOLDER / f"{name}.png"
-        assert picture.stat().st_size < MOST_PICTURE
+        image = Path(__file__).parents[2] / FOLDER / f"{name}.png"
+        assert image.stat().st_size < LARGEST_IMAGE_FILE

@@ -9,12 +9,12 @@ from PIL import Image
 
 from risorius.bench.figures import FOLDER
 
-MOST_PICTURE = 600_000  # bytes, at full size
+LARGEST_IMAGE_FILE = 600_000  # bytes, at full size
 
 
 @pytest.mark.slow
 def test_both_sheets_are_drawn(tmp_path: Path) -> None:
-    """Two pictures, four portraits wide, and something is on each portrait."""
+    """Two images, four portraits wide, and something is on each portrait."""
     head.main([str(tmp_path), "--width", "48", "--only", "head_views", "head_details"])
     for name, rows in (("head_views.png", 3), ("head_details.png", 2)):
         sheet = np.asarray(Image.open(tmp_path / name))
@@ -29,5 +29,5 @@ def test_both_sheets_are_drawn(tmp_path: Path) -> None:
 def test_pictures_of_the_page_are_small() -> None:
     """They travel with the source."""
     for name in ("head_views.png", "head_details.png"):
-        picture = Path(__file__).parents[2] / FOLDER / name
-        assert picture.stat().st_size < MOST_PICTURE
+        image = Path(__file__).parents[2] / FOLDER / name
+        assert image.stat().st_size < LARGEST_IMAGE_FILE

@@ -12,8 +12,8 @@ from PIL import Image
 from risorius.bench import paper_figures
 from risorius.bench.charts import Axis, Series, chart
 
-PICTURES = Path(__file__).parents[2] / "docs" / "pictures"
-MOST_PICTURE = 450_000  # bytes
+IMAGES = Path(__file__).parents[2] / "docs" / "pictures"
+LARGEST_IMAGE_FILE = 450_000  # bytes
 
 
 @pytest.mark.slow
@@ -65,7 +65,7 @@ def test_chart() -> None:
     assert (drawn.min(axis=2) < 128).any()
 
 
-@pytest.mark.parametrize("path", sorted(PICTURES.glob("refine_*.png")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted(IMAGES.glob("refine_*.png")), ids=lambda path: path.stem)
 def test_pictures_of_the_page_are_small(path: Path) -> None:
     """They travel with the source."""
-    assert path.stat().st_size < MOST_PICTURE
+    assert path.stat().st_size < LARGEST_IMAGE_FILE

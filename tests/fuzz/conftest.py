@@ -19,16 +19,16 @@ LONG_WORK = (
     "risorius.bench.paper_figures.figure_10",
     "risorius.bench.paper_figures.figure_9",
     "risorius.app.viewer.Viewer",
-    "risorius.bench.gaps.run",
-    "risorius.bench.meshes.run",
-    "risorius.bench.motion.run",
+    "risorius.bench.gaps.measure",
+    "risorius.bench.meshes.measure",
+    "risorius.bench.motion.measure",
     "risorius.bench.paper_figures.coherence",
-    "risorius.bench.quality.run",
-    "risorius.bench.refine.run",
-    "risorius.bench.simulate.run",
-    "risorius.bench.soak.run",
-    "risorius.bench.table1.run",
-    "risorius.bench.tearing.run",
+    "risorius.bench.quality.measure",
+    "risorius.bench.refine.measure",
+    "risorius.bench.simulate.measure",
+    "risorius.bench.soak.measure",
+    "risorius.bench.table1.measure",
+    "risorius.bench.tearing.measure",
     "risorius.bench.window.report",
 )
 
@@ -63,8 +63,8 @@ def pytest_terminal_summary(
 def face() -> FaceScene:
     """The built-in face, with its light already baked."""
     scene = FaceScene()
-    picture = scene.openness()
-    scene.openness = lambda: picture  # type: ignore[method-assign]
+    image = scene.openness()
+    scene.openness = lambda: image  # type: ignore[method-assign]
     return scene
 
 

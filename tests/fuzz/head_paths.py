@@ -82,7 +82,7 @@ def _with_material(make: Callable[[Path], None], folder: Path) -> Brought:
     return Brought(folder / "a.obj")
 
 
-def _big_picture(folder: Path) -> None:
+def _big_image(folder: Path) -> None:
     from PIL import Image
 
     (folder / "a.mtl").write_text(MATERIAL)
@@ -106,7 +106,7 @@ def _table() -> list[OddHead]:
     for name in ("HEAD.OBJ", "t\xeate.obj", "two\nlines.obj", "a.b.obj"):
         rows.append(OddHead(f"called {name!r}", partial(_named, name), Kind.MESH))
     rows.append(
-        OddHead("picture of 12000", partial(_with_material, _big_picture), Kind.MESH),
+        OddHead("picture of 12000", partial(_with_material, _big_image), Kind.MESH),
     )
     pipe = partial(_with_material, lambda folder: os.mkfifo(folder / "a.mtl"))
     rows.append(OddHead("material is a pipe", pipe, Kind.MESH))

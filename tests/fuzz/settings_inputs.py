@@ -60,22 +60,22 @@ FILES: dict[str, bytes] = {
 # What is set (None: taken away), the words of the command, and its exit code.
 Row = tuple[dict[str, str | None], str, int]
 
-PICTURE = "capture --scene plane --set amplitude -o x.png --size 16x16 --quiet"
+IMAGE = "capture --scene plane --set amplitude -o x.png --size 16x16 --quiet"
 FILM = "capture --scene plane --set amplitude -o x.mp4 --size 16x16 --quiet"
 
 ENVIRONMENTS: dict[str, Row] = {
-    "nothing at all": ({"PATH": None, "HOME": None, "LANG": None}, PICTURE, 0),
-    "home is nowhere": ({"HOME": "/nowhere", "XDG_CACHE_HOME": None}, PICTURE, 0),
-    "home is a file": ({"HOME": "notes.txt"}, PICTURE, 0),
-    "cache is a file": ({"XDG_CACHE_HOME": "notes.txt"}, PICTURE, 0),
-    "cache is a loop": ({"XDG_CACHE_HOME": "loop", "NUMBA_CACHE_DIR": "loop"}, PICTURE, 0),
+    "nothing at all": ({"PATH": None, "HOME": None, "LANG": None}, IMAGE, 0),
+    "home is nowhere": ({"HOME": "/nowhere", "XDG_CACHE_HOME": None}, IMAGE, 0),
+    "home is a file": ({"HOME": "notes.txt"}, IMAGE, 0),
+    "cache is a file": ({"XDG_CACHE_HOME": "notes.txt"}, IMAGE, 0),
+    "cache is a loop": ({"XDG_CACHE_HOME": "loop", "NUMBA_CACHE_DIR": "loop"}, IMAGE, 0),
     "compiled code in a file": ({"NUMBA_CACHE_DIR": "notes.txt"}, "controls", 0),
     "compiled code nowhere": ({"NUMBA_CACHE_DIR": "/proc/nowhere"}, "controls", 0),
-    "no folder for temporary files": ({"TMPDIR": "/nowhere"}, PICTURE, 0),
+    "no folder for temporary files": ({"TMPDIR": "/nowhere"}, IMAGE, 0),
     "no letters": ({"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONIOENCODING": "ascii"}, "controls", 0),
-    "wrong language": ({"LC_ALL": "xx_YY.nothing"}, PICTURE, 0),
+    "wrong language": ({"LC_ALL": "xx_YY.nothing"}, IMAGE, 0),
     "Python warns of all": ({"PYTHONWARNINGS": "default", "PYTHONDEVMODE": "1"}, "controls", 0),
-    "without assertions": ({"PYTHONOPTIMIZE": "2"}, PICTURE, 0),
+    "without assertions": ({"PYTHONOPTIMIZE": "2"}, IMAGE, 0),
     "columns are no number": ({"COLUMNS": "many"}, "--help", 0),
     "columns are negative": ({"COLUMNS": "-5"}, "--help", 0),
     "no colours": ({"NO_COLOR": "1", "TERM": "dumb"}, "bench --help", 0),
@@ -85,13 +85,13 @@ ENVIRONMENTS: dict[str, Row] = {
     "film program is no program": ({"IMAGEIO_FFMPEG_EXE": "notes.txt"}, FILM, 2),
     "film program fails": ({"IMAGEIO_FFMPEG_EXE": "/bin/false"}, FILM, 2),
     "film program does nothing": ({"IMAGEIO_FFMPEG_EXE": "/bin/true"}, FILM, 2),
-    "no OpenGL": ({"GLCONTEXT_LINUX_LIBEGL": "nothing.so"}, PICTURE, 2),
-    "device is no number": ({"GLCONTEXT_DEVICE_INDEX": "first"}, PICTURE, 2),
-    "device is not there": ({"GLCONTEXT_DEVICE_INDEX": "99"}, PICTURE, 2),
+    "no OpenGL": ({"GLCONTEXT_LINUX_LIBEGL": "nothing.so"}, IMAGE, 2),
+    "device is no number": ({"GLCONTEXT_DEVICE_INDEX": "first"}, IMAGE, 2),
+    "device is not there": ({"GLCONTEXT_DEVICE_INDEX": "99"}, IMAGE, 2),
     "no screen": ({"DISPLAY": None, "WAYLAND_DISPLAY": None}, "view", 2),
     "wrong screen": ({"DISPLAY": ":987"}, "view", 2),
     "screen is no name": ({"DISPLAY": "screen\n"}, "view", 2),
     "settings in a file": ({"XDG_CONFIG_HOME": "notes.txt", "DISPLAY": None}, "view", 2),
     "compiler is switched off": ({"NUMBA_DISABLE_JIT": "1"}, "doctor --offscreen", 0),
-    "older OpenGL": ({"MESA_GL_VERSION_OVERRIDE": "2.1"}, PICTURE, 2),
+    "older OpenGL": ({"MESA_GL_VERSION_OVERRIDE": "2.1"}, IMAGE, 2),
 }

@@ -19,7 +19,7 @@ from risorius.app.viewer.settings import Settings, load_settings, save_settings,
 
 from .sandbox import LONGEST, bounded, check_end, check_line, contents
 from .sandbox import Ended as End
-from .settings_inputs import ENVIRONMENTS, FILES, FILM, PICTURE
+from .settings_inputs import ENVIRONMENTS, FILES, FILM, IMAGE
 
 pytestmark = pytest.mark.slow
 
@@ -114,12 +114,12 @@ def _limit(kind: int, most: int) -> Callable[[], None]:
 @pytest.mark.parametrize(
     ("words", "kind", "most", "code"),
     [
-        (PICTURE, resource.RLIMIT_FSIZE, 10, 2),
+        (IMAGE, resource.RLIMIT_FSIZE, 10, 2),
         (FILM, resource.RLIMIT_FSIZE, 100, 2),
-        (PICTURE.replace("x.png", "frames"), resource.RLIMIT_FSIZE, 10, 2),
+        (IMAGE.replace("x.png", "frames"), resource.RLIMIT_FSIZE, 10, 2),
         ("reproduce figure9 -o x.png", resource.RLIMIT_FSIZE, 1000, 2),
-        (PICTURE, resource.RLIMIT_NOFILE, 8, 0),
-        (PICTURE.replace("16x16", "8000x8000"), resource.RLIMIT_AS, 2 << 30, 2),
+        (IMAGE, resource.RLIMIT_NOFILE, 8, 0),
+        (IMAGE.replace("16x16", "8000x8000"), resource.RLIMIT_AS, 2 << 30, 2),
     ],
     ids=["png", "mp4", "frames", "figure", "files", "memory"],
 )
@@ -140,7 +140,7 @@ STREAMS = {
     "nobody reads on": "{risorius} controls | head -n 1",
     "nobody reads the mistake": "{risorius} nothing 2>&1 | true",
     "folder is gone": "mkdir gone && cd gone && rmdir ../gone && {risorius} nothing",
-    "folder is gone, picture": "mkdir gone && cd gone && rmdir ../gone && {risorius} " + PICTURE,
+    "folder is gone, picture": "mkdir gone && cd gone && rmdir ../gone && {risorius} " + IMAGE,
 }
 
 

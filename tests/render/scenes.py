@@ -1,4 +1,4 @@
-"""Small things to draw, and how the tests here look at pictures."""
+"""Small things to draw, and how the tests here look at images."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy.typing as npt
 from risorius import render
 
 Floats = npt.NDArray[np.float32]
-Frame = npt.NDArray[np.int32]  # a picture that can be subtracted from another, (H, W, 3)
+SignedImage = npt.NDArray[np.int32]  # an image that can be subtracted from another, (H, W, 3)
 
 PLAIN = render.Style(background=render.WHITE, shadows=False)
 """Skin before pure white, so that what is not white is drawn."""
@@ -89,14 +89,14 @@ def facing(half: float = 50.0) -> render.OrbitCamera:
     return camera
 
 
-def picture(
+def draw_image(
     surface: render.Surface,
     shape: Shape,
     style: render.Style = PLAIN,
     *,
     camera: render.OrbitCamera | None = None,
     values: npt.NDArray[np.uint8] | None = None,
-) -> Frame:
+) -> SignedImage:
     """Draw the shape over the style's background on a fresh frame, shape (H, W, 3), int32."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape)
@@ -107,16 +107,16 @@ def picture(
     return surface.read().astype(np.int32)
 
 
-def at(frame: Frame, x: float, y: float) -> npt.NDArray[np.int32]:
+def at(image: SignedImage, x: float, y: float) -> npt.NDArray[np.int32]:
     """The pixel that shows the point (x, y, 0) of `facing`'s view."""
-    height, width, _ = frame.shape
+    height, width, _ = image.shape
     scale = 0.5 * height / (250.0 * np.tan(np.radians(12.5)))
-    return np.asarray(frame[int(0.5 * height - y * scale), int(0.5 * width + x * scale)])
+    return np.asarray(image[int(0.5 * height - y * scale), int(0.5 * width + x * scale)])
 
 
-def drawn(frame: Frame) -> npt.NDArray[np.bool_]:
+def drawn(image: SignedImage) -> npt.NDArray[np.bool_]:
     """Which pixels are not the white background, shape (H, W)."""
-    return np.asarray((frame < 250).any(axis=2))
+    return np.asarray((image < 250).any(axis=2))
 
 
 @dataclass(frozen=True, eq=False)

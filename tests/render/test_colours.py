@@ -10,15 +10,15 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, at, picture, sphere, square
+from .scenes import PLAIN, at, draw_image, sphere, square
 
 SPLITS = replace(PLAIN, colour_by=render.ColourBy.SPLITS)
 
 
 def test_wireframe_darkens_edges_only(surface: render.Surface) -> None:
     """Lines run along borders and diagonal; between them the surface is as before."""
-    plain = picture(surface, square())
-    wired = picture(surface, square(), replace(PLAIN, wireframe=True, wire_width=3.0))
+    plain = draw_image(surface, square())
+    wired = draw_image(surface, square(), replace(PLAIN, wireframe=True, wire_width=3.0))
     assert at(wired, 0.0, 0.0).sum() < 0.8 * at(plain, 0.0, 0.0).sum()
     assert at(wired, 49.5, 0.0).sum() < 0.9 * at(plain, 49.5, 0.0).sum()
     assert (at(wired, 20.0, -20.0) == at(plain, 20.0, -20.0)).all()
@@ -28,11 +28,11 @@ def test_wireframe_darkens_edges_only(surface: render.Surface) -> None:
 
 def test_wireframe_is_as_wide_as_asked(surface: render.Surface) -> None:
     """A line of twice the width darkens about twice the pixels."""
-    plain = picture(surface, square())
+    plain = draw_image(surface, square())
     loss = []
     for width in (1.0, 2.0):
         style = replace(PLAIN, wireframe=True, wire_width=width, wire_opacity=1.0)
-        loss.append(float((plain - picture(surface, square(), style)).sum()))
+        loss.append(float((plain - draw_image(surface, square(), style)).sum()))
     assert loss[1] / loss[0] == pytest.approx(2.0, abs=0.3)
 
 
@@ -43,11 +43,11 @@ def test_split_colours_are_where_the_values_say(
 ) -> None:
     """A triangle with splits has its palette's hue, its neighbour keeps the skin."""
     style = replace(SPLITS, shading=shading, wireframe=wireframe)
-    frame = picture(surface, square(), style, values=np.array([0, 4], np.uint8))
+    frame = draw_image(surface, square(), style, values=np.array([0, 4], np.uint8))
     lower, upper = at(frame, 20.0, -20.0), at(frame, -20.0, 20.0)
     assert lower[0] > lower[2] + 20
     assert upper[2] > upper[0] + 60
-    swapped = picture(surface, square(), style, values=np.array([4, 0], np.uint8))
+    swapped = draw_image(surface, square(), style, values=np.array([4, 0], np.uint8))
     assert at(swapped, 20.0, -20.0)[2] > at(swapped, 20.0, -20.0)[0] + 60
 
 
@@ -57,7 +57,7 @@ def test_split_colours_of_many_triangles(surface: render.Surface) -> None:
     centres = shape.positions[shape.triangles].mean(axis=1)
     values = np.where(centres[:, 1] > 0.0, 5, 0).astype(np.uint8)
     assert len(values) > 2 * 1024
-    frame = picture(surface, shape, SPLITS, values=values)
+    frame = draw_image(surface, shape, SPLITS, values=values)
     upper, lower = frame[30, 30:66], frame[66, 30:66]
     assert (upper[:, 2] > upper[:, 0]).all() and (lower[:, 0] > lower[:, 2]).all()
 
@@ -81,7 +81,7 @@ def test_split_values_must_fit(
 ) -> None:
     """Missing or misshapen numbers are refused."""
     with pytest.raises(ValueError, match=message):
-        picture(surface, square(), SPLITS, values=values)
+        draw_image(surface, square(), SPLITS, values=values)
 
 
 @pytest.mark.parametrize("kind", [render.ColourBy.AMOUNT, render.ColourBy.SIGNED])
@@ -89,12 +89,14 @@ def test_amounts_colour_triangles(surface: render.Surface, kind: render.ColourBy
     """None leaves the skin as it is; the most is another colour; the least only with a sign."""
     nothing = 128 if kind is render.ColourBy.SIGNED else 0
     style, shape = replace(PLAIN, colour_by=kind), sphere()
-    plain = picture(surface, shape)
-    pictures = {
-        value: picture(surface, shape, style, values=np.full(len(shape.triangles), value, np.uint8))
+    plain = draw_image(surface, shape)
+    images = {
+        value: draw_image(
+            surface, shape, style, values=np.full(len(shape.triangles), value, np.uint8)
+        )
         for value in (0, nothing, 255)
     }
-    difference = {value: np.abs(picture - plain).max() for value, picture in pictures.items()}
+    difference = {value: np.abs(image - plain).max() for value, image in images.items()}
     assert difference[nothing] < 8
     assert difference[255] > 60
     assert (difference[0] > 60) == (kind is render.ColourBy.SIGNED)

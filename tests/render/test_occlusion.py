@@ -28,7 +28,7 @@ def scene(
     camera: render.OrbitCamera,
     viewport: render.Viewport | None = None,
 ) -> tuple[render.Image, list[int]]:
-    """Two balls behind a wall; the picture, and how many faces of each ball were drawn."""
+    """Two balls behind a wall; the image, and how many faces of each ball were drawn."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, wall)
     balls = [Ball(colour=(0.9, 0.2, 0.1)), Ball(bone="jaw", shine=0.8)]
@@ -56,11 +56,11 @@ def test_not_one_pixel_changes(
             camera = facing()
             camera.orbit(yaw, 10.0)
             camera.zoom(zoom)
-            pictures = []
+            images = []
             for is_software in (True, False):
                 monkeypatch.setattr(type(surface), "is_software", is_software)
-                pictures.append(scene(surface, wall_with_slit(height), camera, viewport)[0])
-            assert (pictures[0] == pictures[1]).all()
+                images.append(scene(surface, wall_with_slit(height), camera, viewport)[0])
+            assert (images[0] == images[1]).all()
 
 
 @pytest.mark.parametrize("samples", [0, 4])
@@ -72,7 +72,7 @@ def test_depths_of_an_earlier_picture_hide_nothing(
         monkeypatch.setattr(type(surface), "is_software", True)
         renderer = render.Renderer(surface)
         wall, ball = lent(renderer, square(40.0, z=25.0)), Ball()
-        pictures = []
+        images = []
         for is_walled in (False, True, False):
             surface.begin()
             renderer.draw_background(PLAIN)
@@ -80,9 +80,9 @@ def test_depths_of_an_earlier_picture_hide_nothing(
                 renderer.draw_mesh(wall, facing(), PLAIN)
             renderer.draw_parts([ball], {"cranium": np.eye(4)}, facing(), PLAIN)
             surface.end()
-            pictures.append(surface.read())
-        assert (pictures[0] != pictures[1]).any()
-        assert (pictures[0] == pictures[2]).all()
+            images.append(surface.read())
+        assert (images[0] != images[1]).any()
+        assert (images[0] == images[2]).all()
 
 
 def test_hidden_faces_are_left_out(
@@ -126,7 +126,7 @@ def test_tables_never_hide_more_than_a_search(generator: np.random.Generator) ->
     pixels[:, 2] = np.repeat(generator.uniform(0.3, 1.0, 500), 3)
     clip = pixels / (160.0, 120.0, 0.5) - 1.0
     faces = np.arange(1500).reshape(-1, 3).T
-    seen = farthest.seen(ProjectedFaces(clip.astype(np.float32), faces, np.eye(4), view))
+    seen = farthest.visible(ProjectedFaces(clip.astype(np.float32), faces, np.eye(4), view))
     searched = [brute_force(depths, pixels[3 * face : 3 * face + 3], 5, 4) for face in range(500)]
     assert (seen | ~np.array(searched)).all()
     assert 50 < np.count_nonzero(~seen)
@@ -140,4 +140,4 @@ def test_faces_behind_the_eye_hide_nothing() -> None:
     vertices = sphere(1, 1.0).positions
     faces = sphere(1).triangles.T.astype(np.intp)
     farthest = FarthestDepths(np.zeros((4, 4), np.float32), 0, 0)
-    assert farthest.seen(ProjectedFaces(vertices, faces, matrix, (0, 0, 32, 32))).all()
+    assert farthest.visible(ProjectedFaces(vertices, faces, matrix, (0, 0, 32, 32))).all()

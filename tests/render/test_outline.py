@@ -41,7 +41,7 @@ def ball(
 def test_edges_are_as_smooth_as_with_samples(shading: render.Shading) -> None:
     """Before the background and before other skin; all but the edges is as it was.
 
-    Strips lie outside: edges are those of balls that are larger by half a pixel.
+    Fringes lie outside: edges are those of balls that are larger by half a pixel.
     """
     style = replace(PLAIN, shading=shading)
     rough, smooth = (ball(0, is_smoothed=on, style=style) for on in (False, True))

@@ -78,15 +78,15 @@ def draw_all(surface: render.Surface) -> np.ndarray:
 
 @pytest.mark.parametrize("samples", [0, 4])
 def test_a_released_renderer_leaves_nothing(samples: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ten renderers one after the other: the same picture, and not one object is left."""
+    """Ten renderers one after the other: the same image, and not one object is left."""
     with render.open_offscreen((96, 96), samples=samples) as surface:
         count = counting(monkeypatch)
-        pictures = [draw_all(surface) for _ in range(10)]
+        images = [draw_all(surface) for _ in range(10)]
         assert surface.gl.objects  # let go, and waiting to be given back
         surface.begin()
         assert count() == {} and not surface.gl.objects
         assert surface.gl.error == "GL_NO_ERROR"
-    assert all((picture == pictures[0]).all() for picture in pictures)
+    assert all((image == images[0]).all() for image in images)
 
 
 def test_another_renderer_goes_on(surface: render.Surface) -> None:

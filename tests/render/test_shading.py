@@ -8,7 +8,7 @@ import numpy as np
 
 from risorius import render
 
-from .scenes import PLAIN, Shape, at, drawn, picture, sphere, square
+from .scenes import PLAIN, Shape, at, draw_image, drawn, sphere, square
 
 FLAT = replace(PLAIN, shading=render.Shading.FLAT)
 GOURAUD = replace(PLAIN, shading=render.Shading.GOURAUD)
@@ -16,7 +16,7 @@ GOURAUD = replace(PLAIN, shading=render.Shading.GOURAUD)
 
 def test_three_shadings_differ(surface: render.Surface) -> None:
     """Flat, Gouraud and per-pixel lighting are three pictures of the same silhouette."""
-    frames = [picture(surface, sphere(1), style) for style in (FLAT, GOURAUD, PLAIN)]
+    frames = [draw_image(surface, sphere(1), style) for style in (FLAT, GOURAUD, PLAIN)]
     for first in range(3):
         for second in range(first):
             difference = np.abs(frames[first] - frames[second])
@@ -31,7 +31,7 @@ def test_flat_facets_have_one_colour(surface: render.Surface) -> None:
     tilted.positions[:, 2] = (0.0, 25.0, 5.0, 0.0)
     spread = {}
     for name, style in (("flat", FLAT), ("gouraud", GOURAUD)):
-        frame = picture(surface, tilted, style)
+        frame = draw_image(surface, tilted, style)
         inner = frame[60:72, 56:72].reshape(-1, 3)
         spread[name] = int(np.ptp(inner, axis=0).max())
     assert spread["flat"] <= 1 < spread["gouraud"]
@@ -39,7 +39,7 @@ def test_flat_facets_have_one_colour(surface: render.Surface) -> None:
 
 def test_flat_shading_ignores_vertex_normals(surface: render.Surface) -> None:
     """The geometric normal of the drawn triangle decides."""
-    frames = [picture(surface, square(bulge=bulge), FLAT) for bulge in (0.0, 2.0)]
+    frames = [draw_image(surface, square(bulge=bulge), FLAT) for bulge in (0.0, 2.0)]
     assert (frames[0] == frames[1]).all()
 
 
@@ -47,7 +47,7 @@ def test_only_pixel_shading_lights_the_middle_of_a_facet(surface: render.Surface
     """Between four corners that turn away, Gouraud stays as dark as they are."""
     shape = square(bulge=3.0)
     middle = {
-        name: int(at(picture(surface, shape, style), 3.0, -1.0).sum())
+        name: int(at(draw_image(surface, shape, style), 3.0, -1.0).sum())
         for name, style in (("gouraud", GOURAUD), ("pixel", PLAIN))
     }
     assert middle["pixel"] > middle["gouraud"] + 20
@@ -55,7 +55,7 @@ def test_only_pixel_shading_lights_the_middle_of_a_facet(surface: render.Surface
 
 def test_light_comes_from_the_upper_left(surface: render.Surface) -> None:
     """The sphere is brightest up left of its middle, and its dark side is not black."""
-    frame = picture(surface, sphere(4), replace(PLAIN, albedo=render.CLAY)).sum(axis=2)
+    frame = draw_image(surface, sphere(4), replace(PLAIN, albedo=render.CLAY)).sum(axis=2)
     upper_left, lower_right = frame[32, 32], frame[64, 64]
     assert upper_left > 1.5 * lower_right
     assert lower_right > 3 * 30
@@ -66,7 +66,7 @@ def test_terminator_of_skin_is_warm(surface: render.Surface) -> None:
     shares = {}
     for name, albedo in (("skin", render.SKIN), ("clay", render.CLAY)):
         style = replace(PLAIN, albedo=albedo, background=render.DARK)
-        frame = picture(surface, sphere(4), style).astype(float)
+        frame = draw_image(surface, sphere(4), style).astype(float)
         share = frame[:, :, 0] / frame.sum(axis=2)
         shares[name] = share[60, 60] - share[36, 36]
     assert shares["skin"] > shares["clay"] + 0.01
@@ -77,7 +77,7 @@ def test_inner_side_is_dark_flesh(surface: render.Surface) -> None:
     shape = square()
     turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
     for style in (FLAT, GOURAUD, PLAIN):
-        front = at(picture(surface, shape, style), 5.0, 5.0)
-        behind = at(picture(surface, turned, style), 5.0, 5.0)
+        front = at(draw_image(surface, shape, style), 5.0, 5.0)
+        behind = at(draw_image(surface, turned, style), 5.0, 5.0)
         assert behind.sum() < 0.4 * front.sum()
         assert behind[0] > 1.5 * behind[1] and behind[0] > 20

@@ -9,7 +9,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, Frame, Shape, at, facing, joined, picture, sphere, square
+from .scenes import PLAIN, Shape, SignedImage, at, draw_image, facing, joined, sphere, square
 
 
 def test_shadow_of_the_key_light(surface: render.Surface) -> None:
@@ -17,8 +17,8 @@ def test_shadow_of_the_key_light(surface: render.Surface) -> None:
     blocker = square(12.0, z=30.0)
     thick = Shape(blocker.positions - (0, 0, 4), -blocker.normals, blocker.triangles[:, ::-1])
     shape = joined(square(), joined(blocker, thick))
-    without = picture(surface, shape, replace(PLAIN, albedo=render.CLAY))
-    within = picture(surface, shape, replace(PLAIN, albedo=render.CLAY, shadows=True))
+    without = draw_image(surface, shape, replace(PLAIN, albedo=render.CLAY))
+    within = draw_image(surface, shape, replace(PLAIN, albedo=render.CLAY, shadows=True))
     # The key stands at (-0.53, 0.63, 0.57): 28 mm before the wall are 26 mm right and 31 mm down.
     assert at(within, 26.0, -31.0).sum() < 0.8 * at(without, 26.0, -31.0).sum()
     assert at(within, 26.0, -31.0).min() > 40
@@ -26,14 +26,14 @@ def test_shadow_of_the_key_light(surface: render.Surface) -> None:
     assert (at(within, 0.0, 0.0) == at(without, 0.0, 0.0)).all()
 
 
-def wall_in_shadow(style: render.Style) -> tuple[Frame, Frame]:
+def wall_in_shadow(style: render.Style) -> tuple[SignedImage, SignedImage]:
     """A wall with the shadow of a square, and without: the row 25 mm below the middle, x >= 0."""
     blocker = square(20.0, z=30.0)
     rows = []
     with render.open_offscreen((480, 480)) as surface:
         for shadows in (True, False):
             drawn_style = replace(style, shadows=shadows)
-            frame = picture(surface, joined(square(), blocker), drawn_style)
+            frame = draw_image(surface, joined(square(), blocker), drawn_style)
             half_height = 250.0 * np.tan(np.radians(12.5))
             row = int(240.0 * (1.0 + 25.0 / half_height))
             right = int(240.0 * (1.0 + 49.0 / half_height))
@@ -70,6 +70,6 @@ def test_convex_things_do_not_shadow_themselves(
 ) -> None:
     """On a coarse sphere shadows change next to nothing: no stripes along the terminator."""
     style = replace(PLAIN, shading=shading)
-    without = picture(surface, sphere(2), style)
-    within = picture(surface, sphere(2), replace(style, shadows=True))
+    without = draw_image(surface, sphere(2), style)
+    within = draw_image(surface, sphere(2), replace(style, shadows=True))
     assert np.abs(within - without).max() < 25 and np.abs(within - without).mean() < 0.7

@@ -7,7 +7,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, facing, lent, picture, sphere, square
+from .scenes import PLAIN, draw_image, facing, lent, sphere, square
 
 
 def test_lent_arrays_fit_the_contract(surface: render.Surface) -> None:
@@ -21,7 +21,7 @@ def test_lent_arrays_fit_the_contract(surface: render.Surface) -> None:
 
 def test_eight_columns_draw_the_same(surface: render.Surface) -> None:
     """Texture coordinates are skipped, not taken for positions."""
-    expected = picture(surface, sphere())
+    expected = draw_image(surface, sphere())
     renderer = render.Renderer(surface)
     stream = lent(renderer, sphere(), columns=8)
     stream.vertices[:, 6:] = 1e6
@@ -35,7 +35,7 @@ def test_eight_columns_draw_the_same(surface: render.Surface) -> None:
 
 def test_only_the_used_part_is_drawn(surface: render.Surface) -> None:
     """Rows beyond the counts are rubbish, and do not show."""
-    expected = picture(surface, square())
+    expected = draw_image(surface, square())
     renderer = render.Renderer(surface)
     stream = renderer.lend_stream(1000, 1000, 6)
     stream.vertices[:] = np.nan

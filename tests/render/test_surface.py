@@ -12,7 +12,7 @@ import pytest
 from risorius import render
 from risorius.render.surface import clamp_samples
 
-from .scenes import PLAIN, Shape, drawn, picture, sphere, square
+from .scenes import PLAIN, Shape, draw_image, drawn, sphere, square
 
 
 def upper_square() -> Shape:
@@ -25,14 +25,14 @@ def upper_square() -> Shape:
 def test_read_gives_the_top_row_first(samples: int) -> None:
     """What is up in the world is in the first rows of the array."""
     with render.open_offscreen((64, 48), samples=samples) as surface:
-        frame = picture(surface, upper_square())
+        frame = draw_image(surface, upper_square())
     assert frame.shape == (48, 64, 3)
     assert drawn(frame)[:24].any() and not drawn(frame)[24:].any()
 
 
 def test_read_is_a_new_array_each_time(surface: render.Surface) -> None:
     """A frame that was read does not change with the next one."""
-    picture(surface, sphere())
+    draw_image(surface, sphere())
     first = surface.read()
     kept = first.copy()
     surface.begin()
@@ -47,7 +47,7 @@ def test_samples_smooth_edges() -> None:
     levels = {}
     for samples in (0, 4):
         with render.open_offscreen((96, 96), samples=samples) as surface:
-            frame = picture(surface, shape)
+            frame = draw_image(surface, shape)
         red = frame[:, :, 0]
         levels[samples] = int(((red > 235) & (red < 254)).sum())
     assert levels[4] > levels[0] + 20
@@ -90,15 +90,15 @@ def test_two_surfaces_do_not_mix(surface: render.Surface) -> None:
     """Frames that are drawn in turns on two surfaces stay apart."""
     with render.open_offscreen((40, 30)) as other:
         for _ in range(2):
-            large = picture(surface, sphere())
-            small = picture(other, square())
+            large = draw_image(surface, sphere())
+            small = draw_image(other, square())
         assert large.shape == (96, 96, 3) and small.shape == (30, 40, 3)
         assert (surface.read() == large).all() and (other.read() == small).all()
 
 
 def test_begin_repairs_what_a_panel_changed(surface: render.Surface) -> None:
     """Depth test, culling, blending, scissor and masks are as they should be in every frame."""
-    expected = picture(surface, sphere())
+    expected = draw_image(surface, sphere())
     gl = surface.gl
     gl.disable(gl.DEPTH_TEST)
     gl.enable(gl.BLEND | gl.CULL_FACE)
@@ -106,12 +106,12 @@ def test_begin_repairs_what_a_panel_changed(surface: render.Surface) -> None:
     gl.depth_func = ">"
     gl.scissor = (3, 3, 5, 5)
     gl.fbo.depth_mask = False
-    assert (picture(surface, sphere()) == expected).all()
+    assert (draw_image(surface, sphere()) == expected).all()
 
 
 def test_panel_lies_on_top(surface: render.Surface) -> None:
     """What is drawn between resolve and end is in the frame, over the scene."""
-    scene = picture(surface, sphere())
+    scene = draw_image(surface, sphere())
     renderer = render.Renderer(surface)
     surface.begin()
     renderer.draw_background(PLAIN)

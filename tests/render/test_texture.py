@@ -10,9 +10,9 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, Shape, facing, lent, picture, sphere, square
+from .scenes import PLAIN, Shape, draw_image, facing, lent, sphere, square
 
-Frame = npt.NDArray[np.int32]
+SignedImage = npt.NDArray[np.int32]
 
 
 def textured(
@@ -24,7 +24,7 @@ def textured(
     camera: render.OrbitCamera | None = None,
     values: npt.NDArray[np.uint8] | None = None,
     openness: npt.NDArray[np.uint8] | None = None,
-) -> Frame:
+) -> SignedImage:
     """A square (or another shape) under the image, which spans x and y from -50 to 50."""
     shape = shape or square()
     renderer = render.Renderer(surface)
@@ -59,7 +59,7 @@ def quarters() -> render.Image:
 def test_top_row_lies_at_v_1(
     surface: render.Surface, shading: render.Shading, wireframe: bool
 ) -> None:
-    """The picture is upright and not mirrored, in every shading."""
+    """The image is upright and not mirrored, in every shading."""
     frame = textured(surface, quarters(), replace(PLAIN, shading=shading, wireframe=wireframe))
     assert frame[24, 24].argmax() == 0 and frame[24, 24, 0] > 150 > frame[24, 24, 1]
     assert frame[24, 72].argmax() == 1 and frame[24, 72, 1] > 150 > frame[24, 72, 2]
@@ -72,10 +72,10 @@ def test_grey_texture_is_the_grey_albedo(surface: render.Surface, level: int) ->
     """A texture of one colour gives the picture that the same albedo gives: sRGB is decoded."""
     albedo = (level / 255.0,) * 3
     style = replace(PLAIN, subsurface=0.5)
-    expected = picture(surface, sphere(3), replace(style, albedo=albedo))
+    expected = draw_image(surface, sphere(3), replace(style, albedo=albedo))
     frame = textured(surface, plain_image((level,) * 3), style, shape=sphere(3))
     assert np.abs(frame - expected).max() <= 2
-    assert np.abs(picture(surface, sphere(3), style) - expected).max() > 20
+    assert np.abs(draw_image(surface, sphere(3), style) - expected).max() > 20
 
 
 def test_texture_is_filtered_in_linear_light(surface: render.Surface) -> None:
@@ -90,9 +90,9 @@ def test_texture_is_filtered_in_linear_light(surface: render.Surface) -> None:
 def test_untextured_style_is_the_plain_picture(surface: render.Surface) -> None:
     """With textured=False a texture changes no pixel; without texture, `textured` does not."""
     style = replace(PLAIN, textured=False)
-    expected = picture(surface, square(), PLAIN)
+    expected = draw_image(surface, square(), PLAIN)
     assert (textured(surface, quarters(), style) == expected).all()
-    assert (picture(surface, square(), style) == expected).all()
+    assert (draw_image(surface, square(), style) == expected).all()
     assert (textured(surface, quarters()) != expected).any()
 
 
@@ -141,7 +141,7 @@ def test_back_faces_keep_the_inner_albedo(surface: render.Surface) -> None:
     shape = square()
     turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
     blue = textured(surface, plain_image((0, 0, 255)), shape=turned)
-    assert (blue == picture(surface, turned))[20:76, 20:76].all()
+    assert (blue == draw_image(surface, turned))[20:76, 20:76].all()
 
 
 def test_texture_needs_eight_columns(surface: render.Surface) -> None:
@@ -164,7 +164,7 @@ def test_texture_needs_eight_columns(surface: render.Surface) -> None:
     ],
 )
 def test_bad_images(surface: render.Surface, image: npt.NDArray[np.uint8], message: str) -> None:
-    """Images that are no sRGB pictures, or too large, are refused."""
+    """Images that are no sRGB images, or too large, are refused."""
     with pytest.raises(ValueError, match=message):
         render.Renderer(surface).load_texture(image)
 

@@ -9,7 +9,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import picture, sphere
+from .scenes import draw_image, sphere
 
 pytestmark = pytest.mark.window
 
@@ -29,9 +29,9 @@ def test_same_interface(window: render.WindowSurface) -> None:
 def test_same_picture(window: render.WindowSurface) -> None:
     """A window shows what an offscreen frame holds, and reads it back after it was shown."""
     style = render.Style(wireframe=True)
-    shown = picture(window, sphere(), style)
+    shown = draw_image(window, sphere(), style)
     with render.open_offscreen(window.size) as offscreen:
-        expected = picture(offscreen, sphere(), style)
+        expected = draw_image(offscreen, sphere(), style)
     assert np.abs(shown - expected).mean() < 0.5
 
 
@@ -39,12 +39,12 @@ def test_window_that_is_resized(window: render.WindowSurface) -> None:
     """The frame follows the window; nothing of the old size is left behind."""
     import glfw
 
-    picture(window, sphere())
+    draw_image(window, sphere())
     glfw.set_window_size(window.handle, 130, 70)
     for _ in range(50):
         glfw.poll_events()
         glfw.wait_events_timeout(0.01)
-    frame = picture(window, sphere())
+    frame = draw_image(window, sphere())
     assert window.size == tuple(glfw.get_framebuffer_size(window.handle)) == (130, 70)
     assert frame.shape == (70, 130, 3) and (frame[:, :3] >= 254).all()
     assert window.gl.error == "GL_NO_ERROR"
@@ -62,19 +62,19 @@ def test_closing(window: render.WindowSurface) -> None:
 
 def test_hidden_window_can_be_read(window: render.WindowSurface) -> None:
     """A window that nobody sees gives the same frame as one that is shown."""
-    expected = picture(window, sphere())
+    expected = draw_image(window, sphere())
     with render.open_window((96, 96), "hidden", visible=False) as hidden:
-        assert (picture(hidden, sphere()) == expected).all()
+        assert (draw_image(hidden, sphere()) == expected).all()
 
 
 def test_window_and_offscreen_take_turns(window: render.WindowSurface) -> None:
     """A picture can be filmed offscreen while a window is open."""
-    first = picture(window, sphere())
+    first = draw_image(window, sphere())
     with render.open_offscreen((40, 40)) as offscreen:
         for _ in range(2):
-            picture(offscreen, sphere())
-            assert (picture(window, sphere()) == first).all()
-    assert (picture(window, sphere()) == first).all()
+            draw_image(offscreen, sphere())
+            assert (draw_image(window, sphere()) == first).all()
+    assert (draw_image(window, sphere()) == first).all()
     assert window.gl.error == "GL_NO_ERROR"
 
 
@@ -91,19 +91,19 @@ def test_bad_size() -> None:
 
 
 def test_a_coarser_scene_fills_the_window(window: render.WindowSurface) -> None:
-    """With fewer pixels and samples the same picture is seen, enlarged; panels keep their own."""
+    """With fewer pixels and samples the same image is seen, enlarged; panels keep their own."""
     renderer = render.Renderer(window)
-    pictures = []
+    images = []
     for detail in (render.Detail(), render.Detail(samples=0, scale=0.5)):
         window.detail = detail
         window.begin()
         renderer.draw_background(render.Style(), (0, 0, 48, 96))
         window.end()
-        pictures.append(window.read().astype(int))
+        images.append(window.read().astype(int))
         assert window.read_scene().shape[:2] == (96 * detail.scale, 96 * detail.scale)
-    assert pictures[0].shape == pictures[1].shape == (96, 96, 3)
-    assert np.abs(pictures[0] - pictures[1])[:, :46].max() < 4
-    assert not pictures[1][:, 50:].any()
+    assert images[0].shape == images[1].shape == (96, 96, 3)
+    assert np.abs(images[0] - images[1])[:, :46].max() < 4
+    assert not images[1][:, 50:].any()
 
 
 def test_the_scene_outlives_its_panels(window: render.WindowSurface) -> None:

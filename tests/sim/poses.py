@@ -26,7 +26,9 @@ def both_sides(simulation: sim.Simulation, values: Mapping[str, float]) -> dict[
     }
 
 
-def settle(simulation: sim.Simulation, values: Mapping[str, float], *, frames: int = 60) -> Array:
+def settled_displacement(
+    simulation: sim.Simulation, values: Mapping[str, float], *, frames: int = 60
+) -> Array:
     """Pose the face from rest and return how far it moved [mm], shape (V, 3)."""
     simulation.reset()
     simulation.set_all(values)

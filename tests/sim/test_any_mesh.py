@@ -11,7 +11,7 @@ import trimesh
 
 from risorius import sim
 from risorius.assets.model import Head
-from tests.sim.poses import FRAME, both_sides, moved_landmarks, settle, without
+from tests.sim.poses import FRAME, both_sides, moved_landmarks, settled_displacement, without
 
 
 def _grid(columns: int = 8, rows: int = 6) -> SimpleNamespace:
@@ -80,7 +80,7 @@ def test_mesh_with_landmarks_but_no_rig_has_no_muscles(head: Head) -> None:
     """Landmarks alone give gaze and head pose, own weights a jaw and lips; a rig gives muscles."""
     simulation = sim.create(without(head, "rig"))
     assert set(simulation.groups) == {"Lips", "Jaw", "Gaze", "Head"}
-    assert moved_landmarks(head, settle(simulation, {"jaw_open": 1.0}), 8)[1] < -15.0
+    assert moved_landmarks(head, settled_displacement(simulation, {"jaw_open": 1.0}), 8)[1] < -15.0
 
 
 def test_mesh_with_rig_but_no_landmarks_has_no_muscles(head: Head) -> None:
@@ -93,11 +93,11 @@ def test_mesh_with_rig_but_no_landmarks_has_no_muscles(head: Head) -> None:
 def test_everything_can_be_guessed_from_landmarks(head: Head) -> None:
     """Without eyes, jaw axis and mandible weight of its own a head still smiles and blinks."""
     simulation = sim.create(without(head, "eyes", "jaw_axis", "mandible_weight"))
-    moved = settle(simulation, {"jaw_open": 1.0})
+    moved = settled_displacement(simulation, {"jaw_open": 1.0})
     assert moved_landmarks(head, moved, 66)[1] - moved_landmarks(head, moved, 62)[1] < -20.0
     blink = both_sides(simulation, {"orbicularis_oculi_palpebral_upper": 1.0})
-    assert moved_landmarks(head, settle(simulation, blink), 37, 38, 43, 44)[1] < -5.0
-    smile = settle(simulation, both_sides(simulation, {"zygomaticus_major": 1.0}))
+    assert moved_landmarks(head, settled_displacement(simulation, blink), 37, 38, 43, 44)[1] < -5.0
+    smile = settled_displacement(simulation, both_sides(simulation, {"zygomaticus_major": 1.0}))
     assert moved_landmarks(head, smile, 54)[1] > 4.0
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from risorius import sim
 from risorius.assets.model import Head
-from tests.sim.poses import FRAME, lip_gap, moved_landmarks, settle
+from tests.sim.poses import FRAME, lip_gap, moved_landmarks, settled_displacement
 
 NOSE_TIP, CHIN, INNER_LIPS = 30, 8, (62, 66)
 
@@ -22,7 +22,7 @@ def test_head_turns_as_one(
     simulation: sim.Simulation, head: Head, control: str, axis: int, sign: float
 ) -> None:
     """Skin above the neck moves with the cranium: up, to the left, top of the head to the left."""
-    settle(simulation, {control: 0.5})
+    settled_displacement(simulation, {control: 0.5})
     cranium = simulation.bone_transforms()["cranium"]
     carried = head.vertices @ cranium[:3, :3].T + cranium[:3, 3]
     face = head.landmarks
@@ -33,7 +33,7 @@ def test_head_turns_as_one(
 
 def test_foot_of_the_neck_stays(simulation: sim.Simulation, head: Head) -> None:
     """A turned head does not lift the bust off its base."""
-    moved = settle(simulation, {"head_yaw": 1.0, "head_pitch": -1.0})
+    moved = settled_displacement(simulation, {"head_yaw": 1.0, "head_pitch": -1.0})
     lowest = head.vertices[:, 1] < head.vertices[:, 1].min() + 1.0
     assert np.abs(moved[lowest]).max() < 8.0
 
@@ -41,19 +41,21 @@ def test_foot_of_the_neck_stays(simulation: sim.Simulation, head: Head) -> None:
 def test_lips_stay_closed_over_an_open_jaw(simulation: sim.Simulation, head: Head) -> None:
     """With lips_closed the jaw drops, the lips do not part; without they do."""
     for opening in (0.3, 1.0):
-        moved = settle(simulation, {"jaw_open": opening, "lips_closed": 1.0})
+        moved = settled_displacement(simulation, {"jaw_open": opening, "lips_closed": 1.0})
         assert moved_landmarks(head, moved, CHIN)[1] < -20.0 * opening
         assert lip_gap(simulation, head) < 0.5
-    settle(simulation, {"jaw_open": 1.0})
+    settled_displacement(simulation, {"jaw_open": 1.0})
     assert lip_gap(simulation, head) > 20.0
 
 
 @pytest.mark.parametrize("muscle", ["procerus", "orbicularis_oris_peripheral_upper"])
 def test_both_halves_are_the_whole(simulation: sim.Simulation, muscle: str) -> None:
     """The control for both halves does what both do together; they add up and are clipped."""
-    whole = settle(simulation, {muscle: 1.0})
-    both = settle(simulation, {f"{muscle}_left": 1.0, f"{muscle}_right": 1.0})
-    mixed = settle(simulation, {muscle: 0.6, f"{muscle}_left": 0.7, f"{muscle}_right": 0.4})
+    whole = settled_displacement(simulation, {muscle: 1.0})
+    both = settled_displacement(simulation, {f"{muscle}_left": 1.0, f"{muscle}_right": 1.0})
+    mixed = settled_displacement(
+        simulation, {muscle: 0.6, f"{muscle}_left": 0.7, f"{muscle}_right": 0.4}
+    )
     assert np.abs(whole).max() > 2.0
     assert np.abs(both - whole).max() < 1e-6
     assert np.abs(mixed - whole).max() < 1e-6
@@ -62,8 +64,8 @@ def test_both_halves_are_the_whole(simulation: sim.Simulation, muscle: str) -> N
 def test_half_an_activation_is_half_the_motion(simulation: sim.Simulation) -> None:
     """Motion is about linear in the activation, so that values can be mixed."""
     for muscle in ("zygomaticus_major", "corrugator_supercilii", "risorius", "frontalis_medial"):
-        full = settle(simulation, {f"{muscle}_left": 1.0})
-        half = settle(simulation, {f"{muscle}_left": 0.5})
+        full = settled_displacement(simulation, {f"{muscle}_left": 1.0})
+        half = settled_displacement(simulation, {f"{muscle}_left": 0.5})
         share = (half * full).sum() / (full * full).sum()
         assert 0.43 < share < 0.57, muscle
 
@@ -71,7 +73,7 @@ def test_half_an_activation_is_half_the_motion(simulation: sim.Simulation) -> No
 def test_teeth_hold_the_lips_off(simulation: sim.Simulation, head: Head) -> None:
     """Rolled lips and sucked cheeks come to rest on the teeth; without teeth they go deeper."""
     values = {"orbicularis_oris_roll_upper": 1.0, "orbicularis_oris_roll_lower": 1.0}
-    settle(simulation, values)
+    settled_displacement(simulation, values)
     assert simulation.penetrations()["teeth"] < 1e-6
     teeth = [part for part in head.parts if part.name.startswith("teeth_")]
     swollen = [
@@ -81,7 +83,10 @@ def test_teeth_hold_the_lips_off(simulation: sim.Simulation, head: Head) -> None
     names = ("vertices", "faces", "landmarks", "mandible_weight", "jaw_axis", "eyes", "rig")
     plain = {name: getattr(head, name) for name in names}
     faces = [SimpleNamespace(**plain, parts=parts) for parts in (swollen, [])]
-    lips = [settle(sim.create(face), values)[head.landmarks[list(INNER_LIPS)], 2] for face in faces]
+    lips = [
+        settled_displacement(sim.create(face), values)[head.landmarks[list(INNER_LIPS)], 2]
+        for face in faces
+    ]
     assert np.all(lips[0] >= lips[1] - 1e-6)
 
 

@@ -47,16 +47,16 @@ WRONG: list[tuple[str, str, str, tuple[Any, ...]]] = [
     ("pose", "values", "values", TABLES),
     ("pose", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
     ("kick", "velocities", "velocities", ARRAYS),
-    ("pull", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # none is as many as any
-    ("pull", "targets", "targets", ARRAYS),
-    ("pull", "firmness", "firmness", SHARES),
+    ("drag", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # none is as many as any
+    ("drag", "targets", "targets", ARRAYS),
+    ("drag", "firmness", "firmness", SHARES),
     ("step", "dt", "dt", (*NO_NUMBER, 0, -1, 1, True)),
 ]
 RIGHT: dict[str, dict[str, Any]] = {
     "set": {"name": "jaw_open", "value": 0.5},
     "set_all": {"values": {"jaw_open": 0.5}},
     "pose": {"values": {"jaw_open": 0.5}},
-    "pull": {"vertices": [0, 1], "targets": POINTS, "firmness": [0.5, 1.0]},
+    "drag": {"vertices": [0, 1], "targets": POINTS, "firmness": [0.5, 1.0]},
     "kick": {"velocities": np.zeros((COUNT, 3))},
     "step": {"dt": 1 / 60},
 }
@@ -220,8 +220,8 @@ def test_arrays_of_any_layout_are_taken(layout: Callable[[Any], Any]) -> None:
     push, rows = np.arange(3.0 * COUNT).reshape(COUNT, 3), np.array([1, 2])
     plain.kick(push)
     other.kick(layout(push))
-    plain.pull(rows, push[:2], [1.0, 1.0])
-    other.pull(layout(rows), layout(push[:2]), layout(np.ones(2)))
+    plain.drag(rows, push[:2], [1.0, 1.0])
+    other.drag(layout(rows), layout(push[:2]), layout(np.ones(2)))
     for each in (plain, other):
         each.step(1 / 60)
     assert np.array_equal(plain.positions, other.positions)

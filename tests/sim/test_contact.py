@@ -10,7 +10,7 @@ import pytest
 from risorius import sim
 from risorius.assets.model import Head
 from risorius.sim.contact import watch_eyeballs
-from tests.sim.poses import settle
+from tests.sim.poses import settled_displacement
 
 
 def test_skin_may_come_as_near_as_a_lid_is_thick() -> None:
@@ -28,7 +28,7 @@ def test_skin_may_come_as_near_as_a_lid_is_thick() -> None:
 @pytest.mark.parametrize("name", ["AU43", "AU46_left", "AU6", "yawn"])
 def test_lids_rest_on_the_eyeball(simulation: sim.Simulation, head: Head, name: str) -> None:
     """Measured by the head's own eyes: whatever shuts them, skin stays outside."""
-    moved = settle(simulation, {name: 1.0})
+    moved = settled_displacement(simulation, {name: 1.0})
     for eye in head.eyes:
         rest = np.linalg.norm(head.vertices - eye.centre, axis=1)
         now = np.linalg.norm(head.vertices + moved - eye.centre, axis=1)

@@ -7,7 +7,7 @@ import pytest
 
 from risorius import sim
 from risorius.sim.controls import Control, Controls
-from tests.sim.poses import settle
+from tests.sim.poses import settled_displacement
 
 
 def test_every_control_has_limits_a_value_and_one_group(simulation: sim.Simulation) -> None:
@@ -97,9 +97,9 @@ def test_activation_reaches_its_value_exactly() -> None:
 
 def test_a_half_and_both_halves_are_no_more_than_all(simulation: sim.Simulation) -> None:
     """A muscle whose halves are pulled alone and together contracts once, not twice."""
-    both = settle(simulation, {"orbicularis_oris_marginal_upper": 1.0})
+    both = settled_displacement(simulation, {"orbicularis_oris_marginal_upper": 1.0})
     sides = {f"orbicularis_oris_marginal_upper_{side}": 1.0 for side in ("left", "right")}
-    again = settle(simulation, {"orbicularis_oris_marginal_upper": 1.0, **sides})
+    again = settled_displacement(simulation, {"orbicularis_oris_marginal_upper": 1.0, **sides})
     assert np.abs(both).max() > 1.0
     assert np.abs(again - both).max() < 1e-3
 

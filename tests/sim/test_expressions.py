@@ -15,7 +15,7 @@ from tests.sim.poses import (
     inverted_triangles,
     lip_gap,
     moved_landmarks,
-    settle,
+    settled_displacement,
 )
 
 SIX = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
@@ -51,14 +51,14 @@ def test_muscle_pulls_its_landmark(
     least: float,
 ) -> None:
     """Each muscle at full strength moves its insertion by so many millimetres its own way."""
-    moved = settle(simulation, both_sides(simulation, {muscle: 1.0}))
+    moved = settled_displacement(simulation, both_sides(simulation, {muscle: 1.0}))
     way = np.array(direction) / np.linalg.norm(direction)
     assert moved_landmarks(head, moved, landmark) @ way > least
 
 
 def test_joy(simulation: sim.Simulation, head: Head) -> None:
     """Mouth corners up and out, cheeks up."""
-    moved = settle(simulation, head.expressions["joy"])
+    moved = settled_displacement(simulation, head.expressions["joy"])
     right, left = moved_landmarks(head, moved, 48), moved_landmarks(head, moved, 54)
     assert left[1] > 5.0
     assert right[1] > 5.0
@@ -67,14 +67,14 @@ def test_joy(simulation: sim.Simulation, head: Head) -> None:
 
 def test_sadness(simulation: sim.Simulation, head: Head) -> None:
     """Inner brows above outer brows' rise, mouth corners down."""
-    moved = settle(simulation, head.expressions["sadness"])
+    moved = settled_displacement(simulation, head.expressions["sadness"])
     assert moved_landmarks(head, moved, 21, 22)[1] > 2.0 + moved_landmarks(head, moved, 17, 26)[1]
     assert moved_landmarks(head, moved, 48, 54)[1] < -2.0
 
 
 def test_surprise(simulation: sim.Simulation, head: Head) -> None:
     """Whole brows up, upper lids up, jaw down."""
-    moved = settle(simulation, head.expressions["surprise"])
+    moved = settled_displacement(simulation, head.expressions["surprise"])
     assert moved_landmarks(head, moved, 18, 19, 20, 23, 24, 25)[1] > 4.0
     assert moved_landmarks(head, moved, 37, 38, 43, 44)[1] > 1.0
     assert moved_landmarks(head, moved, 8)[1] < -12.0
@@ -82,7 +82,7 @@ def test_surprise(simulation: sim.Simulation, head: Head) -> None:
 
 def test_anger(simulation: sim.Simulation, head: Head) -> None:
     """Brows down and together, lips not open."""
-    moved = settle(simulation, head.expressions["anger"])
+    moved = settled_displacement(simulation, head.expressions["anger"])
     assert moved_landmarks(head, moved, 21, 22)[1] < -3.0
     assert moved_landmarks(head, moved, 22)[0] < -0.5
     assert lip_gap(simulation, head) < 0.5
@@ -90,14 +90,14 @@ def test_anger(simulation: sim.Simulation, head: Head) -> None:
 
 def test_disgust(simulation: sim.Simulation, head: Head) -> None:
     """Nose wings and upper lip up."""
-    moved = settle(simulation, head.expressions["disgust"])
+    moved = settled_displacement(simulation, head.expressions["disgust"])
     assert moved_landmarks(head, moved, 31, 35)[1] > 3.0
     assert moved_landmarks(head, moved, 50, 52)[1] > 3.0
 
 
 def test_fear(simulation: sim.Simulation, head: Head) -> None:
     """Brows up, lids wide, mouth corners out."""
-    moved = settle(simulation, head.expressions["fear"])
+    moved = settled_displacement(simulation, head.expressions["fear"])
     assert moved_landmarks(head, moved, 21, 22)[1] > 2.0
     assert moved_landmarks(head, moved, 43, 44)[1] > 1.0
     assert moved_landmarks(head, moved, 54)[0] > 2.0
@@ -106,7 +106,7 @@ def test_fear(simulation: sim.Simulation, head: Head) -> None:
 @pytest.mark.parametrize("name", SIX + OTHERS)
 def test_expression_keeps_the_mesh_sound(simulation: sim.Simulation, head: Head, name: str) -> None:
     """In each expression hardly a triangle is turned over, and none of the skin flies away."""
-    moved = settle(simulation, head.expressions[name])
+    moved = settled_displacement(simulation, head.expressions[name])
     turned = inverted_triangles(head.faces, head.vertices, simulation.positions)
     assert turned <= 6
     assert np.abs(moved).max() < 60.0
@@ -119,20 +119,22 @@ def test_symmetric_input_gives_mirrored_motion(simulation: sim.Simulation, head:
         {"zygomaticus_major": 0.8, "frontalis_medial": 0.5, "jaw_open": 0.3, "mentalis": 0.4,
          "orbicularis_oculi_palpebral_upper": 0.6, "incisivus_labii_inferioris": 0.5},
     )  # fmt: skip
-    moved = settle(simulation, values)
+    moved = settled_displacement(simulation, values)
     assert np.abs(moved[head.mirror] * (-1.0, 1.0, 1.0) - moved).max() < 1e-6
 
 
 def test_mirrored_input_gives_mirrored_motion(simulation: sim.Simulation, head: Head) -> None:
     """A left smile and a right smile are mirror images."""
-    left = settle(simulation, {"zygomaticus_major_left": 1.0, "gaze_horizontal": 0.5})
-    right = settle(simulation, {"zygomaticus_major_right": 1.0, "gaze_horizontal": -0.5})
+    left = settled_displacement(simulation, {"zygomaticus_major_left": 1.0, "gaze_horizontal": 0.5})
+    right = settled_displacement(
+        simulation, {"zygomaticus_major_right": 1.0, "gaze_horizontal": -0.5}
+    )
     assert np.abs(left[head.mirror] * (-1.0, 1.0, 1.0) - right).max() < 1e-6
 
 
 def test_left_smile_moves_the_left(simulation: sim.Simulation, head: Head) -> None:
     """Left is the subject's left (+x); the other corner is hardly dragged along."""
-    moved = settle(simulation, {"zygomaticus_major_left": 1.0})
+    moved = settled_displacement(simulation, {"zygomaticus_major_left": 1.0})
     left = np.linalg.norm(moved_landmarks(head, moved, 54))
     right = np.linalg.norm(moved_landmarks(head, moved, 48))
     assert left > 8.0
@@ -141,7 +143,7 @@ def test_left_smile_moves_the_left(simulation: sim.Simulation, head: Head) -> No
 
 def test_closed_lips_stay_closed_in_a_smile(simulation: sim.Simulation, head: Head) -> None:
     """A smile with the jaw shut does not part the lips, nor does it push one through the other."""
-    settle(simulation, both_sides(simulation, {"zygomaticus_major": 1.0}))
+    settled_displacement(simulation, both_sides(simulation, {"zygomaticus_major": 1.0}))
     assert lip_gap(simulation, head) < 0.5
 
 
@@ -159,7 +161,7 @@ def test_lips_do_not_cross(
     simulation: sim.Simulation, head: Head, values: dict[str, float]
 ) -> None:
     """Lips pressed by their own muscles touch; the lower one does not rise far into the upper."""
-    settle(simulation, both_sides(simulation, values))
+    settled_displacement(simulation, both_sides(simulation, values))
     lips = simulation._anatomy.skin.lips
     y = simulation._state.x[:, 1]
     above = lips.share * y[lips.upper[:, 0]] + (1.0 - lips.share) * y[lips.upper[:, 1]]
@@ -173,7 +175,7 @@ def test_blink_closes_the_eyes(simulation: sim.Simulation, head: Head, other: fl
         "orbicularis_oculi_palpebral_upper": 1.0,
         "orbicularis_oculi_palpebral_lower": other,
     }
-    settle(simulation, both_sides(simulation, values))
+    settled_displacement(simulation, both_sides(simulation, values))
     refiner = refine.create("kahler", head.faces, head.vertices)
     landmarks = simulation.positions[head.landmarks]
     for name, mesh in meshes_of(simulation, refiner).items():
@@ -202,7 +204,7 @@ def test_skin_never_enters_the_eyeball(simulation: sim.Simulation, head: Head, g
 
 def test_jaw_opens_the_mouth(simulation: sim.Simulation, head: Head) -> None:
     """An open jaw parts the lips by at least 25 mm and carries the chin down and back."""
-    moved = settle(simulation, {"jaw_open": 1.0})
+    moved = settled_displacement(simulation, {"jaw_open": 1.0})
     assert lip_gap(simulation, head) > 25.0
     chin = moved_landmarks(head, moved, 8)
     assert chin[1] < -20.0
@@ -211,9 +213,9 @@ def test_jaw_opens_the_mouth(simulation: sim.Simulation, head: Head) -> None:
 
 def test_jaw_slides(simulation: sim.Simulation, head: Head) -> None:
     """The chin follows the jaw forward and to a side, where the condyle of that side stays."""
-    assert moved_landmarks(head, settle(simulation, {"jaw_forward": 1.0}), 8)[2] > 4.0
+    assert moved_landmarks(head, settled_displacement(simulation, {"jaw_forward": 1.0}), 8)[2] > 4.0
     for side, sign in enumerate((-1.0, 1.0)):
-        chin = moved_landmarks(head, settle(simulation, {"jaw_sideways": sign}), 8)
+        chin = moved_landmarks(head, settled_displacement(simulation, {"jaw_sideways": sign}), 8)
         assert 8.0 < sign * chin[0] < 11.0
         assert 3.0 < chin[2] < 7.0
         matrix = simulation.bone_transforms()["mandible"]
@@ -224,7 +226,7 @@ def test_jaw_slides(simulation: sim.Simulation, head: Head) -> None:
 
 def test_bones_carry_the_skin(simulation: sim.Simulation, head: Head) -> None:
     """Where skin belongs to the mandible it moves like the mandible's transform."""
-    settle(simulation, {"jaw_open": 0.6})
+    settled_displacement(simulation, {"jaw_open": 0.6})
     matrix = simulation.bone_transforms()["mandible"]
     chin = head.landmarks[8]
     carried = matrix[:3, :3] @ head.vertices[chin] + matrix[:3, 3]
@@ -234,7 +236,7 @@ def test_bones_carry_the_skin(simulation: sim.Simulation, head: Head) -> None:
 
 def test_gaze_turns_the_eyes(simulation: sim.Simulation, head: Head) -> None:
     """+1 looks to the subject's left and up, about the centre; the upper lid follows."""
-    moved = settle(simulation, {"gaze_horizontal": 1.0, "gaze_vertical": 1.0})
+    moved = settled_displacement(simulation, {"gaze_horizontal": 1.0, "gaze_vertical": 1.0})
     for eye in head.eyes:
         matrix = simulation.bone_transforms()[f"eye_{eye.name}"]
         pupil = (
@@ -252,7 +254,7 @@ def test_fibres_shorten(simulation: sim.Simulation) -> None:
     """The drawn fibres of a contracting muscle get shorter; there are some for every muscle."""
     relaxed = simulation.fibres()
     assert all(relaxed[name] for name in relaxed)
-    settle(simulation, {"zygomaticus_major_left": 1.0})
+    settled_displacement(simulation, {"zygomaticus_major_left": 1.0})
     tight = simulation.fibres()["zygomaticus_major_left"]
     for before, after in zip(relaxed["zygomaticus_major_left"], tight, strict=True):
         assert _length(after) < 0.8 * _length(before)

@@ -12,7 +12,7 @@ from risorius import sim
 from risorius.assets.model import Head
 from risorius.sim.controls import Control, Controls
 from risorius.sim.layers import read_layers
-from tests.sim.poses import FRAME, inverted_triangles, settle
+from tests.sim.poses import FRAME, inverted_triangles, settled_displacement
 
 LOWEST = ("puller_left", "puller_right", "middle", "slide")
 ACTION_UNITS = (
@@ -155,8 +155,8 @@ def test_each_row_of_the_shipped_tables_does_something(simulation: sim.Simulatio
 def test_sides_of_shipped_units_mirror_each_other(simulation: sim.Simulation, head: Head) -> None:
     """A left unit is the mirror image of the right one."""
     for unit in ("AU4", "AU12"):
-        left = settle(simulation, {f"{unit}_left": 1.0}, frames=20)
-        right = settle(simulation, {f"{unit}_right": 1.0}, frames=20)
+        left = settled_displacement(simulation, {f"{unit}_left": 1.0}, frames=20)
+        right = settled_displacement(simulation, {f"{unit}_right": 1.0}, frames=20)
         assert np.abs(left[head.mirror] * (-1.0, 1.0, 1.0) - right).max() < 1e-6
 
 
@@ -166,14 +166,14 @@ def test_rows_keep_the_mesh_sound(simulation: sim.Simulation, head: Head, title:
     for name in simulation.layers[title]:
         if name.endswith(("_left", "_right")) or name in HEAD_UNITS:
             continue
-        moved = settle(simulation, {name: 1.0}, frames=45)
+        moved = settled_displacement(simulation, {name: 1.0}, frames=45)
         assert np.abs(moved).max() < 60.0, name
         assert inverted_triangles(head.faces, head.vertices, simulation.positions) <= 6, name
 
 
 def test_a_funnelled_mouth_is_round(simulation: sim.Simulation, head: Head) -> None:
     """AU22 brings both lips forward; the lower one's outline is nearer to an ellipse than a V."""
-    moved = settle(simulation, {"AU22": 1.0})[head.landmarks]
+    moved = settled_displacement(simulation, {"AU22": 1.0})[head.landmarks]
     assert min(moved[51, 2], moved[57, 2]) > 8.0
     lips = simulation.positions[head.landmarks]
     assert lips[54, 0] < head.vertices[head.landmarks[54], 0] - 4.0
@@ -185,7 +185,7 @@ def test_a_funnelled_mouth_is_round(simulation: sim.Simulation, head: Head) -> N
 
 def test_neck_tightener_shows_bands(simulation: sim.Simulation, head: Head) -> None:
     """AU21 brings two bands on each side of the neck out of it and sinks the skin between."""
-    moved = settle(simulation, {"AU21": 1.0})
+    moved = settled_displacement(simulation, {"AU21": 1.0})
     outward = head.vertices * [1.0, 0.0, 1.0] - [0.0, 0.0, AXIS_OF_NECK]
     outward /= np.linalg.norm(outward, axis=1, keepdims=True)
     out = (moved * outward).sum(axis=1)
@@ -197,7 +197,7 @@ def test_neck_tightener_shows_bands(simulation: sim.Simulation, head: Head) -> N
 
 def test_funnel_hides_lower_teeth(simulation: sim.Simulation, head: Head) -> None:
     """AU22 parts the lips and keeps the lower one above the edges of its incisors."""
-    settle(simulation, {"AU22": 1.0})
+    settled_displacement(simulation, {"AU22": 1.0})
     lips = simulation.positions[head.landmarks]
     (teeth,) = (part.vertices for part in head.parts if part.name == "teeth_lower")
     moved = teeth @ simulation.bone_transforms()["mandible"][:3, :3].T
@@ -211,7 +211,7 @@ def test_units_that_look_alike_differ(simulation: sim.Simulation, head: Head) ->
     """AU9 pulls the nose up and the brows down over closed lips, AU10 parts the lips alone; AU23
     narrows the mouth, AU24 flattens the lips."""
     face = {
-        name: settle(simulation, {name: 1.0})[head.landmarks]
+        name: settled_displacement(simulation, {name: 1.0})[head.landmarks]
         for name in ("AU9", "AU10", "AU23", "AU24")
     }
 
@@ -229,7 +229,7 @@ def test_units_that_look_alike_differ(simulation: sim.Simulation, head: Head) ->
 def test_speech_is_crisp(simulation: sim.Simulation, head: Head, sound: str) -> None:
     """A viseme stands after 120 ms, seen at the lips, and goes no more than 2 % too far."""
     lips = head.landmarks[48:68]
-    target = settle(simulation, {f"viseme_{sound}": 1.0}, frames=90)[lips]
+    target = settled_displacement(simulation, {f"viseme_{sound}": 1.0}, frames=90)[lips]
     simulation.reset()
     simulation.pose({f"viseme_{sound}": 1.0})
     size = float((target**2).sum())

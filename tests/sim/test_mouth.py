@@ -14,7 +14,7 @@ import pytest
 from risorius import refine, sim
 from risorius.assets.model import Head
 from risorius.bench.lines_of_sight import meshes_of, widest_slit
-from tests.sim.poses import both_sides, settle
+from tests.sim.poses import both_sides, settled_displacement
 
 SHUT = 0.3  # mm: less than a pixel of a full-screen close-up
 UNMOVED = 0.01  # mm: lips that no muscle reaches need no look
@@ -53,7 +53,7 @@ def test_closed_mouth_shows_no_teeth(
     simulation: sim.Simulation, head: Head, slits: Slits, name: str
 ) -> None:
     """In expressions with a closed mouth the lip line is shut, refined or not."""
-    settle(simulation, head.expressions[name])
+    settled_displacement(simulation, head.expressions[name])
     for mesh, slit in slits().items():
         assert slit < SHUT, mesh
 
@@ -80,7 +80,7 @@ def test_no_other_muscle_opens_the_mouth(
         values = both_sides(simulation, {muscle: strength})
         if sides == "left":
             values = {name: value for name, value in values.items() if "_right" not in name}
-        moved = settle(simulation, values, frames=40)
+        moved = settled_displacement(simulation, values, frames=40)
         if np.abs(moved[simulation._anatomy.skin.lips.members]).max() < UNMOVED:
             continue
         for mesh, slit in slits().items():
@@ -91,7 +91,7 @@ def test_slit_measure_sees_an_open_mouth(
     simulation: sim.Simulation, head: Head, slits: Slits
 ) -> None:
     """The measure agrees with the lip landmarks where the mouth is open."""
-    settle(simulation, {"jaw_open": 0.5})
+    settled_displacement(simulation, {"jaw_open": 0.5})
     inner = simulation.positions[head.landmarks[[62, 66]], 1]
     assert slits()["static"] == pytest.approx(inner[0] - inner[1], abs=2.0)
 
@@ -107,7 +107,9 @@ def test_open_mouth_is_widest_in_the_middle(
     simulation: sim.Simulation, head: Head, name: str
 ) -> None:
     """An open mouth narrows toward its corners like a lens, not like a letter box."""
-    settle(simulation, head.expressions.get(name) or both_sides(simulation, {name: 1.0}))
+    settled_displacement(
+        simulation, head.expressions.get(name) or both_sides(simulation, {name: 1.0})
+    )
     y = simulation.positions[head.landmarks, 1]
     middle = y[62] - y[66]
     beside = (y[63] - y[65] + y[61] - y[67]) / 2.0

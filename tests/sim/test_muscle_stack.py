@@ -13,7 +13,7 @@ import pytest
 from risorius import sim
 from risorius.assets.model import Head
 from risorius.sim.fibres import FIBRE_POINTS, SAMPLES, move_lines
-from tests.sim.poses import both_sides, settle, without
+from tests.sim.poses import both_sides, settled_displacement, without
 
 Array = npt.NDArray[np.float64]
 ABOVE, BENEATH = "zygomaticus_major", "buccinator"
@@ -41,7 +41,7 @@ def test_a_muscle_rises_on_the_bulge_beneath(head: Head) -> None:
     rises = []
     for bulge in (0.0, 5.0, 10.0):
         simulation = sim.create(stacked(head, {ABOVE: [BENEATH]}, bulge=bulge))
-        settle(simulation, {f"{BENEATH}_left": 1.0})
+        settled_displacement(simulation, {f"{BENEATH}_left": 1.0})
         rises.append(displaced(simulation, f"{ABOVE}_left"))
     outward = np.array([0.7, 0.0, 0.7])
     lifted = [float(((rise - rises[0]) @ outward).max()) for rise in rises]
@@ -53,10 +53,10 @@ def test_a_muscle_rises_on_the_bulge_beneath(head: Head) -> None:
 def test_nothing_is_carried_by_what_does_not_lie_beneath(head: Head) -> None:
     """Without its row the zygomaticus stays where it is, and so does the other side with it."""
     apart = sim.create(stacked(head, {}))
-    settle(apart, {f"{BENEATH}_left": 1.0})
+    settled_displacement(apart, {f"{BENEATH}_left": 1.0})
     assert not displaced(apart, f"{ABOVE}_left").any()
     stack = sim.create(stacked(head, {ABOVE: [BENEATH]}))
-    settle(stack, {f"{BENEATH}_left": 1.0})
+    settled_displacement(stack, {f"{BENEATH}_left": 1.0})
     assert not displaced(stack, f"{ABOVE}_right").any()
 
 
@@ -72,17 +72,21 @@ def test_at_rest_what_lies_beneath_changes_nothing(simulation: sim.Simulation, h
     on_top = [name for name in head.rig["muscle"] if name not in carriers]
     values = both_sides(plain, dict.fromkeys(on_top, 0.8))
     assert len(values) > 20
-    moved = [settle(face, values, frames=20).tobytes() for face in (plain, simulation)]
+    moved = [
+        settled_displacement(face, values, frames=20).tobytes() for face in (plain, simulation)
+    ]
     assert moved[0] == moved[1]
     values[f"{BENEATH}_left"] = 0.1
-    moved = [settle(face, values, frames=20).tobytes() for face in (plain, simulation)]
+    moved = [
+        settled_displacement(face, values, frames=20).tobytes() for face in (plain, simulation)
+    ]
     assert moved[0] != moved[1]
 
 
 def test_skin_rides_on_what_it_hangs_on(head: Head) -> None:
     """The relaxed zygomaticus no longer holds back the skin that the buccinator moves."""
     moved = [
-        settle(sim.create(stacked(head, stack)), {f"{BENEATH}_left": 1.0})
+        settled_displacement(sim.create(stacked(head, stack)), {f"{BENEATH}_left": 1.0})
         for stack in ({}, {ABOVE: [BENEATH]})
     ]
     held, free = (float(np.linalg.norm(field)) for field in moved)
@@ -92,9 +96,9 @@ def test_skin_rides_on_what_it_hangs_on(head: Head) -> None:
 def test_muscles_ride_through_one_another(head: Head) -> None:
     """On a relaxed muscle that is itself carried, a third one is carried too, but no further."""
     simulation = sim.create(stacked(head, {"risorius": [ABOVE], ABOVE: [BENEATH]}))
-    settle(simulation, {f"{BENEATH}_left": 1.0})
+    settled_displacement(simulation, {f"{BENEATH}_left": 1.0})
     second = displaced(simulation, f"{ABOVE}_left")
-    settle(simulation, {f"{BENEATH}_left": 1.0})
+    settled_displacement(simulation, {f"{BENEATH}_left": 1.0})
     third = displaced(simulation, "risorius_left")
     assert 1.0 < np.linalg.norm(third, axis=2).max() <= np.linalg.norm(second, axis=2).max()
 
@@ -103,22 +107,22 @@ def test_sides_are_mirrored(head: Head) -> None:
     """What lies on muscles of the left moves as what lies on those of the right, mirrored."""
     simulation = sim.create(head)
     carriers = {name for row in head.rig["muscle"].values() for name in row.get("lies_on", ())}
-    left = settle(simulation, {f"{name}_left": 0.9 for name in carriers})
-    right = settle(simulation, {f"{name}_right": 0.9 for name in carriers})
+    left = settled_displacement(simulation, {f"{name}_left": 0.9 for name in carriers})
+    right = settled_displacement(simulation, {f"{name}_right": 0.9 for name in carriers})
     assert np.abs(left[head.mirror] * (-1.0, 1.0, 1.0) - right).max() < 1e-6
 
 
 def test_carrying_is_the_formula(simulation: sim.Simulation) -> None:
     """Each point moves by shares of what is beneath, in plain numpy; they are at most 1 in all."""
-    muscles, mandible = simulation._anatomy.muscles, simulation._anatomy.skull.mandible_pose
+    muscles, mandible = simulation._anatomy.muscles, simulation._anatomy.skull.mandible_motion
     pose = mandible(0.5, 0.3, 0.2)
     activation = np.linspace(-0.2, 1.0, len(muscles.names))
     stack, bundle, motion = muscles.stack, muscles.bundle, muscles.motion
     move_lines(bundle, stack, activation, pose, motion)
     active = np.maximum(activation, 0.0)[bundle.muscle]
-    ride = np.zeros_like(motion.carried)
-    shares = np.zeros(ride.shape[:2])
-    owner = np.repeat(np.arange(len(ride)), np.diff(stack.rows))
+    carried = np.zeros_like(motion.carried)
+    shares = np.zeros(carried.shape[:2])
+    owner = np.repeat(np.arange(len(carried)), np.diff(stack.rows))
     for row, b in enumerate(owner):
         p, c = int(stack.point[row]), int(stack.line[row])
         assert c < b
@@ -129,9 +133,9 @@ def test_carrying_is_the_formula(simulation: sim.Simulation) -> None:
             if active[c] > 0.0:
                 along = motion.contracted[c, :, k]
                 beneath[k] += np.interp(stack.sample[row], np.arange(SAMPLES), along)
-            beneath[k] += np.interp(stack.place[row], np.arange(FIBRE_POINTS), ride[c, :, k])
-        ride[b, p] += steady + stack.share[row] * beneath
+            beneath[k] += np.interp(stack.place[row], np.arange(FIBRE_POINTS), carried[c, :, k])
+        carried[b, p] += steady + stack.share[row] * beneath
         shares[b, p] += stack.share[row]
     assert 0.9 < shares.max() < 1.0 + 1e-9
-    assert np.array_equal(motion.is_carried, np.abs(ride).max(axis=(1, 2)) > 0.0)
-    assert np.allclose(motion.carried[motion.is_carried], ride[motion.is_carried], atol=1e-9)
+    assert np.array_equal(motion.is_carried, np.abs(carried).max(axis=(1, 2)) > 0.0)
+    assert np.allclose(motion.carried[motion.is_carried], carried[motion.is_carried], atol=1e-9)

@@ -21,14 +21,14 @@ def test_skin_follows_a_finger_and_swings_back(simulation: sim.Simulation) -> No
     """Pulled by 20 mm it comes most of the way and takes skin around along; let go, it rests."""
     grabbed = cheek(simulation)
     target = simulation.rest_positions[grabbed] + (20.0, 0.0, 0.0)
-    simulation.pull(grabbed, target, np.ones(len(grabbed)))
+    simulation.drag(grabbed, target, np.ones(len(grabbed)))
     for _ in range(60):
         simulation.step(FRAME)
     moved = simulation.positions - simulation.rest_positions
     assert moved[grabbed, 0].min() > 12.0
     others = np.setdiff1d(np.arange(len(moved)), grabbed)
     assert 2.0 < np.abs(moved[others]).max() < 20.0
-    simulation.let_go()
+    simulation.end_drag()
     for _ in range(120):
         simulation.step(FRAME)
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 0.01
@@ -42,7 +42,7 @@ def test_a_finger_knows_where_a_turned_head_is(simulation: sim.Simulation) -> No
     before = simulation.positions.copy()
     grabbed = cheek(simulation)
     offset = np.array([10.0, 12.0, 0.0])
-    simulation.pull(grabbed, before[grabbed] + offset, np.ones(len(grabbed)))
+    simulation.drag(grabbed, before[grabbed] + offset, np.ones(len(grabbed)))
     for _ in range(60):
         simulation.step(FRAME)
     moved = (simulation.positions - before)[grabbed].mean(axis=0)
@@ -58,7 +58,7 @@ def test_a_mad_finger_breaks_nothing(
     for _ in range(40):
         offset = generator.uniform(-100.0, 100.0, 3)
         target = simulation.rest_positions[grabbed] + offset
-        simulation.pull(grabbed, target, np.ones(len(grabbed)))
+        simulation.drag(grabbed, target, np.ones(len(grabbed)))
         simulation.step(1.0 / 20.0)
         assert np.abs(simulation.positions - simulation.rest_positions).max() < 200.0
 
@@ -82,6 +82,6 @@ def test_pulls_that_do_not_fit(
 ) -> None:
     """What cannot be pulled is refused, and nothing is pulled then."""
     with pytest.raises(ValueError, match=message):
-        simulation.pull(vertices, targets, firmness)
+        simulation.drag(vertices, targets, firmness)
     simulation.step(FRAME)
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 1e-6

@@ -14,7 +14,7 @@ from risorius.assets.model import Head
 from risorius.sim.landmarks import MIRRORED, LandmarkPoint, Side
 from risorius.sim.rig import LinearMuscle, RingMuscle, Tissue
 from risorius.sim.rig_reader import read_rig
-from tests.sim.poses import both_sides, moved_landmarks, settle, without
+from tests.sim.poses import both_sides, moved_landmarks, settled_displacement, without
 
 
 def _fibre() -> dict[str, Any]:
@@ -196,6 +196,6 @@ def test_rig_moves_with_the_head(head: Head) -> None:
     for face in (plain, other):
         simulation = sim.create(face)
         values = both_sides(simulation, {"zygomaticus_major": 1.0, "jaw_open": 0.3})
-        smiles.append(settle(simulation, values, frames=40))
+        smiles.append(settled_displacement(simulation, values, frames=40))
     assert np.abs(10.0 * smiles[1] @ turn - smiles[0]).max() < 1e-6
     assert moved_landmarks(head, smiles[0], 54)[0] > 3.0

@@ -7,7 +7,7 @@ import pytest
 
 from risorius import sim
 from risorius.assets.model import Head
-from tests.sim.poses import FRAME, both_sides, settle
+from tests.sim.poses import FRAME, both_sides, settled_displacement
 
 
 def test_rest_stays_at_rest(simulation: sim.Simulation) -> None:
@@ -75,8 +75,8 @@ def test_two_runs_are_bit_identical(simulation: sim.Simulation, head: Head) -> N
 def test_reset_forgets_everything(simulation: sim.Simulation) -> None:
     """After a reset a run repeats itself bit by bit."""
     values = both_sides(simulation, {"zygomaticus_major": 0.7, "jaw_open": 0.5})
-    first = settle(simulation, values, frames=7)
-    second = settle(simulation, values, frames=7)
+    first = settled_displacement(simulation, values, frames=7)
+    second = settled_displacement(simulation, values, frames=7)
     assert first.tobytes() == second.tobytes()
 
 

@@ -14,11 +14,11 @@ from risorius.sim.contact import Grip, watch_eyeballs
 from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
 from risorius.sim.integrator import substeps_in
 from risorius.sim.lids import turn_lids
-from risorius.sim.skin import Tick
+from risorius.sim.skin_model import Tick
 from risorius.sim.skull import REST
 from risorius.sim.substep import SEAL_AXES, edge_forces, hold_lips, tissue_forces
 from risorius.sim.tissue import carry, tissue_energy
-from tests.sim.poses import FRAME, settle
+from tests.sim.poses import FRAME, settled_displacement
 
 Array = npt.NDArray[np.float64]
 
@@ -27,7 +27,7 @@ Array = npt.NDArray[np.float64]
 def stirred(simulation: sim.Simulation, generator: np.random.Generator) -> sim.Simulation:
     """A face in the middle of a wild pose."""
     values = {name: generator.uniform(0.1, 1.0) for name in simulation.controls}
-    settle(simulation, values, frames=5)
+    settled_displacement(simulation, values, frames=5)
     return simulation
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from risorius.sim.integrator import substeps_in, ticks_in
-from risorius.sim.skull import REST, Pose
+from risorius.sim.skull import REST, RigidMotion
 from risorius.sim.tissue import AREAL_MASS
 from risorius.sim.weight import Weight
 
@@ -16,14 +16,14 @@ MASS = AREA * AREAL_MASS * HEAVINESS  # that is free to hang
 SIDE = np.array([[100.0, 0.0, 0.0]])  # mm from the joint
 
 
-def _turned(axis: int, angle: float) -> Pose:
+def _turned(axis: int, angle: float) -> RigidMotion:
     """The head turned about the x (0) or y (1) axis through the origin."""
     c, s = np.cos(angle), np.sin(angle)
     rows = {0: [[1, 0, 0], [0, c, -s], [0, s, c]], 1: [[c, 0, s], [0, 1, 0], [-s, 0, c]]}
-    return Pose(np.array(rows[axis], dtype=np.float64), np.zeros(3))
+    return RigidMotion(np.array(rows[axis], dtype=np.float64), np.zeros(3))
 
 
-def _load(weight: Weight, *poses: Pose) -> np.ndarray:
+def _load(weight: Weight, *poses: RigidMotion) -> np.ndarray:
     """The load on skin at SIDE in the last of some poses, one tick apart."""
     force = np.zeros((1, 3))
     for pose in poses:
@@ -54,7 +54,7 @@ def test_skin_stays_behind_a_head_that_sets_off() -> None:
     """A head that is pushed forward leaves its skin behind by mass x acceleration, once."""
     weight = Weight(np.array([AREA]), HEAVINESS, gravity=False, inertia=True)
     turned = _turned(1, 1e-6)  # heads move by turning alone; so little does nothing itself
-    pushed = Pose(turned.rotation, np.array([0.0, 0.0, 0.5]))
+    pushed = RigidMotion(turned.rotation, np.array([0.0, 0.0, 0.5]))
     load = _load(weight, pushed)
     assert load == pytest.approx([0.0, 0.0, -MASS * 0.5 / TICK**2], abs=0.5)
     weight.forget()

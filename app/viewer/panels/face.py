@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from imgui_bundle import imgui
 
-from ..control_rows import Row, found, readable, rows_of
+from ..control_rows import Row, readable, rows_of, search_rows
 from ..gui import Gui, colour
 from ..session import Session
 from ..settings import Settings
@@ -68,7 +68,7 @@ class FacePanel:
         session, scene, folds = self._session, self._session.scene, self._settings.folds
         rows = rows_of(names, session.values, linked=self._settings.is_linked)
         if self.search:
-            rows = found(rows, self.search, group=title, actions=scene.actions)
+            rows = search_rows(rows, self.search, group=title, actions=scene.actions)
             if not rows:
                 return
         elif self._selected in names:
@@ -87,10 +87,10 @@ class FacePanel:
             label = f"{number} {readable(name)}" if number <= 9 else readable(name)
             if number > 1:
                 stay_in_line(button_width(label))
-            is_on = self._session.shows(name)
+            is_on = self._session.is_alone(name)
             highlight = colour(self._gui.theme.accent, 0.5) if is_on else None
             if button(self._gui, f"{label}##button", name=f"show {name}", highlight=highlight):
-                self._session.show(name)
+                self._session.toggle_alone(name)
 
     def _draw_row(self, row: Row) -> None:
         session, theme = self._session, self._gui.theme

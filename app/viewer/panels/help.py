@@ -48,7 +48,7 @@ WIDE = 63.0  # [em] that the wide ones take
 
 
 def draw_help(gui: Gui, commands: Sequence[Command]) -> bool:
-    """Draw the sheet, scrolled where the window is small; whether it stays open."""
+    """Draw the list, scrolled where the window is small; whether it stays open."""
     display = imgui.get_io().display_size
     imgui.set_next_window_pos((0.5 * display.x, 0.5 * display.y), 0, (0.5, 0.5))
     imgui.set_next_window_size_constraints((0.0, 0.0), display)

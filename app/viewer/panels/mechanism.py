@@ -96,7 +96,7 @@ class MechanismPanel:
             self._draw_option(name, default)
         base = len(stage.scene.faces)
         for shot in stage.shots(look, self._view.viewport):
-            count = shot.picture.triangle_count
+            count = shot.drawn.triangle_count
             imgui.text(f"{shot.label}: {count} triangles")
             imgui.same_line()
             muted(self._gui, f"({count / base:.2f} x)")

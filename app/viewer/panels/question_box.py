@@ -43,8 +43,8 @@ def draw_question(
         ("Back", True, lambda: None),
     )
     answer: Task | None = None
-    for label, is_offered, run in choices:
-        if not is_offered:
+    for label, is_possible, run in choices:
+        if not is_possible:
             continue
         is_clicked = button(gui, label, name=f"question: {label}")
         imgui.same_line()

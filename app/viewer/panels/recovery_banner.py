@@ -32,7 +32,7 @@ def draw_recovery(
     imgui.begin("##offer", None, NOTE_FLAGS)
     imgui.push_text_wrap_pos(room - em(0.8))
     imgui.align_text_to_frame_padding()
-    imgui.text_unformatted(f"Unsaved work of {when}: {recovery.found.words}")
+    imgui.text_unformatted(f"Unsaved work of {when}: {recovery.found.summary}")
     imgui.pop_text_wrap_pos()
     if imgui.get_item_rect_size().x + em(2.0 * BUTTON_WIDTH + 3.0) < room:
         imgui.same_line()

@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 from ..gui import Gui
 
 
-class Slid(NamedTuple):
+class SliderState(NamedTuple):
     """What happened to a slider in this frame."""
 
     value: float
@@ -35,7 +35,7 @@ class Sliders:
         width: float,
         neutral: float = 0.0,
         digits: int = 2,
-    ) -> Slid:
+    ) -> SliderState:
         """Draw the slider `name`; a double or Ctrl click types a number, a right click resets."""
         imgui.set_next_item_width(width)
         if self._typed == name:
@@ -48,10 +48,10 @@ class Sliders:
         if is_hovered and imgui.is_mouse_double_clicked(0):
             self._typed, self._is_new = name, True
         if is_hovered and imgui.is_mouse_clicked(1):
-            return Slid(neutral, neutral != value, True, True)
-        return Slid(now, changed, is_done, is_hovered or imgui.is_item_active())
+            return SliderState(neutral, neutral != value, True, True)
+        return SliderState(now, changed, is_done, is_hovered or imgui.is_item_active())
 
-    def _draw_line(self, name: str, value: float, limits: tuple[float, float]) -> Slid:
+    def _draw_line(self, name: str, value: float, limits: tuple[float, float]) -> SliderState:
         if self._is_new:
             imgui.set_keyboard_focus_here()
         _, typed = imgui.input_float(
@@ -64,4 +64,4 @@ class Sliders:
         if is_over:
             self._typed = None
         now = min(max(typed, limits[0]), limits[1])
-        return Slid(now, now != value, is_done, True)
+        return SliderState(now, now != value, is_done, True)

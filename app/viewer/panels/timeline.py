@@ -57,7 +57,7 @@ class Timeline:
             self._draw_button(label)
         self._draw_speed()
         self._draw_button("Set key")
-        self._draw_words()
+        self._draw_status()
         self._rows = round((imgui.get_cursor_pos_y() - top) / imgui.get_frame_height_with_spacing())
         self.dope_sheet.draw()
 
@@ -84,21 +84,21 @@ class Timeline:
         self._gui.remember("speed")
         hint("of playing")
 
-    def _draw_words(self) -> None:
+    def _draw_status(self) -> None:
         """The time, and what is being made now, else the script's name."""
         session, theme, film = self._session, self._gui.theme, self._exporter.film
-        words, ink = session.name, theme.muted
+        status, ink = session.name, theme.muted
         if session.script_is_unsaved:
-            words += " *"
+            status += " *"
         if session.is_recording:
-            words, ink = f"recording {session.recorded_seconds:.1f} s", theme.error
+            status, ink = f"recording {session.recorded_seconds:.1f} s", theme.error
         if film is not None:
-            words, ink = f"filming {film.seconds:.1f} s", theme.error
+            status, ink = f"filming {film.seconds:.1f} s", theme.error
         imgui.same_line()
         time = f"{session.time:.2f} s of {session.script.duration:.2f}"
         imgui.text(shortened(time, imgui.get_content_region_avail().x))
         hint("the time shown, and the script's length; drag its end in the ruler")
         imgui.same_line(0.0, em(1.2))
-        imgui.text_colored(colour(ink), shortened(words, imgui.get_content_region_avail().x))
+        imgui.text_colored(colour(ink), shortened(status, imgui.get_content_region_avail().x))
         where = session.file.path or "not kept in a file yet"
         hint(f"{session.script.title or session.name}: {where}")

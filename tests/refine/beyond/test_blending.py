@@ -69,7 +69,7 @@ def jumps(
 ) -> tuple[float, float]:
     """Largest motion of the surface per motion of the input, and turn of a normal [rad] per step.
 
-    A sheet is bent from flat to strongly wrinkled and on, in small steps, so that edges go through
+    A grid is bent from flat to strongly wrinkled and on, in small steps, so that edges go through
     both thresholds in both directions, one after the other.
     """
     mesh = mesh or meshes.irregular(4, 4, 3, 0)
@@ -129,16 +129,16 @@ def test_nothing_pops_by_other_criteria(criterion: object, scheme: str) -> None:
 
 
 def rough(name: str) -> meshes.Mesh:
-    """A sheet with every third triangle flipped, one with debris beside it, or tips of 60."""
-    sheet = meshes.irregular(4, 4, 3, 0)
+    """A grid with every third triangle flipped, one with debris beside it, or tips of 60."""
+    grid = meshes.irregular(4, 4, 3, 0)
     if name == "flipped":
-        faces = sheet.faces.copy()
+        faces = grid.faces.copy()
         faces[::3] = faces[::3, ::-1]
-        return meshes.Mesh(sheet.vertices, faces)
+        return meshes.Mesh(grid.vertices, faces)
     if name == "debris":
         debris = meshes.with_debris()
-        faces = np.concatenate([sheet.faces, debris.faces + len(sheet.vertices)])
-        vertices = np.concatenate([sheet.vertices, debris.vertices])
+        faces = np.concatenate([grid.faces, debris.faces + len(grid.vertices)])
+        vertices = np.concatenate([grid.vertices, debris.vertices])
         return meshes.Mesh(vertices, faces.astype(np.int32))
     return meshes.double_cone(60)
 

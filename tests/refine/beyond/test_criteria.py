@@ -226,8 +226,8 @@ def plain_measure(
             distance = np.linalg.norm(EYE - (positions[a] + positions[b]) / 2)
             values.append(500.0 * np.linalg.norm(d) / distance)
         else:
-            sight = [(EYE - positions[v]) / np.linalg.norm(EYE - positions[v]) for v in (a, b)]
-            facing = [float(normals[v] @ s) for v, s in zip((a, b), sight, strict=True)]
+            to_eye = [(EYE - positions[v]) / np.linalg.norm(EYE - positions[v]) for v in (a, b)]
+            facing = [float(normals[v] @ s) for v, s in zip((a, b), to_eye, strict=True)]
             aside = 0.0 if facing[0] * facing[1] <= 0 else min(map(abs, facing))
             values.append(min(1 - cosine, most) * max(0.0, 1 - aside / 0.3))
     return np.array(values)
@@ -261,8 +261,8 @@ def test_needs_by_hand(kind: type, once: float, twice: float, level: str) -> Non
 
     criterion = kind(once, twice if level == "both" else np.inf)
     criterion.bind(connectivity, mesh.vertices, at_rest)
-    if hasattr(criterion, "look"):
-        criterion.look(refine.View(EYE, 500.0))
+    if hasattr(criterion, "set_view"):
+        criterion.set_view(refine.View(EYE, 500.0))
     need = np.zeros(len(edges), dtype=np.float32)
     criterion.measure(deformed, now, need)
     wanted = np.minimum((expected - once) / width, np.inf if level == "both" else 1.0)

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import refine
-from risorius.refine.beyond.closest import Surface
+from risorius.refine.beyond.closest import SearchSurface
 from tests import meshes
 from tests.refine import plain_twin
 from tests.refine.cases import Needed, as_lists, assert_equals_twin, point_names
@@ -18,7 +18,7 @@ from tests.refine.plain_detail import DetailRules, Seen
 
 
 def bumpy(columns: int, rows: int) -> meshes.Mesh:
-    """A sheet of 4 x 3 with bumps that a coarse grid cannot show."""
+    """A grid of 4 x 3 with bumps that a coarse grid cannot show."""
     grid = meshes.open_grid(columns, rows)
     vertices = grid.vertices * [4.0 / columns, 3.0 / rows, 1.0]
     x, y = vertices[:, 0], vertices[:, 1]
@@ -31,7 +31,7 @@ COARSE, FINE = bumpy(8, 6), bumpy(48, 36)
 
 def distances(points: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Distance of each point from a mesh."""
-    surface = Surface(positions.astype(np.float64), triangles.astype(np.uint32))
+    surface = SearchSurface(positions.astype(np.float64), triangles.astype(np.uint32))
     hit, weights = surface.closest(points, np.zeros_like(points))
     return np.linalg.norm(surface.at(surface.positions, hit, weights) - points, axis=1)
 
@@ -42,7 +42,7 @@ def angles(some: np.ndarray, others: np.ndarray) -> np.ndarray:
 
 
 def refined(scheme: str, positions: np.ndarray, **options: object) -> refine.RefinedMesh:
-    """The coarse sheet with all edges split twice."""
+    """The coarse grid with all edges split twice."""
     edge_count = len(refine.connect(COARSE.faces, len(COARSE.vertices)).edges)
     if scheme == "detail":
         options["detail"] = (FINE.vertices, FINE.faces)
@@ -73,15 +73,15 @@ def test_closest_points(seed: int) -> None:
 
 
 def test_closest_looks_the_same_way() -> None:
-    """Of two sheets that almost touch, each point finds the one that looks its way."""
-    sheet = meshes.open_grid(6, 6)
-    count = len(sheet.vertices)
-    below = sheet.vertices - [0.0, 0.0, 0.01]
-    vertices = np.concatenate([sheet.vertices, below])
-    faces = np.concatenate([sheet.faces, sheet.faces[:, ::-1] + count]).astype(np.uint32)
+    """Of two grids that almost touch, each point finds the one that looks its way."""
+    grid = meshes.open_grid(6, 6)
+    count = len(grid.vertices)
+    below = grid.vertices - [0.0, 0.0, 0.01]
+    vertices = np.concatenate([grid.vertices, below])
+    faces = np.concatenate([grid.faces, grid.faces[:, ::-1] + count]).astype(np.uint32)
     points = np.tile([[3.3, 2.2, -0.005]], (2, 1))
-    hit, _ = Surface(vertices, faces).closest(points, np.array([[0, 0, 1.0], [0, 0, -1.0]]))
-    assert hit[0] < len(sheet.faces) <= hit[1]
+    hit, _ = SearchSurface(vertices, faces).closest(points, np.array([[0, 0, 1.0], [0, 0, -1.0]]))
+    assert hit[0] < len(grid.faces) <= hit[1]
 
 
 @pytest.mark.parametrize("blend", [False, True])
@@ -99,7 +99,7 @@ def test_lies_on_the_finer_mesh(blend: bool) -> None:
 def test_shows_finer_normals() -> None:
     """Normals are those of the finer mesh where the vertices of the refined one are."""
     mesh = refined("detail", COARSE.vertices)
-    surface = Surface(FINE.vertices, FINE.faces.astype(np.uint32))
+    surface = SearchSurface(FINE.vertices, FINE.faces.astype(np.uint32))
     hit, weights = surface.closest(mesh.positions.astype(np.float64), np.zeros(mesh.normals.shape))
     expected = surface.at(surface.normals, hit, weights)
     expected /= np.linalg.norm(expected, axis=1, keepdims=True)
@@ -107,7 +107,7 @@ def test_shows_finer_normals() -> None:
 
 
 def test_no_stars_in_folds() -> None:
-    """A finer mesh that adds nothing leaves the normals of a folded sheet as smooth as the cubic.
+    """A finer mesh that adds nothing leaves the normals of a folded grid as smooth as the cubic.
 
     Between a vertex and the quarter points around it they turn by a part of the fold; with one
     direction for a whole edge they turned by half of it there and stood still from there on.

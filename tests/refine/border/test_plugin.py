@@ -242,11 +242,11 @@ def test_empty_lists_are_no_triangles(name: str, faces: object) -> None:
 @pytest.mark.parametrize("unit", [1e-6, 5e7])
 def test_units_of_length(unit: float, scheme: str) -> None:
     """Whatever the unit, between the limits that binding sets, the same triangles come out."""
-    sheet = meshes.irregular(3)
-    deformed = meshes.wrinkled(sheet, 4)
+    grid = meshes.irregular(3)
+    deformed = meshes.wrinkled(grid, 4)
 
     def refined(scale: float) -> refine.RefinedMesh:
-        refiner = refine.create("kahler", sheet.faces, scale * sheet.vertices, scheme=scheme)
+        refiner = refine.create("kahler", grid.faces, scale * grid.vertices, scheme=scheme)
         return refiner.refine(scale * deformed)
 
     here, there = refined(1.0), refined(unit)

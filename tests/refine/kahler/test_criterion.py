@@ -117,7 +117,7 @@ def test_only_bending_counts() -> None:
 
 def test_rounding_guard() -> None:
     """A drop of the size of rounding does not count at threshold 0, a larger one does."""
-    mesh = meshes.folded_strip()
+    mesh = meshes.half_shut_book()
     flat = np.array([[0, 0, 0], [0, 1, 0], [1, 0.5, 0], [-1, 0.5, 0.0]])
     refiner = refine.create("kahler", mesh.faces, flat, threshold_once=0.0, threshold_twice=1.0)
     for drop, expected in ((0.1 * ROUNDING, 0), (10 * ROUNDING, 4)):

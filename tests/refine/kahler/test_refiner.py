@@ -92,7 +92,7 @@ def test_soups(soup: tuple[np.ndarray, np.ndarray], data: st.DataObject) -> None
 def test_generated_sheets(
     seed: int, columns: int, rows: int, holes: int, amplitude: float, thresholds: list[float]
 ) -> None:
-    """Sheets of any size, with any deformation and thresholds, come out proper."""
+    """Grids of any size, with any deformation and thresholds, come out proper."""
     mesh = meshes.irregular(seed, columns, rows, holes)
     deformed = meshes.wrinkled(mesh, seed + 1, amplitude)
     refine_and_check(mesh, deformed, threshold_once=thresholds[0], threshold_twice=thresholds[1])

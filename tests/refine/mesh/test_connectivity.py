@@ -20,10 +20,10 @@ from tests.refine.plain_twin import Surroundings, edge_name
         ("fan", 12, 6),
         ("tetrahedron", 6, 6),
         ("octahedron", 12, 12),
-        ("folded_strip", 5, 1),
+        ("half_shut_book", 5, 1),
         ("pillow", 3, 3),
         ("bow_tie", 6, 0),
-        ("three_sheets", 7, 0),
+        ("three_on_an_edge", 7, 0),
         ("inconsistent_pair", 5, 0),
     ],
 )

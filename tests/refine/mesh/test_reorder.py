@@ -48,13 +48,13 @@ def test_refined_alike() -> None:
 
 
 def test_neighbours_come_to_lie_together() -> None:
-    """In a shuffled sheet the vertices of a triangle are near each other afterwards."""
-    sheet = meshes.open_grid(60, 60)
+    """In a shuffled grid the vertices of a triangle are near each other afterwards."""
+    grid = meshes.open_grid(60, 60)
     random = np.random.default_rng(1)
-    places = random.permutation(len(sheet.vertices))
-    vertices = np.empty_like(sheet.vertices)
-    vertices[places] = sheet.vertices
-    faces = places[sheet.faces][random.permutation(len(sheet.faces))]
+    places = random.permutation(len(grid.vertices))
+    vertices = np.empty_like(grid.vertices)
+    vertices[places] = grid.vertices
+    faces = places[grid.faces][random.permutation(len(grid.faces))]
     order = refine.reorder(faces, vertices)
     before, after = (np.ptp(each, axis=1).mean() for each in (faces, order.faces))
     assert after * 20 < before

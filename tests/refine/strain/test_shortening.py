@@ -14,8 +14,8 @@ Array = npt.NDArray[np.float64]
 ALONG, ACROSS = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
 
 
-def sheet(count: int = 9) -> tuple[npt.NDArray[np.int64], Array]:
-    """Triangles and vertices of a flat sheet, 10 long and wide."""
+def grid(count: int = 9) -> tuple[npt.NDArray[np.int64], Array]:
+    """Triangles and vertices of a flat grid, 10 long and wide."""
     place = np.linspace(-5.0, 5.0, count)
     vertices = np.stack([*np.meshgrid(place, place), np.zeros((count, count))], axis=-1)
     corner = (np.arange(count - 1)[:, None] * count + np.arange(count - 1)).ravel()
@@ -38,7 +38,7 @@ def test_at_rest_there_is_none() -> None:
 
 def test_a_squeeze_is_found_along_its_direction_alone() -> None:
     """A fifth shorter along x, a tenth longer along y: a fifth, and nothing."""
-    faces, rest = sheet()
+    faces, rest = grid()
     shortening = refine.Shortening(faces, rest, both_ways(len(rest)))
     measured = shortening.measure(rest * [0.8, 1.1, 1.0])
     np.testing.assert_allclose(measured[:, 0], 0.2, atol=1e-5)
@@ -47,7 +47,7 @@ def test_a_squeeze_is_found_along_its_direction_alone() -> None:
 
 def test_only_the_way_of_a_direction_counts() -> None:
     """Neither length nor sign nor what stands on the skin counts; zero measures nothing."""
-    faces, rest = sheet()
+    faces, rest = grid()
     directions = both_ways(len(rest))
     other = directions * [[-3.0], [0.0]] + [0.0, 0.0, 0.7]
     other[:, 1] = 0.0
@@ -59,8 +59,8 @@ def test_only_the_way_of_a_direction_counts() -> None:
 
 
 def test_rigid_motions_and_bends_shorten_nothing() -> None:
-    """A turned sheet, and one rolled up by its finest triangles: less than their chords lose."""
-    faces, rest = sheet(41)
+    """A turned grid, and one rolled up by its finest triangles: less than their chords lose."""
+    faces, rest = grid(41)
     shortening = refine.Shortening(faces, rest, both_ways(len(rest)))
     turned = Rotation.from_euler("xyz", [0.3, -1.2, 2.0]).apply(rest + 300.0)
     assert shortening.measure(turned).max() < 1e-5
@@ -72,7 +72,7 @@ def test_rigid_motions_and_bends_shorten_nothing() -> None:
 
 def test_agrees_with_the_tension_map() -> None:
     """Along the direction of the largest compression of a flat deformation they are the same."""
-    faces, rest = sheet()
+    faces, rest = grid()
     gradient = np.array([[0.9, 0.15, 0.0], [-0.05, 0.75, 0.0], [0.0, 0.0, 1.0]])
     stretches, ways = np.linalg.svd(gradient[:2, :2])[1:]
     directions = np.tile([[*ways[1], 0.0]], (len(rest), 1, 1))
@@ -85,7 +85,7 @@ def test_agrees_with_the_tension_map() -> None:
 
 def test_what_does_not_fit_is_refused() -> None:
     """Directions and positions of another shape, and directions that are no numbers."""
-    faces, rest = sheet(3)
+    faces, rest = grid(3)
     for directions in (np.zeros((len(rest), 3)), np.full((len(rest), 1, 3), np.nan)):
         with pytest.raises(ValueError, match="directions must be finite"):
             refine.Shortening(faces, rest, directions)

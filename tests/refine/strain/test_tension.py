@@ -67,7 +67,7 @@ def test_named_meshes(name: str) -> None:
 
 
 def test_stretched_sheet() -> None:
-    """A flat sheet pulled along x and squeezed along y, then turned anywhere in space."""
+    """A flat grid pulled along x and squeezed along y, then turned anywhere in space."""
     mesh = meshes.open_grid(6, 5)
     turn = meshes.rotation(4)
     now = (mesh.vertices * [1.5, 0.8, 1.0]) @ turn.T + 7.0

@@ -9,13 +9,13 @@ from typing import NamedTuple
 
 from .contact import EyeContact, Grip, LipPairs
 from .landmarks import Array
-from .skull import Pose
+from .skull import RigidMotion
 from .springs import EdgeSprings
 from .teeth import Teeth
 from .tissue import TissueSprings
 
 
-class Skin(NamedTuple):
+class SkinModel(NamedTuple):
     """Point masses, springs and contacts of one face; none of it changes while it is simulated."""
 
     rest: Array  # (V, 3) mm, positions of the undeformed mesh
@@ -33,4 +33,4 @@ class Tick(NamedTuple):
     substeps: int
     h: float  # s, length of each
     grip: Grip  # how firmly the lips hold each other
-    mandible: Pose
+    mandible: RigidMotion
