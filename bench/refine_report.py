@@ -43,7 +43,8 @@ def text(report: Report) -> str:
             f"{report.starts.later:.2f} s (best {report.starts.best_later:.2f} s).",
         ]
     lines += ["", *report.missing] if report.missing else []
-    lines += ["", "Targets, by medians:", *_targets(report)]
+    targets = list(_targets(report))
+    lines += ["", "Targets, by medians:", *targets] if targets else []
     return "\n".join(lines)
 
 

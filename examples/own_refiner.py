@@ -5,8 +5,8 @@
 What a refiner has to be is `refine.Refiner`: edges and splits to tell what it did, capacities to
 tell how much room it needs, `refine` to fill a stream, `origins` to tell where vertices come from.
 This one cuts all edges or none, does not smooth, and is no match for triangles that name a vertex
-twice. After `register` the whole program knows it by
-name. A package of its own needs no call; it says in its pyproject.toml
+twice. After `register` the whole program knows it by name. A package of its own needs no call; it
+says in its pyproject.toml
 
     [project.entry-points."risorius.refiners"]
     quarters = "my_package:Quarters"

@@ -2,8 +2,8 @@
 
     python examples/plain_script.py [FILE.obj]
 
-A tube of 384 triangles bends to more than half a ring and back. It needs numpy, numba and `refine/`
-(installed by `make setup`, else found with PYTHONPATH=.); nothing else.
+A tube of 384 triangles bends to more than half a ring and back. It needs `risorius.refine`, and
+that needs numpy and numba alone.
 """
 
 import sys

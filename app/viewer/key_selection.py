@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ..script import Pose
-from . import keys
-from .keys import POSES, KeyPlace
+from . import keyframes
+from .keyframes import POSES, KeyPlace
 from .messages import Message
 from .panel_state import PanelState
 from .session import Session
@@ -34,7 +34,7 @@ class KeySelection:
         """The face as it is becomes a key at the time shown."""
         time = self._session.set_key()
         script = self._session.script
-        there = [place for place in keys.places_of(script) if abs(place.time - time) < 1e-9]
+        there = [place for place in keyframes.places_of(script) if abs(place.time - time) < 1e-9]
         poses = frozenset(place for place in there if place.track == POSES)
         self.places = poses or frozenset(there)
         return f"key set at {time:.2f} s"
@@ -42,17 +42,17 @@ class KeySelection:
     def delete(self) -> Message:
         """Take the selected keys away."""
         places = self.places
-        self._session.edit(keys.without(self._session.script, places))
+        self._session.edit(keyframes.without(self._session.script, places))
         return f"{counted(len(places))} deleted; Ctrl+Z brings back"
 
     def duplicate(self) -> Message:
         """Copies of the selected keys at the time shown, or a little later if they are there."""
         script = self._session.script
         first = min(place.time for place in self.places)
-        offset = keys.key_time(script, self._session.time) - first
-        if abs(offset) < 0.5 * keys.FRAME:
-            offset = COPY_OFFSET * keys.FRAME
-        script, copies = keys.copied(script, self.places, offset)
+        offset = keyframes.key_time(script, self._session.time) - first
+        if abs(offset) < 0.5 * keyframes.FRAME:
+            offset = COPY_OFFSET * keyframes.FRAME
+        script, copies = keyframes.copied(script, self.places, offset)
         self._session.edit(script)
         self.places = copies
         return f"{counted(len(copies))} copied to {first + offset:.2f} s"
@@ -60,14 +60,14 @@ class KeySelection:
     def nudge(self, frames: int) -> None:
         """Move the selected keys by so many frames."""
         first = min(place.time for place in self.places)
-        offset = keys.on_frame(first + frames * keys.FRAME) - first
-        script, places = keys.moved(self._session.script, self.places, offset)
+        offset = keyframes.on_frame(first + frames * keyframes.FRAME) - first
+        script, places = keyframes.moved(self._session.script, self.places, offset)
         self._session.edit(script)
         self.places = places
 
     def select_all(self) -> None:
         """All keys of the script."""
-        self.places = keys.places_of(self._session.script)
+        self.places = keyframes.places_of(self._session.script)
 
     def _nameable(self) -> Pose | None:
         """The one pose that is selected, or else the one at the time shown."""
@@ -75,7 +75,7 @@ class KeySelection:
         if len(poses) > 1:
             return None
         time = poses[0] if poses else self._session.time
-        return keys.pose_at(self._session.script, time)
+        return keyframes.pose_at(self._session.script, time)
 
     @property
     def can_rename(self) -> bool:
@@ -90,12 +90,12 @@ class KeySelection:
 
     def ease(self, easing: str) -> None:
         """How the selected keys are approached."""
-        self._session.edit(keys.eased(self._session.script, self.places, easing))
+        self._session.edit(keyframes.eased(self._session.script, self.places, easing))
 
     def is_eased(self, easing: str) -> bool:
         """Whether all selected keys are approached so."""
         script = self._session.script
-        return bool(self.places) and keys.eased(script, self.places, easing) == script
+        return bool(self.places) and keyframes.eased(script, self.places, easing) == script
 
 
 def counted(number: int) -> str:

@@ -15,7 +15,7 @@ import numpy as np
 from ..errors import UserError
 from ..scenes import Scene, clamped
 from ..script import Pose, Script, is_pose, load_script, pose_script, rounded, save_script
-from . import keys
+from . import keyframes
 from .control_rows import highest_first, mirrored, twin_of
 from .history import History
 from .recorder import Recorder
@@ -217,7 +217,7 @@ class Session:
 
     def seek_key(self, direction: int) -> None:
         """Pause at the next time at which the script has a key, or with -1 at the one before."""
-        times = {place.time for place in keys.places_of(self.script)}
+        times = {place.time for place in keyframes.places_of(self.script)}
         beyond = [time for time in times if (time - self.time) * direction > 1e-6]
         self.is_playing = False
         self.seek((min if direction > 0 else max)(beyond, default=self.time))
@@ -240,9 +240,9 @@ class Session:
 
     def set_key(self) -> float:
         """The face as it is becomes a key of the script; its time [s]."""
-        time = keys.key_time(self.script, self.time)
+        time = keyframes.key_time(self.script, self.time)
         self.is_playing = False
-        self.edit(keys.keyed(self.script, time, self.values, self.limits), is_done=False)
+        self.edit(keyframes.keyed(self.script, time, self.values, self.limits), is_done=False)
         self.seek(time)
         self.note()
         return time

@@ -141,11 +141,11 @@ def load_settings(path: Path) -> tuple[Settings, str]:
     except FileNotFoundError:
         return settings, ""
     except UserError as error:
-        return settings, f"{error}; all is as at first; {_rename_unusable(path)}"
+        return settings, f"{error}; all is as at first; {rename_unusable(path)}"
     except (ValueError, RecursionError) as error:
         return (
             settings,
-            f"{path}: not valid JSON: {error}; all is as at first; {_rename_unusable(path)}",
+            f"{path}: not valid JSON: {error}; all is as at first; {rename_unusable(path)}",
         )
     accepted = refused.table("", stored, rules.rules_of(Settings).get)
     look = refused.table("look.", accepted.pop("look", {}), rules.rules_of(Look).get)
@@ -160,13 +160,13 @@ def load_settings(path: Path) -> tuple[Settings, str]:
     settings, told = Settings(**accepted, look=Look(**look)), str(refused)
     if not told:
         return settings, ""
-    renamed = _rename_unusable(path)
+    renamed = rename_unusable(path)
     with contextlib.suppress(UserError):  # of a full disk others speak
         save_settings(path, settings)
     return settings, in_one_line(f"{path}: of no use and as at first: {told}; {renamed}")
 
 
-def _rename_unusable(path: Path) -> str:
+def rename_unusable(path: Path) -> str:
     """Give a file of no use another name, and say which; it is written anew on closing."""
     unusable = path.with_name(f"{path.stem}-{time.strftime('%Y%m%d-%H%M%S')}.unusable{path.suffix}")
     try:

@@ -10,7 +10,7 @@ from operator import attrgetter
 
 from ..script import Channel, Pose, Script
 from .control_rows import readable
-from .keys import POSES, SAME, KeyPlace, keys_by_track
+from .keyframes import POSES, SAME, KeyPlace, keys_by_track
 
 TRACKS = "Tracks"
 MOST_LINES = 7  # of a key's values that are told

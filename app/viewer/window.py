@@ -53,7 +53,14 @@ from .question import Question
 from .recovery import Recovery
 from .script_commands import ScriptCommands
 from .session import Session
-from .settings import Look, Settings, load_settings, remove_refused_options, save_settings
+from .settings import (
+    Look,
+    Settings,
+    load_settings,
+    remove_refused_options,
+    rename_unusable,
+    save_settings,
+)
 from .stage import Stage
 from .time_axis import TimeAxis
 from .view import View
@@ -91,6 +98,8 @@ class Viewer:
         self.recovery.find(self.session)
         if look is None:
             refused = remove_refused_options(self.settings.look, scene)
+            if refused and settings_path is not None and not complaint:
+                refused = f"{settings_path}: {refused}; {rename_unusable(settings_path)}"
             complaint = "; ".join(filter(None, (complaint, refused)))
         else:
             self.settings.look = look

@@ -15,7 +15,7 @@ from risorius.app.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.keys import places_of
+from risorius.app.viewer.keyframes import places_of
 from risorius.app.viewer.mouse import SkinDrag
 from risorius.app.viewer.settings import Look
 from risorius.bench import figures

@@ -31,8 +31,8 @@ class Registry(Generic[Product]):
 
     def register(self, name: str, factory: Callable[..., Product]) -> None:
         """Make `factory` known as `name`; raises ValueError if the name is empty or taken."""
-        if not (isinstance(name, str) and name):
-            raise ValueError(f"the name of a {self._kind} must be a word, got {name!r}")
+        if not (isinstance(name, str) and name) or "+" in name:
+            raise ValueError(f"the name of a {self._kind} must be a word without +, got {name!r}")
         if name in self._factories:
             raise ValueError(
                 f"a {self._kind} named {name!r} exists already; taken are {self.available()}"

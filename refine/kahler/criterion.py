@@ -16,6 +16,7 @@ one metre away, still far below the default thresholds.
 """
 
 import reprlib
+from collections.abc import Callable
 from numbers import Real
 from typing import Protocol, runtime_checkable
 
@@ -78,7 +79,14 @@ class Measured(Criterion, Protocol):
 
 criteria: Registry[Criterion] = Registry("criterion")
 """Criteria by name."""
-register_criterion = criteria.register
+
+
+def register_criterion(name: str, factory: Callable[[], Criterion]) -> None:
+    """Make a criterion known by name; raises ValueError if the name is empty or taken.
+
+    `factory`: called without arguments, once for each refiner that asks for the name.
+    """
+    criteria.register(name, factory)
 
 
 class Thresholds:

@@ -45,6 +45,7 @@ scheme is one small class, bound once to the mesh and called once in every frame
 which edges are split and where in the output their points go.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -98,7 +99,14 @@ class Scheme(Protocol):
 
 schemes: Registry[Scheme] = Registry("scheme")
 """Schemes by name."""
-register_scheme = schemes.register
+
+
+def register_scheme(name: str, factory: Callable[..., Scheme]) -> None:
+    """Make a scheme known by name; raises ValueError if the name is empty or taken.
+
+    `factory`: called without arguments, once for each refiner that asks for the name.
+    """
+    schemes.register(name, factory)
 
 
 class FirstLevel(NamedTuple):

@@ -14,7 +14,7 @@ import pytest
 
 from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.keys import places_of
+from risorius.app.viewer.keyframes import places_of
 
 from .driving import (
     NEEDS_A_SCREEN,

@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from risorius.app.script import load_script
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.keys import POSES, KeyPlace, on_frame, places_of
+from risorius.app.viewer.keyframes import POSES, KeyPlace, on_frame, places_of
 from risorius.app.viewer.panel_cache import REFRESH
 
 from .driving import (

@@ -15,10 +15,10 @@ from typing import Any
 from imgui_bundle import imgui
 
 from ...script import Script
-from .. import keys
+from .. import keyframes
 from ..gui import LEFT, MIDDLE, RIGHT, Gui, em
 from ..key_selection import KeySelection, counted
-from ..keys import KeyPlace
+from ..keyframes import KeyPlace
 from ..messages import Message, Messages
 from ..session import Session
 from ..settings import Settings
@@ -100,7 +100,7 @@ class DopeSheet:
         if self._known[0] is not script or self._known[1] != is_open:
             self._known = script, is_open
             self._tracks = visible_tracks(script, is_open=is_open)
-            self._selection.places &= keys.places_of(script)
+            self._selection.places &= keyframes.places_of(script)
 
     def draw(self) -> None:
         """Draw everything, inside the timeline's window."""
@@ -247,7 +247,9 @@ class DopeSheet:
             "keys": lambda: self._move_keys(io, drag),
             "box": lambda: self._select_box(io, drag),
             "scrub": lambda: session.seek(self._snapped(axis.time(x), io)),
-            "end": lambda: session.edit(keys.lasting(drag.script, axis.time(x)), is_done=False),
+            "end": lambda: session.edit(
+                keyframes.lasting(drag.script, axis.time(x)), is_done=False
+            ),
             "pan": lambda: axis.scroll(-axis.seconds(io.mouse_delta.x)),
         }
         if drag.has_moved or drag.doing in ("scrub", "pan"):
@@ -262,14 +264,14 @@ class DopeSheet:
 
     def _snapped(self, time: float, io: Any) -> float:
         """The time of the nearest frame; with Ctrl just that time [s]."""
-        return time if io.key_ctrl else keys.on_frame(time)
+        return time if io.key_ctrl else keyframes.on_frame(time)
 
     def _move_keys(self, io: Any, drag: Drag) -> None:
         time = min(place.time for place in self._grabbed)
         target = time + self._axis.seconds(io.mouse_pos.x - drag.began[0])
         target = min(max(target, 0.0), self._axis.end)  # further right it would not be seen
         offset = self._snapped(target, io) - time
-        script, places = keys.moved(drag.script, drag.selected, offset)
+        script, places = keyframes.moved(drag.script, drag.selected, offset)
         self._session.edit(script, is_done=False)
         self._selection.places = places
         imgui.set_tooltip(f"{time + offset:.2f} s")
@@ -284,7 +286,7 @@ class DopeSheet:
         """The mouse has let go; what there is to say about it."""
         session, line = self._session, None
         if drag.doing == "keys" and drag.has_moved:
-            lost = len(keys.places_of(drag.script)) - len(keys.places_of(session.script))
+            lost = len(keyframes.places_of(drag.script)) - len(keyframes.places_of(session.script))
             line = f"{counted(lost)} replaced; Ctrl+Z brings back" if lost > 0 else None
         elif drag.doing == "keys" and not io.key_shift:
             self._selection.places = self._grabbed
@@ -325,7 +327,7 @@ class PoseNameLine:
         )
         self._gui.remember("pose name")
         if is_entered:
-            script = keys.renamed(self._session.script, self._time, self._name)
+            script = keyframes.renamed(self._session.script, self._time, self._name)
             self._messages.attempt(lambda: self._session.edit(script))
         if is_entered or imgui.is_key_pressed(imgui.Key.escape):
             imgui.close_current_popup()

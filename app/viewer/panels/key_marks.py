@@ -7,7 +7,7 @@ from collections.abc import Collection
 from imgui_bundle import imgui
 
 from ..gui import Theme, colour, em
-from ..keys import KeyPlace
+from ..keyframes import KeyPlace
 from ..time_axis import TimeAxis
 from ..tracks import Track
 from .widgets import shortened

@@ -116,8 +116,9 @@ def test_broken_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
     ("name", "factory", "text"),
     [
         ("kahler", Outside, "named 'kahler' exists already; taken are"),
-        ("", Outside, "must be a word, got ''"),
-        (3, Outside, "must be a word, got 3"),
+        ("", Outside, "must be a word without .*, got ''"),
+        (3, Outside, "must be a word without .*, got 3"),
+        ("a+b", Outside, "must be a word without .*, got 'a.b'"),
         ("broken", 7, "must be callable, got 7"),
     ],
 )

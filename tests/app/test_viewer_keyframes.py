@@ -18,8 +18,8 @@ from risorius.app.script import (
     script_for,
     script_text,
 )
-from risorius.app.viewer import keys
-from risorius.app.viewer.keys import FRAME, POSES, KeyPlace
+from risorius.app.viewer import keyframes
+from risorius.app.viewer.keyframes import FRAME, POSES, KeyPlace
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.time_axis import LEAST_SPAN, TimeAxis
 from risorius.app.viewer.tracks import described, visible_tracks
@@ -56,7 +56,7 @@ def pose_times(script: Script) -> list[float]:
 
 def test_a_moved_key_keeps_everything_but_its_time(hello: Script) -> None:
     """Name, values and easing go along; what is not selected stays."""
-    script, places = keys.moved(hello, [JOY], 0.5)
+    script, places = keyframes.moved(hello, [JOY], 0.5)
     assert places == {KeyPlace(POSES, 1.5)}
     assert pose_times(script) == [0.0, 1.5, 3.0, 4.0]
     assert replace(script.poses[1], time=1.0) == hello.poses[1]
@@ -65,49 +65,49 @@ def test_a_moved_key_keeps_everything_but_its_time(hello: Script) -> None:
 
 def test_moved_keys_stay_in_order_and_after_zero(hello: Script) -> None:
     """A key can pass others; no key comes before 0; beyond the end the script grows."""
-    passed, _ = keys.moved(hello, [JOY], 2.5)
+    passed, _ = keyframes.moved(hello, [JOY], 2.5)
     assert pose_times(passed) == [0.0, 3.0, 3.5, 4.0]
     assert passed.poses[2].name == "joy"
     both = [JOY, KeyPlace("blink", 2.0)]
-    first, places = keys.moved(hello, both, -9.0)
+    first, places = keyframes.moved(hello, both, -9.0)
     assert places == {KeyPlace(POSES, 0.0), KeyPlace("blink", 1.0)}
     assert pose_times(first) == [0.0, 3.0, 4.0]  # it took the place of what was there
-    late, _ = keys.moved(hello, [KeyPlace(POSES, 4.0)], 2.0)
+    late, _ = keyframes.moved(hello, [KeyPlace(POSES, 4.0)], 2.0)
     assert late.duration == 6.0
-    assert keys.moved(hello, [JOY], 0.1)[0].duration == hello.duration
+    assert keyframes.moved(hello, [JOY], 0.1)[0].duration == hello.duration
 
 
 def test_moving_there_and_back_changes_nothing(hello: Script) -> None:
     """All keys later by odd times and back again: the same script, without a crumb."""
-    script, places = hello, keys.places_of(hello)
+    script, places = hello, keyframes.places_of(hello)
     for seconds in (0.1, 0.7, 1.0 / 3.0, -0.1, -1.0 / 3.0, -0.7):
-        script, places = keys.moved(script, places, seconds)
+        script, places = keyframes.moved(script, places, seconds)
     assert replace(script, duration=hello.duration) == hello
 
 
 def test_copies_and_deletions(hello: Script) -> None:
     """A copy is as the key was; deleting it gives the script back; the last key stays."""
-    script, copies = keys.copied(hello, [JOY, KeyPlace("blink", 2.12)], 0.25)
+    script, copies = keyframes.copied(hello, [JOY, KeyPlace("blink", 2.12)], 0.25)
     assert copies == {KeyPlace(POSES, 1.25), KeyPlace("blink", 2.37)}
-    assert keys.places_of(script) == keys.places_of(hello) | copies
-    assert keys.without(script, copies) == hello
-    blinks = {place for place in keys.places_of(hello) if place.track == "blink"}
-    assert keys.without(hello, blinks).tracks == {}
+    assert keyframes.places_of(script) == keyframes.places_of(hello) | copies
+    assert keyframes.without(script, copies) == hello
+    blinks = {place for place in keyframes.places_of(hello) if place.track == "blink"}
+    assert keyframes.without(hello, blinks).tracks == {}
     with pytest.raises(UserError, match="at least one key"):
-        keys.without(hello, keys.places_of(hello))
+        keyframes.without(hello, keyframes.places_of(hello))
 
 
 def test_names_easings_and_the_end(hello: Script) -> None:
     """A name can come and go; an easing is that of the chosen keys; named poses are kept in."""
-    named = keys.renamed(hello, 3.0, "  rest ")
+    named = keyframes.renamed(hello, 3.0, "  rest ")
     assert [pose.name for pose in named.key_poses] == ["joy", "rest"]
-    assert keys.renamed(named, 3.0, "") == hello
-    eased = keys.eased(hello, [JOY, KeyPlace("blink", 2.0)], "hold")
+    assert keyframes.renamed(named, 3.0, "") == hello
+    eased = keyframes.eased(hello, [JOY, KeyPlace("blink", 2.0)], "hold")
     assert eased.poses[1].easing == "hold" == eased.tracks["blink"].keys[0].easing
     assert eased.poses[2].easing == "smooth"
-    assert keys.lasting(hello, 2.0).duration == 2.0
-    assert keys.lasting(named, 2.0).duration == 3.0
-    assert keys.lasting(replace(hello, poses=()), -5.0).duration == pytest.approx(FRAME)
+    assert keyframes.lasting(hello, 2.0).duration == 2.0
+    assert keyframes.lasting(named, 2.0).duration == 3.0
+    assert keyframes.lasting(replace(hello, poses=()), -5.0).duration == pytest.approx(FRAME)
 
 
 def test_a_key_shows_just_the_face_that_was_set(hello: Script, scene: FaceScene) -> None:
@@ -115,7 +115,7 @@ def test_a_key_shows_just_the_face_that_was_set(hello: Script, scene: FaceScene)
     limits = scene.limits
     zero = dict.fromkeys(limits, 0.0)
     wanted = {**zero, "jaw_open": 0.4, "AU4_left": 0.2, "blink": 0.25}
-    script = keys.keyed(hello, 2.12, wanted, limits)
+    script = keyframes.keyed(hello, 2.12, wanted, limits)
     for name, value in wanted.items():
         assert script.at(2.12).get(name, 0.0) == pytest.approx(value, abs=1e-9), name
     script.check(limits)
@@ -123,7 +123,7 @@ def test_a_key_shows_just_the_face_that_was_set(hello: Script, scene: FaceScene)
     assert [key for key in script.tracks["blink"].keys if key.time != 2.12] == [
         key for key in hello.tracks["blink"].keys if key.time != 2.12
     ]
-    again = keys.keyed(hello, 1.0, {**zero, "jaw_open": 0.7}, limits)
+    again = keyframes.keyed(hello, 1.0, {**zero, "jaw_open": 0.7}, limits)
     assert again.poses[1].name == "joy" and again.poses[1].easing == "ease-out"
     assert again.poses[1].values == {"jaw_open": 0.7}
 
@@ -133,7 +133,7 @@ def test_a_key_of_an_unchanged_face_is_what_was_there(hello: Script, scene: Face
     more = "[[pose]]\ntime=0\nblink=0.8\n[[pose]]\ntime=1\n[tracks]\nblink=[{time=0,value=0.9}]"
     script = parse_script(more, source="more.toml")
     shown = {**dict.fromkeys(scene.limits, 0.0), "blink": 1.0}
-    assert keys.keyed(script, 0.0, shown, scene.limits) == script
+    assert keyframes.keyed(script, 0.0, shown, scene.limits) == script
 
 
 def test_a_key_in_a_recording(scene: FaceScene) -> None:
@@ -141,13 +141,13 @@ def test_a_key_in_a_recording(scene: FaceScene) -> None:
     text = "[tracks]\njoy=[{time=0,value=0},{time=2,value=1,easing='linear'}]\n"
     script = parse_script(text + "jaw_open=[{time=0,value=0.5}]", source="take.toml")
     limits, zero = scene.limits, dict.fromkeys(scene.limits, 0.0)
-    changed = keys.keyed(script, 1.0, {**zero, "joy": 0.5, "jaw_open": 0.1}, limits)
+    changed = keyframes.keyed(script, 1.0, {**zero, "joy": 0.5, "jaw_open": 0.1}, limits)
     assert changed.poses == () and changed.tracks["joy"] == script.tracks["joy"]
     assert [(key.time, key.value) for key in changed.tracks["jaw_open"].keys] == [
         (0, 0.5),
         (1, 0.1),
     ]
-    held = keys.keyed(script, 1.0, {**zero, "joy": 0.5, "jaw_open": 0.5}, limits)
+    held = keyframes.keyed(script, 1.0, {**zero, "joy": 0.5, "jaw_open": 0.5}, limits)
     assert len(held.tracks["joy"].keys) == 3 and len(held.tracks["jaw_open"].keys) == 2
     for time in np.linspace(0.0, 2.0, 9):
         assert held.at(time) == pytest.approx(script.at(time))
@@ -158,9 +158,11 @@ def test_edited_scripts_survive_a_file(session: Session, tmp_path: Path) -> None
     session.seek(0.77)
     session.set("jaw_open", 0.123456789)
     session.set_key()
-    script, _ = keys.moved(session.script, [JOY, KeyPlace("blink", 2.0)], 0.07)
-    script, _ = keys.copied(script, keys.places_of(script), 1.0 / 3.0)
-    script = keys.eased(keys.renamed(script, 3.0, 'a "name"\t\x7f'), [KeyPlace(POSES, 3.0)], "hold")
+    script, _ = keyframes.moved(session.script, [JOY, KeyPlace("blink", 2.0)], 0.07)
+    script, _ = keyframes.copied(script, keyframes.places_of(script), 1.0 / 3.0)
+    script = keyframes.eased(
+        keyframes.renamed(script, 3.0, 'a "name"\t\x7f'), [KeyPlace(POSES, 3.0)], "hold"
+    )
     session.edit(script)
     target = tmp_path / "edited.toml"
     session.save_script(target)
@@ -176,7 +178,7 @@ def test_undo_takes_back_an_edit_wherever_one_looks(session: Session) -> None:
     before = session.script
     session.seek(1.0)
     session.note()
-    session.edit(keys.moved(session.script, [JOY], 0.5)[0])
+    session.edit(keyframes.moved(session.script, [JOY], 0.5)[0])
     for time in (0.5, 2.0, 3.0):
         session.seek(time)
         session.note()
@@ -205,10 +207,10 @@ def test_the_face_follows_an_edit_if_it_followed_the_script(session: Session) ->
     """A key that moves away from under the playhead is seen to; a pose by hand stays."""
     session.seek(1.0)
     assert session.values["joy"] == 1.0
-    session.edit(keys.moved(session.script, [JOY], 0.5)[0])
+    session.edit(keyframes.moved(session.script, [JOY], 0.5)[0])
     assert 0.0 < session.values["joy"] < 1.0
     session.set("joy", 0.3)
-    session.edit(keys.moved(session.script, [KeyPlace(POSES, 1.5)], -0.5)[0])
+    session.edit(keyframes.moved(session.script, [KeyPlace(POSES, 1.5)], -0.5)[0])
     assert session.values["joy"] == 0.3
 
 
@@ -216,7 +218,7 @@ def test_keys_cannot_be_changed_while_recording(session: Session) -> None:
     """What is being recorded takes the script's place: a change would be lost."""
     session.toggle_recording()
     with pytest.raises(UserError, match="stop the recording"):
-        session.edit(keys.moved(session.script, [JOY], 0.5)[0])
+        session.edit(keyframes.moved(session.script, [JOY], 0.5)[0])
 
 
 def test_the_file_goes_with_its_script(session: Session, tmp_path: Path) -> None:
