@@ -312,10 +312,12 @@ class Renderer:
         gl.enable(moderngl.BLEND)
         gl.blend_func = _PREMULTIPLYING_BLEND
         gl.fbo.depth_mask = False
-        yield
-        gl.fbo.depth_mask = True
-        gl.depth_func = "<="
-        gl.disable(moderngl.BLEND)
+        try:
+            yield
+        finally:
+            gl.fbo.depth_mask = True
+            gl.depth_func = "<="
+            gl.disable(moderngl.BLEND)
 
     def _camera_view(
         self, camera: OrbitCamera, viewport: Viewport | None, clip: Viewport | None

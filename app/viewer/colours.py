@@ -61,7 +61,7 @@ def tensions(scene: Scene, refiner: refine.Refiner) -> Amounts:
     return np.asarray(np.clip(128.0 + 127.0 * tension / MOST_STRAIN, 0.0, 255.0), np.uint8)
 
 
-@functools.cache
+@functools.lru_cache(maxsize=1)  # the scene that is shown; one before it may go
 def _tension_of(scene: Any) -> refine.Tension:
     return refine.Tension(scene.faces, scene.rest_positions)
 

@@ -16,7 +16,7 @@ A split only ever cuts subtriangles in two. So the triangulation of a sequence h
 line of the triangulation of each sequence that it continues: what is there stays there.
 
 Each edge can be split up to twice: 271 sequences from () to those of length six, and the number of
-its sequence is all that a triangle keeps from one frame to the next. `TRANSITIONS` leads from
+its sequence is all that a triangle keeps from one frame to the next. `transitions` lead from
 sequence and wanted splits to the next sequence:
 
   - Splits taken back leave the sequence from its end. One that is taken back while a later one

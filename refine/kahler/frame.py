@@ -54,21 +54,6 @@ class FrameBuffers(NamedTuple):
     """The output: x y z, nx ny nz, attributes; row v is vertex v."""
 
     @property
-    def once_count(self) -> int:
-        """How many edges are split."""
-        return int(self.counts[ONCE])
-
-    @property
-    def twice_count(self) -> int:
-        """How many edges are split twice."""
-        return int(self.counts[TWICE])
-
-    @property
-    def first_centre(self) -> int:
-        """Output row of the first point in the middle of a triangle."""
-        return int(self.counts[ROWS])
-
-    @property
     def centre_count(self) -> int:
         """How many triangles have a point in the middle."""
         return int(self.counts[CENTRES])

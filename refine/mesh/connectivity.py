@@ -7,7 +7,7 @@ answered here once, as flat index arrays, because the connectivity never changes
              / \          edge e runs from a to b in the direction of its first triangle (a, b, c);
         ac  /   \  bc     the second triangle (b, a, d) runs through it the other way.
            /     \        `points`  row e = a, b, c, d
-          a---e---b        `edge_wings`  row e = the edges ac, bc, ad, bd
+          a---e---b        `wings`  row e = the edges ac, bc, ad, bd
            \     /
         ad  \   /  bd     Edge i of a triangle joins its corners i and i + 1.
              \ /

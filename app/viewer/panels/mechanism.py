@@ -23,11 +23,6 @@ from ..view import View
 from .sliders import Sliders
 from .widgets import heading, hint, muted
 
-# Words that options of refiners may be, asked of the plug-in.
-CHOICES: dict[str, Sequence[str]] = {
-    "scheme": refine.schemes.available(),
-    "criterion": ("normal", "normal+rest", *refine.criteria.available()[1:]),
-}
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
     "Refine": "draw the refined mesh, or the simulated one as it is (R)",
@@ -126,7 +121,7 @@ class MechanismPanel:
                 _keep_in_order(stored, name, slid, scenes)
         elif isinstance(default, str):
             has_finer = can_detail(scene)
-            allowed = [word for word in CHOICES.get(name, ()) if word != DETAIL or has_finer]
+            allowed = [word for word in _choices(name) if word != DETAIL or has_finer]
             if allowed:
                 self._choose(label, str(value), allowed, put)
         elif default is None:
@@ -226,6 +221,14 @@ class MechanismPanel:
 def _label_width() -> float:
     """Where the second column begins, from the left edge of the panel."""
     return float(LABEL_SHARE * imgui.get_window_width())
+
+
+def _choices(option: str) -> tuple[str, ...]:
+    """The words that an option of a refiner may be, those from outside among them."""
+    if option == "scheme":
+        return refine.schemes.available()
+    first, *others = refine.criteria.available()
+    return (first, "normal+rest", *others) if option == "criterion" else ()
 
 
 def _keep_in_order(

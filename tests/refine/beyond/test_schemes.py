@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import refine
+from risorius.refine.kahler.frame import ONCE
 from tests import meshes
 from tests.refine import plain_schemes
 from tests.refine.cases import Needed, as_lists, assert_equals_twin, soups
@@ -209,7 +210,7 @@ def test_scheme_of_somebody_else() -> None:
             """Write middles only."""
             frame.rows[: len(frame.positions), :3] = frame.positions
             frame.rows[: len(frame.positions), 3:6] = frame.normals
-            for e in frame.split_once[: frame.once_count]:
+            for e in frame.split_once[: frame.counts[ONCE]]:
                 a, b = self.edges[e]
                 frame.rows[frame.first_points[e]] = 0.5 * (frame.rows[a] + frame.rows[b])
 
