@@ -37,16 +37,14 @@ class RenderTarget:
         self._is_stale = False
         self.colour = gl.texture(size, 4)
         self.colour.repeat_x = self.colour.repeat_y = False
-        self.depth = gl.depth_texture(size, samples=samples)
+        depth = gl.depth_renderbuffer(size, samples=samples)
         if not samples:
-            self.depth.compare_func = ""
-        if not samples:
-            self.frame = gl.framebuffer([self.colour], self.depth)
+            self.frame = gl.framebuffer([self.colour], depth)
             self._layer = self.frame
             return
         self.frame = gl.framebuffer([self.colour])
         self._layer_colour = gl.texture(size, 4, samples=samples)
-        self._layer = gl.framebuffer([self._layer_colour], self.depth)
+        self._layer = gl.framebuffer([self._layer_colour], depth)
         self._layer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
         self._average_program = compile_program(gl, "average.glsl", f"SAMPLES {samples}")
         self._average_program["layer"] = _UNIT
@@ -74,11 +72,6 @@ class RenderTarget:
         self.is_empty = False
         self._gl.viewport, self._gl.scissor = viewport, part
         self._drawn_on = _apart(self._drawn_on, part)
-
-    def use_depth(self, unit: int) -> None:
-        """Bind the depth of what was drawn on the layer so far to a texture unit."""
-        self._clear_layer()
-        self.depth.use(unit)
 
     def flush(self) -> None:
         """Average the layer onto the frame where it was touched."""

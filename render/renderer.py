@@ -258,10 +258,7 @@ class Renderer:
         program = self._program("surface.glsl", "PIXEL", "COLOURED", *(["SHADOWS"] * bool(shadow)))
         if shadow is not None:
             shadow.set_uniforms(program, view, _SHADOW_UNIT)
-        placed = self._parts.placed(parts, transforms)
-        if self.surface.is_software:
-            placed = self._parts.visible(placed, view, self.surface.target)
-        for buffers, transform in placed:
+        for buffers, transform in self._parts.placed(parts, transforms):
             if self._set_view(program, view, buffers.corners, transform):
                 set_part(program, buffers.part.shine)
                 buffers.draw(program)
