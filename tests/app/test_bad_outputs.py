@@ -27,9 +27,9 @@ def risorius(*arguments: str) -> Result:
 
 
 def told(result: Result) -> str:
-    """The one line that a refusal is."""
+    """The one line that a refusal is, beside the one that says that something is compiled."""
     assert result.exit_code == 2, result.output
-    lines = result.output.splitlines()
+    lines = [line for line in result.output.splitlines() if not line.startswith("Compiling, ")]
     assert len(lines) == 1 and lines[0].startswith("risorius: "), result.output
     return lines[0]
 
