@@ -18,6 +18,7 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
     front = max((part.vertices[:, 2].max() for part in parts if "teeth" in part.name), default=0.0)
 
     def shaded(part: Any) -> Any:
+        """The part itself where it is not of the mouth."""
         if not part.name.startswith(IN_MOUTH):
             return part
         share = np.clip((front - part.vertices[:, 2] - LIT) / (DARK - LIT), 0.0, 1.0)

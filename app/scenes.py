@@ -112,6 +112,7 @@ class FaceScene(Scene):
         return self.simulation.values
 
     def openness(self) -> npt.NDArray[np.uint8] | None:
+        """That of the built-in head's file, or baked now; see `Scene.openness`."""
         head, simulation = self.head, self.simulation
         if len(head.vertices) > MOST_BAKED:  # it wears the same texture, laid out alike
             return assets.load("head").openness

@@ -219,6 +219,7 @@ def _figure(name: str, function: str, help_text: str) -> None:
     @reproduce.command(name, help=help_text)
     @click.option("-o", "--output", type=PATH, default=Path(f"out/{name}.png"), show_default=True)
     def draw(output: Path) -> None:
+        """Draw it and write it as PNG."""
         from risorius.app.files import check_png, save_png
 
         from . import paper_figures

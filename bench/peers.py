@@ -109,6 +109,7 @@ def _vtk(load: Load, target: int, *, is_whole: bool = False) -> Peer:
     triangles = np.zeros((16 * len(load.faces), 3), np.uint32)
 
     def frame(positions: Positions) -> int:
+        """Refine once; return the number of triangles."""
         points.SetData(numpy_to_vtk(np.ascontiguousarray(positions)))
         points.Modified()
         refiner.Update()

@@ -194,6 +194,7 @@ def _scores_of(
     normals = vertex_normals(pose.dense, subject.dense_faces)
 
     def score(method: str, rule: str, budget: float, mesh: Any) -> Score:
+        """Measure one refined mesh against the dense pose."""
         positions, mesh_normals, triangles = mesh[:3]
         found = nearest_points(pose.dense, positions, triangles)
         near = np.einsum("ni,nij->nj", found.weights, mesh_normals[triangles[found.triangle]])

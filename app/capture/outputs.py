@@ -91,6 +91,7 @@ def _frames(target: Path) -> Iterator[FrameSink]:
     with temporary_folder(target, target) as temporary:
 
         def add(image: Image) -> None:
+            """Write the next frame."""
             nonlocal count
             with cannot_be_written(target):
                 PIL.Image.fromarray(image).save(

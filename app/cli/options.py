@@ -26,6 +26,8 @@ def packed(name: str, settings: type[Any], *options: Command) -> Callable[[Comma
     keys = [each.name for each in fields(settings)]
 
     def decorate(command: Command) -> Command:
+        """Pack what is given for these options, and call the command."""
+
         @functools.wraps(command)
         def call(**given: Any) -> Any:
             packed_in = settings(**{key: given.pop(key) for key in keys})
