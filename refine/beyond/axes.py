@@ -84,13 +84,6 @@ def edge_axes(around: Surroundings, frame: FrameBuffers, normals: Floats, axes: 
 
 
 @njit
-def vertex_axes(positions: Doubles, normals: Floats, towards: Unsigned, axes: Floats) -> None:
-    """Write the directions of all vertices, shape (V, 3, 3): up, towards a neighbour, across."""
-    for v in range(positions.shape[0]):
-        write_axes(row_of(normals, v), between(positions, v, towards[v]), axes[v])
-
-
-@njit
 def triangle_axes(
     positions: Doubles, normals: Floats, faces: Unsigned, t: int, shares: Floats, axes: Floats
 ) -> None:

@@ -10,10 +10,9 @@ from ...jit import njit
 from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity
 from .blending import RAMP
-from .curves import CurveScheme
 from .measuring import Measuring, mean_length
 
-HASTE = 0.25
+HASTE = 0.1
 """Share of the first threshold of `bulge` in which a blended point grows. Chosen: a point that is
 half grown costs as much as a whole one; and one that moves by 6 times the change of its bulge, and
 no farther than that threshold, does not pop."""
@@ -25,7 +24,7 @@ class Bulge(Measuring):
     For the schemes that interpolate. What is coarse at rest counts as well, unlike in the paper.
     """
 
-    def __init__(self, once: float = 0.03, twice: float = 0.15, *, turning: float = 0.15) -> None:
+    def __init__(self, once: float = 0.08, twice: float = 0.4, *, turning: float = 0.3) -> None:
         """`once`, `twice`: distances in mean edge lengths of the mesh at rest.
 
         `turning`: the distance that an error of normals of a radian counts that a split would mend,
@@ -36,10 +35,10 @@ class Bulge(Measuring):
 
     def set_scheme(self, scheme: object) -> None:
         """Take the scheme of the refiner; raises ValueError for one without curves."""
-        if not isinstance(scheme, CurveScheme):
+        if not hasattr(scheme, "measure"):
             raise ValueError(
-                'criterion "bulge" measures curved edges: it goes with the schemes "cubic" and '
-                f'"detail", got {type(scheme).__name__}'
+                'criterion "bulge" asks the scheme how far it moves edges, which '
+                f'{type(scheme).__name__} does not tell; normals="refined" does'
             )
         self._scheme = scheme
 
@@ -49,23 +48,16 @@ class Bulge(Measuring):
         """Store the unit of length."""
         super().bind(connectivity, rest_positions, rest_normals)
         self._unit = mean_length(connectivity, rest_positions)
+        self._turns = np.zeros(len(connectivity.edges), dtype=np.float32)
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
-        limits, turns = self.thresholds, self._scheme.turns
-        bulge_sizes(self._scheme.all_bulges(positions, normals), need)
-        if turns is not None and self.turning > 0.0:
-            count_turns(need, turns, np.float32(self.turning) * self._unit)
+        limits = self.thresholds
+        self._scheme.measure(need, self._turns)
+        if self.turning > 0.0:
+            count_turns(need, self._turns, np.float32(self.turning))
         limits.scale(need, self._unit)
         advance_needs(need, np.float32(HASTE) * limits.once / limits.width, RAMP)
-
-
-@njit
-def bulge_sizes(bulges: Floats, sizes: Floats) -> None:
-    """Write how far the middle of every edge bulges, shape (E,)."""
-    for e in range(sizes.shape[0]):
-        x, y, z = bulges[e, 1, 0], bulges[e, 1, 1], bulges[e, 1, 2]
-        sizes[e] = np.sqrt(x * x + y * y + z * z)
 
 
 @njit

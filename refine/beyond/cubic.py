@@ -56,7 +56,7 @@ from ..mesh.vectors import (
     unit,
     write_row,
 )
-from .curves import MIDDLE, NEAR_END, NEAR_START, CurveScheme
+from .curves import MIDDLE, NEAR_END, NEAR_START, CurveScheme, place_on_curves
 
 FULLNESS = np.float32(1.2)
 """How much more than the cubic an inner edge bulges. Triangles between curves are flat, so the best
@@ -127,12 +127,13 @@ class CubicScheme(CurveScheme):
         self._shares = np.zeros((len(mesh.faces), 6), dtype=np.float32)
         weigh_neighbours(mesh, rest_positions, self._across, self._shares)
 
+    def place(self, frame: FrameBuffers) -> None:
+        """Write vertices as they are, and the points of split edges on the curves found before."""
+        place_on_curves(self._around, frame, self._tangents.normals, self._bulges)
+
     def place_centres(self, frame: FrameBuffers) -> None:
         """Raise the points in the middle of triangles as far as the edges around have grown."""
         raise_centres(self._mesh, frame, self._across, self._shares)
-
-    def _vertex_normals(self, frame: FrameBuffers) -> Floats:
-        return self._tangents.normals
 
     def _bulge(self, frame: FrameBuffers) -> Floats:
         mesh, tangents = self._mesh, self._tangents

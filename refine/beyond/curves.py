@@ -22,20 +22,12 @@ import numpy as np
 from ...jit import njit
 from ..border.rows import place_unmoved
 from ..kahler.frame import ONCE, FrameBuffers, buffers_for, split_everywhere
-from ..kahler.smoothing import growth_of_split, mix, write_mean_normal
+from ..kahler.smoothing import mix, write_mean_normal
 from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.vectors import (
     HALF,
-    ONE,
-    TINY,
-    Vector,
-    dot,
-    less,
-    plus,
-    row_of,
-    unit,
-    write_row,
+    ZERO,
 )
 
 QUARTER = np.float32(0.25)
@@ -52,8 +44,9 @@ class CurveScheme:
     """A scheme whose original vertices stay and whose edges are curves; fill in `_bulge`."""
 
     interpolates = True
-    turns: Floats | None = None
-    """How much a split would mend in normals [rad] at every edge, shape (E,), if that is known."""
+    turns: Floats | np.float32 = ZERO
+    """How much a split would mend in normals at every edge, shape (E,), if that is known: the
+    angle [rad] times the length."""
 
     def bind(
         self,
@@ -69,21 +62,25 @@ class CurveScheme:
             connectivity.vertex_count,
         )
 
+    def prepare(self, frame: FrameBuffers) -> None:
+        """Find the bulges of all edges as if each were split once."""
+        self._bulge(
+            self._every_edge._replace(
+                positions=frame.positions, points=frame.points, normals=frame.normals
+            )
+        )
+
     def place(self, frame: FrameBuffers) -> None:
         """Write vertices as they are, and the points of split edges on their curves."""
-        place_on_curves(self._around, frame, self._vertex_normals(frame), self._bulge(frame))
+        place_on_curves(self._around, frame, frame.normals, self._bulge(frame))
 
-    def all_bulges(self, positions: Doubles, normals: Floats) -> Floats:
-        """Bulges of all edges as if each were split once, shape (E, 3, 3): middles are number 1.
+    def measure(self, bulges: Floats, turns: Floats) -> None:
+        """Write how far the middle of every edge stands out if it is split once, shape (E,).
 
-        For criteria that ask how far an edge is from where it should be. The array is the one that
-        `place` uses.
+        And how much that would mend in normals [rad], times a length, if the scheme knows.
         """
-        return self._bulge(self._every_edge._replace(positions=positions, normals=normals))
-
-    def _vertex_normals(self, frame: FrameBuffers) -> Floats:
-        """Return the normals that vertices get in the output, shape (V, 3)."""
-        return frame.normals
+        bulge_sizes(self._bulges, bulges)
+        turns[:] = self.turns
 
     def _bulge(self, frame: FrameBuffers) -> Floats:
         """Return the bulges, shape (E, 3, 3); of edges split once only the middle, if split."""
@@ -91,10 +88,11 @@ class CurveScheme:
 
 
 @njit
-def stand_upright(mean: Vector, d: Vector, share: np.float32) -> Vector:
-    """A normal less a share of its slope along d, of length one."""
-    slope = dot(d, mean) * (share / max(dot(d, d), TINY))
-    return unit(less(mean, slope, d))
+def bulge_sizes(bulges: Floats, sizes: Floats) -> None:
+    """Write how far the middle of every edge bulges, shape (E,)."""
+    for e in range(sizes.shape[0]):
+        x, y, z = bulges[e, MIDDLE, 0], bulges[e, MIDDLE, 1], bulges[e, MIDDLE, 2]
+        sizes[e] = np.sqrt(x * x + y * y + z * z)
 
 
 @njit
@@ -123,14 +121,7 @@ def place_on_curves(
                 full_b = THREE_QUARTERS * at_b + QUARTER * at_a + bulges[e, NEAR_END, i]
                 vertices[near_a, i] = mix(HALF * (at_a + middle), full_a, twice)
                 vertices[near_b, i] = mix(HALF * (at_b + middle), full_b, twice)
-        if around.is_interior[e]:
-            for i in range(4):
-                wing = around.wings[e, i]
-                share = min(share, growth_of_split(frame.splits, frame.growth_once, wing))
-        start, end = (near_a, near_b) if is_twice else (a, b)
-        along = less(row_of(vertices, end), ONE, row_of(vertices, start))
-        mean = plus(row_of(vertices, a, 3), row_of(vertices, b, 3))
-        write_row(vertices, row, stand_upright(mean, along, UPRIGHT * share), 3)
+        write_mean_normal(vertices, a, b, row)
         if is_twice:
             write_mean_normal(vertices, a, row, near_a)
             write_mean_normal(vertices, b, row, near_b)

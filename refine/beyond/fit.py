@@ -76,20 +76,10 @@ class Points(NamedTuple):
         return Points(of_edges.reshape(-1, 4, 3), of_triangles.reshape(-1, 2, 3))
 
 
-class Fit(NamedTuple):
-    """Where points lie on the finer mesh, and what is seen there."""
-
-    places: Points
-    fine_normals: Doubles
-    """Unit normals, stacked."""
-    saved: Floats
-    """What a split of each edge mends, shape (E,) (saved_turns)."""
-
-
 def fit(
     surface: SearchSurface, mesh: Connectivity, positions: Doubles, normals: Floats,
     edges: tuple[Doubles, Doubles], middles: tuple[Doubles, Doubles],
-) -> Fit:  # fmt: skip
+) -> Points:  # fmt: skip
     """Fit everything to the finer mesh `surface`.
 
     `positions`, `normals`: of the coarse mesh at rest, shape (V, 3); `edges`: points of edges to
@@ -103,21 +93,10 @@ def fit(
     centres = middles_of(of_edges, mesh, positions, np.full_like(shares, 1.0 / 3.0))
     start = Points(of_edges, closest_places(surface, centres, corner_ups)[0])
     places = fitted(surface, mesh, positions, start, mesh.vertex_count)
-    where = places.stacked(positions)
-    _, fine_normals = closest_places(surface, where, Points(ups, corner_ups).stacked(normals))
-    fine_normals = fitted_normals(surface, mesh, where, fine_normals, 0)
-    saved = saved_turns(surface, mesh, where, fine_normals)
-
     first_middle = mesh.vertex_count + 4 * len(mesh.edges)
     centres = middles_of(places.of_edges, mesh, positions, shares)
     start = Points(places.of_edges, closest_places(surface, centres, middle_ups)[0])
-    places = fitted(surface, mesh, positions, start, first_middle)
-    _, middle_normals = closest_places(surface, places.of_triangles, middle_ups)
-    fine_normals[first_middle:] = middle_normals.reshape(-1, 3)
-    fine_normals = fitted_normals(
-        surface, mesh, places.stacked(positions), fine_normals, first_middle
-    )
-    return Fit(places, fine_normals, saved)
+    return fitted(surface, mesh, positions, start, first_middle)
 
 
 def middles_of(
@@ -170,52 +149,6 @@ def fitted(
     return Points.unstacked(places, mesh)
 
 
-def fitted_normals(
-    surface: SearchSurface, mesh: Connectivity, places: Doubles, normals: Doubles, first: int
-) -> Doubles:
-    """Return unit normals of vertices and points that fit better, stacked, shape (N, 3).
-
-    `places`: where they are; `normals`: where to begin; `first`: the first that may turn.
-    """
-    whole = mesh.faces[~mesh.is_degenerate].astype(np.int64)
-    if len(whole) == 0:
-        return normals
-    reach = _reach(mesh, places[: mesh.vertex_count])
-    shapes = [(split_everywhere(mesh, *row), 1.0) for row in (TWICE, *ONCE)]
-    shapes.append((whole, UNSPLIT))
-    corners, weights, residuals = _residuals(
-        surface, places, shapes, reach, surface.normals, normals
-    )
-    stiffness = np.full((len(normals), 1), NORMAL_STIFFNESS)
-    stiffness[: mesh.vertex_count] = CORNER_STIFFNESS
-    turned = normals.copy()
-    turned[first:] += _solved(
-        corners - first, weights, residuals, len(normals) - first, stiffness[first:]
-    )
-    lengths = np.linalg.norm(turned, axis=1, keepdims=True)
-    return np.where(lengths > LOST, turned / np.maximum(lengths, LOST), normals)
-
-
-def saved_turns(
-    surface: SearchSurface, mesh: Connectivity, places: Doubles, normals: Doubles
-) -> Floats:
-    """Return how much a split of each edge saves of the errors of normals [rad], shape (E,).
-
-    The root of the squared angles that all finer vertices are off, before less after, each a third
-    for every edge of the triangle that it is closest to, over the finer vertices of an edge. The
-    very closest triangle counts, as for who looks at it: coarse lips that touch show through.
-    """
-    whole = mesh.faces[~mesh.is_degenerate].astype(np.int64)
-    saved = np.zeros(len(mesh.edges))
-    if len(whole) == 0:
-        return saved.astype(np.float32)
-    nearest, before = _squared_angles(surface, places, normals, whole)
-    _, after = _squared_angles(surface, places, normals, split_everywhere(mesh, CONFIGURATIONS, 13))
-    by_triangle = np.maximum(np.bincount(nearest, before - after, len(whole)), 0.0)
-    np.add.at(saved, mesh.triangle_edges[~mesh.is_degenerate], by_triangle[:, None] / 3.0)
-    return np.sqrt(saved * len(saved) / len(surface.positions)).astype(np.float32)
-
-
 def split_everywhere(mesh: Connectivity, patterns: Patterns, row: int) -> Wide:
     """All triangles cut like one row of a table, of stacked points, shape (K, 3)."""
     proper = np.flatnonzero(~mesh.is_degenerate)
@@ -259,18 +192,6 @@ def _residuals(
         terms.append((corners, scale * weights, scale * missing))
     corners, weights, residuals = (np.concatenate(part) for part in zip(*terms, strict=True))
     return corners, weights, residuals
-
-
-def _squared_angles(
-    surface: SearchSurface, places: Doubles, normals: Doubles, triangles: Wide
-) -> tuple[Wide, Doubles]:
-    """The triangle that is closest to each finer vertex, and how far the normal there is off."""
-    refined = SearchSurface(places, triangles.astype(np.uint32))
-    hit, weights = refined.closest(surface.positions, np.zeros_like(surface.positions))
-    drawn = np.einsum("nk,nki->ni", weights, normals[triangles[hit]])
-    drawn /= np.maximum(np.linalg.norm(drawn, axis=1, keepdims=True), LOST)
-    cosines = np.einsum("ni,ni->n", drawn, surface.normals)
-    return hit, np.arccos(np.clip(cosines, -1.0, 1.0)) ** 2
 
 
 def _solved(

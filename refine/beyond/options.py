@@ -23,6 +23,7 @@ from ..kahler.smoothing import Scheme, schemes
 from .blending import Blended
 from .detail import FinerMesh
 from .measuring import Maximum
+from .surface_normals import RefinedNormals
 
 
 def create_kahler(
@@ -35,6 +36,7 @@ def create_kahler(
     scheme: str | Scheme = "loop",
     detail: FinerMesh | None = None,
     blend: bool | None = None,
+    normals: str | None = None,
     coherent: bool = False,
     **values: Unpack[Values],
 ) -> Kahler:
@@ -48,10 +50,13 @@ def create_kahler(
     - `detail`: for "detail" the finer mesh at rest, its positions and its triangles.
     - `blend`: whether points grow out of their edges, so that nothing pops. None, the default,
       chooses True for the schemes that interpolate, and False for the paper's.
+    - `normals`: "linear", between the ends of an edge, as in the paper; or "refined", those of the
+      refined surface. None, the default, chooses "linear" for the paper's scheme, and "refined" for
+      those that interpolate.
     - `coherent`: whether triangulations continue those of the frame before (section 4.4).
     - `values`: `uv`, `face_uv` and `attributes`, as `create` takes them.
     """
-    chosen = scheme_of(scheme, detail)
+    chosen = with_normals(scheme_of(scheme, detail), normals)
     decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))
     for name, flag in (("blend", blend), ("coherent", coherent)):
         if flag not in (None, True, False):
@@ -90,6 +95,14 @@ def scheme_of(chosen: str | Scheme, detail: FinerMesh | None) -> Scheme:
             f"scheme must be one of {schemes.available()} or a refine.Scheme, got {chosen!r}"
         )
     return chosen
+
+
+def with_normals(chosen: Scheme, normals: str | None) -> Scheme:
+    """Return the scheme, showing the normals of its own surface if they are asked for."""
+    if normals not in (None, "linear", "refined"):
+        raise ValueError(f'normals must be "linear" or "refined", got {normals!r}')
+    is_refined = chosen.interpolates if normals is None else normals == "refined"
+    return RefinedNormals(chosen) if is_refined else chosen
 
 
 def criterion_of(

@@ -63,7 +63,9 @@ class Kahler(BoundRefiner):
         self._splits.flags.writeable = False
         if hasattr(self._criterion, "set_scheme"):
             self._criterion.set_scheme(self._scheme)
-        self._own(self._criterion, self._scheme, *getattr(self._criterion, "criteria", ()))
+        inner = getattr(self._scheme, "scheme", self._scheme)
+        self._own(self._criterion, inner, *getattr(self._criterion, "criteria", ()))
+        self._prepares = hasattr(self._scheme, "prepare")
         self._find_normals()
         self._criterion.bind(mesh, self._rest_positions, self._normals)
         self._scheme.bind(mesh, self._rest_positions, self._normals)
@@ -80,6 +82,8 @@ class Kahler(BoundRefiner):
 
     def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         self._find_normals()
+        if self._prepares:
+            self._scheme.prepare(self._frame)  # type: ignore[attr-defined]
         self._mark(view)
         vertex_count, triangle_count = self._number()
         out = self._reserve(stream, vertex_count, triangle_count)

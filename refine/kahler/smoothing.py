@@ -77,8 +77,11 @@ MIDDLE_RING = np.float32(1 / 16)
 class Scheme(Protocol):
     """Places points; anything with these members can take the place of the built-in schemes.
 
-    One more is used where it is there: `place_centres(frame)`, which corrects the points in the
-    middle of triangles after blending has written them.
+    More methods are used where they are there. `prepare(frame)` is called before the criterion
+    decides. `measure(bulges, turns)` tells the criterion `bulge` how far a split would move the
+    middle of every edge, and by what angle [rad], times the length of the edge, it would turn
+    the normal there, both of shape (E,). `place_centres(frame)` corrects the points in the middle
+    of triangles after blending has written them.
     """
 
     @property
