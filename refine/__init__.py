@@ -105,9 +105,9 @@ __all__ = [
     "weld",
 ]
 
-register("none", PassThrough)
 register("kahler", create_kahler)
 register("loop", Loop)
+register("none", PassThrough)
 register_criterion("normal", NormalDrop)
 register_criterion("curvature", Curvature)
 register_criterion("rest", RestCurvature)

@@ -84,10 +84,11 @@ def scheme_of(chosen: str | Scheme, detail: FinerMesh | None) -> Scheme:
             f"scheme={chosen!r} and detail {'given' if detail is not None else 'not given'}"
         )
     if isinstance(chosen, str):
-        return schemes.find(chosen)(*([] if detail is None else [detail]))
-    if isinstance(chosen, type) or not (hasattr(chosen, "bind") and hasattr(chosen, "place")):
+        chosen = schemes.find(chosen)(*([] if detail is None else [detail]))
+    if isinstance(chosen, type) or not _has(chosen, "bind", "place", "interpolates"):
         raise ValueError(
-            f"scheme must be one of {schemes.available()} or a refine.Scheme, got {chosen!r}"
+            f"scheme must be one of {schemes.available()} or an object with bind, place and "
+            f"interpolates, got {chosen!r}"
         )
     return chosen
 
@@ -99,13 +100,17 @@ def criterion_of(
     if isinstance(chosen, str) and "+" in chosen:
         chosen = chosen.split("+")
     if isinstance(chosen, str):
-        return normal_drop if chosen == "normal" else criteria.find(chosen)()
+        chosen = normal_drop if chosen == "normal" else criteria.find(chosen)()
     if isinstance(chosen, Sequence):
         if any(isinstance(one, Sequence) and not isinstance(one, str) for one in chosen):
             raise ValueError("criterion: a list must hold names and objects, not other lists")
         return Maximum([criterion_of(one, normal_drop) for one in chosen])
-    if isinstance(chosen, type) or not (hasattr(chosen, "bind") and hasattr(chosen, "mark")):
+    if isinstance(chosen, type) or not _has(chosen, "bind", "mark"):
         raise ValueError(
             f"criterion must be a name, an object with bind and mark, or a list, got {chosen!r}"
         )
     return chosen
+
+
+def _has(thing: object, *members: str) -> bool:
+    return all(hasattr(thing, member) for member in members)

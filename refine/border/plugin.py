@@ -61,7 +61,14 @@ class Origins(NamedTuple):
     vertices: npt.NDArray[np.int32]
     """Input vertices, shape (N, 3)."""
     weights: npt.NDArray[np.float32]
-    """Their barycentric weights, shape (N, 3): quarters, or thirds in the middle of a triangle."""
+    """Their barycentric weights, shape (N, 3): any that are not negative and add up to one."""
+
+    def followed_by(self, vertices: npt.ArrayLike, weights: npt.ArrayLike) -> "Origins":
+        """Return these, and after them those of more output vertices, each of shape (K, 3)."""
+        return Origins(
+            np.concatenate([self.vertices, np.asarray(vertices, dtype=np.int32)]),
+            np.concatenate([self.weights, np.asarray(weights, dtype=np.float32)]),
+        )
 
 
 class Stream(Protocol):
@@ -100,7 +107,7 @@ class Refiner(Protocol):
     @property
     @abstractmethod
     def splits(self) -> npt.NDArray[np.uint8]:
-        """How often each edge was split in the last frame, 0, 1 or 2, shape (E,)."""
+        """How often each edge was split in the last frame, shape (E,): s for 2^s sub-edges."""
 
     @property
     @abstractmethod

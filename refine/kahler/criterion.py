@@ -77,7 +77,7 @@ class Measured(Criterion, Protocol):
         """
 
 
-criteria: Registry[Criterion] = Registry("criterion")
+criteria: Registry[Criterion] = Registry("criterion", "risorius.criteria")
 """Criteria by name."""
 
 

@@ -97,7 +97,7 @@ class Scheme(Protocol):
         """Write positions and normals of vertices and of points on split edges into the rows."""
 
 
-schemes: Registry[Scheme] = Registry("scheme")
+schemes: Registry[Scheme] = Registry("scheme", "risorius.schemes")
 """Schemes by name."""
 
 
