@@ -62,7 +62,7 @@ class DrawnMesh:
         """Hand over what was refined last, and how far the scene's vertices wrinkle."""
         assert self.mesh is not None
         rows = None if wrinkling is None else on_rows(wrinkling, self.refiner)
-        self.stream.upload(len(self.mesh.positions), len(self.mesh.triangles), rows)
+        self.stream.upload(self.mesh.vertex_count, self.mesh.triangle_count, rows)
 
     @property
     def has_uv(self) -> bool:

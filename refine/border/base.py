@@ -9,7 +9,6 @@ Source: the plug-in of Kähler, Haber, Seidel 2003, Fig. 1.
 from abc import abstractmethod
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Unpack
 from weakref import WeakValueDictionary
 
 import numpy as np
@@ -25,7 +24,7 @@ from ..mesh.validation import (
     not_finite,
     round_finite,
 )
-from .corner_values import Values, checked_corner_values
+from .corner_values import AttributeLike, checked_corner_values
 from .plugin import Origins, RefinedMesh, Refiner, Stream, View
 from .rows import GEOMETRY_COLUMNS, wedge_values, write_wedges
 from .stream import OwnStream, StreamArrays, check_lent
@@ -60,12 +59,17 @@ class BaseRefiner(Refiner):
         self,
         faces: npt.ArrayLike,
         rest_positions: npt.ArrayLike,
-        **values: Unpack[Values],
+        *,
+        uv: npt.ArrayLike | None = None,
+        face_uv: npt.ArrayLike | None = None,
+        attributes: Mapping[str, AttributeLike] | None = None,
     ) -> None:
-        """Check and connect (see `registry.create`); `values`: as a subclass was handed them."""
+        """Check and connect (see `registry.create`); a subclass hands the `refine.Values` on."""
         positions = checked_positions(rest_positions)
         triangles = checked_indices("faces", faces, len(positions), "rest_positions")
-        self._values = checked_corner_values(triangles, len(positions), **values)
+        self._values = checked_corner_values(
+            triangles, len(positions), uv=uv, face_uv=face_uv, attributes=attributes
+        )
         corners = None if self._values is None else self._values.corners
         self.connectivity = connect(triangles, len(positions), corners)
         if self._values is not None:

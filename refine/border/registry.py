@@ -124,12 +124,14 @@ def parameters(name: str) -> tuple[inspect.Parameter, ...]:
 
     Types are as they are written where that is text that cannot be looked up.
     """
-    factory = refiners.find(name)
+    return tuple(_options(_signature(refiners.find(name))))
+
+
+def _signature(factory: Callable[..., Refiner]) -> inspect.Signature:
     try:
-        signature = inspect.signature(factory, eval_str=True)
+        return inspect.signature(factory, eval_str=True)
     except (NameError, AttributeError, SyntaxError, TypeError):  # of imports for type checkers only
-        signature = inspect.signature(factory)
-    return tuple(_options(signature))
+        return inspect.signature(factory)
 
 
 def _options(signature: inspect.Signature) -> Iterator[inspect.Parameter]:
@@ -142,7 +144,7 @@ def _options(signature: inspect.Signature) -> Iterator[inspect.Parameter]:
 
 
 def _check_options(name: str, factory: Callable[..., Refiner], options: dict[str, Any]) -> None:
-    signature = inspect.signature(factory)
+    signature = _signature(factory)
     allowed = {parameter.name for parameter in _options(signature)}
     for parameter in signature.parameters.values():
         if parameter.kind is parameter.VAR_KEYWORD:
