@@ -42,7 +42,7 @@ from .border.base import BaseRefiner
 from .border.checker import BrokenMeshError, check
 from .border.corner_values import Values
 from .border.plugin import Origins, RefinedMesh, Refiner, Stream, View
-from .border.registry import available, create, parameters, refiners, register
+from .border.registry import Registry, available, create, parameters, refiners, register
 from .border.stream import StreamArrays
 from .kahler.coherence import Coherent
 from .kahler.criterion import (
@@ -87,6 +87,7 @@ __all__ = [
     "PassThrough",
     "RefinedMesh",
     "Refiner",
+    "Registry",
     "RestCurvature",
     "Scheme",
     "ScreenEdge",

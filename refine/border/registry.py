@@ -85,6 +85,8 @@ def register(name: str, factory: Callable[..., Refiner]) -> None:
     """Make a refiner known to `create`; raises ValueError if the name is empty or taken.
 
     `factory`: called as factory(faces, rest_positions, uv=..., face_uv=..., **options).
+
+    An installed package announces an entry point of group `risorius.refiners` instead.
     """
     refiners.register(name, factory)
 
