@@ -62,7 +62,7 @@ class DrawnMesh:
         """Hand over what was refined last, and how far the scene's vertices wrinkle."""
         assert self.mesh is not None
         rows = None if wrinkling is None else on_rows(wrinkling, self.refiner)
-        self.stream.upload(len(self.mesh.positions), len(self.mesh.triangles), rows)
+        self.stream.upload(self.mesh.vertex_count, self.mesh.triangle_count, rows)
 
     @property
     def has_uv(self) -> bool:
@@ -143,7 +143,7 @@ def texture_of(scene: Scene, renderer: render.Renderer) -> render.Texture | None
 
 
 def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> npt.NDArray[np.uint8]:
-    """For each drawn triangle, how many splits (0..6) its source triangle's edges have."""
+    """For each drawn triangle, how many splits its source triangle's edges have."""
     splits: npt.NDArray[np.uint8] = refiner.splits[refiner.triangle_edges].sum(
         axis=1, dtype=np.uint8
     )

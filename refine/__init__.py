@@ -8,13 +8,15 @@ Visual Computer 2003. The package stands alone: it needs numpy and numba and not
     draw(mesh.positions, mesh.normals, mesh.triangles)
 
 Refiners by name: `none` hands the mesh through, `kahler` is the paper's, `loop` subdivides the
-whole mesh once or twice for comparison. `refine(positions, out=stream)` writes straight into lent
-arrays. `Tension` measures how far the skin is stretched. `check` is for tests: it names the
-relation that a refined mesh breaks.
+whole mesh for comparison. `refine(positions, out=stream)` writes straight into lent arrays.
+`Tension` measures how far the skin is stretched. `check` is for tests: it names the relation that a
+refined mesh breaks.
 
 `kahler` does what the paper says unless it is told otherwise: `scheme` says where points go,
 `criterion` which edges are split, `blend` that nothing pops, `coherent` that no triangulation
-turns, `attributes` what rides along.
+turns, `attributes` what rides along. Schemes, criteria and refiners of somebody else join by name:
+`register_scheme`, `register_criterion`, `register`, or an entry point; `BaseRefiner` is to derive
+from.
 
 One room for each subject; each may import from those above it, and jit.py, which compiles it all:
 
@@ -36,9 +38,12 @@ from .beyond.detail import DetailScheme
 from .beyond.measuring import Maximum
 from .beyond.options import create_kahler
 from .beyond.view_dependent import ScreenEdge, Silhouette
+from .border.base import BaseRefiner
 from .border.checker import BrokenMeshError, check
+from .border.corner_values import Values
 from .border.plugin import Origins, RefinedMesh, Refiner, Stream, View
-from .border.registry import available, create, parameters, register
+from .border.registry import Registry, available, create, parameters, refiners, register
+from .border.stream import StreamArrays
 from .kahler.coherence import Coherent
 from .kahler.criterion import (
     THRESHOLD_ONCE,
@@ -63,6 +68,7 @@ from .strain.tension import Tension, TensionMap
 __all__ = [
     "THRESHOLD_ONCE",
     "THRESHOLD_TWICE",
+    "BaseRefiner",
     "Blended",
     "BrokenMeshError",
     "Bulge",
@@ -81,14 +87,17 @@ __all__ = [
     "PassThrough",
     "RefinedMesh",
     "Refiner",
+    "Registry",
     "RestCurvature",
     "Scheme",
     "ScreenEdge",
     "Shortening",
     "Silhouette",
     "Stream",
+    "StreamArrays",
     "Tension",
     "TensionMap",
+    "Values",
     "View",
     "available",
     "check",
@@ -97,6 +106,7 @@ __all__ = [
     "create_kahler",
     "criteria",
     "parameters",
+    "refiners",
     "register",
     "register_criterion",
     "register_scheme",
@@ -105,9 +115,9 @@ __all__ = [
     "weld",
 ]
 
-register("none", PassThrough)
 register("kahler", create_kahler)
 register("loop", Loop)
+register("none", PassThrough)
 register_criterion("normal", NormalDrop)
 register_criterion("curvature", Curvature)
 register_criterion("rest", RestCurvature)

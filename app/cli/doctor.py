@@ -6,6 +6,7 @@ import enum
 import os
 import platform
 import subprocess
+from typing import Any
 
 from risorius import __version__, render
 
@@ -37,7 +38,7 @@ def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
     ]
     if not offscreen_only:
         works["films"], answer = _films()
-        lines.append(f"films: {answer}")
+        lines += [f"films: {answer}", *_names()]
     lines = [in_one_line(line) for line in lines + _verdicts(works)]
     if all(works.values()):
         return Health.WHOLE, lines
@@ -63,6 +64,25 @@ def _verdicts(works: dict[str, bool]) -> list[str]:
         else "Everything is there."
     )
     return verdicts
+
+
+def _names() -> list[str]:
+    """What can be named in options of refinement, and what of it cannot be loaded."""
+    from risorius import refine  # slow, and not needed for offscreen frames alone
+
+    known: dict[str, refine.Registry[Any]] = {
+        "refiners": refine.refiners,
+        "schemes": refine.schemes,
+        "criteria": refine.criteria,
+    }
+    lines = [f"{kind}: {', '.join(each.available())}" for kind, each in known.items()]
+    for each in known.values():
+        for name in each.installed():
+            try:
+                each.find(name)
+            except ValueError as error:
+                lines.append(str(error))
+    return lines
 
 
 def _films() -> tuple[bool, str]:

@@ -119,13 +119,14 @@ with_drawing = packed(
         "refiner_settings",
         multiple=True,
         metavar="NAME=VALUE",
-        help="Of the refiner: scheme=cubic, criterion=bulge, threshold_once=0.01, ...",
+        help="Of the refiner: scheme=cubic, criterion=bulge, threshold_once=0.01, ... "
+        "(risorius doctor lists schemes and criteria).",
     ),
     click.option(
         "--refiner",
         default="kahler",
         show_default=True,
-        help="Refine plug-in; none draws the mesh as it is.",
+        help="Refine plug-in (risorius doctor lists them); none draws the mesh as it is.",
     ),
 )
 

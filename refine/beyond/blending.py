@@ -110,7 +110,7 @@ class Blended(Kahler):
         frame = self._frame
         self._pass_view(view)
         self._criterion.measure(frame.positions, frame.normals, self._need)
-        grow(self._need, self._edge_splits, frame.growth_once, frame.growth_twice)
+        grow(self._need, self.edge_splits, frame.growth_once, frame.growth_twice)
 
     def _number(self) -> tuple[int, int]:
         """Number the points in the middle of triangles after all others."""
@@ -128,13 +128,10 @@ class Blended(Kahler):
 
     def origins(self) -> Origins:
         """Say for every vertex of the last frame where it lies on the input mesh."""
-        mesh, others = self.connectivity, super().origins()
+        mesh = self.connectivity
         centres = self._frame.centre_triangles[: self._frame.centre_count]
-        thirds = np.full((len(centres), 3), 1.0 / 3.0, dtype=np.float32)
-        corners = mesh.wedge_vertices[mesh.corners[centres]].astype(np.int32)
-        return Origins(
-            np.concatenate([others.vertices, corners]), np.concatenate([others.weights, thirds])
-        )
+        corners = mesh.wedge_vertices[mesh.corners[centres]]
+        return super().origins().followed_by(corners, np.full(corners.shape, 1.0 / 3.0))
 
 
 @njit

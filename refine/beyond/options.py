@@ -44,9 +44,11 @@ def create_kahler(
 
     - `threshold_once`, `threshold_twice`: drop of the normals' dot product above which an edge is
       split once or twice, for the paper's criterion, "normal".
-    - `criterion`: "normal", "curvature", "rest", "silhouette", "screen", "bulge", an object, or a
-      list of them, of which the one counts that asks for most; "normal+rest" is such a list.
-    - `scheme`: "loop", the paper's, "cubic", "detail", or an object.
+    - `criterion`: "normal", "curvature", "rest", "silhouette", "screen", "bulge", another name of
+      `refine.criteria`, an object, or a list of them, of which the one counts that asks for most;
+      "normal+rest" is such a list.
+    - `scheme`: "loop", the paper's, "cubic", "detail", another name of `refine.schemes`, or an
+      object.
     - `detail`: for "detail" the finer mesh at rest, its positions and its triangles.
     - `blend`: whether points grow out of their edges, so that nothing pops. None, the default,
       chooses True for the schemes that interpolate, and False for the paper's.
@@ -89,10 +91,11 @@ def scheme_of(chosen: str | Scheme, detail: FinerMesh | None) -> Scheme:
             f"scheme={chosen!r} and detail {'given' if detail is not None else 'not given'}"
         )
     if isinstance(chosen, str):
-        return schemes.find(chosen)(*([] if detail is None else [detail]))
-    if isinstance(chosen, type) or not (hasattr(chosen, "bind") and hasattr(chosen, "place")):
+        chosen = schemes.find(chosen)(*([] if detail is None else [detail]))
+    if isinstance(chosen, type) or not _has(chosen, "bind", "place", "interpolates"):
         raise ValueError(
-            f"scheme must be one of {schemes.available()} or a refine.Scheme, got {chosen!r}"
+            f"scheme must be one of {schemes.available()} or an object with bind, place and "
+            f"interpolates, got {chosen!r}"
         )
     return chosen
 
@@ -112,13 +115,17 @@ def criterion_of(
     if isinstance(chosen, str) and "+" in chosen:
         chosen = chosen.split("+")
     if isinstance(chosen, str):
-        return normal_drop if chosen == "normal" else criteria.find(chosen)()
+        chosen = normal_drop if chosen == "normal" else criteria.find(chosen)()
     if isinstance(chosen, Sequence):
         if any(isinstance(one, Sequence) and not isinstance(one, str) for one in chosen):
             raise ValueError("criterion: a list must hold names and objects, not other lists")
         return Maximum([criterion_of(one, normal_drop) for one in chosen])
-    if isinstance(chosen, type) or not (hasattr(chosen, "bind") and hasattr(chosen, "mark")):
+    if isinstance(chosen, type) or not _has(chosen, "bind", "mark"):
         raise ValueError(
             f"criterion must be a name, an object with bind and mark, or a list, got {chosen!r}"
         )
     return chosen
+
+
+def _has(thing: object, *members: str) -> bool:
+    return all(hasattr(thing, member) for member in members)

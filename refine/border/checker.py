@@ -2,7 +2,8 @@
 
 It goes from counts to references to geometry, uses nothing of the way a mesh was made except the
 refiner's own account of where its vertices come from (`origins`), and names the first relation that
-is broken. For tests, and for authors of refiners; far too slow for every frame.
+is broken. Any number of levels will do, and points anywhere on edges or inside triangles. For
+tests, and for authors of refiners; far too slow for every frame.
 
 The relations (Kähler, Haber, Seidel 2003, sections 3 and 4.3, Fig. 7 for the cracks):
   - every input triangle is covered exactly, by subtriangles of its own orientation, in the plane of
@@ -16,15 +17,30 @@ The relations (Kähler, Haber, Seidel 2003, sections 3 and 4.3, Fig. 7 for the c
 A triangle of the input that names a vertex twice takes part in none of this; it comes out once.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
-from ..mesh.arrays import Flags, Floats, Indices, Wide
+from ..mesh.arrays import Flags, Indices, Wide
 from .plugin import Origins, RefinedMesh, Refiner
 
-PARTS = 12
-"""Points of the refined mesh lie at quarters of the edges of the input (section 4.1), or in the
-middle of a triangle: all are whole twelfths."""
+PARTS = 2**9 * 3**2 * 5 * 7
+"""Places are rounded to a lattice of so many parts along an edge, so that equal ones are equal.
+
+Nine levels of halving are whole parts, and so are thirds, fifths, sevenths and ninths of most of
+them: these may come with what weights in single precision lose. Other places are told apart where
+they are a part or more away from each other, and have to come with the same weights from all sides.
+"""
+
+
+class _Places(NamedTuple):
+    """Where output vertices lie on the input mesh, the same for equal places."""
+
+    vertices: Wide
+    """Input vertices in rising order, shape (N, 3); -1 where one has no part."""
+    parts: Wide
+    """Their parts, which add up to `PARTS`, shape (N, 3)."""
 
 
 class BrokenMeshError(ValueError):
@@ -37,9 +53,11 @@ def check(refiner: Refiner, mesh: RefinedMesh, positions: npt.NDArray[np.floatin
     `mesh`: what `refiner.refine(positions)` returned, still of its last frame; `positions`: the
     deformed vertex positions, shape (V, 3). Returns nothing and changes nothing.
     """
+    mesh = RefinedMesh._make(getattr(mesh, name) for name in RefinedMesh._fields)  # fetched once
     origins = refiner.origins()
     _check_arrays(mesh, origins, len(positions), len(refiner.triangle_edges))
-    points = _number_places(origins)
+    places = _rounded(origins)
+    points = _number_places(places, mesh)
     _check_same_places(mesh, points)
 
     faces = _input_faces(refiner)
@@ -47,10 +65,10 @@ def check(refiner: Refiner, mesh: RefinedMesh, positions: npt.NDArray[np.floatin
     _check_sources(mesh, proper)
     rows = np.flatnonzero(proper[mesh.source])
     triangles, source = mesh.triangles[rows].astype(np.int64), mesh.source[rows]
-    corners = _places_in_source(origins, triangles, faces[source])
+    corners = _places_in_source(places, triangles, faces[source])
     _check_cover(corners, source, np.flatnonzero(proper), rows)
     _check_sub_edges(points[triangles], corners, source, refiner)
-    _check_unmoved(refiner, mesh, origins, positions)
+    _check_unmoved(refiner, mesh, places, positions)
 
 
 def _check_arrays(mesh: RefinedMesh, origins: Origins, vertex_count: int, face_count: int) -> None:
@@ -96,27 +114,30 @@ def _input_faces(refiner: Refiner) -> Wide:
     return faces
 
 
-def _number_places(origins: Origins) -> Wide:
-    """Number equal places on the input mesh alike, shape (N,)."""
-    vertices = np.where(origins.weights > 0.0, origins.vertices, -1)
+def _rounded(origins: Origins) -> _Places:
+    """Places in whole parts."""
+    _require_all(
+        abs(origins.weights.sum(axis=1, dtype=np.float64) - 1.0) < 1e-5,
+        "origins have weights that add up to one",
+    )
+    parts = np.rint(origins.weights * float(PARTS)).astype(np.int64)
+    _require_all((parts >= 0).all(axis=1), "origins have no weights below zero")
+    vertices = np.where(parts > 0, origins.vertices, -1).astype(np.int64)
     order = np.argsort(vertices, axis=1)
     vertices = np.take_along_axis(vertices, order, axis=1)
-    parts = np.take_along_axis(_in_parts(origins.weights), order, axis=1)
-    # The middle of a triangle is one point of one triangle, even if another has the same corners.
-    is_middle = (parts > 0).all(axis=1)
-    own_number = np.where(is_middle, np.arange(len(parts)), -1)
-    rows = np.column_stack([vertices, parts, own_number])
+    parts = np.take_along_axis(parts, order, axis=1)
+    parts[np.arange(len(parts)), parts.argmax(axis=1)] += PARTS - parts.sum(axis=1)
+    return _Places(vertices, parts)
+
+
+def _number_places(places: _Places, mesh: RefinedMesh) -> Wide:
+    """Number equal places on the input mesh alike, shape (N,)."""
+    # A point inside a triangle is one of this triangle, even if another has the same corners.
+    is_inside = (places.parts > 0).all(axis=1)
+    source = np.full(len(mesh.positions), -1, dtype=np.int64)
+    source[mesh.triangles] = mesh.source[:, None]
+    rows = np.column_stack([*places, np.where(is_inside, source, -1)])
     return np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
-
-
-def _in_parts(weights: Floats) -> Wide:
-    parts = np.rint(weights * PARTS).astype(np.int64)
-    exact = (abs(parts - weights * PARTS) < 1e-5) & (parts >= 0)
-    _require_all(
-        exact.all(axis=1) & (parts.sum(axis=1) == PARTS),
-        "origins have weights in twelfths that add up to one",
-    )
-    return parts
 
 
 def _check_same_places(mesh: RefinedMesh, points: Wide) -> None:
@@ -140,21 +161,20 @@ def _check_sources(mesh: RefinedMesh, proper: Flags) -> None:
     )
 
 
-def _places_in_source(origins: Origins, triangles: Wide, source_faces: Wide) -> Wide:
+def _places_in_source(places: _Places, triangles: Wide, source_faces: Wide) -> Wide:
     """Corners of subtriangles in parts of their source's coordinates, shape (M, 3, 3)."""
-    parts = _in_parts(origins.weights)[triangles]
-    vertices = origins.vertices[triangles]
-    is_corner = vertices[..., None] == source_faces[:, None, None, :]
-    places = (parts[..., None] * is_corner).sum(axis=2)
+    is_corner = places.vertices[triangles][..., None] == source_faces[:, None, None, :]
+    corners = (places.parts[triangles][..., None] * is_corner).sum(axis=2)
     _require_all(
-        (places.sum(axis=2) == PARTS).all(axis=1),
+        (corners.sum(axis=2) == PARTS).all(axis=1),
         "the vertices of a subtriangle lie in the input triangle it is part of",
     )
-    return np.asarray(places, dtype=np.int64)
+    return np.asarray(corners, dtype=np.int64)
 
 
 def _check_cover(corners: Wide, source: Indices, proper: Wide, rows: Wide) -> None:
-    areas = np.einsum("ni,ni->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    areas = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]  # in squares of parts; PARTS^2 of the whole
     _require_all(
         areas > 0,
         "a subtriangle has the orientation of its input triangle and an area "
@@ -163,7 +183,7 @@ def _check_cover(corners: Wide, source: Indices, proper: Wide, rows: Wide) -> No
     )
     covered = np.bincount(source, weights=areas, minlength=int(proper.max(initial=-1)) + 1)
     _require_all(
-        covered[proper] == PARTS**3,
+        covered[proper] == PARTS**2,
         "the areas of its subtriangles add up to that of the input triangle",
         proper,
     )
@@ -222,13 +242,12 @@ def _sides_of_edges(refiner: Refiner) -> tuple[Wide, Wide]:
 
 
 def _check_unmoved(
-    refiner: Refiner, mesh: RefinedMesh, origins: Origins, positions: npt.NDArray[np.floating]
+    refiner: Refiner, mesh: RefinedMesh, places: _Places, positions: npt.NDArray[np.floating]
 ) -> None:
     is_near_split = np.zeros(len(positions), dtype=bool)
     is_near_split[refiner.edges[refiner.splits > 0]] = True
-    is_vertex = origins.weights.max(axis=1) == 1.0
-    rows = np.flatnonzero(is_vertex)
-    vertex = origins.vertices[rows, origins.weights[rows].argmax(axis=1)]
+    rows, slots = np.nonzero(places.parts == PARTS)
+    vertex = places.vertices[rows, slots]
     same = (mesh.positions[rows] == positions[vertex].astype(np.float32)).all(axis=1)
     _require_all(
         same | is_near_split[vertex],

@@ -19,11 +19,17 @@ AttributeLike = npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]
 
 
 class Values(TypedDict, total=False):
-    """What all built-in refiners take beside the mesh (see `registry.create`)."""
+    """What all built-in refiners take beside the mesh (see `registry.create`).
+
+    In a signature, `**values: Unpack[Values]` says that a refiner takes them, too.
+    """
 
     uv: npt.ArrayLike | None
+    """Texture coordinates, shape (U, 2)."""
     face_uv: npt.ArrayLike | None
+    """The texture coordinate of each corner, shape (F, 3)."""
     attributes: Mapping[str, AttributeLike] | None
+    """Other values of vertices or corners, by name."""
 
 
 @dataclass(frozen=True)

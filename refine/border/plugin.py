@@ -21,7 +21,11 @@ import numpy.typing as npt
 
 
 class RefinedMesh(NamedTuple):
-    """Triangles of one frame: views of buffers that the next frame overwrites."""
+    """Triangles of one frame: views of buffers that the next frame overwrites.
+
+    Where the output lies elsewhere, in buffers of a GPU for one, a refiner hands out an object of
+    its own with these members, counts included, which fetches arrays when they are asked for.
+    """
 
     positions: npt.NDArray[np.float32]
     """Vertex positions [unit of the input], shape (N, 3)."""
@@ -35,6 +39,16 @@ class RefinedMesh(NamedTuple):
     """Texture coordinates, shape (N, 2); None if the mesh was bound without."""
     attributes: Mapping[str, npt.NDArray[np.float32]] = MappingProxyType({})
     """The attributes that were bound, by name, shape (N, k)."""
+
+    @property
+    def vertex_count(self) -> int:
+        """N, for whoever needs no arrays to draw."""
+        return len(self.positions)
+
+    @property
+    def triangle_count(self) -> int:
+        """M."""
+        return len(self.triangles)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Copy and pickle as arrays of its own: to keep a frame, or send it to another process."""
@@ -61,7 +75,14 @@ class Origins(NamedTuple):
     vertices: npt.NDArray[np.int32]
     """Input vertices, shape (N, 3)."""
     weights: npt.NDArray[np.float32]
-    """Their barycentric weights, shape (N, 3): quarters, or thirds in the middle of a triangle."""
+    """Their barycentric weights, shape (N, 3): any that are not negative and add up to one."""
+
+    def followed_by(self, vertices: npt.ArrayLike, weights: npt.ArrayLike) -> "Origins":
+        """Return these, and after them those of more output vertices, each of shape (K, 3)."""
+        return Origins(
+            np.concatenate([self.vertices, np.asarray(vertices, dtype=np.int32)]),
+            np.concatenate([self.weights, np.asarray(weights, dtype=np.float32)]),
+        )
 
 
 class Stream(Protocol):
@@ -69,7 +90,12 @@ class Stream(Protocol):
 
     They have room for `vertex_capacity` and `triangle_capacity`, unless the stream has a method
     `reserve(vertex_count, triangle_count)`: that is called before each frame is written, with what
-    the frame needs, and may put larger arrays in place.
+    the frame needs, and may put larger arrays in place, or the next of several.
+
+    The arrays may be views of mapped memory: of a file, of another process, of a buffer of the GPU.
+    The built-in refiners read rows again that they have written in the same frame, so the memory
+    should be fast to read, too. A refiner that writes elsewhere may ask its callers for streams
+    with other members; then it cannot be drawn by those who lend arrays.
     """
 
     @property
@@ -100,7 +126,7 @@ class Refiner(Protocol):
     @property
     @abstractmethod
     def splits(self) -> npt.NDArray[np.uint8]:
-        """How often each edge was split in the last frame, 0, 1 or 2, shape (E,)."""
+        """How often each edge was split in the last frame, shape (E,): s for 2^s sub-edges."""
 
     @property
     @abstractmethod

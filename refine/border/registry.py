@@ -1,12 +1,13 @@
 """Things that are found by name: refiners here, schemes and criteria of `kahler` in the same way.
 
-Whoever makes a new one registers it; what the package brings itself goes no other way. Refiners are
-found by an entry point in group `risorius.refiners` too, which is imported when it is asked for.
+Whoever makes a new one registers it; what the package brings itself goes no other way. What
+installed packages bring is found by entry points, in a group for each kind. Those are looked for
+when a name is not registered or names are listed, and imported when they are asked for by name.
 """
 
 import functools
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, Unpack, get_args, get_origin
 
 import numpy.typing as npt
@@ -16,21 +17,23 @@ from .plugin import Refiner
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-ENTRY_POINT_GROUP = "risorius.refiners"
-
 Product = TypeVar("Product")
 
 
 class Registry(Generic[Product]):
     """Factories of things of one kind, by name."""
 
-    def __init__(self, kind: str) -> None:
-        """`kind`: what the factories make, for errors."""
+    def __init__(self, kind: str, group: str) -> None:
+        """`kind`: what the factories make, for errors; `group`: of entry points."""
         self._kind = kind
+        self._group = group
         self._factories: dict[str, Callable[..., Product]] = {}
 
     def register(self, name: str, factory: Callable[..., Product]) -> None:
-        """Make `factory` known as `name`; raises ValueError if the name is empty or taken."""
+        """Make `factory` known as `name`; raises ValueError if the name is empty or taken.
+
+        It goes before an entry point of this name.
+        """
         if not (isinstance(name, str) and name) or "+" in name:
             raise ValueError(f"the name of a {self._kind} must be a word without +, got {name!r}")
         if name in self._factories:
@@ -42,54 +45,54 @@ class Registry(Generic[Product]):
         self._factories[name] = factory
 
     def available(self) -> tuple[str, ...]:
-        """Names that are known, in the order of their registration."""
-        return tuple(self._factories)
+        """Names that are known, in the order of registration; then those of installed packages."""
+        return tuple(dict.fromkeys([*self._factories, *self.installed()]))
+
+    def installed(self) -> "Mapping[str, EntryPoint]":
+        """What installed packages announce for this kind, by name; nothing is imported."""
+        return _entry_points(self._group)
 
     def find(self, name: str) -> Callable[..., Product]:
-        """Return the factory of a name; raises ValueError if there is none."""
-        if name not in self._factories:
+        """Return the factory of a name.
+
+        Raises ValueError if there is none, or if the package that announces it cannot be imported.
+        """
+        if name in self._factories:
+            return self._factories[name]
+        point = self.installed().get(name)
+        if point is None:
             raise ValueError(f"{self._kind} {name!r} is unknown; there are {self.available()}")
-        return self._factories[name]
-
-
-class Refiners(Registry[Refiner]):
-    """Refiners, those of installed packages included.
-
-    A factory is called as factory(faces, rest_positions, uv=..., face_uv=..., **options).
-    """
-
-    def available(self) -> tuple[str, ...]:
-        """Names of refiners, sorted: built in, registered, and from entry points."""
-        return tuple(sorted({*self._factories, *_entry_points()}))
-
-    def find(self, name: str) -> Callable[..., Refiner]:
-        """Return the factory of a name; raises ValueError for one that cannot be imported, too."""
-        points = _entry_points()
-        if name in self._factories or name not in points:
-            return super().find(name)
         try:
-            factory: Callable[..., Refiner] = points[name].load()
+            factory: Callable[..., Product] = point.load()
         except Exception as error:  # whatever the module of somebody else does when it is imported
+            reason = " ".join(f"{type(error).__name__}: {error}".split())
             raise ValueError(
-                f"refiner {name!r} of {points[name].value!r} cannot be loaded: "
-                f"{type(error).__name__}: {error}"
+                f"{self._kind} {name!r} of {point.value!r} cannot be loaded: {reason}"
             ) from error
+        if not callable(factory):
+            raise ValueError(
+                f"{self._kind} {name!r} of {point.value!r} must be a class or a function, "
+                f"got {factory!r}"
+            )
         return factory
 
 
-refiners = Refiners("refiner")
+refiners: Registry[Refiner] = Registry("refiner", "risorius.refiners")
+"""Refiners; a factory is called as factory(faces, rest_positions, uv=.., face_uv=.., **options)."""
 
 
 def register(name: str, factory: Callable[..., Refiner]) -> None:
     """Make a refiner known to `create`; raises ValueError if the name is empty or taken.
 
     `factory`: called as factory(faces, rest_positions, uv=..., face_uv=..., **options).
+
+    An installed package announces an entry point of group `risorius.refiners` instead.
     """
     refiners.register(name, factory)
 
 
 def available() -> tuple[str, ...]:
-    """Names of refiners, sorted: built in, registered, and from entry points."""
+    """Names of refiners: built in, registered, then those of installed packages."""
     return refiners.available()
 
 
@@ -123,12 +126,14 @@ def parameters(name: str) -> tuple[inspect.Parameter, ...]:
 
     Types are as they are written where that is text that cannot be looked up.
     """
-    factory = refiners.find(name)
+    return tuple(_options(_signature(refiners.find(name))))
+
+
+def _signature(factory: Callable[..., Refiner]) -> inspect.Signature:
     try:
-        signature = inspect.signature(factory, eval_str=True)
+        return inspect.signature(factory, eval_str=True)
     except (NameError, AttributeError, SyntaxError, TypeError):  # of imports for type checkers only
-        signature = inspect.signature(factory)
-    return tuple(_options(signature))
+        return inspect.signature(factory)
 
 
 def _options(signature: inspect.Signature) -> Iterator[inspect.Parameter]:
@@ -141,7 +146,7 @@ def _options(signature: inspect.Signature) -> Iterator[inspect.Parameter]:
 
 
 def _check_options(name: str, factory: Callable[..., Refiner], options: dict[str, Any]) -> None:
-    signature = inspect.signature(factory)
+    signature = _signature(factory)
     allowed = {parameter.name for parameter in _options(signature)}
     for parameter in signature.parameters.values():
         if parameter.kind is parameter.VAR_KEYWORD:
@@ -157,7 +162,7 @@ def _check_options(name: str, factory: Callable[..., Refiner], options: dict[str
 
 
 @functools.cache
-def _entry_points() -> "dict[str, EntryPoint]":
+def _entry_points(group: str) -> "Mapping[str, EntryPoint]":
     from importlib.metadata import entry_points  # takes as long to import as all of this package
 
-    return {point.name: point for point in entry_points(group=ENTRY_POINT_GROUP)}
+    return {point.name: point for point in entry_points(group=group)}

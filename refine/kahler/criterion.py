@@ -77,7 +77,7 @@ class Measured(Criterion, Protocol):
         """
 
 
-criteria: Registry[Criterion] = Registry("criterion")
+criteria: Registry[Criterion] = Registry("criterion", "risorius.criteria")
 """Criteria by name."""
 
 
@@ -85,6 +85,8 @@ def register_criterion(name: str, factory: Callable[[], Criterion]) -> None:
     """Make a criterion known by name; raises ValueError if the name is empty or taken.
 
     `factory`: called without arguments, once for each refiner that asks for the name.
+
+    An installed package announces an entry point of group `risorius.criteria` instead.
     """
     criteria.register(name, factory)
 

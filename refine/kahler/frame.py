@@ -38,7 +38,11 @@ class FrameBuffers(NamedTuple):
     growth_twice: Floats
     """How far its quarter points are."""
     first_points: Unsigned
-    """Output row of the first point of every split rim, shape (R + 1,)."""
+    """Output row of the first point of every split rim, shape (R + 1,).
+
+    There is one point on an edge split once, its middle; one split twice has a quarter point, the
+    middle and another quarter point, from its first end to its second.
+    """
     split_once: Unsigned
     """The edges that are split; the first `counts[ONCE]` count."""
     split_twice: Unsigned
@@ -52,6 +56,16 @@ class FrameBuffers(NamedTuple):
     """How many there are of what, shape (5,): see ROWS, ONCE, TWICE, TRIANGLES, CENTRES."""
     rows: Floats
     """The output: x y z, nx ny nz, attributes; row v is vertex v."""
+
+    @property
+    def split_edges(self) -> Unsigned:
+        """The edges that are split in this frame, once or twice."""
+        return self.split_once[: self.counts[ONCE]]
+
+    @property
+    def twice_split_edges(self) -> Unsigned:
+        """Those of them that are split twice."""
+        return self.split_twice[: self.counts[TWICE]]
 
     @property
     def centre_count(self) -> int:

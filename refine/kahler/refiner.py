@@ -1,6 +1,6 @@
 """The paper's refiner: split the edges that bend, smooth around them, look the triangles up.
 
-Kähler, Haber, Seidel 2003, sections 4.1 to 4.4. One frame is `Kahler._fill`:
+Kähler, Haber, Seidel 2003, sections 4.1 to 4.4. One frame is `Kahler.fill`:
 
     normals     of the deformed mesh                                  (mesh/normals.py)
     mark        how often each edge is split               (4.1, criterion.py)
@@ -17,7 +17,7 @@ from typing import Unpack
 import numpy as np
 import numpy.typing as npt
 
-from ..border.binding import BoundRefiner
+from ..border.base import BaseRefiner
 from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
 from ..border.stream import StreamArrays
@@ -30,7 +30,7 @@ from .smoothing import LoopScheme, Scheme
 from .table import CONFIGURATIONS, MOST_SPLITS, POINTS_OF_EDGE
 
 
-class Kahler(BoundRefiner):
+class Kahler(BaseRefiner):
     """Refinement after Kähler, Haber, Seidel 2003."""
 
     def __init__(
@@ -54,21 +54,19 @@ class Kahler(BoundRefiner):
         self._scheme = LoopScheme() if scheme is None else scheme
         self.history = Coherent(len(mesh.faces)) if coherent else None
         """What triangles remember of their splits, as they are walked; None unless `coherent`."""
-        self._frame = buffers_for(mesh, self._positions, self._points, self._normals)
+        self._frame = buffers_for(mesh, self.positions, self.points, self.normals)
         self._patterns, self._table_rows = CONFIGURATIONS, self._frame.configurations
         if self.history is not None:
             self._patterns, self._table_rows = self.history.patterns, self.history.states
-        self._edge_splits = self._frame.splits[: len(mesh.edges)]
-        self._splits = self._edge_splits.view()
-        self._splits.flags.writeable = False
+        self.edge_splits = self._frame.splits[: len(mesh.edges)]
         if hasattr(self._criterion, "set_scheme"):
             self._criterion.set_scheme(self._scheme)
         inner = getattr(self._scheme, "scheme", self._scheme)
         self._own(self._criterion, inner, *getattr(self._criterion, "criteria", ()))
         self._prepares = hasattr(self._scheme, "prepare")
-        self._find_normals()
-        self._criterion.bind(mesh, self._rest_positions, self._normals)
-        self._scheme.bind(mesh, self._rest_positions, self._normals)
+        self.find_normals()
+        self._criterion.bind(mesh, self.rest_positions, self.normals)
+        self._scheme.bind(mesh, self.rest_positions, self.normals)
 
     @property
     def vertex_capacity(self) -> int:
@@ -80,13 +78,14 @@ class Kahler(BoundRefiner):
         """Most output triangles: the longest row of the table for each."""
         return int(self._patterns.subtriangles.shape[1] * len(self.connectivity.faces))
 
-    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
-        self._find_normals()
+    def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        """Write the frame: one line for each step above."""
+        self.find_normals()
         if self._prepares:
             self._scheme.prepare(self._frame)  # type: ignore[attr-defined]
         self._mark(view)
         vertex_count, triangle_count = self._number()
-        out = self._reserve(stream, vertex_count, triangle_count)
+        out = self.reserve(stream, vertex_count, triangle_count)
         self._place(out.vertices)
         self._look_up(out)
         return vertex_count, triangle_count
@@ -94,7 +93,7 @@ class Kahler(BoundRefiner):
     def _mark(self, view: View | None) -> None:
         """Decide how often every edge is split (section 4.1)."""
         self._pass_view(view)
-        self._criterion.mark(self._frame.positions, self._frame.normals, self._edge_splits)
+        self._criterion.mark(self._frame.positions, self._frame.normals, self.edge_splits)
         if type(self._criterion) is not NormalDrop:
             self._check_splits()
 
@@ -113,7 +112,7 @@ class Kahler(BoundRefiner):
             self._frame = self._frame._replace(rows=rows)
         self._scheme.place(self._frame)
         if self._values is not None:
-            self._write_wedges(rows)
+            self.write_wedges(rows)
             copy_along_rims(self.connectivity.rim_edges, self._frame)
             place_rim_attributes(self.connectivity.rim_uv, self._frame, self._values.values)
 
@@ -131,11 +130,11 @@ class Kahler(BoundRefiner):
 
     def _check_splits(self) -> None:
         """Raise ValueError if a criterion asks for more than the table has."""
-        most = self._edge_splits.max(initial=0)
+        most = self.edge_splits.max(initial=0)
         if most > MOST_SPLITS:
             raise ValueError(
                 f"{type(self._criterion).__name__}.mark must write 0, 1 or 2 for every edge, "
-                f"but edge {self._edge_splits.argmax()} got {most}"
+                f"but edge {self.edge_splits.argmax()} got {most}"
             )
 
     def origins(self) -> Origins:
@@ -147,11 +146,5 @@ class Kahler(BoundRefiner):
         within = np.arange(point_counts.sum()) - np.repeat(block_starts, point_counts)
         place = np.where(np.repeat(point_counts, point_counts) == 1, 2, within + 1)
         ends = np.repeat(self.edges[mesh.rim_edges], point_counts, axis=0)
-        wedges = mesh.wedge_vertices.astype(np.int32)
-        vertices = [np.stack([wedges] * 3, axis=1), np.column_stack([ends, ends[:, 0]])]
-        weights = [np.zeros((len(wedges), 3)), np.zeros((len(ends), 3))]
-        weights[0][:, 0] = 1.0
-        weights[1][:, 0], weights[1][:, 1] = (4 - place) / 4.0, place / 4.0
-        return Origins(
-            np.concatenate(vertices).astype(np.int32), np.concatenate(weights).astype(np.float32)
-        )
+        weights = np.column_stack([4 - place, place, np.zeros_like(place)]) / 4.0
+        return super().origins().followed_by(np.column_stack([ends, ends[:, 0]]), weights)

@@ -100,7 +100,7 @@ class Scheme(Protocol):
         """Write positions and normals of vertices and of points on split edges into the rows."""
 
 
-schemes: Registry[Scheme] = Registry("scheme")
+schemes: Registry[Scheme] = Registry("scheme", "risorius.schemes")
 """Schemes by name."""
 
 
@@ -108,6 +108,8 @@ def register_scheme(name: str, factory: Callable[..., Scheme]) -> None:
     """Make a scheme known by name; raises ValueError if the name is empty or taken.
 
     `factory`: called without arguments, once for each refiner that asks for the name.
+
+    An installed package announces an entry point of group `risorius.schemes` instead.
     """
     schemes.register(name, factory)
 

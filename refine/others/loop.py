@@ -1,4 +1,4 @@
-"""Loop subdivision of the whole mesh, once or twice: what the adaptive refiner is compared with.
+"""Loop subdivision of the whole mesh, level by level: what the adaptive refiner is compared with.
 
 Loop 1987 with Warren's vertex weights (Warren 2001), the scheme that Kähler, Haber, Seidel 2003,
 section 4.2, borrow their rules from. Every edge is split, every vertex is smoothed, borders follow
@@ -19,7 +19,7 @@ from typing import Any, Unpack
 import numpy as np
 import numpy.typing as npt
 
-from ..border.binding import BoundRefiner
+from ..border.base import BaseRefiner
 from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
 from ..border.rows import GEOMETRY_COLUMNS, wedge_values, write_wedges
@@ -31,6 +31,8 @@ from ..mesh.rings import vertex_rings
 
 CHILDREN = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 """Of a triangle with corners 0 1 2 and middles 3 4 5 of its edges: the triangles it becomes."""
+MOST_LEVELS = 4
+"""Chosen: it makes 256 triangles of each, half a million of a face."""
 
 
 class Level:
@@ -57,7 +59,7 @@ class Level:
         place_middles(self._mesh.around, self._frame, self._middles)
 
 
-class Loop(BoundRefiner):
+class Loop(BaseRefiner):
     """Uniform Loop subdivision; the refiner named `loop`."""
 
     def __init__(
@@ -68,17 +70,15 @@ class Loop(BoundRefiner):
         levels: int = 1,
         **values: Unpack[Values],
     ) -> None:
-        """Bind to a mesh (see `registry.create`). `levels`: 1 or 2, how often edges are split."""
+        """Bind to a mesh (see `registry.create`). `levels`: 1 to 4, how often edges are split."""
         super().__init__(faces, rest_positions, **values)
-        if not isinstance(levels, int | np.integer) or levels not in (1, 2):
-            raise ValueError(f"levels must be 1 or 2, got {levels!r}")
-        self._splits = np.full(len(self.connectivity.edges), levels, dtype=np.uint8)
-        self._splits.flags.writeable = False
-
+        if not isinstance(levels, int | np.integer) or not 1 <= levels <= MOST_LEVELS:
+            raise ValueError(f"levels must be 1 to {MOST_LEVELS}, got {levels!r}")
+        self.edge_splits[:] = levels
         finest = _Refined.of(
             self.connectivity, None if self._values is None else self._values.values
         )
-        self._levels = [Level(finest.connectivity, self._points, self._normals)]
+        self._levels = [Level(finest.connectivity, self.points, self.normals)]
         for _ in range(levels - 1):
             finest = finest.subdivided()
             rest = np.zeros((finest.connectivity.vertex_count, 3), dtype=np.float32)
@@ -96,17 +96,19 @@ class Loop(BoundRefiner):
 
     @property
     def triangle_capacity(self) -> int:
-        """Triangles of the finest level: 4 or 16 for each."""
+        """Triangles of the finest level: 4 for each, 16, 64 or 256."""
         return len(self._triangles)
 
-    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+    def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        """Write the finest level."""
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
-        vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
-        self._find_normals()
+        vertices, triangles, source = self.reserve(stream, vertex_count, triangle_count)
+        self.find_normals()
         for level, finer in pairwise(self._levels):
             level.subdivide(self._rows)
-            np.copyto(finer.points, self._rows[:, :3])
-            np.copyto(finer.normals, self._rows[:, 3:])
+            written = self._rows[: len(finer.points)]
+            np.copyto(finer.points, written[:, :3])
+            np.copyto(finer.normals, written[:, 3:])
         self._levels[-1].subdivide(vertices)
 
         if self._values is not None:

@@ -10,13 +10,13 @@ from typing import Unpack
 import numpy as np
 import numpy.typing as npt
 
-from ..border.binding import BoundRefiner
+from ..border.base import BaseRefiner
 from ..border.corner_values import Values
-from ..border.plugin import Origins, Stream, View
+from ..border.plugin import Stream, View
 from ..border.rows import place_unmoved
 
 
-class PassThrough(BoundRefiner):
+class PassThrough(BaseRefiner):
     """Hands the mesh through with normals; the refiner named `none`."""
 
     def __init__(
@@ -24,10 +24,7 @@ class PassThrough(BoundRefiner):
     ) -> None:
         """Bind to a mesh (see `registry.create`); there are no options."""
         super().__init__(faces, rest_positions, **values)
-        mesh = self.connectivity
-        self._splits = np.zeros(len(mesh.edges), dtype=np.uint8)
-        self._splits.flags.writeable = False
-        self._source = np.arange(len(mesh.faces), dtype=np.int32)
+        self._source = np.arange(len(self.connectivity.faces), dtype=np.int32)
 
     @property
     def vertex_capacity(self) -> int:
@@ -39,19 +36,13 @@ class PassThrough(BoundRefiner):
         """The triangles of the input."""
         return len(self.connectivity.faces)
 
-    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+    def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        """Write the mesh as it is."""
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
-        vertices, triangles, source = self._reserve(stream, vertex_count, triangle_count)
-        self._find_normals()
-        place_unmoved(self._points, self._normals, vertices)
-        self._write_wedges(vertices)
+        vertices, triangles, source = self.reserve(stream, vertex_count, triangle_count)
+        self.find_normals()
+        place_unmoved(self.points, self.normals, vertices)
+        self.write_wedges(vertices)
         triangles[:triangle_count] = self.connectivity.corners
         source[:triangle_count] = self._source
         return vertex_count, triangle_count
-
-    def origins(self) -> Origins:
-        """Say for every output vertex which input vertex it is."""
-        wedges = self.connectivity.wedge_vertices.astype(np.int32)
-        weights = np.zeros((len(wedges), 3), dtype=np.float32)
-        weights[:, 0] = 1.0
-        return Origins(np.stack([wedges] * 3, axis=1), weights)

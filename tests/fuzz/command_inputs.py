@@ -175,7 +175,7 @@ REFUSED = {
     f"{IMAGE} --option coherent=yes": "must be on or off",
     f"{IMAGE} --option coherent=on --option blend=on": "coherent",
     f"{IMAGE} --refiner loop --option levels=0": "levels",
-    f"{IMAGE} --refiner loop --option levels=3": "levels",
+    f"{IMAGE} --refiner loop --option levels=5": "levels",
     f"{IMAGE} --refiner loop --option levels=-1": "levels",
     f"{IMAGE} --refiner loop --option levels=1.5": "levels",
     f"{IMAGE} --refiner loop --option levels={'9' * 400}": "not a finite number",

@@ -35,7 +35,8 @@ HINTS = {
     "paper's), rest: where it is round at rest, so that outlines are",
     "scheme": "where the new points go",
     "blend": "new points grow out of the edge, and nothing pops",
-    "coherent": "an edge keeps its split a little longer, and nothing flickers",
+    "coherent": "triangles are cut in the order in which their edges split, and no line turns; for "
+    "flat shading",
     "levels": "how often all triangles are split",
     "Shading": "S goes through them",
     "Colours": "of the simulated mesh's triangles, whatever they are refined to (C: splits)",
@@ -96,8 +97,8 @@ class MechanismPanel:
             imgui.same_line()
             muted(self._gui, f"({count / base:.2f} x)")
         splits = stage.refined.refiner.splits
-        once, twice = int((splits == 1).sum()), int((splits == 2).sum())
-        muted(self._gui, f"{len(splits)} edges: {once} split once, {twice} twice")
+        once, more = int((splits == 1).sum()), int((splits > 1).sum())
+        muted(self._gui, f"{len(splits)} edges: {once} split once, {more} more often")
 
     def _draw_option(self, name: str, default: Any) -> None:
         """A slider, a checkbox or a list for an option, by what its default is."""

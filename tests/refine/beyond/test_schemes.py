@@ -175,7 +175,7 @@ def test_sphere_is_approached() -> None:
     ("options", "text"),
     [
         ({"scheme": "lop"}, "scheme 'lop' is unknown; there are"),
-        ({"scheme": 3}, "scheme must be one of .* or a refine.Scheme, got 3"),
+        ({"scheme": 3}, "scheme must be one of .* or an object with bind, .*, got 3"),
         ({"scheme": "detail"}, "go together, got scheme='detail' and detail not given"),
         ({"detail": (np.eye(3), [[0, 1, 2]])}, "go together, got scheme='loop' and detail given"),
         ({"scheme": "detail", "detail": np.eye(3)}, "detail must be a pair"),

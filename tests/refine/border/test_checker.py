@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from risorius import refine
+from risorius.refine.border.checker import PARTS
 from tests import meshes
 
 Mutation = Callable[[refine.RefinedMesh], refine.RefinedMesh]
@@ -237,7 +239,7 @@ def test_false_weights(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) ->
     refiner, refined, deformed = frame
     origins = refiner.origins()
     refiner.false_origins = origins._replace(weights=origins.weights * np.float32(0.9))
-    with pytest.raises(refine.BrokenMeshError, match="weights in twelfths that add up to one"):
+    with pytest.raises(refine.BrokenMeshError, match="weights that add up to one"):
         refine.check(refiner, refined, deformed)
 
 
@@ -254,3 +256,94 @@ def double_degenerate(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
     has_two = (mesh.triangles == np.roll(mesh.triangles, 1, axis=1)).any(axis=1)
     rows = np.append(np.arange(len(mesh.source)), np.flatnonzero(has_two)[:1])
     return mesh._replace(triangles=mesh.triangles[rows], source=mesh.source[rows])
+
+
+def cut_at(
+    places: tuple[float, float], inside: tuple[float, float, float]
+) -> tuple[SimpleNamespace, refine.RefinedMesh, np.ndarray]:
+    """Two triangles, of which the common edge is cut, and the first has a point inside.
+
+    `places`: along the edge from vertex 0 to 2, as the one and the other triangle has it;
+    `inside`: barycentric weights of the point.
+
+        3---------2
+        |       / |     The first is 0 1 2, with the point 6 inside; the second is 0 2 3.
+        |    4,5  |     4 and 5 are the cut, as the first and the second see it.
+        |  /    6 |
+        0---------1
+    """
+    rest = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=np.float32)
+    mesh = refine.connect([[0, 1, 2], [0, 2, 3]], 4)
+    splits = np.zeros(len(mesh.edges), dtype=np.uint8)
+    splits[mesh.triangle_edges[0, 2]] = 1
+    vertices = [[k, k, k] for k in range(4)] + [[0, 2, 1], [2, 0, 3], [0, 1, 2]]
+    weights = [[1.0, 0.0, 0.0]] * 4
+    weights += [[1 - places[0], places[0], 0.0], [places[1], 1 - places[1], 0.0], [*inside]]
+    origins = refine.Origins(np.array(vertices, np.int32), np.array(weights, np.float32))
+    # Places within a tenth of a part of each other are one, so they have one position.
+    points = np.concatenate([rest, [rest[2] * places[0]] * 2, [[0.7, 0.2, 0.0]]])
+    triangles = [[0, 1, 6], [1, 2, 6], [2, 4, 6], [4, 0, 6], [0, 5, 3], [5, 2, 3]]
+    refined = refine.RefinedMesh(
+        points.astype(np.float32),
+        np.tile(np.array([[0, 0, 1]], dtype=np.float32), (7, 1)),
+        np.array(triangles, dtype=np.uint32),
+        np.array([0, 0, 0, 0, 1, 1], dtype=np.int32),
+        None,
+    )
+    refiner = SimpleNamespace(
+        edges=mesh.edges, triangle_edges=mesh.triangle_edges, splits=splits, origins=lambda: origins
+    )
+    return refiner, refined, rest
+
+
+PLACES = [1 / 2, 1 / 3, 3 / 8, 5 / 512, 3 / 7, 2 / 9, 1 / 11, 0.123456]
+INSIDE = [(1 / 3, 1 / 3, 1 / 3), (0.25, 0.5, 0.25), (1 / 13, 5 / 13, 7 / 13), (0.998, 0.001, 0.001)]
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("inside", INSIDE)
+def test_points_anywhere(place: float, inside: tuple[float, float, float]) -> None:
+    """Edges may be cut where a refiner likes, and triangles have points inside."""
+    refine.check(*cut_at((place, place), inside))
+
+
+@pytest.mark.parametrize("place", [1 / 2, 1 / 3, 3 / 8, 5 / 512, 3 / 7, 2 / 9])
+def test_single_precision_is_forgiven(place: float) -> None:
+    """What the weights of whole parts lose on their way makes no other place of them."""
+    assert (place * PARTS) % 1.0 == pytest.approx(0.0, abs=1e-9)
+    refine.check(*cut_at((place, place + 2e-7), INSIDE[0]))
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_places_apart_are_cracks(place: float) -> None:
+    """An edge that is cut in two places, though but a little apart, is a crack."""
+    refiner, refined, rest = cut_at((place, place + 2.0 / PARTS), INSIDE[0])
+    with pytest.raises(refine.BrokenMeshError, match="no crack, no T-junction"):
+        refine.check(refiner, refined, rest)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("weights", [(1.2, -0.1, -0.1), (0.5, 0.5, 0.001)])
+def test_weights_of_no_place(weights: tuple[float, float, float]) -> None:
+    """Points outside a triangle, and weights that add up to something else, are refused."""
+    with pytest.raises(refine.BrokenMeshError, match=r"weights (below zero|that add up to one)"):
+        refine.check(*cut_at((0.5, 0.5), weights))
+
+
+def test_thin_subtriangle_on_an_edge() -> None:
+    """Three points on one edge are a sliver, wherever on it they are."""
+    refiner, refined, rest = cut_at((1 / 11, 1 / 11), INSIDE[0])
+    refined.triangles[2] = [2, 4, 0]
+    with pytest.raises(refine.BrokenMeshError, match="no sliver"):
+        refine.check(refiner, refined, rest)  # type: ignore[arg-type]
+
+
+def test_three_levels() -> None:
+    """Edges of eight parts pass; told to be of four, they do not."""
+    mesh = meshes.irregular(3)
+    refiner = Wrapped(refine.create("loop", mesh.faces, mesh.vertices, levels=3))
+    refined = refiner._refiner.refine(mesh.vertices)
+    assert len(refined.triangles) == 64 * len(mesh.faces)
+    refine.check(refiner, refined, mesh.vertices)
+    refiner.splits[:] = 2
+    with pytest.raises(refine.BrokenMeshError, match="2 to the power of s sub-edges"):
+        refine.check(refiner, refined, mesh.vertices)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import importlib.metadata
 import pickle
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -86,29 +86,92 @@ def fresh_entry_points() -> Iterator[None]:
     registry._entry_points.cache_clear()
 
 
-@pytest.mark.usefixtures("clean_registry", "fresh_entry_points")
-def test_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An installed package brings a refiner by entry point, loaded when it is first asked for."""
-    loaded = []
-    point = SimpleNamespace(name="installed", load=lambda: loaded.append(1) or Outside)
+KINDS = {
+    "refiner": (registry.refiners, Outside),
+    "criterion": (refine.criteria, refine.Curvature),
+    "scheme": (refine.schemes, LoopScheme),
+}
+
+
+def create_installed(kind: str) -> refine.Refiner:
+    """Ask for what the name `installed` stands for."""
+    if kind == "refiner":
+        return refine.create("installed", FINE.faces, FINE.vertices)
+    return refine.create("kahler", FINE.faces, FINE.vertices, **{kind: "installed"})
+
+
+def install(
+    monkeypatch: pytest.MonkeyPatch, group: str, load: Callable[[], object]
+) -> SimpleNamespace:
+    """Let there be a package that announces `installed` in this group."""
+    point = SimpleNamespace(name="installed", value="theirs:Thing", load=load)
 
     def entry_points(*, group: str) -> list[SimpleNamespace]:
-        return [point] if group == "risorius.refiners" else []
+        return [point] if group == announced else []
 
+    announced = group
     monkeypatch.setattr(importlib.metadata, "entry_points", entry_points)
-    assert "installed" in refine.available()
-    assert not loaded
-    assert isinstance(refine.create("installed", FINE.faces, FINE.vertices), Outside)
+    return point
 
 
 @pytest.mark.usefixtures("fresh_entry_points")
-def test_broken_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A package that cannot be imported is named with its reason, and only when it is asked for."""
-    point = importlib.metadata.EntryPoint("far", "nowhere_at_all:X", "risorius.refiners")
-    monkeypatch.setattr(importlib.metadata, "entry_points", lambda *, group: [point])
-    assert "far" in refine.available()
-    with pytest.raises(ValueError, match=r"'far' of 'nowhere_at_all:X' cannot be loaded: Module"):
-        refine.create("far", FINE.faces, FINE.vertices)
+@pytest.mark.parametrize("kind", KINDS)
+def test_entry_point(monkeypatch: pytest.MonkeyPatch, kind: str) -> None:
+    """An installed package brings things of all kinds, loaded when they are first asked for."""
+    known, factory = KINDS[kind]
+    loaded: list[int] = []
+    assert known._group == {"criterion": "risorius.criteria"}.get(kind, f"risorius.{kind}s")
+    point = install(monkeypatch, known._group, lambda: loaded.append(1) or factory)
+    assert known.available()[-1] == "installed"
+    assert known.installed() == {"installed": point}
+    assert not loaded
+    refiner = create_installed(kind)
+    assert loaded
+    refine.check(refiner, refiner.refine(FINE.vertices), FINE.vertices)
+
+
+@pytest.mark.usefixtures("fresh_entry_points")
+@pytest.mark.parametrize("kind", KINDS)
+def test_registered_names_need_no_entry_points(monkeypatch: pytest.MonkeyPatch, kind: str) -> None:
+    """What is registered is found without a look at what is installed, and goes before it."""
+    known, _ = KINDS[kind]
+    monkeypatch.setattr(importlib.metadata, "entry_points", None)
+    name = known._factories.copy().popitem()[0]
+    assert known.find(name) is known._factories[name]
+
+
+def fail_to_import() -> object:
+    """A module that does not even import, and has much to say about it."""
+    raise ImportError("no such\nlibrary")
+
+
+@pytest.mark.usefixtures("fresh_entry_points")
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    ("load", "text"),
+    [
+        (fail_to_import, "{kind} 'installed' of 'theirs:Thing' cannot be loaded: .*: no such lib"),
+        (lambda: 3, "{kind} 'installed' of 'theirs:Thing' must be a class or a function, got 3"),
+    ],
+)
+def test_broken_entry_point(
+    monkeypatch: pytest.MonkeyPatch, kind: str, load: Callable[[], object], text: str
+) -> None:
+    """A package that is of no use is named with its reason, and only when it is asked for."""
+    install(monkeypatch, KINDS[kind][0]._group, load)
+    assert "installed" in KINDS[kind][0].available()
+    with pytest.raises(ValueError, match=text.format(kind=kind)) as caught:
+        create_installed(kind)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.usefixtures("fresh_entry_points")
+@pytest.mark.parametrize("kind", ["criterion", "scheme"])
+def test_entry_point_of_another_kind(monkeypatch: pytest.MonkeyPatch, kind: str) -> None:
+    """What a package makes is looked at as closely as an object that is handed over."""
+    install(monkeypatch, KINDS[kind][0]._group, lambda: lambda: 3.5)
+    with pytest.raises(ValueError, match=rf"{kind} must be .* got 3\.5"):
+        create_installed(kind)
 
 
 @pytest.mark.usefixtures("clean_registry")

@@ -64,7 +64,7 @@ def assert_is_plain(mesh: meshes.Mesh, deformed: np.ndarray, levels: int) -> Non
     np.testing.assert_allclose(refined.positions, np.array(points), rtol=0, atol=3e-6)
 
 
-@pytest.mark.parametrize("levels", [1, 2])
+@pytest.mark.parametrize("levels", [1, 2, 3])
 @pytest.mark.parametrize("name", meshes.NAMED)
 def test_named_meshes(name: str, levels: int) -> None:
     """Every named mesh, deformed."""
@@ -81,7 +81,7 @@ def test_irregular_meshes(seed: int, levels: int) -> None:
 
 
 @settings(max_examples=60, deadline=None)
-@given(soup=soups(), levels=st.integers(1, 2))
+@given(soup=soups(), levels=st.integers(1, 3))
 def test_soups(soup: tuple[np.ndarray, np.ndarray], levels: int) -> None:
     """Any triangles at all."""
     positions, faces = soup
@@ -149,9 +149,9 @@ def _sharpest_fold(positions: np.ndarray, triangles: np.ndarray) -> float:
     return float(np.arccos((pairs[:, 0] * pairs[:, 1]).sum(axis=1).min()))
 
 
-@pytest.mark.parametrize("levels", [0, 3, 1.5, 2.0, "2"])
+@pytest.mark.parametrize("levels", [0, 5, 1.5, 2.0, "2"])
 def test_bad_levels(levels: object) -> None:
-    """Only one or two levels are allowed."""
+    """Only one to four levels are allowed."""
     mesh = meshes.triangle()
-    with pytest.raises(ValueError, match="levels must be 1 or 2, got"):
+    with pytest.raises(ValueError, match="levels must be 1 to 4, got"):
         refine.create("loop", mesh.faces, mesh.vertices, levels=levels)

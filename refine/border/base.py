@@ -1,8 +1,7 @@
 """What all built-in refiners share: what is bound, lent and handed in, checked once per kind.
 
-A refiner derives from `BoundRefiner`, says how large its output can get, and writes one method,
-`_fill`. Positions are copied into a buffer at the start of a frame, so that any float type and any
-strides will do, the kernels are compiled for one type only, and a simulation may run on meanwhile.
+A refiner derives from `BaseRefiner`, says how large its output can get, and writes one method,
+`fill`. One of somebody else may do so, too, or follow the protocol (plugin.py) by itself.
 
 Source: the plug-in of Kähler, Haber, Seidel 2003, Fig. 1.
 """
@@ -10,13 +9,12 @@ Source: the plug-in of Kähler, Haber, Seidel 2003, Fig. 1.
 from abc import abstractmethod
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Unpack
 from weakref import WeakValueDictionary
 
 import numpy as np
 import numpy.typing as npt
 
-from ..mesh.arrays import Floats, Indices, Small
+from ..mesh.arrays import Doubles, Floats, Indices, Small
 from ..mesh.connectivity import Connectivity, connect
 from ..mesh.normals import vertex_normals
 from ..mesh.validation import (
@@ -26,38 +24,101 @@ from ..mesh.validation import (
     not_finite,
     round_finite,
 )
-from .corner_values import Values, checked_corner_values
-from .plugin import RefinedMesh, Refiner, Stream, View
+from .corner_values import AttributeLike, checked_corner_values
+from .plugin import Origins, RefinedMesh, Refiner, Stream, View
 from .rows import GEOMETRY_COLUMNS, wedge_values, write_wedges
 from .stream import OwnStream, StreamArrays, check_lent
 
 
-class BoundRefiner(Refiner):
-    """A mesh that was checked and connected, with buffers for one frame."""
+class BaseRefiner(Refiner):
+    """A refiner to derive from: binds a mesh, checks what goes in, and fills what was lent.
+
+    A subclass has `vertex_capacity`, `triangle_capacity` and `fill`, and extends `origins` by the
+    points that it makes. `fill` is called once in every frame, when the positions have been
+    checked. It calls `reserve` for rows, `find_normals` if it wants them, and `write_wedges`.
+
+    The first W rows are the wedges of the mesh: row v is vertex v, copies of vertices on texture
+    seams follow, and `connectivity.corners` has the rows of each triangle. So a point that is a mix
+    of a triangle's corners is the same mix of these rows, texture coordinates and attributes too.
+    """
+
+    connectivity: Connectivity
+    """Edges, neighbours and wedges of the mesh, found once."""
+    rest_positions: Doubles
+    """Undeformed vertex positions, shape (V, 3)."""
+    positions: Doubles
+    """Those of this frame, a copy: a simulation may run on meanwhile."""
+    points: Floats
+    """The same in single precision."""
+    normals: Floats
+    """Vertex normals of this frame after `find_normals`, shape (V, 3)."""
+    edge_splits: Small
+    """What `splits` shows, for `fill` to write; 0 at first."""
 
     def __init__(
         self,
         faces: npt.ArrayLike,
         rest_positions: npt.ArrayLike,
-        **values: Unpack[Values],
+        *,
+        uv: npt.ArrayLike | None = None,
+        face_uv: npt.ArrayLike | None = None,
+        attributes: Mapping[str, AttributeLike] | None = None,
     ) -> None:
-        """Check and connect (see `registry.create`)."""
+        """Check and connect (see `registry.create`); a subclass hands the `refine.Values` on."""
         positions = checked_positions(rest_positions)
         triangles = checked_indices("faces", faces, len(positions), "rest_positions")
-        self._values = checked_corner_values(triangles, len(positions), **values)
+        self._values = checked_corner_values(
+            triangles, len(positions), uv=uv, face_uv=face_uv, attributes=attributes
+        )
         corners = None if self._values is None else self._values.corners
-        self.connectivity: Connectivity = connect(triangles, len(positions), corners)
+        self.connectivity = connect(triangles, len(positions), corners)
         if self._values is not None:
             self._wedge_values = wedge_values(self.connectivity, self._values.values)
-        self._rest_positions = positions
-        self._positions = positions.copy()
-        self._points = positions.astype(np.float32)
-        self._normals = np.zeros_like(self._points)
+        self.rest_positions = positions
+        self.positions = positions.copy()
+        self.points = positions.astype(np.float32)
+        self.normals = np.zeros_like(self.points)
+        self.edge_splits = np.zeros(len(self.connectivity.edges), dtype=np.uint8)
         self._shape = positions.shape
         self._own_stream: OwnStream | None = None
-        self._splits: Small
         self._accepted: StreamArrays = _NO_ROWS
         self._geometry: tuple[Floats, Floats]
+
+    @abstractmethod
+    def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        """Write the frame for `positions` into the rows of the stream that `reserve` gives.
+
+        Returns the numbers of vertices and triangles that were written.
+        """
+
+    def reserve(self, stream: Stream, vertex_count: int, triangle_count: int) -> StreamArrays:
+        """Let the stream grow to this size if it can, and return its arrays, checked.
+
+        The same tuple as long as they are the same arrays.
+        """
+        if hasattr(stream, "reserve"):
+            stream.reserve(vertex_count, triangle_count)
+            self._accept(stream, vertex_count, triangle_count)
+        return self._accepted
+
+    def find_normals(self) -> None:
+        """Write the vertex normals of `positions` into `normals`."""
+        vertex_normals(self.positions, self.connectivity.faces, self.normals)
+
+    def write_wedges(self, rows: Floats) -> None:
+        """Write what follows vertices, when the first V rows have positions and normals.
+
+        These are their copies along texture seams, and all texture coordinates and attributes.
+        """
+        if self._values is not None:
+            write_wedges(self.connectivity, self._wedge_values, rows)
+
+    def origins(self) -> Origins:
+        """Say where the wedges lie on the input mesh; a subclass adds its points to them."""
+        wedges = self.connectivity.wedge_vertices.astype(np.int32)
+        weights = np.zeros((len(wedges), 3), dtype=np.float32)
+        weights[:, 0] = 1.0
+        return Origins(np.stack([wedges] * 3, axis=1), weights)
 
     def __reduce__(self) -> str:
         """Raise TypeError: its arrays look into each other, which no copy would do."""
@@ -66,26 +127,12 @@ class BoundRefiner(Refiner):
             "refine.create from the same faces and rest positions"
         )
 
-    @abstractmethod
-    def _fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
-        """Write the frame for `self._positions` into the rows that `self._reserve` gives.
-
-        `self._points` has them in single precision. Returns the numbers of vertices and triangles.
-        """
-
-    def _find_normals(self) -> None:
-        """Write the vertex normals of `self._positions` into `self._normals`."""
-        vertex_normals(self._positions, self.connectivity.faces, self._normals)
-
-    def _write_wedges(self, rows: Floats) -> None:
-        """Write copies of vertices along texture seams, and the values of all wedges."""
-        if self._values is not None:
-            write_wedges(self.connectivity, self._wedge_values, rows)
-
     @property
     def splits(self) -> Small:
         """How often each edge was split in the last frame, shape (E,), read only."""
-        return self._splits
+        splits = self.edge_splits.view()
+        splits.flags.writeable = False
+        return splits
 
     @property
     def edges(self) -> Indices:
@@ -130,10 +177,10 @@ class BoundRefiner(Refiner):
         stream = self._lend_own_stream() if out is None else out
         if out is not None and not hasattr(out, "reserve"):
             self._accept(out, self.vertex_capacity, self.triangle_capacity)
-        self._positions[...] = positions
-        if round_finite(self._positions, self._points) > 0:
+        self.positions[...] = positions
+        if round_finite(self.positions, self.points) > 0:
             raise ValueError(not_finite(positions))
-        vertex_count, triangle_count = self._fill(stream, view)
+        vertex_count, triangle_count = self.fill(stream, view)
         vertices, triangles, source = self._accepted
         uv, attributes = None, _NO_ATTRIBUTES
         if self._values is not None:
@@ -156,16 +203,6 @@ class BoundRefiner(Refiner):
                     "make one for each refiner"
                 )
             _owners[id(thing)] = self
-
-    def _reserve(self, stream: Stream, vertex_count: int, triangle_count: int) -> StreamArrays:
-        """Let the stream grow if it can, and return its arrays, checked.
-
-        The same tuple as long as they are the same arrays.
-        """
-        if hasattr(stream, "reserve"):
-            stream.reserve(vertex_count, triangle_count)
-            self._accept(stream, vertex_count, triangle_count)
-        return self._accepted
 
     def _accept(self, stream: Stream, vertex_count: int, triangle_count: int) -> None:
         """Raise ValueError unless the arrays can take this much; seen ones are hardly looked at."""
@@ -202,7 +239,7 @@ class BoundRefiner(Refiner):
         return uv, {name: values[:, columns] for name, columns in self._values.columns.items()}
 
 
-_owners: "WeakValueDictionary[int, BoundRefiner]" = WeakValueDictionary()
+_owners: "WeakValueDictionary[int, BaseRefiner]" = WeakValueDictionary()
 
 
 _NO_ROWS = StreamArrays(

@@ -1,0 +1,136 @@
+"""The base class of refiners, as somebody else derives from it."""
+
+from __future__ import annotations
+
+from typing import Any, Unpack
+
+import numpy as np
+import pytest
+
+from risorius import refine
+from tests import meshes
+from tests.refine.border.test_stream import stream_for
+
+
+class Middles(refine.BaseRefiner):
+    """Cuts every triangle in three, around a point in its middle."""
+
+    def __init__(
+        self,
+        faces: Any,
+        rest_positions: Any,
+        *,
+        raised: float = 0.0,
+        **values: Unpack[refine.Values],
+    ) -> None:
+        super().__init__(faces, rest_positions, **values)
+        self.raised = raised
+        self.cut = np.flatnonzero(~self.connectivity.is_degenerate)
+
+    @property
+    def vertex_capacity(self) -> int:
+        """Wedges, and one for each triangle."""
+        return len(self.connectivity.wedge_vertices) + len(self.cut)
+
+    @property
+    def triangle_capacity(self) -> int:
+        """Three for each."""
+        return 3 * len(self.connectivity.faces)
+
+    def fill(self, stream: refine.Stream, view: refine.View | None) -> tuple[int, int]:
+        """Reserve for the worst case, and tell what became of it."""
+        mesh, wedge_count = self.connectivity, len(self.connectivity.wedge_vertices)
+        out = self.reserve(stream, self.vertex_capacity, self.triangle_capacity)
+        self.find_normals()
+        out.vertices[: len(self.points), :3] = self.points
+        out.vertices[: len(self.points), 3:6] = self.normals
+        self.write_wedges(out.vertices)
+        middles = out.vertices[wedge_count : self.vertex_capacity]
+        middles[:] = out.vertices[mesh.corners[self.cut]].mean(axis=1)
+        lengths = np.linalg.norm(middles[:, 3:6], axis=1, keepdims=True)
+        middles[:, 3:6] /= np.where(lengths > 0.0, lengths, 1.0)
+        middles[:, :3] += self.raised * middles[:, 3:6]
+        triangles, source = [mesh.corners[mesh.is_degenerate]], [np.flatnonzero(mesh.is_degenerate)]
+        for k in range(3):
+            ends = mesh.corners[self.cut][:, [k, (k + 1) % 3]]
+            numbers = wedge_count + np.arange(len(self.cut), dtype=np.uint32)
+            triangles.append(np.column_stack([ends, numbers]))
+            source.append(self.cut)
+        count = sum(map(len, source))
+        out.triangles[:count], out.source[:count] = (
+            np.concatenate(triangles),
+            np.concatenate(source),
+        )
+        return self.vertex_capacity, count
+
+    def origins(self) -> refine.Origins:
+        """The middles follow the wedges."""
+        corners = self.connectivity.faces[self.cut]
+        return super().origins().followed_by(corners, np.full(corners.shape, 1 / 3))
+
+
+@pytest.mark.parametrize("name", meshes.NAMED)
+def test_named_meshes(name: str) -> None:
+    """Whatever the mesh, the few lines of a subclass make a proper refinement of it."""
+    mesh = meshes.NAMED[name]()
+    deformed = meshes.wrinkled(mesh, 3)
+    refiner = Middles(mesh.faces, mesh.vertices, raised=0.1)
+    refine.check(refiner, refiner.refine(deformed), deformed)
+    assert isinstance(refiner, refine.Refiner)
+    assert not refiner.splits.any()
+
+
+def test_seams_and_attributes() -> None:
+    """Both sides of a seam and all attributes ride along, in a stream that somebody lends."""
+    tube = meshes.tube(8, 5)
+    colours = np.random.default_rng(1).random((len(tube.vertices), 3))
+    refiner = Middles(
+        tube.faces, tube.vertices, uv=tube.uv, face_uv=tube.face_uv, attributes={"colour": colours}
+    )
+    assert refiner.vertex_columns == 6 + 2 + 3
+    lent = stream_for(refiner, spare=3)
+    mesh = refiner.refine(tube.vertices, out=lent)
+    refine.check(refiner, mesh, tube.vertices)
+    assert np.shares_memory(mesh.positions, lent.vertices)
+    origins = refiner.origins()
+    expected = (colours[origins.vertices] * origins.weights[..., None]).sum(axis=1)
+    np.testing.assert_allclose(mesh.attributes["colour"], expected, atol=1e-6)
+    assert mesh.uv is not None
+    middles = mesh.uv[len(refiner.connectivity.wedge_vertices) :]
+    np.testing.assert_allclose(middles, tube.uv[tube.face_uv].mean(axis=1), atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        ({"positions": np.zeros((5, 3))}, r"positions must be floats of shape \(6, 3\)"),
+        ({"positions": np.full((6, 3), np.nan)}, "positions must be finite"),
+        ({"positions": np.ones((6, 3)), "out": np.zeros(3)}, "a stream must have the arrays"),
+        ({"positions": np.ones((6, 3)), "view": (0, 0, 1)}, "view must be a refine.View"),
+    ],
+)
+def test_what_goes_in_is_checked(arguments: dict[str, Any], text: str) -> None:
+    """A subclass need not look at what it is handed."""
+    mesh = meshes.octahedron()
+    refiner = Middles(mesh.faces, mesh.vertices)
+    with pytest.raises(ValueError, match=text):
+        refiner.refine(**arguments)
+
+
+def test_options_are_checked_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The options of a subclass and of its base are known to `create`, and no others."""
+    from risorius.refine.border import registry
+
+    monkeypatch.setattr(registry.refiners, "_factories", dict(registry.refiners._factories))
+    mesh = meshes.octahedron()
+    refine.register("middles", Middles)
+    refine.create("middles", mesh.faces, mesh.vertices, raised=1.0, attributes={"a": mesh.vertices})
+    with pytest.raises(ValueError, match=r"it takes \['attributes', 'raised'\]"):
+        refine.create("middles", mesh.faces, mesh.vertices, lowered=1.0)
+
+
+def test_base_refiner_fills_nothing() -> None:
+    """Alone it is abstract, and says what a subclass needs."""
+    mesh = meshes.octahedron()
+    with pytest.raises(TypeError, match=r"abstract methods '?fill'?, '?triangle"):
+        refine.BaseRefiner(mesh.faces, mesh.vertices)  # type: ignore[abstract]
