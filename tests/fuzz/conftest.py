@@ -16,7 +16,7 @@ from .sandbox import furnish
 DOORS = pytest.StashKey[dict[str, Counter[str]]]()
 
 LONG_WORK = (
-    "risorius.bench.paper_figures.figure_10",
+    "risorius.bench.figure10.figure_10",
     "risorius.bench.paper_figures.figure_9",
     "risorius.app.viewer.Viewer",
     "risorius.bench.gaps.measure",
