@@ -159,6 +159,18 @@ def bench_gaps(json_file: Path | None) -> None:
     save([asdict(pose) for pose in poses])
 
 
+@bench.command("outlines")
+def bench_outlines() -> None:
+    """Count pixels around opened mouths that are not as those of a head 16 times as dense."""
+    from . import outlines
+
+    for title, chosen in (
+        ("poses that `border` was tuned on", outlines.CHOSEN_BY),
+        ("poses and views that were kept for the end", outlines.OTHERS),
+    ):
+        click.echo(outlines.report(title, outlines.measure(*chosen, progress=_progress)) + "\n")
+
+
 @bench.command("tearing")
 @click.option("--mixtures", type=click.IntRange(0, 100_000), default=500, show_default=True)
 def bench_tearing(mixtures: int) -> None:

@@ -13,38 +13,21 @@ the truth. For every expression a block of four rows:
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 import PIL.Image
 from PIL import ImageDraw
 
-from risorius import assets, refine, render
-from risorius.app.cameras import camera_for
+from risorius import refine, render
 from risorius.app.capture.captions import LANCZOS, font
 from risorius.app.files import Image
-from risorius.app.scenes import FaceScene
-from risorius.assets.model import FineMesh
 
-from .canvas import Canvas, Drawing, Transforms
+from .canvas import Canvas
 from .figures import without_noise
-from .subjects import SETTLE, Points, fine_simulation, settled_positions
-
-LEVEL = 2  # of the finer head: 16 times the triangles
-
-
-@dataclass(frozen=True)
-class Look:
-    """A column: how the head is refined; "dense" stands for the true one, as it is."""
-
-    title: str
-    refiner: str
-    options: Mapping[str, Any] = field(default_factory=dict)
-    wants_detail: bool = False  # the finer head at rest is handed to the scheme
-
+from .outlines import MOUTH, Look, Mouths, wrong_pixels
 
 LOOKS = (
     Look("static", "none"),
@@ -72,8 +55,8 @@ class Shot:
 
 
 SHOTS = (
-    Shot("yawn", "-24,-4,5.2", (-0.1, 0.0), "-24,-4,46", 66),
-    Shot("joy", "-30,0,5.2", (-0.1, 0.05), "0,-10,46", 62),
+    Shot("yawn", "-24,-4,5.2", (-0.1, 0.0), "-24,-4,36", 66),
+    Shot("joy", "-30,0,5.2", (-0.1, 0.05), "0,-10,36", 62),
 )
 
 SMOOTH = render.Style(
@@ -81,10 +64,6 @@ SMOOTH = render.Style(
     background=render.WHITE,
 )  # fmt: skip
 FLAT = replace(SMOOTH, shading=render.Shading.FLAT)
-# Each kind of surface in a colour of its own, whatever the light: skin red, background blue.
-BLUE = render.Background((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-KINDS = replace(FLAT, albedo=(1.0, 0.0, 0.0), gloss=0.0, subsurface=0.0, background=BLUE)
-SKIN, MOUTH, BACKGROUND = range(3)  # channels of such a picture
 
 FINER = 2  # pixels are drawn so many times as fine
 ROWS = ("smooth", "flat", "difference", "outline")
@@ -119,76 +98,36 @@ def drawn(
     size: tuple[int, int], looks: Sequence[Look], shots: Sequence[Shot]
 ) -> list[tuple[Shot, list[Cell]]]:
     """Draw every shot in every look; the cell of the dense mesh is the last of each."""
-    scene = FaceScene()
-    head = assets.load("head")
-    fine = head.finer(LEVEL)
-    simulation = fine_simulation(head, fine)
-    dense = refine.create("none", fine.faces, fine.vertices)
-    columns = [(look.title, _refiner_of(look, head, fine)) for look in looks]
+    mouths = Mouths(looks)
+    columns = [(look.title, one) for look, one in zip(looks, mouths.refiners, strict=True)]
+    columns.append(("dense mesh", mouths.dense))
     found = []
     with Canvas((FINER * size[0], FINER * size[1])) as canvas:
         for shot in shots:
-            now = settled_positions(simulation, head.expressions[shot.expression], SETTLE)
-            room = _Room(canvas, scene, shot, now, simulation.bone_transforms())
-            # The coarse mesh goes along with the dense one, whose first vertices are its own.
-            coarse = now[: len(head.vertices)]
-            cells = [room.cell(title, refiner, coarse) for title, refiner in columns]
-            found.append((shot, [*cells, room.cell("dense mesh", dense, now)]))
+            mouths.pose({shot.expression: 1.0})
+            cells = [_cell(title, refiner, mouths, shot, canvas) for title, refiner in columns]
+            found.append((shot, cells))
     return found
 
 
-def _refiner_of(look: Look, head: assets.Head, fine: FineMesh) -> refine.Refiner:
-    options = dict(look.options)
-    if look.wants_detail:
-        options["detail"] = fine.vertices, fine.faces
-    return refine.create(look.refiner, head.faces, head.vertices, **options)
-
-
-class _Room:
-    """Where one shot is taken, with its cameras and what is seen beside the skin."""
-
-    def __init__(
-        self, canvas: Canvas, scene: FaceScene, shot: Shot, now: Points, bones: Transforms
-    ) -> None:
-        self._canvas, self._bones, self._parts = canvas, bones, scene.parts
-        green = np.array([0.0, 1.0, 0.0], np.float32)
-        self._green_parts = tuple(
-            replace(part, colours=np.tile(green, (len(part.colours), 1)), shine=0.0)
-            for part in scene.parts
-        )
-        lips = now[scene.landmarks[48:68]]
-        self._camera = camera_for(scene, shot.view)
-        self._camera.target = 0.5 * (lips.min(axis=0) + lips.max(axis=0))
-        self._camera.pan(*shot.aside)
-        self._near = camera_for(scene, shot.near)
-        self._near.target = now[scene.landmarks[shot.landmark]]
-
-    def cell(self, title: str, refiner: refine.Refiner, positions: Points) -> Cell:
-        """Draw one look."""
-
-        def image(camera: render.OrbitCamera, style: render.Style, parts: tuple[Any, ...]) -> Image:
-            drawing = Drawing(camera, style, parts=parts, bones=self._bones)
-            return self._canvas.draw_image(refiner, positions, drawing)
-
-        return Cell(
-            title,
-            smooth=_smaller(image(self._camera, SMOOTH, self._parts)),
-            flat=_smaller(image(self._camera, FLAT, self._parts)),
-            kinds=image(self._camera, KINDS, self._green_parts).argmax(axis=2).astype(np.uint8),
-            opening=image(self._near, KINDS, self._green_parts).argmax(axis=2).astype(np.uint8),
-            triangles=self._canvas.stream_for(refiner).triangle_count,
-        )
+def _cell(title: str, refiner: refine.Refiner, mouths: Mouths, shot: Shot, canvas: Canvas) -> Cell:
+    """Draw one look of a shot."""
+    camera = mouths.camera(shot.view)
+    camera.pan(*shot.aside)
+    return Cell(
+        title,
+        smooth=_smaller(mouths.image(canvas, refiner, camera, SMOOTH)),
+        flat=_smaller(mouths.image(canvas, refiner, camera, FLAT)),
+        kinds=mouths.kinds(canvas, refiner, camera),
+        opening=mouths.kinds(canvas, refiner, mouths.camera(shot.near, shot.landmark)),
+        triangles=canvas.stream_for(refiner).triangle_count,
+    )
 
 
 def difference(cell: Cell, truth: Cell) -> npt.NDArray[np.float64]:
     """How far each pixel of the smooth picture is from the truth [levels of 255], (H, W)."""
     apart = cell.smooth.astype(np.float64) - truth.smooth
     return np.asarray(np.sqrt((apart**2).mean(axis=2)))
-
-
-def wrong_outline(cell: Cell, truth: Cell) -> int:
-    """How many pixels are the opening of the mouth here, or there, but not in both."""
-    return int(((cell.kinds == MOUTH) != (truth.kinds == MOUTH)).sum())
 
 
 def _smaller(image: Image) -> Image:
@@ -237,7 +176,7 @@ def _compared(cell: Cell, truth: Cell, text: float) -> tuple[Image, Image]:
     rms = float(np.sqrt((apart**2).mean()))
     return (
         _noted(_coloured(apart), f"RMS {rms:.1f}", text),
-        _noted(outline, f"{wrong_outline(cell, truth)} pixels wrong", text),
+        _noted(outline, f"{wrong_pixels(cell.kinds, truth.kinds)} pixels wrong", text),
     )
 
 

@@ -22,6 +22,7 @@ LONG_WORK = (
     "risorius.bench.gaps.measure",
     "risorius.bench.meshes.measure",
     "risorius.bench.motion.measure",
+    "risorius.bench.outlines.measure",
     "risorius.bench.paper_figures.coherence",
     "risorius.bench.quality.measure",
     "risorius.bench.refine.measure",
