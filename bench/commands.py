@@ -10,6 +10,7 @@ import json
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -158,6 +159,18 @@ def bench_gaps(json_file: Path | None) -> None:
     save([asdict(pose) for pose in poses])
 
 
+@bench.command("outlines")
+def bench_outlines() -> None:
+    """Count pixels around opened mouths that are not as those of a head 16 times as dense."""
+    from . import outlines
+
+    for title, chosen in (
+        ("poses that `border` was tuned on", outlines.CHOSEN_BY),
+        ("poses and views that were kept for the end", outlines.OTHERS),
+    ):
+        click.echo(outlines.report(title, outlines.measure(*chosen, progress=_progress)) + "\n")
+
+
 @bench.command("tearing")
 @click.option("--mixtures", type=click.IntRange(0, 100_000), default=500, show_default=True)
 def bench_tearing(mixtures: int) -> None:
@@ -213,8 +226,8 @@ def reproduce_table1(rounds: int) -> None:
     click.echo(table1.report(*table1.measure(rounds=rounds)))
 
 
-def _figure(name: str, function: str, help_text: str) -> None:
-    """Add a command that draws a picture: out/NAME.png unless told."""
+def _figure(name: str, module: str, function: str, help_text: str) -> None:
+    """Add a command that draws a picture with a function of a module here: out/NAME.png."""
 
     @reproduce.command(name, help=help_text)
     @click.option("-o", "--output", type=PATH, default=Path(f"out/{name}.png"), show_default=True)
@@ -222,18 +235,27 @@ def _figure(name: str, function: str, help_text: str) -> None:
         """Draw it and write it as PNG."""
         from risorius.app.files import check_png, save_png
 
-        from . import paper_figures
-
         check_png(output)
-        draw: Callable[[], Image] = getattr(paper_figures, function)
+        draw: Callable[[], Image] = getattr(import_module(f".{module}", __package__), function)
         save_png(output, draw())
         click.echo(f"{in_one_line(output)}: written")
 
 
-_figure("figure9", "figure_9", "Draw the plane: static and refined, flat and Gouraud shaded.")
-_figure("figure10", "figure_10", "Draw the region of the mouth: static and refined.")
+_figure(
+    "figure9",
+    "paper_figures",
+    "figure_9",
+    "Draw the plane: static and refined, flat and Gouraud shaded.",
+)
+_figure(
+    "figure10",
+    "figure10",
+    "figure_10",
+    "Draw the region of the mouth: static and refined, beside a dense mesh.",
+)
 _figure(
     "coherence",
+    "paper_figures",
     "coherence",
     "Draw a film strip of a growing wave, with and without memory of the splits.",
 )

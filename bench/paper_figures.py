@@ -1,12 +1,11 @@
 """The paper's figures, made again, and one of its section 4.4: `risorius reproduce` draws them.
 
-Fig. 9 (the plane), Fig. 10 (the region of the mouth), and a film strip of time-coherent splitting.
+Fig. 9 (the plane), and a film strip of time-coherent splitting; Fig. 10 is in figure10.py.
 Kähler, Haber, Seidel 2003, sections 4.4 and 5.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +14,7 @@ import numpy.typing as npt
 from risorius import refine, render
 from risorius.app.cameras import camera_for
 from risorius.app.files import Image
-from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.app.scenes import PlaneScene
 
 from .canvas import Canvas, Drawing, image_table
 from .turned_lines import Line, inner_lines, point_rows, turned
@@ -24,13 +23,9 @@ FRAME_SECONDS = 1.0 / 30.0
 CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, background=render.WHITE)
 FLAT = replace(CLAY, shading=render.Shading.FLAT)
 GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
-SPLIT_EDGES = replace(FLAT, wireframe=True, colour_by=render.ColourBy.SPLITS)
 
 WAVE_PHASES = (0.0, 0.33, 0.66)  # moments of the wave in Fig. 9
 WAVE_VIEW = "28,-30,0.68"  # from here no corner shows its underside, which no light reaches
-MOUTH_POSES = ("surprise", "joy", "disgust")  # in Fig. 10
-MOUTH_ZOOM = 5.4
-SETTLED = 1.5  # [s] after which the face stands still
 
 AMPLITUDES = (0.06, 0.12, 0.22, 0.4)  # of the wave in the columns of the film strip
 STEPS_BETWEEN = 8  # frames of the animation between two columns
@@ -58,49 +53,6 @@ def figure_9(size: tuple[int, int] = (380, 230)) -> Image:
                     cells.append((f"{canvas.stream_for(refiner).triangle_count} triangles", image))
                 rows.append((f"{title}, {shading} shading", cells))
     return image_table(rows)
-
-
-def figure_10(size: tuple[int, int] = (360, 270), *, poses: Sequence[str] = MOUTH_POSES) -> Image:
-    """The region of the mouth in three expressions, as it is and refined (Fig. 10).
-
-    Refined by the paper's rule, and with what the application splits in addition: edges that are
-    curved at rest, which the mouth's outline is made of.
-    """
-    scene = FaceScene()
-    skin = replace(GOURAUD, albedo=render.SKIN)
-    rest = scene.refiner_options["kahler"]["criterion"]
-    looks: tuple[tuple[str, str, dict[str, str], render.Style], ...] = (
-        ("static", "none", {}, skin),
-        ("refined", "kahler", {}, skin),
-        (f"by {rest}", "kahler", {"criterion": rest}, skin),
-        ("coloured by splits", "kahler", {}, SPLIT_EDGES),
-    )
-    rows = []
-    with Canvas(size) as canvas:
-        refiners = [
-            refine.create(name, scene.faces, scene.rest_positions, **options)
-            for _, name, options, _ in looks
-        ]
-        for pose in poses:
-            scene.reset()
-            scene.pose({pose: 1.0})
-            scene.step(SETTLED)
-            bones = scene.bone_transforms()
-            cells = []
-            for refiner, (title, _, _, style) in zip(refiners, looks, strict=True):
-                drawing = Drawing(_mouth_camera(scene), style, parts=scene.parts, bones=bones)
-                image = canvas.draw_image(refiner, scene.positions, drawing)
-                cells.append((f"{title} · {canvas.stream_for(refiner).triangle_count}", image))
-            rows.append((pose, cells))
-    return image_table(rows)
-
-
-def _mouth_camera(scene: FaceScene) -> render.OrbitCamera:
-    """A camera close by the lips of the moment."""
-    lips = scene.positions[scene.landmarks[48:68]]
-    camera = camera_for(scene, f"-22,-4,{MOUTH_ZOOM}")
-    camera.target = 0.5 * (lips.min(axis=0) + lips.max(axis=0))
-    return camera
 
 
 def coherence(size: tuple[int, int] = (250, 200)) -> Image:

@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, sim
+from risorius.assets.model import FineMesh
 
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
@@ -90,19 +91,7 @@ def built_in(level: int) -> Subject:
     """
     head = assets.load("head")
     fine = head.finer(level)
-    simulation = sim.create(
-        SimpleNamespace(
-            vertices=fine.vertices,
-            faces=fine.faces,
-            landmarks=head.landmarks,
-            rig=head.rig,
-            layers=head.layers,
-            bone_depth=fine.interpolate(head.bone_depth),
-            mandible_weight=fine.interpolate(head.mandible_weight),
-            jaw_axis=head.jaw_axis,
-            eyes=head.eyes,
-        )
-    )
+    simulation = fine_simulation(head, fine)
     count = len(head.vertices)
     poses = {}
     for name, values in head.expressions.items():
@@ -114,6 +103,23 @@ def built_in(level: int) -> Subject:
         head.faces,
         PosePair(fine.vertices, fine.vertices[:count]),
         poses,
+    )
+
+
+def fine_simulation(head: assets.Head, fine: FineMesh) -> sim.Simulation:
+    """The simulation of a finer mesh of a head, with the muscles of its rig."""
+    return sim.create(
+        SimpleNamespace(
+            vertices=fine.vertices,
+            faces=fine.faces,
+            landmarks=head.landmarks,
+            rig=head.rig,
+            layers=head.layers,
+            bone_depth=fine.interpolate(head.bone_depth),
+            mandible_weight=fine.interpolate(head.mandible_weight),
+            jaw_axis=head.jaw_axis,
+            eyes=head.eyes,
+        )
     )
 
 

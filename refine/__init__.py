@@ -31,6 +31,7 @@ Read border/plugin.py first, then kahler/. docs/refinement.md tells it all with 
 """
 
 from .beyond.blending import Blended
+from .beyond.border_turn import BorderTurn
 from .beyond.bulge import Bulge
 from .beyond.cubic import CubicScheme
 from .beyond.curvature import Curvature, RestCurvature
@@ -70,6 +71,7 @@ __all__ = [
     "THRESHOLD_TWICE",
     "BaseRefiner",
     "Blended",
+    "BorderTurn",
     "BrokenMeshError",
     "Bulge",
     "Coherent",
@@ -121,6 +123,7 @@ register("none", PassThrough)
 register_criterion("normal", NormalDrop)
 register_criterion("curvature", Curvature)
 register_criterion("rest", RestCurvature)
+register_criterion("border", BorderTurn)
 register_criterion("bulge", Bulge)
 register_criterion("silhouette", Silhouette)
 register_criterion("screen", ScreenEdge)

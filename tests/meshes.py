@@ -211,3 +211,41 @@ def rotation(seed: int) -> npt.NDArray[np.float64]:
     """A random rotation matrix, shape (3, 3)."""
     matrix, _ = np.linalg.qr(np.random.default_rng(seed).standard_normal((3, 3)))
     return np.asarray(matrix * np.linalg.det(matrix))
+
+
+def slit(columns: int = 10, rows: int = 6) -> Mesh:
+    """A flat rectangle of unit cells around the origin, with a slit along x; symmetric in x and y.
+
+    Two cells at each end of the middle row are whole. Of the slit's two sides the lower one has the
+    numbers that a grid without it would have, and the upper one the last.
+    """
+    across = columns + 1
+    x, y = np.meshgrid(np.arange(across) - columns / 2, np.arange(rows + 1) - rows / 2)
+    vertices = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
+    upper = {
+        across * (rows // 2) + column: len(vertices) + k
+        for k, column in enumerate(range(3, columns - 2))
+    }
+    faces = []
+    for row in range(rows):
+        for column in range(columns):
+            a, b = across * row + column, across * (row + 1) + column
+            corners = [a, a + 1, b + 1, b]
+            if row >= rows // 2:
+                corners = [upper.get(v, v) for v in corners]
+            first = int((row < rows // 2) != (column < columns // 2))  # of the two diagonals
+            a, b, c, d = (corners[(k + first) % 4] for k in range(4))
+            faces += [(a, b, c), (a, c, d)]
+    return _mesh(np.concatenate([vertices, vertices[list(upper)]]), faces)
+
+
+def opened(mesh: Mesh, height: float) -> npt.NDArray[np.float64]:
+    """The mesh of `slit` with its sides drawn apart in its plane, as arcs; shape (V, 3)."""
+    columns, rows = np.ptp(mesh.vertices, axis=0)[:2]
+    positions = mesh.vertices.copy()
+    x, y = mesh.vertices[:, 0], mesh.vertices[:, 1]
+    is_upper = np.arange(len(x)) >= (columns + 1) * (rows + 1)
+    side = np.where(is_upper, 1.0, np.where(y == 0.0, -1.0, np.sign(y)))
+    arc = np.maximum(1.0 - (x / (columns / 2 - 2)) ** 2, 0.0)
+    positions[:, 1] += height * side * arc * (1.0 - np.abs(y) / (rows / 2))
+    return positions

@@ -89,7 +89,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
         {"scheme": "detail"},
         {"scheme": "detail", "criterion": "bulge"},
         {"coherent": True},
-        *({"criterion": name} for name in ("curvature", "silhouette", "screen")),
+        *({"criterion": name} for name in ("curvature", "silhouette", "screen", "border")),
     )
     for options in choices:
         text = " ".join(f"{name}={value}" for name, value in options.items())

@@ -37,6 +37,7 @@ import numpy as np
 from ...jit import njit
 from ..kahler.frame import CENTRES, ONCE, ROWS, FrameBuffers
 from ..mesh.arrays import Doubles, Floats, Unsigned
+from ..mesh.borders import border_neighbours
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.normals import cross_product, normalise
 from ..mesh.vectors import (
@@ -120,9 +121,8 @@ class CubicScheme(CurveScheme):
             normals=np.zeros_like(rest_normals),
             steeper=np.zeros_like(rest_normals),
             off=(STEEPER / np.maximum(valences, 1)).astype(np.float32),
-            beyond=np.zeros((len(mesh.edges), 2), dtype=np.uint32),
+            beyond=follow_borders(mesh, rest_positions),
         )
-        follow_borders(mesh, self._tangents.beyond)
         self._across = mesh.faces.copy()
         self._shares = np.zeros((len(mesh.faces), 6), dtype=np.float32)
         weigh_neighbours(mesh, rest_positions, self._across, self._shares)
@@ -155,23 +155,14 @@ def weigh_corners(positions: Doubles, faces: Unsigned, weights: Floats) -> None:
             weights[t, i] = np.sqrt(angle / area) if area > SLIVER * size else 0.0
 
 
-@njit
-def follow_borders(mesh: Connectivity, beyond: Unsigned) -> None:
-    """Write the vertices before and after every border edge, or its ends where its border ends."""
-    border_count = np.zeros(mesh.vertex_count, np.int64)
-    sums = np.zeros(mesh.vertex_count, np.int64)
-    for e in range(mesh.edges.shape[0]):
-        if not mesh.around.is_interior[e]:
-            a, b = mesh.edges[e, 0], mesh.edges[e, 1]
-            border_count[a] += 1
-            border_count[b] += 1
-            sums[a] += b
-            sums[b] += a
-    for e in range(mesh.edges.shape[0]):
-        a, b = mesh.edges[e, 0], mesh.edges[e, 1]
-        # Of two neighbours along the border the sum less one is the other.
-        beyond[e, 0] = sums[a] - b if border_count[a] == 2 else a
-        beyond[e, 1] = sums[b] - a if border_count[b] == 2 else b
+def follow_borders(mesh: Connectivity, rest_positions: Doubles) -> Unsigned:
+    """Find the vertices before and after every border edge, shape (E, 2); its own ends at a corner.
+
+    What it says of other edges has no meaning.
+    """
+    neighbours = border_neighbours(mesh, rest_positions)[mesh.edges]
+    others = mesh.edges[:, ::-1].view(np.uint32)
+    return np.where(neighbours[..., 0] != others, neighbours[..., 0], neighbours[..., 1])
 
 
 @njit

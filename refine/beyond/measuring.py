@@ -11,6 +11,8 @@ edges. To achieve this, appropriate splitting criteria have to be developed").
                 an edge that is seen edge-on        line of sight grazes the edge, 0 a BAND away;
                                                     the turn counts up to where points have grown
     screen      length of an edge as it is seen     L x focal / distance from the eye, in pixels
+    border      angle by which the border turns     how an opened mouth differs from a shut one
+                otherwise than at rest
     bulge       how far the scheme moves a middle   for schemes with curved edges (curves.py);
                 and mends normals, if it knows      `detail` does
 

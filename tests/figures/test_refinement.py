@@ -26,15 +26,11 @@ def test_figures_are_drawn(tmp_path: Path) -> None:
         assert name == "refine_tension" or (figure() == drawn).all()
 
 
-def test_paper_figures() -> None:
-    """Rows and columns of Fig. 9 and Fig. 10, refined rows with more triangles than static ones."""
+def test_figure_9() -> None:
+    """Three columns, and something on them."""
     nine = paper_figures.figure_9((96, 64))
     assert nine.shape[1] == 3 * 96
     assert nine.std() > 10.0
-    ten = paper_figures.figure_10((80, 64), poses=("joy",))
-    assert ten.shape[1] == 4 * 80
-    left, right = ten[30:90, :80].astype(int), ten[30:90, 80:160].astype(int)
-    assert np.abs(left - right).max() > 20  # refinement shows
 
 
 def test_no_corner_of_the_plane_is_a_speck() -> None:

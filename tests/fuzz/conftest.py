@@ -16,12 +16,13 @@ from .sandbox import furnish
 DOORS = pytest.StashKey[dict[str, Counter[str]]]()
 
 LONG_WORK = (
-    "risorius.bench.paper_figures.figure_10",
+    "risorius.bench.figure10.figure_10",
     "risorius.bench.paper_figures.figure_9",
     "risorius.app.viewer.Viewer",
     "risorius.bench.gaps.measure",
     "risorius.bench.meshes.measure",
     "risorius.bench.motion.measure",
+    "risorius.bench.outlines.measure",
     "risorius.bench.paper_figures.coherence",
     "risorius.bench.quality.measure",
     "risorius.bench.refine.measure",

@@ -128,8 +128,14 @@ def steepened(normals: list[Vector], edges: set[EdgeName]) -> list[Vector]:
     ]
 
 
+def is_corner(before: Vector, here: Vector, after: Vector) -> bool:
+    """Whether a border turns by more than 60 degrees."""
+    u, v = mix((1, here), (-1, before)), mix((1, after), (-1, here))
+    return dot(u, v) < (0.5 - 1e-9) * length(u) * length(v)
+
+
 def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> CurveRules:
-    """Cubic edges, 1.2 times as full."""
+    """Cubic edges, 1.2 times as full; borders end at corners."""
     around, normals = Surroundings(faces), cubic_normals(rest, positions, faces)
     steeper = steepened(normals, set(around.opposite))
 
@@ -141,7 +147,7 @@ def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> Cur
         ends = []
         for here, there in ((a, b), (b, a)):
             ring = around.border_ring[here]
-            if len(ring) != 2:
+            if len(ring) != 2 or is_corner(*(rest[v] for v in (ring[0], here, ring[1]))):
                 ends.append(d)
                 continue
             other = ring[0] if ring[1] == there else ring[1]

@@ -293,7 +293,14 @@ def test_bad_criteria(criterion: object, text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "kind", [refine.Curvature, refine.RestCurvature, refine.Silhouette, refine.ScreenEdge]
+    "kind",
+    [
+        refine.Curvature,
+        refine.RestCurvature,
+        refine.Silhouette,
+        refine.ScreenEdge,
+        refine.BorderTurn,
+    ],
 )
 def test_bad_thresholds(kind: type) -> None:
     """Thresholds out of order are refused by every criterion."""

@@ -1,0 +1,228 @@
+"""The criterion `border`: mouths that open."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from risorius import assets, refine, sim
+from tests import meshes
+from tests.refine.cases import soups
+from tests.refine.plain_schemes import is_corner
+from tests.refine.plain_twin import Surroundings
+
+seeds = st.integers(0, 2**16)
+heights = st.floats(0.0, 1.5)
+SLIT = meshes.slit()
+EDGES = refine.connect(SLIT.faces, len(SLIT.vertices)).edges
+
+
+def splits_of(mesh: meshes.Mesh, deformed: np.ndarray, criterion: object = "border") -> np.ndarray:
+    """Splits of every edge."""
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
+    refine.check(refiner, refiner.refine(deformed), deformed)
+    return refiner.splits.copy()
+
+
+def needs_of(mesh: meshes.Mesh, *poses: np.ndarray) -> list[np.ndarray]:
+    """Need of every edge in each pose."""
+    connectivity = refine.connect(mesh.faces, len(mesh.vertices))
+    none = refine.create("none", mesh.faces, mesh.vertices)
+    criterion = refine.BorderTurn()
+    criterion.bind(connectivity, mesh.vertices, none.refine(mesh.vertices).normals.copy())
+    needs = []
+    for pose in poses:
+        need = np.zeros(len(connectivity.edges), dtype=np.float32)
+        criterion.measure(pose, none.refine(pose).normals.copy(), need)
+        needs.append(need)
+    return needs
+
+
+@settings(max_examples=60, deadline=None)
+@given(seeds, st.floats(-1e3, 1e3), st.booleans())
+def test_nothing_at_rest(seed: int, away: float, has_holes: bool) -> None:
+    """Neither rest nor a rigid motion splits anything."""
+    mesh = meshes.irregular(seed % 50) if has_holes else SLIT
+    moved = mesh.vertices @ meshes.rotation(seed).T + away
+    assert not splits_of(mesh, mesh.vertices).any()
+    assert not splits_of(mesh, moved).any()
+
+
+@settings(max_examples=60, deadline=None)
+@given(soups())
+def test_any_triangles(soup: tuple[np.ndarray, np.ndarray]) -> None:
+    """Fins, flips and debris split nothing at rest, and crack nowhere when they move."""
+    positions, faces = soup
+    mesh = meshes.Mesh(positions, faces)
+    assert not splits_of(mesh, positions).any()
+    splits_of(mesh, positions[::-1].copy())
+
+
+def test_a_slit_that_opens_in_its_plane() -> None:
+    """It is split along all of its sides, and beside them; no other criterion sees it."""
+    deformed = meshes.opened(SLIT, 0.8)
+    assert not splits_of(SLIT, deformed, "normal+curvature").any()
+    splits = splits_of(SLIT, deformed)
+    x, y = np.abs(SLIT.vertices[EDGES][..., 0]), np.abs(SLIT.vertices[EDGES][..., 1])
+    runs_along = np.ptp(y, axis=1) == 0.0
+    on_sides = runs_along & (y == 0.0).all(axis=1) & (x <= 3.0).all(axis=1)
+    next_row = runs_along & (y == 1.0).all(axis=1) & (x <= 2.0).all(axis=1)
+    across = (np.ptp(x, axis=1) == 0.0) & (y.min(axis=1) == 0.0)
+    assert on_sides.sum() == 12
+    assert splits[on_sides].min() >= 1
+    assert splits[next_row].min() >= 1
+    assert not splits[across].any()
+
+
+@settings(max_examples=40, deadline=None)
+@given(heights, heights)
+def test_symmetric_in_symmetric_out(height: float, lower: float) -> None:
+    """What is mirrored left and right is split alike there; and above and below, if opened so."""
+    for axis, sides in ((0, (height, lower)), (1, (height, height))):
+        deformed = meshes.opened(SLIT, sides[0])
+        is_below = deformed[:, 1] < 0.0
+        deformed[is_below] = meshes.opened(SLIT, sides[1])[is_below]
+        splits = splits_of(SLIT, deformed)
+        middles = deformed[EDGES].mean(axis=1)
+        mirrored = middles * np.where(np.arange(3) == axis, -1.0, 1.0)
+        distances = np.linalg.norm(mirrored[:, None] - middles, axis=2)
+        # The upper side lies on the lower one when the slit is shut; then both are alike anyway.
+        assert distances.min(axis=1).max() < 1e-9
+        np.testing.assert_array_equal(splits, splits[distances.argmin(axis=1)])
+
+
+@settings(max_examples=60, deadline=None)
+@given(seeds, st.floats(0.0, 0.5))
+def test_needs_are_continuous(seed: int, amplitude: float) -> None:
+    """They change no more than 200 times as much as the mesh moves [edges]: thresholds are small.
+
+    Also through the moment in which a side folds back.
+    """
+    mesh = meshes.irregular(seed % 50)
+    start = meshes.wrinkled(mesh, seed, amplitude)
+    end = meshes.wrinkled(mesh, seed + 1, amplitude)
+    shares = np.linspace(0.0, 1.0, 200)
+    poses = [start + share * (end - start) for share in shares]
+    edges = refine.connect(mesh.faces, len(start)).edges
+    shortest = min(np.linalg.norm(np.diff(pose[edges], axis=1), axis=2).min() for pose in poses)
+    step = np.linalg.norm(end - start, axis=1).max() / 199 / max(shortest, 1e-3)
+    for before, after in pairwise(needs_of(mesh, *poses)):
+        assert np.abs(after - before).max() <= 200.0 * step + 1e-3
+
+
+def plain_needs(mesh: meshes.Mesh, normals: np.ndarray, pose: np.ndarray,
+                rest_normals: np.ndarray) -> dict[tuple[int, int], float]:  # fmt: skip
+    """The criterion once more, by dictionaries, from the text of its file."""
+    around = Surroundings([tuple(int(v) for v in face) for face in mesh.faces])
+
+    def unit(a: int, b: int, points: np.ndarray) -> np.ndarray:
+        return np.asarray((points[b] - points[a]) / np.linalg.norm(points[b] - points[a]))
+
+    def turn(v: int, points: np.ndarray, n: np.ndarray) -> np.ndarray:
+        p, q = sorted(around.border_ring[v])
+        u, w = unit(p, v, points), unit(v, q, points)
+        return np.array([u @ w, n[v] @ np.cross(u, w), n[v] @ (w - u)])
+
+    turns: dict[int, float] = {}
+    squares: dict[int, np.ndarray] = {}
+    for v, ring in around.border_ring.items():
+        squares[v] = sum((np.outer(unit(v, w, mesh.vertices), unit(v, w, mesh.vertices)) / 2
+                          for w in ring), np.zeros((3, 3)))  # fmt: skip
+        points = [tuple(map(float, mesh.vertices[w])) for w in (ring[0], v, ring[-1])]
+        turns[v] = 0.0
+        if len(ring) == 2 and not is_corner(*points):
+            change = turn(v, pose, normals) - turn(v, mesh.vertices, rest_normals)
+            turns[v] = float(np.linalg.norm(change))
+    for k in range(1, 5):
+        nearer: dict[int, list[int]] = defaultdict(list)
+        for v, ring in around.ring.items():
+            if v not in turns:
+                nearer[v] = [w for w in ring if w in turns]
+        for v, from_ in nearer.items():
+            if from_:
+                squares[v] = np.mean([squares[w] for w in from_], axis=0)
+        added = {v: (5 - k) / (6 - k) * float(np.mean([turns[w] for w in from_]))
+                 for v, from_ in nearer.items() if from_}  # fmt: skip
+        turns |= added
+    needs = {}
+    for a, b in around.opposite:
+        e = unit(a, b, mesh.vertices)
+        none = np.zeros((3, 3))
+        along = e @ (squares.get(a, none) + squares.get(b, none)) @ e / 2
+        share = along if (a, b) in around.inner else 1.0
+        measure = share * (turns.get(a, 0.0) + turns.get(b, 0.0)) / 2
+        needs[a, b] = (measure - 0.03) / 0.09
+    return needs
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_equals_plain_twin(seed: int) -> None:
+    """Needs are those worked out plainly."""
+    mesh = meshes.irregular(seed, columns=16, rows=16)
+    pose = meshes.wrinkled(mesh, seed)
+    none = refine.create("none", mesh.faces, mesh.vertices)
+    rest_normals = none.refine(mesh.vertices).normals.copy()
+    normals = none.refine(pose).normals.copy()
+    (need,) = needs_of(mesh, pose)
+    plain = plain_needs(mesh, normals.astype(float), pose, rest_normals.astype(float))
+    edges = refine.connect(mesh.faces, len(mesh.vertices)).edges
+    expected = np.array([plain[min(a, b), max(a, b)] for a, b in edges.tolist()])
+    np.testing.assert_allclose(need, expected, atol=2e-4)
+    assert 0.1 < (need > 0).mean() < 0.95
+
+
+def outline(
+    positions: np.ndarray, triangles: np.ndarray, middle: np.ndarray, reach: float
+) -> np.ndarray:
+    """Angles by which the border around a place turns, less its two corners [degrees]; sorted."""
+    mesh = refine.connect(triangles, len(positions))
+    after = dict(mesh.edges[~mesh.around.is_interior].tolist())
+    before = {b: a for a, b in after.items()}
+    curves = np.array([(before[v], v, after[v]) for v in after])
+    curves = curves[np.linalg.norm(positions[curves[:, 1]] - middle, axis=1) < reach]
+    u, w = np.diff(positions[curves].astype(float), axis=1).swapaxes(0, 1)
+    lengths = np.linalg.norm(u, axis=1) * np.linalg.norm(w, axis=1)
+    turns = np.arccos(np.clip((u * w).sum(axis=1) / lengths, -1.0, 1.0))
+    return np.sort(np.degrees(turns))[:-2]
+
+
+@pytest.mark.parametrize("scheme", ["loop", "cubic"])
+def test_round_outline_of_a_slit(scheme: str) -> None:
+    """Between its corners an opened slit turns less than half as much; by loop not beside them."""
+    deformed = meshes.opened(SLIT, 1.2)
+    refiner = refine.create(
+        "kahler", SLIT.faces, SLIT.vertices, criterion="border", scheme=scheme, blend=False
+    )
+    mesh = refiner.refine(deformed)
+    middle = np.zeros(3)
+    coarse = outline(deformed, SLIT.faces, middle, 3.1)
+    refined = outline(mesh.positions, mesh.triangles, middle, 3.1)
+    assert np.median(refined) < 0.5 * np.median(coarse)
+    assert scheme == "loop" or refined[-1] < 0.5 * coarse[-1]
+
+
+@pytest.mark.parametrize("scheme", ["loop", "cubic"])
+@pytest.mark.parametrize("name", ["surprise", "yawn"])
+def test_round_mouth_of_the_head(scheme: str, name: str) -> None:
+    """The border of the mouth turns less than half as much; by loop not beside its corners."""
+    head = assets.load("head")
+    simulation = sim.create(head)
+    simulation.set_all(head.expressions[name])
+    for _ in range(60):
+        simulation.step(1.0 / 60.0)
+    refiner = refine.create(
+        "kahler", head.faces, head.vertices, criterion="border", scheme=scheme, blend=False
+    )
+    now = simulation.positions
+    mesh = refiner.refine(now)
+    assert len(mesh.triangles) < 1.6 * len(head.faces)
+    middle = now[head.landmarks[60:68]].mean(axis=0) - [0.0, 0.0, 5.0]
+    coarse = outline(now, head.faces, middle, 40.0)
+    refined = outline(mesh.positions, mesh.triangles, middle, 40.0)
+    assert np.median(refined) < 0.5 * np.median(coarse)
+    assert scheme == "loop" or refined[-1] < 0.5 * coarse[-1]

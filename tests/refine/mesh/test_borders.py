@@ -1,0 +1,45 @@
+"""Border curves and their corners."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from risorius import refine
+from risorius.refine.mesh.borders import border_neighbours
+from tests import meshes
+from tests.refine.cases import soups
+from tests.refine.plain_schemes import is_corner
+from tests.refine.plain_twin import Surroundings
+
+
+@settings(max_examples=150, deadline=None)
+@given(soups())
+def test_soups(soup: tuple[np.ndarray, np.ndarray]) -> None:
+    """For any triangles, borders run on where they do with plain dictionaries."""
+    positions, faces = soup
+    found = border_neighbours(refine.connect(faces, len(positions)), positions)
+    around = Surroundings([tuple(int(v) for v in face) for face in faces])
+    points = [tuple(map(float, point)) for point in positions]
+    for v, pair in enumerate(found.tolist()):
+        ring = around.border_ring[v]
+        runs_on = len(ring) == 2 and not is_corner(points[ring[0]], points[v], points[ring[1]])
+        assert sorted(pair) == (sorted(ring) if runs_on else [v, v])
+
+
+@pytest.mark.parametrize(("sides", "is_round"), [(4, False), (5, False), (6, True), (7, True)])
+def test_corners(sides: int, is_round: bool) -> None:
+    """A hexagon is round, a square has corners; so do shut lips where they meet."""
+    fan = meshes.fan(sides)
+    found = border_neighbours(refine.connect(fan.faces, sides + 1), fan.vertices)
+    assert (found[0] == 0).all()
+    assert ((found[1:, 0] != found[1:, 1]) == is_round).all()
+    slit = meshes.slit()
+    found = border_neighbours(refine.connect(slit.faces, len(slit.vertices)), slit.vertices)
+    x, y, _ = slit.vertices.T
+    ends = np.flatnonzero((y == 0.0) & (abs(x) == 3.0))
+    sides_of_slit = np.flatnonzero((y == 0.0) & (abs(x) < 3.0))
+    assert (found[ends] == ends[:, None]).all()
+    assert (abs(slit.vertices[found[sides_of_slit], 1]) == 0.0).all()
+    assert (np.ptp(slit.vertices[found[sides_of_slit], 0], axis=1) == 2.0).all()
