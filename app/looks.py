@@ -43,6 +43,12 @@ LOOKS: Mapping[str, Mapping[str, Look]] = MappingProxyType(  # by name, then by 
 )
 
 
+def words_of_looks(option: str) -> list[str]:
+    """What looks tell any refiner by an option that is a word."""
+    looks = [look for by_scene in LOOKS.values() for look in by_scene.values()]
+    return [told[option] for look in looks for told in look.options.values() if option in told]
+
+
 @dataclass(frozen=True)
 class Refinement:
     """What a user asks for: a look, or a refiner as that look has it, and options over both."""

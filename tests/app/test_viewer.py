@@ -16,7 +16,7 @@ from PIL import Image
 
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.physics import MOST_STEPS
-from risorius.app.viewer.settings import load_settings
+from risorius.app.viewer.settings import Display, Settings, load_settings
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -197,6 +197,7 @@ def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
         click(viewer, "Colours")
         click(viewer, f"Colours: {name}")
         assert viewer.settings.display.colours == name
+    click(viewer, "Style")  # folded, there is room for what is below it
     for name in ("Muscles", "Springs", "Skull", "Landmarks"):
         click(viewer, name)
     assert viewer.settings.display.overlays == ["muscles", "springs", "skull", "landmarks"]
@@ -208,6 +209,58 @@ def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
     click(viewer, "Refiner")
     click(viewer, "Refiner: loop")
     assert viewer.stage.refined.triangle_count == 4 * len(viewer.session.scene.faces)
+    assert not viewer.messages.text
+
+
+def test_a_look_is_chosen(viewer: Viewer) -> None:
+    """In the panel, by the menu and by its key; it undoes what was changed of the one before."""
+    viewer.session.toggle_alone("disgust")
+    click(viewer, "tab Mechanism")
+    display, stage = viewer.settings.display, viewer.stage
+    assert until(viewer, lambda: viewer.is_idle)
+    smooth = stage.refined.triangle_count
+    click(viewer, "Look")
+    click(viewer, "Look: paper")
+    assert display.look == stage.refined.label == "paper"
+    paper = stage.refined.triangle_count
+    assert len(stage.scene.faces) < paper < 0.8 * smooth
+    click(viewer, "Refiner")
+    click(viewer, "Refiner: loop")
+    display.options["loop"] = {"levels": 2}
+    draw_frames(viewer)
+    assert stage.refined.label == "loop, changed"
+    assert stage.refined.triangle_count == 16 * len(stage.scene.faces)
+    click(viewer, "Look")
+    click(viewer, "Look: paper")
+    assert stage.refined.triangle_count == paper and stage.refined.label == "paper"
+    xdotool(viewer, "key", "p")
+    assert display.look == stage.refined.label == "smooth"
+    assert stage.refined.triangle_count == smooth
+    click(viewer, "menu View")
+    click(viewer, "menu View: Paper's look")
+    assert display.look == "paper" and stage.refined.triangle_count == paper
+    assert not viewer.messages.is_error
+
+
+def test_two_looks_are_compared(viewer: Viewer) -> None:
+    """On the left is what the list says: a look, a refiner, or the mesh as it is again."""
+    viewer.session.toggle_alone("disgust")
+    click(viewer, "tab Mechanism")
+    assert until(viewer, lambda: viewer.is_idle)
+    smooth = viewer.stage.refined.triangle_count
+    assert "with" not in viewer.gui.places
+    xdotool(viewer, "key", "d")
+    labels, counts = [], []
+    for name in ("paper", "loop", "static"):
+        click(viewer, "with")
+        click(viewer, f"with: {name}")
+        left, right = viewer.stage.shots(viewer.settings.display, viewer.view.viewport)
+        assert right.drawn is viewer.stage.refined and right.drawn.triangle_count == smooth
+        labels.append(left.drawn.label)
+        counts.append(left.drawn.triangle_count)
+    static = len(viewer.session.scene.faces)
+    assert labels == ["paper", "loop", "static"]
+    assert static < counts[0] < smooth and counts[1:] == [4 * static, static]
     assert not viewer.messages.text
 
 
@@ -327,7 +380,7 @@ def test_an_idle_window_rests(viewer: Viewer) -> None:
 
 
 def test_the_window_remembers(tmp_path: Path) -> None:
-    """`risorius replay --once` plays and ends; size and look come back, a broken file does not."""
+    """`risorius replay --once` plays and ends; size and looks come back, a broken file does not."""
     script = tmp_path / "short.toml"
     script.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.6\njoy = 1.0\n")
     environment = {**os.environ, "XDG_CONFIG_HOME": str(tmp_path)}
@@ -335,15 +388,23 @@ def test_the_window_remembers(tmp_path: Path) -> None:
     remembered.parent.mkdir()
     remembered.write_text('{"size": ')
     command = [sys.executable, "-m", "risorius", "replay", str(script), "--once"]
-    command += ["--size", "500x400", "--wireframe"]
+
+    def replayed(*options: str) -> Settings:
+        """What is remembered after a replay with these options."""
+        result = subprocess.run(
+            [*command, *options], capture_output=True, text=True, timeout=60, check=False,
+            env=environment, cwd=Path(__file__).parents[2],
+        )  # fmt: skip
+        assert result.returncode == 0, result.stderr
+        assert result.stderr == ""
+        settings, complaint = load_settings(remembered)
+        assert complaint == ""
+        return settings
+
     start = time.monotonic()
-    result = subprocess.run(
-        command, capture_output=True, text=True, timeout=60, check=False, env=environment,
-        cwd=Path(__file__).parents[2],
-    )  # fmt: skip
-    assert result.returncode == 0, result.stderr
-    assert result.stderr == ""
+    settings = replayed("--size", "500x400", "--wireframe", "--look", "paper")
     assert time.monotonic() - start > 0.6
-    settings, complaint = load_settings(remembered)
-    assert complaint == "" and settings.size == (500, 400) and settings.display.wireframe
-    assert len(settings.cameras["face"]) == 6
+    assert settings.size == (500, 400) and len(settings.cameras["face"]) == 6
+    assert settings.display == Display(look="paper", wireframe=True)
+    assert replayed().display == settings.display
+    assert replayed("--look", "smooth").display == Display()  # asked for, though it is the first

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from risorius.app.scenes import FaceScene
+from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import (
@@ -39,7 +39,8 @@ def test_settings_come_back(tmp_path: Path) -> None:
     """What is written is read again."""
     path = tmp_path / "deep" / "viewer.json"
     settings = Settings(size=(900, 700), theme="dark", cameras={"face": [1.0, 2, 900, 0, 0, 0.5]})
-    settings.display.overlays = ["muscles"]
+    settings.display.look, settings.display.beside = "paper", "smooth"
+    settings.display.refiner, settings.display.overlays = "loop", ["muscles"]
     settings.display.options = {"kahler": {"threshold_once": 0.1, "blend": True, "scheme": "cubic"}}
     save_settings(path, settings)
     assert load_settings(path) == (settings, "")
@@ -73,9 +74,13 @@ def test_settings_come_back(tmp_path: Path) -> None:
         ("cameras.face", [1, 2, 3, 4, 5, float("inf")]),
         ("cameras.face", [[[]]] * 6),
         ("display", 3),
+        ("display.look", "pretty"),
+        ("display.look", ["paper"]),
         ("display.refiner", "none"),
         ("display.refiner", {"a": 1}),
         ("display.compare", "both"),
+        ("display.beside", "both"),
+        ("display.beside", None),
         ("display.divider", 7),
         ("display.shading", ""),
         ("display.colours", 1),
@@ -188,6 +193,19 @@ def test_options_that_a_refiner_refuses_give_way_alone() -> None:
     for words in ("kahler threshold_once = 'x'", "kahler foo = 3", "loop levels = 50"):
         assert words in told
     assert remove_refused_options(display, FaceScene()) == ""
+
+
+def test_refiners_that_cannot_be_bound_give_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of what is drawn and what it is compared with; the look is drawn, and the mesh as it is."""
+
+    def broken(*_: Any, **__: Any) -> Any:
+        raise ValueError("this mesh is too large")
+
+    monkeypatch.setattr(refiners, "_factories", {**refiners._factories, "far": broken})
+    display = Display(look="paper", refiner="far", beside="far")
+    told = remove_refused_options(display, PlaneScene())
+    assert told == "of no use and as at first: refiner far, far"
+    assert display == Display(look="paper")
 
 
 @pytest.mark.window

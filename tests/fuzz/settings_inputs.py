@@ -46,6 +46,8 @@ FILES: dict[str, bytes] = {
     "shading unknown": b'{"display": {"shading": "toon"}}',
     "skin unknown": b'{"display": {"skin": "fur"}}',
     "colours unknown": b'{"display": {"colours": "rainbow"}}',
+    "look unknown": b'{"display": {"look": "painted"}}',
+    "compared with nothing known": b'{"display": {"compare": "wipe", "beside": "magic"}}',
     "refiner unknown": b'{"display": {"refiner": "magic"}}',
     "options of a list": b'{"display": {"options": {"kahler": [1]}}}',
     "options unknown": b'{"display": {"options": {"kahler": {"sharpness": 1}}}}',

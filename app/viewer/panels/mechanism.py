@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 
 from risorius import refine, render
 
-from ...looks import LOOKS, STATIC, named
+from ...looks import LOOKS, STATIC, named, words_of_looks
 from ...refining import DETAIL, can_detail
 from ..colours import COLOURS
 from ..frame_times import PHASES, FrameTimes
@@ -28,7 +28,7 @@ from .widgets import heading, hint, muted
 HINTS = {
     "Refine": "draw the refined mesh, or the simulated one as it is (R)",
     "Look": "smooth: what looks best; paper: the paper's own rule (P). A look sets the refiner and "
-    "all that it is told; choose it again to undo changes of it",
+    "all that it is told; choose it again to undo changes",
     "Refiner": "any that is registered",
     "Compare": "two meshes under one camera: wipe (D), side by side (Shift+D)",
     "with": "what is seen on the left: the simulated mesh, a look, or a refiner",
@@ -243,11 +243,11 @@ def _label_width() -> float:
 
 
 def _choices(option: str) -> tuple[str, ...]:
-    """The words that an option of a refiner may be, those from outside among them."""
-    if option == "scheme":
-        return refine.schemes.available()
-    first, *others = refine.criteria.available()
-    return (first, "normal+rest", *others) if option == "criterion" else ()
+    """The words that an option of a refiner may be, those of looks and from outside among them."""
+    registered = {"scheme": refine.schemes.available, "criterion": refine.criteria.available}
+    if option not in registered:
+        return ()
+    return tuple(dict.fromkeys((*registered[option](), *words_of_looks(option))))
 
 
 def _keep_in_order(
