@@ -34,7 +34,18 @@ def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
             name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **options
         )
     except (ValueError, TypeError) as error:
-        raise UserError(f"refiner {name}: {error}") from None
+        raise UserError(f"refiner {name}: {error}{_of_look(refinement, options)}") from None
+
+
+def _of_look(refinement: Refinement, options: Mapping[str, Any]) -> str:
+    """Words for what the look tells beside the user, who may not know that it does."""
+    told = [
+        f"{name}={('off', 'on')[value] if isinstance(value, bool) else value}"
+        for name, value in options.items()
+        if name not in refinement.options and name != DETAIL
+    ]
+    is_mixed = told and refinement.options
+    return f"; the look {refinement.look} has {', '.join(told)}" if is_mixed else ""
 
 
 def options_of(name: str) -> dict[str, Any]:

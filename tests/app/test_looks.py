@@ -89,6 +89,19 @@ def test_what_is_asked_for_is_over_the_look(monkeypatch: pytest.MonkeyPatch) -> 
     assert told["kahler"] == {"scheme": "cubic", "blend": True}  # nobody wrote into the look
 
 
+def test_a_refusal_tells_what_the_look_has(
+    scenes: dict[str, Scene], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An option may not go with what the look says; who asked for nothing is told no more."""
+    told = {"kahler": {"scheme": "cubic", "blend": True}}
+    monkeypatch.setattr("risorius.app.looks.LOOKS", {"x": {"face": Look(options=told)}})
+    with pytest.raises(UserError, match=r"one of the two; the look x has scheme=cubic, blend=on$"):
+        refiner_for(scenes["face"], Refinement("x", options={"coherent": True}))
+    options = {"scheme": "loop", "blend": True, "coherent": True}
+    with pytest.raises(UserError, match=r"ask for one of the two$"):
+        refiner_for(scenes["face"], Refinement("x", options=options))
+
+
 def test_what_it_is_called() -> None:
     """By its look or its refiner; the mesh as it is is static; options are not kept secret."""
     for refinement, label in (
