@@ -13,6 +13,7 @@ import imageio_ffmpeg
 import numpy as np
 import numpy.typing as npt
 import pytest
+from click.shell_completion import ShellComplete
 from click.testing import CliRunner, Result
 from PIL import Image
 
@@ -139,6 +140,22 @@ def test_looks_and_refiners_side_by_side(smile: Path, tmp_path: Path) -> None:
     counts = [count for _, count in alone]
     assert most == max(counts) and len(set(counts)) == 4
     assert np.abs(drawn(320, "--compare")[0][:, :160] - pictures[0]).max() <= 2
+
+
+@pytest.mark.parametrize(
+    ("option", "begun", "offered"),
+    [
+        ("--look", "", ["smooth", "paper"]),
+        ("--refiner", "k", ["kahler"]),
+        ("--compare", "p", ["paper"]),
+        ("--compare", "paper,none,l", ["paper,none,loop"]),
+    ],
+)
+def test_a_shell_completes_names(option: str, begun: str, offered: list[str]) -> None:
+    """Of looks and of refiners, also behind a comma."""
+    shell = ShellComplete(command(), {}, "risorius", "_RISORIUS_COMPLETE")
+    items = shell.get_completions(["capture", option], begun)
+    assert [item.value for item in items] == offered
 
 
 def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
