@@ -11,13 +11,13 @@ import inspect
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, render
 
+from .looks import Refinement
 from .refining import refiner_for
 from .scenes import Scene
 from .wrinkling import Amounts, on_rows, wrinkling_of
@@ -30,23 +30,21 @@ Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the l
 class DrawnMesh:
     """The scene's mesh as one refiner has it drawn; two of them make a comparison."""
 
-    refiner_name: str
+    label: str  # what it is called under the picture
     refiner: refine.Refiner
     stream: render.Stream
     uses_view: bool  # whether the refiner has a use for where the eye is
     mesh: refine.RefinedMesh | None = None  # what was refined last
 
     @classmethod
-    def of(
-        cls, scene: Scene, renderer: render.Renderer, name: str, options: Mapping[str, Any] | None
-    ) -> DrawnMesh:
-        """Bind the refiner `name` to the scene's mesh and borrow render buffers for it."""
-        refiner = refiner_for(scene, name, options)
+    def of(cls, scene: Scene, renderer: render.Renderer, refinement: Refinement) -> DrawnMesh:
+        """Bind the refiner that is asked for to the scene's mesh; borrow render buffers for it."""
+        refiner = refiner_for(scene, refinement)
         stream = renderer.lend_stream(
             refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
         )
         uses_view = "view" in inspect.signature(refiner.refine).parameters
-        return cls(name, refiner, stream, uses_view)
+        return cls(refinement.label, refiner, stream, uses_view)
 
     def refine(
         self, positions: npt.NDArray[np.float64], camera: render.OrbitCamera, viewport: Viewport
@@ -82,16 +80,14 @@ class Pipeline:
         self,
         scene: Scene,
         renderer: render.Renderer,
-        refiners: Mapping[str, Mapping[str, Any] | None],
+        refinements: Sequence[Refinement],
     ) -> None:
-        """Bind `refiners` (name -> options beside the scene's own) to the scene, left to right."""
+        """Bind what is to be drawn of the scene, left to right."""
         self.scene = scene
         self.renderer = renderer
         self.texture = texture_of(scene, renderer)
         self.wrinkling = wrinkling_of(scene, renderer)
-        self.meshes = [
-            DrawnMesh.of(scene, renderer, name, options) for name, options in refiners.items()
-        ]
+        self.meshes = [DrawnMesh.of(scene, renderer, each) for each in refinements]
 
     def step(self, seconds: float) -> None:
         """The upper half of the figure: time passes, and the triangle mesh follows."""

@@ -1,4 +1,4 @@
-"""Refiners for scenes: options as words of the command line, and what a scene adds to them."""
+"""Refiners for scenes: bound as a look has them, and options as words of the command line."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy.typing as npt
 from risorius import refine
 
 from .errors import UserError
+from .looks import LOOKS, STATIC, Refinement, named
 from .scenes import Scene
 
 LARGEST = 1e30  # of a number in an option: in single precision it is still one
@@ -19,24 +20,32 @@ DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `fine
 SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 
-def refiner_for(scene: Scene, name: str, options: Mapping[str, Any] | None) -> refine.Refiner:
-    """Bind the refiner `name` to the scene's mesh; UserError if it refuses an option.
-
-    options: over those that suit the scene; None for the latter alone.
-    """
+def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
+    """Bind the refiner that is asked for to the scene's mesh; UserError if it refuses an option."""
+    name, options = refinement.on(scene.name)
     try:
-        if options:
-            _check(name, options_of(name), options)
-        merged: dict[str, Any] = {**scene.refiner_options.get(name, {}), **(options or {})}
-        if merged.get("scheme") == DETAIL and "detail" not in merged:
-            merged["detail"] = finer_mesh(scene)
-            if merged["detail"] is None:
+        if refinement.options:
+            _check(name, options_of(name), refinement.options)
+        if options.get("scheme") == DETAIL and "detail" not in options:
+            options["detail"] = finer_mesh(scene)
+            if options["detail"] is None:
                 raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
         return refine.create(
-            name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **merged
+            name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **options
         )
     except (ValueError, TypeError) as error:
-        raise UserError(f"refiner {name}: {error}") from None
+        raise UserError(f"refiner {name}: {error}{_of_look(refinement, options)}") from None
+
+
+def _of_look(refinement: Refinement, options: Mapping[str, Any]) -> str:
+    """Words for what the look tells beside the user, who may not know that it does."""
+    told = [
+        f"{name}={('off', 'on')[value] if isinstance(value, bool) else value}"
+        for name, value in options.items()
+        if name not in refinement.options and name != DETAIL
+    ]
+    is_mixed = told and refinement.options
+    return f"; the look {refinement.look} has {', '.join(told)}" if is_mixed else ""
 
 
 def options_of(name: str) -> dict[str, Any]:
@@ -87,16 +96,16 @@ def finer_mesh(scene: Scene) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.in
     return finer.vertices, finer.faces
 
 
-def parse_options(name: str, settings: Sequence[str]) -> dict[str, Any] | None:
-    """What `--option NAME=VALUE ...` tells the refiner `name`; None for nothing.
+def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any]:
+    """What `--option NAME=VALUE ...` tells a refiner (None: that of the look).
 
     Numbers, on and off, or words. Raises UserError for an unknown refiner, and where the mesh is
     drawn as it is.
     """
-    if name not in refine.available():
+    if refiner is not None and refiner not in refine.available():
         there_are = ", ".join(refine.available())
-        raise UserError(f"refiner '{name}' is unknown; there are {there_are}")
-    if name == "none" and settings:
+        raise UserError(f"refiner '{refiner}' is unknown; there are {there_are}")
+    if refiner == STATIC and settings:
         raise UserError(
             f"--option {settings[0]}: --refiner none draws the mesh as it is and has no options"
         )
@@ -109,7 +118,29 @@ def parse_options(name: str, settings: Sequence[str]) -> dict[str, Any] | None:
         value = options[name]
         if isinstance(value, int | float) and not -LARGEST <= value <= LARGEST:
             raise UserError(f"--option {setting}: {text} is not a finite number up to {LARGEST:g}")
-    return options or None
+    return options
+
+
+def parse_comparison(names: str | None, refinement: Refinement) -> tuple[Refinement, ...]:
+    """What `--compare NAME,...` sets beside a refinement, left to right: looks and refiners.
+
+    None is nothing. Raises UserError for a name that is neither, and where two would be the same.
+    """
+    beside: list[Refinement] = []
+    for name in [] if names is None else names.split(","):
+        if name not in LOOKS and name not in refine.available():
+            raise UserError(
+                f"--compare: '{name}' is neither a look ({', '.join(LOOKS)}) nor a refiner "
+                f"({', '.join(refine.available())}); a SCRIPT goes before --compare"
+            )
+        other = named(name, refinement.look)
+        if other in (refinement, *beside):
+            raise UserError(
+                f"--compare: '{name}' would stand beside itself; choose a --look or a --refiner "
+                f"other than {name}, or compare with another"
+            )
+        beside.append(other)
+    return tuple(beside)
 
 
 def _value(text: str) -> bool | int | float | str:

@@ -41,7 +41,6 @@ class Scene:
     face_uv: npt.NDArray[np.int32] | None = None  # which of them each corner has (F, 3)
     albedo: npt.NDArray[np.uint8] | None = None  # the texture (H, W, 3), sRGB
     wrinkles: assets.Wrinkles | None = None  # where skin wrinkles
-    refiner_options: Mapping[str, Mapping[str, Any]]  # for a refiner by name, where not default
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
@@ -84,8 +83,6 @@ class FaceScene(Scene):
     """A head, moved by muscles, jaw and gaze through the spring simulation."""
 
     name = "face"
-    # Deformation alone would leave the outlines of crown, ears and neck polygons.
-    refiner_options = MappingProxyType({"kahler": {"criterion": "normal+rest"}})
 
     def __init__(self, head: assets.Head | FittedHead | None = None) -> None:
         """Simulate `head`, the built-in one unless told."""
@@ -154,11 +151,6 @@ class PlaneScene(Scene):
 
     groups = MappingProxyType({"Wave": ("amplitude", "phase")})
     limits = MappingProxyType({"amplitude": (0.0, 1.0), "phase": (0.0, 100.0)})
-    # A flat mesh needs no slack for bends that it was made with. Found by search, so that the
-    # wave makes about as many triangles at most as in Table 1 (1328).
-    refiner_options = MappingProxyType(
-        {"kahler": {"threshold_once": 0.001, "threshold_twice": 0.005}}
-    )
 
     def __init__(self) -> None:
         plane = assets.load("plane")

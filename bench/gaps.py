@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import astuple, dataclass
 
 from risorius import assets, refine, sim
+from risorius.app.looks import FIRST_LOOK, LOOKS
 
 from .lines_of_sight import lid_gaps, meshes_of, sunk_in_eyeballs, widest_slit
 from .report import table
@@ -44,7 +45,8 @@ def measure() -> list[PoseGaps]:
     """Measure every pose."""
     head = assets.load("head")
     simulation = sim.create(head)
-    refiner = refine.create("kahler", head.faces, head.vertices, criterion="normal+rest")
+    told = LOOKS[FIRST_LOOK]["face"].told("kahler")
+    refiner = refine.create("kahler", head.faces, head.vertices, **told)
     poses = []
     for name, is_shut in _rows(simulation):
         landmarks = settled_positions(simulation, {name: 1.0}, SETTLE)[head.landmarks]

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from risorius import refine, render
 from risorius.app.cameras import camera_for
 from risorius.app.files import Image
+from risorius.app.looks import LOOKS, PAPERS_LOOK
 from risorius.app.scenes import PlaneScene
 
 from .canvas import Canvas, Drawing, image_table
@@ -43,7 +44,7 @@ def figure_9(size: tuple[int, int] = (380, 230)) -> Image:
     with Canvas(size) as canvas:
         for style, shading in ((FLAT, "flat"), (GOURAUD, "Gouraud")):
             for name, title in (("none", "static"), ("kahler", "refined")):
-                options = scene.refiner_options.get(name, {})
+                options = LOOKS[PAPERS_LOOK][scene.name].told(name)
                 refiner = refine.create(name, scene.faces, scene.rest_positions, **options)
                 cells = []
                 for phase in WAVE_PHASES:
@@ -73,7 +74,7 @@ def coherence(size: tuple[int, int] = (250, 200)) -> Image:
                 scene.faces,
                 scene.rest_positions,
                 coherent=is_coherent,
-                **scene.refiner_options["kahler"],
+                **LOOKS[PAPERS_LOOK][scene.name].told("kahler"),
             )
             rows.append((title, _moments(scene, refiner, canvas)))
     return image_table(rows)

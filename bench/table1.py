@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 from risorius import refine, render
 from risorius.app.cameras import camera_for
+from risorius.app.looks import LOOKS, PAPERS_LOOK
 from risorius.app.scenes import FaceScene, PlaneScene, Scene
 from risorius.app.script import script_for
 
@@ -68,7 +69,7 @@ def measure(*, rounds: int = 60) -> tuple[dict[str, list[Row]], str]:
 
 
 def _measured(scene: Scene, canvas: Canvas, rounds: int) -> list[Row]:
-    options = {**scene.refiner_options["kahler"], "criterion": "normal"}
+    options = LOOKS[PAPERS_LOOK][scene.name].told("kahler")
     static = refine.create("none", scene.faces, scene.rest_positions)
     dynamic = refine.create("kahler", scene.faces, scene.rest_positions, **options)
     positions, count = _fullest_frame(scene, dynamic)

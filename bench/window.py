@@ -21,7 +21,7 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.frame_times import PHASES
 from risorius.app.viewer.level_of_detail import LEVELS, LevelOfDetail
 from risorius.app.viewer.panel_cache import REFRESH
-from risorius.app.viewer.settings import Look
+from risorius.app.viewer.settings import Display
 
 from .report import processor, table
 
@@ -67,7 +67,7 @@ def report(seconds: float, size: tuple[int, int]) -> str:
         _Case("panels in each frame", are_panels_cached=False),
         *(_Case(f"level {level}: {_described(each)}", level) for level, each in enumerate(LEVELS)),
     ]
-    with Viewer(_smile(), size, Look()) as viewer:
+    with Viewer(_smile(), size, Display()) as viewer:
         viewer.session.is_looping = True
         for turn in range(ROUNDS):
             for case in cases if turn % 2 == 0 else reversed(cases):
@@ -111,7 +111,7 @@ def _described(detail: render.Detail) -> str:
 
 def _play(viewer: Viewer, case: _Case, seconds: float) -> None:
     """Let the window play for a while, and note what its frames took."""
-    viewer.settings.look = Look(compare=case.compare)
+    viewer.settings.display = Display(compare=case.compare)
     viewer.panel_cache.refresh = REFRESH if case.are_panels_cached else 0.0
     is_software = viewer.surface.is_software
     viewer.painter.level_of_detail = (

@@ -123,7 +123,7 @@ def test_first_film(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     page = TUTORIALS / "first_film.md"
     capture_as_shown(page, {"smile.toml": blocks(page, "toml")}, tmp_path, monkeypatch)
     assert {path.name for path in tmp_path.iterdir()} == {
-        *("joy.png", "wink.png", "smile.toml", "smile.mp4", "both.mp4", "splits.png")
+        *("joy.png", "wink.png", "smile.toml", "smile.mp4", "both.mp4", "looks.mp4", "splits.png")
     }
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from risorius.assets.fitting import FittedHead
 from ..cameras import camera_for
 from ..errors import UserError
 from ..files import Image, check_file, check_png, save_png
+from ..looks import Refinement
 from ..pipeline import Pipeline, side_by_side
 from ..scenes import Scene, build_scene
 from ..script import Script
@@ -31,9 +32,8 @@ class CaptureOptions:
 
     size: tuple[int, int] = (1280, 720)  # of the whole picture [pixels]
     frames_per_second: float = 30.0
-    refiner: str = "kahler"
-    refiner_options: Mapping[str, float] | None = None  # None: what suits the scene
-    compare: bool = False  # the mesh as it is on the left, refined on the right
+    refinement: Refinement = Refinement()  # noqa: RUF009 - frozen
+    beside: tuple[Refinement, ...] = ()  # what it is compared with, on its left
     captions: bool = True  # names and triangle counts under a comparison
     camera: str | None = None  # a named view, or yaw,pitch[,zoom] in degrees
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
@@ -48,13 +48,10 @@ class Capture:
         self.scene = scene
         self.options = options
         self.surface = render.open_offscreen(options.size, samples=options.samples)
-        refiners: dict[str, Mapping[str, float] | None] = {}
-        if options.compare:
-            refiners["none"] = None
-        refiners[options.refiner] = options.refiner_options
+        refinements = (*options.beside, options.refinement)
         renderer = render.Renderer(self.surface)
-        self.pipeline = Pipeline(scene, renderer, refiners)
-        self.viewports = side_by_side(self.surface.size, len(refiners))
+        self.pipeline = Pipeline(scene, renderer, refinements)
+        self.viewports = side_by_side(self.surface.size, len(refinements))
         self.camera = camera_for(scene, options.camera)
         self.most_triangles = 0
 
@@ -74,12 +71,8 @@ class Capture:
             [self.most_triangles, *(drawn.triangle_count for drawn in meshes)]
         )
         image = self.surface.read()
-        if self.options.compare and self.options.captions:
-            texts = [
-                f"{'static' if drawn.refiner_name == 'none' else drawn.refiner_name} "
-                f"· {drawn.triangle_count} triangles"
-                for drawn in meshes
-            ]
+        if self.options.beside and self.options.captions:
+            texts = [f"{drawn.label} · {drawn.triangle_count} triangles" for drawn in meshes]
             image = captioned(image, texts, self.viewports)
         return image
 
@@ -146,7 +139,7 @@ def capture(
             while wanted and wanted[0].time <= now + 0.5 / rate:
                 named.append((wanted.pop(0).name or "", image))
         if sheet is not None:
-            save_png(sheet, contact_sheet(named, columns=2 if options.compare else 3))
+            save_png(sheet, contact_sheet(named, columns=2 if options.beside else 3))
         return recording.most_triangles
 
 

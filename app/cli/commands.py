@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..errors import UserError, in_one_line
+from ..errors import in_one_line
+from ..looks import STATIC, Refinement
 from .options import PATH, SCENE_NAMES, Drawing, Filming, with_drawing, with_filming
 from .parameters import Size
 
@@ -43,24 +44,23 @@ def capture(
     from ..capture import CaptureOptions
     from ..capture import capture as film_of
     from ..files import check_apart
+    from ..refining import parse_comparison
     from ..script import script_for
 
     check_apart((output, sheet), (script, drawing.head, drawing.landmarks))
     performance = script_for(script, scene, settings)
+    refinement = drawing.refinement()
     options = CaptureOptions(
         size=filming.size,
         frames_per_second=filming.fps,
-        refiner_options=drawing.refiner_options(),
-        refiner=drawing.refiner,
-        compare=filming.compare,
+        refinement=refinement,
+        beside=parse_comparison(filming.compare, refinement),
         captions=filming.captions,
         camera=filming.camera or performance.camera,
         style=drawing.style(),
         samples=filming.samples,
         head=drawing.fitted_head(),
     )
-    if filming.compare and drawing.refiner == "none":
-        raise UserError("--compare sets the mesh as it is beside a --refiner other than none")
     most = film_of(
         performance,
         options,
@@ -111,10 +111,12 @@ def open_window(
     """Open the viewer on a script's scene."""
     head = drawing.fitted_head()
     from ..viewer import Viewer
-    from ..viewer.settings import look_of, settings_path
+    from ..viewer.settings import display_of, settings_path
 
-    look = look_of(drawing.refiner, drawing.refiner_options(), **drawing.look)
-    with Viewer(script, size, look, head=head, settings_path=settings_path()) as viewer:
+    display = None  # as it was last
+    if drawing.is_told:
+        display = display_of(drawing.refinement(), script.scene, **drawing.style_options)
+    with Viewer(script, size, display, head=head, settings_path=settings_path()) as viewer:
         viewer.run(playing=playing, once=once)
 
 
@@ -126,7 +128,7 @@ def demo() -> None:
     from ..script import script_for
 
     script = script_for(None, "face")
-    options = CaptureOptions(compare=True, camera=script.camera)
+    options = CaptureOptions(beside=(Refinement(refiner=STATIC),), camera=script.camera)
     film, sheet = Path("out/demo.mp4"), Path("out/demo.png")
     most = film_of(script, options, output=film, sheet=sheet)
     click.echo(f"{film} ({script.duration:g} s) and {sheet}: {most} triangles at most")

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
+from ..looks import LOOKS, PAPERS_LOOK, Refinement
+
 if TYPE_CHECKING:
     from ..scenes import Scene
 
@@ -81,21 +83,26 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
 
     yield "muscles and springs", simulate
     yield "light", partial(openness, face.head, face.simulation)
+    for look in LOOKS:
+        for scene in (face, plane):
+            yield (
+                f"refinement of the {scene.name}: {look}",
+                partial(_refine, scene, Refinement(look)),
+            )
     choices: tuple[dict[str, Any], ...] = (
-        {},
-        {"criterion": "normal", "blend": True},
+        {"blend": True},
         {"scheme": "cubic"},
         {"scheme": "cubic", "criterion": "bulge"},
         {"scheme": "detail"},
         {"scheme": "detail", "criterion": "bulge"},
         {"coherent": True},
-        *({"criterion": name} for name in ("curvature", "silhouette", "screen", "border")),
+        *({"criterion": name} for name in ("rest", "curvature", "silhouette", "screen", "border")),
     )
     for options in choices:
         text = " ".join(f"{name}={value}" for name, value in options.items())
-        yield f"refinement {text}".rstrip(), partial(_refine, face, "kahler", options)
-    yield "uniform subdivision", partial(_refine, face, "loop", {})
-    yield "the plane", partial(_refine, plane, "kahler", {})
+        asked = Refinement(PAPERS_LOOK, options=options)
+        yield f"refinement {text}", partial(_refine, face, asked)
+    yield "uniform subdivision", partial(_refine, face, Refinement(refiner="loop"))
     tension = refine.Tension(face.faces, face.rest_positions)
     yield "strain", partial(tension.measure, face.rest_positions)
     assert face.wrinkles is not None
@@ -103,10 +110,10 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     yield "wrinkles", partial(wrinkles.measure, face.rest_positions)
 
 
-def _refine(scene: Scene, name: str, options: dict[str, Any]) -> None:
+def _refine(scene: Scene, refinement: Refinement) -> None:
     from risorius import refine
 
     from ..refining import refiner_for
 
     view = refine.View(scene.focus + np.array([0.0, 0.0, 400.0]))
-    refiner_for(scene, name, options or None).refine(scene.positions, view=view)
+    refiner_for(scene, refinement).refine(scene.positions, view=view)

@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
-from .parameters import FiniteRange, Size
+from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
+from .parameters import FiniteRange, Looks, Refiner, Size
 
 if TYPE_CHECKING:
     from risorius import render
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 Command = Callable[..., Any]
 PATH = click.Path(path_type=Path)
 SCENE_NAMES = click.Choice(["face", "plane"])
+STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "wrinkles")
 
 
 def packed(name: str, settings: type[Any], *options: Command) -> Callable[[Command], Command]:
@@ -43,7 +46,7 @@ def packed(name: str, settings: type[Any], *options: Command) -> Callable[[Comma
 
 @dataclass(frozen=True)
 class Drawing:
-    """What view, replay and capture are told alike: whose head, by which refiner, in what style."""
+    """What view, replay and capture are told alike: whose head, how refined, in what style."""
 
     head: Path | None
     landmarks: Path | None
@@ -53,7 +56,8 @@ class Drawing:
     wireframe: bool
     shading: str
     refiner_settings: tuple[str, ...]
-    refiner: str
+    refiner: str | None
+    look: str
 
     def fitted_head(self) -> FittedHead | None:
         """The user's own head, fitted; None for the built-in one."""
@@ -61,17 +65,24 @@ class Drawing:
 
         return head_for(self.head, self.landmarks)
 
-    def refiner_options(self) -> dict[str, Any] | None:
-        """What the refiner is told; UserError where there is no such refiner."""
+    def refinement(self) -> Refinement:
+        """How the mesh is refined; UserError where there is no such refiner."""
         from ..refining import parse_options
 
-        return parse_options(self.refiner, self.refiner_settings)
+        options = parse_options(self.refiner, self.refiner_settings)
+        return Refinement(self.look, self.refiner, options)
 
     @property
-    def look(self) -> dict[str, Any]:
+    def style_options(self) -> dict[str, Any]:
         """The options of style alone."""
-        names = ("shading", "wireframe", "splits", "skin", "wrinkles")
-        return {name: getattr(self, name) for name in names}
+        return {name: getattr(self, name) for name in STYLE_OPTIONS}
+
+    @property
+    def is_told(self) -> bool:
+        """Whether the command that runs was told anything of how the mesh is to be drawn."""
+        source = click.get_current_context().get_parameter_source
+        names = ("look", "refiner", "refiner_settings", *STYLE_OPTIONS)
+        return any(source(name) is not ParameterSource.DEFAULT for name in names)
 
     def style(self) -> render.Style:
         """The style that these options ask for."""
@@ -119,14 +130,21 @@ with_drawing = packed(
         "refiner_settings",
         multiple=True,
         metavar="NAME=VALUE",
-        help="Of the refiner: scheme=cubic, criterion=bulge, threshold_once=0.01, ... "
+        help="Of the refiner, over the look: scheme=cubic, criterion=bulge, ... "
         "(risorius doctor lists schemes and criteria).",
     ),
     click.option(
         "--refiner",
-        default="kahler",
+        type=Refiner(),
+        help="Refine plug-in, unless that of the look (risorius doctor lists them); none draws the "
+        "mesh as it is.",
+    ),
+    click.option(
+        "--look",
+        type=click.Choice(list(LOOKS)),
+        default=FIRST_LOOK,
         show_default=True,
-        help="Refine plug-in (risorius doctor lists them); none draws the mesh as it is.",
+        help="How the mesh is refined; paper is the paper's own rule.",
     ),
 )
 
@@ -137,7 +155,7 @@ class Filming:
 
     size: tuple[int, int]
     fps: float
-    compare: bool
+    compare: str | None
     captions: bool
     camera: str | None
     still_time: float | None
@@ -151,7 +169,14 @@ with_filming = packed(
     Filming,
     click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told."),
     click.option("--fps", type=FiniteRange(1, 240), default=30.0, show_default=True),
-    click.option("--compare", is_flag=True, help="The mesh as it is on the left, refined right."),
+    click.option(
+        "--compare",
+        type=Looks(),
+        is_flag=False,
+        flag_value=STATIC,
+        metavar="[NAME,...]",
+        help="Looks or refiners to be seen on the left; without a name the mesh as it is.",
+    ),
     click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
     click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
     click.option(

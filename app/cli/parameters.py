@@ -1,12 +1,16 @@
-"""Kinds of parameters of the command line: the size of a picture, a number that is one."""
+"""Kinds of parameters of the command line: sizes of pictures, numbers, names that a shell knows."""
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from typing import Any
 
 import click
+from click.shell_completion import CompletionItem
+
+from ..looks import LOOKS
 
 LEAST, MOST = 16, 8192  # [pixels] of a side
 
@@ -43,3 +47,41 @@ class FiniteRange(click.FloatRange):
         if not math.isfinite(number):
             self.fail(f"{value} is not a finite number", param, ctx)
         return number
+
+
+class Refiner(click.ParamType[str]):
+    """The name of a refiner, which a shell completes."""
+
+    name = "NAME"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """Take it as it is; what there is, is asked for later."""
+        return str(value)
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """Those that are registered and begin so."""
+        from risorius import refine
+
+        return _beginning(incomplete, refine.available())
+
+
+class Looks(Refiner):
+    """Names of looks and refiners, with commas between them; a shell completes the last."""
+
+    name = "NAMES"
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """Those that begin like the last one."""
+        from risorius import refine
+
+        before, comma, last = incomplete.rpartition(",")
+        names = _beginning(last, (*LOOKS, *refine.available()))
+        return [CompletionItem(f"{before}{comma}{item.value}") for item in names]
+
+
+def _beginning(start: str, names: Iterable[str]) -> list[CompletionItem]:
+    return [CompletionItem(name) for name in names if name.startswith(start)]

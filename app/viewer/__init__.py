@@ -2,8 +2,8 @@
 
 window.py     joins everything, and one turn of the loop     (start reading here)
 session.py    what the user does: controls, script, recording, undo, unsaved work; knows no window
-settings.py   what is remembered, the look among it
-view.py       camera, look and place of the scene in the window
+settings.py   what is remembered, how the scene is displayed among it
+view.py       camera, display and place of the scene in the window
 stage.py      which meshes are drawn where, how they are coloured, what lies over them
 menus.py      every key and menu, as data; what they call:
               script_commands.py, key_selection.py, file_drop.py, export.py, and the four above

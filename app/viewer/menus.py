@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from functools import partial
 
+from ..looks import FIRST_LOOK, PAPERS_LOOK
 from ..script.easing import EASINGS
 from .command import Command
 from .control_rows import readable
@@ -99,30 +100,37 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
     command = partial(Command, "View")
 
     def switch(label: str, key: str, field: str, on: object = True, off: object = False) -> Command:
-        """A field of the look that has this value or the other."""
+        """A field of the settings of display that has this value or the other."""
         return command(
             label,
             key,
-            lambda: settings.look.switch(field, on, off),
-            lambda: bool(getattr(settings.look, field) == on),
+            lambda: settings.display.switch(field, on, off),
+            lambda: bool(getattr(settings.display, field) == on),
         )
+
+    def toggle_look() -> Message:
+        """The paper's own rule, or the look that is first; either as it is."""
+        display = settings.display
+        display.choose_look(FIRST_LOOK if display.look == PAPERS_LOOK else PAPERS_LOOK)
+        return f"Look: {display.look}"
 
     def toggle_full() -> Message:
         """Fill the screen, or go back."""
         placement.toggle_full()
         return "F11 leaves the full screen" if placement.is_full else None
 
-    muscles = partial(command, is_on=lambda: "muscles" in settings.look.overlays)
+    muscles = partial(command, is_on=lambda: "muscles" in settings.display.overlays)
     full = partial(command, is_on=lambda: placement.is_full, other_key="Alt+Enter")
     return (
         switch("Refine", "R", "is_refined"),
+        command("Paper's look", "P", toggle_look, lambda: settings.display.look == PAPERS_LOOK),
         switch("Compare: wipe", "D", "compare", "wipe", "off"),
         switch("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
         switch("Wireframe", "W", "wireframe"),
         switch("Colour by splits", "C", "colours", "splits", "none"),
-        command("Next shading", "S", lambda: settings.look.next_shading()),
+        command("Next shading", "S", lambda: settings.display.next_shading()),
         switch("Texture", "T", "skin", "textured", "plain"),
-        muscles("Muscles", "U", lambda: settings.look.toggle_overlay("muscles")),
+        muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
         command("Frame the face", "F", view.fit_scene),
         command("Hide panels", "Tab", panels.toggle_hidden, lambda: panels.are_hidden),
         full("Full screen", "F11", toggle_full),

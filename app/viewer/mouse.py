@@ -126,7 +126,7 @@ class Mouse:
         elif self._doing == "pan":
             camera.pan(-delta.x / max(height, 1.0), delta.y / max(height, 1.0))
         elif self._doing == "divider":
-            self._view.look.divider = min(max((io.mouse_pos.x - left) / width, 0.0), 1.0)
+            self._view.display.divider = min(max((io.mouse_pos.x - left) / width, 0.0), 1.0)
         elif self.skin_drag is not None and (self._has_moved(io) or self.is_dragging_skin):
             self.skin_drag.to(self._ray(io).at_depth_of(self.skin_drag.point, camera.axes()[2]))
 
@@ -144,9 +144,9 @@ class Mouse:
         return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > CLICK)
 
     def _is_at_divider(self, x: float) -> bool:
-        look = self._view.look
+        display = self._view.display
         left, _, width, _ = self._view.area
-        return look.compare != "off" and abs(x - left - look.divider * width) < 0.4 * em()
+        return display.compare != "off" and abs(x - left - display.divider * width) < 0.4 * em()
 
     def _ray(self, io: Any) -> Ray:
         """Through the mouse, in the viewport that it is in."""
@@ -155,6 +155,6 @@ class Mouse:
             io.mouse_pos.x * width / max(io.display_size.x, 1.0),
             height - io.mouse_pos.y * height / max(io.display_size.y, 1.0),
         )
-        shots = self._stage.shots(self._view.look, self._view.viewport)
+        shots = self._stage.shots(self._view.display, self._view.viewport)
         under = [shot for shot in shots if place[0] >= shot.clip[0]] or shots[:1]
         return Ray.through(self._view.camera, under[-1].viewport, place)

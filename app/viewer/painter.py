@@ -52,7 +52,7 @@ class Painter:
         return has_changed
 
     def _draw(self, detail: render.Detail, state: object) -> None:
-        self._messages.attempt(lambda: self._stage.bind_refiner(self._view.look))
+        self._messages.attempt(lambda: self._stage.bind(self._view.display))
         if self._exporter.film is None:
             self._stage.surface.detail = detail
             self._stage.draw(self._view)

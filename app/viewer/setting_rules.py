@@ -10,6 +10,8 @@ from typing import Any, get_type_hints
 
 from risorius import refine, render
 
+from ..looks import LOOKS, STATIC
+
 Rule = Callable[[Any], Any]  # gives back a value that is of use; ValueError for one that is not
 
 LONGEST_NUMBER = 15  # [digits] of a whole number; Python refuses to read very long ones
@@ -138,11 +140,18 @@ def option(value: Any) -> Any:
     return value if isinstance(value, int) else finite
 
 
-def refiner(value: Any) -> str:
-    """The name of one, which is not the one that does nothing."""
-    if value not in refine.available() or value == "none":
+def refiner(value: Any) -> str | None:
+    """The name of one, which is not the one that does nothing; None for that of the look."""
+    if value is None:
+        return None
+    if value == STATIC:
         raise ValueError
-    return str(value)
+    return one_of(refine.available())(value)  # type: ignore[no-any-return]
+
+
+def look_or_refiner(value: Any) -> str:
+    """The name of either."""
+    return one_of((*LOOKS, *refine.available()))(value)  # type: ignore[no-any-return]
 
 
 def table_of_refiner(name: str) -> Rule | None:

@@ -13,8 +13,8 @@ import os
 import reprlib
 import sys
 import time
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,6 +22,7 @@ from risorius import render
 
 from ..errors import UserError, in_one_line
 from ..files import read_text, written_atomically
+from ..looks import CHANGED, FIRST_LOOK, LOOKS, STATIC, Refinement, named
 from ..refining import refiner_for
 from ..scenes import Scene
 from . import setting_rules as rules
@@ -34,13 +35,16 @@ LONGEST_FILE = 2**20  # [bytes]; those that we write have two thousand
 
 
 @dataclass
-class Look:
+class Display:
     """How the scene is shown; the names are those that panels show."""
 
-    refiner: Annotated[str, rules.refiner] = "kahler"
-    options: dict[str, dict[str, Any]] = field(default_factory=dict)  # by refiner
+    look: Annotated[str, rules.one_of(LOOKS)] = FIRST_LOOK
+    refiner: Annotated[str | None, rules.refiner] = None  # None: that of the look
+    # What refiners are told over the look, by their names.
+    options: dict[str, dict[str, Any]] = field(default_factory=dict)
     is_refined: Annotated[bool, rules.flag] = True
     compare: Annotated[str, rules.one_of(rules.COMPARISONS)] = "off"
+    beside: Annotated[str, rules.look_or_refiner] = STATIC  # what it is compared with
     divider: Annotated[float, rules.number(0.0, 1.0)] = 0.5  # of the picture's width
     shading: Annotated[str, rules.one_of([each.value for each in render.Shading])] = "pixel"
     wireframe: Annotated[bool, rules.flag] = False
@@ -50,6 +54,28 @@ class Look:
     # How deep skin wrinkles where it is compressed.
     wrinkles: Annotated[float, rules.number(0.0, 1.0)] = 1.0
     overlays: Annotated[list[str], rules.several_of(OVERLAYS)] = field(default_factory=list)
+
+    def choose_look(self, name: str) -> None:
+        """Refine by a look, and by nothing but it."""
+        self.look, self.refiner, self.options = name, None, {}
+
+    def refiner_on(self, scene: Scene) -> str:
+        """The name of the refiner that is chosen for this scene."""
+        return Refinement(self.look, self.refiner).on(scene.name)[0]
+
+    def choose_refiner(self, scene: Scene, name: str) -> None:
+        """Refine by another refiner, or by that of the look again."""
+        self.refiner = None if name == LOOKS[self.look][scene.name].refiner else name
+
+    def look_as_changed(self, scene: Scene) -> str:
+        """The look's name, and whether what is seen of this scene is still what it was."""
+        asked = self.refinement_on(scene)
+        return self.look if asked == Refinement(self.look) else f"{self.look}{CHANGED}"
+
+    def refinement_on(self, scene: Scene) -> Refinement:
+        """How this scene is refined."""
+        options = self.options.get(self.refiner_on(scene), {})
+        return Refinement(self.look, self.refiner, dict(options))
 
     def switch(self, name: str, value: object = True, other: object = False) -> None:
         """Give a field this value, or the other if it has it already."""
@@ -83,7 +109,7 @@ class Settings:
     panel_width: Annotated[float, rules.number(0.0, 1000.0)] = 22.5
     folds: dict[str, bool] = field(default_factory=dict)  # which headings are open, by title
     cameras: dict[str, list[float]] = field(default_factory=dict)  # by scene
-    look: Look = field(default_factory=Look)
+    display: Display = field(default_factory=Display)
 
     def toggle_theme(self) -> None:
         """Light or dark."""
@@ -95,26 +121,26 @@ class Settings:
         self.zoom = min(max(self.zoom * factor, least), most)
 
 
-def look_of(
-    refiner: str,
-    options: Mapping[str, float] | None,
+def display_of(
+    refinement: Refinement,
+    scene: str,
     *,
     shading: str,
     wireframe: bool,
     splits: bool,
     skin: str,
     wrinkles: float,
-) -> Look | None:
-    """The look that the command line asks for; None where it asks for nothing: as it was last."""
-    look = Look(shading=shading, wireframe=wireframe, skin=skin, wrinkles=wrinkles)
-    look.colours = "splits" if splits else "none"
-    if refiner == "none":
-        look.is_refined = False
+) -> Display:
+    """How the scene of this name is shown as the command line asks for."""
+    display = Display(shading=shading, wireframe=wireframe, skin=skin, wrinkles=wrinkles)
+    display.look, display.colours = refinement.look, "splits" if splits else "none"
+    if refinement.refiner == STATIC:
+        display.is_refined = False
     else:
-        look.refiner = refiner
-    if options:
-        look.options[refiner] = dict(options)
-    return None if look == Look() else look
+        display.refiner = refinement.refiner
+    if refinement.options:
+        display.options[refinement.on(scene)[0]] = dict(refinement.options)
+    return display
 
 
 def settings_path() -> Path:
@@ -148,16 +174,16 @@ def load_settings(path: Path) -> tuple[Settings, str]:
             f"{path}: not valid JSON: {error}; all is as at first; {rename_unusable(path)}",
         )
     accepted = refused.table("", stored, rules.rules_of(Settings).get)
-    look = refused.table("look.", accepted.pop("look", {}), rules.rules_of(Look).get)
-    options = refused.table("look.options.", look.pop("options", {}), rules.table_of_refiner)
-    look["options"] = {
-        name: refused.table(f"look.options.{name}.", found, lambda _: rules.option)
+    display = refused.table("display.", accepted.pop("display", {}), rules.rules_of(Display).get)
+    options = refused.table("display.options.", display.pop("options", {}), rules.table_of_refiner)
+    display["options"] = {
+        name: refused.table(f"display.options.{name}.", found, lambda _: rules.option)
         for name, found in options.items()
     }
     folds, cameras = accepted.pop("folds", {}), accepted.pop("cameras", {})
     accepted["folds"] = refused.table("folds.", folds, lambda _: rules.flag)
     accepted["cameras"] = refused.table("cameras.", cameras, lambda _: rules.camera)
-    settings, told = Settings(**accepted, look=Look(**look)), str(refused)
+    settings, told = Settings(**accepted, display=Display(**display)), str(refused)
     if not told:
         return settings, ""
     renamed = rename_unusable(path)
@@ -176,29 +202,33 @@ def rename_unusable(path: Path) -> str:
     return f"the file is kept as {unusable.name}"
 
 
-def remove_refused_options(look: Look, scene: Scene) -> str:
-    """Take what refiners refuse for this scene out of a look; a line names it, "" for nothing."""
+def remove_refused_options(display: Display, scene: Scene) -> str:
+    """Take out of `display` what refiners refuse for this scene; a line names it, "" for none."""
     refused = []
-    for refiner, options in look.options.items():
-        if not options or _suits(scene, refiner, options):
+    suits, look = partial(_suits, scene), display.look
+    for refiner, options in display.options.items():
+        if not options or suits(Refinement(look, refiner, options)):
             continue
         accepted: dict[str, Any] = {}
         for name, value in options.items():
-            if _suits(scene, refiner, {**accepted, name: value}):
+            if suits(Refinement(look, refiner, {**accepted, name: value})):
                 accepted[name] = value
             else:
                 refused.append(f"{refiner} {name} = {reprlib.repr(value)}")
-        look.options[refiner] = accepted
-    if not _suits(scene, look.refiner, None):
-        refused.append(look.refiner)
-        look.refiner = Look().refiner
+        display.options[refiner] = accepted
+    if display.refiner is not None and not suits(Refinement(look, display.refiner)):
+        refused.append(display.refiner)
+        display.refiner = None
+    if not suits(named(display.beside, look)):
+        refused.append(display.beside)
+        display.beside = STATIC
     line = f"of no use and as at first: refiner {', '.join(refused)}"
     return in_one_line(line) if refused else ""
 
 
-def _suits(scene: Scene, refiner: str, options: Mapping[str, Any] | None) -> bool:
+def _suits(scene: Scene, refinement: Refinement) -> bool:
     try:
-        refiner_for(scene, refiner, options)
+        refiner_for(scene, refinement)
     except UserError:
         return False
     return True

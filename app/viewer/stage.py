@@ -13,6 +13,7 @@ from risorius import render
 
 from ..capture.captions import captioned
 from ..files import Image
+from ..looks import STATIC, Refinement, named
 from ..pipeline import DrawnMesh, Viewport, texture_of
 from ..refining import options_of
 from ..scenes import Scene
@@ -22,7 +23,7 @@ from .frame_times import FrameTimes
 from .level_of_detail import FULL
 from .overlays import OVERLAYS, Lines, pointed_lines
 from .setting_rules import SKINS
-from .settings import Look
+from .settings import Display
 from .view import View
 
 LEAST_SHARE = 0.08  # of the picture that each side of a comparison keeps
@@ -34,76 +35,85 @@ class Shot(NamedTuple):
     drawn: DrawnMesh
     viewport: Viewport
     clip: Viewport
-    label: str
 
 
 class Stage:
     """Draws a scene into a window's surface."""
 
     def __init__(
-        self, surface: render.WindowSurface, scene: Scene, look: Look, times: FrameTimes
+        self, surface: render.WindowSurface, scene: Scene, display: Display, times: FrameTimes
     ) -> None:
         self.surface = surface
         self._times = times
-        self._bind_scene(scene, look)
+        self._bind_scene(scene, display)
 
-    def _bind_scene(self, scene: Scene, look: Look) -> None:
+    def _bind_scene(self, scene: Scene, display: Display) -> None:
         self.scene = scene
         self.renderer = render.Renderer(self.surface)
         self._texture = texture_of(scene, self.renderer)
         self._wrinkling = wrinkling_of(scene, self.renderer)
-        self.static = DrawnMesh.of(scene, self.renderer, "none", None)
-        self.refined = self.static
+        self.static = DrawnMesh.of(scene, self.renderer, Refinement(refiner=STATIC))
+        self.refined = self.beside = self.static  # what is seen, and what it is compared with
         self.refiner_options: dict[str, Any] = {}  # of `refined`, with their defaults
-        self._bound: object = None
-        self.bind_refiner(look)
+        self._asked: dict[str, Refinement] = {}  # what each of the two was bound for
+        self.bind(display)
 
-    def set_scene(self, scene: Scene, look: Look) -> None:
+    def set_scene(self, scene: Scene, display: Display) -> None:
         """Take another scene in place of this one."""
-        for stream in {id(each): each.stream for each in (self.static, self.refined)}.values():
+        meshes = self.static, self.refined, self.beside
+        for stream in {id(each): each.stream for each in meshes}.values():
             stream.release()
         if self._texture is not None:
             self._texture.release()
         if self._wrinkling is not None:
             self._wrinkling.map.release()
         self.renderer.release()
-        self._bind_scene(scene, look)
+        self._bind_scene(scene, display)
 
-    def bind_refiner(self, look: Look) -> None:
-        """Bind the refiner that `look` names, with its options; UserError if it refuses them."""
-        options = look.options.get(look.refiner)
-        wanted = look.refiner, tuple(sorted((options or {}).items()))
-        if wanted == self._bound:
-            return
-        self._bound = wanted  # refused options are refused once, not in every frame
-        refined = DrawnMesh.of(self.scene, self.renderer, look.refiner, options)
-        if self.refined is not self.static:
-            self.refined.stream.release()
-        self.refined, self.refiner_options = refined, options_of(look.refiner)
+    def bind(self, display: Display) -> None:
+        """Bind the refiners that `display` asks for; UserError if one refuses its options."""
+        if self._is_rebound("refined", display.refinement_on(self.scene)):
+            self.refiner_options = options_of(display.refiner_on(self.scene))
+        other = STATIC if display.compare == "off" else display.beside
+        self._is_rebound("beside", named(other, display.look))
 
-    def shots(self, look: Look, viewport: Viewport) -> list[Shot]:
+    def _is_rebound(self, place: str, asked: Refinement) -> bool:
+        """Bind `refined` or `beside` if something else is asked for than before; whether it was."""
+        if asked == self._asked.get(place):
+            return False
+        self._asked[place] = asked  # refused options are refused once, not in every frame
+        drawn = self.static
+        if asked.refiner != STATIC:
+            drawn = DrawnMesh.of(self.scene, self.renderer, asked)
+        previous: DrawnMesh = getattr(self, place)
+        if previous is not self.static:
+            previous.stream.release()
+        setattr(self, place, drawn)
+        return True
+
+    def shots(self, display: Display, viewport: Viewport) -> list[Shot]:
         """What is drawn where."""
         left, bottom, width, height = viewport
-        refined = Shot(self.refined, viewport, viewport, look.refiner)
-        static = Shot(self.static, viewport, viewport, "static")
-        if look.compare == "off" or width < 2:  # less than a pixel for each
-            return [refined if look.is_refined else static]
-        share = min(max(look.divider, LEAST_SHARE), 1.0 - LEAST_SHARE)
+        refined = Shot(self.refined, viewport, viewport)
+        if display.compare == "off" or width < 2:  # less than a pixel for each
+            return [refined if display.is_refined else Shot(self.static, viewport, viewport)]
+        beside = Shot(self.beside, viewport, viewport)
+        share = min(max(display.divider, LEAST_SHARE), 1.0 - LEAST_SHARE)
         middle = min(max(round(share * width), 1), width - 1)
         first = (left, bottom, middle, height)
         second = (left + middle, bottom, width - middle, height)
-        if look.compare == "wipe":
-            return [static._replace(clip=first), refined._replace(clip=second)]
+        if display.compare == "wipe":
+            return [beside._replace(clip=first), refined._replace(clip=second)]
         return [
-            static._replace(viewport=first, clip=first),
+            beside._replace(viewport=first, clip=first),
             refined._replace(viewport=second, clip=second),
         ]
 
     def draw(self, view: View) -> None:
         """Draw the scene as it is now; the surface's `detail` says how finely."""
-        camera, look, viewport, times = view.camera, view.look, view.viewport, self._times
-        shots = self.shots(look, viewport)
-        style = style_of(look, view.background)
+        camera, display, viewport, times = view.camera, view.display, view.viewport, self._times
+        shots = self.shots(display, viewport)
+        style = style_of(display, view.background)
         amounts = None
         if self._wrinkling is not None and style.shows_wrinkles:
             with times.timed("refinement"):
@@ -118,7 +128,7 @@ class Stage:
             overlays = self._overlays(view)
             self.renderer.draw_background(style, viewport)
             for shot in shots:
-                values = COLOURS[look.colours].values(self.scene, shot.drawn)
+                values = COLOURS[display.colours].values(self.scene, shot.drawn)
                 self._draw_shot(shot, camera, style, values)
                 for lines in overlays:
                     self.renderer.draw_lines(
@@ -157,7 +167,7 @@ class Stage:
 
     def _overlays(self, view: View) -> list[Lines]:
         edges = self.static.refiner.edges
-        lines = [OVERLAYS[name](self.scene, edges, view.camera) for name in view.look.overlays]
+        lines = [OVERLAYS[name](self.scene, edges, view.camera) for name in view.display.overlays]
         return [*lines, pointed_lines(self.scene, view.pointed)] if view.pointed else lines
 
     def draw_image(self, view: View) -> Image:
@@ -167,24 +177,24 @@ class Stage:
         left, bottom, width, height = view.viewport
         top = self.surface.size[1] - bottom - height
         frame = self.surface.read_scene()[top : top + height, left : left + width]
-        shots = self.shots(view.look, view.viewport)
+        shots = self.shots(view.display, view.viewport)
         if len(shots) == 1:
             return np.ascontiguousarray(frame)
-        texts = [f"{shot.label} · {shot.drawn.triangle_count} triangles" for shot in shots]
+        texts = [f"{shot.drawn.label} · {shot.drawn.triangle_count} triangles" for shot in shots]
         places = [(shot.clip[0] - left, shot.clip[1] - bottom, *shot.clip[2:]) for shot in shots]
         return captioned(frame, texts, places)
 
 
-def style_of(look: Look, background: render.Background) -> render.Style:
+def style_of(display: Display, background: render.Background) -> render.Style:
     """The renderer's style for what the user wants to see."""
-    is_textured, albedo = SKINS[look.skin]
+    is_textured, albedo = SKINS[display.skin]
     return render.Style(
-        shading=render.Shading(look.shading),
-        wireframe=look.wireframe,
-        colour_by=COLOURS[look.colours].kind,
+        shading=render.Shading(display.shading),
+        wireframe=display.wireframe,
+        colour_by=COLOURS[display.colours].kind,
         textured=is_textured,
-        occlusion=look.occlusion,
+        occlusion=display.occlusion,
         albedo=albedo,
-        wrinkles=look.wrinkles,
+        wrinkles=display.wrinkles,
         background=background,
     )

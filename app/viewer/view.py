@@ -1,4 +1,4 @@
-"""What is looked at and how: the camera, the look, and where in the window the scene is."""
+"""What is seen and how: the camera, the display, and where in the window the scene is."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..cameras import whole_scene
 from ..pipeline import Viewport
 from .gui import THEMES, em
 from .session import Session
-from .settings import Look, Settings
+from .settings import Display, Settings
 
 WHITE = (1.0, 1.0, 1.0)
 
@@ -47,9 +47,9 @@ class View:
         self.camera = whole_scene(self._session.scene, self._session.script.camera)
 
     @property
-    def look(self) -> Look:
+    def display(self) -> Display:
         """How the scene is drawn."""
-        return self._settings.look
+        return self._settings.display
 
     @property
     def background(self) -> render.Background:
@@ -76,16 +76,16 @@ class View:
     @property
     def state(self) -> object:
         """Everything that the picture depends on, but for the motion of the scene."""
-        look = repr(asdict(self.look))
-        return self.camera_place, look, self._settings.theme, self.viewport, self.pointed
+        display = repr(asdict(self.display))
+        return self.camera_place, display, self._settings.theme, self.viewport, self.pointed
 
     def divider(self) -> list[tuple[Viewport, render.Colour]]:
         """The line between the two halves of a comparison, and what to drag it by."""
-        if self.look.compare == "off":
+        if self.display.compare == "off":
             return []
         left, bottom, width, height = self.viewport
         unit = max(round(em(0.13) * width / max(self.area[2], 1.0)), 2)
-        x, y = left + round(self.look.divider * width), bottom + height // 2
+        x, y = left + round(self.display.divider * width), bottom + height // 2
         line = (x - unit // 2, bottom, unit, height)
         grip = (x - unit // 2 - unit, y - 10 * unit, 3 * unit, 20 * unit)
         return [(line, WHITE), (grip, THEMES[self._settings.theme].accent)]

@@ -54,7 +54,7 @@ from .recovery import Recovery
 from .script_commands import ScriptCommands
 from .session import Session
 from .settings import (
-    Look,
+    Display,
     Settings,
     load_settings,
     remove_refused_options,
@@ -77,14 +77,14 @@ class Viewer:
         self,
         script: Script,
         size: tuple[int, int] | None = None,
-        look: Look | None = None,
+        display: Display | None = None,
         *,
         head: FittedHead | None = None,
         settings_path: Path | None = None,
     ) -> None:
         """Open the window.
 
-        head: a user's own, None for the built-in one. size, look: None takes what was remembered.
+        head: a user's own, None for the built-in one. size, display: None takes what is remembered.
         settings_path: where that is kept, and beside it what is not saved; None for nowhere.
         Raises UserError for a script that names what the scene has not.
         """
@@ -96,14 +96,14 @@ class Viewer:
         self.session = Session(scene, script)
         self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
         self.recovery.find(self.session)
-        if look is None:
-            refused = remove_refused_options(self.settings.look, scene)
+        if display is None:
+            refused = remove_refused_options(self.settings.display, scene)
             if refused and settings_path is not None and not complaint:
                 refused = f"{settings_path}: {refused}; {rename_unusable(settings_path)}"
             complaint = "; ".join(filter(None, (complaint, refused)))
         else:
-            self.settings.look = look
-        self.settings.look.remove_missing_overlays(scene)
+            self.settings.display = display
+        self.settings.display.remove_missing_overlays(scene)
         self.times = FrameTimes()
         with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
             title = f"Risorius: {self.session.name}"
@@ -111,7 +111,7 @@ class Viewer:
             stack.callback(self.surface.close)
             self.gui = Gui(self.surface.handle)
             stack.callback(self.gui.close)
-            self.stage = Stage(self.surface, scene, self.settings.look, self.times)
+            self.stage = Stage(self.surface, scene, self.settings.display, self.times)
             self._resources = stack.pop_all()
         self._join_commands()
         self._join_panels()
@@ -312,10 +312,10 @@ class Viewer:
     def show_scene(self, scene: Scene) -> None:
         """Take another scene with the same controls in place of this one."""
         self.session.move_to(scene)
-        look = self.settings.look
-        look.remove_missing_overlays(scene)
-        refused = remove_refused_options(look, scene)
-        self.stage.set_scene(scene, look)
+        display = self.settings.display
+        display.remove_missing_overlays(scene)
+        refused = remove_refused_options(display, scene)
+        self.stage.set_scene(scene, display)
         self.view.fit_scene()
         self.mouse.forget()
         self.physics.begin_anew()

@@ -17,7 +17,7 @@ from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.keyframes import places_of
 from risorius.app.viewer.mouse import SkinDrag
-from risorius.app.viewer.settings import Look
+from risorius.app.viewer.settings import Display
 from risorius.bench import figures
 
 SIZE = (1160, 700)
@@ -47,7 +47,7 @@ def controls(viewer: Viewer) -> None:
     viewer.settings.is_linked = False
     viewer.face_panel.search = "lip"
     viewer.session.set("levator_labii_superioris_left", 0.9)
-    viewer.settings.look.overlays = ["muscles"]
+    viewer.settings.display.overlays = ["muscles"]
 
 
 def wipe(viewer: Viewer) -> None:
@@ -55,7 +55,7 @@ def wipe(viewer: Viewer) -> None:
     viewer.session.toggle_alone("disgust")
     viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
     viewer.settings.folds["Overlays"] = False  # or the plots below it would be cut off
-    viewer.settings.look = Look(compare="wipe", wireframe=True, colours="splits", skin="clay")
+    viewer.settings.display = Display(compare="wipe", wireframe=True, colours="splits", skin="clay")
     viewer.view.camera = camera_for(viewer.session.scene, "front")
     viewer.view.camera.zoom(1.08)
 
@@ -65,21 +65,21 @@ def side_by_side(viewer: Viewer) -> None:
     viewer.session.toggle_alone("joy")
     viewer.panel_state.wanted_tab = "Mechanism"
     viewer.settings.folds["Overlays"] = False  # or the plots below it would be cut off
-    viewer.settings.look = Look(compare="side by side", colours="curvature drop", skin="clay")
+    viewer.settings.display = Display(compare="side by side", colours="curvature drop", skin="clay")
 
 
 def tension(viewer: Viewer) -> None:
     """What is stretched and what is compressed, with the springs."""
     viewer.session.toggle_alone("yawn")
     viewer.panel_state.wanted_tab = "Mechanism"
-    viewer.settings.look = Look(colours="tension", overlays=["springs"], skin="clay")
+    viewer.settings.display = Display(colours="tension", overlays=["springs"], skin="clay")
 
 
 def anatomy(viewer: Viewer) -> None:
     """Skull, muscles and landmarks."""
     viewer.session.set("jaw_open", 0.5)
     viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
-    viewer.settings.look = Look(overlays=["skull", "muscles", "landmarks"])
+    viewer.settings.display = Display(overlays=["skull", "muscles", "landmarks"])
 
 
 def finger(viewer: Viewer) -> None:

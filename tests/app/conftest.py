@@ -13,7 +13,7 @@ from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.files import Files
 from risorius.app.viewer.session import Session
-from risorius.app.viewer.settings import Look
+from risorius.app.viewer.settings import Display
 
 from .driving import SIZE, draw_frames, replace_state, xdotool
 
@@ -37,7 +37,7 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     script = replace(script_for(None, "face"), duration=0.5)
     replace_state(viewer.session, Session(viewer.session.scene, script))
     viewer.session.scene.reset()
-    viewer.settings.look, viewer.face_panel.search = Look(), ""
+    viewer.settings.display, viewer.face_panel.search = Display(), ""
     viewer.settings.folds.clear()
     replace_state(viewer.files, Files(is_native=False))
     viewer.messages.text = ""

@@ -6,11 +6,14 @@ import json
 import os
 import subprocess
 import sys
+from itertools import combinations
 from pathlib import Path
 
 import imageio_ffmpeg
 import numpy as np
+import numpy.typing as npt
 import pytest
+from click.shell_completion import ShellComplete
 from click.testing import CliRunner, Result
 from PIL import Image
 
@@ -108,6 +111,53 @@ def test_a_picture_beside_a_sheet(smile: Path, tmp_path: Path) -> None:
     assert counts[0] == max(counts[1:])
 
 
+def test_looks_and_refiners_side_by_side(smile: Path, tmp_path: Path) -> None:
+    """Each part of a comparison is the picture that its look or refiner would make alone."""
+
+    def drawn(width: int, *options: str) -> tuple[npt.NDArray[np.int64], int]:
+        """A picture with these options, and its triangles at most."""
+        picture = tmp_path / "x.png"
+        size = ("--size", f"{width}x120", "--samples", "0", "--quiet", "--no-captions")
+        result = risorius("capture", smile, "-o", picture, *size, *options)
+        assert result.exit_code == 0, result.output
+        return np.asarray(Image.open(picture)).astype(int), int(result.output.split()[1])
+
+    alone = [
+        drawn(160, *options)
+        for options in (
+            ("--refiner", "none"),
+            ("--look", "paper"),
+            ("--refiner", "loop"),
+            ("--look", "smooth", "--option", "scheme=cubic"),
+        )
+    ]
+    options = ("--compare", "none,paper,loop", "--option", "scheme=cubic")
+    both, most = drawn(4 * 160, *options)
+    pictures = [picture for picture, _ in alone]
+    assert np.abs(both - np.hstack(pictures)).max() <= 2  # the background is dithered
+    for first, second in combinations(pictures, 2):
+        assert np.abs(first - second).max() > 20
+    counts = [count for _, count in alone]
+    assert most == max(counts) and len(set(counts)) == 4
+    assert np.abs(drawn(320, "--compare")[0][:, :160] - pictures[0]).max() <= 2
+
+
+@pytest.mark.parametrize(
+    ("option", "begun", "offered"),
+    [
+        ("--look", "", ["smooth", "paper"]),
+        ("--refiner", "k", ["kahler"]),
+        ("--compare", "p", ["paper"]),
+        ("--compare", "paper,none,l", ["paper,none,loop"]),
+    ],
+)
+def test_a_shell_completes_names(option: str, begun: str, offered: list[str]) -> None:
+    """Of looks and of refiners, also behind a comma."""
+    shell = ShellComplete(command(), {}, "risorius", "_RISORIUS_COMPLETE")
+    items = shell.get_completions(["capture", option], begun)
+    assert [item.value for item in items] == offered
+
+
 def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
     """`capture --scene plane` refines the waving plane to the paper's many triangles."""
     sheet = tmp_path / "plane.png"
@@ -146,6 +196,10 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["capture", "SMILE", "-o", "x.mp4", "--camera", "1,2,x"], "camera '1,2,x': allowed"),
         (["capture", "SMILE", "-o", "x.mp4", "--camera", "1,2,0"], "zoom above 0"),
         (["capture", "SMILE", "-o", "x.mp4", "--compare", "--refiner", "none"], "other than none"),
+        (["capture", "--compare", "SMILE", "-o", "x.mp4"], "a SCRIPT goes before --compare"),
+        (["capture", "SMILE", "-o", "x.mp4", "--look", "big"], "'big' is not one of 'smooth'"),
+        (["view", "--look", "big"], "'big' is not one of 'smooth'"),
+        (["replay", "SMILE", "--look", "big"], "'big' is not one of 'smooth'"),
         (["capture", "SMILE", "-o", "x.mp4", "--size", "big"], "'big' is no size"),
         (["capture", "SMILE", "-o", "x.mp4", "--size", "²x²"], "'²x²' is no size"),
         (["view", "--size", "100000x100000"], "each 16 to 8192"),

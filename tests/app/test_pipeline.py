@@ -10,7 +10,9 @@ import pytest
 
 from risorius import refine, render
 from risorius.app.capture import SETTLING, Capture, CaptureOptions
+from risorius.app.looks import Refinement
 from risorius.app.pipeline import Pipeline, side_by_side, splits_of_source
+from risorius.app.refining import refiner_for
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import parse_script
 from risorius.refine.border.registry import refiners
@@ -58,7 +60,7 @@ def test_rows_without_texture_coordinates_are_drawn(
     monkeypatch.setattr(refiners, "_factories", dict(refiners._factories))
     refine.register("bare", lambda faces, rest, **_: refine.PassThrough(faces, rest))
     scene = FaceScene()
-    pipeline = Pipeline(scene, render.Renderer(surface), {"bare": None})
+    pipeline = Pipeline(scene, render.Renderer(surface), [Refinement(refiner="bare")])
     surface.begin()
     camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
     pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
@@ -70,7 +72,7 @@ def test_a_registered_refiner_is_drawn(surface: Any, monkeypatch: pytest.MonkeyP
     """A refiner from outside goes through the real pipeline to a image."""
     refine.register("double", DoubleRefiner)
     scene = PlaneScene()
-    pipeline = Pipeline(scene, render.Renderer(surface), {"double": None})
+    pipeline = Pipeline(scene, render.Renderer(surface), [Refinement(refiner="double")])
     surface.begin()
     camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
     pipeline.step(0.1)
@@ -86,7 +88,7 @@ def test_the_mesh_and_the_simulation_never_notice(surface: Any) -> None:
     renderer = render.Renderer(surface)
     camera = render.OrbitCamera.framing(scenes[0].rest_positions, view="front")
     for scene, name in zip(scenes, ("none", "kahler"), strict=True):
-        pipeline = Pipeline(scene, renderer, {name: None})
+        pipeline = Pipeline(scene, renderer, [Refinement(refiner=name)])
         faces = scene.faces.copy()
         scene.pose({"surprise": 1.0})
         for _ in range(15):
@@ -105,8 +107,8 @@ def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:
     renderer = render.Renderer(surface)
     camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
     images = []
-    for name, options in (("none", None), ("kahler", {"criterion": "normal"})):
-        pipeline = Pipeline(scene, renderer, {name: options})
+    for refinement in (Refinement(refiner="none"), Refinement("paper")):
+        pipeline = Pipeline(scene, renderer, [refinement])
         surface.begin()
         pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
         surface.end()
@@ -117,9 +119,7 @@ def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:
 def test_splits_of_source() -> None:
     """A triangle's colour value is the sum of its edges' splits."""
     scene = PlaneScene()
-    refiner = refine.create(
-        "kahler", scene.faces, scene.rest_positions, **scene.refiner_options["kahler"]
-    )
+    refiner = refiner_for(scene, Refinement("paper"))
     scene.pose({"amplitude": 1.0})
     scene.step(0.1)
     mesh = refiner.refine(scene.positions)

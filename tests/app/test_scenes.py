@@ -7,6 +7,7 @@ import pytest
 
 from risorius import refine
 from risorius.app.errors import UserError
+from risorius.app.looks import LOOKS, Refinement
 from risorius.app.refining import refiner_for
 from risorius.app.scenes import FaceScene, PlaneScene, clamped
 from risorius.bench.lines_of_sight import meshes_of, widest_slit
@@ -60,8 +61,8 @@ def test_the_face_is_round_at_rest() -> None:
     """The outline of the crown, seen from aside, has no high corners, and there are no cracks."""
     face = FaceScene()
     highest = {}
-    for name, options in (("paper", {"criterion": "normal"}), ("shown", None)):
-        refiner = refiner_for(face, "kahler", options)
+    for name in LOOKS:
+        refiner = refiner_for(face, Refinement(name))
         mesh = refiner.refine(face.rest_positions)
         refine.check(refiner, mesh, face.rest_positions)
         outline = mesh.positions[abs(mesh.positions[:, 0]) < 1e-4, 1:].astype(np.float64)
@@ -74,14 +75,14 @@ def test_the_face_is_round_at_rest() -> None:
         heights = (aside * chords).sum(axis=1) / np.linalg.norm(chords, axis=1)
         highest[name] = abs(heights).max()
     assert highest["paper"] > 1.0  # [mm]
-    assert highest["shown"] < 0.6 * highest["paper"]
+    assert highest["smooth"] < 0.6 * highest["paper"]
 
 
 @pytest.mark.parametrize("pose", ["rest", "joy", "disgust", "blink", "yawn"])
 def test_the_shown_face_keeps_shut_what_is_shut(pose: str) -> None:
     """Triangles stay in bounds; closed lips have no slit that the mesh has not."""
     face = FaceScene()
-    refiner = refiner_for(face, "kahler", None)
+    refiner = refiner_for(face, Refinement())
     face.pose({} if pose == "rest" else {pose: 1.0})
     face.step(1.0)
     meshes = meshes_of(face.simulation, refiner)

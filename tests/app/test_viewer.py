@@ -16,7 +16,7 @@ from PIL import Image
 
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.physics import MOST_STEPS
-from risorius.app.viewer.settings import load_settings
+from risorius.app.viewer.settings import Display, Settings, load_settings
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -89,7 +89,7 @@ def test_keys_show_expressions_and_refinement(viewer: Viewer) -> None:
     assert until(viewer, lambda: moved(viewer) > 3.0)
     assert until(viewer, lambda: viewer.stage.refined.triangle_count > 2100)
     xdotool(viewer, "key", "r")
-    shot = viewer.stage.shots(viewer.settings.look, viewer.view.viewport)[0]
+    shot = viewer.stage.shots(viewer.settings.display, viewer.view.viewport)[0]
     assert shot.drawn.triangle_count == len(viewer.session.scene.faces)
     xdotool(viewer, "key", "r")
     xdotool(viewer, "key", "1")
@@ -101,7 +101,7 @@ def test_keys_change_the_picture(viewer: Viewer) -> None:
     viewer.session.toggle_alone("disgust")
     draw_frames(viewer)
     assert until(viewer, lambda: viewer.is_idle)
-    before, look = viewer.surface.read(), deepcopy(viewer.settings.look)
+    before, display = viewer.surface.read(), deepcopy(viewer.settings.display)
     left = round(viewer.view.area[0])
     for key, times in (("w", 2), ("c", 2), ("t", 2), ("s", 3), ("d", 2)):
         xdotool(viewer, "key", key)
@@ -109,7 +109,7 @@ def test_keys_change_the_picture(viewer: Viewer) -> None:
         assert np.abs(changed).max() > 20, key
         for _ in range(times - 1):
             xdotool(viewer, "key", key)
-        assert viewer.settings.look == look, key
+        assert viewer.settings.display == display, key
     assert until(viewer, lambda: viewer.is_idle)
     back = viewer.surface.read()[:500, left:].astype(int) - before[:500, left:]
     assert np.abs(back).mean() < 0.5
@@ -167,24 +167,24 @@ def test_pointing_at_a_slider_shows_its_fibres(viewer: Viewer) -> None:
 
 def test_a_comparison_has_two_parts_or_one(viewer: Viewer) -> None:
     """In however narrow a picture neither part is empty; a single pixel is not divided."""
-    look = replace(viewer.settings.look, divider=0.02)
+    display = replace(viewer.settings.display, divider=0.02)
     for compare in ("wipe", "side by side"):
-        look = replace(look, compare=compare)
-        shots = viewer.stage.shots(look, (3, 0, 2, 50))
+        display = replace(display, compare=compare)
+        shots = viewer.stage.shots(display, (3, 0, 2, 50))
         assert [shot.clip for shot in shots] == [(3, 0, 1, 50), (4, 0, 1, 50)]
-        assert len(viewer.stage.shots(look, (3, 0, 1, 50))) == 1
+        assert len(viewer.stage.shots(display, (3, 0, 1, 50))) == 1
 
 
 def test_the_divider_can_be_dragged(viewer: Viewer) -> None:
     """In a comparison both meshes are drawn, and the line between them follows the mouse."""
     viewer.session.toggle_alone("disgust")
     xdotool(viewer, "key", "d")
-    assert len(viewer.stage.shots(viewer.settings.look, viewer.view.viewport)) == 2
+    assert len(viewer.stage.shots(viewer.settings.display, viewer.view.viewport)) == 2
     left, top, width, height = viewer.view.area
     place = on_screen(viewer, left + 0.5 * width, top + 0.2 * height)
     drag(viewer, place, (round(0.2 * width), 0))
     xdotool(viewer, "mouseup", 1)
-    assert viewer.settings.look.divider == pytest.approx(0.7, abs=0.02)
+    assert viewer.settings.display.divider == pytest.approx(0.7, abs=0.02)
     assert until(viewer, lambda: viewer.stage.refined.triangle_count > 2100)
     assert viewer.stage.static.triangle_count == len(viewer.session.scene.faces)
 
@@ -196,13 +196,15 @@ def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
     for name in ("curvature drop", "tension", "splits"):
         click(viewer, "Colours")
         click(viewer, f"Colours: {name}")
-        assert viewer.settings.look.colours == name
+        assert viewer.settings.display.colours == name
+    click(viewer, "Style")  # folded, there is room for what is below it
     for name in ("Muscles", "Springs", "Skull", "Landmarks"):
         click(viewer, name)
-    assert viewer.settings.look.overlays == ["muscles", "springs", "skull", "landmarks"]
+    assert viewer.settings.display.overlays == ["muscles", "springs", "skull", "landmarks"]
+    viewer.settings.display.choose_look("paper")
     assert until(viewer, lambda: viewer.is_idle)
     few = viewer.stage.refined.triangle_count
-    viewer.settings.look.options["kahler"] = {"threshold_once": 0.0, "threshold_twice": 0.01}
+    viewer.settings.display.options["kahler"] = {"threshold_once": 0.0, "threshold_twice": 0.01}
     draw_frames(viewer)
     assert viewer.stage.refined.triangle_count > 1.5 * few
     click(viewer, "Refiner")
@@ -211,19 +213,71 @@ def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
     assert not viewer.messages.text
 
 
+def test_a_look_is_chosen(viewer: Viewer) -> None:
+    """In the panel, by the menu and by its key; it undoes what was changed of the one before."""
+    viewer.session.toggle_alone("disgust")
+    click(viewer, "tab Mechanism")
+    display, stage = viewer.settings.display, viewer.stage
+    assert until(viewer, lambda: viewer.is_idle)
+    smooth = stage.refined.triangle_count
+    click(viewer, "Look")
+    click(viewer, "Look: paper")
+    assert display.look == stage.refined.label == "paper"
+    paper = stage.refined.triangle_count
+    assert len(stage.scene.faces) < paper < 0.8 * smooth
+    click(viewer, "Refiner")
+    click(viewer, "Refiner: loop")
+    display.options["loop"] = {"levels": 2}
+    draw_frames(viewer)
+    assert stage.refined.label == "loop, changed"
+    assert stage.refined.triangle_count == 16 * len(stage.scene.faces)
+    click(viewer, "Look")
+    click(viewer, "Look: paper")
+    assert stage.refined.triangle_count == paper and stage.refined.label == "paper"
+    xdotool(viewer, "key", "p")
+    assert display.look == stage.refined.label == "smooth"
+    assert stage.refined.triangle_count == smooth
+    click(viewer, "menu View")
+    click(viewer, "menu View: Paper's look")
+    assert display.look == "paper" and stage.refined.triangle_count == paper
+    assert not viewer.messages.is_error
+
+
+def test_two_looks_are_compared(viewer: Viewer) -> None:
+    """On the left is what the list says: a look, a refiner, or the mesh as it is again."""
+    viewer.session.toggle_alone("disgust")
+    click(viewer, "tab Mechanism")
+    assert until(viewer, lambda: viewer.is_idle)
+    smooth = viewer.stage.refined.triangle_count
+    assert "with" not in viewer.gui.places
+    xdotool(viewer, "key", "d")
+    labels, counts = [], []
+    for name in ("paper", "loop", "static"):
+        click(viewer, "with")
+        click(viewer, f"with: {name}")
+        left, right = viewer.stage.shots(viewer.settings.display, viewer.view.viewport)
+        assert right.drawn is viewer.stage.refined and right.drawn.triangle_count == smooth
+        labels.append(left.drawn.label)
+        counts.append(left.drawn.triangle_count)
+    static = len(viewer.session.scene.faces)
+    assert labels == ["paper", "loop", "static"]
+    assert static < counts[0] < smooth and counts[1:] == [4 * static, static]
+    assert not viewer.messages.text
+
+
 def test_wrinkles_have_a_slider(viewer: Viewer) -> None:
     """Dragged to the left they are gone from the picture; a right click brings them back."""
     viewer.session.toggle_alone("surprise")
     click(viewer, "tab Mechanism")
     assert until(viewer, lambda: viewer.is_idle)
-    assert viewer.settings.look.wrinkles == 1.0 and viewer.stage.refined.stream.has_wrinkles
+    assert viewer.settings.display.wrinkles == 1.0 and viewer.stage.refined.stream.has_wrinkles
     drag(viewer, middle(viewer, "wrinkles"), (-400, 0))
     xdotool(viewer, "mouseup", 1)
-    assert viewer.settings.look.wrinkles == 0.0 and not viewer.stage.refined.stream.has_wrinkles
+    assert viewer.settings.display.wrinkles == 0.0 and not viewer.stage.refined.stream.has_wrinkles
     xdotool(viewer, "click", 3)
     xdotool(viewer, "mousemove", *middle(viewer, "wrinkles"))
     xdotool(viewer, "click", 3)
-    assert viewer.settings.look.wrinkles == 1.0
+    assert viewer.settings.display.wrinkles == 1.0
     assert until(viewer, lambda: viewer.stage.refined.stream.has_wrinkles)
 
 
@@ -327,7 +381,7 @@ def test_an_idle_window_rests(viewer: Viewer) -> None:
 
 
 def test_the_window_remembers(tmp_path: Path) -> None:
-    """`risorius replay --once` plays and ends; size and look come back, a broken file does not."""
+    """`risorius replay --once` plays and ends; size and looks come back, a broken file does not."""
     script = tmp_path / "short.toml"
     script.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.6\njoy = 1.0\n")
     environment = {**os.environ, "XDG_CONFIG_HOME": str(tmp_path)}
@@ -335,15 +389,23 @@ def test_the_window_remembers(tmp_path: Path) -> None:
     remembered.parent.mkdir()
     remembered.write_text('{"size": ')
     command = [sys.executable, "-m", "risorius", "replay", str(script), "--once"]
-    command += ["--size", "500x400", "--wireframe"]
+
+    def replayed(*options: str) -> Settings:
+        """What is remembered after a replay with these options."""
+        result = subprocess.run(
+            [*command, *options], capture_output=True, text=True, timeout=60, check=False,
+            env=environment, cwd=Path(__file__).parents[2],
+        )  # fmt: skip
+        assert result.returncode == 0, result.stderr
+        assert result.stderr == ""
+        settings, complaint = load_settings(remembered)
+        assert complaint == ""
+        return settings
+
     start = time.monotonic()
-    result = subprocess.run(
-        command, capture_output=True, text=True, timeout=60, check=False, env=environment,
-        cwd=Path(__file__).parents[2],
-    )  # fmt: skip
-    assert result.returncode == 0, result.stderr
-    assert result.stderr == ""
+    settings = replayed("--size", "500x400", "--wireframe", "--look", "paper")
     assert time.monotonic() - start > 0.6
-    settings, complaint = load_settings(remembered)
-    assert complaint == "" and settings.size == (500, 400) and settings.look.wireframe
-    assert len(settings.cameras["face"]) == 6
+    assert settings.size == (500, 400) and len(settings.cameras["face"]) == 6
+    assert settings.display == Display(look="paper", wireframe=True)
+    assert replayed().display == settings.display
+    assert replayed("--look", "smooth").display == Display()  # asked for, though it is the first

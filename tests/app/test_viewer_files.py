@@ -14,6 +14,7 @@ from risorius.app.scenes import build_scene
 from risorius.app.script import load_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.files import UNSEEN, Files
+from risorius.app.viewer.settings import Display
 from tests.heads import stranger
 from tests.render.test_release import counting
 
@@ -317,7 +318,7 @@ def test_heads_come_and_go_without_leaving_anything(
 ) -> None:
     """Changes of head, each drawn until it is at rest: OpenGL holds as much as after one."""
     scenes = [viewer.session.scene, build_scene("face", None)]
-    viewer.settings.look.compare, viewer.settings.look.overlays = "wipe", ["muscles", "springs"]
+    viewer.settings.display = Display(compare="wipe", overlays=["muscles", "springs"])
     count = counting(monkeypatch)
     held = []
     for turn in range(4):

@@ -12,11 +12,11 @@ from typing import Any
 
 import pytest
 
-from risorius.app.scenes import FaceScene
+from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import (
-    Look,
+    Display,
     Settings,
     load_settings,
     remove_refused_options,
@@ -26,7 +26,7 @@ from risorius.refine.border.registry import refiners
 
 from .driving import NEEDS_A_SCREEN, SIZE, draw_frames
 
-GOOD = {"theme": "dark", "zoom": 1.5, "folds": {"Jaw": True}, "look": {"wireframe": True}}
+GOOD = {"theme": "dark", "zoom": 1.5, "folds": {"Jaw": True}, "display": {"wireframe": True}}
 
 
 @pytest.fixture
@@ -39,8 +39,9 @@ def test_settings_come_back(tmp_path: Path) -> None:
     """What is written is read again."""
     path = tmp_path / "deep" / "viewer.json"
     settings = Settings(size=(900, 700), theme="dark", cameras={"face": [1.0, 2, 900, 0, 0, 0.5]})
-    settings.look.overlays = ["muscles"]
-    settings.look.options = {"kahler": {"threshold_once": 0.1, "blend": True, "scheme": "cubic"}}
+    settings.display.look, settings.display.beside = "paper", "smooth"
+    settings.display.refiner, settings.display.overlays = "loop", ["muscles"]
+    settings.display.options = {"kahler": {"threshold_once": 0.1, "blend": True, "scheme": "cubic"}}
     save_settings(path, settings)
     assert load_settings(path) == (settings, "")
     assert [file.name for file in path.parent.iterdir()] == ["viewer.json"]
@@ -72,22 +73,26 @@ def test_settings_come_back(tmp_path: Path) -> None:
         ("cameras.face", [1, 2, 3]),
         ("cameras.face", [1, 2, 3, 4, 5, float("inf")]),
         ("cameras.face", [[[]]] * 6),
-        ("look", 3),
-        ("look.refiner", "none"),
-        ("look.refiner", {"a": 1}),
-        ("look.compare", "both"),
-        ("look.divider", 7),
-        ("look.shading", ""),
-        ("look.colours", 1),
-        ("look.skin", "fur"),
-        ("look.wrinkles", 10**400),
-        ("look.overlays", ["muscles", "zzz"]),
-        ("look.overlays", "muscles"),
-        ("look.options", 1),
-        ("look.options.kahler", 1),
-        ("look.options.kahler.threshold_once", float("nan")),
-        ("look.options.kahler.threshold_once", [0.1]),
-        ("look.options.kahler.threshold_once", 10**400),
+        ("display", 3),
+        ("display.look", "pretty"),
+        ("display.look", ["paper"]),
+        ("display.refiner", "none"),
+        ("display.refiner", {"a": 1}),
+        ("display.compare", "both"),
+        ("display.beside", "both"),
+        ("display.beside", None),
+        ("display.divider", 7),
+        ("display.shading", ""),
+        ("display.colours", 1),
+        ("display.skin", "fur"),
+        ("display.wrinkles", 10**400),
+        ("display.overlays", ["muscles", "zzz"]),
+        ("display.overlays", "muscles"),
+        ("display.options", 1),
+        ("display.options.kahler", 1),
+        ("display.options.kahler.threshold_once", float("nan")),
+        ("display.options.kahler.threshold_once", [0.1]),
+        ("display.options.kahler.threshold_once", 10**400),
     ],
 )
 def test_one_value_gives_way_alone(path: Path, where: str, value: Any) -> None:
@@ -101,11 +106,12 @@ def test_one_value_gives_way_alone(path: Path, where: str, value: Any) -> None:
     path.write_text(json.dumps(stored).replace('"HUGE"', 5000 * "9"))
     before = path.read_bytes()
     settings, complaint = load_settings(path)
-    expected = Settings(theme="dark", zoom=1.5, folds={"Jaw": True}, look=Look(wireframe=True))
+    display = Display(wireframe=True)
+    expected = Settings(theme="dark", zoom=1.5, folds={"Jaw": True}, display=display)
     if len(tables) == 0 and name in GOOD:
         setattr(expected, name, getattr(Settings(), name))
-    if tables[:2] == ["look", "options"] or where == "look.options.kahler":
-        expected.look.options = {"kahler": {}}
+    if tables[:2] == ["display", "options"] or where == "display.options.kahler":
+        expected.display.options = {"kahler": {}}
     assert settings == expected
     assert complaint.startswith(f"{path}: of no use and as at first: {where} = ")
     [kept] = path.parent.glob("*.unusable.json")
@@ -123,7 +129,7 @@ def test_one_value_gives_way_alone(path: Path, where: str, value: Any) -> None:
         b"\xff\xfe\x00",
         b"\x00\x01",
         b'{"zoom": ' + 100_000 * b"[",
-        100_000 * b'{"look":',
+        100_000 * b'{"display":',
         b" " * (2**20 + 1),
     ],
 )
@@ -176,17 +182,30 @@ def test_of_many_values_the_first_are_told(path: Path) -> None:
 
 def test_options_that_a_refiner_refuses_give_way_alone() -> None:
     """Unknown ones, other kinds, too much: named; what remains is taken by the refiner."""
-    look = Look(
+    display = Display(
         options={
             "kahler": {"threshold_once": "x", "scheme": "cubic", "foo": 3, "blend": True},
             "loop": {"levels": 50},
         }
     )
-    told = remove_refused_options(look, FaceScene())
-    assert look.options == {"kahler": {"scheme": "cubic", "blend": True}, "loop": {}}
+    told = remove_refused_options(display, FaceScene())
+    assert display.options == {"kahler": {"scheme": "cubic", "blend": True}, "loop": {}}
     for words in ("kahler threshold_once = 'x'", "kahler foo = 3", "loop levels = 50"):
         assert words in told
-    assert remove_refused_options(look, FaceScene()) == ""
+    assert remove_refused_options(display, FaceScene()) == ""
+
+
+def test_refiners_that_cannot_be_bound_give_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of what is drawn and what it is compared with; the look is drawn, and the mesh as it is."""
+
+    def broken(*_: Any, **__: Any) -> Any:
+        raise ValueError("this mesh is too large")
+
+    monkeypatch.setattr(refiners, "_factories", {**refiners._factories, "far": broken})
+    display = Display(look="paper", refiner="far", beside="far")
+    told = remove_refused_options(display, PlaneScene())
+    assert told == "of no use and as at first: refiner far, far"
+    assert display == Display(look="paper")
 
 
 @pytest.mark.window
@@ -194,8 +213,8 @@ def test_options_that_a_refiner_refuses_give_way_alone() -> None:
 def test_no_settings_keep_the_window_shut(path: Path) -> None:
     """Everything wrong at once: it opens, and says so."""
     wrong: dict[str, Any] = {name: "zzz" for name in vars(Settings())}
-    wrong["look"] = {name: -1 for name in vars(Look())}
-    wrong["look"]["options"] = {"kahler": {"threshold_once": "x"}}
+    wrong["display"] = {name: -1 for name in vars(Display())}
+    wrong["display"]["options"] = {"kahler": {"threshold_once": "x"}}
     path.write_text(json.dumps(wrong))
     with Viewer(script_for(None, "face"), SIZE, settings_path=path) as viewer:
         draw_frames(viewer, 3)
@@ -211,10 +230,10 @@ def test_a_refiner_that_cannot_be_loaded_is_told(monkeypatch: pytest.MonkeyPatch
     def broken(*_: Any, **__: Any) -> Any:
         raise ValueError("refiner 'far' of 'nowhere:X' cannot be loaded")
 
-    with Viewer(script_for(None, "face"), SIZE, look=Look()) as viewer:
+    with Viewer(script_for(None, "face"), SIZE, display=Display()) as viewer:
         draw_frames(viewer)
         monkeypatch.setattr(refiners, "find", broken)
-        viewer.settings.look.refiner = "far"
+        viewer.settings.display.refiner = "far"
         viewer.panel_state.wanted_tab = "Mechanism"
         draw_frames(viewer, 6)
         assert viewer.messages.is_error and "cannot be loaded" in viewer.messages.text

@@ -11,13 +11,14 @@ from imgui_bundle import imgui
 
 from risorius import refine, render
 
+from ...looks import LOOKS, STATIC, named, words_of_looks
 from ...refining import DETAIL, can_detail
 from ..colours import COLOURS
 from ..frame_times import PHASES, FrameTimes
 from ..gui import Gui, em
 from ..overlays import overlays_of
 from ..setting_rules import COMPARISONS, SKINS
-from ..settings import Look, Settings
+from ..settings import Display, Settings
 from ..stage import Stage
 from ..view import View
 from .sliders import Sliders
@@ -26,8 +27,11 @@ from .widgets import heading, hint, muted
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
     "Refine": "draw the refined mesh, or the simulated one as it is (R)",
+    "Look": "smooth: what looks best; paper: the paper's own rule (P). A look sets the refiner and "
+    "all that it is told; choose it again to undo changes",
     "Refiner": "any that is registered",
-    "Compare": "the simulated mesh beside the refined one: wipe (D), side by side (Shift+D)",
+    "Compare": "two meshes under one camera: wipe (D), side by side (Shift+D)",
+    "with": "what is seen on the left: the simulated mesh, a look, or a refiner",
     "threshold once": "an edge splits once where the normals at its ends have turned apart by more "
     "than this since rest (drop of their dot product)",
     "threshold twice": "the same for splitting twice",
@@ -65,8 +69,8 @@ class MechanismPanel:
         self._sliders = Sliders(gui)
 
     @property
-    def _look(self) -> Look:
-        return self._settings.look
+    def _display(self) -> Display:
+        return self._settings.display
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
@@ -74,7 +78,7 @@ class MechanismPanel:
         times_label = f"Milliseconds, {self._times.frames_per_second:.0f} frames a second"
         for title, label, draw in (
             ("Refinement", "", self._draw_refinement),
-            ("Look", "", self._draw_look),
+            ("Style", "", self._draw_style),
             ("Overlays", "", self._draw_overlays),
             ("Milliseconds", times_label, self._draw_times),
         ):
@@ -83,29 +87,43 @@ class MechanismPanel:
         imgui.end_child()
 
     def _draw_refinement(self) -> None:
-        look, stage = self._look, self._stage
-        self._check("Refine", look.is_refined, partial(look.switch, "is_refined"))
-        names = [name for name in refine.available() if name != "none"]
-        self._choose("Refiner", look.refiner, names, partial(setattr, look, "refiner"))
-        self._choose("Compare", look.compare, COMPARISONS, partial(setattr, look, "compare"))
+        display, stage = self._display, self._stage
+        self._check("Refine", display.is_refined, partial(display.switch, "is_refined"))
+        look = display.look_as_changed(stage.scene)
+        self._choose("Look", look, tuple(LOOKS), display.choose_look)
+        names = [name for name in refine.available() if name != STATIC]
+        put = partial(display.choose_refiner, stage.scene)
+        self._choose("Refiner", display.refiner_on(stage.scene), names, put)
+        self._choose("Compare", display.compare, COMPARISONS, partial(setattr, display, "compare"))
+        if display.compare != "off":
+            self._draw_beside((STATIC, *LOOKS, *names))
         for name, default in stage.refiner_options.items():
             self._draw_option(name, default)
         base = len(stage.scene.faces)
-        for shot in stage.shots(look, self._view.viewport):
+        for shot in stage.shots(display, self._view.viewport):
             count = shot.drawn.triangle_count
-            imgui.text(f"{shot.label}: {count} triangles")
+            imgui.text(f"{shot.drawn.label}: {count} triangles")
             imgui.same_line()
             muted(self._gui, f"({count / base:.2f} x)")
         splits = stage.refined.refiner.splits
         once, more = int((splits == 1).sum()), int((splits > 1).sum())
         muted(self._gui, f"{len(splits)} edges: {once} split once, {more} more often")
 
+    def _draw_beside(self, names: Sequence[str]) -> None:
+        """A list of what can be compared with, as captions call it."""
+        display = self._display
+        labels = {named(name, display.look).label: name for name in names}
+        present = named(display.beside, display.look).label
+        self._choose(
+            "with", present, list(labels), lambda label: setattr(display, "beside", labels[label])
+        )
+
     def _draw_option(self, name: str, default: Any) -> None:
         """A slider, a checkbox or a list for an option, by what its default is."""
-        scene, refiner = self._stage.scene, self._look.refiner
-        stored = self._look.options.setdefault(refiner, {})
-        scenes = scene.refiner_options.get(refiner, {})
-        value = stored.get(name, scenes.get(name, default))
+        scene, refiner = self._stage.scene, self._display.refiner_on(self._stage.scene)
+        stored = self._display.options.setdefault(refiner, {})
+        told = LOOKS[self._display.look][scene.name].told(refiner)
+        value = stored.get(name, told.get(name, default))
         label, put = name.replace("_", " "), partial(stored.__setitem__, name)
         if isinstance(default, bool):
             self._check(label, bool(value), partial(put, not value))
@@ -119,7 +137,7 @@ class MechanismPanel:
             slid = self._slide(label, name, float(value), limits, default, digits=3)
             if slid is not None:
                 put(slid)
-                _keep_in_order(stored, name, slid, scenes)
+                _keep_in_order(stored, name, slid, told)
         elif isinstance(default, str):
             has_finer = can_detail(scene)
             allowed = [word for word in _choices(name) if word != DETAIL or has_finer]
@@ -129,28 +147,29 @@ class MechanismPanel:
             present = next(word for word, each in SUITS.items() if each is value)
             self._choose(label, present, list(SUITS), lambda word: put(SUITS[word]))
 
-    def _draw_look(self) -> None:
-        look = self._look
+    def _draw_style(self) -> None:
+        display = self._display
         shadings = [shading.value for shading in render.Shading]
-        self._choose("Shading", look.shading, shadings, partial(setattr, look, "shading"))
-        self._choose("Colours", look.colours, tuple(COLOURS), partial(setattr, look, "colours"))
-        if COLOURS[look.colours].legend:
-            muted(self._gui, COLOURS[look.colours].legend)
-        self._choose("Skin", look.skin, tuple(SKINS), partial(setattr, look, "skin"))
+        self._choose("Shading", display.shading, shadings, partial(setattr, display, "shading"))
+        put = partial(setattr, display, "colours")
+        self._choose("Colours", display.colours, tuple(COLOURS), put)
+        if COLOURS[display.colours].legend:
+            muted(self._gui, COLOURS[display.colours].legend)
+        self._choose("Skin", display.skin, tuple(SKINS), partial(setattr, display, "skin"))
         if self._stage.scene.wrinkles is not None:
-            depth = self._slide("Wrinkles", "wrinkles", look.wrinkles, (0.0, 1.0), 1.0)
-            look.wrinkles = look.wrinkles if depth is None else depth
-        self._check("Wireframe", look.wireframe, partial(look.switch, "wireframe"))
+            depth = self._slide("Wrinkles", "wrinkles", display.wrinkles, (0.0, 1.0), 1.0)
+            display.wrinkles = display.wrinkles if depth is None else depth
+        self._check("Wireframe", display.wireframe, partial(display.switch, "wireframe"))
         imgui.same_line(_label_width())
-        self._check("Occlusion", look.occlusion, partial(look.switch, "occlusion"))
+        self._check("Occlusion", display.occlusion, partial(display.switch, "occlusion"))
 
     def _draw_overlays(self) -> None:
-        look = self._look
+        display = self._display
         for index, name in enumerate(overlays_of(self._stage.scene)):
             if index % 2:
                 imgui.same_line(_label_width())
-            is_on = name in look.overlays
-            self._check(name.capitalize(), is_on, partial(look.toggle_overlay, name))
+            is_on = name in display.overlays
+            self._check(name.capitalize(), is_on, partial(display.toggle_overlay, name))
 
     def _draw_times(self) -> None:
         """A scrolling plot for each phase of the paper's Figure 1, and the median of a second."""
@@ -225,19 +244,19 @@ def _label_width() -> float:
 
 
 def _choices(option: str) -> tuple[str, ...]:
-    """The words that an option of a refiner may be, those from outside among them."""
-    if option == "scheme":
-        return refine.schemes.available()
-    first, *others = refine.criteria.available()
-    return (first, "normal+rest", *others) if option == "criterion" else ()
+    """The words that an option of a refiner may be, those of looks and from outside among them."""
+    registered = {"scheme": refine.schemes.available, "criterion": refine.criteria.available}
+    if option not in registered:
+        return ()
+    return tuple(dict.fromkeys((*registered[option](), *words_of_looks(option))))
 
 
 def _keep_in_order(
-    stored: dict[str, Any], name: str, value: float, scenes: Mapping[str, Any]
+    stored: dict[str, Any], name: str, value: float, told: Mapping[str, Any]
 ) -> None:
     """Splitting twice never begins before splitting once: the other threshold gives way."""
     first, second = "threshold_once", "threshold_twice"
-    defaults = {first: refine.THRESHOLD_ONCE, second: refine.THRESHOLD_TWICE, **scenes}
+    defaults = {first: refine.THRESHOLD_ONCE, second: refine.THRESHOLD_TWICE, **told}
     if name == first:
         stored[second] = max(value, stored.get(second, defaults[second]))
     elif name == second:

@@ -10,7 +10,7 @@ from ..gui import Gui, colour, em
 from ..settings import Settings
 
 # Headings that are open as long as nobody has folded them.
-FIRST_OPEN = frozenset({"Expressions", "Refinement", "Look", "Overlays", "Milliseconds"})
+FIRST_OPEN = frozenset({"Expressions", "Refinement", "Style", "Overlays", "Milliseconds"})
 
 
 def heading(

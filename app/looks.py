@@ -1,0 +1,75 @@
+"""Looks: how the application refines each scene, under names that a user chooses from.
+
+`smooth` looks best, and is what films and the window show unless told; `paper` is the rule of
+Kähler, Haber, Seidel 2003 alone. Whatever is drawn asks here by which refiner, told what.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+STATIC = "none"  # the refiner that leaves the mesh as it is
+CHANGED = ", changed"  # after the name of what has options over its own
+FIRST_LOOK, PAPERS_LOOK = "smooth", "paper"  # the one that is seen unless told, and the paper's
+
+
+@dataclass(frozen=True)
+class Look:
+    """How one scene is refined: by which refiner, and what each refiner is told there."""
+
+    refiner: str = "kahler"
+    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by refiner
+
+    def told(self, refiner: str) -> Mapping[str, Any]:
+        """What a refiner is told where its defaults do not do; nothing, where this knows none."""
+        return self.options.get(refiner, {})
+
+
+# Deformation alone would leave the outlines of crown, ears and neck polygons.
+SMOOTH = Look(options={"kahler": {"criterion": "normal+rest"}})
+PAPER = Look()
+# A flat mesh needs no slack for bends that it was made with. Found by search, so that the wave
+# makes about as many triangles at most as in Table 1 (1328).
+PLANE = Look(options={"kahler": {"threshold_once": 0.001, "threshold_twice": 0.005}})
+
+LOOKS: Mapping[str, Mapping[str, Look]] = MappingProxyType(  # by name, then by scene
+    {
+        FIRST_LOOK: {"face": SMOOTH, "plane": PLANE},
+        PAPERS_LOOK: {"face": PAPER, "plane": PLANE},
+    }
+)
+
+
+def words_of_looks(option: str) -> list[str]:
+    """What looks tell any refiner by an option that is a word."""
+    looks = [look for by_scene in LOOKS.values() for look in by_scene.values()]
+    return [told[option] for look in looks for told in look.options.values() if option in told]
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """What a user asks for: a look, or a refiner as that look has it, and options over both."""
+
+    look: str = FIRST_LOOK
+    refiner: str | None = None  # None: the look's own
+    options: Mapping[str, Any] = field(default_factory=dict)  # over what the look tells it
+
+    def on(self, scene: str) -> tuple[str, dict[str, Any]]:
+        """The refiner's name, and all that it is told, on the scene of this name."""
+        look = LOOKS[self.look][scene]
+        name = look.refiner if self.refiner is None else self.refiner
+        return name, {**look.told(name), **self.options}
+
+    @property
+    def label(self) -> str:
+        """What it is called under a picture."""
+        name = "static" if self.refiner == STATIC else self.refiner or self.look
+        return f"{name}{CHANGED}" if self.options else name
+
+
+def named(name: str, look: str) -> Refinement:
+    """The look of this name, or else the refiner of this name, told what `look` tells it."""
+    return Refinement(name) if name in LOOKS else Refinement(look, name)

@@ -1,0 +1,143 @@
+"""Looks: each can be drawn on every scene by every refiner, and the paper's is the paper's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from risorius import refine, render
+from risorius.app.errors import UserError
+from risorius.app.looks import FIRST_LOOK, LOOKS, Look, Refinement, named
+from risorius.app.pipeline import Pipeline
+from risorius.app.refining import parse_comparison, refiner_for
+from risorius.app.scenes import SCENES, Scene
+from risorius.refine.border.registry import refiners
+
+SIZE = (160, 120)
+MOVED = {"face": {"disgust": 1.0}, "plane": {"amplitude": 1.0, "phase": 0.3}}
+
+
+@pytest.fixture(scope="module")
+def surface() -> Iterator[Any]:
+    """A small offscreen surface."""
+    with render.open_offscreen(SIZE, samples=0) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def scenes() -> dict[str, Scene]:
+    """Every scene, moved."""
+    built = {name: build() for name, build in SCENES.items()}
+    for name, scene in built.items():
+        scene.pose(MOVED[name])
+        scene.step(0.5)
+    return built
+
+
+@pytest.mark.parametrize("refiner", [None, *refine.available()])
+@pytest.mark.parametrize("look", LOOKS)
+@pytest.mark.parametrize("name", SCENES)
+def test_every_look_is_drawn_by_every_refiner(
+    surface: Any, scenes: dict[str, Scene], name: str, look: str, refiner: str | None
+) -> None:
+    """On every scene, without a crack, and as something that can be seen."""
+    scene, refinement = scenes[name], Refinement(look, refiner)
+    pipeline = Pipeline(scene, render.Renderer(surface), [refinement])
+    camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
+    surface.begin()
+    pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
+    surface.end()
+    assert np.ptp(surface.read()) > 30
+    bound = refiner_for(scene, refinement)
+    mesh = bound.refine(scene.positions)
+    refine.check(bound, mesh, scene.positions)
+    assert len(mesh.triangles) == pipeline.meshes[0].triangle_count
+    is_refined = len(mesh.triangles) > 1.2 * len(scene.faces)
+    assert is_refined == (refiner != "none")
+
+
+def test_the_papers_look_is_the_papers_rule(scenes: dict[str, Scene]) -> None:
+    """On the face the very triangles of `kahler` as it is made without options; smooth has more."""
+    face = scenes["face"]
+    plain = refine.create("kahler", face.faces, face.rest_positions, face.uv, face.face_uv)
+    wanted = plain.refine(face.positions)
+    seen = refiner_for(face, Refinement("paper")).refine(face.positions)
+    for array in ("triangles", "positions", "normals", "source", "uv"):
+        assert np.array_equal(getattr(seen, array), getattr(wanted, array)), array
+    smooth = refiner_for(face, Refinement("smooth")).refine(face.positions)
+    assert len(smooth.triangles) > 1.2 * len(seen.triangles)
+
+
+def test_looks_know_every_scene() -> None:
+    """None is left out, and no other is named."""
+    assert {frozenset(by_scene) for by_scene in LOOKS.values()} == {frozenset(SCENES)}
+    assert FIRST_LOOK in LOOKS
+
+
+def test_what_is_asked_for_is_over_the_look(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A look says which refiner and what it is told; both can be replaced; others get nothing."""
+    told = {"kahler": {"scheme": "cubic", "blend": True}, "loop": {"levels": 2}}
+    monkeypatch.setattr("risorius.app.looks.LOOKS", {"x": {"face": Look("loop", told)}})
+    assert Refinement("x").on("face") == ("loop", {"levels": 2})
+    assert Refinement("x", "kahler").on("face") == ("kahler", told["kahler"])
+    changed = Refinement("x", "kahler", {"blend": None}).on("face")
+    assert changed == ("kahler", {"scheme": "cubic", "blend": None})
+    assert Refinement("x", "strange").on("face") == ("strange", {})
+    assert told["kahler"] == {"scheme": "cubic", "blend": True}  # nobody wrote into the look
+
+
+def test_a_refusal_tells_what_the_look_has(
+    scenes: dict[str, Scene], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An option may not go with what the look says; who asked for nothing is told no more."""
+    told = {"kahler": {"scheme": "cubic", "blend": True}}
+    monkeypatch.setattr("risorius.app.looks.LOOKS", {"x": {"face": Look(options=told)}})
+    with pytest.raises(UserError, match=r"one of the two; the look x has scheme=cubic, blend=on$"):
+        refiner_for(scenes["face"], Refinement("x", options={"coherent": True}))
+    options = {"scheme": "loop", "blend": True, "coherent": True}
+    with pytest.raises(UserError, match=r"ask for one of the two$"):
+        refiner_for(scenes["face"], Refinement("x", options=options))
+
+
+def test_what_it_is_called() -> None:
+    """By its look or its refiner; the mesh as it is is static; options are not kept secret."""
+    for refinement, label in (
+        (Refinement(), "smooth"),
+        (Refinement("paper"), "paper"),
+        (Refinement("paper", "loop"), "loop"),
+        (named("none", "paper"), "static"),
+        (named("paper", "smooth"), "paper"),
+        (Refinement(options={"scheme": "cubic"}), "smooth, changed"),
+    ):
+        assert refinement.label == label
+
+
+def test_a_comparison_is_of_looks_and_refiners(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In their order; a refiner is told what the look tells it; a stranger may be among them."""
+    strangers = {**refiners._factories, "far": refine.PassThrough}
+    monkeypatch.setattr(refiners, "_factories", strangers)
+    shown = Refinement("paper", "kahler", {"blend": True})
+    assert parse_comparison("none,smooth,far", shown) == (
+        Refinement("paper", "none"), Refinement("smooth"), Refinement("paper", "far"),
+    )  # fmt: skip
+    assert parse_comparison(None, shown) == ()
+    assert parse_comparison("paper", shown) == (Refinement("paper"),)  # it is not changed
+
+
+@pytest.mark.parametrize(
+    ("names", "told"),
+    [
+        ("papre", "'papre' is neither a look (smooth, paper) nor a refiner (kahler, "),
+        ("none,", "'' is neither a look"),
+        ("smooth", "'smooth' would stand beside itself"),
+        ("none,loop,none", "'none' would stand beside itself"),
+    ],
+)
+def test_a_comparison_that_cannot_be(names: str, told: str) -> None:
+    """Names that nothing has, and two that are one."""
+    with pytest.raises(UserError) as error:
+        parse_comparison(names, Refinement())
+    assert told in str(error.value)
