@@ -1,4 +1,4 @@
-"""The groups `risorius bench` and `risorius reproduce`: measurements, and the paper made anew.
+"""The group `risorius bench`: measurements.
 
 What is slow to import is imported inside.
 """
@@ -11,15 +11,11 @@ import sys
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from risorius.app.cli.parameters import FiniteRange, Size
 from risorius.app.errors import UserError, in_one_line
-
-if TYPE_CHECKING:
-    from risorius.app.files import Image
 
 MESHES = ("face", "2k", "20k", "200k", "200k shuffled", "1M", "1M shuffled")
 PATH = click.Path(path_type=Path)
@@ -30,11 +26,6 @@ json_option = click.option("--json", "json_file", type=PATH, help="Figures for p
 @click.group()
 def bench() -> None:
     """Measure; each command prints its figures and how they were taken."""
-
-
-@click.group()
-def reproduce() -> None:
-    """Make the paper's table and figures anew."""
 
 
 @bench.command("refine")
@@ -202,41 +193,6 @@ def bench_window(size: tuple[int, int], seconds: float) -> None:
     from . import window
 
     click.echo(window.report(seconds, size))
-
-
-@reproduce.command("table1")
-@click.option("--rounds", type=click.IntRange(3, 10_000), default=60, show_default=True)
-def reproduce_table1(rounds: int) -> None:
-    """Print Table 1 of the paper beside our own figures."""
-    from . import table1
-
-    click.echo(table1.report(*table1.measure(rounds=rounds)))
-
-
-def _figure(name: str, function: str, help_text: str) -> None:
-    """Add a command that draws a picture: out/NAME.png unless told."""
-
-    @reproduce.command(name, help=help_text)
-    @click.option("-o", "--output", type=PATH, default=Path(f"out/{name}.png"), show_default=True)
-    def draw(output: Path) -> None:
-        """Draw it and write it as PNG."""
-        from risorius.app.files import check_png, save_png
-
-        from . import paper_figures
-
-        check_png(output)
-        draw: Callable[[], Image] = getattr(paper_figures, function)
-        save_png(output, draw())
-        click.echo(f"{in_one_line(output)}: written")
-
-
-_figure("figure9", "figure_9", "Draw the plane: static and refined, flat and Gouraud shaded.")
-_figure("figure10", "figure_10", "Draw the region of the mouth: static and refined.")
-_figure(
-    "coherence",
-    "coherence",
-    "Draw a film strip of a growing wave, with and without memory of the splits.",
-)
 
 
 def _json(target: Path | None) -> Callable[[object], None]:
