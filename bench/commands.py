@@ -126,6 +126,20 @@ def bench_motion(reference: Path) -> None:
         click.echo(motion.report(*motion.measure(reference)))
 
 
+@bench.command("reference")
+@click.argument("checkout", type=FOLDER)
+@click.option("-o", "--output", "folder", type=PATH, required=True, help="A folder.")
+@click.option(
+    "--landmarks", type=PATH, help="The 68 landmarks, where CHECKOUT's README does not name them."
+)
+def bench_reference(checkout: Path, folder: Path, landmarks: Path | None) -> None:
+    """Make the folder that --reference takes from CHECKOUT, a checkout of ICT-FaceKit."""
+    from . import reference
+
+    for line in reference.make(checkout, folder, landmarks):
+        click.echo(in_one_line(line))
+
+
 @bench.command("soak")
 @click.option(
     "--minutes", type=FiniteRange(0.01, 1e4), default=60.0, show_default=True, help="Simulated."

@@ -39,13 +39,18 @@ class Experiment:
     rounds: int | None = None
     """How often it is timed unless told; None where nothing is."""
 
-    def run(self, *, rounds: int | None = None) -> Result:
-        """Do it."""
+    @property
+    def callable(self) -> Callable[..., Outcome | Image]:
+        """The function, imported now."""
         module, _, name = self.function.partition(".")
         function: Callable[..., Outcome | Image]
         function = getattr(importlib.import_module(f"{__package__}.{module}"), name)
+        return function
+
+    def run(self, *, rounds: int | None = None) -> Result:
+        """Do it."""
         timing = {} if self.rounds is None else {"rounds": rounds or self.rounds}
-        made = function(**timing)
+        made = self.callable(**timing)
         outcome = made if isinstance(made, Outcome) else Outcome(pictures={self.name: made})
         return Result(self, outcome)
 
@@ -241,7 +246,7 @@ EXPERIMENTS = (
                 style=".0f",
             ),
         ),
-        rounds=1,
+        rounds=200,
     ),
     Experiment(
         "table1",

@@ -29,8 +29,9 @@ def reproduce() -> None:
 )
 def reproduce_all(folder: Path) -> None:
     """Make everything, and a page that shows it in the paper's order: index.html in a folder."""
-    from .reproduction import PAGE, reproduce
+    from .reproduction import PAGE, check_folder, reproduce
 
+    check_folder(folder)
     results = reproduce(folder, progress=lambda title: click.echo(f"... {title}", err=True))
     for result in results:
         click.echo(f"\n{result.experiment.title} ({result.experiment.place})")
@@ -62,11 +63,10 @@ def _add(experiment: Experiment) -> None:
             click.Option(["-o", "--output"], type=PATH, default=default, show_default=True)
         )
     if experiment.rounds is not None:
-        least = min(3, experiment.rounds)
         options.append(
             click.Option(
                 ["--rounds"],
-                type=click.IntRange(least, 10_000),
+                type=click.IntRange(3, 10_000),
                 default=experiment.rounds,
                 show_default=True,
             )

@@ -19,7 +19,7 @@ from risorius.app.files import check_file, save_png, save_text
 
 from .claims import Finding
 from .experiments import EXPERIMENTS, Result
-from .inferred import inferred
+from .inferred import INFERRED
 from .page import page
 from .report import processor
 
@@ -34,11 +34,10 @@ def check_folder(folder: Path) -> None:
 
 
 def reproduce(folder: Path, *, progress: Callable[[str], object] = lambda _: None) -> list[Result]:
-    """Make every experiment, and write page, figures and pictures into `folder`.
+    """Make every experiment, and write page, figures and pictures into `folder`, which was checked.
 
     `progress`: called with the title of each experiment before it begins.
     """
-    check_folder(folder)
     results = []
     for experiment in EXPERIMENTS:
         progress(experiment.title)
@@ -48,7 +47,7 @@ def reproduce(folder: Path, *, progress: Callable[[str], object] = lambda _: Non
             save_png(folder / f"{name}.png", picture)
     about = surroundings(results)
     save_text(folder / RESULTS, json.dumps(figures(results, about), indent=1) + "\n")
-    save_text(folder / PAGE, page(results, about, inferred()))
+    save_text(folder / PAGE, page(results, about, INFERRED))
     return results
 
 
@@ -80,7 +79,7 @@ def figures(results: list[Result], about: dict[str, str]) -> dict[str, object]:
             }
             for result in results
         ],
-        "inferred": [vars(each) for each in inferred()],
+        "inferred": [vars(each) for each in INFERRED],
     }
 
 
