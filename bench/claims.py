@@ -107,6 +107,14 @@ class Finding:
         return self.claim.judge(self.measured)
 
     @property
+    def allowed(self) -> str:
+        """What is allowed, and below what it cannot be."""
+        least = self.measured.least
+        if least == -math.inf:
+            return self.claim.tolerance
+        return f"{self.claim.tolerance}; possible from {least:{self.claim.style}}"
+
+    @property
     def ours(self) -> str:
         """Our number, with its quartiles."""
         text = f"{self.measured.value:{self.claim.style}}"

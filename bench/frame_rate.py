@@ -26,7 +26,7 @@ from risorius.app.script import script_for
 from .canvas import Canvas, Drawing
 from .claims import Measured, Outcome
 from .report import table
-from .table1 import GOURAUD, SIZE
+from .table1 import GOURAUD, SIZE, papers_refiner
 
 FRAME_SECONDS = 1.0 / 60.0
 WARM_UP = 4  # frames that are not counted
@@ -40,9 +40,8 @@ def measure(*, rounds: int) -> tuple[npt.NDArray[np.float64], str]:
     """
     scene = FaceScene()
     script = script_for(None, scene.name)
-    refiners = [
-        refine.create(name, scene.faces, scene.rest_positions) for name in ("none", "kahler")
-    ]
+    static = refine.create("none", scene.faces, scene.rest_positions)
+    refiners = static, papers_refiner(scene)
     camera = camera_for(scene, script.camera)
     frames: list[list[tuple[float, float, float]]] = []
     with Canvas(SIZE) as canvas:

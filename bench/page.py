@@ -68,7 +68,7 @@ def _head(results: Sequence[Result], about: Mapping[str, str]) -> str:
 def _missed(finding: Finding) -> str:
     return (
         f"{_badge(finding.verdict)} {_text(finding.claim.value)}: {_text(finding.ours)}, allowed "
-        f"{_text(finding.claim.tolerance)}"
+        f"{_text(finding.allowed)}"
     )
 
 
@@ -98,7 +98,7 @@ def _cells(finding: Finding) -> tuple[str, ...]:
         f"{_text(claim.statement)}<small>{_text(claim.value)}</small>",
         _text(claim.expected),
         _text(finding.ours),
-        _text(claim.tolerance),
+        _text(finding.allowed),
         _badge(finding.verdict),
     )
 

@@ -89,7 +89,7 @@ def _say(result: Result) -> None:
     if outcome.text:
         click.echo(f"{outcome.text}\n")
     rows = [
-        (each.verdict.value, each.claim.value, each.claim.expected, each.ours, each.claim.tolerance)
+        (each.verdict.value, each.claim.value, each.claim.expected, each.ours, each.allowed)
         for each in result.findings
     ]
     if rows:
@@ -101,7 +101,7 @@ def _end(results: Iterable[Result]) -> None:
     """Say what is missed, and end with exit code 1 if anything is."""
     missed = [each for result in results for each in result.missed]
     for each in missed:
-        text = f"{each.claim.value} is {each.ours}, allowed: {each.claim.tolerance}"
+        text = f"{each.claim.value} is {each.ours}, allowed: {each.allowed}"
         click.echo(f"risorius: {each.verdict.value}: {text}", err=True)
     if missed:
         sys.exit(1)

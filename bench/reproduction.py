@@ -91,6 +91,6 @@ def _claim(finding: Finding) -> dict[str, object]:
         "paper": claim.expected,
         "ours": measured.value,
         "quartiles": measured.quartiles,
-        "tolerance": claim.tolerance,
+        "allowed": finding.allowed,
         "verdict": finding.verdict.value,
     }

@@ -8,7 +8,6 @@ is.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +20,7 @@ from risorius.refine.kahler.coherence import sequence_tables
 from risorius.refine.kahler.table import CONFIGURATIONS
 
 from .claims import Measured, Outcome
+from .table1 import papers_refiner
 
 Points = npt.NDArray[np.float64]
 
@@ -44,13 +44,13 @@ def overview() -> Outcome:
     """Section 3: one pass, the mesh itself unchanged, nothing kept, no points inside triangles."""
     splits = changed = remembered = inside = unsplit = 0
     for scene in (FaceScene(), PlaneScene()):
-        refiner = _refiner(scene)
+        refiner = papers_refiner(scene)
         for positions in _moments(scene):
             before = [array.tobytes() for array in (positions, scene.faces)]
             mesh = refiner.refine(positions)
             changed += before != [array.tobytes() for array in (positions, scene.faces)]
             splits = max(splits, int(refiner.splits.max()))
-            remembered += _differ(mesh, _refiner(scene).refine(positions))
+            remembered += _differ(mesh, papers_refiner(scene).refine(positions))
             inside += int((refiner.origins().weights > 0.0).all(axis=1).sum())
             unsplit += _unsplit_that_differ(scene, refiner, mesh)
     return Outcome(
@@ -69,7 +69,7 @@ def criterion() -> Outcome:
     values: dict[str, Measured | float] = {}
     for title, move in (("at rest", np.asarray), ("turned and shifted", _moved)):
         values[f"edges split {title}"] = sum(
-            int((_after(_refiner(scene), move(scene.rest_positions)).splits > 0).sum())
+            int((_after(papers_refiner(scene), move(scene.rest_positions)).splits > 0).sum())
             for scene in (FaceScene(), PlaneScene())
         )
     return Outcome(values)
@@ -79,7 +79,7 @@ def smoothing() -> Outcome:
     """Section 4.2: local, close to Loop, and the same on both sides of an edge."""
     moved = 0
     for scene in (FaceScene(), PlaneScene()):
-        refiner = _refiner(scene)
+        refiner = papers_refiner(scene)
         for positions in _moments(scene):
             mesh = refiner.refine(positions)
             count = len(positions)
@@ -100,7 +100,7 @@ def table() -> Outcome:
     """Section 4.3: the 27 configurations, and meshes without cracks."""
     cracks, most = 0, 0
     for scene in (FaceScene(), PlaneScene()):
-        refiner = _refiner(scene)
+        refiner = papers_refiner(scene)
         for positions in _moments(scene):
             mesh = refiner.refine(positions)
             most = max(most, int(np.bincount(mesh.source).max()))
@@ -136,12 +136,6 @@ def attributes() -> Outcome:
             "longest sequence": max(lengths),
         }
     )
-
-
-def _refiner(scene: Scene) -> refine.Refiner:
-    """The paper's, with the scene's thresholds."""
-    options: dict[str, Any] = {**scene.refiner_options["kahler"], "criterion": "normal"}
-    return refine.create("kahler", scene.faces, scene.rest_positions, **options)
 
 
 def _moments(scene: Scene) -> Iterator[Points]:

@@ -60,7 +60,7 @@ def test_a_missed_tolerance_is_told_after_all_is_written(planted: None, tmp_path
     missed = [line for line in result.stderr.splitlines() if line.startswith("risorius: ")]
     assert missed == [
         "risorius: MISSED: <c_rt> is 3.00 (2.90 to 3.10), allowed: at most 1.75",
-        "risorius: noise: time is 0.4, allowed: at most 9",
+        "risorius: noise: time is 0.4, allowed: at most 9; possible from 0.5",
     ]
     names = {path.name for path in (tmp_path / "new").iterdir()}
     assert names == {"index.html", "results.json", "good.png"}

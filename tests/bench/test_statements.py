@@ -48,7 +48,7 @@ def measured(waving: pytest.MonkeyPatch, function: str, **options: Any) -> dict[
             del merged["threshold_once"], merged["threshold_twice"]
         return refine.create("kahler", scene.faces, scene.rest_positions, **merged)
 
-    waving.setattr(statements, "_refiner", refiner)
+    waving.setattr(statements, "papers_refiner", refiner)
     return dict(getattr(statements, function)().values)
 
 
@@ -81,7 +81,7 @@ def test_splits_without_bending_are_seen(waving: pytest.MonkeyPatch) -> None:
     def refiner(scene: Scene) -> refine.Refiner:
         return refine.create("kahler", scene.faces, scene.rest_positions, criterion=AllOfThem(1))
 
-    waving.setattr(statements, "_refiner", refiner)
+    waving.setattr(statements, "papers_refiner", refiner)
     counted = dict(statements.criterion().values)
     edges = len(refiner(PlaneScene()).edges)
     assert list(counted.values()) == [2 * edges, 2 * edges]
@@ -100,7 +100,7 @@ def test_cracks_are_seen(waving: pytest.MonkeyPatch) -> None:
 
 def test_moved_vertices_are_seen(waving: pytest.MonkeyPatch) -> None:
     """A refiner that forgets to tell of its splits has moved vertices without need."""
-    real = statements._refiner
+    real = statements.papers_refiner
 
     class Silent:
         """The real one, with splits that it does not tell."""
@@ -112,5 +112,5 @@ def test_moved_vertices_are_seen(waving: pytest.MonkeyPatch) -> None:
             self.refine = self._refiner.refine
 
     assert statements.smoothing().values["vertices moved without a split"] == 0
-    waving.setattr(statements, "_refiner", Silent)
+    waving.setattr(statements, "papers_refiner", Silent)
     assert statements.smoothing().values["vertices moved without a split"] > 100
