@@ -25,7 +25,7 @@ from risorius.app.script import script_for
 
 from .canvas import Canvas, Drawing
 from .claims import Measured, Outcome
-from .report import table
+from .report import driver, table
 from .table1 import GOURAUD, SIZE, papers_refiner
 
 FRAME_SECONDS = 1.0 / 60.0
@@ -54,7 +54,7 @@ def measure(*, rounds: int) -> tuple[npt.NDArray[np.float64], str]:
                 refiner = refiners[which]
                 both[which] = (simulating, *_of_frame(canvas, refiner, scene, drawing))
             frames.append(both)
-        return np.array(frames)[WARM_UP:], str(canvas.surface.gl.info["GL_RENDERER"])
+        return np.array(frames)[WARM_UP:], driver(canvas.surface.gl.info)
 
 
 def _of_frame(

@@ -85,7 +85,7 @@ def _say(result: Result) -> None:
 
     outcome = result.outcome
     if outcome.renderer:
-        click.echo(f"OpenGL: {outcome.renderer}\n")
+        click.echo(f"{outcome.renderer}\n")
     if outcome.text:
         click.echo(f"{outcome.text}\n")
     rows = [

@@ -31,7 +31,7 @@ from risorius.app.script import script_for
 
 from .canvas import Canvas, Drawing
 from .claims import Measured, Outcome
-from .report import table
+from .report import driver, table
 from .timing import paired
 
 Points = npt.NDArray[np.float64]
@@ -79,7 +79,7 @@ PAPER = {
 def measure(*, rounds: int = 60) -> tuple[dict[str, list[Row]], str]:
     """Measure our rows for face and plane, by scene; returns them and the name of what draws."""
     with Canvas(SMALL) as canvas:
-        renderer = str(canvas.surface.gl.info["GL_RENDERER"])
+        renderer = driver(canvas.surface.gl.info)
     scenes: tuple[Scene, ...] = (FaceScene(), PlaneScene())
     return {scene.name: _measured(scene, rounds) for scene in scenes}, renderer
 
