@@ -92,9 +92,9 @@ def _say(result: Result) -> None:
         (each.verdict.value, each.claim.value, each.claim.expected, each.ours, each.allowed)
         for each in result.findings
     ]
-    if rows:
-        for line in table(":<6|:<40|paper:>14|here:>22|allowed:<1", rows):
-            click.echo(line)
+    width = max((len(name) for _, name, *_ in rows), default=0)
+    for line in table(f":<6|:<{width}|paper:>14|here:>22|allowed:<1", rows) if rows else ():
+        click.echo(line)
 
 
 def _end(results: Iterable[Result]) -> None:
