@@ -5,6 +5,7 @@
 #   make setup    only make .venv with everything in it
 #   make check    ruff, mypy and the import rules alone
 #   make docs     build the documentation's site into out/site
+#   make reproduce  what the paper says and shows, made anew, on a page: out/reproduce/index.html
 #   make clean    remove .venv and what was rendered
 #
 # Slower ones, before a release:
@@ -35,7 +36,7 @@ define debian_packages
 	fi
 endef
 
-.PHONY: demo test test-all test-lowest test-processors setup check docs opengl screen clean
+.PHONY: demo test test-all test-lowest test-processors setup check reproduce docs opengl screen clean
 
 demo: setup opengl
 	@$(BIN)/risorius demo
@@ -87,6 +88,9 @@ check: setup
 	@$(BIN)/mypy
 	@$(BIN)/mypy docs/figures
 	@cd .venv/as_installed && ../bin/lint-imports --config ../../pyproject.toml
+
+reproduce: setup opengl
+	@$(BIN)/risorius reproduce all
 
 # A broken link stops it. The variable silences an advertisement of the theme's makers.
 docs: setup

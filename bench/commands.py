@@ -1,4 +1,4 @@
-"""The groups `risorius bench` and `risorius reproduce`: measurements, and the paper made anew.
+"""The group `risorius bench`: measurements.
 
 What is slow to import is imported inside.
 """
@@ -10,17 +10,12 @@ import json
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
-from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from risorius.app.cli.parameters import FiniteRange, Size
 from risorius.app.errors import UserError, in_one_line
-
-if TYPE_CHECKING:
-    from risorius.app.files import Image
 
 MESHES = ("face", "2k", "20k", "200k", "200k shuffled", "1M", "1M shuffled")
 PATH = click.Path(path_type=Path)
@@ -31,11 +26,6 @@ json_option = click.option("--json", "json_file", type=PATH, help="Figures for p
 @click.group()
 def bench() -> None:
     """Measure; each command prints its figures and how they were taken."""
-
-
-@click.group()
-def reproduce() -> None:
-    """Make the paper's table and figures anew."""
 
 
 @bench.command("refine")
@@ -136,6 +126,20 @@ def bench_motion(reference: Path) -> None:
         click.echo(motion.report(*motion.measure(reference)))
 
 
+@bench.command("reference")
+@click.argument("checkout", type=FOLDER)
+@click.option("-o", "--output", "folder", type=PATH, required=True, help="A folder.")
+@click.option(
+    "--landmarks", type=PATH, help="The 68 landmarks, where CHECKOUT's README does not name them."
+)
+def bench_reference(checkout: Path, folder: Path, landmarks: Path | None) -> None:
+    """Make the folder that --reference takes from CHECKOUT, a checkout of ICT-FaceKit."""
+    from . import reference
+
+    for line in reference.make(checkout, folder, landmarks):
+        click.echo(in_one_line(line))
+
+
 @bench.command("soak")
 @click.option(
     "--minutes", type=FiniteRange(0.01, 1e4), default=60.0, show_default=True, help="Simulated."
@@ -215,50 +219,6 @@ def bench_window(size: tuple[int, int], seconds: float) -> None:
     from . import window
 
     click.echo(window.report(seconds, size))
-
-
-@reproduce.command("table1")
-@click.option("--rounds", type=click.IntRange(3, 10_000), default=60, show_default=True)
-def reproduce_table1(rounds: int) -> None:
-    """Print Table 1 of the paper beside our own figures."""
-    from . import table1
-
-    click.echo(table1.report(*table1.measure(rounds=rounds)))
-
-
-def _figure(name: str, module: str, function: str, help_text: str) -> None:
-    """Add a command that draws a picture with a function of a module here: out/NAME.png."""
-
-    @reproduce.command(name, help=help_text)
-    @click.option("-o", "--output", type=PATH, default=Path(f"out/{name}.png"), show_default=True)
-    def draw(output: Path) -> None:
-        """Draw it and write it as PNG."""
-        from risorius.app.files import check_png, save_png
-
-        check_png(output)
-        draw: Callable[[], Image] = getattr(import_module(f".{module}", __package__), function)
-        save_png(output, draw())
-        click.echo(f"{in_one_line(output)}: written")
-
-
-_figure(
-    "figure9",
-    "paper_figures",
-    "figure_9",
-    "Draw the plane: static and refined, flat and Gouraud shaded.",
-)
-_figure(
-    "figure10",
-    "figure10",
-    "figure_10",
-    "Draw the region of the mouth: static and refined, beside a dense mesh.",
-)
-_figure(
-    "coherence",
-    "paper_figures",
-    "coherence",
-    "Draw a film strip of a growing wave, with and without memory of the splits.",
-)
 
 
 def _json(target: Path | None) -> Callable[[object], None]:

@@ -18,6 +18,7 @@ from risorius.app.looks import LOOKS, PAPERS_LOOK
 from risorius.app.scenes import PlaneScene
 
 from .canvas import Canvas, Drawing, image_table
+from .claims import Outcome
 from .turned_lines import Line, inner_lines, point_rows, turned
 
 FRAME_SECONDS = 1.0 / 30.0
@@ -56,18 +57,18 @@ def figure_9(size: tuple[int, int] = (380, 230)) -> Image:
     return image_table(rows)
 
 
-def coherence(size: tuple[int, int] = (250, 200)) -> Image:
+def coherence(size: tuple[int, int] = (250, 200)) -> Outcome:
     """Draw a growing wave; each column is a moment, with the number of turned lines below it.
 
     Above, triangles are looked up by their splits alone, and lines that were there before turn
     (red); below they remember the order of their splits, and no line does.
     """
     scene = PlaneScene()
-    rows = []
+    rows, values = [], {}
     with Canvas(size) as canvas:
-        for is_coherent, title in (
-            (False, "coherent=False: looked up by the splits of the moment"),
-            (True, "coherent=True: split in the order in which the edges were"),
+        for is_coherent, title, memory in (
+            (False, "coherent=False: looked up by the splits of the moment", "without"),
+            (True, "coherent=True: split in the order in which the edges were", "with"),
         ):
             refiner = refine.create(
                 "kahler",
@@ -76,14 +77,20 @@ def coherence(size: tuple[int, int] = (250, 200)) -> Image:
                 coherent=is_coherent,
                 **LOOKS[PAPERS_LOOK][scene.name].told("kahler"),
             )
-            rows.append((title, _moments(scene, refiner, canvas)))
-    return image_table(rows)
+            cells, values[f"lines turned {memory} memory"] = _moments(scene, refiner, canvas)
+            rows.append((title, cells))
+    return Outcome(values, {"coherence": image_table(rows)})
 
 
-def _moments(scene: PlaneScene, refiner: refine.Refiner, canvas: Canvas) -> list[tuple[str, Image]]:
-    """The columns of one row: what the plane looks like, and what turned since the last column."""
+def _moments(
+    scene: PlaneScene, refiner: refine.Refiner, canvas: Canvas
+) -> tuple[list[tuple[str, Image]], int]:
+    """The columns of one row: what the plane looks like, and what turned since the last column.
+
+    Also the number of lines that turned in all.
+    """
     camera = camera_for(scene, GROWING_VIEW)
-    cells = []
+    cells, count = [], 0
     before: set[Line] = set()
     gone: set[Line] = set()
     amplitudes = np.interp(
@@ -103,8 +110,9 @@ def _moments(scene: PlaneScene, refiner: refine.Refiner, canvas: Canvas) -> list
             drawing = Drawing(camera, GROWING, lines=lines, line_width=2.4)
             image = canvas.draw_image(refiner, scene.positions, drawing)
             cells.append((f"{len(mesh.triangles)} triangles, {len(gone)} turned", image))
+            count += len(gone)
             gone = set()
-    return cells
+    return cells, count
 
 
 def _lifted(mesh: refine.RefinedMesh, a: int, b: int) -> npt.NDArray[np.float64]:

@@ -1,10 +1,10 @@
-"""What all reports are made of: tables, verdicts, and the name of the processor."""
+"""What all reports are made of: tables, verdicts, names of processor and OpenGL."""
 
 from __future__ import annotations
 
 import platform
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 
@@ -32,6 +32,11 @@ def table(
 def verdict(is_met: bool, text: str) -> str:
     """A line that says whether a target is met."""
     return f"  {'met   ' if is_met else 'MISSED'}  {text}"
+
+
+def driver(information: Mapping[str, object]) -> str:
+    """What OpenGL calls itself and its version. information: moderngl's `Context.info`."""
+    return f"{information['GL_RENDERER']}, OpenGL {information['GL_VERSION']}"
 
 
 def processor() -> str:

@@ -1,7 +1,10 @@
-"""The one way that things are timed here: interleaved, forwards and backwards in turn.
+"""How things are timed here: interleaved, forwards and backwards in turn.
 
 On a shared machine times drift by a third within a run, so only calls of one run can be compared,
 and each round takes them all. Garbage collection is off meanwhile.
+
+A call is as fast as what ran before it left the caches. Of three or more calls each always follows
+the same neighbours, so where two are compared closely they are timed as a pair, by themselves.
 """
 
 from __future__ import annotations
@@ -12,6 +15,20 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
+
+WARMING = 2  # untimed calls of each in a pair
+
+
+def paired(
+    first: Callable[[], object], second: Callable[[], object], rounds: int
+) -> npt.NDArray[np.float64]:
+    """Return the seconds of two calls in each round, shape (rounds, 2).
+
+    The order is first, second, second, first and so on: each follows itself as often as the other.
+    """
+    for call in (first, second) * WARMING:
+        call()
+    return interleaved((first, second), rounds)
 
 
 def interleaved(

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 def command() -> click.Group:
     """Return the whole command."""
     from risorius.app.cli import main
-    from risorius.bench.commands import bench, reproduce
+    from risorius.bench.commands import bench
+    from risorius.bench.reproduce_commands import reproduce
 
     main.add_command(bench)
     main.add_command(reproduce)

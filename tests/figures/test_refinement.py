@@ -41,12 +41,15 @@ def test_no_corner_of_the_plane_is_a_speck() -> None:
 
 def test_film_strip() -> None:
     """Red lines are in the row without memory, and none in the row with it."""
-    drawn = paper_figures.coherence((120, 96)).astype(int)
+    outcome = paper_figures.coherence((120, 96))
+    drawn = outcome.pictures["coherence"].astype(int)
     assert drawn.shape[1] == len(paper_figures.AMPLITUDES) * 120
     is_red = (drawn[..., 0] > 150) & (drawn[..., 1:].max(axis=2) < 90)
     half = len(drawn) // 2
     assert is_red[:half].sum() > 200
     assert is_red[half:].sum() == 0
+    assert outcome.values["lines turned without memory"] > 100
+    assert outcome.values["lines turned with memory"] == 0
 
 
 def test_chart() -> None:

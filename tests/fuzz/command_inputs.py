@@ -20,6 +20,7 @@ ACCEPTED = (
     "bench --help",
     "reproduce figure9",
     "reproduce figure10 -o new/folder/x.png",
+    "reproduce all -o new/folder",
     "bench simulate --rounds 1",
     "bench meshes folder",
     "controls --scene plane",
@@ -74,6 +75,10 @@ REFUSED = {
     "bench meshes": "Missing argument 'FOLDER'",
     "bench motion": "Missing option '--reference'",
     "bench motion --reference notes.txt": "is a file",
+    "bench reference nowhere -o x": "does not exist",
+    "bench reference folder": "Missing option '-o'",
+    "bench reference folder -o x": "has no FaceXModel/generic_neutral_mesh.obj",
+    "bench reference folder -o notes.txt": "cannot be written",
     "bench motion --reference loop": "does not exist",
     "bench meshes notes.txt": "is a file",
     "bench meshes nowhere": "does not exist",
@@ -104,6 +109,7 @@ REFUSED = {
     "bench window --seconds 0.1": "is not in the range",
     "bench window --size 9x9": "each 16 to 8192",
     "reproduce table1 --rounds 2": "is not in the range",
+    "reproduce frame-rate --rounds 0": "is not in the range",
     # Sizes.
     "capture good.toml -o x.png --size 15x16": "each 16 to 8192",
     "capture good.toml -o x.png --size 16x8193": "each 16 to 8192",
@@ -250,6 +256,7 @@ REFUSED = {
     "reproduce figure9 -o x.jpg": "pictures are written as .png",
     "reproduce figure10 -o folder.png": "is a folder",
     "reproduce coherence -o notes.txt/x.png": "cannot be written",
+    "reproduce all -o notes.txt": "cannot be written",
     "bench refine --json folder": "is a folder",
     "bench gaps --json pipe": "is a device",
     "bench gaps --json notes.txt/x": "cannot be written",
@@ -294,6 +301,7 @@ GIVEN = {  # what else a command needs to come as far as the option
     "replay": "good.toml",
     "bench motion": "--reference folder",
     "bench meshes": "folder",
+    "bench reference": "folder -o made",
 }
 INSTEAD = {  # where one option excludes what is given
     ("capture", "--set"): "-o x.png --size 16x16 --samples 0 --fps 5 --time 0 --quiet",
