@@ -1,4 +1,4 @@
-"""What can be animated: the built-in head with its muscles, and the paper's plane (Fig. 9).
+"""What can be animated: the built-in head with its muscles, the paper's plane (Fig. 9), a cloth.
 
 A scene owns a triangle mesh whose topology never changes, moves its vertices as time passes, and
 knows nothing of refinement or drawing.
@@ -47,6 +47,11 @@ class Scene:
     def positions(self) -> npt.NDArray[np.float64]:
         """The vertices now [mm], shape (V, 3); read only for everybody else."""
         raise NotImplementedError
+
+    @property
+    def extent(self) -> npt.NDArray[np.float64]:
+        """Points that a camera has to see, if it is to see the whole scene [mm], shape (n, 3)."""
+        return self.rest_positions
 
     @property
     def values(self) -> Mapping[str, float]:
@@ -193,6 +198,66 @@ class PlaneScene(Scene):
         self._positions[:] = self.rest_positions
 
 
+class ClothScene(Scene):
+    """A sheet of 1152 triangles that falls over a ball: folds wherever it hangs.
+
+    `drop` lets go of it, or takes it up again; `spin` turns the ball, which draws it along.
+    """
+
+    name = "cloth"
+    FASTEST = 2.0 * np.pi  # rad/s of the ball; faster, the sheet would swing out of the picture
+
+    groups = MappingProxyType({"Cloth": ("drop",), "Ball": ("spin",)})
+    limits = MappingProxyType({"drop": (0.0, 1.0), "spin": (-1.0, 1.0)})
+    actions = MappingProxyType(
+        {"drop": "lets the cloth fall", "spin": "turns the ball under the cloth"}
+    )
+    refiner_options = MappingProxyType({})
+
+    def __init__(self) -> None:
+        cloth = assets.load("cloth")
+        self.parts = (cloth.ball,)
+        self.simulation = sim.Cloth(cloth, np.zeros(3), cloth.radius)
+        self.faces, self.rest_positions = cloth.faces, cloth.vertices
+        self._values = dict.fromkeys(self.limits, 0.0)
+        # A corner hangs down from where it leaves the ball, half-way up.
+        from_middle = float(np.linalg.norm(cloth.vertices[0, [0, 2]]))
+        lowest = 0.5 * np.pi * cloth.radius - from_middle
+        self._extent = np.vstack([cloth.vertices, [0.0, lowest, 0.0]])
+        self.focus = np.array([0.0, 0.5 * (cloth.radius + lowest), 0.0])
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        return self.simulation.positions
+
+    @property
+    def extent(self) -> npt.NDArray[np.float64]:
+        """The sheet held up, and how low its corners hang."""
+        return self._extent
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        return self._values
+
+    def pose(self, channels: Mapping[str, float]) -> None:
+        self._values.update({**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, channels)})
+
+    def step(self, seconds: float) -> None:
+        self.simulation.held = 1.0 - self._values["drop"]
+        self.simulation.turning = self.FASTEST * self._values["spin"]
+        self.simulation.step(seconds)
+
+    def reset(self) -> None:
+        self._values.update(dict.fromkeys(self.limits, 0.0))
+        self.simulation.reset()
+
+    def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
+        cosine, sine = np.cos(self.simulation.turned), np.sin(self.simulation.turned)
+        turn = np.eye(4)
+        turn[0, [0, 2]], turn[2, [0, 2]] = (cosine, sine), (-sine, cosine)
+        return {"ball": turn}
+
+
 def clamped(
     limits: Mapping[str, tuple[float, float]], channels: Mapping[str, float]
 ) -> dict[str, float]:
@@ -205,7 +270,11 @@ def clamped(
     }
 
 
-SCENES: dict[str, Callable[[], Scene]] = {"face": FaceScene, "plane": PlaneScene}
+SCENES: dict[str, Callable[[], Scene]] = {
+    "face": FaceScene,
+    "plane": PlaneScene,
+    "cloth": ClothScene,
+}
 
 
 def build_scene(name: str, head: FittedHead | None = None) -> Scene:

@@ -65,9 +65,9 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     from risorius import refine
 
     from ..ambient import openness
-    from ..scenes import FaceScene, PlaneScene
+    from ..scenes import ClothScene, FaceScene, PlaneScene
 
-    face, plane = FaceScene(), PlaneScene()
+    face, plane, cloth = FaceScene(), PlaneScene(), ClothScene()
 
     def simulate() -> None:
         """Move every control a little, and drag the skin."""
@@ -96,6 +96,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
         yield f"refinement {text}".rstrip(), partial(_refine, face, "kahler", options)
     yield "uniform subdivision", partial(_refine, face, "loop", {})
     yield "the plane", partial(_refine, plane, "kahler", {})
+    yield "the cloth", partial(cloth.step, 1 / 60)
     tension = refine.Tension(face.faces, face.rest_positions)
     yield "strain", partial(tension.measure, face.rest_positions)
     assert face.wrinkles is not None

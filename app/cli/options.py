@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 Command = Callable[..., Any]
 PATH = click.Path(path_type=Path)
-SCENE_NAMES = click.Choice(["face", "plane"])
+SCENE_NAMES = click.Choice(["face", "plane", "cloth"])
 
 
 def packed(name: str, settings: type[Any], *options: Command) -> Callable[[Command], Command]:
