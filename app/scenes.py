@@ -170,11 +170,7 @@ class PlaneScene(Scene):
         self.faces, self.rest_positions = plane.faces, plane.vertices
         self.focus = plane.vertices.mean(axis=0)
         self._values = dict.fromkeys(self.limits, 0.0)
-        extent = np.ptp(plane.vertices, axis=0)
-        self._normal = int(np.argmin(extent))
-        self._length = float(extent.max())
-        along = plane.vertices.sum(axis=1) / np.sqrt(2.0)
-        self._turns = self.WAVES * along / self._length
+        self._length = float(np.ptp(plane.vertices, axis=0).max())
         self._positions = plane.vertices.copy()
 
     @property
@@ -189,9 +185,20 @@ class PlaneScene(Scene):
         self._values.update({**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, channels)})
 
     def step(self, seconds: float) -> None:
-        wave = np.sin(2.0 * np.pi * (self._turns - self._values["phase"]))
+        self._positions[:] = self.waved(self.rest_positions)[0]
+
+    def waved(
+        self, points: npt.NDArray[np.float64]
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Where points of the flat plane z = 0 lie now, and the wave's normals there, (n, 3)."""
         height = self._values["amplitude"] * self.HEIGHT * self._length
-        self._positions[:, self._normal] = self.rest_positions[:, self._normal] + height * wave
+        frequency = 2.0 * np.pi * self.WAVES / self._length
+        along = points.sum(axis=1) / np.sqrt(2.0)
+        angle = frequency * along - 2.0 * np.pi * self._values["phase"]
+        moved, normals = points.copy(), np.ones_like(points)
+        moved[:, 2] += height * np.sin(angle)
+        normals[:, :2] = -np.sqrt(0.5) * height * frequency * np.cos(angle)[:, None]
+        return moved, normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
     def reset(self) -> None:
         self._values.update(dict.fromkeys(self.limits, 0.0))

@@ -22,7 +22,7 @@ SHINE = 0.35
 def make_cloth() -> Cloth:
     """Build the sheet, facing +y, above a ball around the origin."""
     flat, faces = make_grid(CELLS, CELLS, CELL)
-    vertices = flat[:, [0, 2, 1]] * [1.0, 1.0, -1.0] + [0.0, RADIUS + ABOVE, 0.0]
+    vertices = flat[:, [1, 2, 0]] + [0.0, RADIUS + ABOVE, 0.0]
     vertices.flags.writeable = False
     return Cloth(vertices, faces, make_ball(), RADIUS)
 

@@ -10,6 +10,7 @@ import json
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -213,8 +214,8 @@ def reproduce_table1(rounds: int) -> None:
     click.echo(table1.report(*table1.measure(rounds=rounds)))
 
 
-def _figure(name: str, function: str, help_text: str) -> None:
-    """Add a command that draws a picture: out/NAME.png unless told."""
+def _figure(name: str, where: str, help_text: str) -> None:
+    """Add a command that draws a picture, `where` = module.function: out/NAME.png unless told."""
 
     @reproduce.command(name, help=help_text)
     @click.option("-o", "--output", type=PATH, default=Path(f"out/{name}.png"), show_default=True)
@@ -222,19 +223,19 @@ def _figure(name: str, function: str, help_text: str) -> None:
         """Draw it and write it as PNG."""
         from risorius.app.files import check_png, save_png
 
-        from . import paper_figures
-
         check_png(output)
-        draw: Callable[[], Image] = getattr(paper_figures, function)
+        module, function = where.split(".")
+        draw: Callable[[], Image] = getattr(import_module(f"{__package__}.{module}"), function)
         save_png(output, draw())
         click.echo(f"{in_one_line(output)}: written")
 
 
-_figure("figure9", "figure_9", "Draw the plane: static and refined, flat and Gouraud shaded.")
-_figure("figure10", "figure_10", "Draw the region of the mouth: static and refined.")
+_figure("figure8", "figure_8.draw", "Draw folds of cloth and skin, and the triangles along them.")
+_figure("figure9", "figure_9.draw", "Draw the plane: static and refined, flat and Gouraud shaded.")
+_figure("figure10", "paper_figures.figure_10", "Draw the region of the mouth: static and refined.")
 _figure(
     "coherence",
-    "coherence",
+    "paper_figures.coherence",
     "Draw a film strip of a growing wave, with and without memory of the splits.",
 )
 

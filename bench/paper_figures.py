@@ -1,6 +1,6 @@
-"""The paper's figures, made again, and one of its section 4.4: `risorius reproduce` draws them.
+"""The paper's Fig. 10 (the region of the mouth), and a film strip of time-coherent splitting.
 
-Fig. 9 (the plane), Fig. 10 (the region of the mouth), and a film strip of time-coherent splitting.
+`risorius reproduce` draws them.
 Kähler, Haber, Seidel 2003, sections 4.4 and 5.
 """
 
@@ -26,8 +26,6 @@ FLAT = replace(CLAY, shading=render.Shading.FLAT)
 GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
 SPLIT_EDGES = replace(FLAT, wireframe=True, colour_by=render.ColourBy.SPLITS)
 
-WAVE_PHASES = (0.0, 0.33, 0.66)  # moments of the wave in Fig. 9
-WAVE_VIEW = "28,-30,0.68"  # from here no corner shows its underside, which no light reaches
 MOUTH_POSES = ("surprise", "joy", "disgust")  # in Fig. 10
 MOUTH_ZOOM = 5.4
 SETTLED = 1.5  # [s] after which the face stands still
@@ -38,26 +36,6 @@ GROWING_VIEW = "20,-25,2.6"
 GROWING_PHASE = 0.18
 GROWING = replace(FLAT, wireframe=True, wire_opacity=0.6)
 ABOVE = 0.4  # [mm] that red lines float over the surface
-
-
-def figure_9(size: tuple[int, int] = (380, 230)) -> Image:
-    """The plane under a strong sine, flat and Gouraud shaded, as it is and refined (Fig. 9)."""
-    scene = PlaneScene()
-    camera = camera_for(scene, WAVE_VIEW)
-    rows = []
-    with Canvas(size) as canvas:
-        for style, shading in ((FLAT, "flat"), (GOURAUD, "Gouraud")):
-            for name, title in (("none", "static"), ("kahler", "refined")):
-                options = scene.refiner_options.get(name, {})
-                refiner = refine.create(name, scene.faces, scene.rest_positions, **options)
-                cells = []
-                for phase in WAVE_PHASES:
-                    scene.pose({"amplitude": 1.0, "phase": phase})
-                    scene.step(FRAME_SECONDS)
-                    image = canvas.draw_image(refiner, scene.positions, Drawing(camera, style))
-                    cells.append((f"{canvas.stream_for(refiner).triangle_count} triangles", image))
-                rows.append((f"{title}, {shading} shading", cells))
-    return image_table(rows)
 
 
 def figure_10(size: tuple[int, int] = (360, 270), *, poses: Sequence[str] = MOUTH_POSES) -> Image:

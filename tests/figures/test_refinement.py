@@ -27,20 +27,11 @@ def test_figures_are_drawn(tmp_path: Path) -> None:
 
 
 def test_paper_figures() -> None:
-    """Rows and columns of Fig. 9 and Fig. 10, refined rows with more triangles than static ones."""
-    nine = paper_figures.figure_9((96, 64))
-    assert nine.shape[1] == 3 * 96
-    assert nine.std() > 10.0
+    """Rows and columns of Fig. 10, and refinement shows."""
     ten = paper_figures.figure_10((80, 64), poses=("joy",))
     assert ten.shape[1] == 4 * 80
     left, right = ten[30:90, :80].astype(int), ten[30:90, 80:160].astype(int)
     assert np.abs(left - right).max() > 20  # refinement shows
-
-
-def test_no_corner_of_the_plane_is_a_speck() -> None:
-    """In the flat static row of Fig. 9 nothing is as dark as an underside, which has no light."""
-    static = paper_figures.figure_9((380, 230))[33:255]
-    assert 90 < static.min() < 200
 
 
 def test_film_strip() -> None:

@@ -18,6 +18,7 @@ ACCEPTED = (
     "--version",
     "capture --help",
     "bench --help",
+    "reproduce figure8",
     "reproduce figure9",
     "reproduce figure10 -o new/folder/x.png",
     "bench simulate --rounds 1",
