@@ -22,9 +22,9 @@ import numpy.typing as npt
 from ..mesh.arrays import Flags, Floats, Indices, Wide
 from .plugin import Origins, RefinedMesh, Refiner
 
-PARTS = 12
-"""Points of the refined mesh lie at quarters of the edges of the input (section 4.1), or in the
-middle of a triangle: all are whole twelfths."""
+PARTS = 2**12
+"""Points of the refined mesh lie at quarters of the edges of the input (section 4.1), which are
+whole parts, or somewhere inside a triangle, and are then rounded to them."""
 
 
 class BrokenMeshError(ValueError):
@@ -112,10 +112,12 @@ def _number_places(origins: Origins) -> Wide:
 def _in_parts(weights: Floats) -> Wide:
     parts = np.rint(weights * PARTS).astype(np.int64)
     exact = (abs(parts - weights * PARTS) < 1e-5) & (parts >= 0)
+    is_inside = (parts > 0).all(axis=1) & (abs(weights.sum(axis=1) - 1.0) < 1e-5)
     _require_all(
-        exact.all(axis=1) & (parts.sum(axis=1) == PARTS),
-        "origins have weights in twelfths that add up to one",
+        is_inside | (exact.all(axis=1) & (parts.sum(axis=1) == PARTS)),
+        "origins have weights that add up to one, in quarters on edges",
     )
+    parts[is_inside, 0] += PARTS - parts[is_inside].sum(axis=1)
     return parts
 
 

@@ -61,7 +61,7 @@ class Origins(NamedTuple):
     vertices: npt.NDArray[np.int32]
     """Input vertices, shape (N, 3)."""
     weights: npt.NDArray[np.float32]
-    """Their barycentric weights, shape (N, 3): quarters, or thirds in the middle of a triangle."""
+    """Their barycentric weights, shape (N, 3): quarters on edges; any inside of a triangle."""
 
 
 class Stream(Protocol):
