@@ -208,23 +208,22 @@ class PlaneScene(Scene):
 class ClothScene(Scene):
     """A sheet of 1152 triangles that falls over a ball: folds wherever it hangs.
 
-    `drop` lets go of it, or takes it up again; `spin` turns the ball, which draws it along.
+    `drop` lets go of it, or takes it up again; `turn` is how far the ball has been turned, which
+    draws the sheet along.
     """
 
     name = "cloth"
-    FASTEST = 2.0 * np.pi  # rad/s of the ball; faster, the sheet would swing out of the picture
-
-    groups = MappingProxyType({"Cloth": ("drop",), "Ball": ("spin",)})
-    limits = MappingProxyType({"drop": (0.0, 1.0), "spin": (-1.0, 1.0)})
+    groups = MappingProxyType({"Cloth": ("drop",), "Ball": ("turn",)})
+    limits = MappingProxyType({"drop": (0.0, 1.0), "turn": (-2.0, 2.0)})
     actions = MappingProxyType(
-        {"drop": "lets the cloth fall", "spin": "turns the ball under the cloth"}
+        {"drop": "lets the cloth fall", "turn": "turns the ball under the cloth, 1 once around"}
     )
     refiner_options = MappingProxyType({})
 
     def __init__(self) -> None:
         cloth = assets.load("cloth")
         self.parts = (cloth.ball,)
-        self.simulation = sim.Cloth(cloth, np.zeros(3), cloth.radius)
+        self.sheet = sim.Cloth(cloth, np.zeros(3), cloth.radius)
         self.faces, self.rest_positions = cloth.faces, cloth.vertices
         self._values = dict.fromkeys(self.limits, 0.0)
         # A corner hangs down from where it leaves the ball, half-way up.
@@ -235,7 +234,7 @@ class ClothScene(Scene):
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
-        return self.simulation.positions
+        return self.sheet.positions
 
     @property
     def extent(self) -> npt.NDArray[np.float64]:
@@ -250,16 +249,16 @@ class ClothScene(Scene):
         self._values.update({**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, channels)})
 
     def step(self, seconds: float) -> None:
-        self.simulation.held = 1.0 - self._values["drop"]
-        self.simulation.turning = self.FASTEST * self._values["spin"]
-        self.simulation.step(seconds)
+        self.sheet.held = 1.0 - self._values["drop"]
+        self.sheet.turning = (2.0 * np.pi * self._values["turn"] - self.sheet.turned) / seconds
+        self.sheet.step(seconds)
 
     def reset(self) -> None:
         self._values.update(dict.fromkeys(self.limits, 0.0))
-        self.simulation.reset()
+        self.sheet.reset()
 
     def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
-        cosine, sine = np.cos(self.simulation.turned), np.sin(self.simulation.turned)
+        cosine, sine = np.cos(self.sheet.turned), np.sin(self.sheet.turned)
         turn = np.eye(4)
         turn[0, [0, 2]], turn[2, [0, 2]] = (cosine, sine), (-sine, cosine)
         return {"ball": turn}
