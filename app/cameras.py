@@ -19,7 +19,7 @@ def whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
     """A camera like that of `camera_for`, or further away, so that it sees the whole scene."""
     camera = camera_for(scene, view)
     wanted = camera.distance
-    camera.fit(scene.rest_positions, MARGIN)
+    camera.fit(scene.extent, MARGIN)
     camera.distance = max(camera.distance, wanted)
     return camera
 
@@ -32,9 +32,9 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
     Raises UserError with the views that there are.
     """
     view = view or DEFAULT_VIEW
-    vertices = scene.rest_positions
+    extent = scene.extent
     if view in render.VIEWS:
-        return render.OrbitCamera.framing(vertices, view=view)
+        return render.OrbitCamera.framing(extent, view=view)
     try:
         yaw, pitch, zoom = [*map(float, view.split(",")), 1.0][:3]
         if view.count(",") > 2 or not np.isfinite([yaw, pitch, zoom]).all() or zoom <= 0.0:
@@ -44,7 +44,7 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
             f"camera '{view}': allowed are {', '.join(render.VIEWS)}, "
             "or yaw,pitch[,zoom] in degrees, zoom above 0"
         ) from None
-    camera = render.OrbitCamera.framing(vertices, view="front")
+    camera = render.OrbitCamera.framing(extent, view="front")
     camera.orbit(yaw, pitch)
     camera.target = scene.focus.copy()
     camera.zoom(zoom)

@@ -29,7 +29,8 @@ class Look:
 
 
 # Deformation alone would leave the outlines of crown, ears and neck polygons.
-SMOOTH = Look(options={"kahler": {"criterion": "normal+rest"}})
+SMOOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+border"}})
+SMOOTH_CLOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge"}})
 PAPER = Look()
 # A flat mesh needs no slack for bends that it was made with. Found by search, so that the wave
 # makes about as many triangles at most as in Table 1 (1328).
@@ -37,8 +38,8 @@ PLANE = Look(options={"kahler": {"threshold_once": 0.001, "threshold_twice": 0.0
 
 LOOKS: Mapping[str, Mapping[str, Look]] = MappingProxyType(  # by name, then by scene
     {
-        FIRST_LOOK: {"face": SMOOTH, "plane": PLANE},
-        PAPERS_LOOK: {"face": PAPER, "plane": PLANE},
+        FIRST_LOOK: {"face": SMOOTH, "plane": PLANE, "cloth": SMOOTH_CLOTH},
+        PAPERS_LOOK: {"face": PAPER, "plane": PLANE, "cloth": PAPER},
     }
 )
 

@@ -1,4 +1,4 @@
-"""What can be animated: the built-in head with its muscles, and the paper's plane (Fig. 9).
+"""What can be animated: the built-in head with its muscles, the paper's plane (Fig. 9), a cloth.
 
 A scene owns a triangle mesh whose topology never changes, moves its vertices as time passes, and
 knows nothing of refinement or drawing.
@@ -46,6 +46,11 @@ class Scene:
     def positions(self) -> npt.NDArray[np.float64]:
         """The vertices now [mm], shape (V, 3); read only for everybody else."""
         raise NotImplementedError
+
+    @property
+    def extent(self) -> npt.NDArray[np.float64]:
+        """Points that a camera has to see, if it is to see the whole scene [mm], shape (n, 3)."""
+        return self.rest_positions
 
     @property
     def values(self) -> Mapping[str, float]:
@@ -157,11 +162,7 @@ class PlaneScene(Scene):
         self.faces, self.rest_positions = plane.faces, plane.vertices
         self.focus = plane.vertices.mean(axis=0)
         self._values = dict.fromkeys(self.limits, 0.0)
-        extent = np.ptp(plane.vertices, axis=0)
-        self._normal = int(np.argmin(extent))
-        self._length = float(extent.max())
-        along = plane.vertices.sum(axis=1) / np.sqrt(2.0)
-        self._turns = self.WAVES * along / self._length
+        self._length = float(np.ptp(plane.vertices, axis=0).max())
         self._positions = plane.vertices.copy()
 
     @property
@@ -176,13 +177,82 @@ class PlaneScene(Scene):
         self._values.update({**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, channels)})
 
     def step(self, seconds: float) -> None:
-        wave = np.sin(2.0 * np.pi * (self._turns - self._values["phase"]))
+        self._positions[:] = self.waved(self.rest_positions)[0]
+
+    def waved(
+        self, points: npt.NDArray[np.float64]
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Where points of the flat plane z = 0 lie now, and the wave's normals there, (n, 3)."""
         height = self._values["amplitude"] * self.HEIGHT * self._length
-        self._positions[:, self._normal] = self.rest_positions[:, self._normal] + height * wave
+        frequency = 2.0 * np.pi * self.WAVES / self._length
+        along = points.sum(axis=1) / np.sqrt(2.0)
+        angle = frequency * along - 2.0 * np.pi * self._values["phase"]
+        moved, normals = points.copy(), np.ones_like(points)
+        moved[:, 2] += height * np.sin(angle)
+        normals[:, :2] = -np.sqrt(0.5) * height * frequency * np.cos(angle)[:, None]
+        return moved, normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
     def reset(self) -> None:
         self._values.update(dict.fromkeys(self.limits, 0.0))
         self._positions[:] = self.rest_positions
+
+
+class ClothScene(Scene):
+    """A sheet of 1152 triangles that falls over a ball: folds wherever it hangs.
+
+    `drop` lets go of it, or takes it up again; `turn` is how far the ball has been turned, which
+    draws the sheet along.
+    """
+
+    name = "cloth"
+    groups = MappingProxyType({"Cloth": ("drop",), "Ball": ("turn",)})
+    limits = MappingProxyType({"drop": (0.0, 1.0), "turn": (-2.0, 2.0)})
+    actions = MappingProxyType(
+        {"drop": "lets the cloth fall", "turn": "turns the ball under the cloth, 1 once around"}
+    )
+
+    def __init__(self) -> None:
+        cloth = assets.load("cloth")
+        self.parts = (cloth.ball,)
+        self.sheet = sim.Cloth(cloth, np.zeros(3), cloth.radius)
+        self.faces, self.rest_positions = cloth.faces, cloth.vertices
+        self._values = dict.fromkeys(self.limits, 0.0)
+        # A corner hangs down from where it leaves the ball, half-way up.
+        from_middle = float(np.linalg.norm(cloth.vertices[0, [0, 2]]))
+        lowest = 0.5 * np.pi * cloth.radius - from_middle
+        self._extent = np.vstack([cloth.vertices, [0.0, lowest, 0.0]])
+        self.focus = np.array([0.0, 0.5 * (cloth.radius + lowest), 0.0])
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        return self.sheet.positions
+
+    @property
+    def extent(self) -> npt.NDArray[np.float64]:
+        """The sheet held up, and how low its corners hang."""
+        return self._extent
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        return self._values
+
+    def pose(self, channels: Mapping[str, float]) -> None:
+        self._values.update({**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, channels)})
+
+    def step(self, seconds: float) -> None:
+        self.sheet.held = 1.0 - self._values["drop"]
+        self.sheet.turning = (2.0 * np.pi * self._values["turn"] - self.sheet.turned) / seconds
+        self.sheet.step(seconds)
+
+    def reset(self) -> None:
+        self._values.update(dict.fromkeys(self.limits, 0.0))
+        self.sheet.reset()
+
+    def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
+        cosine, sine = np.cos(self.sheet.turned), np.sin(self.sheet.turned)
+        turn = np.eye(4)
+        turn[0, [0, 2]], turn[2, [0, 2]] = (cosine, sine), (-sine, cosine)
+        return {"ball": turn}
 
 
 def clamped(
@@ -197,7 +267,11 @@ def clamped(
     }
 
 
-SCENES: dict[str, Callable[[], Scene]] = {"face": FaceScene, "plane": PlaneScene}
+SCENES: dict[str, Callable[[], Scene]] = {
+    "face": FaceScene,
+    "plane": PlaneScene,
+    "cloth": ClothScene,
+}
 
 
 def build_scene(name: str, head: FittedHead | None = None) -> Scene:

@@ -1,7 +1,8 @@
-"""Built-in things to simulate and draw: the head and the paper's plane.
+"""Built-in things to simulate and draw: the head, the paper's plane, a cloth over a ball.
 
     head = assets.load("head")
     plane = assets.load("plane")
+    cloth = assets.load("cloth")
     mesh = assets.read_mesh("cloth.ply")  # or OBJ, STL, OFF, GLB
     image = assets.paint(tone="dark")  # another skin for the head than `head.albedo`
     head = fitting.fit_head("anna.obj", "anna.json")  # from risorius.assets import fitting
@@ -12,11 +13,12 @@ The programs that generate them are in this package, too: `python -m risorius.as
 from .errors import AssetError
 from .loading import available, load
 from .meshes import Mesh, read_mesh
-from .model import Eye, Head, Layer, Part, Plane, Tone, Wrinkles
+from .model import Cloth, Eye, Head, Layer, Part, Plane, Tone, Wrinkles
 from .painting import paint
 
 __all__ = [
     "AssetError",
+    "Cloth",
     "Eye",
     "Head",
     "Layer",

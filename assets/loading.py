@@ -1,4 +1,4 @@
-"""Load an asset by name: the built-in head or the paper's plane.
+"""Load an asset by name: the built-in head, the paper's plane, or a cloth.
 
 The head's numbers lie in `data/head.npz`, written by `python -m risorius.assets.build`; its rig and
 the layers of controls above the muscles are text files, written by hand (`rigs/face.toml`,
@@ -13,9 +13,10 @@ from typing import Any, Literal, overload
 import numpy as np
 import numpy.typing as npt
 
+from .cloth import make_cloth
 from .errors import AssetError
 from .files import read_arrays, read_toml
-from .model import Eye, Head, Layer, Part, Plane
+from .model import Cloth, Eye, Head, Layer, Part, Plane
 from .plane import make_plane
 
 FOLDER = Path(__file__).parent
@@ -32,7 +33,7 @@ LAYER_FILES = MappingProxyType(  # title -> file, from the lowest layer up
 
 def available() -> tuple[str, ...]:
     """Return the names that `load` knows."""
-    return ("head", "plane")
+    return ("head", "plane", "cloth")
 
 
 @overload
@@ -40,9 +41,11 @@ def load(name: Literal["head"]) -> Head: ...
 @overload
 def load(name: Literal["plane"]) -> Plane: ...
 @overload
-def load(name: str) -> Head | Plane: ...
-def load(name: str) -> Head | Plane:
-    """Load the asset called `name` ("head" or "plane"); its arrays are read-only.
+def load(name: Literal["cloth"]) -> Cloth: ...
+@overload
+def load(name: str) -> Head | Plane | Cloth: ...
+def load(name: str) -> Head | Plane | Cloth:
+    """Load the asset called `name` ("head", "plane" or "cloth"); its arrays are read-only.
 
     Raises AssetError for an unknown name and for a missing or broken file.
     """
@@ -50,6 +53,8 @@ def load(name: str) -> Head | Plane:
         return load_head()
     if name == "plane":
         return make_plane()
+    if name == "cloth":
+        return make_cloth()
     raise AssetError(f"no asset is called {name!r}; available: {', '.join(available())}")
 
 

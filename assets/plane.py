@@ -6,7 +6,7 @@ only way to write the count as a grid of halved cells that is about as wide as t
 
 import numpy as np
 
-from .model import Plane
+from .model import FloatArray, IndexArray, Plane
 
 COLUMNS = 11  # cells along x; chosen: 2 * 7 * 11 = 154
 ROWS = 7  # cells along y
@@ -15,15 +15,22 @@ CELL = 10.0  # [mm]; chosen, so that the plane is as large as a hand
 
 def make_plane() -> Plane:
     """Build the rectangle in the plane z = 0, centred on the origin, facing +z."""
-    x = CELL * (np.arange(COLUMNS + 1) - COLUMNS / 2)
-    y = CELL * (np.arange(ROWS + 1) - ROWS / 2)
+    return Plane(*make_grid(COLUMNS, ROWS, CELL))
+
+
+def make_grid(columns: int, rows: int, cell: float) -> tuple[FloatArray, IndexArray]:
+    """Vertices and faces of square cells around the origin of z = 0, facing +z; read-only.
+
+    Every cell is halved along the same diagonal, lower left to upper right.
+    """
+    x = cell * (np.arange(columns + 1) - columns / 2)
+    y = cell * (np.arange(rows + 1) - rows / 2)
     grid_x, grid_y = np.meshgrid(x, y)
     vertices = np.stack([grid_x, grid_y, np.zeros_like(grid_x)], axis=-1).reshape(-1, 3)
 
-    # Every cell is halved along the same diagonal, lower left to upper right.
-    row, column = np.meshgrid(np.arange(ROWS), np.arange(COLUMNS), indexing="ij")
-    lower_left = (row * (COLUMNS + 1) + column).ravel()
-    lower_right, upper_left = lower_left + 1, lower_left + COLUMNS + 1
+    row, column = np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij")
+    lower_left = (row * (columns + 1) + column).ravel()
+    lower_right, upper_left = lower_left + 1, lower_left + columns + 1
     upper_right = upper_left + 1
     lower = np.stack([lower_left, lower_right, upper_right], axis=-1)
     upper = np.stack([lower_left, upper_right, upper_left], axis=-1)
@@ -31,4 +38,4 @@ def make_plane() -> Plane:
 
     vertices.flags.writeable = False
     faces.flags.writeable = False
-    return Plane(vertices=vertices, faces=faces)
+    return vertices, faces

@@ -18,6 +18,7 @@ from risorius.app.pipeline import splits_of_source
 
 Lines = Sequence[npt.NDArray[np.float64]]
 Transforms = Mapping[str, npt.NDArray[np.float64]]
+POSITION_AND_NORMAL = 6  # columns of a vertex without texture coordinates
 
 
 @dataclass(frozen=True)
@@ -63,10 +64,20 @@ class Canvas:
         stream = self.stream_for(refiner)
         mesh = refiner.refine(positions, out=stream)
         stream.upload(len(mesh.positions), len(mesh.triangles))
-        style = drawing.style
         values = None
-        if style.colour_by is render.ColourBy.SPLITS:
+        if drawing.style.colour_by is render.ColourBy.SPLITS:
             values = splits_of_source(refiner, mesh)
+        self._draw(stream, values, drawing)
+        return stream.triangle_count
+
+    def _draw(
+        self,
+        stream: render.Stream,
+        values: npt.NDArray[np.uint8] | None,
+        drawing: Drawing,
+    ) -> None:
+        """Draw what was uploaded; values: one for each triangle, where they colour it."""
+        style = drawing.style
         self.surface.begin()
         self.renderer.draw_background(style)
         self.renderer.draw_mesh(
@@ -83,13 +94,27 @@ class Canvas:
                 hidden_opacity=0.0,
             )
         self.surface.end()
-        return stream.triangle_count
 
     def draw_image(
         self, refiner: refine.Refiner, positions: npt.NDArray[np.floating], drawing: Drawing
     ) -> Image:
         """Draw and read back."""
         self.draw(refiner, positions, drawing)
+        return self.surface.read()
+
+    def draw_surface(
+        self,
+        positions: npt.NDArray[np.floating],
+        normals: npt.NDArray[np.floating],
+        faces: npt.NDArray[np.integer],
+        drawing: Drawing,
+    ) -> Image:
+        """Draw a surface whose normals are known, and that no refiner made; read back."""
+        stream = self.renderer.lend_stream(len(positions), len(faces), POSITION_AND_NORMAL)
+        stream.vertices[:] = np.hstack([positions, normals])
+        stream.triangles[:] = faces
+        stream.upload(len(positions), len(faces))
+        self._draw(stream, None, drawing)
         return self.surface.read()
 
 

@@ -180,7 +180,7 @@ EXPERIMENTS = (
         "Time-coherent splitting",
         "section 4.4",
         "Draw a film strip of a growing wave, with and without memory of the splits.",
-        "paper_figures.coherence",
+        "figure_coherence.coherence",
         (
             Claim(
                 "lines turned without memory",
@@ -193,19 +193,98 @@ EXPERIMENTS = (
         has_picture=True,
     ),
     Experiment(
+        "figure8",
+        "Long, thin triangles along folds",
+        "section 5, Figure 8",
+        "Draw folds of cloth and skin, and the triangles along them.",
+        "figure_claims.figure_8_outcome",
+        (
+            Claim(
+                "cloth: degrees off the fold, refined",
+                "subtriangles are aligned to the direction of minimum curvature; 45 is chance",
+                "aligned",
+                high=32.0,
+                style=".0f",
+            ),
+            Claim(
+                "face: degrees off the fold, refined", "the same", "aligned", high=32.0, style=".0f"
+            ),
+            Claim(
+                "cloth: degrees nearer to the fold than before",
+                "it is refinement that does it",
+                "",
+                low=5.0,
+                style=".0f",
+            ),
+            Claim(
+                "face: degrees nearer to the fold than before", "the same", "", low=5.0, style=".0f"
+            ),
+            Claim(
+                "cloth: smallest angle, refined over static",
+                "many are long and thin",
+                "",
+                high=0.9,
+                style=".2f",
+            ),
+            Claim(
+                "face: smallest angle, refined over static", "the same", "", high=0.9, style=".2f"
+            ),
+        ),
+        has_picture=True,
+    ),
+    Experiment(
         "figure9",
         "A plane under a strong sine",
         "section 5, Figure 9",
         "Draw the plane: static and refined, flat and Gouraud shaded.",
-        "paper_figures.figure_9",
+        "figure_claims.figure_9_outcome",
+        (
+            Claim(
+                "flat: shading error, refined over static",
+                "ridges are smoothed out in the curved areas: nearer to the sine itself",
+                "less",
+                high=0.9,
+                style=".2f",
+            ),
+            Claim(
+                "Gouraud: shading error, refined over static",
+                "less shading artifacts in the Gouraud shaded model",
+                "less",
+                high=0.99,
+                style=".2f",
+            ),
+        ),
         has_picture=True,
     ),
     Experiment(
         "figure10",
         "The region of the mouth",
         "section 5, Figure 10",
-        "Draw the region of the mouth: static and refined.",
-        "paper_figures.figure_10",
+        "Draw the region of the mouth: static and refined, beside a dense mesh.",
+        "figure_claims.figure_10_outcome",
+        (
+            Claim(
+                "pixels that change visibly [%]",
+                "the rendered mesh is visibly smoothed (by cubic)",
+                "visible",
+                low=1.0,
+                style=".1f",
+            ),
+            Claim(
+                "difference from the dense mesh, refined over static",
+                "less shading artifacts (by cubic)",
+                "less",
+                high=0.95,
+                style=".2f",
+            ),
+            Claim(
+                "wrong pixels of the opening, refined over static",
+                "a better silhouette of the opened mouth (by cubic)",
+                "less",
+                high=0.9,
+                style=".2f",
+            ),
+        ),
         has_picture=True,
     ),
     Experiment(

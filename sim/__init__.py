@@ -6,17 +6,19 @@
     simulation.positions        # (V, 3)
 
 Knows nothing of rendering or refinement. Start reading at face.py; rig.py defines the rig file.
+cloth.py lets a sheet fall over a ball, by the same springs.
 """
 
 from typing import Any
 
 from . import checked
 from .anatomy import build_anatomy
+from .cloth import Cloth
 from .face import Simulation, SimulationUnstable
 from .rig import Rig
 from .rig_reader import read_rig
 
-__all__ = ["Rig", "Simulation", "SimulationUnstable", "create", "read_rig"]
+__all__ = ["Cloth", "Rig", "Simulation", "SimulationUnstable", "create", "read_rig"]
 
 
 def create(head: Any, *, gravity: bool = False, inertia: bool = False) -> Simulation:

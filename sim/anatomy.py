@@ -105,7 +105,7 @@ class Anatomy:
 
 def build_anatomy(head: Any) -> Anatomy:
     """Build a face from a mesh; ValueError names the attribute of the head that is wrong."""
-    vertices, faces = _mesh(head)
+    vertices, faces = mesh_of("head", head)
     numbers = _landmark_numbers(head, len(vertices))
     rig = read_rig(getattr(head, "rig", None) or {})
     if numbers is None:
@@ -151,22 +151,24 @@ def build_anatomy(head: Any) -> Anatomy:
     )  # fmt: skip
 
 
-def _mesh(head: Any) -> tuple[Array, npt.NDArray[np.int32]]:
-    """Checked copies of the head's vertices and faces."""
+def mesh_of(what: str, given: Any) -> tuple[Array, npt.NDArray[np.int32]]:
+    """Checked copies of the vertices and faces of a head or a cloth; `what` names it in errors."""
     for name in ("vertices", "faces"):
-        if not hasattr(head, name):
+        if not hasattr(given, name):
             raise ValueError(
-                f"head: {type(head).__name__} has no attribute '{name}'; give any object with "
+                f"{what}: {type(given).__name__} has no attribute '{name}'; give any object with "
                 "vertices (V, 3) and faces (F, 3), such as assets.load('head') or a trimesh.Trimesh"
             )
     wanted = "(V, 3) with V > 0"
-    vertices = checked.numbers("head.vertices", head.vertices, (None, 3), wanted)
+    vertices = checked.numbers(f"{what}.vertices", given.vertices, (None, 3), wanted)
     if (np.abs(vertices) > LARGEST).any():
-        raise ValueError(f"head.vertices: some are beyond {LARGEST:g}; take another unit of length")
+        raise ValueError(
+            f"{what}.vertices: some are beyond {LARGEST:g}; take another unit of length"
+        )
     if len(vertices) == 0:
-        raise ValueError(f"head.vertices: shape was {vertices.shape}, must be {wanted}")
+        raise ValueError(f"{what}.vertices: shape was {vertices.shape}, must be {wanted}")
     wanted = "integers (F, 3)"
-    faces = checked.vertex_numbers("head.faces", head.faces, (None, 3), len(vertices), wanted)
+    faces = checked.vertex_numbers(f"{what}.faces", given.faces, (None, 3), len(vertices), wanted)
     return vertices, faces.astype(np.int32)
 
 

@@ -28,13 +28,14 @@ ROUNDING = 0.02  # parts: 1/60 s given as 0.0167 is still one tick, not two
 
 def ticks_in(dt: float) -> int:
     """Into how many ticks a frame of `dt` [s] is divided."""
-    return _parts(dt, LONGEST_TICK)
+    return parts(dt, LONGEST_TICK)
 
 
 def substeps_in(tick: float) -> int:
     """Into how many substeps a tick [s] is divided."""
-    return _parts(tick, LONGEST_SUBSTEP)
+    return parts(tick, LONGEST_SUBSTEP)
 
 
-def _parts(whole: float, longest: float) -> int:
+def parts(whole: float, longest: float) -> int:
+    """Into how many equal parts, none longer than `longest`, a time [s] is divided."""
     return max(1, math.ceil(whole / longest - ROUNDING))

@@ -67,9 +67,9 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     from risorius import refine
 
     from ..ambient import openness
-    from ..scenes import FaceScene, PlaneScene
+    from ..scenes import ClothScene, FaceScene, PlaneScene
 
-    face, plane = FaceScene(), PlaneScene()
+    face, plane, cloth = FaceScene(), PlaneScene(), ClothScene()
 
     def simulate() -> None:
         """Move every control a little, and drag the skin."""
@@ -101,8 +101,10 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     for options in choices:
         text = " ".join(f"{name}={value}" for name, value in options.items())
         asked = Refinement(PAPERS_LOOK, options=options)
-        yield f"refinement {text}", partial(_refine, face, asked)
+        yield f"refinement {text}".rstrip(), partial(_refine, face, asked)
     yield "uniform subdivision", partial(_refine, face, Refinement(refiner="loop"))
+    yield "the plane", partial(_refine, plane, Refinement())
+    yield "the cloth", partial(cloth.step, 1 / 60)
     tension = refine.Tension(face.faces, face.rest_positions)
     yield "strain", partial(tension.measure, face.rest_positions)
     assert face.wrinkles is not None

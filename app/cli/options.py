@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 Command = Callable[..., Any]
 PATH = click.Path(path_type=Path)
-SCENE_NAMES = click.Choice(["face", "plane"])
+SCENE_NAMES = click.Choice(["face", "plane", "cloth"])
 STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "wrinkles")
 
 

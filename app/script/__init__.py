@@ -3,7 +3,7 @@
 A script is a list of poses and, beside them, tracks::
 
     title = "Hello"              # optional
-    scene = "face"               # optional: face (default) or plane
+    scene = "face"               # optional: face (default), plane or cloth
     camera = "three-quarter"     # optional: a named view
     duration = 4.0               # optional [s]; the default is the time of the last key
 

@@ -13,13 +13,19 @@ goes on to rise. Two things have to be continuous for that:
 If one of its splits goes away the diagonal from the other one must stand, whichever it is, so it
 has to turn somewhere in between, and the surface jumps. A point C in the middle has no diagonals:
 
-              2               C = (corners) / 3 + sum of  w x (how far m stands out of its edge)
-             /|\
-            / | \             w = 2/3 where this is the only split edge: C lies on the line m-2 that
-           /  |  \                is there without it, and nothing moves when it appears;
-          /   C...m           w = 4/9 where another one has grown: the middle of a cubic patch
-         / .  |  . \              (the sixth part of its six inner points; Vlachos et al. 2001,
-        0-----m-----1             "Curved PN triangles", give the same).
+              2             one edge     C = 2/3 m + 1/3 corner 2: on the line m-2, which is there
+             /|\                         without C, so that nothing moves when it appears;
+            / | \           two edges    C = 1/2 m + 1/2 m': on the line between them. Along a fold
+           /  |  \                       that is the surface, and lines from C to the corners would
+          /   C...m'                     be gutters, as between the scales of a fish;
+         / .  |  . \        three edges  C = sum of 1/3 corner + 4/9 bulge: the middle of a cubic
+        0-----m-----1                    patch (the sixth part of its six inner points; Vlachos et
+                                         al. 2001, "Curved PN triangles", give the same).
+
+Here m is the middle of a split edge, and its bulge is how far m stands out of the edge. While edges
+grow, g1 >= g2 >= g3, C is a mean of the three, and of the first rule for all edges at once:
+
+    1 - g1  of all at once,   g1 - g2  of one edge,   g2 - g3  of two,   g3  of three
 
 It costs one more point and two more subtriangles for triangles with two or more splits.
 
@@ -60,11 +66,8 @@ from ..mesh.vectors import HALF, ONE, ZERO, row_of, unit, write_row
 RAMP = np.float32(0.25)
 """Need over which a point grows, in what lies between the two thresholds. Chosen: points that are
 only half grown cost as much as whole ones."""
-ALONE = np.float32(2 / 3)
-"""Weight of the only split edge in the place of C."""
-SHARED = np.float32(2 / 9)
-"""What it loses where another edge has grown; 2/3 - 2/9 = 4/9."""
-THIRD = np.float32(1 / 3)
+THIRD, TWO_THIRDS = np.float32(1 / 3), np.float32(2 / 3)
+QUARTER, FOUR_NINTHS = np.float32(1 / 4), np.float32(4 / 9)
 
 
 def fan(splits: tuple[int, int, int]) -> list[Triangle]:
@@ -130,8 +133,9 @@ class Blended(Kahler):
         """Say for every vertex of the last frame where it lies on the input mesh."""
         mesh = self.connectivity
         centres = self._frame.centre_triangles[: self._frame.centre_count]
+        weights = self._frame.centre_weights[: self._frame.centre_count]
         corners = mesh.wedge_vertices[mesh.corners[centres]]
-        return super().origins().followed_by(corners, np.full(corners.shape, 1.0 / 3.0))
+        return super().origins().followed_by(corners, weights)
 
 
 @njit
@@ -156,12 +160,10 @@ def number_centres(frame: FrameBuffers, patterns: Patterns) -> None:
 
 
 @njit
-def weight_of_middle(splits: Small, growth: Floats, e: int, after: int, before: int) -> np.float32:
-    """Weight of the middle of edge e in a point C; 0 where the edge has none.
-
-    `after`, `before`: the other two edges of the triangle.
-    """
-    return ALONE - SHARED * max(growth[after], growth[before]) if splits[e] > 0 else ZERO
+def beyond(own: np.float32, other: np.float32, third: np.float32) -> tuple[np.float32, np.float32]:
+    """How far an edge has grown beyond both others; and beyond the least, as one of a pair."""
+    rival = max(other, third)
+    return max(own - rival, ZERO), min(own, rival) - min(own, other, third)
 
 
 @njit
@@ -173,24 +175,36 @@ def place_centres(mesh: Connectivity, frame: FrameBuffers) -> None:
         t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
         a, b, c = mesh.faces[t, 0], mesh.faces[t, 1], mesh.faces[t, 2]
         ab, bc, ca = edges[t, 0], edges[t, 1], edges[t, 2]
-        u = weight_of_middle(splits, growth, ab, bc, ca)
-        v = weight_of_middle(splits, growth, bc, ca, ab)
-        w = weight_of_middle(splits, growth, ca, ab, bc)
-        # Where there is no middle its weight is 0 and any row will do.
-        p = first_points[ab] + (splits[ab] >> 1) if splits[ab] > 0 else a
-        q = first_points[bc] + (splits[bc] >> 1) if splits[bc] > 0 else b
-        r = first_points[ca] + (splits[ca] >> 1) if splits[ca] > 0 else c
+        x = growth[ab] if splits[ab] > 0 else ZERO
+        y = growth[bc] if splits[bc] > 0 else ZERO
+        z = growth[ca] if splits[ca] > 0 else ZERO
+        all_three, none = min(x, y, z), ONE - max(x, y, z)
+        one_x, pair_x = beyond(x, y, z)
+        one_y, pair_y = beyond(y, z, x)
+        one_z, pair_z = beyond(z, x, y)
+        u = TWO_THIRDS * (none + one_x) + HALF * pair_x + FOUR_NINTHS * all_three
+        v = TWO_THIRDS * (none + one_y) + HALF * pair_y + FOUR_NINTHS * all_three
+        w = TWO_THIRDS * (none + one_z) + HALF * pair_z + FOUR_NINTHS * all_three
+        thirds = THIRD * (none + one_x + one_y + one_z + all_three)
+        of_a = thirds + QUARTER * (pair_z + pair_x)
+        of_b = thirds + QUARTER * (pair_x + pair_y)
+        of_c = thirds + QUARTER * (pair_y + pair_z)
+        write_row(frame.centre_weights, k, (of_a, of_b, of_c))
+        p = first_points[ab] + (splits[ab] >> 1)
+        q = first_points[bc] + (splits[bc] >> 1)
+        r = first_points[ca] + (splits[ca] >> 1)
         for i in range(6):
             at_a, at_b, at_c = vertices[a, i], vertices[b, i], vertices[c, i]
-            vertices[row, i] = (
-                THIRD * at_a
-                + u * (vertices[p, i] - HALF * (at_a + at_b))
-                + THIRD * at_b
-                + v * (vertices[q, i] - HALF * (at_b + at_c))
-                + THIRD * at_c
-                + w * (vertices[r, i] - HALF * (at_c + at_a))
-            )
+            middle = of_a * at_a + of_b * at_b + of_c * at_c
+            if splits[ab] > 0:
+                middle += u * (vertices[p, i] - HALF * (at_a + at_b))
+            if splits[bc] > 0:
+                middle += v * (vertices[q, i] - HALF * (at_b + at_c))
+            if splits[ca] > 0:
+                middle += w * (vertices[r, i] - HALF * (at_c + at_a))
+            vertices[row, i] = middle
         write_row(vertices, row, unit(row_of(vertices, row, 3)), 3)
         a, b, c = mesh.corners[t, 0], mesh.corners[t, 1], mesh.corners[t, 2]
         for i in range(6, vertices.shape[1]):
-            vertices[row, i] = THIRD * (vertices[a, i] + vertices[b, i] + vertices[c, i])
+            mixed = of_a * vertices[a, i] + of_b * vertices[b, i] + of_c * vertices[c, i]
+            vertices[row, i] = mixed

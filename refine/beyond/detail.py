@@ -177,8 +177,8 @@ def slide_centres(
 ) -> None:
     """Slide and move the points in the middle of triangles as the least grown edge allows.
 
-    They are where blending has them (blending.py): in the centroid. `normals`: of vertices, (V, 3).
-    `offsets`: what is missing, shape (F, 2, 3).
+    Where all edges have grown, blending has them in the centroid (blending.py).
+    `normals`: of vertices, shape (V, 3). `offsets`: what is missing, shape (F, 2, 3).
     """
     vertices = frame.rows
     shares, axes = np.zeros(3, np.float32), np.zeros((3, 3), np.float32)

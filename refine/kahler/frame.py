@@ -52,6 +52,8 @@ class FrameBuffers(NamedTuple):
     centre_triangles: Unsigned
     """The triangles with a point in the middle, which only blending has; the first
     `counts[CENTRES]` count. Shape (F + 1,)."""
+    centre_weights: Floats
+    """Where in its triangle each of these points is: weights of the corners, shape (F + 1, 3)."""
     counts: Wide
     """How many there are of what, shape (5,): see ROWS, ONCE, TWICE, TRIANGLES, CENTRES."""
     rows: Floats
@@ -91,6 +93,7 @@ def buffers_for(
         split_twice=np.zeros(edge_count + 1, dtype=np.uint32),
         configurations=np.zeros(face_count + 1, dtype=np.uint16),
         centre_triangles=np.zeros(face_count + 1, dtype=np.uint32),
+        centre_weights=np.zeros((face_count + 1, 3), dtype=np.float32),
         counts=np.zeros(5, dtype=np.int64),
         rows=np.zeros((0, 0), dtype=np.float32),
     )

@@ -43,7 +43,7 @@ def idle(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
     for name in (
         "risorius.app.capture.Capture.play",
-        "risorius.bench.paper_figures.figure_9",
+        "risorius.bench.figure_9.draw",
         "risorius.bench.refine.measure",
         "risorius.bench.quality.measure",
     ):

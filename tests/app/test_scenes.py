@@ -1,4 +1,4 @@
-"""Scenes: values are kept within limits, the plane waves, the face obeys."""
+"""Scenes: values are kept within limits, the plane waves, the cloth falls, the face obeys."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from risorius import refine
+from risorius.app.cameras import whole_scene
+from risorius.app.cli.options import SCENE_NAMES
 from risorius.app.errors import UserError
 from risorius.app.looks import LOOKS, Refinement
 from risorius.app.refining import refiner_for
-from risorius.app.scenes import FaceScene, PlaneScene, clamped
+from risorius.app.scenes import SCENES, ClothScene, FaceScene, PlaneScene, clamped
 from risorius.bench.lines_of_sight import meshes_of, widest_slit
 
 LIMITS = {"a": (0.0, 1.0), "b": (-1.0, 1.0)}
@@ -34,6 +36,64 @@ def test_the_plane_waves() -> None:
     assert np.count_nonzero(np.abs(moved).max(axis=0) > 1e-9) == 1
     plane.reset()
     assert np.array_equal(plane.positions, plane.rest_positions)
+
+
+def test_the_cloth_falls_and_is_taken_up() -> None:
+    """Let go it hangs around the ball, and is refined to some four times its triangles."""
+    cloth = ClothScene()
+    assert len(cloth.faces) == 1152
+    refiner = refiner_for(cloth, "kahler", None)
+    assert len(refiner.refine(cloth.positions).triangles) == 1152
+    cloth.pose({"drop": 1.0, "turn": -1.25})
+    cloth.step(3.0)
+    mesh = refiner.refine(cloth.positions)
+    refine.check(refiner, mesh, cloth.positions)
+    assert 3.3 * 1152 < len(mesh.triangles) < 5.0 * 1152
+    assert cloth.positions[:, 1].min() < -100.0
+    turn = cloth.bone_transforms()["ball"]
+    assert turn[:3, :3] @ [1.0, 0.0, 0.0] == pytest.approx([0.0, 0.0, 1.0], abs=1e-6)
+    cloth.pose({})
+    cloth.step(5.0)
+    assert np.abs(cloth.positions - cloth.rest_positions).max() < 1.0
+    cloth.pose({"drop": 1.0})
+    cloth.step(0.5)
+    cloth.reset()
+    assert np.array_equal(cloth.positions, cloth.rest_positions)
+    assert not any(cloth.values.values())
+    assert np.array_equal(cloth.bone_transforms()["ball"], np.eye(4))
+
+
+def test_the_ball_turns_as_it_rubs() -> None:
+    """What is drawn of the ball and what the cloth feels of it go the same way round."""
+    cloth = ClothScene()
+    cloth.pose({"drop": 1.0})
+    cloth.step(2.0)
+    before = cloth.positions.copy()
+    cloth.pose({"drop": 1.0, "turn": 0.04})
+    cloth.step(0.2)
+    top = np.argsort(before[:, 1])[-40:]
+    expected = before[top] @ cloth.bone_transforms()["ball"][:3, :3].T
+    moved = np.linalg.norm(cloth.positions[top] - before[top])
+    assert np.linalg.norm(cloth.positions[top] - expected) < 0.5 * moved
+
+
+def test_the_whole_cloth_is_in_the_frame() -> None:
+    """Held and hanging, from the front and from above, at the window's shape."""
+    cloth = ClothScene()
+    flat = cloth.positions.copy()
+    cloth.pose({"drop": 1.0})
+    cloth.step(3.0)
+    for view in ("front", "three-quarter", "30,12", "0,80"):
+        camera = whole_scene(cloth, view)
+        clip = np.asarray(camera.view_matrix() @ camera.projection_matrix(16 / 9))
+        for points in (flat, cloth.positions, cloth.parts[0].vertices):
+            seen = np.column_stack([points, np.ones(len(points))]) @ clip
+            assert np.abs(seen[:, :2] / seen[:, 3:]).max() < 1.0, view
+
+
+def test_every_scene_can_be_chosen() -> None:
+    """The names of the command line are those of the scenes."""
+    assert list(SCENE_NAMES.choices) == list(SCENES)
 
 
 def test_the_face_takes_controls_of_every_layer() -> None:

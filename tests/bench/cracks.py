@@ -21,7 +21,9 @@ from risorius import refine
 Wide = npt.NDArray[np.int64]
 
 WHOLE = 3 * 2**10
-"""Of a barycentric coordinate: halves, quarters, sixteenths and thirds of it are whole numbers."""
+"""Of a barycentric coordinate: halves, quarters, sixteenths and thirds of it are whole numbers.
+
+Points inside triangles are rounded to it; they have weights enough to stay inside."""
 LENGTH_ERROR = 1e-4  # of a normal
 MOST_VERTICES = 2**31  # so that the numbers of two fit into one
 
@@ -43,8 +45,14 @@ def cracks(
     if (np.bincount(source, minlength=len(given))[flat] != 1).any():
         return "a triangle that names a vertex twice does not come out once"
     parts = np.rint(origins.weights.astype(np.float64) * WHOLE).astype(np.int64)
-    if abs(parts - origins.weights * float(WHOLE)).max(initial=0.0) > 0.01:
+    is_inside = (parts > WHOLE // 16).all(axis=1)
+    is_fraction = abs(parts - origins.weights * float(WHOLE)).max(axis=1) < 0.01
+    if not (is_inside | is_fraction).all():
         return "weights of origins are no simple fractions"
+    off = WHOLE - parts.sum(axis=1)
+    if abs(off).max(initial=0) > 1:
+        return "weights of origins do not add up to one"
+    parts[is_inside, 0] += off[is_inside]
     wrong = _different_rows(mesh, _places(origins.vertices.astype(np.int64), parts, triangles))
     if wrong is not None:
         return wrong

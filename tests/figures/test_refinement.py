@@ -9,7 +9,7 @@ import pytest
 import refinement
 from PIL import Image
 
-from risorius.bench import paper_figures
+from risorius.bench import figure_coherence
 from risorius.bench.charts import Axis, Series, chart
 
 IMAGES = Path(__file__).parents[2] / "docs" / "pictures"
@@ -26,24 +26,11 @@ def test_figures_are_drawn(tmp_path: Path) -> None:
         assert name == "refine_tension" or (figure() == drawn).all()
 
 
-def test_figure_9() -> None:
-    """Three columns, and something on them."""
-    nine = paper_figures.figure_9((96, 64))
-    assert nine.shape[1] == 3 * 96
-    assert nine.std() > 10.0
-
-
-def test_no_corner_of_the_plane_is_a_speck() -> None:
-    """In the flat static row of Fig. 9 nothing is as dark as an underside, which has no light."""
-    static = paper_figures.figure_9((380, 230))[33:255]
-    assert 90 < static.min() < 200
-
-
 def test_film_strip() -> None:
     """Red lines are in the row without memory, and none in the row with it."""
-    outcome = paper_figures.coherence((120, 96))
+    outcome = figure_coherence.coherence((120, 96))
     drawn = outcome.pictures["coherence"].astype(int)
-    assert drawn.shape[1] == len(paper_figures.AMPLITUDES) * 120
+    assert drawn.shape[1] == len(figure_coherence.AMPLITUDES) * 120
     is_red = (drawn[..., 0] > 150) & (drawn[..., 1:].max(axis=2) < 90)
     half = len(drawn) // 2
     assert is_red[:half].sum() > 200

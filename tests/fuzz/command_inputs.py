@@ -18,12 +18,14 @@ ACCEPTED = (
     "--version",
     "capture --help",
     "bench --help",
+    "reproduce figure8",
     "reproduce figure9",
     "reproduce figure10 -o new/folder/x.png",
     "reproduce all -o new/folder",
     "bench simulate --rounds 1",
     "bench meshes folder",
     "controls --scene plane",
+    "controls --scene cloth",
     "doctor --offscreen --quiet",
     "view --size 320x200",
     "replay good.toml --once",
@@ -51,6 +53,7 @@ ACCEPTED = (
     "capture good.toml -o x.mp4 --size 16x16 --fps 5 --quiet",
     "capture good.toml --sheet new/x.png --size 16x16 --fps 5 --quiet",
     "capture --scene plane --set amplitude=1 -o x.png --size 16x16 --quiet",
+    "capture --scene cloth --set drop=1 -o x.png --size 16x16 --quiet",
 )
 
 REFUSED = {

@@ -16,15 +16,15 @@ from .sandbox import furnish
 DOORS = pytest.StashKey[dict[str, Counter[str]]]()
 
 LONG_WORK = (
-    "risorius.bench.figure10.figure_10",
-    "risorius.bench.paper_figures.figure_9",
+    "risorius.bench.figure_10.figure_10",
+    "risorius.bench.figure_9.draw",
     "risorius.app.viewer.Viewer",
     "risorius.bench.frame_rate.measure",
     "risorius.bench.gaps.measure",
     "risorius.bench.meshes.measure",
     "risorius.bench.motion.measure",
     "risorius.bench.outlines.measure",
-    "risorius.bench.paper_figures.coherence",
+    "risorius.bench.figure_coherence.coherence",
     "risorius.bench.quality.measure",
     "risorius.bench.refine.measure",
     "risorius.bench.reproduction.reproduce",

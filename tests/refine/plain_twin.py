@@ -273,12 +273,12 @@ def _fan(
     centre: Name = ("centre", *sorted(face))
     edges = [edge_name(face[i], face[(i + 1) % 3]) for i in range(3)]
     sums = {}
+    grown_by = [grown.get(edge, (0.0, 0.0))[0] if count[edge] else 0.0 for edge in edges]
+    corner_weights, edge_weights = centre_weights(grown_by)
     for kind in ("positions", "normals"):
         values = getattr(twin, kind)
-        terms = [(1 / 3, values["vertex", v]) for v in face]
-        for i, edge in enumerate(edges):
-            others = [grown.get(edges[(i + k) % 3], (0.0, 0.0))[0] for k in (1, 2)]
-            weight = 2 / 3 - 2 / 9 * max(others)
+        terms = [(w, values["vertex", v]) for w, v in zip(corner_weights, face, strict=True)]
+        for weight, edge in zip(edge_weights, edges, strict=True):
             if count[edge]:
                 terms.append((weight, values["edge", *edge, 2]))
                 terms += [(-weight / 2, values["vertex", v]) for v in edge]
@@ -293,6 +293,30 @@ def _fan(
     following = outline[1:] + outline[:1]
     parts = zip(outline, following, strict=True)
     return [starting_at_least([centre, p, q]) for p, q in parts], centre
+
+
+def centre_weights(grown: list[float]) -> tuple[list[float], list[float]]:
+    """Weights of corners, and of how far edges bulge, in the middle of a triangle.
+
+    `grown`: of the edges from corner 0 to 1, 1 to 2, 2 to 0. A mean of four rules.
+    """
+    first, second, third = sorted(range(3), key=lambda i: -grown[i])
+    shared = next(i for i in range(3) if {first, second} == {i, (i + 2) % 3})
+    centroid = [1 / 3] * 3
+    rules = [
+        (1 - grown[first], centroid, [2 / 3] * 3),
+        (grown[first] - grown[second], centroid, [2 / 3 * (i == first) for i in range(3)]),
+        (
+            grown[second] - grown[third],
+            [1 / 2 if i == shared else 1 / 4 for i in range(3)],
+            [1 / 2 * (i != third) for i in range(3)],
+        ),
+        (grown[third], centroid, [4 / 9] * 3),
+    ]
+    corners, edges = (
+        [sum(rule[0] * rule[k][i] for rule in rules) for i in range(3)] for k in (1, 2)
+    )
+    return corners, edges
 
 
 def starting_at_least(corners: list[Name]) -> tuple[Name, Name, Name]:

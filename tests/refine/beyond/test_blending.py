@@ -216,6 +216,66 @@ def test_outlines_do_not_pop(name: str, scheme: str) -> None:
     assert most(True) < BOUND < most(False)
 
 
+@pytest.mark.parametrize("scheme", ["loop", "cubic"])
+def test_any_change_of_needs_is_followed(scheme: str) -> None:
+    """Whatever three edges need, and which of them appears: no jump in the triangle between them.
+
+    Largest seen: 0.8 of the change of the needs. A diagonal that turns would be 0.1 at once.
+    """
+    vertices = [[0, 0, 0], [1, 0, 0], [0.3, 0.9, 0], [1.2, 1, -0.6], [-0.6, 0.5, -0.6]]
+    positions = np.array([*vertices, [0.4, -0.9, -0.6]])
+    faces = np.array([[0, 1, 2], [1, 3, 2], [0, 2, 4], [0, 5, 1]], dtype=np.int32)
+    edges = refine.connect(faces, len(positions)).edges
+    numbers = {frozenset(edge): k for k, edge in enumerate(edges.tolist())}
+    inner = [numbers[frozenset(edge)] for edge in ((0, 1), (1, 2), (0, 2))]
+    places = np.random.default_rng(1).dirichlet([1, 1, 1], 20)
+
+    def surface(needs: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        need = np.full(len(edges), -1.0)
+        need[inner] = needs
+        criterion = Needed(need)
+        refiner = refine.create(
+            "kahler", faces, positions, scheme=scheme, blend=True, criterion=criterion
+        )
+        refined = refiner.refine(positions)
+        refine.check(refiner, refined, positions)
+        return surface_at(refiner, refined, faces, places)[0, :, :3]
+
+    generator, step = np.random.default_rng(0), 1e-4
+    for _ in range(300):
+        needs = generator.uniform(-0.2, 1.5, 3)
+        needs[generator.integers(3)] = generator.choice([0.0, 0.25, 1.0, 1.25, needs[0]])
+        change = generator.uniform(-step, step, 3)
+        assert np.abs(surface(needs + change) - surface(needs)).max() < 2.0 * step
+
+
+def test_folds_have_no_scales() -> None:
+    """Around a cylinder no piece of a triangle with two grown edges is tilted along the axis.
+
+    Lines from the centroid to the corners would tilt them by up to 5.5 degrees.
+    """
+    grid = meshes.open_grid(9, 9)
+    angle, along = 0.5 * grid.vertices[:, 0], grid.vertices[:, 1]
+    rolled = np.stack([2.0 * np.sin(angle), along, 2.0 * np.cos(angle)], axis=1)
+    refiner = refine.create(
+        "kahler", grid.faces, grid.vertices, scheme="cubic", criterion=Needed(_across(grid))
+    )
+    refined = refiner.refine(rolled)
+    corners = refined.positions[refined.triangles].astype(np.float64)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    inside = np.abs(corners[..., 1] - along.mean()).max(axis=1) < 0.3 * np.ptp(along)
+    assert inside.sum() > 100
+    assert np.degrees(np.abs(np.arcsin(normals[inside, 1]))).max() < 0.5
+
+
+def _across(grid: meshes.Mesh) -> npt.NDArray[np.float64]:
+    """Needs of edges: those along y none, all others one whole split."""
+    edges = refine.connect(grid.faces, len(grid.vertices)).edges
+    is_along = np.ptp(grid.vertices[edges][..., 0], axis=1) < 1e-9
+    return np.where(is_along, -1.0, 0.9)
+
+
 def test_without_blending_it_pops() -> None:
     """The measure is able to see a pop: the paper's rules have some."""
     assert jumps("loop", False, "normal")[0] > 2 * BOUND

@@ -1,6 +1,6 @@
-"""The paper's figures, made again, and one of its section 4.4: `risorius reproduce` draws them.
+"""The paper's Fig. 10 (the region of the mouth), and a film strip of time-coherent splitting.
 
-Fig. 9 (the plane), and a film strip of time-coherent splitting; Fig. 10 is in figure10.py.
+Drawn by `risorius reproduce coherence`; the other figures have files of their own.
 Kähler, Haber, Seidel 2003, sections 4.4 and 5.
 """
 
@@ -26,8 +26,6 @@ CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, backgroun
 FLAT = replace(CLAY, shading=render.Shading.FLAT)
 GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
 
-WAVE_PHASES = (0.0, 0.33, 0.66)  # moments of the wave in Fig. 9
-WAVE_VIEW = "28,-30,0.68"  # from here no corner shows its underside, which no light reaches
 
 AMPLITUDES = (0.06, 0.12, 0.22, 0.4)  # of the wave in the columns of the film strip
 STEPS_BETWEEN = 8  # frames of the animation between two columns
@@ -35,26 +33,6 @@ GROWING_VIEW = "20,-25,2.6"
 GROWING_PHASE = 0.18
 GROWING = replace(FLAT, wireframe=True, wire_opacity=0.6)
 ABOVE = 0.4  # [mm] that red lines float over the surface
-
-
-def figure_9(size: tuple[int, int] = (380, 230)) -> Image:
-    """The plane under a strong sine, flat and Gouraud shaded, as it is and refined (Fig. 9)."""
-    scene = PlaneScene()
-    camera = camera_for(scene, WAVE_VIEW)
-    rows = []
-    with Canvas(size) as canvas:
-        for style, shading in ((FLAT, "flat"), (GOURAUD, "Gouraud")):
-            for name, title in (("none", "static"), ("kahler", "refined")):
-                options = LOOKS[PAPERS_LOOK][scene.name].told(name)
-                refiner = refine.create(name, scene.faces, scene.rest_positions, **options)
-                cells = []
-                for phase in WAVE_PHASES:
-                    scene.pose({"amplitude": 1.0, "phase": phase})
-                    scene.step(FRAME_SECONDS)
-                    image = canvas.draw_image(refiner, scene.positions, Drawing(camera, style))
-                    cells.append((f"{canvas.stream_for(refiner).triangle_count} triangles", image))
-                rows.append((f"{title}, {shading} shading", cells))
-    return image_table(rows)
 
 
 def coherence(size: tuple[int, int] = (250, 200)) -> Outcome:

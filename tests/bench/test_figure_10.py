@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from risorius.bench import figure10
-from risorius.bench.figure10 import Cell, Shot, difference
+from risorius.bench import figure_10
+from risorius.bench.figure_10 import Cell, Shot, difference
 from risorius.bench.outlines import MOUTH, Look, wrong_pixels
 
 SIZE = (280, 210)
@@ -22,7 +22,7 @@ def wrong_outline(cell: Cell, truth: Cell) -> int:
 @pytest.fixture(scope="module")
 def drawn() -> list[tuple[Shot, dict[str, Cell]]]:
     """Every shot in every look, and in one more, small."""
-    found = figure10.drawn(SIZE, [*figure10.LOOKS, BLIND], figure10.SHOTS)
+    found = figure_10.drawn(SIZE, [*figure_10.LOOKS, BLIND], figure_10.SHOTS)
     return [(shot, {cell.title: cell for cell in cells}) for shot, cells in found]
 
 
@@ -82,11 +82,11 @@ def test_truth_and_measures(drawn: list[tuple[Shot, dict[str, Cell]]]) -> None:
 
 def test_page() -> None:
     """A block for each shot, a column for each look and the dense mesh, and colours on them."""
-    shots, looks = figure10.SHOTS[1:], figure10.LOOKS[:1]
-    page = figure10.figure_10((80, 60), looks=looks, shots=shots).astype(int)
+    shots, looks = figure_10.SHOTS[1:], figure_10.LOOKS[:1]
+    page = figure_10.figure_10((80, 60), looks=looks, shots=shots).astype(int)
     assert 160 < page.shape[1] < 200
     assert 210 < page.shape[0] < 270
-    is_wrong = (np.abs(page - figure10.WRONG) < 30).all(axis=2)
+    is_wrong = (np.abs(page - figure_10.WRONG) < 30).all(axis=2)
     assert is_wrong[:, :100].any()  # red where the static outline is off
-    twice = figure10.figure_10((80, 60), looks=looks, shots=shots * 2)
+    twice = figure_10.figure_10((80, 60), looks=looks, shots=shots * 2)
     assert len(twice) == 2 * len(page)

@@ -1,0 +1,84 @@
+"""How triangles lie along folds: the paper's claim about the long, thin ones that splitting makes.
+
+A fold bends across and hardly along. Its direction in a triangle, that of the least curvature, is
+found from how normals turn along the triangle's edges. The claim is true if subtriangles are longer
+than the triangles that they are parts of, and lie nearer to that direction.
+
+Source: Kähler, Haber, Seidel 2003, section 5 and Fig. 8; Rusinkiewicz 2004, "Estimating curvatures
+and their derivatives on triangle meshes", for the curvature of a triangle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import refine
+
+Points = npt.NDArray[np.float64]
+Faces = npt.NDArray[np.int32]
+
+BENT = 0.2  # [rad] that the normal turns across a triangle of a fold, at least
+ALONG = 0.4  # of the curvature across: what bends along as well is a dome, not a fold
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """The triangles of folds in the mean, larger ones counting more."""
+
+    count: int
+    smallest_angle: float  # [degrees] of a triangle's three
+    elongation: float  # length / width, 1.7 for half a square
+    off_fold: float  # [degrees] from the long axis to the fold; 45 where that is left to chance
+
+
+def measure(refiner: refine.Refiner, faces: Faces, positions: Points) -> tuple[Shapes, Shapes]:
+    """What lies in folds and is split: the mesh's triangles, and the refined ones.
+
+    Refines `positions` (V, 3) anew.
+    """
+    mesh = refiner.refine(positions)
+    directions, is_fold = find_folds(faces, positions)
+    is_fold &= refiner.splits[refiner.triangle_edges].any(axis=1)
+    before = _shapes(positions[faces[is_fold]], directions[is_fold])
+    is_part, corners = is_fold[mesh.source], mesh.positions.astype(np.float64)[mesh.triangles]
+    return before, _shapes(corners[is_part], directions[mesh.source[is_part]])
+
+
+def find_folds(faces: Faces, positions: Points) -> tuple[Points, npt.NDArray[np.bool_]]:
+    """The direction of least curvature in each triangle (F, 3), and whether it lies in a fold."""
+    static = refine.create("none", faces, positions).refine(positions)
+    x, normals = (each.astype(np.float64)[static.triangles] for each in static[:2])
+    edges, turns = np.roll(x, -1, axis=1) - x, np.roll(normals, -1, axis=1) - normals
+    across = np.cross(edges[:, 0], edges[:, 1])
+    areas = np.linalg.norm(across, axis=1) / 2.0
+    axes = np.stack([edges[:, 0], np.cross(across, edges[:, 0])], axis=2)  # of the triangle's plane
+    axes /= np.maximum(np.linalg.norm(axes, axis=1, keepdims=True), 1e-12)
+    # Curvature (a b, b c) turns normals along an edge (u, v) by (a u + b v, b u + c v).
+    (u, v), zero = np.moveaxis(edges @ axes, 2, 0), np.zeros(edges.shape[:2])
+    rows = np.concatenate([np.stack([u, v, zero], -1), np.stack([zero, u, v], -1)], axis=1)
+    wanted = np.moveaxis(turns @ axes, 2, 1).reshape(len(faces), 6, 1)
+    a, b, c = np.moveaxis((np.linalg.pinv(rows) @ wanted)[..., 0], 1, 0)
+    values, vectors = np.linalg.eigh(np.stack([np.stack([a, b], -1), np.stack([b, c], -1)], 1))
+    least = np.abs(values).argmin(axis=1)
+    directions = (axes @ vectors[np.arange(len(faces)), :, least][..., None])[..., 0]
+    low, high = np.sort(np.abs(values), axis=1).T
+    return directions, (high * np.sqrt(2.0 * areas) > BENT) & (low < ALONG * high)
+
+
+def _shapes(corners: Points, directions: Points) -> Shapes:
+    """Measure triangles with these corners (n, 3, 3) against directions (n, 3)."""
+    edges = np.roll(corners, -1, axis=1) - corners
+    areas = np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
+    _, sizes, axes = np.linalg.svd(corners - corners.mean(axis=1, keepdims=True))
+    units = edges / np.maximum(np.linalg.norm(edges, axis=2, keepdims=True), 1e-12)
+    angles = np.arccos(np.clip(-(units * np.roll(units, 1, axis=1)).sum(axis=2), -1.0, 1.0))
+    off = np.arccos(np.clip(np.abs((axes[:, 0] * directions).sum(axis=1)), 0.0, 1.0))
+    longer = sizes[:, 0] / np.maximum(sizes[:, 1], 1e-12)
+    means = (np.average(each, weights=areas) for each in (angles.min(axis=1), longer, off))
+    smallest, elongation, off_fold = means
+    return Shapes(
+        len(corners), float(np.degrees(smallest)), float(elongation), float(np.degrees(off_fold))
+    )
