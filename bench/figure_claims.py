@@ -13,6 +13,7 @@ from risorius import refine
 from . import figure_8, figure_9, figure_10, folds
 from .canvas import Canvas
 from .claims import Outcome
+from .outlines import wrong_pixels
 
 SIZE_9, SIZE_10 = (380, 230), (330, 250)  # [pixels] in which differences are counted
 SEEN = 8.0  # levels of 255: a change that is seen
@@ -36,7 +37,7 @@ def figure_8_outcome() -> Outcome:
 def figure_9_outcome() -> Outcome:
     """How far the shading of static and refined plane is from that of the sine."""
     values = {}
-    static, refined = figure_9.LOOKS[:2]
+    looks = figure_9.LOOKS[:3]
     with Canvas(SIZE_9) as canvas:
         plane = figure_9.Waving(canvas)
         for shading, style in figure_9.SHADINGS:
@@ -47,10 +48,12 @@ def figure_9_outcome() -> Outcome:
                     )
                     for phase in figure_9.PHASES
                 ]
-                for look in (static, refined)
+                for look in looks
             ]
-            before, after = np.mean(off, axis=1)
+            before, after, with_own = np.mean(off, axis=1)
             values[f"{shading}: shading error, refined over static"] = float(after / before)
+            name = f"{shading}: with normals of the refined surface, over static"
+            values[name] = float(with_own / before)
     return Outcome(values, {"figure9": figure_9.draw(SIZE_9)})
 
 
@@ -65,7 +68,7 @@ def figure_10_outcome() -> Outcome:
             np.sqrt((figure_10.difference(cell, truth) ** 2).mean()) for cell in (static, refined)
         ]
         left.append(off[1] / off[0])
-        wrong = [figure_10.wrong_outline(cell, truth) for cell in (static, refined)]
+        wrong = [wrong_pixels(cell.kinds, truth.kinds) for cell in (static, refined)]
         outline.append(wrong[1] / wrong[0])
     values = {
         "pixels that change visibly [%]": float(np.mean(changed)),
