@@ -24,7 +24,7 @@ class Bulge(Measuring):
     For the schemes that interpolate. What is coarse at rest counts as well, unlike in the paper.
     """
 
-    def __init__(self, once: float = 0.08, twice: float = 0.4, *, turning: float = 0.3) -> None:
+    def __init__(self, once: float = 0.08, twice: float = 0.4, *, turning: float = 0.35) -> None:
         """`once`, `twice`: distances in mean edge lengths of the mesh at rest.
 
         `turning`: the distance that an error of normals of a radian counts that a split would mend,
