@@ -33,7 +33,7 @@ from risorius.refine.kahler.criterion import Thresholds
 
 from .nearest import nearest_points
 from .pn import tessellate
-from .subjects import PosePair, Subject
+from .subjects import PosePair, Subject, vertex_normals
 
 Array = npt.NDArray[np.float64]
 Narrow = npt.NDArray[np.float32]
@@ -245,13 +245,3 @@ def _on_truth(
         np.einsum("ni,nij->nj", found.weights, values[corners]) for values in (pose.dense, normals)
     )
     return points, turned, mesh.triangles
-
-
-def vertex_normals(positions: Array, faces: npt.NDArray[np.integer]) -> Array:
-    """Unit vertex normals, weighted by area, shape (V, 3)."""
-    a, b, c = (positions[faces[:, k]] for k in range(3))
-    cross = np.cross(b - a, c - a)
-    sums = np.zeros_like(positions)
-    for k in range(3):
-        np.add.at(sums, faces[:, k], cross)
-    return np.asarray(sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-300))
