@@ -18,8 +18,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from risorius import render
-from risorius.app.files import Image
+from risorius import refine, render
 
 from .subjects import Subject, vertex_normals
 
@@ -32,7 +31,7 @@ SIZE = 480
 SUPERSAMPLING = 2
 VIEWS = ("front", "three-quarter", "profile")
 CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, wrinkles=0.0)
-BACKGROUND = 215.0
+BACKGROUND = 215
 """Grey level behind the mesh, about that of the window's."""
 VISIBLE = 8.0
 """Grey levels by which a pixel has to change to be counted as changed."""
@@ -44,7 +43,7 @@ class PictureError:
 
     rms: float
     """Root mean square of grey levels, over the pixels that either mesh covers."""
-    silhouette: float
+    outline: float
     """Pixels covered by one mesh and not by the other, mean over views."""
     changed: float
     """Share of the covered pixels that differ by more than VISIBLE from the unrefined mesh."""
@@ -70,9 +69,11 @@ class Pictures:
         fine = SIZE * SUPERSAMPLING
         self._surface = render.open_offscreen((fine, fine), samples=0)
         self._renderer = render.Renderer(self._surface)
-        self._cameras = [
-            render.OrbitCamera.framing(subject.rest.dense, view=view) for view in views
-        ]
+        shown = np.concatenate([pose.dense for pose in (subject.rest, *subject.poses.values())])
+        self._cameras = [render.OrbitCamera.framing(shown, view=view) for view in views]
+        eye = self._cameras[0]
+        self.view = refine.View(eye.eye, eye.focal(1.0, SIZE))
+        """Where the first picture is taken from, for criteria that ask."""
         self._stream: render.Stream | None = None
         self._references: dict[str, tuple[Shots, Shots]] = {}
 
@@ -111,11 +112,11 @@ class Pictures:
             self._surface.begin()
             self._renderer.draw_mesh(stream, camera, CLAY)
             self._surface.end()
-            image: Image = self._surface.read()
-            covered = image.any(axis=2)  # lit clay is nowhere black, an empty frame is
-            grey = np.where(covered, image.mean(axis=2), BACKGROUND)
-            blocks = grey.reshape(SIZE, SUPERSAMPLING, SIZE, SUPERSAMPLING)
-            greys.append(blocks.mean(axis=(1, 3)))
+            red, green, blue = np.moveaxis(self._surface.read().astype(np.uint16), 2, 0)
+            levels = red + green + blue
+            covered = levels > 0  # lit clay is nowhere black, an empty frame is
+            levels[~covered] = 3 * BACKGROUND
+            greys.append(_block_sums(levels) / (3.0 * SUPERSAMPLING**2))
             covers.append(covered)
         return Shots(np.stack(greys), np.stack(covers))
 
@@ -139,7 +140,7 @@ class Pictures:
 
 def difference(shots: Shots, truth: Shots, static: Shots) -> PictureError:
     """Compare pictures of a mesh with those of the dense and of the unrefined one."""
-    either = _any_in_pixel(shots.covered | truth.covered)
+    either = _block_sums(shots.covered | truth.covered)
     off, static_off = np.abs(shots.grey - truth.grey), np.abs(static.grey - truth.grey)
     wrong = int(np.count_nonzero(shots.covered != truth.covered)) / SUPERSAMPLING**2
     changed = np.abs(shots.grey - static.grey) > VISIBLE
@@ -153,10 +154,11 @@ def difference(shots: Shots, truth: Shots, static: Shots) -> PictureError:
     )
 
 
-def _any_in_pixel(fine: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Whether any of the fine pixels of each pixel is set, shape (views, SIZE, SIZE)."""
-    shape = len(fine), SIZE, SUPERSAMPLING, SIZE, SUPERSAMPLING
-    return np.asarray(fine.reshape(shape).any(axis=(2, 4)))
+def _block_sums(fine: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Sums over the fine pixels of each pixel: shape (.., SIZE, SIZE)."""
+    steps = range(SUPERSAMPLING)
+    parts = [fine[..., i::SUPERSAMPLING, j::SUPERSAMPLING] for i in steps for j in steps]
+    return np.asarray(sum(parts[1:], parts[0]))
 
 
 def shaded(
