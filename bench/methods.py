@@ -36,7 +36,7 @@ Narrow = npt.NDArray[np.float32]
 
 BLENDED = ", blended"
 SCHEMES: Mapping[str, tuple[str, ...]] = {
-    "loop": ("normal", "screen"),
+    "loop": ("screen", "normal"),
     "cubic": ("normal", "curvature", "screen", "bulge", "bulge, blended"),
     "detail": ("bulge", "bulge, blended"),
 }

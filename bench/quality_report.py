@@ -88,7 +88,7 @@ def methods_table(scores: Sequence[Score]) -> list[str]:
             f"{value:{style}}" if value == value else "-"
             for value, style in (
                 (found.toward, ".0f"),
-                (found.jump, ".2f"),
+                (found.jump, ".2f" if found.jump < 10.0 else ".0f"),
                 (found.turn, ".1f"),
             )
         ]
@@ -160,8 +160,9 @@ def _verdicts(name: str, scores: Sequence[Score], key: Key, asked: float) -> lis
         ratio, where = worst(scores, key, what)
         text = f"{name}: {what} never worse than static; worst {ratio:.3f} of it ({where})"
         lines.append(verdict(ratio <= 1.0 + ROUNDING, text))
-    text = f"{name}: jumps at most {FASTEST:g} x the input's motion; found {found.jump:.2f}"
-    return [*lines, verdict(found.jump <= FASTEST + ROUNDING, text)]
+    jump, where = max((score.jump, score.expression) for score in scores if score.key == key)
+    text = f"{name}: jumps at most {FASTEST:g} x the input's motion; found {jump:.2f} ({where})"
+    return [*lines, verdict(jump <= FASTEST + ROUNDING, text)]
 
 
 def error_curves(
@@ -176,7 +177,7 @@ def error_curves(
     start = 1.0, getattr(static, what)
     series = []
     for method in (*SCHEMES, *UNIFORM):
-        shown = "" if method in UNIFORM else "normal" if method == PAPER else SCHEMES[method][-1]
+        shown = SCHEMES.get(method, ("",))[-1]
         found = sorted(
             (score.triangles / static.triangles, getattr(score, what))
             for (name, rule, _), score in average.items()
