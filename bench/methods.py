@@ -49,7 +49,7 @@ CRITERIA: Mapping[str, Callable[[], Any]] = {
 }
 LOOK = ("loop", "normal+rest")
 """Scheme and criterion that are also drawn with thresholds as they are."""
-UNIFORM = ("Loop", "Loop limit", "PN", "Phong")
+UNIFORM = ("uniform Loop", "Loop limit", "PN", "Phong")
 STATIC = "static"
 LEVELS = (1, 2)
 """How often whole meshes are refined."""
@@ -115,7 +115,7 @@ def _whole(
     """Peers that refine the whole mesh."""
     pieces = 2**levels
     return {
-        "Loop": refine.create("loop", faces, rest, levels=levels).refine,
+        "uniform Loop": refine.create("loop", faces, rest, levels=levels).refine,
         "Loop limit": LoopLimit(faces, len(rest), levels).mesh,
         "PN": lambda points: pn_triangles(*shaded(points, faces), pieces),
         "Phong": lambda points: phong_triangles(*shaded(points, faces), pieces),

@@ -184,7 +184,7 @@ def error_curves(
             if name == method and rule in (shown, "")
         )
         if found:
-            series.append(Series(f"{method}, {shown}" if shown else method, [start, *found]))
+            series.append(Series(method, [start, *found]))
     high = 1.08 * max(y for one in series for _, y in one.points)
     step = next(
         step
