@@ -26,6 +26,7 @@ COLOURS = (
     (86, 180, 233),
     (230, 159, 0),
     (110, 114, 122),
+    INK,
 )
 MARGINS = (0.11, 0.14, 0.22, 0.17)  # left, top, right, bottom, over the height
 

@@ -8,14 +8,19 @@ from __future__ import annotations
 import contextlib
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import asdict
+from itertools import groupby
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from risorius.app.cli.parameters import FiniteRange, Size
 from risorius.app.errors import UserError, in_one_line
+
+if TYPE_CHECKING:
+    from .subjects import Subject
 
 MESHES = ("face", "2k", "20k", "200k", "200k shuffled", "1M", "1M shuffled")
 PATH = click.Path(path_type=Path)
@@ -71,35 +76,73 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None)
 )
 @click.option("--apart", is_flag=True, help="Left and right halves of scans, each for itself.")
 @click.option(
-    "--curves", type=PATH, help="NAME.png: error over triangles, as NAME_SUBJECT_RULE.png."
+    "--expression", "expressions", multiple=True, help="Only this one; may be given several times."
 )
-def bench_quality(reference: Path | None, finer: str, apart: bool, curves: Path | None) -> None:
-    """Measure how near every scheme comes to a dense face, for the triangles it spends."""
+@click.option(
+    "--curves", type=PATH, help="NAME.png: errors over triangles, as NAME_SUBJECT_MEASURE.png."
+)
+def bench_quality(
+    reference: Path | None,
+    finer: str,
+    apart: bool,
+    expressions: tuple[str, ...],
+    curves: Path | None,
+) -> None:
+    """Measure how near every scheme comes to a dense face and its picture, for what it spends."""
     from risorius.app.files import check_png, save_png
 
-    from . import quality, quality_report, subjects
+    from . import quality, quality_report
 
     if curves is not None:
         check_png(curves)
-    measured: list[subjects.Subject] = []
-    if reference is not None:
-        with _told():
-            measured.append(subjects.scanned(reference, apart=apart))
-    if finer != "none":
-        measured.append(subjects.built_in({"4": 1, "16": 2}[finer]))
-    if not measured:
-        raise UserError("nothing to measure: give --reference FOLDER, or --finer 4 or 16")
+    measured = _subjects(reference, finer, apart, expressions)
     budgets = quality.BUDGETS if curves is None else quality.CURVE_BUDGETS
-    for subject in measured:
-        scores = quality.measure(subject, budgets=budgets, progress=_progress)
-        click.echo(quality_report.text(subject, scores) + "\n")
+    found: dict[str, list[quality.Score]] = {}
+    for group, members in groupby(measured, lambda subject: subject.group):
+        together = list(members)
+        scores = found[group] = [
+            score
+            for subject in together
+            for score in quality.measure(
+                subject, budgets=budgets, expressions=expressions or None, progress=_progress
+            )
+        ]
+        click.echo(quality_report.text(together, scores) + "\n")
         if curves is None:
             continue
-        for rule in quality.RULES:
-            name = f"{curves.stem}_{subject.name}_{rule}".replace(" ", "_").replace(",", "")
-            target = curves.with_stem(name)
-            save_png(target, quality_report.error_curves(subject, scores, rule))
+        for what, _, _ in quality_report.MEASURED:
+            target = curves.with_stem(f"{curves.stem}_{group}_{what}".replace(" ", "_"))
+            save_png(target, quality_report.error_curves(together[0], scores, what))
             click.echo(f"{in_one_line(target)}: written", err=True)
+    click.echo(f"{quality_report.LEGEND}\n")
+    click.echo(quality_report.targets_text(found))
+
+
+def _subjects(
+    reference: Path | None, finer: str, apart: bool, expressions: Collection[str]
+) -> list[Subject]:
+    """Whom to measure in these expressions, or in all; UserError where there is nobody."""
+    from risorius import assets
+
+    from . import subjects
+
+    found: list[Subject] = []
+    if reference is not None:
+        with _told():
+            found += subjects.scanned(reference, apart=apart)
+    known = dict.fromkeys(name for subject in found for name in subject.poses)
+    of_head = assets.load("head").expressions if finer != "none" else {}
+    known |= dict.fromkeys(of_head)
+    if not known:
+        raise UserError("nothing to measure: give --reference FOLDER, or --finer 4 or 16")
+    for name in expressions:
+        if name not in known:
+            raise UserError(f"--expression {in_one_line(name)}: there are {', '.join(known)}")
+    asked = set(expressions or known)
+    found = [subject for subject in found if asked & set(subject.poses)]
+    if asked & set(of_head):  # building it takes ten seconds
+        found.append(subjects.built_in({"4": 1, "16": 2}[finer]))
+    return found
 
 
 @bench.command("simulate")

@@ -2,180 +2,200 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 
 from risorius.app.files import Image
 
 from .charts import Axis, Series, chart
-from .quality import (
-    COARSE,
-    EVERYWHERE,
-    IDEAL,
-    RULES,
-    SCHEMES,
-    UNIFORM,
-    Key,
-    Score,
-    means,
-)
+from .methods import AS_SET, BLENDED, EVERYWHERE, LOOK, SCHEMES, STATIC, UNIFORM, Key
+from .quality import Score, means
 from .report import table, verdict
 from .subjects import Subject
 
-ADAPTIVE = {"loop": 1.6, "cubic": 1.6, "detail": 2.0}
-"""The budget of each scheme in the table: what the targets speak of."""
-ASKED = {"cubic": (10, 35), "detail": (40, 75)}
-"""Per cent by which a scheme is to be better than the coarse mesh: adaptive, everything twice."""
-NORMALS_ASKED = 30
-"""Per cent by which the normals of `detail` are to be better."""
+STATIC_KEY: Key = (STATIC, "", 1.0)
+PAPER = "loop"
+TRAINED = "detail"
+"""The scheme that is given a finer mesh."""
+SPENT = 2.0
+"""Triangles over those of the coarse mesh, in the targets."""
+ASKED = {True: (30, 40), False: (20, 40)}
+"""Per cent of picture error less than unrefined, for the head or not: without a finer mesh, with
+it."""
+FASTEST = 1.0
+"""How far the surface may go in a frame, over the motion of the input."""
 ROUNDING = 5e-4
-"""A share of the coarse error up to which two errors are equal."""
+"""A share up to which two errors are equal."""
 
-
-COLUMNS: tuple[tuple[tuple[str, str], Key], ...] = (
-    (("", "coarse"), (COARSE, "", 1.0)),
-    (("drop", "loop 1.6x"), ("loop", "drop", 1.6)),
-    (("drop", "cubic 1.6x"), ("cubic", "drop", 1.6)),
-    (("bulge", "cubic 1.6x"), ("cubic", "bulge", 1.6)),
-    (("bulge", "detail 2x"), ("detail", "bulge", 2.0)),
-    *((("all twice", method), (method, "", EVERYWHERE)) for method in SCHEMES),
-    (("uniform", "Loop 4x"), (UNIFORM[0], "", 1.0)),
-    (("uniform", "Loop 16x"), (UNIFORM[0], "", 2.0)),
-    (("uniform", "PN 4x"), (UNIFORM[1], "", 1.0)),
-    (("uniform", "PN 16x"), (UNIFORM[1], "", 2.0)),
+BY_EXPRESSION: tuple[tuple[str, Key], ...] = (
+    ("static", STATIC_KEY),
+    ("paper 2x", (PAPER, "normal", SPENT)),
+    ("normal+rest", (*LOOK, AS_SET)),
+    *(
+        (f"{scheme} 2x", (scheme, rules[-1], SPENT))
+        for scheme, rules in SCHEMES.items()
+        if scheme != PAPER
+    ),
+    *((f"{name} 4x", (name, "", 4.0)) for name in UNIFORM),
 )
-"""Two lines of head, and what stands below them."""
+"""Titles and methods of the tables by expression; schemes are blended."""
+MEASURED = (
+    ("distance", "RMS distance [mm]", 3),
+    ("picture", "RMS picture [grey levels]", 2),
+)
+"""What these tables and the charts show."""
 
 
-def text(subject: Subject, scores: Sequence[Score]) -> str:
-    """All that is printed of a subject."""
-    parts = [errors_table(scores), rules_table(scores), targets_text(scores)]
-    return "\n\n".join([f"{_title(subject)}\n{parts[0]}", *parts[1:]])
+LEGEND = """\
+better, worst  than static: per cent of error less, in the mean; largest share of it, of all
+levels         RMS of grey levels beside pictures of the dense mesh, three views, 480 x 480 pixels
+outline        pixels covered by one mesh and not by the other, of one view
+seen, toward   per cent of pixels that differ by more than 8 levels from static; of these, nearer
+jump, turn     largest motion of the surface in a frame over the input's; of a normal [degrees]"""
+
+
+def text(subjects: Sequence[Subject], scores: Sequence[Score]) -> str:
+    """All that is printed of one subject, or of several together."""
+    lines = [_title(subjects[0]), *methods_table(scores)]
+    if len(subjects) == 1:
+        lines += expressions_tables(scores)
+    return "\n".join(lines)
 
 
 def _title(subject: Subject) -> str:
     return (
-        f"{subject.name}: {len(subject.coarse_faces)} triangles against {len(subject.dense_faces)}"
+        f"{subject.group}: {len(subject.coarse_faces)} triangles against {len(subject.dense_faces)}"
     )
 
 
-def errors_table(scores: Sequence[Score]) -> str:
-    """Errors of every expression, for adaptive refinement and for everything split twice."""
+def methods_table(scores: Sequence[Score]) -> list[str]:
+    """Means over expressions of all methods; the largest of jumps, turns and `worst`."""
     average = means(scores)
-    columns = [(*head, key, max(7, *map(len, head))) for head, key in COLUMNS if key in average]
-    by_key = {(*s.key, s.expression): s for s in scores}
-    by_key.update({(*key, "mean"): found for key, found in average.items()})
-    expressions = [*dict.fromkeys(s.expression for s in scores), "mean"]
-    lines = []
-    for what, unit, digits in (
-        ("distance", "RMS distance [mm]", 3),
-        ("angle", "RMS angle of normals [deg]", 2),
-    ):
-        rows = [
-            [name, *(getattr(by_key[(*key, name)], what) for *_, key, _ in columns)]
-            for name in expressions
-        ]
-        lines += table(
-            "|".join([":<26", *(f"{above}:>{width}" for above, *_, width in columns)]), []
-        )
-        titles = [f"{head}:{width}.{digits}f" for _, head, _, width in columns]
-        lines += [*table("|".join([f"{unit}:<26", *titles]), rows), ""]
-    counts = [f"{average[key].triangles:{width}d}" for *_, key, width in columns]
-    return "\n".join([*lines, f"{'triangles, mean':26} {' '.join(counts)}"])
-
-
-def rules_table(scores: Sequence[Score]) -> str:
-    """Means over expressions of every scheme with every rule that splits edges."""
-    average = means(scores)
-    coarse = average[COARSE, "", 1.0]
+    static = average[STATIC_KEY]
     columns = (
-        "mean over expressions:<26|x triangles:11.2f|mm:7.3f|better:>8|degrees:8.2f|better:>8"
-        "|median:7.2f|better:>8"
+        "mean over expressions:<24|x tri:5.2f|mm:6.3f|better:>6|worst:5.2f|degrees:7.2f|better:>6"
+        "|levels:6.2f|better:>6|worst:5.2f|outline:7.0f|seen %:6.1f|toward:>6|jump:>5|turn:>5"
     )
     rows = []
-    for (method, rule, budget), found in average.items():
-        how = "twice" if budget == EVERYWHERE else rule
-        cells = [f"{method}, {how}" if how else method, found.triangles / coarse.triangles]
-        for what in ("distance", "angle", "median_angle"):
+    for key, found in average.items():
+        cells: list[object] = [_name(key), found.triangles / static.triangles]
+        for what in ("distance", "angle", "picture"):
             error = getattr(found, what)
-            cells += [error, f"{100.0 * (1.0 - error / getattr(coarse, what)):.1f} %"]
+            cells += [error, f"{100.0 * (1.0 - error / getattr(static, what)):.1f}%"]
+            if what != "angle":
+                cells.append(worst(scores, key, what)[0])
+        cells += [found.outline, found.changed]
+        cells += [
+            f"{value:{style}}" if value == value else "-"
+            for value, style in (
+                (found.toward, ".0f"),
+                (found.jump, ".2f" if found.jump < 10.0 else ".0f"),
+                (found.turn, ".1f"),
+            )
+        ]
         rows.append(cells)
-    return "\n".join(table(columns, rows))
+    return table(columns, rows)
 
 
-def targets_text(scores: Sequence[Score]) -> str:
-    """What was aimed at, what was found, and whether it is met."""
-    lines = ["Targets, means over expressions; better = less error than the coarse mesh:"]
-    average = means(scores)
-    coarse = average[COARSE, "", 1.0]
-
-    def better(key: Key, what: str = "distance") -> float:
-        return 100.0 * (1.0 - float(getattr(average[key], what) / getattr(coarse, what)))
-
-    def judge(scheme: str, keys: Sequence[Key], asked: int, what: str = "distance") -> None:
-        """One line for the best of several ways."""
-        keys = [key for key in keys if key in average]
-        if not keys:
-            return
-        best = max(keys, key=lambda key: better(key, what))
-        spent = average[best].triangles / coarse.triangles
-        how = f"by {best[1]}" if best[1] else "everything twice"
-        ideal = (IDEAL, *best[1:])
-        extra = ""
-        if scheme == "detail" and ideal in average:
-            extra = f"; with its points on the truth {better(ideal, what):.1f} %"
-        if what == "angle":
-            extra = f", median {better(best, 'median_angle'):.1f} %{extra}"
-        text = (
-            f"{scheme}: {'normals ' if what == 'angle' else ''}{asked} % better; found "
-            f"{better(best, what):.1f} % ({how}, {spent:.2f}x the triangles){extra}"
-        )
-        lines.append(verdict(better(best, what) >= asked, text))
-
-    for scheme, (adaptive, everything) in ASKED.items():
-        if not any(s.method == scheme for s in scores):
-            continue
-        worst, where = _worst_ratio(scores, scheme)
-        text = f"{scheme}: never worse than coarse; worst {worst:.4f} of it ({where})"
-        lines.append(verdict(worst <= 1.0 + ROUNDING, text))
-        judge(scheme, [(scheme, rule, ADAPTIVE[scheme]) for rule in RULES], adaptive)
-        judge(scheme, [(scheme, "", EVERYWHERE)], everything)
-    judge(
-        "detail", [("detail", rule, ADAPTIVE["detail"]) for rule in RULES], NORMALS_ASKED, "angle"
+def _name(key: Key) -> str:
+    method, rule, budget = key
+    how = {EVERYWHERE: "twice", AS_SET: "as set"}.get(budget, f"{budget:g}x")
+    return " ".join(
+        [method, rule, how] if rule else [method, how] if method != STATIC else [method]
     )
-    judge("detail", [("detail", "", EVERYWHERE)], NORMALS_ASKED, "angle")
+
+
+def expressions_tables(scores: Sequence[Score]) -> list[str]:
+    """Errors of every expression, for some of the methods."""
+    by_key = {(*score.key, score.expression): score for score in scores}
+    expressions = list(dict.fromkeys(score.expression for score in scores))
+    columns = [(title, key) for title, key in BY_EXPRESSION if (*key, expressions[0]) in by_key]
+    lines = []
+    for what, unit, digits in MEASURED:
+        titles = [f"{title}:{max(7, len(title))}.{digits}f" for title, _ in columns]
+        rows = [
+            [name, *(getattr(by_key[(*key, name)], what) for _, key in columns)]
+            for name in expressions
+        ]
+        lines += ["", *table("|".join([f"{unit}:<26", *titles]), rows)]
+    return lines
+
+
+def worst(scores: Sequence[Score], key: Key, what: str) -> tuple[float, str]:
+    """The largest error of a method over the unrefined mesh's, and in which expression."""
+    static = {s.expression: getattr(s, what) for s in scores if s.key == STATIC_KEY}
+    return max(
+        (getattr(s, what) / max(static[s.expression], 1e-300), s.expression)
+        for s in scores
+        if s.key == key
+    )
+
+
+def targets_text(all_scores: Mapping[str, Sequence[Score]]) -> str:
+    """What was aimed at, what was found, and whether it is met; `all_scores`: by group."""
+    lines = [
+        f"Targets, of the best blended scheme at {SPENT:g}x the triangles; better = picture error "
+        "less than static:"
+    ]
+    for group, scores in all_scores.items():
+        average = means(scores)
+        for has_finer in (False, True):
+            keys = [
+                key
+                for key in average
+                if key[1].endswith(BLENDED) and key[2] == SPENT and (key[0] == TRAINED) == has_finer
+            ]
+            if keys:
+                best = min(keys, key=lambda key: average[key].picture)
+                asked = ASKED[group == "head"][has_finer]
+                lines += _verdicts(f"{group}, {_name(best)}", scores, best, asked)
     return "\n".join(lines)
 
 
-def _worst_ratio(scores: Iterable[Score], scheme: str) -> tuple[float, str]:
-    """The largest error over the coarse mesh's, of all expressions, rules and budgets."""
-    coarse = {s.expression: s.distance for s in scores if s.method == COARSE}
-    return max(
-        (s.distance / coarse[s.expression], f"{s.expression}, {s.triangles} triangles")
-        for s in scores
-        if s.method == scheme
-    )
+def _verdicts(name: str, scores: Sequence[Score], key: Key, asked: float) -> list[str]:
+    average = means(scores)
+    found = average[key]
+    better = 100.0 * (1.0 - found.picture / average[STATIC_KEY].picture)
+    lines = [verdict(better >= asked, f"{name}: {asked} % better; found {better:.1f} %")]
+    for what in ("distance", "picture"):
+        ratio, where = worst(scores, key, what)
+        text = f"{name}: {what} never worse than static; worst {ratio:.3f} of it ({where})"
+        lines.append(verdict(ratio <= 1.0 + ROUNDING, text))
+    jump, where = max((score.jump, score.expression) for score in scores if score.key == key)
+    text = f"{name}: jumps at most {FASTEST:g} x the input's motion; found {jump:.2f} ({where})"
+    return [*lines, verdict(jump <= FASTEST + ROUNDING, text)]
 
 
 def error_curves(
-    subject: Subject, scores: Sequence[Score], chosen: str, size: tuple[int, int] = (720, 440)
+    subject: Subject, scores: Sequence[Score], what: str, size: tuple[int, int] = (720, 440)
 ) -> Image:
-    """Mean distance over triangles spent, split by one rule, beside uniform subdivision."""
+    """Mean error over triangles spent: schemes, by their last rule, beside whole meshes refined.
+
+    `what`: one of MEASURED.
+    """
     average = means(scores)
-    coarse = average[COARSE, "", 1.0]
+    static = average[STATIC_KEY]
+    start = 1.0, getattr(static, what)
     series = []
-    for method in (*SCHEMES, IDEAL, *UNIFORM):
+    for method in (*SCHEMES, *UNIFORM):
+        shown = SCHEMES.get(method, ("",))[-1]
         found = sorted(
-            (score.triangles / coarse.triangles, score.distance)
+            (score.triangles / static.triangles, getattr(score, what))
             for (name, rule, _), score in average.items()
-            if name == method and rule in (chosen, "")
+            if name == method and rule in (shown, "")
         )
         if found:
-            series.append(Series(method, [(1.0, coarse.distance), *found]))
+            series.append(Series(method, [start, *found]))
     high = 1.08 * max(y for one in series for _, y in one.points)
-    step = next(step for step in (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 5.0) if high / step <= 9)
+    step = next(
+        step
+        for magnitude in (0.01, 0.1, 1.0, 10.0, 100.0)
+        for step in (magnitude, 2.0 * magnitude, 5.0 * magnitude)
+        if high / step <= 9
+    )
     ticks = [k * step for k in range(int(high / step) + 1)]
+    title = next(title for name, title, _ in MEASURED if name == what)
     return chart(
-        f"{_title(subject)}, split by {chosen}",
+        _title(subject),
         Axis(
             "triangles, times those of the coarse mesh",
             1.0,
@@ -183,7 +203,7 @@ def error_curves(
             (1, 1.5, 2, 3, 4, 6, 10, 16),
             True,
         ),
-        Axis("RMS distance to the true surface [mm], mean", 0.0, high, ticks),
+        Axis(f"{title}, mean", 0.0, high, ticks),
         series,
         size,
     )

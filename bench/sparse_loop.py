@@ -30,14 +30,7 @@ Unsigned = npt.NDArray[np.uint32]
 
 def sparse_loop(load: Load, *, levels: int) -> tuple[Callable[[Positions], Narrow], int]:
     """Build the matrices of `levels` levels; returns what computes rows, and how many triangles."""
-    faces = load.faces.astype(np.int64)
-    smooth = scipy.sparse.identity(len(load.rest), format="csr")
-    spread = smooth
-    for _ in range(levels):
-        mesh = refine.connect(faces, smooth.shape[0])
-        smooth = (_loop_rules(mesh) @ smooth).tocsr()
-        spread = (_midpoint_rules(mesh) @ spread).tocsr()
-        faces = _quartered(mesh)
+    smooth, spread, faces = subdivision(load.faces.astype(np.int64), len(load.rest), levels)
     smooth, spread = smooth.astype(np.float32), spread.astype(np.float32)
     corners = load.faces.astype(np.uint32)
     points: npt.NDArray[Any] = np.zeros((len(load.rest), 3), dtype=np.float32)
@@ -52,6 +45,19 @@ def sparse_loop(load: Load, *, levels: int) -> tuple[Callable[[Positions], Narro
         return rows
 
     return frame, len(faces)
+
+
+def subdivision(
+    faces: Wide, vertex_count: int, levels: int
+) -> tuple[scipy.sparse.csr_matrix, scipy.sparse.csr_matrix, Wide]:
+    """Matrices, shape (N, V), of levels of Loop's rules and of plain means, and their triangles."""
+    smooth = spread = scipy.sparse.identity(vertex_count, format="csr")
+    for _ in range(levels):
+        mesh = refine.connect(faces, smooth.shape[0])
+        smooth = (_loop_rules(mesh) @ smooth).tocsr()
+        spread = (_midpoint_rules(mesh) @ spread).tocsr()
+        faces = _quartered(mesh)
+    return smooth, spread, faces
 
 
 def _plain_arrays(matrix: scipy.sparse.csr_matrix) -> tuple[Unsigned, Unsigned, Narrow]:

@@ -3,14 +3,16 @@
 Two sources. A folder of scanned motion as `bench motion` takes it, with a decimation beside it:
 `face.npz` (vertices, triangles, a displacement field (V, 3) for each expression [cm]) and
 `coarse_2029.npz` (triangles, and where each coarse vertex lies on the dense mesh: fine_triangle,
-barycentric). And the built-in head: its finer meshes, moved by the simulation itself, and of their
-vertices those that the head has.
+barycentric); and, where they are there, other persons of the same triangles, who are moved alike:
+`identities.npz` (vertices of each). And the built-in head: its finer meshes, moved by the
+simulation itself, and of their vertices those that the head has.
 """
 
 from __future__ import annotations
 
+import math
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -28,8 +30,10 @@ Faces = npt.NDArray[np.int32]
 MILLIMETRES = 10.0  # per unit of a folder of scans (cm)
 COARSE = "coarse_2029.npz"
 DENSE = "face.npz"
+PERSONS = "identities.npz"
 NOT_MOTION = ("vertices", "triangles", "landmarks68")
 SETTLE = 90  # frames of 1/60 s until a pose is still
+FILM = 90  # frames of 1/30 s in which an expression comes and goes
 
 
 @dataclass(frozen=True)
@@ -45,43 +49,72 @@ class Subject:
     """A face as a dense mesh, a coarse one, and expressions of both."""
 
     name: str
+    group: str
+    """What it is reported with."""
     dense_faces: Faces
     coarse_faces: Faces
     rest: PosePair
     poses: Mapping[str, PosePair]
+    film: Callable[[str], Sequence[Points]] | None = None
+    """Moves the coarse mesh through an expression, frames of 1/30 s."""
+
+    def frames(self, expression: str) -> Sequence[Points]:
+        """Positions of the coarse mesh while an expression comes, and goes if that is different."""
+        if self.film is not None:
+            return self.film(expression)
+        way = self.poses[expression].coarse - self.rest.coarse
+        return [self.rest.coarse + strength(k) * way for k in range(FILM // 2 + 1)]
 
 
-def scanned(folder: str | Path, *, apart: bool = False) -> Subject:
-    """Read a folder of scans, every expression in it.
+def strength(frame: int) -> float:
+    """How far an expression has come in a frame of a film, 0..1."""
+    return math.sin(math.pi * frame / FILM) ** 2
+
+
+def scanned(folder: str | Path, *, apart: bool = False) -> list[Subject]:
+    """Read a folder of scans: every person and every expression in it.
 
     Fields that end in _L and _R are two halves of one expression, and are added unless `apart`.
     Raises ValueError, naming the file, if something is missing in it.
     """
     dense = read_arrays(Path(folder) / DENSE, ("vertices", "triangles"))
     coarse = read_arrays(Path(folder) / COARSE, ("triangles", "fine_triangle", "barycentric"))
-    rest = MILLIMETRES * dense["vertices"].astype(np.float64)
-    corners = dense["triangles"][coarse["fine_triangle"]]
-    weights = coarse["barycentric"].astype(np.float64)
-
-    def pose(points: Points) -> PosePair:
-        return PosePair(points, np.einsum("vi,vij->vj", weights, points[corners]))
-
+    shape = dense["vertices"].shape
     fields: dict[str, Points] = {}
     for name, array in dense.items():
-        if name in NOT_MOTION or array.shape != rest.shape:
+        if name in NOT_MOTION or array.shape != shape:
             continue
         expression = name if apart else name.removesuffix("_L").removesuffix("_R")
         moved = MILLIMETRES * array.astype(np.float64)
-        fields[expression] = fields.get(expression, np.zeros_like(rest)) + moved
+        fields[expression] = fields.get(expression, np.zeros(shape)) + moved
     if not fields:
-        raise ValueError(f"{Path(folder) / DENSE}: no displacement field of shape {rest.shape}")
-    return Subject(
-        "scan",
-        dense["triangles"].astype(np.int32),
-        coarse["triangles"].astype(np.int32),
-        pose(rest),
-        {name: pose(rest + moved) for name, moved in fields.items()},
-    )
+        raise ValueError(f"{Path(folder) / DENSE}: no displacement field of shape {shape}")
+    persons = {"scan": dense["vertices"]}
+    others = Path(folder) / PERSONS
+    if others.is_file():
+        persons |= {name.replace("_", " "): rest for name, rest in read_arrays(others, ()).items()}
+    strange = [name for name, rest in persons.items() if rest.shape != shape]
+    if strange:
+        raise ValueError(f"{others}: '{strange[0]}' has not the {shape[0]} vertices of {DENSE}")
+
+    def subject(name: str, vertices: npt.NDArray[Any]) -> Subject:
+        rest = MILLIMETRES * vertices.astype(np.float64)
+        corners = dense["triangles"][coarse["fine_triangle"]]
+        weights = coarse["barycentric"].astype(np.float64)
+
+        def pose(points: Points) -> PosePair:
+            return PosePair(points, np.einsum("vi,vij->vj", weights, points[corners]))
+
+        return Subject(
+            name,
+            "scan" if name == "scan" else "other persons",
+            dense["triangles"].astype(np.int32),
+            coarse["triangles"].astype(np.int32),
+            pose(rest),
+            {expression: pose(rest + moved) for expression, moved in fields.items()},
+        )
+
+    return [subject(name, vertices) for name, vertices in persons.items()]
 
 
 def built_in(level: int) -> Subject:
@@ -97,12 +130,28 @@ def built_in(level: int) -> Subject:
     for name, values in head.expressions.items():
         moved = settled_positions(simulation, values, SETTLE)
         poses[name] = PosePair(moved, moved[:count])
+    own = sim.create(head)
+
+    def film(expression: str) -> list[Points]:
+        """Move the head itself, faster than the fine one and much alike."""
+        own.reset()
+        frames = []
+        for frame in range(FILM + 1):
+            share = strength(frame)
+            own.set_all({key: share * at for key, at in head.expressions[expression].items()})
+            for _ in range(2):
+                own.step(1.0 / 60.0)
+            frames.append(own.positions.copy())
+        return frames
+
     return Subject(
         f"head x {4**level}",
+        "head",
         fine.faces,
         head.faces,
         PosePair(fine.vertices, fine.vertices[:count]),
         poses,
+        film,
     )
 
 
@@ -132,6 +181,16 @@ def settled_positions(
     for _ in range(frames):
         simulation.step(1.0 / 60.0)
     return simulation.positions.copy()
+
+
+def vertex_normals(positions: Points, faces: npt.NDArray[np.integer]) -> Points:
+    """Unit vertex normals, weighted by area, shape (V, 3)."""
+    a, b, c = (positions[faces[:, k]] for k in range(3))
+    cross = np.cross(b - a, c - a)
+    sums = np.zeros_like(positions)
+    for k in range(3):
+        np.add.at(sums, faces[:, k], cross)
+    return np.asarray(sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-300))
 
 
 def read_arrays(path: Path, needed: tuple[str, ...]) -> dict[str, npt.NDArray[Any]]:

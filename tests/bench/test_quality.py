@@ -9,11 +9,14 @@ import numpy.typing as npt
 import pytest
 
 from risorius import assets
-from risorius.bench import quality, subjects
-from risorius.bench.quality_report import error_curves, text
+from risorius.bench import methods, quality, subjects
+from risorius.bench.methods import Key
+from risorius.bench.quality_report import STATIC_KEY, error_curves, targets_text, text
 from risorius.bench.subjects import PosePair, Subject
 
 Points = npt.NDArray[np.float64]
+
+BLENDED = "bulge, blended"
 
 
 def bent(points: Points, angle: float) -> Points:
@@ -36,31 +39,35 @@ def rolled_plane() -> Subject:
     poses = {
         f"roll {angle:g}": PosePair(bent(dense, angle), bent(coarse, angle)) for angle in (0.5, 1)
     }
-    return Subject("plane", dense_faces, coarse_faces, PosePair(dense, coarse), poses)
+    return Subject("plane", "plane", dense_faces, coarse_faces, PosePair(dense, coarse), poses)
 
 
 def test_scores_of_a_cylinder() -> None:
     """Cubic edges follow a cylinder, Loop shrinks it; what splits more is never coarser."""
     subject = rolled_plane()
-    scores = quality.measure(subject, budgets=(1.6, 2.0))
+    scores = quality.measure(subject)
     average = quality.means(scores)
-    coarse = average[quality.COARSE, "", 1.0]
-    assert coarse.triangles == 72
-    for scheme in quality.SCHEMES:
-        for rule in quality.RULES[:2] if scheme == "loop" else quality.RULES:
-            assert average[scheme, rule, 1.6].triangles <= 1.6 * 72
+    static = average[STATIC_KEY]
+    assert static.triangles == 72
+    for scheme, rules in methods.SCHEMES.items():
+        for rule in rules:
             assert average[scheme, rule, 2.0].triangles <= 2.0 * 72
-        assert average[scheme, "", quality.EVERYWHERE].triangles >= 10 * 72
-    assert average["cubic", "", quality.EVERYWHERE].distance < 0.5 * coarse.distance
-    assert average["loop", "", quality.EVERYWHERE].distance > coarse.distance
-    assert average["uniform PN", "", 2].distance < 0.5 * coarse.distance
-    assert average["uniform Loop", "", 2].triangles == 16 * 72
+        assert average[scheme, "", methods.EVERYWHERE].triangles >= 10 * 72
+    cubic, loop = (average[scheme, "", methods.EVERYWHERE] for scheme in ("cubic", "loop"))
+    assert cubic.distance < 0.5 * static.distance < 0.5 * loop.distance
+    assert cubic.picture < static.picture < loop.picture
+    pn = average["PN", "", 16.0]
+    assert pn.outline < 0.5 * static.outline < 0.5 * loop.outline
+    assert pn.distance < 0.5 * static.distance
+    assert average["uniform Loop", "", 16.0].triangles == 16 * 72
+    assert static.jump == pytest.approx(1.0, abs=1e-4)
+    assert average["cubic", "bulge", 2.0].jump > 2.0 * average["cubic", BLENDED, 2.0].jump
 
-    printed = text(subject, scores)
-    for part in ("plane: 72 tri", "roll 0.5", f"{coarse.distance:.3f}", "cubic, height"):
+    printed = text([subject], scores)
+    for part in ("plane: 72 tri", "roll 0.5", f"{static.distance:.3f}", "cubic curvature 2x"):
         assert part in printed
-    assert "cubic: never worse than coarse" in printed
-    assert error_curves(subject, scores, "drop", (300, 200)).shape == (200, 300, 3)
+    for what in ("distance", "picture"):
+        assert error_curves(subject, scores, what, (300, 200)).shape == (200, 300, 3)
 
 
 def test_error_of_the_truth_is_zero() -> None:
@@ -69,15 +76,43 @@ def test_error_of_the_truth_is_zero() -> None:
     pose = subject.poses["roll 1"]
     same = Subject(
         "same",
-        subject.dense_faces,
-        subject.dense_faces,
-        PosePair(subject.rest.dense, subject.rest.dense),
-        {"roll": PosePair(pose.dense, pose.dense)},
+        "same",
+        subject.coarse_faces,
+        subject.coarse_faces,
+        PosePair(subject.rest.coarse, subject.rest.coarse),
+        {"roll": PosePair(pose.coarse, pose.coarse)},
     )
-    (coarse, *_) = quality.measure(same, schemes=(), budgets=())
-    assert coarse.method == quality.COARSE
-    assert coarse.distance < 1e-9
-    assert coarse.angle < 1e-3
+    (static, *_) = quality.measure(same, schemes=(), budgets=())
+    assert static.key == STATIC_KEY
+    assert static.distance < 1e-6
+    assert static.angle < 0.1
+    assert static.picture < 0.1
+    assert static.outline == 0.0
+
+
+def scored(key: Key, expression: str, error: float, jump: float = 1.0) -> quality.Score:
+    """A score with the same error of every kind."""
+    return quality.Score(key, expression, 72, error, error, error, 9.0, 2.0, 50.0, jump, 1.0)
+
+
+def test_targets() -> None:
+    """Each target is judged for the best blended scheme, and says where it was worst."""
+    scores = []
+    for expression, share in (("joy", 0.4), ("kiss", 1.1)):
+        scores += [
+            scored(STATIC_KEY, expression, 10.0),
+            scored(("cubic", BLENDED, 2.0), expression, 10.0 * share, jump=0.9),
+            scored(("cubic", "bulge", 2.0), expression, 0.0),
+            scored(("detail", BLENDED, 2.0), expression, 2.0, jump=1.4),
+        ]
+    lines = targets_text({"head": scores}).splitlines()[1:]
+    assert [line.split()[0] for line in lines] == ["MISSED"] * 3 + ["met"] * 4 + ["MISSED"]
+    assert "30 % better; found 25.0 %" in lines[0]
+    assert lines[1].endswith("distance never worse than static; worst 1.100 of it (kiss)")
+    assert "40 % better; found 80.0 %" in lines[4]
+    assert "found 1.40 (" in lines[-1]
+    scan = targets_text({"scan": scores}).splitlines()[1]
+    assert scan.split()[0] == "met" and "20 % better; found 25.0 %" in scan
 
 
 def test_scans_are_read(tmp_path: Path) -> None:
@@ -106,16 +141,26 @@ def test_scans_are_read(tmp_path: Path) -> None:
         fine_triangle=first,
         barycentric=corner,
     )
-    subject = subjects.scanned(tmp_path)
+    (subject,) = subjects.scanned(tmp_path)
     assert set(subject.poses) == {"sneer", "nobody_knows"}
     assert np.allclose(subject.rest.coarse[:50], head.vertices[:50], atol=1e-5)
     assert np.allclose(subject.poses["sneer"].coarse - subject.rest.coarse, 2.0)
     assert np.allclose(subject.poses["nobody_knows"].dense - subject.rest.dense, 1.0)
-    assert set(subjects.scanned(tmp_path, apart=True).poses) == {
-        "sneer_L",
-        "sneer_R",
-        "nobody_knows",
-    }
+    frames = subject.frames("sneer")
+    assert (frames[0] == subject.rest.coarse).all()
+    assert np.allclose(frames[-1], subject.poses["sneer"].coarse)
+    (apart,) = subjects.scanned(tmp_path, apart=True)
+    assert set(apart.poses) == {"sneer_L", "sneer_R", "nobody_knows"}
+
+    np.savez(tmp_path / subjects.PERSONS, person_1=fine.vertices / 5.0)
+    first, second = subjects.scanned(tmp_path)
+    assert (first.name, first.group) == ("scan", "scan")
+    assert (second.name, second.group) == ("person 1", "other persons")
+    assert np.allclose(second.rest.dense, 2.0 * first.rest.dense)
+    assert np.allclose(second.poses["sneer"].coarse - second.rest.coarse, 2.0)
+    np.savez(tmp_path / subjects.PERSONS, person_1=fine.vertices[1:])
+    with pytest.raises(ValueError, match=r"identities.npz: 'person 1' has not the \d+ vertices"):
+        subjects.scanned(tmp_path)
 
 
 @pytest.mark.slow
@@ -129,30 +174,34 @@ def test_built_in_head() -> None:
     joy = subject.poses["joy"]
     assert (joy.coarse == joy.dense[: len(joy.coarse)]).all()
     assert np.abs(joy.coarse - head.vertices).max() > 5.0
+    frames = subject.frames("joy")
+    assert np.abs(frames[-1] - head.vertices).max() < 1.0 < np.abs(frames[45] - frames[0]).max()
 
 
 @pytest.mark.slow
-def test_targets_on_the_built_in_head() -> None:
+def test_gains_on_the_built_in_head() -> None:
     """Schemes that interpolate come nearer in every expression, by as much as was aimed at."""
     scores = quality.measure(
         subjects.built_in(1),
         schemes=("cubic", "detail"),
-        budgets=quality.BUDGETS,
+        budgets=(1.6, 2.0),
         expressions=("joy", "blink"),
     )
-    coarse = {s.expression: s.distance for s in scores if s.method == quality.COARSE}
-    for score in scores:
-        if score.method in ("cubic", "detail"):
-            assert score.distance < coarse[score.expression], score
+    for what in ("distance", "picture"):
+        static = {s.expression: getattr(s, what) for s in scores if s.key == STATIC_KEY}
+        for score in scores:
+            if score.key[0] in ("cubic", "detail") and score.key[1] != "normal":
+                assert getattr(score, what) < static[score.expression], score
     average = quality.means(scores)
-    before = average[quality.COARSE, "", 1.0]
+    before = average[STATIC_KEY]
     assert average["cubic", "bulge", 1.6].distance < 0.9 * before.distance
-    assert average["cubic", "", quality.EVERYWHERE].distance < 0.65 * before.distance
+    assert average["cubic", "", methods.EVERYWHERE].distance < 0.65 * before.distance
     assert average["detail", "bulge", 2.0].distance < 0.6 * before.distance
-    assert average["detail", "bulge, grown", 2.0].distance < 0.6 * before.distance
-    assert average["detail", "", quality.EVERYWHERE].distance < 0.25 * before.distance
-    assert average["detail", "bulge", 2.0].median_angle < 0.7 * before.median_angle
-    assert average["detail", "", quality.EVERYWHERE].angle < 0.7 * before.angle
+    assert average["detail", BLENDED, 2.0].distance < 0.6 * before.distance
+    assert average["detail", BLENDED, 2.0].picture < 0.65 * before.picture
+    assert average["detail", BLENDED, 2.0].jump < 1.2
+    assert average["detail", "", methods.EVERYWHERE].distance < 0.25 * before.distance
+    assert average["detail", "bulge", 2.0].angle < 0.7 * before.angle
 
 
 @pytest.mark.parametrize("missing", ["folder", "array", "motion"])

@@ -9,7 +9,7 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from risorius import refine
-from risorius.bench.quality import vertex_normals
+from risorius.bench.subjects import vertex_normals
 from tests import meshes
 from tests.refine.cases import Forced, Needed
 

@@ -1,7 +1,13 @@
-"""Uniform PN triangles: every triangle a cubic patch through its corners, for comparison.
+"""Curved triangles for comparison: uniform PN triangles and Phong tessellation.
 
-Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN triangles": ten control points from positions and
-normals, normals interpolated quadratically. Plain numpy, not made for speed.
+Both make a patch of every triangle from the positions and normals of its corners alone. Plain
+numpy, not made for speed.
+
+- Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN triangles": a cubic patch through the corners,
+  ten control points; normals interpolated quadratically.
+- Boubekeur, Alexa 2008, "Phong tessellation": a flat point is dropped onto the tangent planes of
+  the corners, and moved FULLNESS of the way to the mean of the three; normals interpolated
+  linearly.
 """
 
 import numpy as np
@@ -11,7 +17,11 @@ Doubles = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
 
-def tessellate(
+FULLNESS = 0.75
+"""Of Phong tessellation, as its authors propose."""
+
+
+def pn_triangles(
     positions: Doubles, normals: Doubles, faces: npt.NDArray[np.integer], pieces: int
 ) -> tuple[Doubles, Doubles, Integers]:
     """Cut every edge into `pieces`: positions, normals and the pieces^2 F triangles.
@@ -37,10 +47,28 @@ def tessellate(
         turned += _spread(a * a, at_corner[:, i])
         turned += _spread(a * b, _edge_normal(corners[:, i], corners[:, j], at_corner, i, j))
     points += _spread(6 * u * v * w, middle)
-    length = np.linalg.norm(turned, axis=2, keepdims=True)
-    turned = turned / np.maximum(length, 1e-300)
-    triangles = small[None] + len(places) * np.arange(len(faces))[:, None, None]
-    return points.reshape(-1, 3), turned.reshape(-1, 3), triangles.reshape(-1, 3)
+    return _joined(points, turned, small)
+
+
+def phong_triangles(
+    positions: Doubles, normals: Doubles, faces: npt.NDArray[np.integer], pieces: int
+) -> tuple[Doubles, Doubles, Integers]:
+    """Cut every edge into `pieces`, as `pn_triangles` does."""
+    places, small = _grid(pieces)
+    corners, at_corner = positions[faces], normals[faces]
+    flat = np.einsum("pk,fki->fpi", places, corners)
+    above = np.einsum("fpki,fki->fpk", flat[:, :, None] - corners[:, None], at_corner)
+    dropped = np.einsum("pk,fpk,fki->fpi", places, above, at_corner)
+    turned = np.einsum("pk,fki->fpi", places, at_corner)
+    return _joined(flat - FULLNESS * dropped, turned, small)
+
+
+def _joined(points: Doubles, turned: Doubles, small: Integers) -> tuple[Doubles, Doubles, Integers]:
+    """All patches as one mesh, with unit normals; `points`, `turned`: shape (F, n, 3)."""
+    unit = turned / np.maximum(np.linalg.norm(turned, axis=2, keepdims=True), 1e-300)
+    firsts = points.shape[1] * np.arange(len(points))
+    triangles = small[None] + firsts[:, None, None]
+    return points.reshape(-1, 3), unit.reshape(-1, 3), triangles.reshape(-1, 3)
 
 
 def _grid(pieces: int) -> tuple[Doubles, Integers]:
