@@ -76,8 +76,7 @@ def assert_equals_twin(
     """Every point, normal and triangle of the mesh is that of the plain twin, to float32.
 
     `normals_cancel`: leave out the normals, because opposite triangles may meet at a vertex and
-    nothing but rounding remains of its normal; `tolerance`: of positions and of normals, which
-    stand upright on differences of float32 positions, on edges down to 0.07 long.
+    nothing but rounding remains of its normal; `tolerance`: of positions and of normals.
     """
     names = point_names(refiner.origins())
     assert set(names) == set(twin.positions)
