@@ -1,6 +1,6 @@
 """Directions that move with a surface: what detail is stored along (detail.py).
 
-Three orthogonal directions of length one, as rows of a matrix, for edges, vertices and triangles.
+Three orthogonal directions of length one, as rows of a matrix, for points of edges and triangles.
 They turn with the surface whatever it does, because they are found anew from it in every frame; and
 they change without a jump as long as normals and edges do.
 
@@ -13,7 +13,6 @@ or the other, every second triangle cut across the fold, and small teeth were se
 import numpy as np
 
 from ...jit import njit
-from ..kahler.frame import ONCE, FrameBuffers
 from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Surroundings
 from ..mesh.vectors import (
@@ -65,22 +64,30 @@ def upright(positions: Doubles, normals: Floats, a: np.uint32, b: np.uint32) -> 
 
 
 @njit
-def edge_axes(around: Surroundings, frame: FrameBuffers, normals: Floats, axes: Floats) -> None:
-    """Write the directions of the points of the split edges: up, along the edge, across.
+def middle_axes(around: Surroundings, positions: Doubles, normals: Floats, axes: Floats) -> None:
+    """Write the directions of the middles of all edges: upright on the edge, along it, across.
 
     `normals`: of vertices, shape (V, 3); `axes`: shape (E, 3, 3, 3), edge, point, direction.
-    Edges that are split once have a middle only. Up is upright on the edge there, and half way from
-    there to the normal at the end at the quarters: a point near a vertex turns with it, not with
-    the edge.
     """
-    for k in range(frame.counts[ONCE]):
-        e = frame.split_once[k]
+    for e in range(axes.shape[0]):
         a, b = around.points[e, 0], around.points[e, 1]
-        up, along = upright(frame.positions, normals, a, b), between(frame.positions, a, b)
-        write_axes(up, along, axes[e, 1])
-        if frame.splits[e] == 2:
-            write_axes(plus(up, row_of(normals, a)), along, axes[e, 0])
-            write_axes(plus(up, row_of(normals, b)), along, axes[e, 2])
+        write_axes(upright(positions, normals, a, b), between(positions, a, b), axes[e, 1])
+
+
+@njit
+def quarter_axes(
+    around: Surroundings, positions: Doubles, normals: Floats, edges: Unsigned, axes: Floats
+) -> None:
+    """Write the directions of the quarters of some edges, shape (N,), from those of their middles.
+
+    Up is half way from the middle's to the normal at the end: a point near a vertex turns with it,
+    not with the edge.
+    """
+    for e in edges:
+        a, b = around.points[e, 0], around.points[e, 1]
+        up, along = row_of(axes[e, 1], 0), between(positions, a, b)
+        write_axes(plus(up, row_of(normals, a)), along, axes[e, 0])
+        write_axes(plus(up, row_of(normals, b)), along, axes[e, 2])
 
 
 @njit

@@ -1,7 +1,10 @@
-"""The criterion `bulge`: how far the scheme would move the middle of an edge.
+"""The criterion `bulge`: how far a split would move the middle of an edge, and turn its normal.
 
-For schemes whose edges are curves (curves.py): where the straight edge is far from its curve, the
-unsplit mesh is wrong.
+Where the straight edge is far from where the scheme would have it, the unsplit mesh is wrong; and
+where the normal in its middle is not between those at its ends, so is its shading. For schemes that
+tell both (`Scheme.measure`): those with curved edges, and all with `normals="refined"`.
+
+    size of an edge     hypot(bulge, turning x angle x length)      a distance
 """
 
 import numpy as np
@@ -19,22 +22,22 @@ moves."""
 
 
 class Bulge(Measuring):
-    """How far the scheme would move the middle of an edge: what is wrong without a split.
+    """How far a split would move the middle of an edge and turn the normal there.
 
-    For the schemes that interpolate. What is coarse at rest counts as well, unlike in the paper.
+    What is coarse at rest counts as well, unlike in the paper.
     """
 
     def __init__(self, once: float = 0.08, twice: float = 0.4, *, turning: float = 0.35) -> None:
         """`once`, `twice`: distances in mean edge lengths of the mesh at rest.
 
-        `turning`: the distance that an error of normals of a radian counts that a split would mend,
-        for the scheme `detail`; 0 looks at distances only.
+        `turning`: what a turn of the normal by a radian counts, in lengths of the edge; 0 looks at
+        distances only.
         """
         super().__init__(once, twice, "distances in mean edge lengths")
         self.turning = turning
 
     def set_scheme(self, scheme: object) -> None:
-        """Take the scheme of the refiner; raises ValueError for one without curves."""
+        """Take the scheme of the refiner; raises ValueError for one that does not measure."""
         if not hasattr(scheme, "measure"):
             raise ValueError(
                 'criterion "bulge" asks the scheme how far it moves edges, which '
@@ -62,7 +65,7 @@ class Bulge(Measuring):
 
 @njit
 def count_turns(sizes: Floats, turns: Floats, scale: np.float32) -> None:
-    """Add what the turns of normals count to the sizes of edges, shape (E,), as squares."""
+    """Add `turns`, shape (E,), of normals [rad] x length, to `sizes` of edges, as squares."""
     for e in range(sizes.shape[0]):
         turn = scale * turns[e]
         sizes[e] = np.sqrt(sizes[e] * sizes[e] + turn * turn)

@@ -35,7 +35,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import njit
-from ..kahler.frame import CENTRES, ONCE, ROWS, FrameBuffers
+from ..kahler.frame import CENTRES, ROWS, FrameBuffers
 from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.borders import border_neighbours
 from ..mesh.connectivity import Connectivity, Surroundings
@@ -57,7 +57,7 @@ from ..mesh.vectors import (
     unit,
     write_row,
 )
-from .curves import MIDDLE, NEAR_END, NEAR_START, CurveScheme, place_on_curves
+from .curves import MIDDLE, NEAR_END, NEAR_START, CurveScheme
 
 FULLNESS = np.float32(1.2)
 """How much more than the cubic an inner edge bulges. Triangles between curves are flat, so the best
@@ -111,14 +111,12 @@ class CubicScheme(CurveScheme):
     ) -> None:
         """Weigh the corners of the mesh at rest, and follow its borders."""
         super().bind(connectivity, rest_positions, rest_normals)
-        mesh, valences = (
-            connectivity,
-            np.bincount(connectivity.edges.ravel(), minlength=len(rest_normals)),
-        )
+        mesh = connectivity
+        valences = np.bincount(mesh.edges.ravel(), minlength=len(rest_normals))
         self._weights = np.zeros(mesh.faces.shape, dtype=np.float32)
         weigh_corners(rest_positions, mesh.faces, self._weights)
         self._tangents = Tangents(
-            normals=np.zeros_like(rest_normals),
+            normals=self._normals,
             steeper=np.zeros_like(rest_normals),
             off=(STEEPER / np.maximum(valences, 1)).astype(np.float32),
             beyond=follow_borders(mesh, rest_positions),
@@ -127,19 +125,17 @@ class CubicScheme(CurveScheme):
         self._shares = np.zeros((len(mesh.faces), 6), dtype=np.float32)
         weigh_neighbours(mesh, rest_positions, self._across, self._shares)
 
-    def place(self, frame: FrameBuffers) -> None:
-        """Write vertices as they are, and the points of split edges on the curves found before."""
-        place_on_curves(self._around, frame, self._tangents.normals, self._bulges)
+    def prepare(self, frame: FrameBuffers) -> None:
+        """Find the normals of vertices and the bulges of all edges."""
+        self._bulge(frame.positions)
 
     def place_centres(self, frame: FrameBuffers) -> None:
         """Raise the points in the middle of triangles as far as the edges around have grown."""
         raise_centres(self._mesh, frame, self._across, self._shares)
 
-    def _bulge(self, frame: FrameBuffers) -> Floats:
-        mesh, tangents = self._mesh, self._tangents
-        weighted_normals(frame.positions, mesh.faces, self._weights, tangents.normals)
-        bulge_cubic(self._around, frame, tangents, self._bulges)
-        return self._bulges
+    def _bulge(self, positions: Doubles) -> None:
+        weighted_normals(positions, self._mesh.faces, self._weights, self._normals)
+        bulge_cubic(self._around, positions, self._tangents, self._bulges)
 
 
 @njit
@@ -197,9 +193,7 @@ def length_of(d: Vector) -> np.float32:
 
 
 @njit
-def write_cubic(
-    bulges: Floats, e: np.uint32, i: int, turn_a: np.float32, turn_b: np.float32
-) -> None:
+def write_cubic(bulges: Floats, e: int, i: int, turn_a: np.float32, turn_b: np.float32) -> None:
     """Write coordinate i of the bulges of an edge.
 
     `turn_a`, `turn_b`: how much the tangents at both ends turn away from the straight edge.
@@ -211,18 +205,15 @@ def write_cubic(
 
 @njit
 def bulge_cubic(
-    around: Surroundings, frame: FrameBuffers, tangents: Tangents, bulges: Floats
+    around: Surroundings, positions: Doubles, tangents: Tangents, bulges: Floats
 ) -> None:
-    """Write the bulges of the split edges: those of the cubic with the tangents at both ends.
+    """Write the bulges of all edges: those of the cubic with the tangents at both ends.
 
     `bulges`: shape (E, 3, 3); with `tangents.normals` of this frame, the steeper ones follow.
     """
-    if frame.counts[ONCE] == 0:
-        return
     steepen_normals(around, tangents)
-    positions, steeper = frame.positions, tangents.steeper
-    for k in range(frame.counts[ONCE]):
-        e = frame.split_once[k]
+    steeper = tangents.steeper
+    for e in range(bulges.shape[0]):
         a, b = around.points[e, 0], around.points[e, 1]
         d = between(positions, a, b)
         if around.is_interior[e]:

@@ -1,17 +1,14 @@
 r"""What the interpolating schemes share: edges that bulge between end points that stay.
 
-A scheme says how far the points of a split edge stand out of the straight edge, its *bulge*; this
-pass puts them there, as far as they have grown (blending.py), with their normals.
+A scheme says how far the points of every edge would stand out of the straight edge, its *bulge*;
+this pass puts those of split edges there, as far as they have grown (blending.py):
 
                  .  m  .                 m      =  (a + b) / 2          +  bulge
               n           n              n at a =  (3 a + b) / 4        +  bulge
             a---------------b            grown   =  mix of (a + m) / 2 and n
 
-The normal at m is the mean of those at a and b, turned until it stands upright on the curve there:
-an S that ends as it began has the same normals at both ends and another one in between (Vlachos et
-al. 2001, "Curved PN triangles", have quadratic normals for the same reason). It does so as far as
-the edges of both triangles have grown: beside a triangle that has no such normals a single one is
-seen as a scar. At n the normal is the mean of its neighbours'.
+The normal at m is the mean of those at a and b, and at n that of its neighbours, as in the paper
+(section 4.4); surface_normals.py has others.
 
 Kähler, Haber, Seidel 2003, section 4.2 asks for rules that are cheap, local, close to the input
 mesh, and correct at borders; these are all, and leave every vertex where the simulation has it.
@@ -21,32 +18,22 @@ import numpy as np
 
 from ...jit import njit
 from ..border.rows import place_unmoved
-from ..kahler.frame import ONCE, FrameBuffers, buffers_for, split_everywhere
+from ..kahler.frame import ONCE, FrameBuffers
 from ..kahler.smoothing import mix, write_mean_normal
 from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.vectors import (
-    HALF,
-    ZERO,
-)
+from ..mesh.vectors import HALF, ZERO
 
 QUARTER = np.float32(0.25)
 THREE_QUARTERS = np.float32(0.75)
-
-UPRIGHT = np.float32(0.95)
-"""How much of its slope along the curve a normal in the middle of an edge loses. Chosen: all but a
-rest, so that one that lies along the edge keeps a direction."""
 NEAR_START, MIDDLE, NEAR_END = 0, 1, 2
 """Points of an edge in an array of bulges, shape (E, 3, 3): edge, point, x y z."""
 
 
 class CurveScheme:
-    """A scheme whose original vertices stay and whose edges are curves; fill in `_bulge`."""
+    """A scheme whose original vertices stay and whose edges are curves; fill in `prepare`."""
 
     interpolates = True
-    turns: Floats | np.float32 = ZERO
-    """How much a split would mend in normals at every edge, shape (E,), if that is known: the
-    angle [rad] times the length."""
 
     def bind(
         self,
@@ -57,34 +44,26 @@ class CurveScheme:
         """Take the mesh; `rest_positions` and `rest_normals`, shape (V, 3)."""
         self._mesh, self._around = connectivity, connectivity.around
         self._bulges = np.zeros((len(connectivity.edges), 3, 3), dtype=np.float32)
-        self._every_edge = split_everywhere(
-            buffers_for(connectivity, rest_positions, np.zeros((0, 3), np.float32), rest_normals),
-            connectivity.vertex_count,
-        )
+        self._normals = np.zeros_like(rest_normals)
 
     def prepare(self, frame: FrameBuffers) -> None:
-        """Find the bulges of all edges as if each were split once."""
-        self._bulge(
-            self._every_edge._replace(
-                positions=frame.positions, points=frame.points, normals=frame.normals
-            )
-        )
+        """Write the bulges of all edges, split or not, and the unit normals of vertices, (V, 3).
+
+        The middle's bulge is that of an edge that is split once.
+        """
+        raise NotImplementedError
 
     def place(self, frame: FrameBuffers) -> None:
         """Write vertices as they are, and the points of split edges on their curves."""
-        place_on_curves(self._around, frame, frame.normals, self._bulge(frame))
+        place_on_curves(self._around, frame, self._normals, self._bulges)
 
     def measure(self, bulges: Floats, turns: Floats) -> None:
         """Write how far the middle of every edge stands out if it is split once, shape (E,).
 
-        And how much that would mend in normals [rad], times a length, if the scheme knows.
+        A mean of normals turns nothing: `turns`, shape (E,), become zero.
         """
         bulge_sizes(self._bulges, bulges)
-        turns[:] = self.turns
-
-    def _bulge(self, frame: FrameBuffers) -> Floats:
-        """Return the bulges, shape (E, 3, 3); of edges split once only the middle, if split."""
-        raise NotImplementedError
+        turns[:] = ZERO
 
 
 @njit

@@ -4,46 +4,38 @@ Kähler, Haber, Seidel 2003, section 6: "If the input geometry has been produced
 one could do even better than smoothing: detail information can be stored locally and used to place
 generated split vertices on the surface, as has been exercised in multiresolution editing."
 
-At binding, the points that all edges would get from the scheme `cubic` are compared with the finer
-mesh, both at rest. What is missing is stored along directions that move with the surface:
+At binding, the points that all edges would get from the scheme `cubic` are compared with where they
+fit the finer mesh best (fit.py), both at rest. What is missing is stored along directions that move
+with the surface:
 
           n                                     stored:  how the finer surface lies beside the
-          |                                              point, and its normal, along n, t and n x t
+          |                                              point, along n, t and n x t
     a-----o------> t = b - a
          /                                      n:  upright on the edge in its middle, half way from
         n x t                                       there to the normal of the end at its quarters
 
 In a frame the same directions are found in the deformed mesh and the detail is added to the cubic.
-A quarter has to turn with the vertex near it: with one direction n for all of an edge, the normals
-around a vertex turned less than its own where the mesh was folded, and stars stood there.
-
-The normal of a point turns to that of the finer mesh as far as the edges around have grown, in the
-mean: where what is refined ends, a fold would otherwise end as a crease. The middle of a triangle,
-which blending adds, slides toward the edges that bend (axes.py).
+A quarter has to turn with the vertex near it: with one direction n for all of an edge, stars stood
+around the vertices where the mesh was folded.
 
 The middle of an edge has two places, for one split and for two (fit.py), and goes from the first to
-the second while the quarters grow.
+the second while the quarters grow. The middle of a triangle, which blending adds, slides toward the
+edges that bend (axes.py).
 
-Vertices stay where they are (they lie on the finer mesh if they are taken from it). All of them
-show its normals, fitted (fit.py) and stored along their own normal and one of their edges.
+Vertices stay where they are (they lie on the finer mesh if they are taken from it). Normals are not
+the finer mesh's but those of the refined surface (surface_normals.py), which has its shape.
 """
 
 import numpy as np
 import numpy.typing as npt
 
 from ...jit import njit
-from ..kahler.frame import CENTRES, ONCE, ROWS, FrameBuffers
-from ..kahler.smoothing import mix
-from ..mesh.arrays import Doubles, Floats
+from ..kahler.frame import CENTRES, ROWS, FrameBuffers
+from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity
 from ..mesh.validation import checked_indices, checked_positions
 from ..mesh.vectors import HALF, ONE, ZERO, Vector, plus, row_of, times
-from .axes import (
-    edge_axes,
-    find_middles,
-    slide_middle,
-    triangle_axes,
-)
+from .axes import find_middles, middle_axes, quarter_axes, slide_middle, triangle_axes
 from .closest import SearchSurface
 from .cubic import CubicScheme
 from .fit import Points, fit, middles_of
@@ -58,7 +50,6 @@ AXES_OF = [START, MIDDLE, END, MIDDLE]
 THIRD = np.float32(1 / 3)
 FOUR = np.float32(4.0)
 FOUR_NINTHS = np.float32(4 / 9)
-QUARTER = np.float32(0.25)
 
 
 class DetailScheme(CubicScheme):
@@ -85,43 +76,45 @@ class DetailScheme(CubicScheme):
         assert self._finer is not None, "a scheme is bound once"
         mesh = connectivity
         self._axes = np.zeros((len(mesh.edges), 3, 3, 3), dtype=np.float32)
-        bulges = super()._bulge(
-            self._every_edge._replace(positions=rest_positions, normals=rest_normals)
-        )
-        # All directions follow the normals that the cubic has, now as in every frame.
-        rest_normals = self._tangents.normals.copy()
+        self._bulge(rest_positions)
+        normals = self._normals  # at rest: all directions follow those that the cubic has
         shares = np.zeros((len(mesh.faces), 3), dtype=np.float32)
         centre_axes = np.zeros((len(mesh.faces), 3, 3), dtype=np.float32)
-        find_middles(rest_positions, rest_normals, mesh.faces, shares, centre_axes)
-        points, ups = _points_on(bulges, mesh, rest_positions, rest_normals)
+        find_middles(rest_positions, normals, mesh.faces, shares, centre_axes)
+        points, ups = _points_on(self._bulges, mesh, rest_positions, normals)
         middles = shares.astype(np.float64), centre_axes[:, 0].astype(np.float64)
-        places = fit(self._finer, mesh, rest_positions, rest_normals, (points, ups), middles)
+        places = fit(self._finer, mesh, rest_positions, normals, (points, ups), middles)
         centres = middles_of(places.of_edges, mesh, rest_positions, middles[0])
         offsets = Points(places.of_edges - points, places.of_triangles - centres)
-        twice = np.full(len(mesh.edges), 2, dtype=np.uint8)
-        everything = self._every_edge._replace(
-            positions=rest_positions, points=rest_positions.astype(np.float32), splits=twice
-        )
-        edge_axes(mesh.around, everything, rest_normals, self._axes)
+        every_edge = np.arange(len(mesh.edges), dtype=np.uint32)
+        middle_axes(self._around, rest_positions, normals, self._axes)
+        quarter_axes(self._around, rest_positions, normals, every_edge, self._axes)
         self._offsets = _along(self._axes[:, AXES_OF], offsets.of_edges)
         self._centre_offsets = _along(centre_axes[:, None], offsets.of_triangles)
         self._finer = None
 
+    def prepare(self, frame: FrameBuffers) -> None:
+        """Find the bulges of all edges as if each were split once."""
+        super().prepare(frame)
+        middle_axes(self._around, frame.positions, self._normals, self._axes)
+        add_offsets_once(self._offsets, self._axes, self._bulges)
+
+    def place(self, frame: FrameBuffers) -> None:
+        """Write points with their detail; only once after `prepare` with edges split twice."""
+        twice = frame.twice_split_edges
+        quarter_axes(self._around, frame.positions, self._normals, twice, self._axes)
+        add_offsets_twice(twice, frame.growth_twice, self._offsets, self._axes, self._bulges)
+        super().place(frame)
+
     def place_centres(self, frame: FrameBuffers) -> None:
         """Slide and move the points in the middle of triangles."""
-        slide_centres(self._mesh, frame, self._tangents.normals, self._centre_offsets)
-
-    def _bulge(self, frame: FrameBuffers) -> Floats:
-        bulges = super()._bulge(frame)
-        edge_axes(self._around, frame, self._tangents.normals, self._axes)
-        add_offsets(frame, self._offsets, self._axes, bulges)
-        return bulges
+        slide_centres(self._mesh, frame, self._normals, self._centre_offsets)
 
 
 def _points_on(
     bulges: Floats, mesh: Connectivity, positions: Doubles, normals: Floats
 ) -> tuple[Doubles, Doubles]:
-    """Points of all edges (fit.Points), and normals there, both of shape (E, 4, 3)."""
+    """Points of all edges (fit.Points), and normals around there, both of shape (E, 4, 3)."""
     share = np.array([0.25, 0.5, 0.75])[:, None]
     a, b = mesh.edges[:, 0], mesh.edges[:, 1]
     points = (1.0 - share) * positions[a][:, None] + share * positions[b][:, None] + bulges
@@ -136,22 +129,32 @@ def _along(axes: Floats, vectors: Doubles) -> Floats:
 
 
 @njit
-def add_offsets(frame: FrameBuffers, offsets: Floats, axes: Floats, bulges: Floats) -> None:
-    """Add the stored offsets of the split edges, shape (E, 4, 3), to their bulges.
+def add_offsets_once(offsets: Floats, axes: Floats, bulges: Floats) -> None:
+    """Add the stored offsets of middles, shape (E, 4, 3), to their bulges, shape (E, 3, 3).
 
-    `axes`: shape (E, 3, 3, 3), edge, point, direction; `bulges`: shape (E, 3, 3).
+    `axes`: shape (E, 3, 3, 3), edge, point, direction.
     """
-    for k in range(frame.counts[ONCE]):
-        e = frame.split_once[k]
-        is_twice = frame.splits[e] == 2
-        twice = frame.growth_twice[e] if is_twice else ZERO
+    for e in range(bulges.shape[0]):
         for j in range(3):
-            offset = mix(offsets[e, ALONE, j], offsets[e, MIDDLE, j], twice)
             for i in range(3):
-                bulges[e, MIDDLE, i] += offset * axes[e, MIDDLE, j, i]
-                if is_twice:
-                    bulges[e, START, i] += offsets[e, START, j] * axes[e, START, j, i]
-                    bulges[e, END, i] += offsets[e, END, j] * axes[e, END, j, i]
+                bulges[e, MIDDLE, i] += offsets[e, ALONE, j] * axes[e, MIDDLE, j, i]
+
+
+@njit
+def add_offsets_twice(
+    edges: Unsigned, growth_twice: Floats, offsets: Floats, axes: Floats, bulges: Floats
+) -> None:
+    """Add what a second split of some edges, shape (N,), shows: middles have those of one already.
+
+    `growth_twice`: shape (E,); the rest as for `add_offsets_once`.
+    """
+    for e in edges:
+        for j in range(3):
+            step = growth_twice[e] * (offsets[e, MIDDLE, j] - offsets[e, ALONE, j])
+            for i in range(3):
+                bulges[e, MIDDLE, i] += step * axes[e, MIDDLE, j, i]
+                bulges[e, START, i] += offsets[e, START, j] * axes[e, START, j, i]
+                bulges[e, END, i] += offsets[e, END, j] * axes[e, END, j, i]
 
 
 @njit

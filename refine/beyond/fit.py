@@ -11,11 +11,6 @@ cut more off: the middle of an edge has one place for each, and so has the middl
 
 The middles of triangles are fitted twice: with all else where the edges meet half way, because an
 unblended frame has none of them; then alone, where they slide to (axes.py).
-
-Normals: in the folds of lips and lids, where the vertices of a decimated face often lie, the normal
-of one place says nothing about the triangles around it. So the normals that are drawn are fitted
-too, at vertices and points at once, to those of all finer vertices; unsplit, split once and split
-twice, because a frame shows something between them.
 """
 
 from typing import NamedTuple
@@ -38,12 +33,6 @@ STIFFNESS = 0.05
 """Pull back to where a point was, against 1 of a vertex of the finer mesh. Chosen by measurement:
 less fits the vertices better and what lies between them worse, and lets points leap far out where
 the finer mesh is hardly finer."""
-NORMAL_STIFFNESS, CORNER_STIFFNESS = 0.1, 1.0
-"""The same for normals of points, and of vertices, which are there whatever is split around them.
-Chosen by measurement on two heads."""
-UNSPLIT = 1.0
-"""How much the unsplit mesh counts in the fit of normals, against 1 of the one whose edges are all
-split twice. Chosen by measurement, flat from 0.3 to 1."""
 TWICE = (FANS, 26)
 ONCE = ((FANS, 13), (CONFIGURATIONS, 13))
 """Tables and rows (kahler/table.py) that points are fitted to: all edges split twice, and once;
@@ -52,12 +41,10 @@ START, MIDDLE, END, ALONE = 0, 1, 2, 3
 """Points of an edge: two quarters and the middle if it is split twice, the middle if once."""
 TOO_FAR = 1.0
 """A finer vertex farther away than this, in edge lengths, belongs nowhere on the coarse mesh."""
-LOST = 0.05
-"""Length of a fitted normal below which those that pulled at it have cancelled each other."""
 
 
 class Points(NamedTuple):
-    """Something for each point that splitting may make: places, or normals there."""
+    """A place, or a way to it, for each point that splitting may make."""
 
     of_edges: Doubles
     """START, MIDDLE, END of edges split twice, ALONE of those split once, shape (E, 4, 3)."""
@@ -87,15 +74,14 @@ def fit(
     lie, as shares of the corners, and normals there, shape (F, 3).
     """
     shares, middle_ups = middles[0], np.repeat(middles[1][:, None], 2, axis=1)
-    points, ups = edges
-    of_edges, _ = closest_places(surface, points, ups)
+    of_edges = closest_places(surface, *edges)
     corner_ups = np.repeat(normals[mesh.faces].sum(axis=1)[:, None], 2, axis=1)
     centres = middles_of(of_edges, mesh, positions, np.full_like(shares, 1.0 / 3.0))
-    start = Points(of_edges, closest_places(surface, centres, corner_ups)[0])
+    start = Points(of_edges, closest_places(surface, centres, corner_ups))
     places = fitted(surface, mesh, positions, start, mesh.vertex_count)
     first_middle = mesh.vertex_count + 4 * len(mesh.edges)
     centres = middles_of(places.of_edges, mesh, positions, shares)
-    start = Points(places.of_edges, closest_places(surface, centres, middle_ups)[0])
+    start = Points(places.of_edges, closest_places(surface, centres, middle_ups))
     return fitted(surface, mesh, positions, start, first_middle)
 
 
@@ -116,15 +102,10 @@ def middles_of(
     return middles
 
 
-def closest_places(
-    surface: SearchSurface, points: Doubles, normals: Doubles
-) -> tuple[Doubles, Doubles]:
-    """Closest points on the finer mesh, and its unit normals there, in the shape of `points`."""
+def closest_places(surface: SearchSurface, points: Doubles, normals: Doubles) -> Doubles:
+    """Closest points on the finer mesh that look the way of `normals`, in the shape of `points`."""
     triangles, weights = surface.closest(points.reshape(-1, 3), normals.reshape(-1, 3))
-    fine_normals = surface.at(surface.normals, triangles, weights)
-    fine_normals /= np.maximum(np.linalg.norm(fine_normals, axis=1, keepdims=True), 1e-12)
-    places = surface.at(surface.positions, triangles, weights)
-    return places.reshape(points.shape), fine_normals.reshape(points.shape)
+    return surface.at(surface.positions, triangles, weights).reshape(points.shape)
 
 
 def fitted(
@@ -136,16 +117,12 @@ def fitted(
     """
     reach = _reach(mesh, positions)
     places = points.stacked(positions)
-    shapes = [(split_everywhere(mesh, *row), 1.0) for row in (TWICE, *ONCE)]
-    for k in range(ROUNDS if len(shapes[0][0]) else 0):
+    shapes = [split_everywhere(mesh, *row) for row in (TWICE, *ONCE)]
+    for k in range(ROUNDS if len(shapes[0]) else 0):
         if k == ONCE_ROUNDS:
             shapes = shapes[:1]
-        corners, weights, residuals = _residuals(
-            surface, places, shapes, reach, surface.positions, places
-        )
-        places[first:] += _solved(
-            corners - first, weights, residuals, len(places) - first, STIFFNESS
-        )
+        corners, weights, residuals = _residuals(surface, places, shapes, reach)
+        places[first:] += _solved(corners - first, weights, residuals, len(places) - first)
     return Points.unstacked(places, mesh)
 
 
@@ -172,31 +149,25 @@ def _reach(mesh: Connectivity, positions: Doubles) -> float:
 
 
 def _residuals(
-    surface: SearchSurface, places: Doubles, shapes: list[tuple[Wide, float]], reach: float,
-    wanted: npt.NDArray[np.floating], values: Doubles,
-) -> tuple[Wide, Doubles, Doubles]:  # fmt: skip
-    """What the finer vertices want at the triangles that they are closest to, in every shape.
+    surface: SearchSurface, places: Doubles, shapes: list[Wide], reach: float
+) -> tuple[Wide, Doubles, Doubles]:
+    """What the finer vertices want of the triangles that they are closest to, in every shape.
 
-    Returns corners and weights, shape (N, 3), and what is missing there from `values` at `places`
-    to what is `wanted`, shape (N, 3).
+    `places`: shape (P, 3); `shapes`: triangles of them, shape (K, 3) each. Returns corners and
+    weights, shape (N, 3), and the way from there to the finer vertices, shape (N, 3).
     """
     terms = []
-    for triangles, share in shapes:
+    for triangles in shapes:
         refined = SearchSurface(places, triangles.astype(np.uint32))
         hit, weights = refined.closest(surface.positions, surface.normals.astype(np.float64))
         away = surface.positions - refined.at(places, hit, weights)
         is_near = np.linalg.norm(away, axis=1, keepdims=True) <= reach
-        corners = triangles[hit]
-        missing = wanted - np.einsum("nk,nki->ni", weights, values[corners])
-        scale = np.sqrt(share) * is_near
-        terms.append((corners, scale * weights, scale * missing))
+        terms.append((triangles[hit], is_near * weights, is_near * away))
     corners, weights, residuals = (np.concatenate(part) for part in zip(*terms, strict=True))
     return corners, weights, residuals
 
 
-def _solved(
-    corners: Wide, weights: Doubles, residuals: Doubles, count: int, stiffness: float | Doubles
-) -> Doubles:
+def _solved(corners: Wide, weights: Doubles, residuals: Doubles, count: int) -> Doubles:
     """Return how far each of `count` points moves, shape (count, 3).
 
     Each residual is answered by the corners, shape (N, 3), of its triangle with their weights;
@@ -212,7 +183,7 @@ def _solved(
 
     def applied(moves: Doubles) -> Doubles:
         answers: Doubles = np.einsum("nk,nki->ni", weights, moves[corners])
-        return gathered(answers) + stiffness * moves
+        return gathered(answers) + STIFFNESS * moves
 
     moves = np.zeros((count, 3))
     left = gathered(residuals)

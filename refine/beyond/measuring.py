@@ -13,8 +13,8 @@ edges. To achieve this, appropriate splitting criteria have to be developed").
     screen      length of an edge as it is seen     L x focal / distance from the eye, in pixels
     border      angle by which the border turns     how an opened mouth differs from a shut one
                 otherwise than at rest
-    bulge       how far the scheme moves a middle   for schemes with curved edges (curves.py);
-                and mends normals, if it knows      `detail` does
+    bulge       how far a split moves a middle      for schemes that tell: those with curved edges,
+                and turns the normal there          and all with refined normals (bulge.py)
 
 Each has two thresholds, above which an edge is split once and twice, and says how much an edge
 needs a split, so that all of them can be blended (blending.py) and any of them combined.

@@ -76,8 +76,7 @@ def assert_equals_twin(
     """Every point, normal and triangle of the mesh is that of the plain twin, to float32.
 
     `normals_cancel`: leave out the normals, because opposite triangles may meet at a vertex and
-    nothing but rounding remains of its normal; `tolerance`: of positions and of normals, which
-    stand upright on differences of float32 positions, on edges down to 0.07 long.
+    nothing but rounding remains of its normal; `tolerance`: of positions and of normals.
     """
     names = point_names(refiner.origins())
     assert set(names) == set(twin.positions)
@@ -100,6 +99,30 @@ def as_lists(
     """Arrays in the form the plain twin takes."""
     points = [(float(x), float(y), float(z)) for x, y, z in positions]
     return points, [(int(a), int(b), int(c)) for a, b, c in faces]
+
+
+def surface_at(
+    refiner: refine.Refiner,
+    refined: refine.RefinedMesh,
+    faces: npt.NDArray[np.int32],
+    places: npt.NDArray[np.float64],
+) -> npt.NDArray[np.float64]:
+    """Positions and unit normals at places, shape (P, 3), of every input triangle, (F, P, 6)."""
+    origins = refiner.origins()
+    result = np.full((len(faces), len(places), 6), np.nan)
+    rows = np.concatenate([refined.positions, refined.normals], axis=1).astype(np.float64)
+    is_proper = np.array([len(set(face)) == 3 for face in faces.tolist()])
+    is_shown = is_proper[refined.source]
+    corners, source = refined.triangles[is_shown], refined.source[is_shown]
+    at_corner = origins.vertices[corners][..., None] == faces[source][:, None, None, :]
+    local = (origins.weights[corners][..., None] * at_corner).sum(axis=2).astype(np.float64)
+    shares = places @ np.linalg.inv(local)
+    triangle, place = np.nonzero((shares > -1e-9).all(axis=2))
+    values = np.einsum("nk,nki->ni", shares[triangle, place], rows[corners[triangle]])
+    result[source[triangle], place] = values
+    lengths = np.linalg.norm(result[..., 3:], axis=2, keepdims=True)
+    result[..., 3:] /= lengths
+    return result[is_proper]
 
 
 @st.composite

@@ -55,8 +55,7 @@ class CurveRules:
     bulges: dict[EdgeName, Vector] = field(default_factory=dict)
 
     def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
-        """Points on the curves; normals upright on them by 95 per cent, where all has grown."""
-        around = Surroundings(self.faces)
+        """Points on the curves; normals between those at both ends."""
         points: AtPoints = {}
         normals: AtPoints = {}
         for (a, b), (once, twice) in grown.items():
@@ -68,21 +67,7 @@ class CurveRules:
                 chord = mix((0.5, self.positions[end]), (0.5, m))
                 full = self.curve((a, b), quarters)
                 points[a, b][quarters] = mix((1 - twice, chord), (twice, full))
-            start, stop = self.positions[a], self.positions[b]
-            if count[a, b] == 2:
-                start, stop = points[a, b][1], points[a, b][3]
-            along, mean = (
-                mix((1, stop), (-1, start)),
-                mix((1, self.normals[a]), (1, self.normals[b])),
-            )
-            wings = [
-                edge_name(end, c)
-                for end in (a, b)
-                for c in (around.opposite[a, b] if (a, b) in around.inner else [])
-            ]
-            share = min([once, *(grown.get(wing, (0.0, 0.0))[0] for wing in wings)])
-            slope = 0.95 * share * dot(mean, along) / max(dot(along, along), 1e-38)
-            middle = unit(mix((1, mean), (-slope, along)))
+            middle = unit(mix((1, self.normals[a]), (1, self.normals[b])))
             ends = {1: self.normals[a], 2: middle, 3: self.normals[b]}
             normals[a, b] = {q: unit(mix((1, n), (1, middle))) for q, n in ends.items()}
         return Placed(self.positions, points, self.normals, normals)

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from risorius import refine
 from risorius.bench.subjects import vertex_normals
 from tests import meshes
-from tests.refine.cases import Forced, Needed
+from tests.refine.cases import Forced, Needed, surface_at
 
 SCHEMES = ("loop", "cubic", "detail")
 BOUND = 12.0
@@ -27,30 +27,6 @@ Where opposite triangles meet, or a tip of many triangles is crumpled, their nor
 remains turns about at once, whatever is done with it. Largest seen: 5; without blending 7 and more,
 up to 74 in smaller steps."""
 STEPS = 400
-
-
-def surface_at(
-    refiner: refine.Refiner,
-    refined: refine.RefinedMesh,
-    faces: npt.NDArray[np.int32],
-    places: npt.NDArray[np.float64],
-) -> npt.NDArray[np.float64]:
-    """Positions and unit normals at places, shape (P, 3), of every input triangle, (F, P, 6)."""
-    origins = refiner.origins()
-    result = np.full((len(faces), len(places), 6), np.nan)
-    rows = np.concatenate([refined.positions, refined.normals], axis=1).astype(np.float64)
-    is_proper = np.array([len(set(face)) == 3 for face in faces.tolist()])
-    is_shown = is_proper[refined.source]
-    corners, source = refined.triangles[is_shown], refined.source[is_shown]
-    at_corner = origins.vertices[corners][..., None] == faces[source][:, None, None, :]
-    local = (origins.weights[corners][..., None] * at_corner).sum(axis=2).astype(np.float64)
-    shares = places @ np.linalg.inv(local)
-    triangle, place = np.nonzero((shares > -1e-9).all(axis=2))
-    values = np.einsum("nk,nki->ni", shares[triangle, place], rows[corners[triangle]])
-    result[source[triangle], place] = values
-    lengths = np.linalg.norm(result[..., 3:], axis=2, keepdims=True)
-    result[..., 3:] /= lengths
-    return result[is_proper]
 
 
 def turns_around(

@@ -333,11 +333,16 @@ def test_bulge(scheme: str) -> None:
     assert set(refiner.splits.tolist()) == {0, 1, 2}
 
 
-def test_bulge_needs_curves() -> None:
-    """The paper's scheme has no curved edges to measure."""
+def test_bulge_needs_measures() -> None:
+    """The paper's scheme does not tell how far it moves edges; its refined normals know."""
     mesh = meshes.octahedron()
-    with pytest.raises(ValueError, match=r"it goes with the schemes .* got LoopScheme"):
+    with pytest.raises(ValueError, match='LoopScheme does not tell; normals="refined" does'):
         refine.create("kahler", mesh.faces, mesh.vertices, criterion="bulge")
+    refiner = refine.create(
+        "kahler", mesh.faces, mesh.vertices, criterion=refine.Bulge(0.05, 0.5), normals="refined"
+    )
+    refiner.refine(mesh.vertices)
+    assert (refiner.splits > 0).all()
 
 
 @pytest.mark.parametrize("names", ["normal+rest", "rest+normal", "normal+normal", "rest", "normal"])

@@ -15,6 +15,7 @@ from tests import meshes
 from tests.refine import plain_twin
 from tests.refine.cases import Needed, as_lists, assert_equals_twin, point_names
 from tests.refine.plain_detail import DetailRules, Seen
+from tests.refine.plain_normals import RefinedNormals
 
 
 def bumpy(columns: int, rows: int) -> meshes.Mesh:
@@ -96,14 +97,18 @@ def test_lies_on_the_finer_mesh(blend: bool) -> None:
     assert errors["detail"] < 0.5 * errors["cubic"]
 
 
-def test_shows_finer_normals() -> None:
-    """Normals are those of the finer mesh where the vertices of the refined one are."""
-    mesh = refined("detail", COARSE.vertices)
+def test_normals_of_the_surface_are_the_finer_ones() -> None:
+    """What the surface of all splits shows is far nearer to the finer normals than a mean is."""
     surface = SearchSurface(FINE.vertices, FINE.faces.astype(np.uint32))
-    hit, weights = surface.closest(mesh.positions.astype(np.float64), np.zeros(mesh.normals.shape))
-    expected = surface.at(surface.normals, hit, weights)
-    expected /= np.linalg.norm(expected, axis=1, keepdims=True)
-    assert np.median((expected * mesh.normals).sum(axis=1)) > 0.999
+    off = {}
+    for normals in ("linear", "refined"):
+        mesh = refined("detail", COARSE.vertices, normals=normals)
+        places = mesh.positions.astype(np.float64)
+        hit, weights = surface.closest(places, np.zeros_like(places))
+        expected = surface.at(surface.normals, hit, weights)
+        expected /= np.linalg.norm(expected, axis=1, keepdims=True)
+        off[normals] = np.median(angles(expected, mesh.normals))
+    assert off["refined"] < 0.4 * off["linear"]
 
 
 def test_no_stars_in_folds() -> None:
@@ -130,8 +135,9 @@ def test_no_stars_in_folds() -> None:
         true /= np.linalg.norm(true, axis=1, keepdims=True)
         off[scheme] = angles(true, mesh.normals[is_middle])
     assert angles(shown["cubic"], shown["detail"]).max() < 5.0
-    # The middles of triangles lie elsewhere, so the fold itself is what they are held against.
-    assert off["detail"].max() < off["cubic"].max() + 1.0
+    # The middles of triangles lie elsewhere, so the fold itself is what they are held against: up
+    # to 7.5 degrees, and 24 with linear normals.
+    assert off["detail"].max() < off["cubic"].max() + 4.0
 
 
 def test_no_teeth_along_folds() -> None:
@@ -183,9 +189,10 @@ def test_turns_with_the_mesh(seed: int) -> None:
         st.sampled_from([meshes.octahedron(), meshes.tube(6, 2)]),
     ),
     seed=st.integers(0, 2**16),
+    normals=st.sampled_from(["linear", "refined"]),
     blend=st.booleans(),
 )
-def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, blend: bool) -> None:
+def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, normals: str, blend: bool) -> None:
     """What is seen at rest moves as the plain twin says, for any splits and any growth."""
     generator = np.random.default_rng(seed)
     lift = 0.05 * generator.standard_normal(mesh.vertices.shape)
@@ -194,18 +201,15 @@ def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, blend: bool) -> None:
     def refiner_of(need: np.ndarray, blend: bool) -> refine.Refiner:
         return refine.create(
             "kahler", mesh.faces, mesh.vertices, scheme="detail", blend=blend,
-            detail=(mesh.vertices + lift, mesh.faces), criterion=Needed(need),
+            detail=(mesh.vertices + lift, mesh.faces), criterion=Needed(need), normals=normals,
         )  # fmt: skip
 
     def seen_with(need: float) -> Seen:
         everything = refiner_of(np.full(edge_count, need), True)
         still = everything.refine(mesh.vertices)
-        rows = np.concatenate([still.positions, still.normals], axis=1).astype(float).tolist()
+        points = still.positions.astype(float).tolist()
         names = point_names(everything.origins())
-        return {
-            name: ((x, y, z), (u, v, w))
-            for name, (x, y, z, u, v, w) in zip(names, rows, strict=True)
-        }
+        return {name: (x, y, z) for name, (x, y, z) in zip(names, points, strict=True)}
 
     seen = seen_with(0.9), seen_with(2.0)
     need = generator.uniform(-0.7, 2.0, edge_count)
@@ -216,18 +220,20 @@ def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, blend: bool) -> None:
 
     rest, faces = as_lists(mesh.vertices, mesh.faces)
     points, _ = as_lists(deformed, mesh.faces)
-    edges = [(int(a), int(b)) for a, b in refiner.edges]
     needed = Needed(need)
     splits = {
-        plain_twin.edge_name(*edge): int(n > 0) + int(n > 1)
-        for edge, n in zip(edges, needed.need, strict=True)
+        plain_twin.edge_name(int(a), int(b)): int(n > 0) + int(n > 1)
+        for (a, b), n in zip(refiner.edges, needed.need, strict=True)
     }
+    rules: plain_twin.Rules = DetailRules(rest, points, faces, seen)
+    if normals == "refined":
+        rules = RefinedNormals(rules, faces)
     twin = plain_twin.refine(
         points,
         faces,
         splits,
         growth=needed.growth(refiner.edges) if blend else None,
-        rules=DetailRules(rest, points, faces, edges, seen),
+        rules=rules,
     )
     # Short edges make long levers: directions are single precision, twice over.
     assert_equals_twin(refiner, refined, twin, tolerance=(2e-5, 2e-4))

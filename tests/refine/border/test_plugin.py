@@ -202,7 +202,7 @@ def test_unknown_name() -> None:
     [
         (
             "kahler",
-            r"it takes \['attributes', 'blend', 'coherent', 'criterion', 'detail', 'scheme'",
+            r"it takes \['attributes', 'blend', 'coherent', 'criterion', 'detail', 'normals', 's",
         ),
         ("loop", r"it takes \['attributes', 'levels'\]"),
         ("none", r"it takes \['attributes'\]"),

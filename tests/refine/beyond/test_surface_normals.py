@@ -1,0 +1,324 @@
+"""Normals of the refined surface: true, steady, and the same whatever is split."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial import KDTree
+
+from risorius import refine
+from tests import meshes
+from tests.refine.cases import Needed, surface_at
+
+ROOT = Path(__file__).resolve().parents[3]
+SCHEMES = ("loop", "cubic", "detail")
+STEPS = 800
+"""Of a motion. What pops does so at once, however small the steps are."""
+Points = npt.NDArray[np.float64]
+
+
+def bound(
+    mesh: meshes.Mesh, scheme: str, criterion: object, normals: str = "refined", blend: bool = True
+) -> refine.Refiner:
+    """A refiner; the finer mesh of `detail` is the mesh itself, a little higher."""
+    options = {"detail": (mesh.vertices + np.array([0.0, 0.0, 0.02]), mesh.faces)}
+    return refine.create(
+        "kahler", mesh.faces, mesh.vertices, uv=mesh.uv, face_uv=mesh.face_uv, scheme=scheme,
+        criterion=criterion, normals=normals, blend=blend,
+        **(options if scheme == "detail" else {}),
+    )  # fmt: skip
+
+
+def needs(mesh: meshes.Mesh, seed: int | None = None, need: float = 0.0) -> npt.NDArray[np.float64]:
+    """Needs of all edges: the same, or random ones of no, one and two splits."""
+    count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
+    if seed is None:
+        return np.full(count, need)
+    return np.random.default_rng(seed).uniform(-0.7, 2.0, count)
+
+
+def turns(some: npt.NDArray[np.floating], others: npt.NDArray[np.floating]) -> Points:
+    """Angles [rad] between unit vectors, shape (..., 3)."""
+    chords = np.linalg.norm(np.asarray(some, dtype=np.float64) - others, axis=-1)
+    angles: Points = 2.0 * np.arcsin(np.minimum(0.5 * chords, 1.0))
+    return angles
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_does_not_depend_on_what_is_split(scheme: str) -> None:
+    """A vertex has the same normal to the last bit, and so has a middle as soon as it has grown."""
+    mesh = meshes.irregular(3)
+    deformed = meshes.wrinkled(mesh, 4, 0.2)
+    count = len(mesh.vertices)
+    whole = bound(mesh, scheme, Needed(needs(mesh, need=0.9)))
+    still = whole.refine(deformed)
+    vertices, middles = still.normals[:count].copy(), {}
+    for edge, normal in zip(whole.edges.tolist(), still.normals[count:], strict=False):
+        middles[tuple(edge)] = normal.copy()
+    for criterion in ("bulge", "normal", "rest", 0, 1, 2):
+        decides = Needed(needs(mesh, criterion)) if isinstance(criterion, int) else criterion
+        blend = isinstance(criterion, str)
+        refiner = bound(mesh, scheme, decides, blend=blend)
+        refined = refiner.refine(deformed)
+        assert np.array_equal(refined.normals[:count], vertices)
+        if blend:
+            continue  # not all points have grown
+        origins = refiner.origins()
+        rows = np.flatnonzero((origins.weights == 0.5).sum(axis=1) == 2)
+        assert len(rows) == (refiner.splits > 0).sum()
+        for row in rows:
+            a, b = origins.vertices[row][origins.weights[row] > 0.0]
+            expected = middles[(a, b)] if (a, b) in middles else middles[(b, a)]
+            assert np.array_equal(refined.normals[row], expected)
+
+
+def smooth_wave(mesh: meshes.Mesh, height: float) -> Points:
+    """A grid with one wave along each axis: every normal of an edge's ends within 50 degrees."""
+    x, y = mesh.vertices[:, 0], mesh.vertices[:, 1]
+    heights = height * (np.sin(0.9 * x) + 0.6 * np.cos(0.8 * y + 0.3 * x))
+    return np.column_stack([x, y, heights])
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_normals_do_not_pop(scheme: str) -> None:
+    """In a smooth motion the shading turns in proportion to the motion, all thresholds crossed.
+
+    Largest seen: 2.4 times the turn of the surface's own normals; without blending 54 to 62, and
+    twice that with steps of half the size.
+    """
+    mesh = meshes.open_grid(8, 6)
+    places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
+
+    def most(blend: bool) -> float:
+        refiner = bound(mesh, scheme, [refine.Bulge(0.02, 0.08)], blend=blend)
+        own = bound(mesh, scheme, Needed(needs(mesh, need=0.9)))
+        before, largest, seen = None, 0.0, set()
+        for step in range(STEPS):
+            positions = smooth_wave(mesh, 0.6 * step / STEPS)
+            shown = surface_at(refiner, refiner.refine(positions), mesh.faces, places)[..., 3:]
+            surface = own.refine(positions).normals.copy()
+            seen.add(refiner.splits.tobytes())
+            if before is not None:
+                turn = turns(surface, before[1]).max()
+                largest = max(largest, float(turns(shown, before[0]).max() / turn))
+            before = shown, surface
+        assert len(seen) > 50
+        assert set(refiner.splits.tolist()) == {0, 1, 2}
+        return largest
+
+    assert most(True) < 4.0 < 40.0 < most(False)
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    seed=st.integers(0, 2**16),
+    scheme=st.sampled_from(SCHEMES),
+    edge=st.integers(0, 1000),
+    at=st.sampled_from([0.0, 0.25, 1.0, 1.25]),
+)
+def test_growth_has_no_steps(seed: int, scheme: str, edge: int, at: float) -> None:
+    """Whatever is split around it, an edge that passes a threshold turns no shading at once.
+
+    What is left is that normals between more points are interpolated otherwise: 3 degrees where
+    they turn by 80.
+    """
+    mesh = meshes.open_grid(5, 4)
+    positions = smooth_wave(mesh, 0.4)
+    places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
+    need = needs(mesh, seed)
+
+    def shading(value: float) -> Points:
+        need[edge % len(need)] = value
+        refiner = bound(mesh, scheme, Needed(need))
+        return surface_at(refiner, refiner.refine(positions), mesh.faces, places)[..., 3:]
+
+    assert turns(shading(at - 1e-4), shading(at + 1e-4)).max() < 0.05
+
+
+def ball(subdivisions: int = 2) -> meshes.Mesh:
+    """A sphere of radius 1 from an octahedron; triangles of uneven size."""
+    octahedron = meshes.octahedron()
+    refiner = refine.create("loop", octahedron.faces, octahedron.vertices, levels=subdivisions)
+    refined = refiner.refine(octahedron.vertices)
+    points = refined.positions.astype(np.float64)
+    return meshes.Mesh(
+        points / np.linalg.norm(points, axis=1, keepdims=True), refined.triangles.astype(np.int32)
+    )
+
+
+def torus(around: int = 16, across: int = 10) -> meshes.Mesh:
+    """A torus of radii 1 and 0.4."""
+    grid = meshes.open_grid(around, across)
+    u, v = 2.0 * np.pi * grid.vertices[:, 0] / around, 2.0 * np.pi * grid.vertices[:, 1] / across
+    out = 1.0 + 0.4 * np.cos(v)
+    points = np.column_stack([out * np.cos(u), out * np.sin(u), 0.4 * np.sin(v)])
+    column, row = grid.vertices[:, 0].astype(int), grid.vertices[:, 1].astype(int)
+    number = (row % across) * around + column % around
+    first = np.unique(number, return_index=True)[1]
+    return meshes.Mesh(points[first], number[grid.faces].astype(np.int32))
+
+
+def exact(name: str, points: Points) -> Points:
+    """Unit normals of the body through points near its surface, shape (..., 3)."""
+    if name == "torus":
+        ring = points * [1.0, 1.0, 0.0]
+        directions = points - ring / np.linalg.norm(ring, axis=-1, keepdims=True)
+    else:
+        directions = points / np.square([1.0, 0.6, 1.5]) if name == "ellipsoid" else points
+    normals: Points = directions / np.linalg.norm(directions, axis=-1, keepdims=True)
+    return normals
+
+
+@pytest.mark.parametrize("need", [0.9, 2.0])
+@pytest.mark.parametrize("name", ["sphere", "ellipsoid", "torus"])
+def test_nearer_to_the_exact_normals(name: str, need: float) -> None:
+    """On bodies whose normals are known, refined ones are nearer to them than linear ones."""
+    mesh = torus() if name == "torus" else ball()
+    if name == "ellipsoid":
+        mesh = meshes.Mesh(mesh.vertices * [1.0, 0.6, 1.5], mesh.faces)
+    places = np.random.default_rng(6).dirichlet([1, 1, 1], 40)
+    off = {}
+    for normals in ("linear", "refined"):
+        refiner = bound(mesh, "cubic", Needed(needs(mesh, need=need)), normals)
+        seen = surface_at(refiner, refiner.refine(mesh.vertices), mesh.faces, places)
+        off[normals] = turns(seen[..., 3:], exact(name, seen[..., :3])).mean()
+    assert off["refined"] < 0.75 * off["linear"]
+
+
+def test_the_paper_is_linear() -> None:
+    """The paper's own refiner has linear normals, to the last bit those of the class `Kahler`."""
+    mesh = meshes.irregular(5)
+    frames = [meshes.wrinkled(mesh, 6, amplitude) for amplitude in (0.1, 0.3)]
+    plain = refine.Kahler(mesh.faces, mesh.vertices)
+    default = refine.create("kahler", mesh.faces, mesh.vertices)
+    linear = refine.create("kahler", mesh.faces, mesh.vertices, normals="linear")
+    for frame in frames:
+        expected = plain.refine(frame)
+        assert (plain.splits > 0).any()
+        for refiner in (default, linear):
+            refined = refiner.refine(frame)
+            assert refined.positions.tobytes() == expected.positions.tobytes()
+            assert refined.normals.tobytes() == expected.normals.tobytes()
+            assert refined.triangles.tobytes() == expected.triangles.tobytes()
+    origins = plain.origins()
+    for row in range(len(mesh.vertices), len(expected.normals)):
+        if abs(origins.weights[row].max() - 0.5) < 1e-6:
+            ends = origins.vertices[row][origins.weights[row] > 0.0]
+            mean = expected.normals[ends].sum(axis=0)
+            mean /= np.linalg.norm(mean)
+            np.testing.assert_allclose(expected.normals[row], mean, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_points_stay(scheme: str) -> None:
+    """Normals are all that `normals` changes: positions and triangles are the same bits."""
+    mesh = meshes.irregular(5)
+    deformed = meshes.wrinkled(mesh, 6)
+    frames = []
+    for normals in ("linear", "refined"):
+        refiner = bound(mesh, scheme, Needed(needs(mesh, 7)), normals)
+        refined = refiner.refine(deformed)
+        frames.append((refined.positions.tobytes(), refined.triangles.tobytes()))
+    assert frames[0] == frames[1]
+
+
+@pytest.mark.parametrize("scheme", ["loop", "cubic"])
+def test_symmetric_stays_symmetric(scheme: str) -> None:
+    """An opened slit that is symmetric in x and y has normals that are symmetric, too."""
+    mesh = meshes.slit()
+    positions = meshes.opened(mesh, 0.8)
+    x, y = positions[:, 0], positions[:, 1]
+    positions[:, 2] = 0.5 * np.cos(0.8 * x) * np.cos(0.9 * y)
+    refined = bound(mesh, scheme, [refine.Bulge(0.01, 0.05)]).refine(positions)
+    assert len(refined.positions) > 1.5 * len(positions)
+    for mirror in ([-1.0, 1.0, 1.0], [1.0, -1.0, 1.0]):
+        mirrored = np.hstack([refined.positions * mirror, 0.1 * refined.normals * mirror])
+        shown = np.hstack([refined.positions, 0.1 * refined.normals])
+        distance, _ = KDTree(shown).query(mirrored)
+        assert distance.max() < 1e-5
+
+
+@pytest.mark.parametrize("scheme", ["loop", "cubic"])
+@pytest.mark.parametrize("blend", [False, True])
+def test_planar_is_exact(scheme: str, blend: bool) -> None:
+    """No normal of a plane leans to the least, with borders and holes."""
+    mesh = meshes.irregular(2)
+    flat = mesh.vertices * [1.0, 1.0, 0.0]
+    criterion = Needed(needs(mesh, 3))
+    refiner = bound(meshes.Mesh(flat, mesh.faces), scheme, criterion, blend=blend)
+    normals = refiner.refine(flat).normals
+    assert (normals[:, :2] == 0.0).all()
+    is_used = np.ones(len(normals), dtype=bool)
+    is_used[: len(flat)] = np.isin(np.arange(len(flat)), mesh.faces)
+    np.testing.assert_allclose(np.abs(normals[is_used, 2]), 1.0, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_turns_with_the_mesh(scheme: str) -> None:
+    """A rigid motion turns all normals along."""
+    mesh = meshes.irregular(8)
+    deformed, turn = meshes.wrinkled(mesh, 9, 0.2), meshes.rotation(1)
+    refiner = bound(mesh, scheme, Needed(needs(mesh, 2)))
+    still = refiner.refine(deformed).normals.copy()
+    moved = refiner.refine(deformed @ turn.T + [3.0, -2.0, 5.0]).normals
+    np.testing.assert_allclose(moved, still @ turn.T, rtol=0, atol=1e-4)
+
+
+def slivers() -> meshes.Mesh:
+    """A grid with a crushed column, vertices that coincide, and a corner drawn out to a needle."""
+    grid = meshes.open_grid(5, 4)
+    vertices = grid.vertices.copy()
+    vertices[vertices[:, 0] == 2.0, 0] = 1.0 + 1e-7
+    vertices[7] = vertices[8]
+    vertices[-1] *= 1e3
+    return meshes.Mesh(vertices, grid.faces)
+
+
+ZOO = {**meshes.NAMED, "tube": meshes.tube, "slit": meshes.slit, "slivers": slivers}
+
+
+@pytest.mark.parametrize("name", ZOO)
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_every_kind_of_mesh(scheme: str, name: str) -> None:
+    """Seams, fins, debris, slivers and lonely vertices come out proper, and see no NaN."""
+    mesh = ZOO[name]()
+    for seed, blend in ((0, True), (1, False)):
+        refiner = bound(mesh, scheme, Needed(needs(mesh, seed)), blend=blend)
+        for amplitude in (0.0, 0.2):
+            deformed = meshes.wrinkled(mesh, seed, amplitude)
+            refined = refiner.refine(deformed)
+            refine.check(refiner, refined, deformed)
+            assert np.isfinite(refined.normals).all()
+
+
+def test_runs_as_python() -> None:
+    """Without the compiler every scheme shows the same normals."""
+    program = (
+        "import sys, numpy as np\n"
+        "from tests import meshes\n"
+        "from tests.refine.cases import Needed\n"
+        "from tests.refine.beyond.test_surface_normals import SCHEMES, bound, needs\n"
+        "mesh = meshes.irregular(3, 4, 3, 1)\n"
+        "deformed = meshes.wrinkled(mesh, 1, 0.2)\n"
+        "refiners = [bound(mesh, scheme, Needed(needs(mesh, 2))) for scheme in SCHEMES]\n"
+        "refiners += [bound(mesh, scheme, 'bulge') for scheme in SCHEMES]\n"
+        "print(np.concatenate([r.refine(deformed).normals for r in refiners]).tolist())\n"
+    )
+    shown = []
+    for switch in ("0", "1"):
+        told = subprocess.run(
+            [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, timeout=300,
+            env={**os.environ, "NUMBA_DISABLE_JIT": switch},
+        )  # fmt: skip
+        assert told.returncode == 0, told.stderr
+        shown.append(np.array(json.loads(told.stdout)))
+    np.testing.assert_allclose(shown[0], shown[1], rtol=0, atol=1e-5)

@@ -1,0 +1,97 @@
+"""Normals of the refined surface once more, in plain Python: sums over small triangles.
+
+Where every edge is split once, each triangle is a fan of six around its middle. A normal is the sum
+of the cross products of the small triangles around its point, of length one.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+
+from tests.refine.plain_schemes import Face, cross, dot
+from tests.refine.plain_twin import (
+    EdgeName,
+    Growth,
+    Placed,
+    Rules,
+    Surroundings,
+    Vector,
+    edge_name,
+    is_proper,
+    mix,
+    unit,
+)
+
+NOTHING: Vector = (0.0, 0.0, 0.0)
+
+
+def area(*corners: Vector) -> Vector:
+    """Cross product of two sides of a triangle."""
+    a, b, c = corners
+    return cross(mix((1, b), (-1, a)), mix((1, c), (-1, a)))
+
+
+class RefinedNormals:
+    """The points of a scheme, with the normals of its surface as far as they have grown."""
+
+    def __init__(self, rules: Rules, faces: list[Face]) -> None:
+        self.rules, self.faces = rules, faces
+        self.around = Surroundings(faces)
+        self.fans: dict[int, list[Vector]] = {}
+        """Corners and middles of each triangle in turn, by its number."""
+
+    def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
+        """Points as the scheme has them, and normals that go from the mean to the surface's."""
+        edges = sorted(self.around.opposite)
+        whole = self.rules.placed(
+            Counter(dict.fromkeys(edges, 1)), dict.fromkeys(edges, (1.0, 1.0))
+        )
+        at_vertices, at_middles = self._surface(whole)
+        place = self.rules.placed(count, grown)
+        for (a, b), (once, _) in grown.items():
+            mean = unit(mix((1, at_vertices[a]), (1, at_vertices[b])))
+            middle = unit(mix((1 - once, mean), (once, at_middles[a, b])))
+            ends = {1: at_vertices[a], 2: middle, 3: at_vertices[b]}
+            place.point_normals[a, b] = {q: unit(mix((1, n), (1, middle))) for q, n in ends.items()}
+        return Placed(place.vertices, place.points, at_vertices, place.point_normals)
+
+    def _surface(self, whole: Placed) -> tuple[list[Vector], dict[EdgeName, Vector]]:
+        """Unit normals of vertices and of the middles of all edges."""
+        of_vertices = [NOTHING] * len(whole.vertices)
+        of_middles: dict[EdgeName, Vector] = defaultdict(lambda: NOTHING)
+        sheets: Counter[EdgeName] = Counter()
+        for source, face in enumerate(self.faces):
+            if not is_proper(face):
+                continue
+            corners = [whole.vertices[v] for v in face]
+            names = [edge_name(face[i], face[(i + 1) % 3]) for i in range(3)]
+            middles = [whole.points[name][2] for name in names]
+            # 0.511 x (middle - half of both ends): every corner is an end of two edges.
+            centre = mix(*((1 / 3 - 0.511, p) for p in corners), *((0.511, m) for m in middles))
+            for i in range(3):
+                first = area(corners[i], middles[i], centre)
+                second = area(middles[i], corners[(i + 1) % 3], centre)
+                for v, piece in ((face[i], first), (face[(i + 1) % 3], second)):
+                    of_vertices[v] = mix((1, of_vertices[v]), (1, piece))
+                of_middles[names[i]] = mix((1, of_middles[names[i]]), (1, first), (1, second))
+                sheets[names[i]] += 1
+            self.fans[source] = [p for pair in zip(corners, middles, strict=True) for p in pair]
+        at_vertices = [unit(total) for total in of_vertices]
+        at_middles = {}
+        for a, b in sheets:
+            mean = mix((0.5, at_vertices[a]), (0.5, at_vertices[b]))
+            d = mix((1, whole.vertices[b]), (-1, whole.vertices[a]))
+            steady = mix((1, of_middles[a, b]), (0.02 * dot(d, d), mean))
+            is_one_surface = (a, b) in self.around.inner or sheets[a, b] == 1
+            at_middles[a, b] = unit(steady if is_one_surface else mean)
+        return at_vertices, at_middles
+
+    def centre(
+        self, source: int, point: Vector, normal: Vector, grown: tuple[float, float]
+    ) -> tuple[Vector, Vector]:
+        """Where the scheme has it; turned to the area of the hexagon around."""
+        point, normal = self.rules.centre(source, point, normal, grown)
+        outline = self.fans[source]
+        pieces = [area(outline[0], outline[i], outline[i + 1]) for i in range(1, 5)]
+        hexagon = unit(mix(*((1, piece) for piece in pieces)))
+        return point, unit(mix((1 - grown[0], normal), (grown[0], hexagon)))
