@@ -48,8 +48,8 @@ from ..mesh.vectors import (
 
 THIRD = np.float32(1 / 3)
 FULL_CENTRE = np.float32(0.511)
-"""How far the middle of a triangle follows the bulges of its edges: 4/9 (blending.py), 1.15 times
-as far (cubic.py)."""
+"""How far the middle of a triangle follows the bulges of its edges: 4/9 (blending.py), and 15 %
+more: curves between these points stand out farther. Chosen: normals are nearer to a dense head."""
 SOON = np.float32(6.0)
 """How much sooner than the place of a new point its normal has gone all the way. Chosen: a turn of
 shading is seen less than a jump of the surface, and half of it is half a triangle wasted."""
