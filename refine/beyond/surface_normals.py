@@ -37,6 +37,7 @@ from ..mesh.vectors import (
     Vector,
     add_to_row,
     cross,
+    difference,
     dot,
     less,
     plus,
@@ -67,21 +68,21 @@ class WholeSurface:
         """Make room; `rest_positions`: shape (V, 3)."""
         self._mesh = mesh
         vertex_count, edge_count = mesh.vertex_count, len(mesh.edges)
-        nothing = np.zeros((0, 3), dtype=np.float32)
-        frame = buffers_for(mesh, rest_positions, nothing, nothing)
+        near, points = np.zeros_like(rest_positions), rest_positions.astype(np.float32)
+        frame = buffers_for(mesh, near, points, np.zeros_like(points))
         rows = np.zeros((vertex_count + edge_count, 6), dtype=np.float32)
         self._frame = split_everywhere(frame, vertex_count)._replace(rows=rows)
         self._centres = np.zeros((len(mesh.faces), 3), dtype=np.float32)
         self.rows = rows
-        """Of the vertices, then of the middles of all edges; positions first, shape (V + E, 6)."""
+        """Of the vertices, then of the middles of all edges, shape (V + E, 6): positions first, as
+        seen from vertex 0, so that a mesh far from the origin loses nothing."""
         self.normals = np.zeros((vertex_count + edge_count, 3), dtype=np.float32)
         """Unit normals there, shape (V + E, 3)."""
 
     def split(self, frame: FrameBuffers) -> FrameBuffers:
-        """The same mesh as in `frame`, but that every edge is split once; for a scheme to place."""
-        self._frame = self._frame._replace(
-            positions=frame.positions, points=frame.points, normals=frame.normals
-        )
+        """The mesh of `frame`, as seen from vertex 0, every edge split once; to be placed."""
+        self._frame = self._frame._replace(normals=frame.normals)
+        see_from_first(frame.positions, self._frame.positions, self._frame.points)
         return self._frame
 
     def find_normals(self) -> None:
@@ -136,6 +137,15 @@ class RefinedNormals:
     def measure(self, bulges: Floats, turns: Floats) -> None:
         """Write how far middles would stand out, and turn the normal, of every edge, (E,) each."""
         self._surface.measure(bulges, turns)
+
+
+@njit
+def see_from_first(positions: Doubles, near: Doubles, points: Floats) -> None:
+    """Write positions less the first, shape (V, 3), in double and in single precision."""
+    for v in range(positions.shape[0]):
+        away = difference(positions, 0, v)
+        write_row(near, v, away)
+        write_row(points, v, away)
 
 
 @njit

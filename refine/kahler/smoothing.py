@@ -78,10 +78,12 @@ class Scheme(Protocol):
     """Places points; anything with these members can take the place of the built-in schemes.
 
     More methods are used where they are there. `prepare(frame)` is called before the criterion
-    decides. `measure(bulges, turns)` tells the criterion `bulge` how far a split would move the
-    middle of every edge, and by what angle [rad], times the length of the edge, it would turn
-    the normal there, both of shape (E,). `place_centres(frame)` corrects the points in the middle
-    of triangles after blending has written them.
+    decides. What it keeps should be differences of positions: refined normals ask `place` twice,
+    first for the mesh as seen from vertex 0 with every edge split once. `measure(bulges, turns)`
+    tells the criterion `bulge` how far a split would move the middle of every edge, and by what
+    angle [rad], times the length of the edge, it would turn the normal there, both of shape (E,).
+    `place_centres(frame)` corrects the points in the middle of triangles after blending has written
+    them.
     """
 
     @property

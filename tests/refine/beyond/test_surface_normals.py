@@ -273,6 +273,17 @@ def test_turns_with_the_mesh(scheme: str) -> None:
     np.testing.assert_allclose(moved, still @ turn.T, rtol=0, atol=1e-4)
 
 
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_far_from_the_origin(scheme: str) -> None:
+    """A mesh that is a hundred thousand edges away has the normals that it has nearby."""
+    mesh = meshes.irregular(8)
+    deformed = meshes.wrinkled(mesh, 9, 0.2)
+    refiner = bound(mesh, scheme, Needed(needs(mesh, 2)))
+    near = refiner.refine(deformed).normals.copy()
+    far = refiner.refine(deformed + 1e5).normals
+    np.testing.assert_allclose(far, near, rtol=0, atol=2e-5)
+
+
 def slivers() -> meshes.Mesh:
     """A grid with a crushed column, vertices that coincide, and a corner drawn out to a needle."""
     grid = meshes.open_grid(5, 4)
