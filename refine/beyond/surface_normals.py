@@ -51,7 +51,7 @@ THIRD = np.float32(1 / 3)
 FULL_CENTRE = np.float32(0.511)
 """How far the middle of a triangle follows the bulges of its edges: 4/9 (blending.py), and 15 %
 more: curves between these points stand out farther. Chosen: normals are nearer to a dense head."""
-SOON = np.float32(6.0)
+SOON = np.float32(3.0)
 """How much sooner than the place of a new point its normal has gone all the way. Chosen: a turn of
 shading is seen less than a jump of the surface, and half of it is half a triangle wasted."""
 STEADY = np.float32(0.02)
@@ -248,6 +248,7 @@ def turn_centres(mesh: Connectivity, frame: FrameBuffers, rows: Floats) -> None:
             before = np.uint32(vertex_count + last)
             hexagon = plus(hexagon, cross(a, between_rows(rows, before, after)))
         if growth > ZERO:
+            growth = min(ONE, SOON * growth)
             mean = row_of(vertices, row, 3)
             turned = plus(times(ONE - growth, mean), times(growth, unit(hexagon)))
             write_row(vertices, row, unit(turned), 3)
