@@ -11,8 +11,9 @@ triangles as it may spend:
 and `RULE, blended` is the same with blend=True: nothing pops, at the price of triangles that are
 there before they have grown. Beside these stand the paper's scheme by `normal+rest`, with the
 thresholds that the refiner has by itself; everything split twice; and peers that refine the whole
-mesh: Loop subdivision (Loop 1987), its limit surface (loop_limit.py), curved triangles
-(patches.py).
+mesh: Loop subdivision (Loop 1987), its limit surface (loop_limit.py), limit surfaces through the
+vertices (limit_through.py), curved triangles (patches.py). The best of the latter is also split by
+`bulge`, blended, as a scheme of its own.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ import numpy.typing as npt
 from risorius import refine
 from risorius.refine.kahler.criterion import Thresholds
 
+from .limit_through import LimitThrough, MendedLimit, MendedLimitScheme
 from .loop_limit import LoopLimit
 from .patches import phong_triangles, pn_triangles
 from .pictures import Mesh, shaded
@@ -49,7 +51,17 @@ CRITERIA: Mapping[str, Callable[[], Any]] = {
 }
 LOOK = ("loop", "normal+rest")
 """Scheme and criterion that are also drawn with thresholds as they are."""
-UNIFORM = ("uniform Loop", "Loop limit", "PN", "Phong")
+UNIFORM = (
+    "uniform Loop",
+    "Loop limit",
+    "through",
+    "through, normals",
+    "mended limit",
+    "PN",
+    "Phong",
+)
+PEER = "mended limit"
+"""The one that is a scheme, too."""
 STATIC = "static"
 LEVELS = (1, 2)
 """How often whole meshes are refined."""
@@ -103,6 +115,15 @@ def methods_for(
             bound.append(Method((*LOOK, AS_SET), refiner.refine, refiner))
         refiner = bind({"criterion": _Everywhere()})
         bound.append(Method((scheme, "", EVERYWHERE), refiner.refine, refiner))
+    criterion = refine.Bulge()
+    refiner = refine.create(
+        "kahler", faces, rest, scheme=MendedLimitScheme(), criterion=criterion, blend=True
+    )
+    sliding = _Sliding(refiner, criterion, len(faces), view)
+    bound += [
+        Method((PEER, "bulge" + BLENDED, budget), sliding.within(budget), refiner)
+        for budget in budgets
+    ]
     for levels in LEVELS:
         makers = _whole(faces, rest, levels)
         bound += [Method((name, "", 4.0**levels), makers[name]) for name in UNIFORM]
@@ -114,9 +135,13 @@ def _whole(
 ) -> dict[str, Callable[[Points], Mesh]]:
     """Peers that refine the whole mesh."""
     pieces = 2**levels
+    through = LimitThrough(faces, rest, levels)
     return {
         "uniform Loop": refine.create("loop", faces, rest, levels=levels).refine,
         "Loop limit": LoopLimit(faces, len(rest), levels).mesh,
+        "through": through.mesh,
+        "through, normals": through.mesh_with_normals,
+        "mended limit": MendedLimit(faces, rest, levels).mesh,
         "PN": lambda points: pn_triangles(*shaded(points, faces), pieces),
         "Phong": lambda points: phong_triangles(*shaded(points, faces), pieces),
     }

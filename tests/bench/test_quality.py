@@ -59,6 +59,8 @@ def test_scores_of_a_cylinder() -> None:
     pn = average["PN", "", 16.0]
     assert pn.outline < 0.5 * static.outline < 0.5 * loop.outline
     assert pn.distance < 0.5 * static.distance
+    for name in ("through", "mended limit"):
+        assert average[name, "", 16.0].distance < 0.5 * static.distance
     assert average["uniform Loop", "", 16.0].triangles == 16 * 72
     assert static.jump == pytest.approx(1.0, abs=1e-4)
     assert average["cubic", "bulge", 2.0].jump > 2.0 * average["cubic", BLENDED, 2.0].jump
@@ -202,6 +204,12 @@ def test_gains_on_the_built_in_head() -> None:
     assert average["detail", BLENDED, 2.0].jump < 1.2
     assert average["detail", "", methods.EVERYWHERE].distance < 0.25 * before.distance
     assert average["detail", "bulge", 2.0].angle < 0.7 * before.angle
+    limit = average[methods.PEER, BLENDED, 2.0].picture
+    assert average["cubic", BLENDED, 2.0].picture < limit < before.picture
+    cubic = average["cubic", "", methods.EVERYWHERE]
+    for name in ("through", "through, normals"):
+        assert cubic.picture < average[name, "", 16.0].picture < before.picture
+        assert cubic.distance < average[name, "", 16.0].distance < before.distance
 
 
 @pytest.mark.parametrize("missing", ["folder", "array", "motion"])
