@@ -59,7 +59,7 @@ def test_scores_of_a_cylinder() -> None:
     pn = average["PN", "", 16.0]
     assert pn.outline < 0.5 * static.outline < 0.5 * loop.outline
     assert pn.distance < 0.5 * static.distance
-    for name in ("through", "mended limit"):
+    for name in ("through", "mended"):
         assert average[name, "", 16.0].distance < 0.5 * static.distance
     assert average["uniform Loop", "", 16.0].triangles == 16 * 72
     assert static.jump == pytest.approx(1.0, abs=1e-4)
