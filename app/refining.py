@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from types import NoneType
-from typing import Any, get_args
+from typing import Any, Literal, get_args, get_origin
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,7 @@ from .scenes import Scene
 
 LARGEST = 1e30  # of a number in an option: in single precision it is still one
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
+AS_IT_SUITS = "as it suits"  # what an option is called that is left open
 SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 
@@ -51,18 +52,34 @@ def _of_look(refinement: Refinement, options: Mapping[str, Any]) -> str:
 def options_of(name: str) -> dict[str, Any]:
     """What a refiner can be told in numbers and words, as it is declared, and its defaults.
 
-    An option whose default is None is left out, unless it may be on or off.
+    An option whose default is None is left out, unless it is a choice.
     """
     return {
         each.name: each.default
         for each in refine.parameters(name)
-        if isinstance(each.default, bool | int | float | str) or _is_switch(each.annotation)
+        if isinstance(each.default, bool | int | float | str) or _values_of(each.annotation)
     }
 
 
-def _is_switch(annotation: object) -> bool:
-    """Whether it is `bool | None`. Not any union with bool: numpy's ArrayLike may be one, too."""
-    return set(get_args(annotation)) == {bool, NoneType}
+def open_choices(name: str, option: str) -> dict[str, bool | str | None]:
+    """What an option may be that may be left open, by words; empty for all other options."""
+    annotations = [each.annotation for each in refine.parameters(name) if each.name == option]
+    values = _values_of(annotations[0]) if annotations else {}
+    return {AS_IT_SUITS: None, **values} if values else {}
+
+
+def _values_of(annotation: object) -> dict[str, bool | str]:
+    """Of `bool | None`, on and off; of `Literal[...] | None`, its words; else none.
+
+    Not of any union with bool: numpy's ArrayLike may be one, too.
+    """
+    rest = set(get_args(annotation)) - {NoneType}
+    if len(get_args(annotation)) != 2 or len(rest) != 1:
+        return {}
+    kind = rest.pop()
+    if kind is bool:
+        return {"on": True, "off": False}
+    return {word: word for word in get_args(kind)} if get_origin(kind) is Literal else {}
 
 
 def _check(name: str, defaults: Mapping[str, Any], options: Mapping[str, Any]) -> None:
@@ -71,9 +88,12 @@ def _check(name: str, defaults: Mapping[str, Any], options: Mapping[str, Any]) -
         if option not in defaults:
             takes = f"it takes {', '.join(defaults)}" if defaults else "it has no options"
             raise UserError(f"refiner {name}: unknown option {option}; {takes}")
-        default = defaults[option]
-        if default is None or isinstance(default, bool):
-            is_right, wanted = value is None or isinstance(value, bool), "on or off"
+        default, choices = defaults[option], open_choices(name, option)
+        if choices:  # 1 is not on
+            is_right = any(type(value) is type(each) and value == each for each in choices.values())
+            wanted = " or ".join(list(choices)[1:])
+        elif isinstance(default, bool):
+            is_right, wanted = isinstance(value, bool), "on or off"
         elif isinstance(default, str):
             is_right, wanted = isinstance(value, str), "a word"
         else:

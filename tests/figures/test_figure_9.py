@@ -11,7 +11,7 @@ from risorius.bench import figure_9
 from risorius.bench.canvas import Canvas
 from risorius.bench.figure_9 import LOOKS, PHASES, SHADINGS, Look, Waving
 
-STATIC, REFINED, CUBIC = LOOKS
+STATIC, REFINED, TURNED, CUBIC = LOOKS
 STYLES = dict(SHADINGS)
 
 
@@ -78,6 +78,15 @@ def test_interpolated_normals_leave_gouraud_shading_as_it_is(plane: Waving) -> N
     """The paper's rule moves points, not normals: its shading is no nearer to the sine's."""
     static, refined = (_off(plane, look, "Gouraud")[0] for look in (STATIC, REFINED))
     assert refined == pytest.approx(static, rel=0.1)
+
+
+def test_normals_of_the_refined_surface_move_no_point(plane: Waving) -> None:
+    """Flat shaded they change nothing; shaded smoothly they are at least as near to the sine."""
+    pictures = [plane.image(look, STYLES["flat"], 0.0)[0] for look in (REFINED, TURNED)]
+    assert figure_9.levels_apart(*pictures) < 0.1
+    refined, turned = (_off(plane, look, "Gouraud") for look in (REFINED, TURNED))
+    assert turned[0] < 1.02 * refined[0]
+    assert turned[1] == refined[1]
 
 
 @pytest.mark.parametrize("shading", STYLES)

@@ -12,7 +12,7 @@ from imgui_bundle import imgui
 from risorius import refine, render
 
 from ...looks import LOOKS, STATIC, named, words_of_looks
-from ...refining import DETAIL, can_detail
+from ...refining import DETAIL, can_detail, open_choices
 from ..colours import COLOURS
 from ..frame_times import PHASES, FrameTimes
 from ..gui import Gui, em
@@ -36,8 +36,11 @@ HINTS = {
     "than this since rest (drop of their dot product)",
     "threshold twice": "the same for splitting twice",
     "criterion": "by what it is decided which edges split; normal: where the face moves (the "
-    "paper's), rest: where it is round at rest, so that outlines are",
+    "paper's), rest: where it is round at rest, so that outlines are, bulge: where the scheme "
+    "moves edges, border: where a mouth opens",
     "scheme": "where the new points go",
+    "normals": "what light sees; linear: those of the simulated mesh, in between (the paper's), "
+    "refined: those of the refined surface",
     "blend": "new points grow out of the edge, and nothing pops",
     "coherent": "triangles are cut in the order in which their edges split, and no line turns; for "
     "flat shading",
@@ -55,7 +58,6 @@ HINTS = {
 }
 LABEL_SHARE = 0.45  # of a row
 HIGHEST = 0.25  # of a slider for a number that is no whole one, as far as it is not more already
-SUITS = {"as it suits": None, "on": True, "off": False}  # values of options that may be left open
 
 
 class MechanismPanel:
@@ -144,8 +146,9 @@ class MechanismPanel:
             if allowed:
                 self._choose(label, str(value), allowed, put)
         elif default is None:
-            present = next(word for word, each in SUITS.items() if each is value)
-            self._choose(label, present, list(SUITS), lambda word: put(SUITS[word]))
+            choices = open_choices(refiner, name)
+            present = next(word for word, each in choices.items() if each == value)
+            self._choose(label, present, list(choices), lambda word: put(choices[word]))
 
     def _draw_style(self) -> None:
         display = self._display
