@@ -26,7 +26,7 @@ def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
     name, options = refinement.on(scene.name)
     try:
         if refinement.options:
-            _check(name, options_of(name), refinement.options)
+            _check(name, refinement.options)
         if options.get("scheme") == DETAIL and "detail" not in options:
             options["detail"] = finer_mesh(scene)
             if options["detail"] is None:
@@ -54,18 +54,18 @@ def options_of(name: str) -> dict[str, Any]:
 
     An option whose default is None is left out, unless it is a choice.
     """
+    choices = open_choices(name)
     return {
         each.name: each.default
         for each in refine.parameters(name)
-        if isinstance(each.default, bool | int | float | str) or _values_of(each.annotation)
+        if isinstance(each.default, bool | int | float | str) or each.name in choices
     }
 
 
-def open_choices(name: str, option: str) -> dict[str, bool | str | None]:
-    """What an option may be that may be left open, by words; empty for all other options."""
-    annotations = [each.annotation for each in refine.parameters(name) if each.name == option]
-    values = _values_of(annotations[0]) if annotations else {}
-    return {AS_IT_SUITS: None, **values} if values else {}
+def open_choices(name: str) -> dict[str, dict[str, bool | str | None]]:
+    """The options of a refiner that may be left open, and the values they may have, by words."""
+    values = {each.name: _values_of(each.annotation) for each in refine.parameters(name)}
+    return {option: {AS_IT_SUITS: None, **found} for option, found in values.items() if found}
 
 
 def _values_of(annotation: object) -> dict[str, bool | str]:
@@ -82,16 +82,18 @@ def _values_of(annotation: object) -> dict[str, bool | str]:
     return {word: word for word in get_args(kind)} if get_origin(kind) is Literal else {}
 
 
-def _check(name: str, defaults: Mapping[str, Any], options: Mapping[str, Any]) -> None:
+def _check(name: str, options: Mapping[str, Any]) -> None:
     """UserError for an option that the refiner does not offer, or of another kind."""
+    defaults, open_ones = options_of(name), open_choices(name)
     for option, value in options.items():
         if option not in defaults:
             takes = f"it takes {', '.join(defaults)}" if defaults else "it has no options"
             raise UserError(f"refiner {name}: unknown option {option}; {takes}")
-        default, choices = defaults[option], open_choices(name, option)
-        if choices:  # 1 is not on
-            is_right = any(type(value) is type(each) and value == each for each in choices.values())
-            wanted = " or ".join(list(choices)[1:])
+        default = defaults[option]
+        if option in open_ones:  # 1 is not on
+            values = open_ones[option]
+            is_right = any(type(value) is type(each) and value == each for each in values.values())
+            wanted = " or ".join(word for word in values if word != AS_IT_SUITS)
         elif isinstance(default, bool):
             is_right, wanted = isinstance(value, bool), "on or off"
         elif isinstance(default, str):

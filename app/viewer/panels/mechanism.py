@@ -12,7 +12,7 @@ from imgui_bundle import imgui
 from risorius import refine, render
 
 from ...looks import LOOKS, STATIC, named, words_of_looks
-from ...refining import DETAIL, can_detail, open_choices
+from ...refining import DETAIL, can_detail
 from ..colours import COLOURS
 from ..frame_times import PHASES, FrameTimes
 from ..gui import Gui, em
@@ -146,7 +146,7 @@ class MechanismPanel:
             if allowed:
                 self._choose(label, str(value), allowed, put)
         elif default is None:
-            choices = open_choices(refiner, name)
+            choices = self._stage.open_choices[name]
             present = next(word for word, each in choices.items() if each == value)
             self._choose(label, present, list(choices), lambda word: put(choices[word]))
 
