@@ -261,6 +261,17 @@ def test_normals_are_chosen(viewer: Viewer) -> None:
     assert viewer.stage.refined.label == "smooth"
 
 
+def test_thresholds_are_offered_where_they_count(viewer: Viewer) -> None:
+    """With the paper's criterion, also beside another; not where they would do nothing."""
+    click(viewer, "tab Mechanism")
+    offered = {}
+    for criterion in ("bulge", "normal+rest", "normal"):
+        viewer.settings.display.options["kahler"] = {"criterion": criterion}
+        draw_frames(viewer)
+        offered[criterion] = "threshold_once" in viewer.gui.places
+    assert offered == {"bulge": False, "normal+rest": True, "normal": True}
+
+
 def test_two_looks_are_compared(viewer: Viewer) -> None:
     """On the left is what the list says: a look, a refiner, or the mesh as it is again."""
     viewer.session.toggle_alone("disgust")

@@ -56,6 +56,8 @@ HINTS = {
     "Skull": "the bone under the skin; the mandible moves with the jaw",
     "Landmarks": "the 68 points that the muscles are placed by",
 }
+THRESHOLDS = "threshold_once", "threshold_twice"  # of this criterion alone:
+PAPERS_CRITERION = "normal"
 LABEL_SHARE = 0.45  # of a row
 HIGHEST = 0.25  # of a slider for a number that is no whole one, as far as it is not more already
 
@@ -100,7 +102,8 @@ class MechanismPanel:
         if display.compare != "off":
             self._draw_beside((STATIC, *LOOKS, *names))
         for name, default in stage.refiner_options.items():
-            self._draw_option(name, default)
+            if name not in THRESHOLDS or self._has_thresholds():
+                self._draw_option(name, default)
         base = len(stage.scene.faces)
         for shot in stage.shots(display, self._view.viewport):
             count = shot.drawn.triangle_count
@@ -119,6 +122,11 @@ class MechanismPanel:
         self._choose(
             "with", present, list(labels), lambda label: setattr(display, "beside", labels[label])
         )
+
+    def _has_thresholds(self) -> bool:
+        """Whether the criterion is, or has in it, the one that the thresholds are of."""
+        _, told = self._display.refinement_on(self._stage.scene).on(self._stage.scene.name)
+        return PAPERS_CRITERION in str(told.get("criterion", PAPERS_CRITERION)).split("+")
 
     def _draw_option(self, name: str, default: Any) -> None:
         """A slider, a checkbox or a list for an option, by what its default is."""
@@ -258,7 +266,7 @@ def _keep_in_order(
     stored: dict[str, Any], name: str, value: float, told: Mapping[str, Any]
 ) -> None:
     """Splitting twice never begins before splitting once: the other threshold gives way."""
-    first, second = "threshold_once", "threshold_twice"
+    first, second = THRESHOLDS
     defaults = {first: refine.THRESHOLD_ONCE, second: refine.THRESHOLD_TWICE, **told}
     if name == first:
         stored[second] = max(value, stored.get(second, defaults[second]))
