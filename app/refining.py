@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from types import NoneType
-from typing import Any, get_args
+from typing import Any, Literal, get_args, get_origin
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,7 @@ from .scenes import Scene
 
 LARGEST = 1e30  # of a number in an option: in single precision it is still one
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
+AS_IT_SUITS = "as it suits"  # what an option is called that is left open
 SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 
@@ -25,7 +26,7 @@ def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
     name, options = refinement.on(scene.name)
     try:
         if refinement.options:
-            _check(name, options_of(name), refinement.options)
+            _check(name, refinement.options)
         if options.get("scheme") == DETAIL and "detail" not in options:
             options["detail"] = finer_mesh(scene)
             if options["detail"] is None:
@@ -51,29 +52,50 @@ def _of_look(refinement: Refinement, options: Mapping[str, Any]) -> str:
 def options_of(name: str) -> dict[str, Any]:
     """What a refiner can be told in numbers and words, as it is declared, and its defaults.
 
-    An option whose default is None is left out, unless it may be on or off.
+    An option whose default is None is left out, unless it is a choice.
     """
+    choices = open_choices(name)
     return {
         each.name: each.default
         for each in refine.parameters(name)
-        if isinstance(each.default, bool | int | float | str) or _is_switch(each.annotation)
+        if isinstance(each.default, bool | int | float | str) or each.name in choices
     }
 
 
-def _is_switch(annotation: object) -> bool:
-    """Whether it is `bool | None`. Not any union with bool: numpy's ArrayLike may be one, too."""
-    return set(get_args(annotation)) == {bool, NoneType}
+def open_choices(name: str) -> dict[str, dict[str, bool | str | None]]:
+    """The options of a refiner that may be left open, and the values they may have, by words."""
+    values = {each.name: _values_of(each.annotation) for each in refine.parameters(name)}
+    return {option: {AS_IT_SUITS: None, **found} for option, found in values.items() if found}
 
 
-def _check(name: str, defaults: Mapping[str, Any], options: Mapping[str, Any]) -> None:
+def _values_of(annotation: object) -> dict[str, bool | str]:
+    """Of `bool | None`, on and off; of `Literal[...] | None`, its words; else none.
+
+    Not of any union with bool: numpy's ArrayLike may be one, too.
+    """
+    rest = set(get_args(annotation)) - {NoneType}
+    if len(get_args(annotation)) != 2 or len(rest) != 1:
+        return {}
+    kind = rest.pop()
+    if kind is bool:
+        return {"on": True, "off": False}
+    return {word: word for word in get_args(kind)} if get_origin(kind) is Literal else {}
+
+
+def _check(name: str, options: Mapping[str, Any]) -> None:
     """UserError for an option that the refiner does not offer, or of another kind."""
+    defaults, open_ones = options_of(name), open_choices(name)
     for option, value in options.items():
         if option not in defaults:
             takes = f"it takes {', '.join(defaults)}" if defaults else "it has no options"
             raise UserError(f"refiner {name}: unknown option {option}; {takes}")
         default = defaults[option]
-        if default is None or isinstance(default, bool):
-            is_right, wanted = value is None or isinstance(value, bool), "on or off"
+        if option in open_ones:  # 1 is not on
+            values = open_ones[option]
+            is_right = any(type(value) is type(each) and value == each for each in values.values())
+            wanted = " or ".join(word for word in values if word != AS_IT_SUITS)
+        elif isinstance(default, bool):
+            is_right, wanted = isinstance(value, bool), "on or off"
         elif isinstance(default, str):
             is_right, wanted = isinstance(value, str), "a word"
         else:

@@ -57,6 +57,8 @@ def draw(size: tuple[int, int] = (380, 230), *, looks: Sequence[Look] = LOOKS) -
         rows = []
         for shading, style in SHADINGS:
             for look in looks:
+                if style is FLAT and "normals" in look.options:
+                    continue  # facets show no normals of vertices
                 cells = []
                 for phase, truth in zip(PHASES, true, strict=True):
                     image, count = plane.image(look, style, phase)

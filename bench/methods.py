@@ -10,14 +10,15 @@ triangles as it may spend:
 
 and `RULE, blended` is the same with blend=True: nothing pops, at the price of triangles that are
 there before they have grown. Beside these stand the paper's scheme by `normal+rest`, with the
-thresholds that the refiner has by itself; everything split twice; and peers that refine the whole
-mesh: Loop subdivision (Loop 1987), its limit surface (loop_limit.py), curved triangles
-(patches.py).
+thresholds that the refiner has by itself; everything split once or twice; and peers that refine the
+whole mesh: Loop subdivision (Loop 1987), its limit surface (loop_limit.py), limit surfaces through
+the vertices (limit_through.py), curved triangles (patches.py). `mended`, the best of those through
+the vertices, is also split by `bulge`, blended.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,6 +28,7 @@ import numpy.typing as npt
 from risorius import refine
 from risorius.refine.kahler.criterion import Thresholds
 
+from .limit_through import LimitThrough, MendedLimit, MendedLimitScheme
 from .loop_limit import LoopLimit
 from .patches import phong_triangles, pn_triangles
 from .pictures import Mesh, shaded
@@ -49,13 +51,25 @@ CRITERIA: Mapping[str, Callable[[], Any]] = {
 }
 LOOK = ("loop", "normal+rest")
 """Scheme and criterion that are also drawn with thresholds as they are."""
-UNIFORM = ("uniform Loop", "Loop limit", "PN", "Phong")
+UNIFORM = (
+    "uniform Loop",
+    "Loop limit",
+    "through",
+    "through, normals",
+    "mended",
+    "PN",
+    "Phong",
+)
+PEER = "mended"
+"""The one that is a scheme, too."""
 STATIC = "static"
 LEVELS = (1, 2)
 """How often whole meshes are refined."""
 SEARCH_STEPS = 18
 SCALES = (1e-5, 1e3)
 """Of thresholds: too many, too few triangles."""
+ONCE = 4.0
+"""The budget that splits every edge once, without blending: as many triangles as one level."""
 EVERYWHERE = float("inf")
 """The budget that splits every edge twice."""
 AS_SET = 0.0
@@ -77,7 +91,7 @@ class Method:
 
 
 def methods_for(
-    subject: Subject, schemes: Iterable[str], budgets: Iterable[float], view: refine.View
+    subject: Subject, schemes: Iterable[str], budgets: Collection[float], view: refine.View
 ) -> list[Method]:
     """Bind everything to the coarse mesh of `subject`; `view`: of criteria that ask for one."""
     faces, rest = subject.coarse_faces, subject.rest.coarse
@@ -101,12 +115,31 @@ def methods_for(
         if scheme == LOOK[0]:
             refiner = bind({"criterion": LOOK[1]})
             bound.append(Method((*LOOK, AS_SET), refiner.refine, refiner))
-        refiner = bind({"criterion": _Everywhere()})
-        bound.append(Method((scheme, "", EVERYWHERE), refiner.refine, refiner))
+        once = bind({"criterion": _Everywhere(1), "blend": False})
+        twice = bind({"criterion": _Everywhere(2)})
+        bound += [
+            Method((scheme, "", ONCE), once.refine, once),
+            Method((scheme, "", EVERYWHERE), twice.refine, twice),
+        ]
+    bound += _adaptive_peer(subject, budgets, view)
     for levels in LEVELS:
         makers = _whole(faces, rest, levels)
         bound += [Method((name, "", 4.0**levels), makers[name]) for name in UNIFORM]
     return bound
+
+
+def _adaptive_peer(subject: Subject, budgets: Iterable[float], view: refine.View) -> list[Method]:
+    """The peer that is a scheme, where its edges bulge."""
+    criterion = refine.Bulge()
+    faces, rest = subject.coarse_faces, subject.rest.coarse
+    refiner = refine.create(
+        "kahler", faces, rest, scheme=MendedLimitScheme(), criterion=criterion, blend=True
+    )
+    sliding = _Sliding(refiner, criterion, len(faces), view)
+    return [
+        Method((PEER, "bulge" + BLENDED, budget), sliding.within(budget), refiner)
+        for budget in budgets
+    ]
 
 
 def _whole(
@@ -114,27 +147,34 @@ def _whole(
 ) -> dict[str, Callable[[Points], Mesh]]:
     """Peers that refine the whole mesh."""
     pieces = 2**levels
+    through = LimitThrough(faces, rest, levels)
     return {
         "uniform Loop": refine.create("loop", faces, rest, levels=levels).refine,
         "Loop limit": LoopLimit(faces, len(rest), levels).mesh,
+        "through": through.mesh,
+        "through, normals": through.mesh_with_normals,
+        "mended": MendedLimit(faces, rest, levels).mesh,
         "PN": lambda points: pn_triangles(*shaded(points, faces), pieces),
         "Phong": lambda points: phong_triangles(*shaded(points, faces), pieces),
     }
 
 
 class _Everywhere:
-    """The criterion that splits every edge twice."""
+    """The criterion that splits every edge once or twice."""
+
+    def __init__(self, splits: int) -> None:
+        self._splits = splits
 
     def bind(self, connectivity: object, rest: object, rest_normals: object) -> None:
         """Need nothing of the mesh."""
 
     def measure(self, positions: object, normals: object, need: Narrow) -> None:
         """Write needs at which all points have grown."""
-        need[:] = 2.0
+        need[:] = self._splits
 
     def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
-        """Write 2 for every edge."""
-        splits[:] = 2
+        """Write the same for every edge."""
+        splits[:] = self._splits
 
 
 class _Sliding:

@@ -142,7 +142,10 @@ def targets_text(all_scores: Mapping[str, Sequence[Score]]) -> str:
             keys = [
                 key
                 for key in average
-                if key[1].endswith(BLENDED) and key[2] == SPENT and (key[0] == TRAINED) == has_finer
+                if key[1].endswith(BLENDED)
+                and key[0] in SCHEMES
+                and key[2] == SPENT
+                and (key[0] == TRAINED) == has_finer
             ]
             if keys:
                 best = min(keys, key=lambda key: average[key].picture)

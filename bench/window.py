@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from risorius import render
+from risorius.app.looks import FIRST_LOOK, PAPERS_LOOK
 from risorius.app.script import Pose, Script, script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.frame_times import PHASES
@@ -51,6 +52,7 @@ class _Case:
 
     name: str
     level: int | None = None  # None: as the window chooses
+    look: str = FIRST_LOOK
     compare: str = "off"
     are_panels_cached: bool = True
     seconds: list[float] = field(default_factory=list)  # of each frame
@@ -64,6 +66,7 @@ def report(seconds: float, size: tuple[int, int]) -> str:
         _Case("smile"),
         _Case("smile, wipe", compare="wipe"),
         _Case("smile, side by side", compare="side by side"),
+        _Case("smile, look paper", look=PAPERS_LOOK),
         _Case("panels in each frame", are_panels_cached=False),
         *(_Case(f"level {level}: {_described(each)}", level) for level, each in enumerate(LEVELS)),
     ]
@@ -111,7 +114,7 @@ def _described(detail: render.Detail) -> str:
 
 def _play(viewer: Viewer, case: _Case, seconds: float) -> None:
     """Let the window play for a while, and note what its frames took."""
-    viewer.settings.display = Display(compare=case.compare)
+    viewer.settings.display = Display(look=case.look, compare=case.compare)
     viewer.panel_cache.refresh = REFRESH if case.are_panels_cached else 0.0
     is_software = viewer.surface.is_software
     viewer.painter.level_of_detail = (

@@ -15,7 +15,7 @@ from ..capture.captions import captioned
 from ..files import Image
 from ..looks import STATIC, Refinement, named
 from ..pipeline import DrawnMesh, Viewport, texture_of
-from ..refining import options_of
+from ..refining import open_choices, options_of
 from ..scenes import Scene
 from ..wrinkling import wrinkling_of
 from .colours import COLOURS, Amounts
@@ -55,6 +55,7 @@ class Stage:
         self.static = DrawnMesh.of(scene, self.renderer, Refinement(refiner=STATIC))
         self.refined = self.beside = self.static  # what is seen, and what it is compared with
         self.refiner_options: dict[str, Any] = {}  # of `refined`, with their defaults
+        self.open_choices: dict[str, dict[str, Any]] = {}  # and what those may be that are open
         self._asked: dict[str, Refinement] = {}  # what each of the two was bound for
         self.bind(display)
 
@@ -74,6 +75,7 @@ class Stage:
         """Bind the refiners that `display` asks for; UserError if one refuses its options."""
         if self._is_rebound("refined", display.refinement_on(self.scene)):
             self.refiner_options = options_of(display.refiner_on(self.scene))
+            self.open_choices = open_choices(display.refiner_on(self.scene))
         other = STATIC if display.compare == "off" else display.beside
         self._is_rebound("beside", named(other, display.look))
 

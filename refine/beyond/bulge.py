@@ -15,10 +15,10 @@ from ..mesh.connectivity import Connectivity
 from .blending import RAMP
 from .measuring import Measuring, mean_length
 
-HASTE = 0.1
+HASTE = 0.6
 """Share of the first threshold of `bulge` in which a blended point grows. Chosen: a point that is
-half grown costs as much as a whole one; and one that moves by 6 times the change of its bulge, and
-no farther than that threshold, does not pop."""
+half grown costs as much as a whole one; with less than this surfaces jump farther than their input
+moves."""
 
 
 class Bulge(Measuring):

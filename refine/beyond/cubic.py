@@ -15,19 +15,6 @@ what bends less than it does; so where heights are taken, not where light falls,
 further from those of their neighbours than they are: n - 0.15 x mean of the neighbours, normalised.
 On a plane and a sphere of equal triangles that changes nothing. An edge on a border is cubic in the
 border curve itself, because a surface's normal says nothing about where it ends.
-
-The middle of a triangle (blending.py) hears a second opinion. Its edges say from the normals how
-far the surface stands out; the corners across them say it from places:
-
-          c           depth     how far c lies below the plane of triangle 1
-         / \          expected  the same, if the surface were the one quadratic height over this
-        /   \                   plane whose middles of edges are those that the normals gave
-       a-----b        share     area of 1 / (area of 1 + area of 2): a fold reaches no farther than
-        \ 1 /                   the smaller triangle
-         \ /          higher by sum over edges of  share x (depth - expected) / 9,  times 0.6
-
-Where normals and places agree, as on smooth surfaces, nothing is added. Where decimation has left
-folds the errors of one have little to do with those of the other, and both together are nearer.
 """
 
 from typing import NamedTuple
@@ -35,14 +22,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import njit
-from ..kahler.frame import CENTRES, ROWS, FrameBuffers
+from ..kahler.frame import FrameBuffers
 from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.borders import border_neighbours
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.normals import cross_product, normalise
 from ..mesh.vectors import (
-    HALF,
-    ONE,
     TINY,
     ZERO,
     Vector,
@@ -67,24 +52,12 @@ STEEPER = np.float32(0.15)
 vertex normals are; a second, or more of it, finds the noise of decimated meshes. Measured on two
 faces and their decimations: half a point of 35 % better on scans, level on smooth heads, and half a
 point worse on the roughest and on a torus."""
-CENTRE_FULLNESS = np.float32(1.15)
-"""How much farther the middle of a triangle stands out, which the largest flat triangles meet."""
-SECOND_OPINION = 0.6
-"""Share of what the triangles around say otherwise that a middle follows. On a sphere of equal
-triangles they show half its height, so this is three tenths of the way; measured on two faces and
-their decimations, flat between 0.4 and 0.8."""
-MOST_EXPECTED = 2.0
-"""Sum of weights (of the heights of edges) above which a triangle hears less of those around: it is
-narrow, and they lie far from it. Three in four of a decimated face have less."""
-FLATTENED = np.float32(1e-3)
-"""Squared area over squared sides at which a triangle has half lost its direction, 1/48 at most."""
 EIGHTH = np.float32(1 / 8)
 """Share of the end tangents in the middle of a cubic."""
 NEAR, FAR = np.float32(9 / 64), np.float32(3 / 64)
 """Share of the nearer and of the farther tangent at a quarter of a cubic."""
 SLIVER = 1e-9
 """Sine of an angle below which a triangle has no direction."""
-THIRD = np.float32(1 / 3)
 
 
 class Tangents(NamedTuple):
@@ -121,17 +94,10 @@ class CubicScheme(CurveScheme):
             off=(STEEPER / np.maximum(valences, 1)).astype(np.float32),
             beyond=follow_borders(mesh, rest_positions),
         )
-        self._across = mesh.faces.copy()
-        self._shares = np.zeros((len(mesh.faces), 6), dtype=np.float32)
-        weigh_neighbours(mesh, rest_positions, self._across, self._shares)
 
     def prepare(self, frame: FrameBuffers) -> None:
         """Find the normals of vertices and the bulges of all edges."""
         self._bulge(frame.positions)
-
-    def place_centres(self, frame: FrameBuffers) -> None:
-        """Raise the points in the middle of triangles as far as the edges around have grown."""
-        raise_centres(self._mesh, frame, self._across, self._shares)
 
     def _bulge(self, positions: Doubles) -> None:
         weighted_normals(positions, self._mesh.faces, self._weights, self._normals)
@@ -231,114 +197,3 @@ def bulge_cubic(
             turn_a = share_a * np.float32(positions[b, i] - positions[p, i]) - straight
             turn_b = share_b * np.float32(positions[q, i] - positions[a, i]) - straight
             write_cubic(bulges, e, i, turn_a, turn_b)
-
-
-@njit
-def measure_triangles(
-    positions: Doubles, faces: Unsigned, doubled: Doubles, squared: Doubles
-) -> None:
-    """Write twice the areas, shape (F,), 0 of slivers, and squared edges, shape (F, 3)."""
-    for t in range(faces.shape[0]):
-        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        u, v, w = (
-            difference(positions, a, b),
-            difference(positions, b, c),
-            difference(positions, a, c),
-        )
-        squared[t, 0], squared[t, 1], squared[t, 2] = dot(u, u), dot(v, v), dot(w, w)
-        normal = cross(u, v)
-        area = np.sqrt(dot(normal, normal))
-        total = squared[t, 0] + squared[t, 1] + squared[t, 2]
-        doubled[t] = area if area > SLIVER * total else 0.0
-
-
-@njit
-def weigh_neighbours(
-    mesh: Connectivity, positions: Doubles, across: Unsigned, shares: Floats
-) -> None:
-    """Write the corners across the edges of each triangle, (F, 3), and weights, shape (F, 6).
-
-    Weights: of the depths of these corners, then of the bulges of the edges, which say how deep the
-    corners are expected. A border edge has no corner across it, and weight 0.
-    """
-    faces, edge_sides = mesh.faces, mesh.edge_sides
-    doubled, squared = np.zeros(faces.shape[0]), np.zeros((faces.shape[0], 3))
-    measure_triangles(positions, faces, doubled, squared)
-    for t in range(faces.shape[0]):
-        size = 0.0
-        for i in range(3):
-            e = mesh.triangle_edges[t, i]
-            across[t, i] = faces[t, i]
-            if e < 0 or not mesh.around.is_interior[e] or doubled[t] == 0.0:
-                continue
-            side = edge_sides[e, 1 if edge_sides[e, 0] >> 2 == t else 0]
-            u, j = side >> 2, side & 3
-            if doubled[u] == 0.0:
-                continue
-            after, before = (i + 1) % 3, (i + 2) % 3
-            across[t, i] = faces[u, (j + 2) % 3]
-            share = doubled[t] / (doubled[t] + doubled[u]) / 9.0
-            shares[t, i] = share
-            # The corner across in coordinates of this triangle, the other one unfolded into it.
-            along = 0.5 * (squared[t, i] + squared[t, before] - squared[t, after]) / squared[t, i]
-            there = 0.5 * (squared[u, j] + squared[u, (j + 1) % 3] - squared[u, (j + 2) % 3])
-            of_c = -doubled[u] / doubled[t]
-            of_b = there / squared[t, i] - of_c * along
-            of_a = 1.0 - of_b - of_c
-            # Over a quadratic height it lies 4 x (sum of these products x bulges) above the plane.
-            shares[t, 3 + i] += share * 4.0 * of_a * of_b
-            shares[t, 3 + after] += share * 4.0 * of_b * of_c
-            shares[t, 3 + before] += share * 4.0 * of_c * of_a
-        for i in range(3):
-            size += abs(shares[t, 3 + i])
-        gain = SECOND_OPINION * CENTRE_FULLNESS * min(1.0, MOST_EXPECTED / max(size, SLIVER))
-        for i in range(3):
-            shares[t, i] *= gain * FULLNESS
-            shares[t, 3 + i] *= gain
-
-
-@njit
-def raise_centres(
-    mesh: Connectivity, frame: FrameBuffers, across: Unsigned, shares: Floats
-) -> None:
-    """Move the points in the middle of triangles to where edges and triangles around have them.
-
-    What is worked out here is in double precision: the fourth power of a length is beyond single
-    for many a unit of length.
-    """
-    vertices = frame.rows
-    sides, higher = np.zeros((2, 3)), np.zeros(3)
-    for k in range(frame.counts[CENTRES]):
-        t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
-        growth = ONE
-        for i in range(3):
-            growth = min(growth, frame.growth_once[mesh.triangle_edges[t, i]])
-        if growth <= ZERO:
-            continue  # not all edges have a middle
-        higher[:] = 0.0
-        for j in range(3):
-            a, b, c = mesh.faces[t, j], mesh.faces[t, (j + 1) % 3], across[t, j]
-            e = mesh.triangle_edges[t, j]
-            m = frame.first_points[e] + (frame.splits[e] >> 1)
-            for i in range(3):
-                bulge = vertices[m, i] - HALF * (vertices[a, i] + vertices[b, i])
-                depth = vertices[a, i] - vertices[c, i]
-                higher[i] += shares[t, j] * depth + shares[t, 3 + j] * bulge
-        a, b, c = mesh.faces[t, 0], mesh.faces[t, 1], mesh.faces[t, 2]
-        squares = 0.0
-        for i in range(3):
-            at_a, at_b, at_c = vertices[a, i], vertices[b, i], vertices[c, i]
-            u, v = np.float64(at_b - at_a), np.float64(at_c - at_a)
-            sides[0, i], sides[1, i] = u, v
-            squares += u * u + v * v + (v - u) * (v - u)
-            flat = THIRD * (at_a + at_b + at_c)
-            vertices[row, i] += (CENTRE_FULLNESS - ONE) * growth * (vertices[row, i] - flat)
-        x = sides[0, 1] * sides[1, 2] - sides[0, 2] * sides[1, 1]
-        y = sides[0, 2] * sides[1, 0] - sides[0, 0] * sides[1, 2]
-        z = sides[0, 0] * sides[1, 1] - sides[0, 1] * sides[1, 0]
-        # Along the normal; a triangle that has been crushed to a line has none.
-        area = x * x + y * y + z * z + FLATTENED * squares * squares
-        height = growth * (x * higher[0] + y * higher[1] + z * higher[2]) / max(area, TINY)
-        vertices[row, 0] += np.float32(height * x)
-        vertices[row, 1] += np.float32(height * y)
-        vertices[row, 2] += np.float32(height * z)

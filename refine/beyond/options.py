@@ -5,7 +5,7 @@ in place, by name or as objects, and blend new points in (`Blended`).
 """
 
 from collections.abc import Sequence
-from typing import Unpack
+from typing import Literal, Unpack
 
 import numpy.typing as npt
 
@@ -36,7 +36,7 @@ def create_kahler(
     scheme: str | Scheme = "loop",
     detail: FinerMesh | None = None,
     blend: bool | None = None,
-    normals: str | None = None,
+    normals: Literal["linear", "refined"] | None = None,
     coherent: bool = False,
     **values: Unpack[Values],
 ) -> Kahler:

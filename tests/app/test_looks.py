@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from risorius import refine, render
+from risorius.app.cameras import whole_scene
 from risorius.app.errors import UserError
 from risorius.app.looks import FIRST_LOOK, LOOKS, Look, Refinement, named
 from risorius.app.pipeline import Pipeline
@@ -17,7 +18,11 @@ from risorius.app.scenes import SCENES, Scene
 from risorius.refine.border.registry import refiners
 
 SIZE = (160, 120)
-MOVED = {"face": {"disgust": 1.0}, "plane": {"amplitude": 1.0, "phase": 0.3}}
+MOVED = {
+    "face": {"disgust": 1.0},
+    "plane": {"amplitude": 1.0, "phase": 0.3},
+    "cloth": {"drop": 1.0},
+}
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +51,7 @@ def test_every_look_is_drawn_by_every_refiner(
     """On every scene, without a crack, and as something that can be seen."""
     scene, refinement = scenes[name], Refinement(look, refiner)
     pipeline = Pipeline(scene, render.Renderer(surface), [refinement])
-    camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
+    camera = whole_scene(scene, "front")
     surface.begin()
     pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
     surface.end()

@@ -125,8 +125,8 @@ def test_what_is_of_no_use_is_told_in_one_line(
 
 def test_they_are_offered() -> None:
     """The window lists them beside the built-in ones, and so does the doctor."""
-    assert mechanism._choices("scheme")[-1] == "straight"
-    assert mechanism._choices("criterion")[-1] == "everywhere"
+    assert "straight" in mechanism._choices("scheme")
+    assert "everywhere" in mechanism._choices("criterion")
     lines = CliRunner().invoke(main, ["doctor"]).output.splitlines()
     named = {line.partition(": ")[0]: line.split(", ") for line in lines}
     assert {"half", "gone"} <= set(named["refiners"])

@@ -7,7 +7,9 @@ import pytest
 
 from risorius import refine
 from risorius.app.errors import UserError
-from risorius.app.refining import options_of, parse_options
+from risorius.app.looks import Refinement
+from risorius.app.refining import open_choices, options_of, parse_options, refiner_for
+from risorius.app.scenes import PlaneScene
 from risorius.refine.border import registry
 
 
@@ -61,8 +63,26 @@ def test_only_switches_numbers_and_words_are_options(
 def test_options_of_the_papers_refiner() -> None:
     """Its thresholds, words and switches, and no arrays."""
     assert set(options_of("kahler")) == {
-        "threshold_once", "threshold_twice", "criterion", "scheme", "blend", "coherent",
+        "threshold_once", "threshold_twice", "criterion", "scheme", "blend", "normals",
+        "coherent",
     }  # fmt: skip
+
+
+def test_what_may_be_left_open_is_a_choice() -> None:
+    """Words stand for values; another value, or a number in place of a switch, is refused."""
+    assert open_choices("kahler") == {
+        "blend": {"as it suits": None, "on": True, "off": False},
+        "normals": {"as it suits": None, "linear": "linear", "refined": "refined"},
+    }
+    plane = PlaneScene()
+    for value in (None, "linear", "refined"):
+        refiner_for(plane, Refinement(options={"normals": value}))
+    for option, wrong, wanted in (
+        ("normals", "round", "linear or refined"),
+        ("blend", 1, "on or off"),
+    ):
+        with pytest.raises(UserError, match=f"option {option} was {wrong}, must be {wanted}"):
+            refiner_for(plane, Refinement(options={option: wrong}))
 
 
 @pytest.mark.parametrize("text", ["9" * 400, "-1e31", "1e400", "nan"])

@@ -39,16 +39,18 @@ def test_the_plane_waves() -> None:
 
 
 def test_the_cloth_falls_and_is_taken_up() -> None:
-    """Let go it hangs around the ball, and is refined to some four times its triangles."""
+    """Let go it hangs around the ball, of four times its triangles in one look, two in another."""
     cloth = ClothScene()
     assert len(cloth.faces) == 1152
-    refiner = refiner_for(cloth, "kahler", None)
-    assert len(refiner.refine(cloth.positions).triangles) == 1152
+    refiners = {name: refiner_for(cloth, Refinement(name)) for name in LOOKS}
+    for refiner in refiners.values():
+        assert len(refiner.refine(cloth.positions).triangles) == 1152
     cloth.pose({"drop": 1.0, "turn": -1.25})
     cloth.step(3.0)
-    mesh = refiner.refine(cloth.positions)
-    refine.check(refiner, mesh, cloth.positions)
-    assert 3.3 * 1152 < len(mesh.triangles) < 5.0 * 1152
+    for name, (least, most) in {"paper": (3.3, 5.0), "smooth": (1.4, 2.4)}.items():
+        mesh = refiners[name].refine(cloth.positions)
+        refine.check(refiners[name], mesh, cloth.positions)
+        assert least * 1152 < len(mesh.triangles) < most * 1152, name
     assert cloth.positions[:, 1].min() < -100.0
     turn = cloth.bone_transforms()["ball"]
     assert turn[:3, :3] @ [1.0, 0.0, 0.0] == pytest.approx([0.0, 0.0, 1.0], abs=1e-6)
@@ -146,7 +148,7 @@ def test_the_shown_face_keeps_shut_what_is_shut(pose: str) -> None:
     face.pose({} if pose == "rest" else {pose: 1.0})
     face.step(1.0)
     meshes = meshes_of(face.simulation, refiner)
-    assert len(meshes["refined"][1]) < 2.8 * len(face.faces)
+    assert len(meshes["refined"][1]) < 4.0 * len(face.faces)
     if pose in ("rest", "blink"):
         landmarks = face.positions[face.landmarks]
         slits = {name: widest_slit(*shown, landmarks) for name, shown in meshes.items()}

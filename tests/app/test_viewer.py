@@ -243,6 +243,35 @@ def test_a_look_is_chosen(viewer: Viewer) -> None:
     assert not viewer.messages.is_error
 
 
+def test_normals_are_chosen(viewer: Viewer) -> None:
+    """Linear, refined, or what suits the scheme; the picture changes, and a look takes it back."""
+    viewer.session.toggle_alone("disgust")
+    click(viewer, "tab Mechanism")
+    assert until(viewer, lambda: viewer.is_idle)
+    shown = {}
+    for words in ("as it suits", "linear", "refined", "as it suits"):
+        click(viewer, "normals")
+        click(viewer, f"normals: {words}")
+        assert not viewer.messages.is_error
+        shown[words] = viewer.stage.refined.triangle_count
+    assert viewer.stage.refined.label == "smooth, changed"
+    assert shown["linear"] != shown["refined"] == shown["as it suits"]
+    click(viewer, "Look")
+    click(viewer, "Look: smooth")
+    assert viewer.stage.refined.label == "smooth"
+
+
+def test_thresholds_are_offered_where_they_count(viewer: Viewer) -> None:
+    """With the paper's criterion, also beside another; not where they would do nothing."""
+    click(viewer, "tab Mechanism")
+    offered = {}
+    for criterion in ("bulge", "normal+rest", "normal"):
+        viewer.settings.display.options["kahler"] = {"criterion": criterion}
+        draw_frames(viewer)
+        offered[criterion] = "threshold_once" in viewer.gui.places
+    assert offered == {"bulge": False, "normal+rest": True, "normal": True}
+
+
 def test_two_looks_are_compared(viewer: Viewer) -> None:
     """On the left is what the list says: a look, a refiner, or the mesh as it is again."""
     viewer.session.toggle_alone("disgust")

@@ -34,8 +34,8 @@ def rms(cell: Cell, truth: Cell) -> float:
 @pytest.mark.parametrize(
     ("look", "left_over", "outline_left", "changed", "nearer"),
     [
-        ("refined: cubic", 0.93, 0.85, 0.012, 0.6),
-        ("refined: detail", 0.75, 0.7, 0.08, 0.8),
+        ("refined: cubic", 0.93, 0.85, 0.12, 0.8),
+        ("refined: detail", 0.75, 0.87, 0.25, 0.85),
     ],
 )
 def test_refined_is_nearer(
@@ -46,14 +46,17 @@ def test_refined_is_nearer(
     changed: float,
     nearer: float,
 ) -> None:
-    """Less of the error is left, of outlines too; pixels change, and most toward the dense mesh."""
+    """Less of the error is left, of outlines too; pixels change, and most toward the dense mesh.
+
+    `changed` is a share of the pixels that the dense mesh changes.
+    """
     for _, cells in drawn:
         static, refined, truth = cells["static"], cells[look], cells["dense mesh"]
         assert static.triangles < refined.triangles < truth.triangles / 2
         assert rms(refined, truth) < left_over * rms(static, truth)
         assert wrong_outline(refined, truth) < outline_left * wrong_outline(static, truth)
         is_changed = difference(refined, static) > SEEN
-        assert is_changed.mean() > changed
+        assert is_changed.mean() > changed * (difference(truth, static) > SEEN).mean()
         is_nearer = difference(refined, truth) < difference(static, truth)
         assert is_nearer[is_changed].mean() > nearer
 

@@ -54,3 +54,14 @@ def test_rings() -> None:
     assert (turns[:, 2] > 0.0).all()
     bow = np.array([[0, 1, 2], [0, 3, 4]])
     assert dict(ordered_rings(bow, 5))[0] == ([], False)
+
+
+@pytest.mark.parametrize("count", [3, 4, 5, 6])
+def test_tangents_survive_a_level(count: int) -> None:
+    """At a border vertex of any number of triangles, a finer level has the same tangent plane."""
+    turn = np.pi * np.linspace(0.0, 1.0, count) ** 1.3
+    rim = np.stack([np.cos(turn), np.sin(turn), 0.3 * np.cos(3.0 * turn)], axis=1)
+    points = np.concatenate([[[0.1, -0.3, 0.2]], rim])
+    faces = np.array([[0, k, k + 1] for k in range(1, count)])
+    coarse, fine = (LoopLimit(faces, len(points), levels).mesh(points)[1][0] for levels in (0, 3))
+    np.testing.assert_allclose(fine, coarse, atol=1e-9)

@@ -50,7 +50,8 @@ class RefinedNormals:
         place = self.rules.placed(count, grown)
         for (a, b), (once, _) in grown.items():
             mean = unit(mix((1, at_vertices[a]), (1, at_vertices[b])))
-            middle = unit(mix((1 - once, mean), (once, at_middles[a, b])))
+            soon = min(1.0, 3.0 * once)
+            middle = unit(mix((1 - soon, mean), (soon, at_middles[a, b])))
             ends = {1: at_vertices[a], 2: middle, 3: at_vertices[b]}
             place.point_normals[a, b] = {q: unit(mix((1, n), (1, middle))) for q, n in ends.items()}
         return Placed(place.vertices, place.points, at_vertices, place.point_normals)
@@ -94,4 +95,5 @@ class RefinedNormals:
         outline = self.fans[source]
         pieces = [area(outline[0], outline[i], outline[i + 1]) for i in range(1, 5)]
         hexagon = unit(mix(*((1, piece) for piece in pieces)))
-        return point, unit(mix((1 - grown[0], normal), (grown[0], hexagon)))
+        soon = min(1.0, 3.0 * grown[0])
+        return point, unit(mix((1 - soon, normal), (soon, hexagon)))

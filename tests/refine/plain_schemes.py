@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from tests.refine.plain_twin import (
     AtPoints,
@@ -17,7 +17,6 @@ from tests.refine.plain_twin import (
     Placed,
     Surroundings,
     Vector,
-    edge_name,
     mix,
     unit,
 )
@@ -49,10 +48,6 @@ class CurveRules:
     faces: list[Face]
     curve: Curve
     normals: list[Vector]
-    middle: Callable[[Face, list[Vector]], Vector] | None = None
-    """What is added to the middle of a triangle, from the bulges of its edges."""
-    centre_fullness: float = 1.0
-    bulges: dict[EdgeName, Vector] = field(default_factory=dict)
 
     def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
         """Points on the curves; normals between those at both ends."""
@@ -62,7 +57,6 @@ class CurveRules:
             straight = mix((0.5, self.positions[a]), (0.5, self.positions[b]))
             m = mix((1 - once, straight), (once, self.curve((a, b), 2)))
             points[a, b] = {2: m}
-            self.bulges[a, b] = mix((1, m), (-1, straight))
             for quarters, end in ((1, a), (3, b)):
                 chord = mix((0.5, self.positions[end]), (0.5, m))
                 full = self.curve((a, b), quarters)
@@ -75,15 +69,8 @@ class CurveRules:
     def centre(
         self, source: int, point: Vector, normal: Vector, grown: tuple[float, float]
     ) -> tuple[Vector, Vector]:
-        """Fuller than the edges say, and to where the triangles around have it."""
-        if self.middle is None or grown[0] == 0:
-            return point, normal
-        face = self.faces[source]
-        flat = mix(*((1 / 3, self.positions[v]) for v in face))
-        share = (self.centre_fullness - 1) * grown[0]
-        bulges = [self.bulges[edge_name(face[i], face[(i + 1) % 3])] for i in range(3)]
-        added = self.middle(face, bulges)
-        return mix((1 + share, point), (-share, flat), (grown[0], added)), normal
+        """Where blending has it."""
+        return point, normal
 
 
 def cubic_normals(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> list[Vector]:
@@ -148,52 +135,4 @@ def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> Cur
         a, b = positions[edge[0]], positions[edge[1]]
         return mix(*zip(hermite, (a, at_a, at_b, b), strict=True))
 
-    return CurveRules(positions, faces, curve, normals, cubic_middle(rest, positions, around), 1.15)
-
-
-def cubic_middle(
-    rest: list[Vector], positions: list[Vector], around: Surroundings
-) -> Callable[[Face, list[Vector]], Vector]:
-    """Higher where the corners across the edges lie deeper than the edges' bulges let expect."""
-
-    def doubled(face: Face) -> float:
-        ab, bc, ca = (mix((1, rest[face[i]]), (-1, rest[face[i - 1]])) for i in (1, 2, 0))
-        area = length(cross(ab, bc))
-        return area if area > 1e-9 * (dot(ab, ab) + dot(bc, bc) + dot(ca, ca)) else 0.0
-
-    def middle(face: Face, bulges: list[Vector]) -> Vector:
-        deeper: list[tuple[float, Vector]] = [(0.0, (0.0, 0.0, 0.0))]
-        expected = [0.0, 0.0, 0.0]
-        for i in range(3):
-            a, b, c = face[i], face[(i + 1) % 3], face[(i + 2) % 3]
-            if edge_name(a, b) not in around.inner:
-                continue
-            beyond = list(around.opposite[edge_name(a, b)])
-            beyond.remove(c)
-            across = beyond[0]
-            own, other = doubled(face), doubled((b, a, across))
-            if own == 0 or other == 0:
-                continue
-            share = own / (own + other)
-            deeper.append((share / 9, mix((1, positions[a]), (-1, positions[across]))))
-            # Unfolded: a at 0, b at 1, heights over ab as parts of that of c.
-            ab = mix((1, rest[b]), (-1, rest[a]))
-            c_along, along = (
-                dot(mix((1, rest[v]), (-1, rest[a])), ab) / dot(ab, ab) for v in (c, across)
-            )
-            of_c = -other / own
-            of_b = along - of_c * c_along
-            of_a = 1 - of_b - of_c
-            products = of_a * of_b, of_b * of_c, of_c * of_a
-            for k in range(3):  # a parabola that is 1 in the middle of an edge is 4 x there
-                expected[(i + k) % 3] += -4 * products[k] * share / 9
-        a, b, c = (positions[v] for v in face)
-        sides = [mix((1, b), (-1, a)), mix((1, c), (-1, b)), mix((1, a), (-1, c))]
-        up = cross(sides[0], sides[1])
-        surprise = mix(*deeper, *((-x / 1.2, y) for x, y in zip(expected, bulges, strict=True)))
-        gain = 0.6 * 1.15 * 1.2 * min(1.0, 2.0 / max(sum(map(abs, expected)), 1e-9))
-        flattened = 1e-3 * sum(dot(side, side) for side in sides) ** 2
-        area = dot(up, up) + flattened
-        return mix((gain * dot(surprise, up) / max(area, 1e-38), up))
-
-    return middle
+    return CurveRules(positions, faces, curve, normals)

@@ -36,8 +36,11 @@ HINTS = {
     "than this since rest (drop of their dot product)",
     "threshold twice": "the same for splitting twice",
     "criterion": "by what it is decided which edges split; normal: where the face moves (the "
-    "paper's), rest: where it is round at rest, so that outlines are",
+    "paper's), rest: where it is round at rest, so that outlines are, bulge: where the scheme "
+    "moves edges, border: where a mouth opens",
     "scheme": "where the new points go",
+    "normals": "what light sees; linear: those of the simulated mesh, in between (the paper's), "
+    "refined: those of the refined surface",
     "blend": "new points grow out of the edge, and nothing pops",
     "coherent": "triangles are cut in the order in which their edges split, and no line turns; for "
     "flat shading",
@@ -53,9 +56,10 @@ HINTS = {
     "Skull": "the bone under the skin; the mandible moves with the jaw",
     "Landmarks": "the 68 points that the muscles are placed by",
 }
+THRESHOLDS = "threshold_once", "threshold_twice"  # of this criterion alone:
+PAPERS_CRITERION = "normal"
 LABEL_SHARE = 0.45  # of a row
 HIGHEST = 0.25  # of a slider for a number that is no whole one, as far as it is not more already
-SUITS = {"as it suits": None, "on": True, "off": False}  # values of options that may be left open
 
 
 class MechanismPanel:
@@ -98,7 +102,8 @@ class MechanismPanel:
         if display.compare != "off":
             self._draw_beside((STATIC, *LOOKS, *names))
         for name, default in stage.refiner_options.items():
-            self._draw_option(name, default)
+            if name not in THRESHOLDS or self._has_thresholds():
+                self._draw_option(name, default)
         base = len(stage.scene.faces)
         for shot in stage.shots(display, self._view.viewport):
             count = shot.drawn.triangle_count
@@ -117,6 +122,11 @@ class MechanismPanel:
         self._choose(
             "with", present, list(labels), lambda label: setattr(display, "beside", labels[label])
         )
+
+    def _has_thresholds(self) -> bool:
+        """Whether the criterion is, or has in it, the one that the thresholds are of."""
+        _, told = self._display.refinement_on(self._stage.scene).on(self._stage.scene.name)
+        return PAPERS_CRITERION in str(told.get("criterion", PAPERS_CRITERION)).split("+")
 
     def _draw_option(self, name: str, default: Any) -> None:
         """A slider, a checkbox or a list for an option, by what its default is."""
@@ -144,8 +154,9 @@ class MechanismPanel:
             if allowed:
                 self._choose(label, str(value), allowed, put)
         elif default is None:
-            present = next(word for word, each in SUITS.items() if each is value)
-            self._choose(label, present, list(SUITS), lambda word: put(SUITS[word]))
+            choices = self._stage.open_choices[name]
+            present = next(word for word, each in choices.items() if each == value)
+            self._choose(label, present, list(choices), lambda word: put(choices[word]))
 
     def _draw_style(self) -> None:
         display = self._display
@@ -255,7 +266,7 @@ def _keep_in_order(
     stored: dict[str, Any], name: str, value: float, told: Mapping[str, Any]
 ) -> None:
     """Splitting twice never begins before splitting once: the other threshold gives way."""
-    first, second = "threshold_once", "threshold_twice"
+    first, second = THRESHOLDS
     defaults = {first: refine.THRESHOLD_ONCE, second: refine.THRESHOLD_TWICE, **told}
     if name == first:
         stored[second] = max(value, stored.get(second, defaults[second]))
