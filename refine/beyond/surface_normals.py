@@ -16,8 +16,8 @@ change. Here the surface that all splits together would make is looked at, where
 
 Both are sums of the cross products of the small triangles around the point, put together. They do
 not depend on what is split in this frame, so no normal jumps when something is. A new point begins
-with the mean of the normals at the ends of its edge, and turns to its own as it grows (blending).
-At a quarter it is the mean of its neighbours'.
+with the mean of the normals at the ends of its edge, and turns to its own while it goes the first
+third of its way (blending.py). At a quarter it is the mean of its neighbours'.
 
 Differs from the paper, whose rule is `normals="linear"`.
 """

@@ -84,7 +84,9 @@ def test_nothing_pops(scheme: str) -> None:
     """With blending every point of the surface moves at most in proportion to the input."""
     most, turn = jumps(scheme, True, "normal")
     assert most < BOUND
-    assert turn < 0.5  # smaller steps turn it less: 0.12 with 1600 steps, 0.09 with 6400
+    # Edges crumple here until the normals of neighbours are 120 degrees apart. With one more
+    # between them shading is interpolated otherwise: up to 0.15 at once, at any size of steps.
+    assert turn < 0.5
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

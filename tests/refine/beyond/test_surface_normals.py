@@ -92,7 +92,7 @@ def smooth_wave(mesh: meshes.Mesh, height: float) -> Points:
 def test_normals_do_not_pop(scheme: str) -> None:
     """In a smooth motion the shading turns in proportion to the motion, all thresholds crossed.
 
-    Largest seen: 2.4 times the turn of the surface's own normals; without blending 54 to 62, and
+    Largest seen: 1.7 times the turn of the surface's own normals; without blending 54 to 62, and
     twice that with steps of half the size.
     """
     mesh = meshes.open_grid(8, 6)
