@@ -91,11 +91,13 @@ class MendedLimitScheme(CurveScheme):
         rows = edge_points(connectivity).ravel()
         self._offsets, self._spread = whole.offsets[rows], whole.spread[rows]
 
-    def _bulge(self, frame: refine.FrameBuffers) -> Floats:
+    def prepare(self, frame: refine.FrameBuffers) -> None:
+        """Write the bulges of all edges."""
         positions, normals = frame.positions.astype(np.float64), frame.normals.astype(np.float64)
-        found = heights(self._offsets, self._spread, positions, normals)
-        self._bulges[:] = found.reshape(self._bulges.shape)
-        return self._bulges
+        self._bulges[:] = heights(self._offsets, self._spread, positions, normals).reshape(
+            self._bulges.shape
+        )
+        self._normals[:] = frame.normals
 
 
 def heights(
