@@ -9,7 +9,7 @@ triangles as it may spend:
     bulge       where the scheme would move an edge most                       refine.Bulge
 
 and `RULE, blended` is the same with blend=True: nothing pops, at the price of triangles that are
-there before they have grown. Beside these stand the paper's scheme by `normal+rest`, with the
+there before they have grown. Beside these stand the look of the application, with the
 thresholds that the refiner has by itself; everything split once or twice; and peers that refine the
 whole mesh: Loop subdivision (Loop 1987), its limit surface (loop_limit.py), limit surfaces through
 the vertices (limit_through.py), curved triangles (patches.py). `mended`, the best of those through
@@ -26,6 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine
+from risorius.app.looks import FIRST_LOOK, LOOKS
 from risorius.refine.kahler.criterion import Thresholds
 
 from .limit_through import LimitThrough, MendedLimit, MendedLimitScheme
@@ -49,8 +50,9 @@ CRITERIA: Mapping[str, Callable[[], Any]] = {
     "screen": refine.ScreenEdge,
     "bulge": refine.Bulge,
 }
-LOOK = ("loop", "normal+rest")
-"""Scheme and criterion that are also drawn with thresholds as they are."""
+_TOLD = LOOKS[FIRST_LOOK]["face"].told("kahler")
+LOOK: tuple[str, str] = _TOLD["scheme"], _TOLD["criterion"]
+"""Scheme and criterion by which the application shows a head, with thresholds as they are."""
 UNIFORM = (
     "uniform Loop",
     "Loop limit",

@@ -29,7 +29,7 @@ ROUNDING = 5e-4
 BY_EXPRESSION: tuple[tuple[str, Key], ...] = (
     ("static", STATIC_KEY),
     ("paper 2x", (PAPER, "normal", SPENT)),
-    ("normal+rest", (*LOOK, AS_SET)),
+    ("look", (*LOOK, AS_SET)),
     *(
         (f"{scheme} 2x", (scheme, rules[-1], SPENT))
         for scheme, rules in SCHEMES.items()
@@ -133,8 +133,8 @@ def worst(scores: Sequence[Score], key: Key, what: str) -> tuple[float, str]:
 def targets_text(all_scores: Mapping[str, Sequence[Score]]) -> str:
     """What was aimed at, what was found, and whether it is met; `all_scores`: by group."""
     lines = [
-        f"Targets, of the best blended scheme at {SPENT:g}x the triangles; better = picture error "
-        "less than static:"
+        f"Targets, of the best blended scheme at {SPENT:g}x the triangles and of the look that the "
+        "application has; better = picture error less than static:"
     ]
     for group, scores in all_scores.items():
         average = means(scores)
@@ -151,14 +151,20 @@ def targets_text(all_scores: Mapping[str, Sequence[Score]]) -> str:
                 best = min(keys, key=lambda key: average[key].picture)
                 asked = ASKED[group == "head"][has_finer]
                 lines += _verdicts(f"{group}, {_name(best)}", scores, best, asked)
+        look = *LOOK, AS_SET
+        if look in average:
+            lines += _verdicts(f"{group}, {_name(look)}", scores, look, None)
     return "\n".join(lines)
 
 
-def _verdicts(name: str, scores: Sequence[Score], key: Key, asked: float) -> list[str]:
+def _verdicts(name: str, scores: Sequence[Score], key: Key, asked: float | None) -> list[str]:
+    """Targets of one method; `asked`: per cent of picture error less, if any is asked."""
     average = means(scores)
     found = average[key]
     better = 100.0 * (1.0 - found.picture / average[STATIC_KEY].picture)
-    lines = [verdict(better >= asked, f"{name}: {asked} % better; found {better:.1f} %")]
+    lines = []
+    if asked is not None:
+        lines.append(verdict(better >= asked, f"{name}: {asked} % better; found {better:.1f} %"))
     for what in ("distance", "picture"):
         ratio, where = worst(scores, key, what)
         text = f"{name}: {what} never worse than static; worst {ratio:.3f} of it ({where})"
