@@ -28,9 +28,9 @@ class Look:
         return self.options.get(refiner, {})
 
 
-# Where the curves move edges most, and where a mouth opens; by these alone the outlines of crown
-# and chin would stay polygons: there edges are long and turn little.
-SMOOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+rest+border"}})
+# By `bulge` alone the outlines of crown and chin would stay polygons: edges there are long and turn
+# little. `border` would make an opened mouth rounder, and lids and pursed lips uneven.
+SMOOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+rest"}})
 SMOOTH_CLOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge"}})
 PAPER = Look()
 # A flat mesh needs no slack for bends that it was made with. Found by search, so that the wave
