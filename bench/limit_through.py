@@ -91,11 +91,13 @@ class MendedLimitScheme(CurveScheme):
         rows = edge_points(connectivity).ravel()
         self._offsets, self._spread = whole.offsets[rows], whole.spread[rows]
 
-    def _bulge(self, frame: refine.FrameBuffers) -> Floats:
-        positions, normals = frame.positions.astype(np.float64), frame.normals.astype(np.float64)
-        found = heights(self._offsets, self._spread, positions, normals)
+    def prepare(self, frame: refine.FrameBuffers) -> None:
+        """Find the heights of the three points of every edge."""
+        self._normals[:] = frame.normals
+        found = heights(
+            self._offsets, self._spread, frame.positions, frame.normals.astype(np.float64)
+        )
         self._bulges[:] = found.reshape(self._bulges.shape)
-        return self._bulges
 
 
 def heights(
