@@ -28,10 +28,9 @@ class Look:
         return self.options.get(refiner, {})
 
 
-# Where the curves move edges most, and where a mouth opens; by these alone the outlines of crown
-# and chin would stay polygons: there edges are long and turn little.
+# Where the curves move edges most, and where a mouth opens or a hem turns; by these alone the
+# outlines of crown, chin and cloth would stay polygons: there edges are long and turn little.
 SMOOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+rest+border"}})
-SMOOTH_CLOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge"}})
 PAPER = Look()
 # A flat mesh needs no slack for bends that it was made with. Found by search, so that the wave
 # makes about as many triangles at most as in Table 1 (1328).
@@ -41,7 +40,7 @@ SMOOTH_PLANE = Look(options={"kahler": {"normals": "refined", **PLANE}})
 
 LOOKS: Mapping[str, Mapping[str, Look]] = MappingProxyType(  # by name, then by scene
     {
-        FIRST_LOOK: {"face": SMOOTH, "plane": SMOOTH_PLANE, "cloth": SMOOTH_CLOTH},
+        FIRST_LOOK: {"face": SMOOTH, "plane": SMOOTH_PLANE, "cloth": SMOOTH},
         PAPERS_LOOK: {"face": PAPER, "plane": PAPERS_PLANE, "cloth": PAPER},
     }
 )
