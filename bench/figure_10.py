@@ -86,12 +86,9 @@ class Cell:
     opening: Image  # the same from nearer
 
 
-def figure_10(
-    size: tuple[int, int] = (330, 250), *, looks: Sequence[Look] = LOOKS,
-    shots: Sequence[Shot] = SHOTS,
-) -> Image:  # fmt: skip
-    """Draw static and refined mouths and the dense one, in columns of `size` pixels."""
-    return np.vstack([_block(shot, cells) for shot, cells in drawn(size, looks, shots)])
+def page(blocks: Sequence[tuple[Shot, Sequence[Cell]]]) -> Image:
+    """Lay out what was `drawn`: static and refined mouths and the dense one, in columns."""
+    return np.vstack([_block(shot, cells) for shot, cells in blocks])
 
 
 def drawn(

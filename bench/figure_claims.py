@@ -60,7 +60,8 @@ def figure_9_outcome() -> Outcome:
 def figure_10_outcome() -> Outcome:
     """How much of the error of mouths goes away, by the interpolating scheme."""
     changed, left, outline = [], [], []
-    for _, cells in figure_10.drawn(SIZE_10, figure_10.LOOKS, figure_10.SHOTS):
+    blocks = figure_10.drawn(SIZE_10, figure_10.LOOKS, figure_10.SHOTS)
+    for _, cells in blocks:
         named = {cell.title: cell for cell in cells}
         static, refined, truth = named["static"], named["refined: cubic"], cells[-1]
         changed.append(100.0 * (figure_10.difference(refined, static) > SEEN).mean())
@@ -75,4 +76,4 @@ def figure_10_outcome() -> Outcome:
         "difference from the dense mesh, refined over static": float(np.mean(left)),
         "wrong pixels of the opening, refined over static": float(np.mean(outline)),
     }
-    return Outcome(values, {"figure10": figure_10.figure_10()})
+    return Outcome(values, {"figure10": figure_10.page(blocks)})
