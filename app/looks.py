@@ -29,7 +29,7 @@ class Look:
 
 
 # Where the curves move edges most, and where a mouth opens or a hem turns; by these alone the
-# outlines of crown, chin and cloth would stay polygons: there edges are long and turn little.
+# outlines of crown and chin would stay polygons: there edges are long and turn little.
 SMOOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+rest+border"}})
 PAPER = Look()
 # A flat mesh needs no slack for bends that it was made with. Found by search, so that the wave
