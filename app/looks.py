@@ -31,7 +31,8 @@ class Look:
 # By `bulge` alone the outlines of crown and chin would stay polygons: edges there are long and turn
 # little. `border` would make an opened mouth rounder, and lids and pursed lips uneven.
 SMOOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+rest"}})
-SMOOTH_CLOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge"}})
+# The hem of a cloth turns in the sheet itself.
+SMOOTH_CLOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+border"}})
 PAPER = Look()
 # A flat mesh needs no slack for bends that it was made with. Found by search, so that the wave
 # makes about as many triangles at most as in Table 1 (1328).

@@ -27,13 +27,13 @@ from risorius.app.files import Image
 
 from .canvas import Canvas
 from .figures import without_noise
-from .outlines import MOUTH, Look, Mouths, wrong_pixels
+from .outlines import MOUTH, Mouths, Variant, wrong_pixels
 
-LOOKS = (
-    Look("static", "none"),
-    Look("refined: paper", "kahler"),
-    Look("refined: cubic", "kahler", {"scheme": "cubic", "criterion": "bulge+border"}),
-    Look(
+VARIANTS = (
+    Variant("static", "none"),
+    Variant("refined: paper", "kahler"),
+    Variant("refined: cubic", "kahler", {"scheme": "cubic", "criterion": "bulge+border"}),
+    Variant(
         "refined: detail",
         "kahler",
         {"scheme": "detail", "criterion": "bulge+border"},
@@ -76,7 +76,7 @@ LIPS, OPENING, WRONG = (233, 222, 214), (52, 40, 42), (225, 30, 30)
 
 @dataclass(frozen=True)
 class Cell:
-    """What one look makes of one expression: its four pictures, and how far they are from truth."""
+    """What one variant makes of one expression: four pictures, and how far they are from truth."""
 
     title: str
     triangles: int
@@ -86,20 +86,17 @@ class Cell:
     opening: Image  # the same from nearer
 
 
-def figure_10(
-    size: tuple[int, int] = (330, 250), *, looks: Sequence[Look] = LOOKS,
-    shots: Sequence[Shot] = SHOTS,
-) -> Image:  # fmt: skip
-    """Draw static and refined mouths and the dense one, in columns of `size` pixels."""
-    return np.vstack([_block(shot, cells) for shot, cells in drawn(size, looks, shots)])
+def page(blocks: Sequence[tuple[Shot, Sequence[Cell]]]) -> Image:
+    """Lay out what was `drawn`: static and refined mouths and the dense one, in columns."""
+    return np.vstack([_block(shot, cells) for shot, cells in blocks])
 
 
 def drawn(
-    size: tuple[int, int], looks: Sequence[Look], shots: Sequence[Shot]
+    size: tuple[int, int], variants: Sequence[Variant], shots: Sequence[Shot]
 ) -> list[tuple[Shot, list[Cell]]]:
-    """Draw every shot in every look; the cell of the dense mesh is the last of each."""
-    mouths = Mouths(looks)
-    columns = [(look.title, one) for look, one in zip(looks, mouths.refiners, strict=True)]
+    """Draw every shot in every variant; the cell of the dense mesh is the last of each."""
+    mouths = Mouths(variants)
+    columns = [(variant.title, one) for variant, one in zip(variants, mouths.refiners, strict=True)]
     columns.append(("dense mesh", mouths.dense))
     found = []
     with Canvas((FINER * size[0], FINER * size[1])) as canvas:
@@ -111,7 +108,7 @@ def drawn(
 
 
 def _cell(title: str, refiner: refine.Refiner, mouths: Mouths, shot: Shot, canvas: Canvas) -> Cell:
-    """Draw one look of a shot."""
+    """Draw one variant of a shot."""
     camera = mouths.camera(shot.view)
     camera.pan(*shot.aside)
     return Cell(

@@ -10,7 +10,6 @@ Kähler, Haber, Seidel 2003, section 5.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -18,13 +17,13 @@ import numpy.typing as npt
 from risorius import refine, render
 from risorius.app.cameras import camera_for
 from risorius.app.files import Image
-from risorius.app.looks import LOOKS as LOOKS_OF_SCENES
-from risorius.app.looks import PAPERS_LOOK
+from risorius.app.looks import LOOKS, PAPERS_LOOK
 from risorius.app.scenes import PlaneScene
 from risorius.assets.plane import CELL, COLUMNS, ROWS, make_grid
 
 from .canvas import Canvas, Drawing, image_table
 from .figure_coherence import FLAT, FRAME_SECONDS, GOURAUD
+from .outlines import Variant
 
 PHASES = (0.0, 0.33, 0.66)  # moments of the wave
 VIEW = "28,-30,0.68"  # from here no corner shows its underside, which no light reaches
@@ -33,39 +32,31 @@ BACKGROUND = 250.0  # grey level; pictures stand on white, and no part of the pl
 SHADINGS = (("flat", FLAT), ("Gouraud", GOURAUD))
 
 
-class Look(NamedTuple):
-    """A row of the figure: the options are beside those of the scene."""
-
-    title: str
-    refiner: str
-    options: dict[str, Any] = {}  # noqa: RUF012, nobody writes into it
-
-
-LOOKS = (
-    Look("static", "none"),
-    Look("refined", "kahler"),
-    Look("refined, its own normals", "kahler", {"normals": "refined"}),
-    Look("refined, cubic curves", "kahler", {"scheme": "cubic"}),
+VARIANTS = (
+    Variant("static", "none"),
+    Variant("refined", "kahler"),
+    Variant("refined, its own normals", "kahler", {"normals": "refined"}),
+    Variant("refined, cubic curves", "kahler", {"scheme": "cubic"}),
 )
 
 
-def draw(size: tuple[int, int] = (380, 230), *, looks: Sequence[Look] = LOOKS) -> Image:
+def draw(size: tuple[int, int] = (380, 230), *, variants: Sequence[Variant] = VARIANTS) -> Image:
     """The rows of each shading in turn, the true sine last; columns are moments."""
     with Canvas(size) as canvas:
         plane = Waving(canvas)
         true = [plane.true_image(phase) for phase in PHASES]
         rows = []
         for shading, style in SHADINGS:
-            for look in looks:
-                if style is FLAT and "normals" in look.options:
+            for variant in variants:
+                if style is FLAT and "normals" in variant.options:
                     continue  # facets show no normals of vertices
                 cells = []
                 for phase, truth in zip(PHASES, true, strict=True):
-                    image, count = plane.image(look, style, phase)
+                    image, count = plane.image(variant, style, phase)
                     off, outline = levels_apart(image, truth), outline_apart(image, truth)
                     text = f"{count} triangles: {off:.1f} levels, outline {outline:.1%} off"
                     cells.append((text, image))
-                rows.append((f"{look.title}, {shading} shading", cells))
+                rows.append((f"{variant.title}, {shading} shading", cells))
         rows.append(("the sine itself", [("", truth) for truth in true]))
     return image_table(rows)
 
@@ -78,12 +69,12 @@ class Waving:
         self._camera = camera_for(self._scene, VIEW)
         self._dense = make_grid(COLUMNS * FINENESS, ROWS * FINENESS, CELL / FINENESS)
 
-    def image(self, look: Look, style: render.Style, phase: float) -> tuple[Image, int]:
-        """The picture of a look, and the number of its triangles."""
+    def image(self, variant: Variant, style: render.Style, phase: float) -> tuple[Image, int]:
+        """The picture of a variant, and the number of its triangles."""
         scene = self._wave(phase)
-        papers = LOOKS_OF_SCENES[PAPERS_LOOK][scene.name]
-        options = {**papers.told(look.refiner), **look.options}
-        refiner = refine.create(look.refiner, scene.faces, scene.rest_positions, **options)
+        papers = LOOKS[PAPERS_LOOK][scene.name]
+        options = {**papers.told(variant.refiner), **variant.options}
+        refiner = refine.create(variant.refiner, scene.faces, scene.rest_positions, **options)
         image = self._canvas.draw_image(refiner, scene.positions, Drawing(self._camera, style))
         return image, self._canvas.stream_for(refiner).triangle_count
 

@@ -37,18 +37,18 @@ def figure_8_outcome() -> Outcome:
 def figure_9_outcome() -> Outcome:
     """How far the shading of static and refined plane is from that of the sine."""
     values = {}
-    looks = figure_9.LOOKS[:3]
+    variants = figure_9.VARIANTS[:3]
     with Canvas(SIZE_9) as canvas:
         plane = figure_9.Waving(canvas)
         for shading, style in figure_9.SHADINGS:
             off = [
                 [
                     figure_9.levels_apart(
-                        plane.image(look, style, phase)[0], plane.true_image(phase)
+                        plane.image(variant, style, phase)[0], plane.true_image(phase)
                     )
                     for phase in figure_9.PHASES
                 ]
-                for look in looks
+                for variant in variants
             ]
             before, after, with_own = np.mean(off, axis=1)
             values[f"{shading}: shading error, refined over static"] = float(after / before)
@@ -60,7 +60,8 @@ def figure_9_outcome() -> Outcome:
 def figure_10_outcome() -> Outcome:
     """How much of the error of mouths goes away, by the interpolating scheme."""
     changed, left, outline = [], [], []
-    for _, cells in figure_10.drawn(SIZE_10, figure_10.LOOKS, figure_10.SHOTS):
+    blocks = figure_10.drawn(SIZE_10, figure_10.VARIANTS, figure_10.SHOTS)
+    for _, cells in blocks:
         named = {cell.title: cell for cell in cells}
         static, refined, truth = named["static"], named["refined: cubic"], cells[-1]
         changed.append(100.0 * (figure_10.difference(refined, static) > SEEN).mean())
@@ -75,4 +76,4 @@ def figure_10_outcome() -> Outcome:
         "difference from the dense mesh, refined over static": float(np.mean(left)),
         "wrong pixels of the opening, refined over static": float(np.mean(outline)),
     }
-    return Outcome(values, {"figure10": figure_10.figure_10()})
+    return Outcome(values, {"figure10": figure_10.page(blocks)})

@@ -1,7 +1,7 @@
-"""The paper's Fig. 10 (the region of the mouth), and a film strip of time-coherent splitting.
+"""A film strip of time-coherent splitting, and the styles that the figures are drawn in.
 
-Drawn by `risorius reproduce coherence`; the other figures have files of their own.
-Kähler, Haber, Seidel 2003, sections 4.4 and 5.
+`risorius reproduce coherence` draws it.
+Kähler, Haber, Seidel 2003, section 4.4.
 """
 
 from __future__ import annotations
@@ -25,7 +25,6 @@ FRAME_SECONDS = 1.0 / 30.0
 CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, background=render.WHITE)
 FLAT = replace(CLAY, shading=render.Shading.FLAT)
 GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
-
 
 AMPLITUDES = (0.06, 0.12, 0.22, 0.4)  # of the wave in the columns of the film strip
 STEPS_BETWEEN = 8  # frames of the animation between two columns

@@ -92,12 +92,12 @@ class MendedLimitScheme(CurveScheme):
         self._offsets, self._spread = whole.offsets[rows], whole.spread[rows]
 
     def prepare(self, frame: refine.FrameBuffers) -> None:
-        """Write the bulges of all edges."""
-        positions, normals = frame.positions.astype(np.float64), frame.normals.astype(np.float64)
-        self._bulges[:] = heights(self._offsets, self._spread, positions, normals).reshape(
-            self._bulges.shape
-        )
+        """Find the heights of the three points of every edge."""
         self._normals[:] = frame.normals
+        found = heights(
+            self._offsets, self._spread, frame.positions, frame.normals.astype(np.float64)
+        )
+        self._bulges[:] = found.reshape(self._bulges.shape)
 
 
 def heights(

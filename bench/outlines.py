@@ -45,8 +45,8 @@ OTHERS = (
 
 
 @dataclass(frozen=True)
-class Look:
-    """How the coarse head is refined."""
+class Variant:
+    """One way to refine a mesh, for a row or column of a figure or table."""
 
     title: str
     refiner: str
@@ -54,9 +54,9 @@ class Look:
     wants_detail: bool = False  # the finer head at rest is handed to the scheme
 
 
-def _looks() -> list[Look]:
+def _variants() -> list[Variant]:
     """What is compared, beside the mesh as it is."""
-    looks = [Look("static", "none")]
+    variants = [Variant("static", "none")]
     for scheme, criteria in (
         ("loop", ("normal", "border")),
         ("cubic", ("normal", "border", "normal+border", "bulge", "bulge+border")),
@@ -64,34 +64,36 @@ def _looks() -> list[Look]:
     ):
         for criterion in criteria:
             options = {"scheme": scheme, "criterion": criterion}
-            looks.append(Look(f"{scheme}, {criterion}", "kahler", options, scheme == "detail"))
-    return looks
+            variants.append(
+                Variant(f"{scheme}, {criterion}", "kahler", options, scheme == "detail")
+            )
+    return variants
 
 
-LOOKS = tuple(_looks())
+VARIANTS = tuple(_variants())
 
 
 class Mouths:
     """The dense head, the coarse one that goes along, and what is in their mouths."""
 
-    def __init__(self, looks: Sequence[Look]) -> None:
+    def __init__(self, variants: Sequence[Variant]) -> None:
         self._scene, self._head = FaceScene(), assets.load("head")
         fine = self._head.finer(LEVEL)
         self._simulation = fine_simulation(self._head, fine)
         self._rest = fine.vertices, fine.faces
         self.dense = refine.create("none", fine.faces, fine.vertices)
-        self.refiners = [self._refiner_of(look) for look in looks]
+        self.refiners = [self._refiner_of(variant) for variant in variants]
         self._green_parts = tuple(
             replace(part, colours=np.tile(GREEN, (len(part.colours), 1)), shine=0.0)
             for part in self._scene.parts
         )
         self.pose({})
 
-    def _refiner_of(self, look: Look) -> refine.Refiner:
-        options = dict(look.options)
-        if look.wants_detail:
+    def _refiner_of(self, variant: Variant) -> refine.Refiner:
+        options = dict(variant.options)
+        if variant.wants_detail:
             options["detail"] = self._rest
-        return refine.create(look.refiner, self._head.faces, self._head.vertices, **options)
+        return refine.create(variant.refiner, self._head.faces, self._head.vertices, **options)
 
     def pose(self, values: Mapping[str, float]) -> None:
         """Hold controls until nothing moves."""
@@ -135,7 +137,7 @@ def wrong_pixels(kinds: Kinds, truth: Kinds) -> int:
 
 @dataclass(frozen=True)
 class Outline:
-    """What one look makes of some poses, each from some views."""
+    """What one variant makes of some poses, each from some views."""
 
     title: str
     triangles: float  # mean
@@ -144,12 +146,12 @@ class Outline:
 
 def measure(
     poses: Sequence[str], views: Sequence[str], *, size: tuple[int, int] = SIZE,
-    looks: Sequence[Look] = LOOKS, progress: Callable[[str], object] = lambda _: None,
+    variants: Sequence[Variant] = VARIANTS, progress: Callable[[str], object] = lambda _: None,
 ) -> list[Outline]:  # fmt: skip
-    """Count wrong pixels of every look; a pose is one control, or several joined by +."""
-    mouths = Mouths(looks)
-    wrong: list[list[int]] = [[] for _ in looks]
-    triangles: list[list[int]] = [[] for _ in looks]
+    """Count wrong pixels of every variant; a pose is one control, or several joined by +."""
+    mouths = Mouths(variants)
+    wrong: list[list[int]] = [[] for _ in variants]
+    triangles: list[list[int]] = [[] for _ in variants]
     with Canvas(size, samples=1) as canvas:
         for pose in poses:
             progress(pose)
@@ -162,8 +164,8 @@ def measure(
                     wrong[k].append(wrong_pixels(kinds, truth))
                     triangles[k].append(canvas.stream_for(refiner).triangle_count)
     return [
-        Outline(look.title, float(np.mean(counts)), tuple(found))
-        for look, counts, found in zip(looks, triangles, wrong, strict=True)
+        Outline(variant.title, float(np.mean(counts)), tuple(found))
+        for variant, counts, found in zip(variants, triangles, wrong, strict=True)
     ]
 
 
@@ -180,5 +182,5 @@ def report(title: str, outlines: Sequence[Outline]) -> str:
         )
         for one in outlines
     ]
-    columns = "look:<22|triangles:9.0f|wrong pixels:12.0f|fewer %:7.0f|pictures with fewer:19d"
+    columns = "variant:<22|triangles:9.0f|wrong pixels:12.0f|fewer %:7.0f|pictures with fewer:19d"
     return "\n".join([f"{title}: {len(static)} pictures", *table(columns, rows)])

@@ -103,7 +103,6 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
         asked = Refinement(PAPERS_LOOK, options=options)
         yield f"refinement {text}".rstrip(), partial(_refine, face, asked)
     yield "uniform subdivision", partial(_refine, face, Refinement(refiner="loop"))
-    yield "the plane", partial(_refine, plane, Refinement())
     yield "the cloth", partial(cloth.step, 1 / 60)
     tension = refine.Tension(face.faces, face.rest_positions)
     yield "strain", partial(tension.measure, face.rest_positions)

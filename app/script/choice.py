@@ -19,7 +19,10 @@ HELD = 1.0  # [s] that a pose of --set lasts
 def script_for(path: Path | None, scene: str | None, settings: Sequence[str] = ()) -> Script:
     """The script at `path`, or the pose of `settings`, or the script that comes with the scene."""
     if settings and path is not None:
-        raise UserError(f"{path}: a script and --set exclude each other")
+        raise UserError(
+            f"{path}: a script and --set exclude each other; "
+            "every NAME=VALUE has a --set of its own"
+        )
     if path is None:
         path = Path(str(files("risorius.assets") / "scripts" / f"{scene or 'face'}.toml"))
     script = held_pose(settings) if settings else load_script(path)

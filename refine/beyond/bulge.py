@@ -41,7 +41,7 @@ class Bulge(Measuring):
         if not hasattr(scheme, "measure"):
             raise ValueError(
                 'criterion "bulge" asks the scheme how far it moves edges, which '
-                f'{type(scheme).__name__} does not tell; normals="refined" does'
+                f'{type(scheme).__name__} tells with normals="refined" only'
             )
         self._scheme = scheme
 

@@ -38,13 +38,11 @@ from ..mesh.vectors import HALF, ONE, ZERO, Vector, plus, row_of, times
 from .axes import find_middles, middle_axes, quarter_axes, slide_middle, triangle_axes
 from .closest import SearchSurface
 from .cubic import CubicScheme
-from .fit import Points, fit, middles_of
+from .fit import ALONE, END, MIDDLE, START, Points, fit, middles_of
 
 FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 """Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
 
-START, MIDDLE, END, ALONE = 0, 1, 2, 3
-"""Points of an edge (fit.py)."""
 AXES_OF = [START, MIDDLE, END, MIDDLE]
 """The directions that each point of an edge is stored along: both middles have the same."""
 THIRD = np.float32(1 / 3)

@@ -39,7 +39,7 @@ def test_the_plane_waves() -> None:
 
 
 def test_the_cloth_falls_and_is_taken_up() -> None:
-    """Let go it hangs around the ball, of four times its triangles in one look, two in another."""
+    """Let go it hangs around the ball, of four to five times its triangles in every look."""
     cloth = ClothScene()
     assert len(cloth.faces) == 1152
     refiners = {name: refiner_for(cloth, Refinement(name)) for name in LOOKS}
@@ -47,7 +47,7 @@ def test_the_cloth_falls_and_is_taken_up() -> None:
         assert len(refiner.refine(cloth.positions).triangles) == 1152
     cloth.pose({"drop": 1.0, "turn": -1.25})
     cloth.step(3.0)
-    for name, (least, most) in {"paper": (3.3, 5.0), "smooth": (1.4, 2.4)}.items():
+    for name, (least, most) in {"paper": (3.3, 5.0), "smooth": (3.5, 5.5)}.items():
         mesh = refiners[name].refine(cloth.positions)
         refine.check(refiners[name], mesh, cloth.positions)
         assert least * 1152 < len(mesh.triangles) < most * 1152, name

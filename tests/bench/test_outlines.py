@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from risorius.bench import outlines
-from risorius.bench.outlines import BACKGROUND, MOUTH, SKIN, Look, Outline, wrong_pixels
+from risorius.bench.outlines import BACKGROUND, MOUTH, SKIN, Outline, Variant, wrong_pixels
 
 
 def test_wrong_pixels_by_hand() -> None:
@@ -18,12 +18,12 @@ def test_wrong_pixels_by_hand() -> None:
 
 def test_measure_and_report() -> None:
     """By `border` fewer pixels are wrong than without refinement, and by the paper's rule more."""
-    looks = [
-        Look("static", "none"),
-        Look("paper", "kahler"),
-        Look("border", "kahler", {"scheme": "cubic", "criterion": "border"}),
+    variants = [
+        Variant("static", "none"),
+        Variant("paper", "kahler"),
+        Variant("border", "kahler", {"scheme": "cubic", "criterion": "border"}),
     ]
-    found = outlines.measure(["disgust", "AU20+AU27"], ["18,6"], size=(400, 350), looks=looks)
+    found = outlines.measure(["disgust", "AU20+AU27"], ["18,6"], size=(400, 350), variants=variants)
     static, paper, border = (sum(one.wrong) for one in found)
     assert border < 0.8 * static < 0.8 * paper
     assert [len(one.wrong) for one in found] == [2, 2, 2]

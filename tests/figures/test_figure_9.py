@@ -9,9 +9,9 @@ import pytest
 
 from risorius.bench import figure_9
 from risorius.bench.canvas import Canvas
-from risorius.bench.figure_9 import LOOKS, PHASES, SHADINGS, Look, Waving
+from risorius.bench.figure_9 import PHASES, SHADINGS, VARIANTS, Variant, Waving
 
-STATIC, REFINED, OWN_NORMALS, CUBIC = LOOKS
+STATIC, REFINED, OWN_NORMALS, CUBIC = VARIANTS
 STYLES = dict(SHADINGS)
 
 
@@ -22,10 +22,11 @@ def plane() -> Iterator[Waving]:
         yield Waving(canvas)
 
 
-def _off(plane: Waving, look: Look, shading: str) -> tuple[float, float]:
+def _off(plane: Waving, variant: Variant, shading: str) -> tuple[float, float]:
     """Levels and share of the outline that a row is off, in the mean over its columns."""
     pairs = [
-        (plane.image(look, STYLES[shading], phase)[0], plane.true_image(phase)) for phase in PHASES
+        (plane.image(variant, STYLES[shading], phase)[0], plane.true_image(phase))
+        for phase in PHASES
     ]
     return (
         float(np.mean([figure_9.levels_apart(*pair) for pair in pairs])),
@@ -34,9 +35,9 @@ def _off(plane: Waving, look: Look, shading: str) -> tuple[float, float]:
 
 
 def test_layout() -> None:
-    """A row for each look in each shading and one for the truth; a column for each moment."""
-    few = figure_9.draw((96, 64), looks=LOOKS[:2])
-    all_rows = figure_9.draw((96, 64), looks=(*LOOKS[:2], Look("more", "loop")))
+    """A row for each variant in each shading and one for the truth; a column for each moment."""
+    few = figure_9.draw((96, 64), variants=VARIANTS[:2])
+    all_rows = figure_9.draw((96, 64), variants=(*VARIANTS[:2], Variant("more", "loop")))
     assert few.shape[1] == all_rows.shape[1] == 3 * 96
     assert few.shape[0] / 5 == all_rows.shape[0] / 7
     assert few.std() > 10.0
@@ -67,22 +68,24 @@ def test_the_truth_is_dense_enough(plane: Waving) -> None:
 
 def test_flat_ridges_are_smoothed_out(plane: Waving) -> None:
     """Flat shaded, refined triangles are nearer to the sine; most of the surface changes."""
-    static, refined = (_off(plane, look, "flat")[0] for look in (STATIC, REFINED))
+    static, refined = (_off(plane, variant, "flat")[0] for variant in (STATIC, REFINED))
     assert refined < 0.85 * static
-    pictures = [plane.image(look, STYLES["flat"], 0.0)[0] for look in (STATIC, REFINED)]
+    pictures = [plane.image(variant, STYLES["flat"], 0.0)[0] for variant in (STATIC, REFINED)]
     changed = np.abs(np.diff(np.asarray(pictures, int), axis=0)).max(axis=(0, 3)) > 8
     assert changed.sum() > 0.3 * (plane.true_image(0.0).mean(axis=2) < 250).sum()
 
 
 def test_interpolated_normals_leave_gouraud_shading_as_it_is(plane: Waving) -> None:
     """The paper's rule moves points, not normals: its shading is no nearer to the sine's."""
-    static, refined = (_off(plane, look, "Gouraud")[0] for look in (STATIC, REFINED))
+    static, refined = (_off(plane, variant, "Gouraud")[0] for variant in (STATIC, REFINED))
     assert refined == pytest.approx(static, rel=0.1)
 
 
 def test_normals_of_the_refined_surface_mend_gouraud_shading(plane: Waving) -> None:
     """The same points with normals of their own are nearer to the sine; the outline is the same."""
-    static, linear, own = (_off(plane, look, "Gouraud") for look in (STATIC, REFINED, OWN_NORMALS))
+    static, linear, own = (
+        _off(plane, variant, "Gouraud") for variant in (STATIC, REFINED, OWN_NORMALS)
+    )
     assert own[0] < 0.85 * static[0]
     assert own[1] == pytest.approx(linear[1], rel=0.05)
 
@@ -90,7 +93,7 @@ def test_normals_of_the_refined_surface_mend_gouraud_shading(plane: Waving) -> N
 @pytest.mark.parametrize("shading", STYLES)
 def test_curves_are_nearer_in_shade_and_outline(plane: Waving, shading: str) -> None:
     """What interpolates the plane is nearer to the sine than the plane is, in both."""
-    static, cubic = (_off(plane, look, shading) for look in (STATIC, CUBIC))
+    static, cubic = (_off(plane, variant, shading) for variant in (STATIC, CUBIC))
     assert cubic[0] < 0.8 * static[0]
     assert cubic[1] < 0.6 * static[1]
 

@@ -16,8 +16,9 @@ from .sandbox import furnish
 DOORS = pytest.StashKey[dict[str, Counter[str]]]()
 
 LONG_WORK = (
-    "risorius.bench.figure_10.figure_10",
-    "risorius.bench.figure_9.draw",
+    "risorius.bench.figure_claims.figure_8_outcome",
+    "risorius.bench.figure_claims.figure_9_outcome",
+    "risorius.bench.figure_claims.figure_10_outcome",
     "risorius.app.viewer.Viewer",
     "risorius.bench.frame_rate.measure",
     "risorius.bench.gaps.measure",

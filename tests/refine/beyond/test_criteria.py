@@ -336,7 +336,7 @@ def test_bulge(scheme: str) -> None:
 def test_bulge_needs_measures() -> None:
     """The paper's scheme does not tell how far it moves edges; its refined normals know."""
     mesh = meshes.octahedron()
-    with pytest.raises(ValueError, match='LoopScheme does not tell; normals="refined" does'):
+    with pytest.raises(ValueError, match='LoopScheme tells with normals="refined" only'):
         refine.create("kahler", mesh.faces, mesh.vertices, criterion="bulge")
     refiner = refine.create(
         "kahler", mesh.faces, mesh.vertices, criterion=refine.Bulge(0.05, 0.5), normals="refined"
