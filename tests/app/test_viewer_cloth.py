@@ -18,6 +18,7 @@ def test_the_cloth_falls_in_the_window(tmp_path: Path) -> None:
     """Let go, it hangs after some seconds; the ball turns where nothing else moves, too."""
     with Viewer(script_for(None, "cloth"), (480, 360), settings_path=tmp_path / "s.json") as viewer:
         draw_frames(viewer)
+        assert {"drop", "turn"} <= viewer.gui.places.keys()  # sliders are there at once
         scene = viewer.session.scene
         viewer.session.set("turn", 0.25)
         assert until(viewer, lambda: bool(np.isclose(scene.bone_transforms()["ball"][0, 2], 1.0)))

@@ -10,7 +10,9 @@ from ..gui import Gui, colour, em
 from ..settings import Settings
 
 # Headings that are open as long as nobody has folded them.
-FIRST_OPEN = frozenset({"Expressions", "Refinement", "Style", "Overlays", "Milliseconds"})
+FIRST_OPEN = frozenset(
+    {"Expressions", "Wave", "Cloth", "Ball", "Refinement", "Style", "Overlays", "Milliseconds"}
+)
 
 
 def heading(
