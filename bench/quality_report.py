@@ -185,7 +185,9 @@ def error_curves(
     static = average[STATIC_KEY]
     start = 1.0, getattr(static, what)
     series = []
-    for method in (*SCHEMES, *UNIFORM):
+    for method in dict.fromkeys((*SCHEMES, *UNIFORM)):
+        if method.endswith(", normals"):
+            continue  # as `through` on the head, and the chart is full
         shown = SCHEMES.get(method, ("",))[-1]
         found = sorted(
             (score.triangles / static.triangles, getattr(score, what))
