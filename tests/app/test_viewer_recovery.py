@@ -21,6 +21,7 @@ from risorius.app.viewer.physics import STEP
 from risorius.app.viewer.recovery import LONGEST, QUIET, Recovery
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.unsaved import Work, WorkFiles
+from risorius.assets.staging import PREFIX
 
 from .driving import NEEDS_A_SCREEN, SIZE, click, draw_frames, xdotool
 
@@ -408,7 +409,9 @@ def test_a_window_that_crashed_is_recovered(at_work: subprocess.Popen[str], tmp_
                 assert viewer.session.unsaved == "the pose" and stored_work(folder)
                 values = viewer.session.values
                 assert all(values[name] == value for name, value in pose.at(0.0).items())
-    assert list((folder / "unsaved").iterdir()) == []
+    # The kill may have met a file on its way; its staging folder is swept away a day later.
+    left = [file for file in (folder / "unsaved").iterdir() if not file.name.startswith(PREFIX)]
+    assert left == []
 
 
 @pytest.mark.window
