@@ -56,7 +56,8 @@ SOON = np.float32(3.0)
 shading is seen less than a jump of the surface, and half of it is half a triangle wasted."""
 STEADY = np.float32(0.02)
 """Share of the mean of the ends' normals, in squared lengths of the edge, that is added to a normal
-in the middle. Chosen: where an edge is folded until nothing is left across it, this decides."""
+in the middle. Chosen: where an edge is folded until nothing is left across it, this decides. More
+looks softer in deep folds and is farther from dense faces: 0.3 costs five points of thirty."""
 SIDE_BITS = np.uint32(2)
 """A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
 
