@@ -23,6 +23,8 @@ class Verdict(enum.StrEnum):
 
     MET = "met"
     MISSED = "MISSED"
+    DIFFERS = "differs"
+    """It is not as the paper says, for a reason that the statement tells."""
     NOISE = "noise"
     """The measurement says what cannot be: the machine was busy with something else."""
 
@@ -60,6 +62,8 @@ class Claim:
     high: float = math.inf
     style: str = "g"
     """How our number is written."""
+    is_met: bool = True
+    """False where numbers within the bounds are as we expect, and not as the paper says."""
 
     @property
     def tolerance(self) -> str:
@@ -77,7 +81,9 @@ class Claim:
         """Whether it is so; what is no number misses, too."""
         if measured.value < measured.least:
             return Verdict.NOISE
-        return Verdict.MET if self.low <= measured.value <= self.high else Verdict.MISSED
+        if not self.low <= measured.value <= self.high:
+            return Verdict.MISSED
+        return Verdict.MET if self.is_met else Verdict.DIFFERS
 
 
 @dataclass(frozen=True)

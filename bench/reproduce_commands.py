@@ -93,7 +93,7 @@ def _say(result: Result) -> None:
         for each in result.findings
     ]
     width = max((len(name) for _, name, *_ in rows), default=0)
-    for line in table(f":<6|:<{width}|paper:>14|here:>22|allowed:<1", rows) if rows else ():
+    for line in table(f":<7|:<{width}|paper:>14|here:>22|allowed:<1", rows) if rows else ():
         click.echo(line)
 
 

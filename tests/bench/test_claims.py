@@ -57,6 +57,16 @@ def test_verdicts(value: float, verdict: Verdict) -> None:
     assert Claim("x", "", "", low=1.0, high=3.0).judge(Measured(value)) is verdict
 
 
+def test_what_is_known_to_differ_is_not_called_met() -> None:
+    """Where bounds are ours and not the paper's the verdict says so; beyond them it is missed."""
+    ours = Claim("x", "", "less", low=0.9, high=1.1, is_met=False)
+    assert ours.judge(Measured(1.04)) is Verdict.DIFFERS
+    assert ours.judge(Measured(1.2)) is Verdict.MISSED
+    assert claim("Gouraud: shading error, refined over static").judge(Measured(1.04)) is (
+        Verdict.DIFFERS
+    )
+
+
 def test_every_claim_can_fail() -> None:
     """Each has a bound and a name of its own within its experiment."""
     for experiment in EXPERIMENTS:
