@@ -193,6 +193,7 @@ class _Sliding:
         """What refines with at most `budget` times the coarse triangles."""
 
         def make(positions: Points) -> refine.RefinedMesh:
+            """Search for thresholds, and refine with them."""
             low, high = np.log(SCALES)
             for _ in range(SEARCH_STEPS):
                 middle = 0.5 * (low + high)

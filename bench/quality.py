@@ -93,6 +93,7 @@ def means(scores: Iterable[Score]) -> dict[Key, Score]:
         groups.setdefault(score.key, []).append(score)
 
     def joined(group: list[Score], what: str) -> float:
+        """One measure of all expressions."""
         values = np.array([getattr(score, what) for score in group])
         if what in ("jump", "turn"):
             return float(values.max())

@@ -98,6 +98,7 @@ def scanned(folder: str | Path, *, apart: bool = False) -> list[Subject]:
         raise ValueError(f"{others}: '{strange[0]}' has not the {shape[0]} vertices of {DENSE}")
 
     def subject(name: str, vertices: npt.NDArray[Any]) -> Subject:
+        """A person, whose skin moves as that of the scan."""
         rest = MILLIMETRES * vertices.astype(np.float64)
         corners = dense["triangles"][coarse["fine_triangle"]]
         weights = coarse["barycentric"].astype(np.float64)
