@@ -142,7 +142,23 @@ class FaceScene(Scene):
         return self.simulation.bone_transforms()
 
 
-class PlaneScene(Scene):
+class SheetScene(Scene):
+    """A scene without muscles: its controls have values, and nothing else moves them."""
+
+    _values: dict[str, float]
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        return self._values
+
+    def pose(self, channels: Mapping[str, float]) -> None:
+        self._values.update({**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, channels)})
+
+    def reset(self) -> None:
+        self._values.update(dict.fromkeys(self.limits, 0.0))
+
+
+class PlaneScene(SheetScene):
     """The paper's plane: 154 triangles under a strong travelling sine (Fig. 9 and Table 1).
 
     The wave runs along the diagonals of the cells, so that every edge bends: across one along the
@@ -169,13 +185,6 @@ class PlaneScene(Scene):
     def positions(self) -> npt.NDArray[np.float64]:
         return self._positions
 
-    @property
-    def values(self) -> Mapping[str, float]:
-        return self._values
-
-    def pose(self, channels: Mapping[str, float]) -> None:
-        self._values.update({**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, channels)})
-
     def step(self, seconds: float) -> None:
         self._positions[:] = self.waved(self.rest_positions)[0]
 
@@ -193,11 +202,11 @@ class PlaneScene(Scene):
         return moved, normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
     def reset(self) -> None:
-        self._values.update(dict.fromkeys(self.limits, 0.0))
+        super().reset()
         self._positions[:] = self.rest_positions
 
 
-class ClothScene(Scene):
+class ClothScene(SheetScene):
     """A sheet of 1152 triangles that falls over a ball: folds wherever it hangs.
 
     `drop` lets go of it, or takes it up again; `turn` is how far the ball has been turned, which
@@ -232,20 +241,14 @@ class ClothScene(Scene):
         """The sheet held up, and how low its corners hang."""
         return self._extent
 
-    @property
-    def values(self) -> Mapping[str, float]:
-        return self._values
-
-    def pose(self, channels: Mapping[str, float]) -> None:
-        self._values.update({**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, channels)})
-
     def step(self, seconds: float) -> None:
         self.sheet.held = 1.0 - self._values["drop"]
-        self.sheet.turning = (2.0 * np.pi * self._values["turn"] - self.sheet.turned) / seconds
+        left = 2.0 * np.pi * self._values["turn"] - self.sheet.turned
+        self.sheet.turning = left / seconds if seconds > 0.0 else 0.0
         self.sheet.step(seconds)
 
     def reset(self) -> None:
-        self._values.update(dict.fromkeys(self.limits, 0.0))
+        super().reset()
         self.sheet.reset()
 
     def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
