@@ -1,0 +1,38 @@
+"""A recording of a face, whoever made it: channels over time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Take:
+    """Channels over time, in the names and units of names.py; as recorded, not yet calibrated.
+
+    kind: what wrote it, as a report calls it ("Live Link Face", "OpenFace 2", ...).
+    source: the file, for error texts.
+    times: of each frame [s], shape (T,), from 0 and strictly rising; T is at least 1.
+    channels: name -> values, shape (T,); finite.
+    is_calibrated: whether the neutral face was taken away already.
+    notes: what a report says besides: guessed, skipped, left out, each one sentence.
+    unknown: columns that nobody knows, as the file spells them.
+    """
+
+    kind: str
+    source: str
+    times: Array
+    channels: Mapping[str, Array]
+    is_calibrated: bool = False
+    notes: tuple[str, ...] = ()
+    unknown: tuple[str, ...] = field(default=(), repr=False)
+
+    @property
+    def duration(self) -> float:
+        """Of the whole take [s]."""
+        return float(self.times[-1])
