@@ -1,0 +1,66 @@
+"""What one packet says, in the vocabulary of recordings, and what every parser does with numbers.
+
+A parser is a pure function of a packet: it answers with a `Frame`, or with None for what is no
+packet of its kind. It never raises, whatever it is given: packets come from a network.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ..recordings.names import ARKIT
+
+MOST_BYTES = 16384  # of a packet; the largest that anybody sends has about 3000
+LONGEST_SUBJECT = 40  # letters; it is shown in the window
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What a packet says; a channel that it does not name stays as it was.
+
+    channels: by the names and in the units of recordings/names.py.
+    subject: whose face it is, as the sender calls it; "" where it does not tell.
+    has_face: False where the sender says that it sees nobody.
+    is_complete: False where more packets of the same frame must come before it counts.
+    """
+
+    channels: Mapping[str, float] = field(default_factory=dict)
+    subject: str = ""
+    has_face: bool = True
+    is_complete: bool = True
+
+
+def put_shape(channels: dict[str, float], name: str, value: float) -> None:
+    """Set a shape, cut off at 0 and 1; what is no number is left out.
+
+    Trackers overshoot a little, and now and then send nonsense such as -980000.
+    """
+    if math.isfinite(value):
+        channels[name] = min(max(value, 0.0), 1.0)
+
+
+def put_angle(channels: dict[str, float], name: str, degrees: float) -> None:
+    """Set an angle; what is more than half a turn, or no number, is left out."""
+    if abs(degrees) <= 180.0:
+        channels[name] = degrees
+
+
+def readable_subject(name: bytes) -> str:
+    """A sender's name for a face, as far as it can be shown."""
+    text = name[: 4 * LONGEST_SUBJECT].decode("utf-8", "replace")
+    return "".join(filter(str.isprintable, text))[:LONGEST_SUBJECT]
+
+
+def _spellings(name: str) -> tuple[str, ...]:
+    """How senders write a shape's name, in small letters: in full, and with _L or _R."""
+    written = name.lower()
+    for side in ("left", "right"):
+        if written.endswith(side):
+            return written, f"{written.removesuffix(side)}_{side[0]}"
+    return (written,)
+
+
+SHAPES = {written: name for name in ARKIT for written in _spellings(name)}
+"""Shape by its name as a sender may write it, in small letters: mouthSmileLeft, mouthSmile_L."""

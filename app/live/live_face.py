@@ -1,0 +1,192 @@
+"""A face that somebody sends: from packets to the controls of our face, and how far it leads.
+
+    packets -> channels -> calibration -> mapping -> controls, with a presence of 0 to 1
+
+The newest frame counts. While frames come the presence grows to 1; when they stop, or when the
+sender sees no face, it falls to 0, and our face eases to what it is without them. Whatever else may
+move a face while nobody is there can take over by as much as is missing to 1.
+"""
+
+from __future__ import annotations
+
+import enum
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from ..recordings.calibration import Calibration, gains_of, neutral_now, usual_gains
+from ..recordings.mapping import Mapping as Table
+from .frame import Frame
+from .protocols import Listening
+from .receiver import Receiver
+
+LOST_AFTER = 0.4  # [s] without a frame; at 30 a second a network may swallow ten
+EASING_IN, EASING_OUT = 0.25, 0.6  # [s]
+CALIBRATING = 0.5  # [s] of a neutral face
+RATED = 1.0  # [s] over which frames are counted
+MOST_RATED = 1000  # frames
+
+
+class State(enum.Enum):
+    """What can be said of who sends."""
+
+    WAITING = "waiting"  # nothing has come yet
+    RECEIVING = "receiving"
+    NO_FACE = "no face"  # the sender sees nobody
+    LOST = "lost"  # frames came, and do no longer
+
+
+class LiveFace:
+    """What a receiver brings, as a face.
+
+    calibration: what is done to the channels; may be replaced at any time.
+    channels: those of the newest frame, and older ones that it did not name; as they came.
+    subject: whose face it is, "" where nobody says so.
+    presence: how far it leads our face, 0 to 1.
+    received, unusable: packets so far, and those of them that could not be read.
+    """
+
+    def __init__(
+        self,
+        listening: Listening,
+        table: Table,
+        *,
+        wake: Callable[[], None] = lambda: None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Listen from now on; UserError where that cannot be. wake: see `Receiver`."""
+        self.listening = listening
+        self._table, self._clock = table, clock
+        self._receiver = Receiver(listening, wake)
+        gains, default = gains_of((), GAINED, usual_gains(listening.protocol.title))
+        self.calibration = Calibration({}, gains, default)
+        self.channels: dict[str, float] = {}
+        self.subject = ""
+        self.has_news = False  # a frame was taken in by the last `advance`
+        self._pending: dict[str, float] = {}
+        self._share = 0.0
+        self._unreadable = 0
+        self._has_face = True
+        self._last: float | None = None  # when the newest frame came
+        self._times: deque[float] = deque(maxlen=MOST_RATED)
+        self._neutral: list[dict[str, float]] = []
+        self._neutral_until: float | None = None
+
+    def close(self) -> None:
+        """Stop listening."""
+        self._receiver.close()
+
+    # What is told of it
+
+    @property
+    def port(self) -> int:
+        """The port that is listened on."""
+        return self._receiver.port
+
+    @property
+    def received(self) -> int:
+        """Packets so far."""
+        return self._receiver.received
+
+    @property
+    def unusable(self) -> int:
+        """Packets so far that could not be read."""
+        return self._unreadable + self._receiver.too_large
+
+    @property
+    def has_packets(self) -> bool:
+        """Whether `advance` would find something."""
+        return self._receiver.has_packets
+
+    @property
+    def silence(self) -> float:
+        """How long ago the newest frame came [s]; infinite before the first."""
+        return float("inf") if self._last is None else max(self._clock() - self._last, 0.0)
+
+    @property
+    def rate(self) -> float:
+        """Frames in the last second."""
+        now = self._clock()
+        return sum(1 for each in self._times if now - each < RATED) / RATED
+
+    @property
+    def state(self) -> State:
+        """What can be said of who sends."""
+        if self._last is None:
+            return State.WAITING
+        if self.silence > LOST_AFTER:
+            return State.LOST
+        return State.RECEIVING if self._has_face else State.NO_FACE
+
+    @property
+    def presence(self) -> float:
+        """How far it leads, 0 to 1: smoothly in both directions."""
+        return self._share * self._share * (3.0 - 2.0 * self._share)
+
+    @property
+    def is_easing(self) -> bool:
+        """Whether the presence is about to change."""
+        return self._share != (1.0 if self.state is State.RECEIVING else 0.0)
+
+    @property
+    def is_calibrating(self) -> bool:
+        """Whether it is being learned what the neutral face is."""
+        return self._neutral_until is not None
+
+    # What is done with it
+
+    def advance(self, seconds: float) -> None:
+        """Take in what has come; `seconds` have passed since the last call."""
+        self.has_news = False
+        for at, packet in self._receiver.take():
+            frame = self.listening.protocol.parse(packet)
+            if frame is None:
+                self._unreadable += 1
+            else:
+                self._take(frame, at)
+        if self.state is State.RECEIVING:
+            self._share = min(self._share + seconds / EASING_IN, 1.0)
+        else:
+            self._share = max(self._share - seconds / EASING_OUT, 0.0)
+        if self._neutral_until is not None and self._clock() >= self._neutral_until:
+            self._end_calibration()
+
+    def _take(self, frame: Frame, at: float) -> None:
+        for name, value in frame.channels.items():
+            # A channel that several packets of a frame name: the greatest, see vmc.py.
+            is_angle = "_" in name
+            self._pending[name] = value if is_angle else max(value, self._pending.get(name, 0.0))
+        if not frame.is_complete:
+            return
+        self.channels.update(self._pending)
+        self._pending.clear()
+        self.subject = frame.subject or self.subject
+        self._has_face, self._last, self.has_news = frame.has_face, at, True
+        self._times.append(at)
+        if self.is_calibrating and frame.has_face:
+            self._neutral.append(dict(self.channels))
+
+    def controls(self) -> dict[str, float]:
+        """Our controls as the face has them, not yet cut off at their limits."""
+        return self._table.controls(self.calibration.apply(self.channels))
+
+    def calibrate(self) -> None:
+        """The face of the next half second is neutral."""
+        self._neutral, self._neutral_until = [], self._clock() + CALIBRATING
+
+    def _end_calibration(self) -> None:
+        """Take the median, which a blink does not move, of each channel."""
+        if self._neutral:
+            median = {
+                name: float(np.median([each[name] for each in self._neutral if name in each]))
+                for name in self._neutral[-1]
+            }
+            self.calibration = replace(self.calibration, neutral=neutral_now(median))
+        self._neutral, self._neutral_until = [], None
+
+    def forget_neutral(self) -> None:
+        """Take the channels as they come again."""
+        self.calibration = replace(self.calibration, neutral={})

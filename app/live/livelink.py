@@ -1,0 +1,86 @@
+"""Live Link Face, the app of Epic Games: one binary packet for each frame.
+
+    u8 version, 6                      then, big-endian:
+    i32 length, device id              i32 length, subject's name
+    i32 frame, f32 part of a frame, i32 frames a second, i32 denominator of these
+    u8 count of values, 61             f32 values: 52 shapes, 3 angles each of head and both eyes
+
+A packet that ends before the values, or counts none, was sent while no face was seen. The order of
+shapes is ARKit's, but JawRight is before JawLeft in files alone. Angles are in radians: the pitch of
+an eye is 0.61 where it looks down fully. They grow to the subject's right and down.
+
+Source: packets of the app; Epic Games, "Live Link Face", and its table of blend shapes.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Mapping
+
+from ..recordings.names import ARKIT
+from .frame import Frame, put_angle, put_shape, readable_subject
+
+PORT = 11111
+VERSION = 6
+COUNT = 61
+LONGEST_TEXT = 1024  # [bytes] of an id or a name
+RATE = 60
+# Behind the shapes: channel, and its sign there; None for what eyes do not do. The sign of the
+# head's roll is that of a rotation about the same axes as the others.
+ANGLES: tuple[tuple[str | None, float], ...] = (
+    ("head_yaw", -1.0), ("head_pitch", -1.0), ("head_roll", -1.0),
+    ("eye_yaw_left", -1.0), ("eye_pitch_left", -1.0), (None, 0.0),
+    ("eye_yaw_right", -1.0), ("eye_pitch_right", -1.0), (None, 0.0),
+)  # fmt: skip
+_ORDER = tuple(
+    {"jawLeft": "jawRight", "jawRight": "jawLeft"}.get(name, name) for name in ARKIT
+)
+_DEVICE = b"risorius"
+
+
+def parse(packet: bytes) -> Frame | None:
+    """The frame in a packet, None if it is none; see the head of this file."""
+    if packet[:1] != bytes([VERSION]):
+        return None
+    try:
+        _, at = _text(packet, 1)
+        subject, at = _text(packet, at)
+        at += struct.calcsize(">ifii")
+        if len(packet) < at:
+            return None
+        name = readable_subject(subject)
+        if len(packet) == at or packet[at:] in (b"\0", bytes([COUNT])):
+            return Frame(subject=name, has_face=False)
+        if packet[at] != COUNT or len(packet) != at + 1 + 4 * COUNT:
+            return None
+        values = struct.unpack_from(f">{COUNT}f", packet, at + 1)
+    except (struct.error, ValueError):
+        return None
+    channels: dict[str, float] = {}
+    for shape, value in zip(_ORDER, values, strict=False):
+        put_shape(channels, shape, value)
+    for (angle, sign), value in zip(ANGLES, values[len(_ORDER) :], strict=True):
+        if angle is not None:
+            put_angle(channels, angle, sign * math.degrees(value))
+    return Frame(channels, name)
+
+
+def _text(packet: bytes, at: int) -> tuple[bytes, int]:
+    """A text that its length precedes, and where the packet goes on; ValueError if it is none."""
+    (length,) = struct.unpack_from(">i", packet, at)
+    end = at + 4 + length
+    if not 0 <= length <= LONGEST_TEXT or end > len(packet):
+        raise ValueError
+    return packet[at + 4 : end], end
+
+
+def packets(channels: Mapping[str, float], *, subject: str, frame: int) -> list[bytes]:
+    """What the app would send of these channels: one packet; a channel that is missing is 0."""
+    values = [channels.get(name, 0.0) for name in _ORDER]
+    values += [sign * math.radians(channels.get(name or "", 0.0)) for name, sign in ANGLES]
+    head = struct.pack(">B", VERSION)
+    for text in (_DEVICE, subject.encode()[:LONGEST_TEXT]):
+        head += struct.pack(">i", len(text)) + text
+    time = struct.pack(">ifii", frame, 0.0, RATE, 1)
+    return [head + time + struct.pack(f">B{COUNT}f", COUNT, *values)]

@@ -1,0 +1,65 @@
+"""The protocols that faces are sent in, by the names that the command line has for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from . import ifacialmocap, livelink, vmc
+from .frame import Frame
+
+LOOPBACK = "127.0.0.1"
+ANYWHERE = "0.0.0.0"
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """How faces come in packets.
+
+    title: as people call it. port: where receivers listen unless told. parse: see frame.py.
+    packets: what a sender would send: (channels, subject=, frame=) -> packets.
+    request: what makes a phone send that has not been told where to; b"" for nothing.
+    """
+
+    title: str
+    port: int
+    parse: Callable[[bytes], Frame | None]
+    packets: Callable[..., list[bytes]]
+    request: bytes = b""
+
+
+PROTOCOLS: Mapping[str, Protocol] = {
+    "livelink": Protocol("Live Link Face", livelink.PORT, livelink.parse, livelink.packets),
+    "vmc": Protocol("VMC", vmc.PORT, vmc.parse, vmc.packets),
+    "ifacialmocap": Protocol(
+        "iFacialMocap",
+        ifacialmocap.PORT,
+        ifacialmocap.parse,
+        ifacialmocap.packets,
+        ifacialmocap.REQUEST,
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Listening:
+    """Where packets are expected, and of which protocol.
+
+    kind: a key of PROTOCOLS. address: the only one that is listened on. port: None for the
+    protocol's own. phone: address of a phone that has to be asked to send; "" for none.
+    """
+
+    kind: str
+    address: str = LOOPBACK
+    port: int | None = None
+    phone: str = ""
+
+    @property
+    def protocol(self) -> Protocol:
+        """What comes there."""
+        return PROTOCOLS[self.kind]
+
+    @property
+    def chosen_port(self) -> int:
+        """The port that is listened on."""
+        return self.protocol.port if self.port is None else self.port
