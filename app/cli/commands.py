@@ -13,10 +13,20 @@ import click
 
 from ..errors import in_one_line
 from ..looks import STATIC, Refinement
-from .options import PATH, SCENE_NAMES, Drawing, Filming, with_drawing, with_filming
+from .options import (
+    PATH,
+    SCENE_NAMES,
+    Drawing,
+    Filming,
+    Live,
+    with_drawing,
+    with_filming,
+    with_live,
+)
 from .parameters import Size
 
 if TYPE_CHECKING:
+    from ..live import Listening
     from ..script import Script
 
 
@@ -78,14 +88,23 @@ def capture(
 @click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
 @click.option("--scene", type=SCENE_NAMES, help="face, unless told.")
 @click.option("--script", type=PATH, help="What the space key plays.")
+@with_live
 @with_drawing
 def view(
-    size: tuple[int, int] | None, scene: str | None, script: Path | None, drawing: Drawing
+    size: tuple[int, int] | None,
+    scene: str | None,
+    script: Path | None,
+    live: Live,
+    drawing: Drawing,
 ) -> None:
-    """Open the window: a face with a slider for every muscle."""
+    """Open the window: a face with a slider for every muscle.
+
+    With --live it follows somebody's face, which a phone or `risorius send` sends.
+    """
     from ..script import script_for
 
-    open_window(script_for(script, scene), size, drawing)
+    listening = live.listening()
+    open_window(script_for(script, scene), size, drawing, listening=listening)
 
 
 @click.command()
@@ -107,6 +126,7 @@ def open_window(
     *,
     playing: bool = False,
     once: bool = False,
+    listening: Listening | None = None,
 ) -> None:
     """Open the viewer on a script's scene."""
     head = drawing.fitted_head()
@@ -117,6 +137,8 @@ def open_window(
     if drawing.is_told:
         display = display_of(drawing.refinement(), script.scene, **drawing.style_options)
     with Viewer(script, size, display, head=head, settings_path=settings_path()) as viewer:
+        if listening is not None:
+            viewer.listen(listening)
         viewer.run(playing=playing, once=once)
 
 

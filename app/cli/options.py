@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
+from ..errors import UserError
+from ..live import LOOPBACK, PROTOCOLS, Listening
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from .parameters import FiniteRange, Looks, Refiner, Size
 
@@ -146,6 +148,46 @@ with_drawing = packed(
         show_default=True,
         help="How the mesh is refined; paper is the paper's own rule.",
     ),
+)
+
+
+@dataclass(frozen=True)
+class Live:
+    """What a window is told of a face that is sent to it."""
+
+    live: str | None
+    port: int | None
+    address: str
+    phone: str | None
+
+    def listening(self) -> Listening | None:
+        """Where to listen, None for nowhere; UserError for what does not go together."""
+        if self.live is None:
+            source = click.get_current_context().get_parameter_source
+            for name in ("port", "address", "phone"):
+                if source(name) is not ParameterSource.DEFAULT:
+                    raise UserError(f"--{name} goes with --live, which says what is listened to")
+            return None
+        if self.phone is not None and not PROTOCOLS[self.live].request:
+            raise UserError(f"--phone goes with --live ifacialmocap, not with {self.live}")
+        return Listening(self.live, self.address, self.port, self.phone or "")
+
+
+port_option = click.option(
+    "--port", type=click.IntRange(1, 65535), help="Unless told, the protocol's own."
+)
+with_live = packed(
+    "live",
+    Live,
+    click.option("--live", type=click.Choice(list(PROTOCOLS)), help="Follow a face that is sent."),
+    port_option,
+    click.option(
+        "--address",
+        default=LOOPBACK,
+        show_default=True,
+        help="Of this computer, on which to listen; 0.0.0.0 for its whole network.",
+    ),
+    click.option("--phone", metavar="ADDRESS", help="Ask iFacialMocap there to send."),
 )
 
 

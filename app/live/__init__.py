@@ -1,7 +1,16 @@
 """Faces that are sent while they move: sockets, packets, and what is done when nobody sends."""
 
-from .live_face import LiveFace, State
-from .protocols import LOOPBACK, PROTOCOLS, Listening
+from .live_face import LOST_AFTER, LiveFace, State
+from .protocols import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
 from .receiver import Receiver
 
-__all__ = ["LOOPBACK", "PROTOCOLS", "Listening", "LiveFace", "Receiver", "State"]
+__all__ = [
+    "ANYWHERE",
+    "LOOPBACK",
+    "LOST_AFTER",
+    "PROTOCOLS",
+    "Listening",
+    "LiveFace",
+    "Receiver",
+    "State",
+]

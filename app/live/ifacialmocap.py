@@ -74,9 +74,12 @@ def _number(text: str) -> float:
 
 def packets(channels: Mapping[str, float], *, subject: str, frame: int) -> list[bytes]:
     """What the app would send of these channels: one packet; `subject` and `frame` are not told."""
-    shapes = [f"{_short(name)}-{round(100.0 * channels[name])}" for name in ARKIT if name in channels]
+    shapes = [
+        f"{_short(name)}-{round(100.0 * channels[name])}" for name in ARKIT if name in channels
+    ]
     blocks = [
-        f"{block}#" + ",".join(f"{sign * channels.get(name, 0.0):.4f}" for name, sign in signs)
+        f"{block}#"
+        + ",".join(f"{sign * channels.get(name, 0.0):.4f}" for name, sign in signs)
         # What the head is away from the camera, or how an eye rolls, nobody needs to know.
         + (",0,0,0" if block == "head" else ",0")
         for block, signs in BLOCKS.items()

@@ -12,13 +12,14 @@ from __future__ import annotations
 import enum
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from ..recordings.calibration import Calibration, gains_of, neutral_now, usual_gains
+from ..recordings.calibration import ANGLES, Calibration, gains_of, neutral_now, usual_gains
 from ..recordings.mapping import Mapping as Table
+from ..recordings.names import ARKIT
 from .frame import Frame
 from .protocols import Listening
 from .receiver import Receiver
@@ -61,8 +62,9 @@ class LiveFace:
         self.listening = listening
         self._table, self._clock = table, clock
         self._receiver = Receiver(listening, wake)
-        gains, default = gains_of((), GAINED, usual_gains(listening.protocol.title))
+        gains, default = gains_of((), ARKIT, usual_gains(listening.protocol.title))
         self.calibration = Calibration({}, gains, default)
+        self._usual_blink = gains["eyeBlinkLeft"]
         self.channels: dict[str, float] = {}
         self.subject = ""
         self.has_news = False  # a frame was taken in by the last `advance`
@@ -74,6 +76,11 @@ class LiveFace:
         self._times: deque[float] = deque(maxlen=MOST_RATED)
         self._neutral: list[dict[str, float]] = []
         self._neutral_until: float | None = None
+
+    @property
+    def usual_blink(self) -> float:
+        """The gain of blinks unless told."""
+        return self._usual_blink
 
     def close(self) -> None:
         """Stop listening."""
@@ -157,8 +164,8 @@ class LiveFace:
     def _take(self, frame: Frame, at: float) -> None:
         for name, value in frame.channels.items():
             # A channel that several packets of a frame name: the greatest, see vmc.py.
-            is_angle = "_" in name
-            self._pending[name] = value if is_angle else max(value, self._pending.get(name, 0.0))
+            is_older = name in self._pending and name not in ANGLES
+            self._pending[name] = max(value, self._pending[name]) if is_older else value
         if not frame.is_complete:
             return
         self.channels.update(self._pending)

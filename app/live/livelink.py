@@ -6,8 +6,8 @@
     u8 count of values, 61             f32 values: 52 shapes, 3 angles each of head and both eyes
 
 A packet that ends before the values, or counts none, was sent while no face was seen. The order of
-shapes is ARKit's, but JawRight is before JawLeft in files alone. Angles are in radians: the pitch of
-an eye is 0.61 where it looks down fully. They grow to the subject's right and down.
+shapes is ARKit's; the app's files have another. Angles are in radians: the pitch of an eye is 0.61
+where it looks down fully. They grow to the subject's right and down.
 
 Source: packets of the app; Epic Games, "Live Link Face", and its table of blend shapes.
 """
@@ -33,9 +33,6 @@ ANGLES: tuple[tuple[str | None, float], ...] = (
     ("eye_yaw_left", -1.0), ("eye_pitch_left", -1.0), (None, 0.0),
     ("eye_yaw_right", -1.0), ("eye_pitch_right", -1.0), (None, 0.0),
 )  # fmt: skip
-_ORDER = tuple(
-    {"jawLeft": "jawRight", "jawRight": "jawLeft"}.get(name, name) for name in ARKIT
-)
 _DEVICE = b"risorius"
 
 
@@ -58,9 +55,9 @@ def parse(packet: bytes) -> Frame | None:
     except (struct.error, ValueError):
         return None
     channels: dict[str, float] = {}
-    for shape, value in zip(_ORDER, values, strict=False):
+    for shape, value in zip(ARKIT, values, strict=False):
         put_shape(channels, shape, value)
-    for (angle, sign), value in zip(ANGLES, values[len(_ORDER) :], strict=True):
+    for (angle, sign), value in zip(ANGLES, values[len(ARKIT) :], strict=True):
         if angle is not None:
             put_angle(channels, angle, sign * math.degrees(value))
     return Frame(channels, name)
@@ -77,7 +74,7 @@ def _text(packet: bytes, at: int) -> tuple[bytes, int]:
 
 def packets(channels: Mapping[str, float], *, subject: str, frame: int) -> list[bytes]:
     """What the app would send of these channels: one packet; a channel that is missing is 0."""
-    values = [channels.get(name, 0.0) for name in _ORDER]
+    values = [channels.get(name, 0.0) for name in ARKIT]
     values += [sign * math.radians(channels.get(name or "", 0.0)) for name, sign in ANGLES]
     head = struct.pack(">B", VERSION)
     for text in (_DEVICE, subject.encode()[:LONGEST_TEXT]):

@@ -92,7 +92,8 @@ def parse(packet: bytes) -> Frame | None:
                 has_values = True
                 _put_value(channels, *parsed.params)
             elif parsed.params[0] in BONES:
-                bones[parsed.params[0]] = parsed.params[4:]
+                name, _, _, _, *turn = parsed.params
+                bones[name] = (turn[0], turn[1], turn[2], turn[3])
     except (MessageError, ValueError, struct.error):  # Unicode errors among them
         return None
     _put_bones(channels, bones)
@@ -174,7 +175,7 @@ def _angles(turn: Quaternion) -> tuple[float, float, float]:
 
 def packets(channels: Mapping[str, float], *, subject: str, frame: int) -> list[bytes]:
     """What an app would send of these channels, in several packets; see `ifacialmocap.packets`."""
-    messages = [
+    messages: list[tuple[str, tuple[str | float, ...]]] = [
         (VALUE, (name[0].upper() + name[1:], channels[name])) for name in ARKIT if name in channels
     ]
     for bone, prefix, suffix in (

@@ -168,6 +168,11 @@ def wait_for_event(seconds: float) -> None:
     glfw.wait_events_timeout(seconds)
 
 
+def wake_up() -> None:
+    """End a `wait_for_event`, from any thread."""
+    glfw.post_empty_event()
+
+
 def on_drop(window: Any, open_files: Callable[[Sequence[str]], None]) -> None:
     """Call `open_files` with the paths of files that are dropped onto the window."""
     callback: Any = lambda _, paths: open_files(paths)  # noqa: E731 - the stubs are wrong

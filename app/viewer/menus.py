@@ -14,6 +14,7 @@ from .control_rows import readable
 from .export import Exporter
 from .file_drop import FileDrop
 from .key_selection import KeySelection
+from .live_commands import LiveCommands
 from .messages import Message, Task
 from .panel_state import PanelState
 from .placement import Placement
@@ -151,6 +152,24 @@ def expression_menu(session: Session) -> Menu:
             partial(session.is_alone, name),
         )
         for number, name in enumerate(session.scene.expressions[:9], start=1)
+    )
+
+
+def live_menu(live: LiveCommands, panels: PanelState) -> Menu:
+    """A face that is sent while it moves."""
+    command = partial(Command, "Live")
+
+    def toggle() -> Message:
+        """Listen or stop, and show the panel that tells what comes."""
+        line = live.toggle()
+        panels.wanted_tab = "Live" if live.is_on else panels.wanted_tab
+        return line
+
+    mirrored = partial(getattr, live, "is_mirrored")
+    return (
+        command("Listen", "Ctrl+L", toggle, lambda: live.is_on),
+        command("Calibrate", "Shift+N", live.calibrate, can_run=lambda: live.can_calibrate),
+        command("Mirror", "", live.toggle_mirror, mirrored, lambda: live.is_on),
     )
 
 

@@ -18,6 +18,7 @@ STEP = 1.0 / 60.0  # [s] as in films and tests; the simulation divides it furthe
 MOST_STEPS = 6  # a tenth of a second: what a stalled window catches up
 EARLY = 0.25  # of a step that may be taken before it is due: a screen of 60 Hz that is now a little
 # late and now early gets one step for each of its frames, and motion does not judder
+EARLIEST = 0.95  # the same for what a live face has just sent, which must not wait a frame
 CALM = 0.15  # [s] without change before physics rests and the scene is drawn in full
 STILL = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
 
@@ -28,10 +29,13 @@ class Clock:
     def __init__(self) -> None:
         self._owed = 0.0
 
-    def steps(self, elapsed: float) -> int:
-        """How many steps to take after `elapsed` more seconds; the rest of a stall is forgotten."""
+    def steps(self, elapsed: float, early: float = EARLY) -> int:
+        """How many steps to take after `elapsed` more seconds; the rest of a stall is forgotten.
+
+        early: of a step that may be taken before it is due.
+        """
         self._owed += max(elapsed, 0.0)
-        due = max(int(self._owed / STEP + EARLY), 0)
+        due = max(int(self._owed / STEP + early), 0)
         if due > MOST_STEPS:
             self._owed = 0.0
             return MOST_STEPS
@@ -58,14 +62,15 @@ class Physics:
         """Whether nothing has moved for some time."""
         return self._still_for > CALM
 
-    def advance(self, seconds: float, *, is_skin_dragged: bool) -> None:
+    def advance(self, seconds: float, *, is_skin_dragged: bool, is_urgent: bool = False) -> None:
         """As many steps as are due; none for a face at rest that nobody moves.
 
-        is_skin_dragged: whether the mouse drags the skin. UserError where the simulation gave up.
+        is_skin_dragged: whether the mouse drags the skin. is_urgent: whether a live face has just
+        moved. UserError where the simulation gave up.
         """
-        steps = self._clock.steps(seconds)
+        steps = self._clock.steps(seconds, EARLIEST if is_urgent else EARLY)
         session, scene = self._session, self._session.scene
-        wanted = dict(session.values)
+        wanted = dict(session.current)
         is_driven = session.is_playing or session.is_recording or is_skin_dragged
         is_driven = is_driven or wanted != self._posed
         self.has_stepped = steps > 0 and (is_driven or not self.is_at_rest)

@@ -1,7 +1,8 @@
 """What a user does with a face: controls, a script in time, a recording, undo, unsaved work.
 
 Knows the scene and nothing of windows. Every control of every layer (muscles, jaw, gaze, action
-units, expressions, visemes) is one entry of `values`; the scene adds them up.
+units, expressions, visemes) is one entry of `values`; the scene adds them up. A live face leads the
+controls that it names, over what hand or script say (`current`); it leaves no trace in these.
 """
 
 from __future__ import annotations
@@ -58,6 +59,8 @@ class Session:
         self.is_following = False  # the controls are where the script has them
         self._recorder: Recorder | None = None
         self._held: dict[str, float] = {}  # by hand while a recording plays the script
+        self._live: dict[str, float] = {}  # controls that a live face leads
+        self._live_share = 0.0  # ... and how far
         self._history = History(self._document())
 
     def _enter(self, scene: Scene) -> None:
@@ -143,9 +146,25 @@ class Session:
             # Asked of the simulation, between two steps, so that nothing of it is known here.
             simulation.pose({name: self.limits[name][1]})
             sums = simulation.sums
-            self.scene.pose(self.values)
+            self.scene.pose(self.current)
             self._moved_by[name] = frozenset(each for each, share in sums.items() if share)
         return self._moved_by[name]
+
+    # A live face
+
+    def lead(self, controls: Mapping[str, float], share: float) -> None:
+        """Let a live face lead these controls by this share, 0 to 1; those we have not are left."""
+        known = {name: value for name, value in controls.items() if name in self.limits}
+        self._live, self._live_share = clamped(self.limits, known), share
+
+    @property
+    def current(self) -> dict[str, float]:
+        """Where each control is now: by hand or script, and over it what a live face leads."""
+        if not self._live_share:
+            return self.values
+        values, share = self.values, self._live_share
+        led = {name: values[name] + share * (at - values[name]) for name, at in self._live.items()}
+        return {**values, **led}
 
     # Undo
 
@@ -242,7 +261,7 @@ class Session:
         """The face as it is becomes a key of the script; its time [s]."""
         time = keyframes.key_time(self.script, self.time)
         self.is_playing = False
-        self.edit(keyframes.keyed(self.script, time, self.values, self.limits), is_done=False)
+        self.edit(keyframes.keyed(self.script, time, self.current, self.limits), is_done=False)
         self.seek(time)
         self.note()
         return time
@@ -255,9 +274,10 @@ class Session:
                 self.time = 0.0 if self.is_looping else self.script.duration
                 self.is_playing = self.is_looping
             self._follow_script()
+        current = self.current
         if self._recorder is not None:
-            self._recorder.add(seconds, self.values)
-        self.scene.pose(self.values)
+            self._recorder.add(seconds, current)
+        self.scene.pose(current)
         self.scene.step(seconds)
 
     def _follow_script(self) -> None:
@@ -353,7 +373,7 @@ class Session:
 
     def save_pose(self, path: Path) -> None:
         """Write the controls as they are to a file; UserError where it cannot be written."""
-        save_script(path, pose_script(self.values, title=path.stem, scene=self.script.scene))
+        save_script(path, pose_script(self.current, title=path.stem, scene=self.script.scene))
         self.pose_is_unsaved = False
 
     @property

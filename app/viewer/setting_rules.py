@@ -25,7 +25,7 @@ SKINS = {  # whether it is textured, and its colour
     "plain": (False, render.SKIN),
     "clay": (False, render.CLAY),
 }
-TABS = ("Face", "Mechanism")
+TABS = ("Face", "Mechanism", "Live")
 
 
 class Refused:

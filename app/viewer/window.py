@@ -20,6 +20,7 @@ from risorius import render
 from risorius.assets.fitting import FittedHead
 
 from ..errors import UserError
+from ..live import Listening
 from ..scenes import Scene, build_scene
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped
@@ -29,8 +30,9 @@ from .export import FRAMES_PER_SECOND, Exporter
 from .file_drop import FileDrop
 from .files import Files
 from .frame_times import FrameTimes
-from .gui import Gui, on_drop, poll_events, wait_for_event
+from .gui import Gui, on_drop, poll_events, wait_for_event, wake_up
 from .key_selection import KeySelection
+from .live_commands import PACING, LiveCommands
 from .messages import Messages
 from .mouse import Mouse
 from .painter import Painter
@@ -41,6 +43,7 @@ from .panels.dope_sheet import DopeSheet
 from .panels.face import FacePanel
 from .panels.help import draw_help
 from .panels.layout import Layout
+from .panels.live import LivePanel
 from .panels.mechanism import MechanismPanel
 from .panels.menu_bar import MenuBar
 from .panels.message_line import draw_message
@@ -134,6 +137,7 @@ class Viewer:
         self.selection = KeySelection(session, self.panel_state)
         self.scripts = ScriptCommands(session, self.files, self.question)
         self.exporter = Exporter(self.stage, self.view)
+        self.live = LiveCommands(session, wake_up)
         self.file_drop = FileDrop(self.files, self.scripts, self.show_scene)
         self.commands: tuple[Command, ...] = (
             *menus.file_menu(self.scripts, self.file_drop, self.exporter, self.ask_to_close),
@@ -142,6 +146,7 @@ class Viewer:
             *menus.keys_menu(self.selection),
             *menus.view_menu(settings, self.view, self.placement, self.panel_state),
             *menus.expression_menu(session),
+            *menus.live_menu(self.live, self.panel_state),
             *menus.help_menu(self.panel_state),
         )
         self.physics = Physics(session, self.times)
@@ -157,7 +162,9 @@ class Viewer:
         self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
         self.face_panel = FacePanel(gui, session, settings, view)
         mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
-        tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw}
+        record = next(each for each in commands if each.label == "Record")
+        live = LivePanel(gui, settings, self.live, messages, record)
+        tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
         self._layout = Layout(gui, settings, self.panel_state, bar, tabs, self.timeline)
         self._chooser = FileChooser(gui, self.files)
         self.mouse = Mouse(self.view, self.stage, self.select_muscle)
@@ -168,6 +175,7 @@ class Viewer:
     def __exit__(self, *_: object) -> None:
         with contextlib.suppress(UserError):  # a disk that is full must not keep the window open
             self._remember()
+        self.live.stop()
         self.exporter.close()
         self.recovery.close()
         self._resources.close()
@@ -202,6 +210,8 @@ class Viewer:
                     break
                 if self.is_idle:
                     self._wait()
+                elif self.live.is_receiving and not self.live.has_packets:
+                    wait_for_event(PACING)  # a frame that begins with a packet shows it first
 
     def wait_for_frame(self) -> None:
         """Wait until something happens, or it is time to look around; then show a frame."""
@@ -223,8 +233,12 @@ class Viewer:
         is_filming = self.exporter.film is not None
         seconds = 1.0 / FRAMES_PER_SECOND if is_filming else elapsed
         is_skin_dragged = self.mouse.is_dragging_skin
+        self.messages.attempt(partial(self.live.advance, seconds))
+        is_urgent = self.live.is_urgent
         self.messages.attempt(
-            lambda: self.physics.advance(seconds, is_skin_dragged=is_skin_dragged)
+            lambda: self.physics.advance(
+                seconds, is_skin_dragged=is_skin_dragged, is_urgent=is_urgent
+            )
         )
         is_moving = self.painter.paint(elapsed, has_moved=self.physics.has_stepped)
         self._show_panels(elapsed, is_moving=is_moving)
@@ -247,6 +261,7 @@ class Viewer:
             and self._awake == 0
             and self.painter.is_complete
             and not self.session.is_recording
+            and not self.live.is_busy
             and not self.messages.is_fading
             and self.exporter.film is None
         )
@@ -255,11 +270,11 @@ class Viewer:
         """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
         is_watching = self.files.is_waiting or imgui.get_io().want_text_input  # a cursor blinks
         patience = WATCHFUL_WAIT if is_watching else IDLE_WAIT
-        patience = min(patience, max(self.recovery.due_in(), 0.0))
+        patience = min(patience, max(self.recovery.due_in(), 0.0), max(self.live.due_in(), 0.0))
         begin = time.perf_counter()
         wait_for_event(patience)
         self._last = time.perf_counter()
-        if self._last - begin < patience:
+        if self._last - begin < patience and not self.live.has_packets:
             self._awake = FRAMES_AFTER_EVENT
 
     def _show_panels(self, elapsed: float, *, is_moving: bool) -> None:
@@ -303,6 +318,11 @@ class Viewer:
                 self.mouse.follow()
 
     # What is done to the window as a whole
+
+    def listen(self, listening: Listening) -> None:
+        """Follow a live face, and show the panel that tells of it; UserError if that cannot be."""
+        self.messages.say(self.live.start(listening) or "")
+        self.panel_state.wanted_tab = "Live"
 
     def drop(self, paths: Sequence[str]) -> None:
         """Open files that were dropped onto the window."""

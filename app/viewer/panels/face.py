@@ -27,6 +27,7 @@ class FacePanel:
         self.search = ""
         self._selected: str | None = None  # to be scrolled to
         self._flash = 0
+        self._current = session.current  # of the picture that is drawn
 
     def select(self, name: str) -> None:
         """Open the group of a control, scroll to it and mark it."""
@@ -35,6 +36,7 @@ class FacePanel:
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
+        self._current = self._session.current
         self._draw_buttons()
         imgui.begin_child("controls", (0.0, 0.0))
         for title, names in self._session.groups.items():
@@ -65,15 +67,15 @@ class FacePanel:
         gui.remember("search")
 
     def _draw_group(self, title: str, names: Sequence[str]) -> None:
-        session, scene, folds = self._session, self._session.scene, self._settings.folds
-        rows = rows_of(names, session.values, linked=self._settings.is_linked)
+        scene, folds = self._session.scene, self._settings.folds
+        rows = rows_of(names, self._current, linked=self._settings.is_linked)
         if self.search:
             rows = search_rows(rows, self.search, group=title, actions=scene.actions)
             if not rows:
                 return
         elif self._selected in names:
             folds[title] = True
-        active = sum(1 for name in names if session.values[name])
+        active = sum(1 for name in names if self._current[name])
         label = f"{title}  ({active})" if active else title
         if heading(self._gui, self._settings, title, label, must_open=bool(self.search)):
             if names and all(name in scene.expressions for name in names):
@@ -94,7 +96,7 @@ class FacePanel:
 
     def _draw_row(self, row: Row) -> None:
         session, theme = self._session, self._gui.theme
-        values = [session.values[name] for name in row.names]
+        values = [self._current[name] for name in row.names]
         is_linked = self._settings.is_linked and len(row.names) == 2 and len(set(values)) == 1
         names = row.names[1:] if is_linked else row.names
         # A muscle whose halves act together may have but one slider for both.
@@ -116,7 +118,7 @@ class FacePanel:
             if index:
                 imgui.same_line()
             slid = self._sliders.draw(
-                name, session.values[name], session.limits[name], width=room / len(names)
+                name, self._current[name], session.limits[name], width=room / len(names)
             )
             is_pointed = is_pointed or slid.is_hovered
             if slid.is_changed:

@@ -1,0 +1,134 @@
+"""A live face in the window: begin and end it, calibrate it, and let it lead the session.
+
+What it leads wins over sliders and script; controls that it does not name stay as these have them.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+from ..errors import UserError
+from ..live import LOST_AFTER, Listening, LiveFace, State
+from ..recordings.mapping import usual_mapping
+from .messages import Message
+from .session import Session
+
+PACING = 0.008  # [s] that a frame waits for a packet: half a frame of the phone's
+LONGEST_STEP = 0.1  # [s] of easing in one frame, however long that took
+
+
+class LiveCommands:
+    """What menus and panels do with a live face, and what the window asks of it.
+
+    wanted: what `toggle` listens to; settable.
+    face: the live face, None while nothing is listened to.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        wake: Callable[[], None],
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """wake: makes a window that waits for events go on; it is called from another thread."""
+        self._session, self._wake, self._clock = session, wake, clock
+        self.wanted = Listening("livelink")
+        self.face: LiveFace | None = None
+
+    # Commands
+
+    @property
+    def is_on(self) -> bool:
+        """Whether packets are listened to."""
+        return self.face is not None
+
+    def start(self, wanted: Listening) -> Message:
+        """Listen from now on; UserError where that cannot be."""
+        name = self._session.scene.name
+        if name != "face":
+            raise UserError(f"a live face moves the scene 'face'; this window shows a {name}")
+        self.stop()
+        self.wanted = wanted
+        self.face = LiveFace(wanted, usual_mapping(), wake=self._wake, clock=self._clock)
+        return f"{wanted.protocol.title}: listening on {wanted.address}, port {self.face.port}"
+
+    def stop(self) -> None:
+        """Listen no longer; the face is where sliders or script have it."""
+        if self.face is not None:
+            self.face.close()
+        self.face = None
+        self._session.lead({}, 0.0)
+
+    def toggle(self) -> Message:
+        """Begin or end."""
+        if self.face is None:
+            return self.start(self.wanted)
+        self.stop()
+        return None
+
+    @property
+    def can_calibrate(self) -> bool:
+        """Whether a face is seen whose neutral state can be learned."""
+        return self.face is not None and self.face.state is State.RECEIVING
+
+    def calibrate(self) -> Message:
+        """The face as it is in the next half second is neutral."""
+        if self.face is not None:
+            self.face.calibrate()
+        return "hold a neutral face, eyes on the camera ..."
+
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether left and right change places."""
+        return self.face is not None and self.face.calibration.mirror
+
+    def toggle_mirror(self) -> None:
+        """Exchange left and right, or no longer."""
+        if self.face is not None:
+            calibration = self.face.calibration
+            self.face.calibration = replace(calibration, mirror=not calibration.mirror)
+
+    # What the window asks
+
+    def advance(self, seconds: float) -> Message:
+        """Take in what has come, and lead the session by it."""
+        face = self.face
+        if face is None:
+            return None
+        was_calibrating = face.is_calibrating
+        face.advance(min(seconds, LONGEST_STEP))
+        self._session.lead(face.controls(), face.presence)
+        if was_calibrating and not face.is_calibrating:
+            return "this face is neutral now"
+        return None
+
+    @property
+    def is_urgent(self) -> bool:
+        """Whether the face has just moved."""
+        return self.face is not None and self.face.has_news
+
+    @property
+    def has_packets(self) -> bool:
+        """Whether packets have come that `advance` has not taken in."""
+        return self.face is not None and self.face.has_packets
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether something is about to change without a packet."""
+        return self.face is not None and (self.face.is_easing or self.face.is_calibrating)
+
+    @property
+    def is_receiving(self) -> bool:
+        """Whether another packet can be expected soon."""
+        return self.face is not None and self.face.state is State.RECEIVING
+
+    def due_in(self) -> float:
+        """How long the window may sleep [s]: until the face is lost, if nothing comes."""
+        return LOST_AFTER - self.face.silence if self.face and self.is_receiving else float("inf")
+
+    @property
+    def presence(self) -> float:
+        """How far somebody who is there leads the face, 0 to 1."""
+        return self.face.presence if self.face is not None else 0.0

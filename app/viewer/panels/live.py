@@ -1,0 +1,220 @@
+"""A face that is sent while it moves: who sends, how it is taken, and what comes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from imgui_bundle import imgui
+
+from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening, LiveFace, State
+from ...recordings.calibration import ANGLES, HIGHEST_GAIN
+from ..command import Command
+from ..gui import Gui, colour, em
+from ..live_commands import LiveCommands
+from ..messages import Messages
+from ..settings import Settings
+from .sliders import Sliders
+from .widgets import button, button_width, heading, hint, muted, stay_in_line
+
+LABEL_SHARE = 0.38  # of a row
+MOST_GAIN = min(3.0, HIGHEST_GAIN)
+# Gains that have a slider of their own, beside that of all: label -> channels.
+BLINK = ("eyeBlinkLeft", "eyeBlinkRight")
+HEAD = ("head_yaw", "head_pitch", "head_roll")
+COMPUTERS = {LOOPBACK: "this computer alone", ANYWHERE: "the whole network"}
+FULL_ANGLE = 45.0  # [degrees] that fill a bar
+HINTS = {
+    "Protocol": "what the sender speaks; Live Link Face and iFacialMocap are apps of an iPhone, "
+    "VMC is what most programs for avatars send",
+    "Listen to": "a phone needs the whole network; whoever is in it can then move this face, and "
+    "do nothing else",
+    "Port": "where the sender must send to",
+    "Gain": "how strongly shapes are taken",
+    "Blink": "phones seldom see eyes that are closed completely",
+    "Head": "how far the head turns along",
+}
+
+
+class LivePanel:
+    """Draws the panel, and carries out what is done in it."""
+
+    def __init__(
+        self,
+        gui: Gui,
+        settings: Settings,
+        live: LiveCommands,
+        messages: Messages,
+        record: Command,
+    ) -> None:
+        """record: the command that begins and ends a recording."""
+        self._gui, self._settings, self._live, self._messages = gui, settings, live, messages
+        self._record = record
+        self._sliders = Sliders(gui)
+
+    def draw(self) -> None:
+        """Draw everything, inside the window's panel."""
+        imgui.begin_child("live", (0.0, 0.0))
+        face = self._live.face
+        self._draw_listening()
+        self._draw_state(face)
+        if face is not None:
+            self._draw_buttons(face)
+            if heading(self._gui, self._settings, "Strength"):
+                self._draw_gains(face)
+            if heading(self._gui, self._settings, "What comes"):
+                self._draw_channels(face)
+        imgui.end_child()
+
+    # Who sends
+
+    def _draw_listening(self) -> None:
+        live = self._live
+        wanted = self._live.wanted
+        imgui.begin_disabled(live.is_on)
+        title = wanted.protocol.title
+        by_title = {each.title: kind for kind, each in PROTOCOLS.items()}
+        chosen = self._choose("Protocol", title, tuple(by_title))
+        if chosen is not None:
+            wanted = Listening(by_title[chosen], wanted.address)
+        here = COMPUTERS.get(wanted.address, wanted.address)
+        by_name = {name: address for address, name in COMPUTERS.items()}
+        by_name.setdefault(here, wanted.address)
+        chosen = self._choose("Listen to", here, tuple(by_name))
+        if chosen is not None:
+            wanted = replace(wanted, address=by_name[chosen])
+        self._begin_row("Port")
+        imgui.set_next_item_width(-1.0)
+        is_changed, port = imgui.input_int("##port", wanted.chosen_port, 0)
+        self._gui.remember("Port")
+        if is_changed:
+            wanted = replace(wanted, port=min(max(port, 1), 65535))
+        imgui.end_disabled()
+        live.wanted = wanted
+        label = "Stop listening" if live.is_on else "Listen"
+        highlight = colour(self._gui.theme.accent, 0.6) if live.is_on else None
+        if button(self._gui, label, name="listen", width=-1.0, highlight=highlight):
+            self._messages.attempt(live.toggle)
+
+    def _draw_state(self, face: LiveFace | None) -> None:
+        """A line on who sends and one on packets."""
+        imgui.push_text_wrap_pos(0.0)
+        text = state_in_words(face)
+        if face is not None and face.state is State.RECEIVING:
+            imgui.text_colored(colour(self._gui.theme.accent), text)
+        else:
+            imgui.text_unformatted(text)
+        self._gui.remember("live state")
+        if face is not None and face.received:
+            muted(self._gui, packets_in_words(face))
+        imgui.pop_text_wrap_pos()
+
+    # How it is taken
+
+    def _draw_buttons(self, face: LiveFace) -> None:
+        live, record = self._live, self._record
+        is_recording = record.is_on is not None and record.is_on()
+        calibrate = "Hold still ..." if face.is_calibrating else "Calibrate"
+        buttons: tuple[tuple[str, str, str, bool, Callable[[], str | None]], ...] = (
+            ("calibrate", calibrate, "the face of the next half second is neutral (Shift+N)",
+             live.can_calibrate and not face.is_calibrating, live.calibrate),
+            ("record live", "Stop recording" if is_recording else "Record",
+             "take every movement into a script, until it is stopped (Ctrl+R)", True, record.run),
+        )  # fmt: skip
+        for number, (name, label, meaning, is_possible, run) in enumerate(buttons):
+            if number:
+                stay_in_line(button_width(label))
+            imgui.begin_disabled(not is_possible)
+            highlight = colour(self._gui.theme.accent, 0.6) if label.startswith("Stop") else None
+            if button(self._gui, label, name=name, meaning=meaning, highlight=highlight):
+                self._messages.attempt(run)
+            imgui.end_disabled()
+        stay_in_line(imgui.get_frame_height() + imgui.calc_text_size("  Mirror").x)
+        is_clicked, _ = imgui.checkbox("Mirror##live", live.is_mirrored)
+        self._gui.remember("mirror live")
+        hint("left and right change places, as in a mirror")
+        if is_clicked:
+            live.toggle_mirror()
+
+    def _draw_gains(self, face: LiveFace) -> None:
+        calibration = face.calibration
+        gain = self._slide("Gain", calibration.default_gain, 1.0)
+        if gain is not None:
+            face.calibration = replace(calibration, default_gain=gain)
+        for label, names, usual in (("Blink", BLINK, face.usual_blink), ("Head", HEAD, 1.0)):
+            gain = self._slide(label, calibration.gains.get(names[0], 1.0), usual)
+            if gain is not None:
+                gains = {**calibration.gains, **dict.fromkeys(names, gain)}
+                face.calibration = replace(calibration, gains=gains)
+
+    # What comes
+
+    def _draw_channels(self, face: LiveFace) -> None:
+        """A bar for each channel that is not at 0, as it is after calibration."""
+        calibrated = face.calibration.apply(face.channels)
+        if not calibrated:
+            muted(self._gui, "nothing yet")
+        for name, value in calibrated.items():
+            is_angle = name in ANGLES
+            share = abs(value) / FULL_ANGLE if is_angle else value
+            imgui.text_colored(
+                colour(self._gui.theme.accent if share >= 0.05 else self._gui.theme.muted), name
+            )
+            imgui.same_line(LABEL_SHARE * 1.35 * imgui.get_window_width())
+            text = f"{value:+.0f} deg" if is_angle else f"{value:.2f}"
+            imgui.progress_bar(min(share, 1.0), (-1.0, em(1.1)), text)
+
+    # Rows
+
+    def _begin_row(self, label: str) -> None:
+        imgui.align_text_to_frame_padding()
+        imgui.text(label)
+        hint(HINTS[label])
+        imgui.same_line(LABEL_SHARE * imgui.get_window_width())
+
+    def _slide(self, label: str, value: float, neutral: float) -> float | None:
+        self._begin_row(label)
+        slid = self._sliders.draw(
+            f"live {label}", value, (0.0, MOST_GAIN), width=-1.0, neutral=neutral
+        )
+        return slid.value if slid.is_changed else None
+
+    def _choose(self, label: str, present: str, choices: tuple[str, ...]) -> str | None:
+        """A row with a list; what was chosen in it now."""
+        self._begin_row(label)
+        imgui.set_next_item_width(-1.0)
+        chosen = None
+        is_open = imgui.begin_combo(f"##{label}", present)
+        self._gui.remember(label)
+        if is_open:
+            for choice in choices:
+                if imgui.selectable(choice, choice == present)[0]:
+                    chosen = choice
+                self._gui.remember(f"{label}: {choice}")
+            imgui.end_combo()
+        return chosen
+
+
+def state_in_words(face: LiveFace | None) -> str:
+    """What can be said of who sends."""
+    if face is None:
+        return "nobody is listened to"
+    who = f" {face.subject}" if face.subject else ""
+    if face.state is State.RECEIVING:
+        return f"receiving{who}, {face.rate:.0f} frames a second"
+    if face.state is State.NO_FACE:
+        return f"{who.strip() or 'the sender'} sees no face"
+    if face.state is State.LOST:
+        return f"lost{who}: nothing comes any more"
+    if face.received:
+        return (
+            f"something comes to port {face.port}, but no face of {face.listening.protocol.title}: "
+            "is the protocol right?"
+        )
+    return f"waiting on port {face.port}: nothing has come yet"
+
+
+def packets_in_words(face: LiveFace) -> str:
+    """How many packets came, and how many were of no use."""
+    unusable = f", {face.unusable} of no use" if face.unusable else ""
+    return f"{face.received} packets{unusable}"
