@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import in_one_line
+from ..live import LOOPBACK, PROTOCOLS
 from ..looks import STATIC, Refinement
 from .options import (
     PATH,
@@ -19,6 +20,7 @@ from .options import (
     Drawing,
     Filming,
     Live,
+    port_option,
     with_drawing,
     with_filming,
     with_live,
@@ -105,6 +107,32 @@ def view(
 
     listening = live.listening()
     open_window(script_for(script, scene), size, drawing, listening=listening)
+
+
+@click.command()
+@click.argument("recording", type=PATH)
+@click.option(
+    "--to", "kind", type=click.Choice(list(PROTOCOLS)), default="livelink", show_default=True
+)
+@port_option
+@click.option("--address", default=LOOPBACK, show_default=True, help="Of the receiving computer.")
+@click.option("--loop", is_flag=True, help="Again and again, until Ctrl-C.")
+def send(recording: Path, kind: str, port: int | None, address: str, loop: bool) -> None:
+    """Play RECORDING as packets, as a phone sends them; `risorius view --live` follows them."""
+    from ..live.sender import Sender, carried
+    from ..recordings.reading import read_take
+
+    take = read_take(recording)
+    channels, left_out = carried(take)
+    with Sender(kind, address, port, recording.stem) as sender:
+        title = PROTOCOLS[kind].title
+        click.echo(
+            f"{in_one_line(recording)}: {take.kind}, {take.duration:.2f} s, {len(channels)} "
+            f"channels, to {address}, port {sender.port}, as {title}; Ctrl-C ends it"
+        )
+        if left_out:
+            click.echo(f"not sent: {in_one_line(', '.join(left_out))}")
+        sender.play(take, is_looping=loop)
 
 
 @click.command()
@@ -197,4 +225,4 @@ def warm(quiet: bool) -> None:
     compile_all(quiet)
 
 
-ALL = (capture, view, replay, demo, controls, doctor, warm)
+ALL = (capture, view, replay, send, demo, controls, doctor, warm)

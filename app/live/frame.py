@@ -9,10 +9,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 
-from ..recordings.names import ARKIT
+from ..recordings.spelling import shape_of
 
 MOST_BYTES = 16384  # of a packet; the largest that anybody sends has about 3000
+LONGEST_NAME = 40  # letters of a shape
+MOST_NAMES = 500  # that are remembered, those that nobody knows among them
 LONGEST_SUBJECT = 40  # letters; it is shown in the window
 
 
@@ -53,14 +56,11 @@ def readable_subject(name: bytes) -> str:
     return "".join(filter(str.isprintable, text))[:LONGEST_SUBJECT]
 
 
-def _spellings(name: str) -> tuple[str, ...]:
-    """How senders write a shape's name, in small letters: in full, and with _L or _R."""
-    written = name.lower()
-    for side in ("left", "right"):
-        if written.endswith(side):
-            return written, f"{written.removesuffix(side)}_{side[0]}"
-    return (written,)
+@lru_cache(maxsize=MOST_NAMES)
+def _known_shape(name: str) -> str | None:
+    return shape_of(name)
 
 
-SHAPES = {written: name for name in ARKIT for written in _spellings(name)}
-"""Shape by its name as a sender may write it, in small letters: mouthSmileLeft, mouthSmile_L."""
+def shape_named(name: str) -> str | None:
+    """The shape that a sender calls so, None for another name."""
+    return _known_shape(name) if len(name) <= LONGEST_NAME else None

@@ -22,7 +22,7 @@ import math
 from collections.abc import Mapping
 
 from ..recordings.names import ARKIT
-from .frame import SHAPES, Frame, put_angle, put_shape
+from .frame import Frame, put_angle, put_shape, shape_named
 
 PORT = 49983
 REQUEST = b"iFacialMocap_sahuasouryya9218sauhuiayeta91555dy3719"
@@ -59,7 +59,7 @@ def _put_block(channels: dict[str, float], name: str, numbers: str) -> None:
 
 def _put_written_shape(channels: dict[str, float], written: str) -> None:
     name, _, percent = written.partition("&" if "&" in written else "-")
-    shape = SHAPES.get(name.strip().lower())
+    shape = shape_named(name.strip())
     if shape is not None:
         put_shape(channels, shape, _number(percent) / 100.0)
 

@@ -7,7 +7,7 @@
 
 A packet that ends before the values, or counts none, was sent while no face was seen. The order of
 shapes is ARKit's; the app's files have another. Angles are in radians: the pitch of an eye is 0.61
-where it looks down fully. They grow to the subject's right and down.
+where it looks down fully. They grow to the subject's right, down and to the right shoulder.
 
 Source: packets of the app; Epic Games, "Live Link Face", and its table of blend shapes.
 """
@@ -26,13 +26,13 @@ VERSION = 6
 COUNT = 61
 LONGEST_TEXT = 1024  # [bytes] of an id or a name
 RATE = 60
-# Behind the shapes: channel, and its sign there; None for what eyes do not do. The sign of the
-# head's roll is that of a rotation about the same axes as the others.
-ANGLES: tuple[tuple[str | None, float], ...] = (
-    ("head_yaw", -1.0), ("head_pitch", -1.0), ("head_roll", -1.0),
-    ("eye_yaw_left", -1.0), ("eye_pitch_left", -1.0), (None, 0.0),
-    ("eye_yaw_right", -1.0), ("eye_pitch_right", -1.0), (None, 0.0),
+# Behind the shapes; None for what eyes do not do.
+ANGLES = (
+    "head_yaw", "head_pitch", "head_roll",
+    "eye_yaw_left", "eye_pitch_left", None, "eye_yaw_right", "eye_pitch_right", None,
 )  # fmt: skip
+# [degrees] by which the axes of eyeballs stand outwards where eyes look ahead, in real packets.
+OUTWARD = {"eye_yaw_left": 4.0, "eye_yaw_right": -4.0}
 _DEVICE = b"risorius"
 
 
@@ -57,9 +57,9 @@ def parse(packet: bytes) -> Frame | None:
     channels: dict[str, float] = {}
     for shape, value in zip(ARKIT, values, strict=False):
         put_shape(channels, shape, value)
-    for (angle, sign), value in zip(ANGLES, values[len(ARKIT) :], strict=True):
+    for angle, value in zip(ANGLES, values[len(ARKIT) :], strict=True):
         if angle is not None:
-            put_angle(channels, angle, sign * math.degrees(value))
+            put_angle(channels, angle, -math.degrees(value) - OUTWARD.get(angle, 0.0))
     return Frame(channels, name)
 
 
@@ -75,7 +75,9 @@ def _text(packet: bytes, at: int) -> tuple[bytes, int]:
 def packets(channels: Mapping[str, float], *, subject: str, frame: int) -> list[bytes]:
     """What the app would send of these channels: one packet; a channel that is missing is 0."""
     values = [channels.get(name, 0.0) for name in ARKIT]
-    values += [sign * math.radians(channels.get(name or "", 0.0)) for name, sign in ANGLES]
+    for angle in ANGLES:
+        degrees = channels.get(angle or "", 0.0) + OUTWARD.get(angle or "", 0.0)
+        values.append(-math.radians(degrees))
     head = struct.pack(">B", VERSION)
     for text in (_DEVICE, subject.encode()[:LONGEST_TEXT]):
         head += struct.pack(">i", len(text)) + text

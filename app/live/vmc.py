@@ -31,7 +31,7 @@ from pythonosc.osc_message import ParseError as MessageError
 from pythonosc.osc_message_builder import OscMessageBuilder
 
 from ..recordings.names import ARKIT
-from .frame import SHAPES, Frame, put_angle, put_shape
+from .frame import Frame, put_angle, put_shape, shape_named
 
 PORT = 39539
 VALUE, APPLY, BONE = "/VMC/Ext/Blend/Val", "/VMC/Ext/Blend/Apply", "/VMC/Ext/Bone/Pos"
@@ -119,9 +119,9 @@ def _messages(packet: bytes, depth: int) -> Iterator[bytes]:
 
 def _put_value(channels: dict[str, float], name: str, value: float) -> None:
     """A shape, or what a preset is made of, unless the channel is stronger already."""
-    written = name.lower()
-    if written in SHAPES:
-        shares: Mapping[str, float] = {SHAPES[written]: 1.0}
+    shape, written = shape_named(name), name.lower()
+    if shape is not None:
+        shares: Mapping[str, float] = {shape: 1.0}
     else:
         shares = PRESETS.get(written) or PRESETS.get(_version_0(written), {})
     for channel, share in shares.items():
