@@ -264,6 +264,18 @@ def bench_window(size: tuple[int, int], seconds: float) -> None:
     click.echo(window.report(seconds, size))
 
 
+@bench.command("live")
+@click.option(
+    "--seconds", type=FiniteRange(1.0, 600.0), default=12.0, show_default=True, help="Of each."
+)
+@click.option("--window", is_flag=True, help="Also in the window; needs a screen.")
+def bench_live(seconds: float, window: bool) -> None:
+    """Time a live face from its packet to the skin, for each protocol."""
+    from . import live
+
+    click.echo(live.report(seconds, with_window=window))
+
+
 def _json(target: Path | None) -> Callable[[object], None]:
     """What writes figures for programs into `target`, if it was given; checked before any work."""
     from risorius.app.files import check_file, save_text

@@ -95,10 +95,11 @@ class Sender:
     def __exit__(self, *_: object) -> None:
         self._socket.close()
 
-    def send(self, channels: Mapping[str, float]) -> None:
-        """Send one frame; UserError where the network refuses it."""
+    def send(self, channels: Mapping[str, float]) -> float:
+        """Send one frame; when it went out [s] by perf_counter. UserError if that cannot be."""
         packets = self._protocol.packets(channels, subject=self._subject, frame=self._sent)
         self._sent += 1
+        began = time.perf_counter()
         for packet in packets:
             try:
                 self._socket.sendto(packet, self._target)
@@ -108,6 +109,7 @@ class Sender:
                 raise UserError(
                     f"cannot send to {self._target[0]}, port {self.port}: {error.strerror}"
                 ) from None
+        return began
 
     def play(
         self,

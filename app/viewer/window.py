@@ -208,10 +208,14 @@ class Viewer:
                 is_over = playing and not self.session.is_playing
                 if once and is_over and not self.session.unsaved:
                     break
-                if self.is_idle:
-                    self._wait()
-                elif self.live.is_receiving and not self.live.has_packets:
-                    wait_for_event(PACING)  # a frame that begins with a packet shows it first
+                self.pause()
+
+    def pause(self) -> None:
+        """What is between two frames: nothing, or a wait for what the next one is to show."""
+        if self.is_idle:
+            self._wait()
+        elif self.live.is_receiving and not self.live.has_packets:
+            wait_for_event(PACING)  # a frame that begins with a packet shows it at once
 
     def wait_for_frame(self) -> None:
         """Wait until something happens, or it is time to look around; then show a frame."""

@@ -1,0 +1,242 @@
+"""What `risorius bench live` prints: milliseconds from a packet to the skin that has been stepped.
+
+Another process sends a moving face sixty times a second, as phones do, to this one over loopback.
+Each frame carries its number in the turn of the head, and the sender says when it sent which. What
+is driven here are the parts of the window without its pictures; with `window` also the window
+itself, where a frame begins with a packet unless the one before it is still being drawn.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from multiprocessing.connection import Connection
+
+import numpy as np
+
+from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace
+from risorius.app.live.sender import Sender
+from risorius.app.recordings.mapping import usual_mapping
+from risorius.app.recordings.names import ARKIT
+from risorius.app.scenes import build_scene
+from risorius.app.script import script_for
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.physics import STEP
+from risorius.app.viewer.session import Session
+from risorius.app.viewer.settings import Display
+
+from .report import processor, table, verdict
+
+RATE = 60.0  # frames a second of the sender
+PROMISED = 8.0  # [ms] median on a quiet machine
+ROUNDS = 3  # of all protocols in turn
+DEGREES = 0.01  # of head yaw that count as one frame
+SETTLING = 0.5  # [s] at the start of a round that are not counted
+STARTING = 60.0  # [s] that the other process may take to begin
+SIZE = (1280, 720)
+
+
+@dataclass
+class _Case:
+    """A protocol, and milliseconds of each stage for every frame."""
+
+    kind: str
+    name: str
+    stages: list[tuple[float, ...]] = field(default_factory=list)  # way, read, map, step
+    skipped: int = 0  # as a newer one was there already
+
+
+class Chain:
+    """The way of a packet through the parts of the window, without the window."""
+
+    def __init__(self, kind: str, session: Session) -> None:
+        self._woken = threading.Event()
+        self.face = LiveFace(
+            Listening(kind, LOOPBACK, port=0), usual_mapping(), wake=self._woken.set
+        )
+        self._session = session
+
+    def turn(self) -> tuple[int, tuple[float, ...]] | None:
+        """Wait for a packet and follow it: the frame's number, and when each stage began and ended.
+
+        None where no whole frame came.
+        """
+        self._woken.wait(STEP)
+        self._woken.clear()
+        times = [time.perf_counter()]
+        self.face.advance(STEP)
+        times.append(time.perf_counter())
+        self._session.lead(self.face.controls(), self.face.presence)
+        times.append(time.perf_counter())
+        self._session.advance(STEP)
+        times.append(time.perf_counter())
+        return (_number(self.face), tuple(times)) if self.face.has_news else None
+
+
+def report(seconds: float, *, with_window: bool) -> str:
+    """Time each protocol for so many seconds; the text to print."""
+    cases = [_Case(kind, protocol.title) for kind, protocol in PROTOCOLS.items()]
+    session = Session(build_scene("face"), script_for(None, "face"))
+    for turn in range(ROUNDS):
+        for case in cases if turn % 2 == 0 else reversed(cases):
+            _time_chain(case, session, seconds / ROUNDS)
+    lines = [
+        f"{os.cpu_count()} cores of {processor()}; {ROUNDS} interleaved rounds, "
+        f"{RATE:.0f} frames a second over loopback.",
+        "",
+        *table(
+            "protocol:<18|frames:6d|skipped:7d|on the way:10.2f|read:6.2f|map:6.2f|step:6.2f|"
+            "median:7.2f|95 %:7.2f|worst:7.2f",
+            map(_cells, cases),
+        ),
+        "",
+        "Times in ms, medians: from sending to waking, reading packets, calibration and mapping,",
+        "posing and stepping the simulation; and from sending to the stepped skin.",
+    ]
+    medians = [_total(case) for case in cases]
+    lines.append(verdict(max(medians) < PROMISED, f"median below {PROMISED:g} ms"))
+    if with_window:
+        lines += ["", *_window_lines(seconds)]
+    return "\n".join(lines)
+
+
+def _time_chain(case: _Case, session: Session, seconds: float) -> None:
+    chain = Chain(case.kind, session)
+    done: dict[int, tuple[float, ...]] = {}
+    try:
+        with _sending(case.kind, chain.face.port, seconds) as sent:
+            while not sent.is_over:
+                followed = chain.turn()
+                if followed is not None:
+                    done[followed[0]] = followed[1]
+    finally:
+        chain.face.close()
+    _collect(case, sent.times, done)
+
+
+def _window_lines(seconds: float) -> list[str]:
+    """The same in the window, which also draws."""
+    cases = [_Case(kind, protocol.title) for kind, protocol in PROTOCOLS.items()]
+    with Viewer(script_for(None, "face"), SIZE, Display()) as viewer:
+        frames: list[float] = []
+        for case in cases:
+            frames += _time_window(case, viewer, seconds / ROUNDS)
+        name = viewer.surface.gl.info["GL_RENDERER"]
+    return [
+        f"In the window at {SIZE[0]}x{SIZE[1]} on {name}, {1.0 / np.median(frames):.0f} frames a "
+        "second:",
+        *table(
+            "protocol:<18|frames:6d|median:7.2f|95 %:7.2f",
+            ([case.name, len(case.stages), _total(case), _total(case, 95.0)] for case in cases),
+        ),
+        "A packet that comes while a picture is drawn waits for its end.",
+    ]
+
+
+def _time_window(case: _Case, viewer: Viewer, seconds: float) -> list[float]:
+    """Let the window follow one protocol; how long its frames took [s]."""
+    viewer.listen(Listening(case.kind, LOOPBACK, port=0))
+    face = viewer.live.face
+    assert face is not None
+    done: dict[int, tuple[float, ...]] = {}
+    step, taken = viewer.physics.advance, []
+
+    def note(*given: float, **told: bool) -> None:
+        """Step, and note when the newest frame was in the skin."""
+        step(*given, **told)
+        if viewer.physics.has_stepped:
+            done.setdefault(_number(face), (time.perf_counter(),))
+
+    viewer.physics.advance = note  # type: ignore[method-assign]
+    with _sending(case.kind, face.port, seconds) as sent:
+        while not sent.is_over:
+            begin = time.perf_counter()
+            viewer.frame()
+            viewer.pause()
+            taken.append(time.perf_counter() - begin)
+    viewer.physics.advance = step  # type: ignore[method-assign]
+    viewer.live.stop()
+    _collect(case, sent.times, done)
+    return taken
+
+
+def _collect(case: _Case, sent: dict[int, float], done: dict[int, tuple[float, ...]]) -> None:
+    """What each frame took that was sent after settling."""
+    begin = min(sent.values()) + SETTLING
+    counted = {number: at for number, at in sent.items() if at >= begin}
+    case.skipped += len(counted.keys() - done.keys())
+    for number, at in counted.items():
+        if number in done:
+            case.stages.append(tuple(1e3 * np.diff((at, *done[number]))))
+
+
+def _cells(case: _Case) -> list[object]:
+    """The row of a case."""
+    stages = np.median(np.array(case.stages), axis=0)
+    totals = [_total(case), _total(case, 95.0), _total(case, 100.0)]
+    return [case.name, len(case.stages), case.skipped, *stages, *totals]
+
+
+def _total(case: _Case, percentile: float = 50.0) -> float:
+    return float(np.percentile(np.sum(case.stages, axis=1), percentile))
+
+
+def _number(face: LiveFace) -> int:
+    """The number that the sender gave to the newest frame."""
+    return round(face.channels.get("head_yaw", 0.0) / DEGREES)
+
+
+# The other process
+
+
+class _Sent:
+    """What the sending process tells: whether it has ended, and then when it sent which frame."""
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+        self.times: dict[int, float] = {}
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it has ended."""
+        if not self.times and self._connection.poll():
+            self.times = self._connection.recv()
+        return bool(self.times)
+
+
+@contextmanager
+def _sending(kind: str, port: int, seconds: float) -> Iterator[_Sent]:
+    """A process that sends for so long."""
+    context = multiprocessing.get_context("spawn")
+    ours, others = context.Pipe()
+    process = context.Process(target=send_numbered, args=(kind, port, seconds, others), daemon=True)
+    process.start()
+    try:
+        if not ours.poll(STARTING):
+            raise RuntimeError("the process that sends did not begin")
+        ours.recv()
+        yield _Sent(ours)
+    finally:
+        process.terminate()
+        process.join()
+
+
+def send_numbered(kind: str, port: int, seconds: float, connection: Connection) -> None:
+    """Send moving faces with numbers, then tell when each was sent."""
+    sent: dict[int, float] = {}
+    with Sender(kind, LOOPBACK, port, "bench") as sender:
+        connection.send("ready")
+        begin = time.perf_counter()
+        for number in range(1, round((seconds + SETTLING) * RATE)):
+            time.sleep(max(begin + number / RATE - time.perf_counter(), 0.0))
+            wave = 0.5 - 0.5 * np.cos(0.1 * number + np.arange(len(ARKIT)))
+            channels = {name: float(value) for name, value in zip(ARKIT, wave, strict=True)}
+            channels["head_yaw"] = DEGREES * number
+            sent[number] = sender.send(channels)
+    time.sleep(0.2)  # the last frames are on their way
+    connection.send(sent)
