@@ -159,7 +159,11 @@ def open_window(
     """Open the viewer on a script's scene."""
     head = drawing.fitted_head()
     from ..viewer import Viewer
+    from ..viewer.live_commands import check_scene
     from ..viewer.settings import display_of, settings_path
+
+    if listening is not None:
+        check_scene(script.scene)
 
     display = None  # as it was last
     if drawing.is_told:

@@ -1,7 +1,8 @@
 """Faces that are sent while they move: sockets, packets, and what is done when nobody sends."""
 
+from .addresses import ANYWHERE, LOOPBACK, own_address
 from .live_face import LOST_AFTER, LiveFace, State
-from .protocols import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
+from .protocols import PROTOCOLS, Listening
 from .receiver import Receiver
 
 __all__ = [
@@ -13,4 +14,5 @@ __all__ = [
     "LiveFace",
     "Receiver",
     "State",
+    "own_address",
 ]

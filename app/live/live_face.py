@@ -56,12 +56,12 @@ class LiveFace:
         table: Table,
         *,
         wake: Callable[[], None] = lambda: None,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         """Listen from now on; UserError where that cannot be. wake: see `Receiver`."""
         self.listening = listening
         self._table, self._clock = table, clock
-        self._receiver = Receiver(listening, wake)
+        self._receiver = Receiver(listening, wake, clock)
         gains, default = gains_of((), ARKIT, usual_gains(listening.protocol.title))
         self.calibration = Calibration({}, gains, default)
         self._usual_blink = gains["eyeBlinkLeft"]
@@ -70,7 +70,6 @@ class LiveFace:
         self.has_news = False  # a frame was taken in by the last `advance`
         self._pending: dict[str, float] = {}
         self._share = 0.0
-        self._unreadable = 0
         self._has_face = True
         self._last: float | None = None  # when the newest frame came
         self._times: deque[float] = deque(maxlen=MOST_RATED)
@@ -101,12 +100,17 @@ class LiveFace:
     @property
     def unusable(self) -> int:
         """Packets so far that could not be read."""
-        return self._unreadable + self._receiver.too_large
+        return self._receiver.unusable
 
     @property
-    def has_packets(self) -> bool:
-        """Whether `advance` would find something."""
-        return self._receiver.has_packets
+    def has_frame(self) -> bool:
+        """Whether `advance` would find a whole frame."""
+        return self._receiver.has_frame
+
+    @property
+    def came_at(self) -> float | None:
+        """When the newest frame came [s of the clock], None before the first."""
+        return self._last
 
     @property
     def silence(self) -> float:
@@ -148,12 +152,8 @@ class LiveFace:
     def advance(self, seconds: float) -> None:
         """Take in what has come; `seconds` have passed since the last call."""
         self.has_news = False
-        for at, packet in self._receiver.take():
-            frame = self.listening.protocol.parse(packet)
-            if frame is None:
-                self._unreadable += 1
-            else:
-                self._take(frame, at)
+        for at, frame in self._receiver.take():
+            self._take(frame, at)
         if self.state is State.RECEIVING:
             self._share = min(self._share + seconds / EASING_IN, 1.0)
         else:

@@ -6,10 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from . import ifacialmocap, livelink, vmc
+from .addresses import LOOPBACK
 from .frame import Frame
-
-LOOPBACK = "127.0.0.1"
-ANYWHERE = "0.0.0.0"
 
 
 @dataclass(frozen=True)

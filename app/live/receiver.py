@@ -1,12 +1,12 @@
-"""Packets as they come: a thread takes them from the socket and wakes whoever waits for them.
+"""Frames as they come: a thread reads packets from the socket and wakes whoever waits for them.
 
-A window sleeps until something happens, and a packet must be such a thing: asking for it once a
-frame would let it lie for half a frame. The thread only hands packets on; they are read where the
-face is moved.
+A window sleeps until something happens, and a frame must be such a thing: asking for it once in a
+while would let it lie. Nobody is woken for a part of a frame, or for what is none.
 """
 
 from __future__ import annotations
 
+import contextlib
 import socket
 import threading
 import time
@@ -14,26 +14,37 @@ from collections import deque
 from collections.abc import Callable
 
 from ..errors import UserError
-from .frame import MOST_BYTES
-from .protocols import ANYWHERE, LOOPBACK, Listening
+from .addresses import ANYWHERE, LOOPBACK, resolved
+from .frame import MOST_BYTES, Frame
+from .protocols import Listening
 
-MOST_WAITING = 256  # packets; of more, the oldest are dropped
+MOST_WAITING = 256  # frames or parts of them; of more, the oldest are dropped
 LOOK_AROUND = 0.1  # [s] after which the thread sees that it is to end
 REQUEST_EVERY = 1.0  # [s] a phone is asked to send while nothing comes
 
 
 class Receiver:
-    """A socket and its thread; `close` ends both."""
+    """A socket and its thread; `close` ends both.
 
-    def __init__(self, listening: Listening, wake: Callable[[], None] = lambda: None) -> None:
-        """Listen at once. wake: called from the thread when packets wait that did not before.
+    received, unusable: packets so far, and those of them that are none of the protocol.
+    has_frame: whether a whole frame waits to be taken.
+    """
+
+    def __init__(
+        self,
+        listening: Listening,
+        wake: Callable[[], None] = lambda: None,
+        clock: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        """Listen at once. wake: called from the thread when a frame waits and none did before.
 
         Raises UserError where that cannot be.
         """
-        self._listening, self._wake = listening, wake
-        self._waiting: deque[tuple[float, bytes]] = deque(maxlen=MOST_WAITING)
-        self.received = 0  # packets, those too large among them
-        self.too_large = 0
+        self._listening, self._wake, self._clock = listening, wake, clock
+        self._waiting: deque[tuple[float, Frame]] = deque(maxlen=MOST_WAITING)
+        self.received = self.unusable = 0
+        self.has_frame = False
+        self._phone = resolved(listening.phone) if listening.phone else ""
         self._socket = _bound_socket(listening)
         self._socket.settimeout(LOOK_AROUND)
         self._asked_at = -REQUEST_EVERY
@@ -46,16 +57,9 @@ class Receiver:
         """The port that is listened on."""
         return int(self._socket.getsockname()[1])
 
-    @property
-    def has_packets(self) -> bool:
-        """Whether there is something to take."""
-        return bool(self._waiting)
-
-    def take(self) -> list[tuple[float, bytes]]:
-        """The packets that came since the last call, oldest first, each with its time [s].
-
-        The time is that of time.monotonic.
-        """
+    def take(self) -> list[tuple[float, Frame]]:
+        """What came since the last call, oldest first, each with its time [s of the clock]."""
+        self.has_frame = False
         return [self._waiting.popleft() for _ in range(len(self._waiting))]
 
     def close(self) -> None:
@@ -67,7 +71,7 @@ class Receiver:
     def _receive(self) -> None:
         last = -REQUEST_EVERY
         while not self._is_closing:
-            now = time.monotonic()
+            now = self._clock()
             if now - max(last, self._asked_at) > REQUEST_EVERY:
                 self._ask_phone(now)
             try:
@@ -77,37 +81,40 @@ class Receiver:
             except OSError:  # Windows tells here that the phone refused what it was asked
                 time.sleep(LOOK_AROUND)
                 continue
-            last = time.monotonic()
-            self.received += 1
-            if len(packet) > MOST_BYTES:
-                self.too_large += 1
-                continue
-            self._waiting.append((last, packet))
-            if len(self._waiting) == 1:
-                self._wake()
+            last = self._clock()
+            self._read(packet, last)
+
+    def _read(self, packet: bytes, at: float) -> None:
+        """Keep what a packet says, and wake who waits if that makes a frame whole."""
+        self.received += 1
+        frame = self._listening.protocol.parse(packet) if len(packet) <= MOST_BYTES else None
+        if frame is None:
+            self.unusable += 1
+            return
+        self._waiting.append((at, frame))
+        if frame.is_complete and not self.has_frame:
+            self.has_frame = True
+            self._wake()
 
     def _ask_phone(self, now: float) -> None:
         """Ask the phone to send, if there is one to be asked."""
         self._asked_at = now
-        phone, protocol = self._listening.phone, self._listening.protocol
-        if phone and protocol.request:
-            try:
-                self._socket.sendto(protocol.request, (phone, protocol.port))
-            except OSError:
-                pass  # a network that is down may come back
+        protocol = self._listening.protocol
+        if self._phone and protocol.request:
+            with contextlib.suppress(OSError):  # a network that is down may come back
+                self._socket.sendto(protocol.request, (self._phone, protocol.port))
 
 
 def _bound_socket(listening: Listening) -> socket.socket:
     """A socket that listens; UserError where the system refuses."""
-    address, port = listening.address, listening.chosen_port
+    address, port = resolved(listening.address), listening.chosen_port
     opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         opened.bind((address, port))
-    except (OSError, OverflowError, UnicodeError) as error:
+    except OSError as error:
         opened.close()
-        reason = getattr(error, "strerror", None) or str(error)
         raise UserError(
-            f"cannot listen on {address}, port {port}: {reason}; close what listens there already, "
+            f"cannot listen on {address}, port {port}: {error.strerror}; close what listens there, "
             f"choose another --port, or another --address ({LOOPBACK} for this computer alone, "
             f"{ANYWHERE} for its whole network)"
         ) from None

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from ..errors import UserError, in_one_line
 from ..recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES
 from ..recordings.take import Take
+from .addresses import resolved
 from .protocols import PROTOCOLS
 
 SHAPES_OF_UNITS = {
@@ -78,15 +79,7 @@ class Sender:
         self._protocol = PROTOCOLS[kind]
         self.port = self._protocol.port if port is None else port
         self._subject, self._sent = subject, 0
-        try:
-            self._target = socket.getaddrinfo(
-                address, self.port, socket.AF_INET, socket.SOCK_DGRAM
-            )[0][4]
-        except (OSError, UnicodeError) as error:
-            raise UserError(
-                f"--address {in_one_line(address)}: no such computer ({error}); write a name or an "
-                "address as 192.168.1.20"
-            ) from None
+        self._target = resolved(address), self.port
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 
     def __enter__(self) -> Sender:
@@ -103,8 +96,6 @@ class Sender:
         for packet in packets:
             try:
                 self._socket.sendto(packet, self._target)
-            except ConnectionRefusedError:
-                pass  # nobody listens yet
             except OSError as error:
                 raise UserError(
                     f"cannot send to {self._target[0]}, port {self.port}: {error.strerror}"

@@ -227,7 +227,7 @@ def _set_colours(style: Any, theme: Theme) -> None:
         ((which.frame_bg_hovered, which.frame_bg_active, which.header_hovered), theme.raised),
         ((which.header_active, which.button, which.tab_selected), theme.raised),
         ((which.slider_grab, which.slider_grab_active, which.check_mark), theme.accent),
-        ((which.plot_lines, which.tab_selected_overline), theme.accent),
+        ((which.plot_lines, which.plot_histogram, which.tab_selected_overline), theme.accent),
     ):
         for index in indices:
             style.set_color_(index, colour(value))

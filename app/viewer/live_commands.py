@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from ..errors import UserError
-from ..live import LOST_AFTER, Listening, LiveFace, State
+from ..live import LOST_AFTER, Listening, LiveFace, State, own_address
 from ..recordings.mapping import usual_mapping
 from .messages import Message
 from .session import Session
@@ -19,23 +19,31 @@ PACING = 0.008  # [s] that a frame waits for a packet: half a frame of the phone
 LONGEST_STEP = 0.1  # [s] of easing in one frame, however long that took
 
 
+def check_scene(name: str) -> None:
+    """UserError for a scene that no live face can move."""
+    if name != "face":
+        raise UserError(f"a live face moves the scene 'face', not '{name}'")
+
+
 class LiveCommands:
     """What menus and panels do with a live face, and what the window asks of it.
 
     wanted: what `toggle` listens to; settable.
     face: the live face, None while nothing is listened to.
+    own_address: what a phone must send to, "" without a network.
     """
 
     def __init__(
         self,
         session: Session,
         wake: Callable[[], None],
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         """wake: makes a window that waits for events go on; it is called from another thread."""
         self._session, self._wake, self._clock = session, wake, clock
         self.wanted = Listening("livelink")
         self.face: LiveFace | None = None
+        self.own_address = ""
 
     # Commands
 
@@ -46,11 +54,9 @@ class LiveCommands:
 
     def start(self, wanted: Listening) -> Message:
         """Listen from now on; UserError where that cannot be."""
-        name = self._session.scene.name
-        if name != "face":
-            raise UserError(f"a live face moves the scene 'face'; this window shows a {name}")
+        check_scene(self._session.scene.name)
         self.stop()
-        self.wanted = wanted
+        self.wanted, self.own_address = wanted, own_address()
         self.face = LiveFace(wanted, usual_mapping(), wake=self._wake, clock=self._clock)
         return f"{wanted.protocol.title}: listening on {wanted.address}, port {self.face.port}"
 
@@ -59,7 +65,7 @@ class LiveCommands:
         if self.face is not None:
             self.face.close()
         self.face = None
-        self._session.lead({}, 0.0)
+        self._session.live.take({}, 0.0)
 
     def toggle(self) -> Message:
         """Begin or end."""
@@ -99,7 +105,7 @@ class LiveCommands:
             return None
         was_calibrating = face.is_calibrating
         face.advance(min(seconds, LONGEST_STEP))
-        self._session.lead(face.controls(), face.presence)
+        self._session.live.take(face.controls(), face.presence)
         if was_calibrating and not face.is_calibrating:
             return "this face is neutral now"
         return None
@@ -110,9 +116,9 @@ class LiveCommands:
         return self.face is not None and self.face.has_news
 
     @property
-    def has_packets(self) -> bool:
-        """Whether packets have come that `advance` has not taken in."""
-        return self.face is not None and self.face.has_packets
+    def has_frame(self) -> bool:
+        """Whether a frame has come that `advance` has not taken in."""
+        return self.face is not None and self.face.has_frame
 
     @property
     def is_busy(self) -> bool:

@@ -1,8 +1,7 @@
 """What a user does with a face: controls, a script in time, a recording, undo, unsaved work.
 
 Knows the scene and nothing of windows. Every control of every layer (muscles, jaw, gaze, action
-units, expressions, visemes) is one entry of `values`; the scene adds them up. A live face leads the
-controls that it names, over what hand or script say (`current`); it leaves no trace in these.
+units, expressions, visemes) is one entry of `values`; the scene adds them up.
 """
 
 from __future__ import annotations
@@ -19,6 +18,7 @@ from ..script import Pose, Script, is_pose, load_script, pose_script, rounded, s
 from . import keyframes
 from .control_rows import highest_first, mirrored, twin_of
 from .history import History
+from .lead import Lead
 from .recorder import Recorder
 from .script_file import ScriptFile
 from .unsaved import Work
@@ -59,8 +59,7 @@ class Session:
         self.is_following = False  # the controls are where the script has them
         self._recorder: Recorder | None = None
         self._held: dict[str, float] = {}  # by hand while a recording plays the script
-        self._live: dict[str, float] = {}  # controls that a live face leads
-        self._live_share = 0.0  # ... and how far
+        self.live = Lead()  # a live face, which leaves no trace in what can be undone
         self._history = History(self._document())
 
     def _enter(self, scene: Scene) -> None:
@@ -150,21 +149,10 @@ class Session:
             self._moved_by[name] = frozenset(each for each, share in sums.items() if share)
         return self._moved_by[name]
 
-    # A live face
-
-    def lead(self, controls: Mapping[str, float], share: float) -> None:
-        """Let a live face lead these controls by this share, 0 to 1; those we have not are left."""
-        known = {name: value for name, value in controls.items() if name in self.limits}
-        self._live, self._live_share = clamped(self.limits, known), share
-
     @property
     def current(self) -> dict[str, float]:
         """Where each control is now: by hand or script, and over it what a live face leads."""
-        if not self._live_share:
-            return self.values
-        values, share = self.values, self._live_share
-        led = {name: values[name] + share * (at - values[name]) for name, at in self._live.items()}
-        return {**values, **led}
+        return self.live.over(self.values, self.limits)
 
     # Undo
 

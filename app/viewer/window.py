@@ -214,7 +214,7 @@ class Viewer:
         """What is between two frames: nothing, or a wait for what the next one is to show."""
         if self.is_idle:
             self._wait()
-        elif self.live.is_receiving and not self.live.has_packets:
+        elif self.live.is_receiving and not self.live.has_frame:
             wait_for_event(PACING)  # a frame that begins with a packet shows it at once
 
     def wait_for_frame(self) -> None:
@@ -278,7 +278,7 @@ class Viewer:
         begin = time.perf_counter()
         wait_for_event(patience)
         self._last = time.perf_counter()
-        if self._last - begin < patience and not self.live.has_packets:
+        if self._last - begin < patience and not self.live.has_frame:
             self._awake = FRAMES_AFTER_EVENT
 
     def _show_panels(self, elapsed: float, *, is_moving: bool) -> None:

@@ -25,7 +25,7 @@ from risorius.app.viewer.control_rows import mirrored, rows_of, search_rows
 from risorius.app.viewer.history import History
 from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.overlays import OVERLAYS, overlays_of
-from risorius.app.viewer.physics import MOST_STEPS, STEP, Clock
+from risorius.app.viewer.physics import EARLIEST, MOST_STEPS, STEP, Clock
 from risorius.app.viewer.recorder import TOLERANCE, Recorder
 from risorius.app.viewer.session import Session
 from risorius.assets.fitting import fit_head
@@ -300,3 +300,53 @@ def test_a_head_that_somebody_brings_has_every_overlay(tmp_path: Path) -> None:
     fitted.step(1.0)
     lower = np.array(OVERLAYS["skull"](fitted, edges, camera).polylines)[..., 1] - rest[..., 1]
     assert lower.min() < -15.0 and abs(np.median(lower)) < 1.0
+
+
+def test_what_a_live_face_sends_is_stepped_at_once_and_time_keeps_its_pace() -> None:
+    """At whatever phase frames come: one step each, and never more than one ahead of time."""
+    for phase in np.linspace(0.0, 1.0, 11):
+        clock = Clock()
+        clock.steps(phase * STEP)
+        steps = [clock.steps(STEP, EARLIEST) for _ in range(100)]
+        assert min(steps) >= 1 and abs(sum(steps) - 100) <= 1
+    clock = Clock()
+    assert sum(clock.steps(STEP / 4, EARLIEST) for _ in range(100)) <= 26
+
+
+def test_a_lead_wins_by_its_share_over_what_it_names(session: Session) -> None:
+    """Within limits; a control that we have not is left out, and nothing of it can be undone."""
+    session.set("jaw_open", 0.2)
+    session.set("zygomaticus_major_left", 0.4)
+    session.note()
+    session.live.take({"jaw_open": 7.0, "head_yaw": -0.5, "no_control": 1.0}, 1.0)
+    assert session.current["jaw_open"] == 1.0 and session.current["head_yaw"] == -0.5
+    assert session.current["zygomaticus_major_left"] == 0.4
+    assert session.current.keys() == session.limits.keys()
+    run(session, 30)
+    assert session.scene.values["jaw_open"] == 1.0
+    session.live.take({"jaw_open": 1.0}, 0.25)
+    assert session.current["jaw_open"] == pytest.approx(0.4)
+    assert session.current["head_yaw"] == 0.0
+    session.live.take({"jaw_open": 1.0}, 0.0)
+    assert session.current == session.values and session.values["jaw_open"] == 0.2
+    session.undo()
+    assert session.values["jaw_open"] == 0.0
+
+
+def test_the_face_that_is_led_becomes_keys_poses_and_recordings(
+    session: Session, tmp_path: Path
+) -> None:
+    """They take what is seen, not what sliders say beneath it."""
+    session.live.take({"jaw_open": 0.5}, 1.0)
+    session.save_pose(tmp_path / "pose.toml")
+    assert load_script(tmp_path / "pose.toml").at(0.0)["jaw_open"] == 0.5
+    session.begin_script()
+    session.set_key()
+    assert session.script.at(0.0)["jaw_open"] == 0.5
+    session.neutral()
+    session.toggle_recording()
+    for step in range(30):
+        session.live.take({"jaw_open": step / 30.0}, 1.0)
+        session.advance(STEP)
+    session.toggle_recording()
+    assert session.script.at(0.25)["jaw_open"] == pytest.approx(0.5, abs=0.05)

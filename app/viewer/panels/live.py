@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from imgui_bundle import imgui
 
 from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening, LiveFace, State
 from ...recordings.calibration import ANGLES, HIGHEST_GAIN
+from ...recordings.names import mirror_of
 from ..command import Command
 from ..gui import Gui, colour, em
 from ..live_commands import LiveCommands
@@ -24,6 +26,7 @@ BLINK = ("eyeBlinkLeft", "eyeBlinkRight")
 HEAD = ("head_yaw", "head_pitch", "head_roll")
 COMPUTERS = {LOOPBACK: "this computer alone", ANYWHERE: "the whole network"}
 FULL_ANGLE = 45.0  # [degrees] that fill a bar
+LEAST_SEEN = 0.05  # of a bar
 HINTS = {
     "Protocol": "what the sender speaks; Live Link Face and iFacialMocap are apps of an iPhone, "
     "VMC is what most programs for avatars send",
@@ -90,6 +93,7 @@ class LivePanel:
         if is_changed:
             wanted = replace(wanted, port=min(max(port, 1), 65535))
         imgui.end_disabled()
+        imgui.spacing()
         live.wanted = wanted
         label = "Stop listening" if live.is_on else "Listen"
         highlight = colour(self._gui.theme.accent, 0.6) if live.is_on else None
@@ -105,9 +109,11 @@ class LivePanel:
         else:
             imgui.text_unformatted(text)
         self._gui.remember("live state")
-        if face is not None and face.received:
-            muted(self._gui, packets_in_words(face))
+        if face is not None:
+            advice = advice_in_words(face, self._live.own_address)
+            muted(self._gui, advice or packets_in_words(face))
         imgui.pop_text_wrap_pos()
+        imgui.spacing()
 
     # How it is taken
 
@@ -150,19 +156,25 @@ class LivePanel:
     # What comes
 
     def _draw_channels(self, face: LiveFace) -> None:
-        """A bar for each channel that is not at 0, as it is after calibration."""
+        """A row for each channel, or for the two of both sides: a bar and a number."""
         calibrated = face.calibration.apply(face.channels)
         if not calibrated:
             muted(self._gui, "nothing yet")
-        for name, value in calibrated.items():
-            is_angle = name in ANGLES
-            share = abs(value) / FULL_ANGLE if is_angle else value
-            imgui.text_colored(
-                colour(self._gui.theme.accent if share >= 0.05 else self._gui.theme.muted), name
-            )
-            imgui.same_line(LABEL_SHARE * 1.35 * imgui.get_window_width())
-            text = f"{value:+.0f} deg" if is_angle else f"{value:.2f}"
-            imgui.progress_bar(min(share, 1.0), (-1.0, em(1.1)), text)
+        for label, names in rows_of(calibrated):
+            shares = [_share(name, calibrated[name]) for name in names]
+            is_seen = max(shares) >= LEAST_SEEN
+            ink = self._gui.theme.accent if is_seen else self._gui.theme.muted
+            imgui.text_colored(colour(ink), label)
+            hint("right | left" if len(names) > 1 else "")
+            left = LABEL_SHARE * imgui.get_window_width()
+            imgui.same_line(left)
+            width = imgui.get_content_region_avail().x / len(names)
+            for index, name in enumerate(names):  # before the bars, which would lower them
+                imgui.same_line(left + (index + 1) * width - em(2.3))
+                muted(self._gui, _in_words(name, calibrated[name]))
+            for index, share in enumerate(shares):
+                imgui.same_line(left + index * width)
+                imgui.progress_bar(min(share, 1.0), (width - em(2.8), em(1.0)), "")
 
     # Rows
 
@@ -195,6 +207,26 @@ class LivePanel:
         return chosen
 
 
+def rows_of(channels: Iterable[str]) -> list[tuple[str, tuple[str, ...]]]:
+    """Label and channels of each row: both sides of a channel together, the right one first."""
+    rows: dict[str, tuple[str, ...]] = {}
+    for name in channels:
+        twin, _ = mirror_of(name)
+        stem = name.rpartition("_")[0] if "_" in twin else re.sub("(Left|Right)$", "", name)
+        stem = stem if twin != name else name
+        rows[stem] = (*rows.get(stem, ()), name)
+    return [(stem, tuple(sorted(names, reverse=True))) for stem, names in rows.items()]
+
+
+def _share(channel: str, value: float) -> float:
+    """How much of a bar a value fills; 1 is all."""
+    return abs(value) / FULL_ANGLE if channel in ANGLES else value
+
+
+def _in_words(channel: str, value: float) -> str:
+    return f"{value:+.0f}\u00b0" if channel in ANGLES else f"{value:.2f}"
+
+
 def state_in_words(face: LiveFace | None) -> str:
     """What can be said of who sends."""
     if face is None:
@@ -212,6 +244,17 @@ def state_in_words(face: LiveFace | None) -> str:
             "is the protocol right?"
         )
     return f"waiting on port {face.port}: nothing has come yet"
+
+
+def advice_in_words(face: LiveFace, own_address: str) -> str:
+    """What to do while nobody sends; "" if that is not known."""
+    if face.state is not State.WAITING or face.received:
+        return ""
+    if face.listening.address == LOOPBACK:
+        return "for a phone, listen to the whole network; without one, type: risorius send FILE"
+    if face.listening.address == ANYWHERE and own_address:
+        return f"in the app, let it send to {own_address}, port {face.port}"
+    return f"in the app, let it send to port {face.port} of this computer"
 
 
 def packets_in_words(face: LiveFace) -> str:

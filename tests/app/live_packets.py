@@ -1,0 +1,63 @@
+"""Packets written from the descriptions of their formats, apart from the code under test."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Mapping
+
+from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
+from pythonosc.osc_message_builder import OscMessageBuilder
+
+# What a Live Link Face packet holds, in its order.
+LIVE_LINK = (
+    "EyeBlinkLeft EyeLookDownLeft EyeLookInLeft EyeLookOutLeft EyeLookUpLeft EyeSquintLeft "
+    "EyeWideLeft EyeBlinkRight EyeLookDownRight EyeLookInRight EyeLookOutRight EyeLookUpRight "
+    "EyeSquintRight EyeWideRight JawForward JawLeft JawRight JawOpen MouthClose MouthFunnel "
+    "MouthPucker MouthLeft MouthRight MouthSmileLeft MouthSmileRight MouthFrownLeft "
+    "MouthFrownRight MouthDimpleLeft MouthDimpleRight MouthStretchLeft MouthStretchRight "
+    "MouthRollLower MouthRollUpper MouthShrugLower MouthShrugUpper MouthPressLeft MouthPressRight "
+    "MouthLowerDownLeft MouthLowerDownRight MouthUpperUpLeft MouthUpperUpRight BrowDownLeft "
+    "BrowDownRight BrowInnerUp BrowOuterUpLeft BrowOuterUpRight CheekPuff CheekSquintLeft "
+    "CheekSquintRight NoseSneerLeft NoseSneerRight TongueOut HeadYaw HeadPitch HeadRoll "
+    "LeftEyeYaw LeftEyePitch LeftEyeRoll RightEyeYaw RightEyePitch RightEyeRoll"
+).split()
+SHAPES = tuple(name[0].lower() + name[1:] for name in LIVE_LINK[:52])
+
+
+def live_link(
+    values: Mapping[str, float] | None, *, subject: str = "somebody", version: int = 6
+) -> bytes:
+    """A packet of Live Link Face; None for values as when it sees no face."""
+    device = b"A0B1C2D3-0000-1111-2222-333344445555"
+    name = subject.encode()
+    packet = struct.pack(">Bi", version, len(device)) + device
+    packet += struct.pack(">i", len(name)) + name
+    packet += struct.pack(">ifii", 1234, 0.5, 60, 1)
+    if values is None:
+        return packet + b"\0"
+    numbers = [values.get(each, 0.0) for each in LIVE_LINK]
+    return packet + struct.pack(">B61f", 61, *numbers)
+
+
+def osc(*messages: tuple[object, ...]) -> bytes:
+    """An OSC bundle of messages, each an address and its values."""
+    bundle = OscBundleBuilder(IMMEDIATELY)
+    for address, *values in messages:
+        builder = OscMessageBuilder(str(address))
+        for value in values:
+            builder.add_arg(value)
+        bundle.add_content(builder.build())
+    return bytes(bundle.build().dgram)
+
+
+def vmc(values: Mapping[str, float]) -> bytes:
+    """A whole frame of VMC in one packet."""
+    shapes = [("/VMC/Ext/Blend/Val", name, value) for name, value in values.items()]
+    return osc(*shapes, ("/VMC/Ext/Blend/Apply",))
+
+
+def ifacialmocap(
+    shapes: str, head: str = "0,0,0,0,0,0", eyes: tuple[str, str] = ("0,0,0",) * 2
+) -> bytes:
+    """A line of iFacialMocap."""
+    return f"{shapes}|=head#{head}|rightEye#{eyes[0]}|leftEye#{eyes[1]}|".encode()

@@ -1,0 +1,274 @@
+"""A face that is sent: sockets on loopback, calibration, and what is done when nobody sends."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+
+from risorius.app.errors import UserError
+from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace, Receiver, State
+from risorius.app.live.frame import MOST_BYTES
+from risorius.app.live.live_face import CALIBRATING, EASING_IN, EASING_OUT, LOST_AFTER
+from risorius.app.live.receiver import MOST_WAITING
+from risorius.app.recordings.mapping import usual_mapping
+
+from .live_packets import ifacialmocap, live_link, osc
+
+VALUE, APPLY = "/VMC/Ext/Blend/Val", "/VMC/Ext/Blend/Apply"
+
+
+class Clock:
+    """A clock that stands until it is told."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+class Wire:
+    """A live face, and a socket that sends to it."""
+
+    def __init__(self, kind: str) -> None:
+        self.clock, self.woken = Clock(), 0
+        self.face = LiveFace(
+            Listening(kind, port=0), usual_mapping(), wake=self._wake, clock=self.clock
+        )
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+
+    def _wake(self) -> None:
+        self.woken += 1
+
+    def send(self, *packets: bytes) -> None:
+        """Send packets, and wait until they are there."""
+        wanted = self.face.received + len(packets)
+        for packet in packets:
+            self._socket.sendto(packet, (LOOPBACK, self.face.port))
+        assert until(lambda: self.face.received == wanted)
+
+    def take(self, *packets: bytes, seconds: float = 0.0) -> None:
+        """Send packets and let the face take them in, so much later."""
+        self.send(*packets)
+        self.pass_time(seconds)
+
+    def pass_time(self, seconds: float) -> None:
+        """Let time go by in one step."""
+        self.clock.now += seconds
+        self.face.advance(seconds)
+
+    def close(self) -> None:
+        """End both."""
+        self.face.close()
+        self._socket.close()
+
+
+def until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
+    """Wait until something has come true, or too long."""
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.001)
+    return condition()
+
+
+@pytest.fixture
+def wire(request: pytest.FixtureRequest) -> Iterator[Wire]:
+    """A face of the protocol that the test is parametrized with, Live Link Face unless it is."""
+    opened = Wire(getattr(request, "param", "livelink"))
+    yield opened
+    opened.close()
+
+
+def test_a_frame_leads_the_controls(wire: Wire) -> None:
+    """What is sent comes out as controls, blinks a little stronger; it is told whose face it is."""
+    assert wire.face.state is State.WAITING and wire.face.presence == 0.0
+    wire.take(live_link({"JawOpen": 0.5, "EyeBlinkLeft": 0.5, "HeadYaw": -0.3927}, subject="Ada"))
+    controls = wire.face.controls()
+    assert wire.face.state is State.RECEIVING and wire.face.subject == "Ada"
+    assert wire.woken == 1 and wire.face.has_news and wire.face.rate == 1.0
+    assert controls["jawOpen"] == 0.5 and 0.5 < controls["eyeBlinkLeft"] < 0.65
+    assert controls["head_yaw"] == pytest.approx(0.5, abs=1e-3)  # of 45 degrees
+    wire.pass_time(0.01)
+    assert not wire.face.has_news
+
+
+def test_the_newest_frame_counts(wire: Wire) -> None:
+    """Of several that wait, all are taken and the last is seen; who waits is woken once."""
+    wire.send(*(live_link({"JawOpen": 0.1 * number}) for number in range(8)))
+    assert wire.woken == 1 and wire.face.has_frame
+    wire.face.advance(0.0)
+    assert wire.face.channels["jawOpen"] == pytest.approx(0.7)
+    assert wire.face.rate == 8.0 and not wire.face.has_frame
+
+
+def test_who_waits_is_not_woken_for_rubbish(wire: Wire) -> None:
+    """Packets of no use are counted, change nothing, and are not worth a frame of the window."""
+    wire.take(live_link({"JawOpen": 0.5}))
+    wire.take(b"", b"hello", live_link({}, version=9), bytes(MOST_BYTES + 1), bytes(60_000))
+    assert wire.face.unusable == 5 and wire.face.received == 6
+    assert wire.woken == 1 and wire.face.channels["jawOpen"] == 0.5
+
+
+def test_a_flood_does_not_pile_up(wire: Wire) -> None:
+    """Packets that nobody takes are dropped, the oldest first."""
+    for number in range(4):
+        wire.send(*(live_link({"JawOpen": 0.25 * number}) for _ in range(MOST_WAITING // 2)))
+    wire.face.advance(0.0)
+    assert wire.face.rate == MOST_WAITING
+    assert wire.face.channels["jawOpen"] == 0.75
+
+
+def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire: Wire) -> None:
+    """The presence falls to 0 in small steps, and grows again when packets resume."""
+    frame = live_link({"JawOpen": 0.5})
+    wire.take(frame)
+    for _ in range(30):
+        wire.take(frame, seconds=1.0 / 60.0)
+    assert wire.face.presence == 1.0 and not wire.face.is_easing
+    assert LOST_AFTER + EASING_OUT <= 1.0
+    presences = []
+    for _ in range(62):
+        wire.pass_time(1.0 / 60.0)
+        presences.append(wire.face.presence)
+    assert wire.face.state is State.LOST and wire.face.silence > 1.0
+    assert presences[0] == 1.0 and presences[-1] == 0.0 and not wire.face.is_easing
+    steps = [before - after for before, after in pairwise(presences)]
+    assert min(steps) >= 0.0 and max(steps) < 0.08
+    assert wire.face.controls()["jawOpen"] == 0.5  # what it fades away from
+    wire.take(frame, seconds=1.0 / 60.0)
+    assert 0.0 < wire.face.presence < 0.1
+    wire.take(frame, seconds=EASING_IN)
+    assert wire.face.presence == 1.0
+
+
+def test_a_sender_that_sees_no_face_lets_go_of_ours(wire: Wire) -> None:
+    """Packets without values are no lost signal, but the face eases to rest."""
+    wire.take(live_link({"JawOpen": 0.5}))
+    wire.take(live_link(None), seconds=0.1)
+    assert wire.face.state is State.NO_FACE
+    for _ in range(60):
+        wire.take(live_link(None), seconds=1.0 / 60.0)
+    assert wire.face.presence == 0.0 and wire.face.state is State.NO_FACE
+
+
+def test_calibrating_takes_the_neutral_face_away(wire: Wire) -> None:
+    """The median of half a second, which a blink within it does not move."""
+    neutral = {"BrowDownLeft": 0.3, "HeadPitch": 0.2}
+    wire.take(live_link(neutral))
+    wire.face.calibrate()
+    for number in range(20):
+        blink = {"EyeBlinkLeft": 1.0} if number in (8, 9, 10) else {}
+        assert wire.face.is_calibrating
+        wire.take(live_link({**neutral, **blink}), seconds=CALIBRATING / 19.5)
+    assert not wire.face.is_calibrating
+    controls = wire.face.controls()
+    assert controls["browDownLeft"] == 0.0 and controls["eyeBlinkLeft"] == 0.0
+    assert controls["head_pitch"] == pytest.approx(0.0, abs=1e-6)
+    wire.take(live_link({**neutral, "BrowDownLeft": 1.0, "EyeBlinkLeft": 1.0}))
+    controls = wire.face.controls()
+    assert controls["browDownLeft"] == 1.0 and controls["eyeBlinkLeft"] == 1.0
+
+
+def test_calibrating_without_a_face_changes_nothing(wire: Wire) -> None:
+    """Neither before the first frame nor while none comes."""
+    wire.face.calibrate()
+    wire.pass_time(1.0)
+    assert not wire.face.is_calibrating and not wire.face.calibration.neutral
+
+
+def test_a_mirror_exchanges_the_sides(wire: Wire) -> None:
+    """Of shapes and of the head's turn."""
+    wire.take(live_link({"MouthSmileLeft": 0.5, "HeadYaw": -0.3927}))
+    wire.face.calibration = replace(wire.face.calibration, mirror=True)
+    controls = wire.face.controls()
+    assert controls["mouthSmileRight"] == 0.5 and controls["mouthSmileLeft"] == 0.0
+    assert controls["head_yaw"] == pytest.approx(-0.5, abs=1e-3)
+
+
+@pytest.mark.parametrize("wire", ["ifacialmocap"], indirect=True)
+def test_what_is_not_named_keeps_its_value(wire: Wire) -> None:
+    """As iFacialMocap means it."""
+    wire.take(ifacialmocap("jawOpen-50|cheekPuff-30"))
+    wire.take(ifacialmocap("jawOpen-20"))
+    channels = wire.face.channels
+    assert channels["jawOpen"] == pytest.approx(0.2) and channels["cheekPuff"] == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize("wire", ["vmc"], indirect=True)
+def test_parts_of_a_frame_count_together(wire: Wire) -> None:
+    """Nothing moves before Apply, and nobody is woken; a preset weakens no shape of another."""
+    wire.take(osc((VALUE, "jawOpen", 0.5), (VALUE, "eyeBlinkLeft", 0.6)))
+    assert wire.face.state is State.WAITING and not wire.face.channels and not wire.woken
+    wire.take(osc((VALUE, "mouthPucker", 0.25), (VALUE, "Blink", 0.0)), osc((APPLY,)))
+    assert wire.woken == 1
+    wanted = {"jawOpen": 0.5, "mouthPucker": 0.25, "eyeBlinkLeft": 0.6, "eyeBlinkRight": 0.0}
+    assert wire.face.channels == pytest.approx(wanted)
+    wire.take(osc((VALUE, "eyeBlinkLeft", 0.1), (APPLY,)))
+    assert wire.face.channels["eyeBlinkLeft"] == pytest.approx(0.1)
+
+
+def test_a_port_that_is_taken_is_told_in_one_line() -> None:
+    """What, where, and what to do."""
+    first = Receiver(Listening("livelink", port=0))
+    try:
+        with pytest.raises(UserError, match=rf"127\.0\.0\.1, port {first.port}: .*--port"):
+            Receiver(Listening("vmc", port=first.port))
+    finally:
+        first.close()
+
+
+@pytest.mark.parametrize(
+    "address",
+    ["192.0.2.1", "nobody.invalid", "x" * 300, "é" * 70 + ".de", "::1", "<broadcast>", ""],
+)
+def test_an_address_of_another_computer_is_refused(address: str) -> None:
+    """One can only listen on an address of one's own; an empty one must not mean all of them."""
+    with pytest.raises(UserError, match=r"cannot listen|write a computer's name"):
+        Receiver(Listening("livelink", address, 0)).close()
+
+
+def test_only_the_address_given_is_listened_on() -> None:
+    """Unless told, no other computer can send anything."""
+    for kind in PROTOCOLS:
+        assert Listening(kind).address == LOOPBACK
+    receiver = Receiver(Listening("livelink", port=0))
+    try:
+        assert receiver._socket.getsockname()[0] == LOOPBACK
+    finally:
+        receiver.close()
+
+
+def test_a_phone_is_asked_to_send_until_it_does() -> None:
+    """iFacialMocap waits for a word; it is not repeated while frames come."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as phone:
+        phone.bind((LOOPBACK, 0))
+        phone.settimeout(10.0)
+        protocol = replace(PROTOCOLS["ifacialmocap"], port=phone.getsockname()[1])
+
+        class ToPhone(Listening):
+            """Whose phone listens where this test's does."""
+
+            protocol = property(lambda _: protocol)  # type: ignore[assignment]
+
+        receiver = Receiver(ToPhone("ifacialmocap", port=0, phone=LOOPBACK))
+        try:
+            word, sender = phone.recvfrom(1000)
+            assert word == b"iFacialMocap_sahuasouryya9218sauhuiayeta91555dy3719"
+            phone.sendto(ifacialmocap("jawOpen-50"), sender)
+            assert until(lambda: receiver.has_frame)
+        finally:
+            receiver.close()
+
+
+def test_closing_frees_the_port() -> None:
+    """Stop and start again, as a user does."""
+    port = 0
+    for _ in range(3):
+        receiver = Receiver(Listening("livelink", port=port))
+        port = receiver.port
+        receiver.close()

@@ -1,0 +1,346 @@
+"""Packets of live faces: what they mean, and that nothing in a network can do harm."""
+
+from __future__ import annotations
+
+import math
+import struct
+import tracemalloc
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pythonosc.osc_packet import OscPacket
+
+from risorius.app.live import PROTOCOLS
+from risorius.app.live.frame import MOST_NAMES, Frame, _known_shape
+from risorius.app.live.ifacialmocap import parse as parse_ifacialmocap
+from risorius.app.live.livelink import parse as parse_live_link
+from risorius.app.live.vmc import PRESETS
+from risorius.app.live.vmc import parse as parse_vmc
+from risorius.app.recordings.calibration import ANGLES
+from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
+
+from .live_packets import LIVE_LINK, SHAPES, ifacialmocap, live_link, osc, vmc
+
+VALUE, APPLY, BONE = "/VMC/Ext/Blend/Val", "/VMC/Ext/Blend/Apply", "/VMC/Ext/Bone/Pos"
+KINDS = tuple(PROTOCOLS)
+GOOD = {
+    "livelink": live_link({name: 0.01 * index for index, name in enumerate(LIVE_LINK)}),
+    "vmc": vmc({name: 0.5 for name in SHAPES[:6]}),
+    "ifacialmocap": ifacialmocap("mouthSmile_L-37|jawOpen-80", "1,2,3,0,0,0"),
+}
+
+
+def channels_of(frame: Frame | None) -> dict[str, float]:
+    """The channels of what must be a frame."""
+    assert frame is not None
+    return dict(frame.channels)
+
+
+# Live Link Face
+
+
+def test_a_live_link_packet_has_a_name_and_every_shape_in_its_place() -> None:
+    """Each of the 52 in turn is alone at its value; left and right of jaw and mouth among them."""
+    for name, shape in zip(LIVE_LINK, SHAPES, strict=False):
+        frame = parse_live_link(live_link({name: 0.75}, subject="Ada"))
+        channels = channels_of(frame)
+        assert frame is not None and frame.subject == "Ada" and frame.has_face
+        assert {each for each in ARKIT if channels[each]} == {shape}
+        assert channels[shape] == 0.75
+
+
+def test_live_link_angles_are_radians_to_the_right_and_down() -> None:
+    """They become degrees to the subject's left and up; eyes that look ahead stand outwards."""
+    angles = {"HeadYaw": 0.5, "HeadPitch": -0.25, "LeftEyePitch": 0.61, "RightEyeYaw": -0.62}
+    channels = channels_of(parse_live_link(live_link(angles)))
+    assert channels["head_yaw"] == pytest.approx(-math.degrees(0.5))
+    assert channels["head_pitch"] == pytest.approx(math.degrees(0.25))
+    assert channels["eye_pitch_left"] == pytest.approx(-math.degrees(0.61))
+    # The right eye looks in, to the subject's left, as far as its shape goes: 35 degrees and more.
+    assert channels["eye_yaw_right"] == pytest.approx(math.degrees(0.62), abs=5.0)
+    ahead = {"LeftEyeYaw": -0.07, "RightEyeYaw": 0.07}
+    channels = channels_of(parse_live_link(live_link(ahead)))
+    assert abs(channels["eye_yaw_left"]) < 0.5 and abs(channels["eye_yaw_right"]) < 0.5
+
+
+def test_without_a_face_live_link_sends_no_values() -> None:
+    """With a count of 0, with a count that nothing follows, and without any."""
+    packet = live_link(None)
+    for cut in (packet, packet[:-1] + b"\x3d", packet[:-1]):
+        frame = parse_live_link(cut)
+        assert frame is not None and not frame.has_face and not frame.channels
+
+
+def test_nonsense_among_values_is_cut_off_or_left_out() -> None:
+    """Shapes end at 0 and 1; what is no number, or an angle beyond half a turn, is not there."""
+    odd = {"JawOpen": -9.8e5, "MouthPucker": 7.0, "CheekPuff": math.nan, "TongueOut": math.inf}
+    odd |= {"HeadYaw": 9.8e5, "HeadPitch": math.nan}
+    channels = channels_of(parse_live_link(live_link(odd)))
+    assert channels["jawOpen"] == 0.0 and channels["mouthPucker"] == 1.0
+    assert not {"cheekPuff", "tongueOut", "head_yaw", "head_pitch"} & channels.keys()
+
+
+@pytest.mark.parametrize("length", [-1, -(2**31), 2**31 - 1, 2000, 37])
+def test_a_length_that_does_not_fit_is_no_packet(length: int) -> None:
+    """Neither below 0, nor beyond the packet, nor one that is off by one."""
+    packet = GOOD["livelink"]
+    assert parse_live_link(packet[:1] + struct.pack(">i", length) + packet[5:]) is None
+
+
+def test_other_versions_and_every_torn_packet_are_none() -> None:
+    """Cut anywhere but where the values may be missing, nothing is left of it."""
+    assert parse_live_link(live_link({}, version=5)) is None
+    packet = GOOD["livelink"]
+    values = len(packet) - 4 * 61
+    for end in set(range(len(packet))) - {values, values - 1}:
+        assert parse_live_link(packet[:end]) is None, end
+    assert parse_live_link(packet + b"\0") is None
+
+
+def test_a_name_is_shown_only_as_far_as_it_can_be() -> None:
+    """Neither control characters nor a novel come into the window."""
+    frame = parse_live_link(live_link({}, subject="A\x1b[2J\n" + 300 * "x"))
+    assert frame is not None
+    assert frame.subject.isprintable() and len(frame.subject) <= 40
+
+
+# iFacialMocap
+
+
+@pytest.mark.parametrize("sign", ["-", "&"])
+def test_both_versions_of_ifacialmocap_are_percent(sign: str) -> None:
+    """Sides are _L and _R, or written in full; jaw and mouth have a left of their own."""
+    line = f"mouthSmile_L{sign}37|mouthSmileRight{sign}12|jawLeft{sign}5|mouthLeft{sign}100"
+    channels = channels_of(parse_ifacialmocap(ifacialmocap(line)))
+    shapes = {name: value for name, value in channels.items() if name not in ANGLES}
+    assert shapes == {
+        "mouthSmileLeft": 0.37,
+        "mouthSmileRight": 0.12,
+        "jawLeft": 0.05,
+        "mouthLeft": 1.0,
+    }
+
+
+def test_what_ifacialmocap_does_not_name_is_not_there() -> None:
+    """A shape that is missing is not 0; a negative one is, and an empty one is missing."""
+    channels = channels_of(
+        parse_ifacialmocap(b"browDown_L--3|browDown_R&-3|jawOpen-|cheekPuff-x|=")
+    )
+    assert channels == {"browDownLeft": 0.0, "browDownRight": 0.0}
+
+
+def test_ifacialmocap_angles_are_found_by_name() -> None:
+    """Degrees; eyes that look down have a positive x, to the subject's left a positive y."""
+    line = b"jawOpen-1|=|leftEye#6,-2,0.1|head#-21,-6,5,0,0,0|rightEye#6,2.5,0"
+    channels = channels_of(parse_ifacialmocap(line))
+    assert channels["eye_pitch_left"] == channels["eye_pitch_right"] == -6.0
+    assert channels["eye_yaw_left"] == -2.0 and channels["eye_yaw_right"] == 2.5
+    found = [channels[name] for name in ("head_pitch", "head_yaw", "head_roll")]
+    assert found == [21.0, -6.0, -5.0]
+
+
+def test_ifacialmocap_may_say_that_it_sees_no_face_and_name_its_object() -> None:
+    """Prefixes of other connections are passed over."""
+    frame = parse_ifacialmocap(b"jawOpen-10|trackingStatus-0|=head#0,0,0,0,0,0|")
+    assert frame is not None and not frame.has_face
+    assert channels_of(parse_ifacialmocap(b"faceObjGrp!Head|jawOpen-10|")) == {"jawOpen": 0.1}
+
+
+@pytest.mark.parametrize(
+    "line", [b"", b"|||", b"hello", b"=head#", b"nobody-3|", b"jawOpen-nan", "jawOpen-5é".encode()]
+)
+def test_other_text_is_no_line_of_ifacialmocap(line: bytes) -> None:
+    """Nothing known in it: counted as of no use."""
+    assert parse_ifacialmocap(line) is None
+
+
+# VMC
+
+
+@pytest.mark.parametrize(
+    "spelled", [str, str.upper, str.lower, lambda name: name[0].upper() + name[1:]]
+)
+def test_vmc_shapes_come_by_name_however_they_are_spelled(spelled: object) -> None:
+    """All 52, in capital and small letters."""
+    assert callable(spelled)
+    sent = {spelled(name): 0.01 * index for index, name in enumerate(SHAPES)}
+    frame = parse_vmc(vmc(sent))
+    assert frame is not None and frame.is_complete
+    assert channels_of(frame) == pytest.approx({n: 0.01 * i for i, n in enumerate(SHAPES)})
+
+
+def test_vmc_frames_end_with_apply() -> None:
+    """A packet with shapes alone is a part of a frame; Apply alone makes it whole."""
+    part = parse_vmc(osc((VALUE, "JawOpen", 0.5)))
+    assert part is not None and not part.is_complete
+    end = parse_vmc(osc((APPLY,)))
+    assert end is not None and end.is_complete and not end.channels
+
+
+def test_vmc_presets_of_both_versions_of_vrm_are_taken() -> None:
+    """Blinks, looks, vowels and emotions; they never weaken a shape that is sent beside them."""
+    for name in ("Blink_L", "blinkLeft"):
+        assert channels_of(parse_vmc(vmc({name: 0.7}))) == pytest.approx({"eyeBlinkLeft": 0.7})
+    assert channels_of(parse_vmc(vmc({"A": 0.5}))) == channels_of(parse_vmc(vmc({"aa": 0.5})))
+    joy, happy = (channels_of(parse_vmc(vmc({name: 1.0}))) for name in ("Joy", "happy"))
+    assert joy == happy and joy["mouthSmileLeft"] == 1.0
+    for order in ({"Blink": 0.0, "eyeBlinkLeft": 0.6}, {"eyeBlinkLeft": 0.6, "Blink": 0.0}):
+        assert channels_of(parse_vmc(vmc(order)))["eyeBlinkLeft"] == pytest.approx(0.6)
+    assert {channel for made in PRESETS.values() for channel in made} <= {*ARKIT, *VISEMES}
+
+
+@pytest.mark.parametrize(
+    ("axis", "angle", "sign"),
+    [((0, 1, 0), "head_yaw", -1.0), ((1, 0, 0), "head_pitch", -1.0), ((0, 0, 1), "head_roll", 1.0)],
+)
+def test_vmc_bones_turn_in_unitys_axes(axis: tuple[int, ...], angle: str, sign: float) -> None:
+    """Left-handed: about y to the right, about x down, about z to the left shoulder."""
+    half = math.radians(10.0)
+    turn = [math.sin(half) * each for each in axis]
+    frame = parse_vmc(osc((BONE, "Head", 0.0, 0.0, 0.0, *map(float, turn), math.cos(half))))
+    channels = channels_of(frame)
+    assert frame is not None and frame.is_complete  # no shapes wait for an Apply
+    assert channels[angle] == pytest.approx(sign * 20.0, abs=1e-4)
+    assert sum(abs(value) for value in channels.values()) == pytest.approx(20.0, abs=1e-3)
+
+
+def test_vmc_head_turns_on_its_neck_and_eyes_turn_apart() -> None:
+    """Two bones of 10 degrees make 20; each eye has its own; a bone that turns nothing is none."""
+    tenth = (0.0, math.sin(math.radians(5.0)), 0.0, math.cos(math.radians(5.0)))
+    none = (0.0, 0.0, 0.0, 0.0)
+    place = (0.0, 1.5, 0.0)
+    packet = osc(
+        (BONE, "Neck", *place, *tenth),
+        (BONE, "Head", *place, *tenth),
+        (BONE, "LeftEye", *place, *tenth),
+        (BONE, "RightEye", *place, *none),
+        (BONE, "Hips", *place, *tenth),
+    )
+    channels = channels_of(parse_vmc(packet))
+    assert channels["head_yaw"] == pytest.approx(-20.0, abs=1e-3)
+    assert channels["eye_yaw_left"] == pytest.approx(-10.0, abs=1e-3)
+    assert "eye_yaw_right" not in channels
+
+
+@pytest.mark.parametrize("size", [-4, -8, -(2**31), 2**31 - 1, 5])
+def test_a_bundle_with_a_wrong_length_is_none(size: int) -> None:
+    """A negative one would keep a reader that believes it busy for ever."""
+    inner = osc((APPLY,))[16:]
+    assert parse_vmc(b"#bundle\0" + struct.pack(">Qi", 1, size) + inner) is None
+
+
+def test_bundles_in_bundles_end_somewhere() -> None:
+    """Three levels are read, a thousand are not."""
+    packet = vmc({"JawOpen": 0.5})
+    for _ in range(3):
+        packet = b"#bundle\0" + struct.pack(">Qi", 1, len(packet)) + packet
+    assert channels_of(parse_vmc(packet)) == {"jawOpen": 0.5}
+    for _ in range(1000):
+        packet = b"#bundle\0" + struct.pack(">Qi", 1, len(packet)) + packet
+    assert parse_vmc(packet) is None
+
+
+def test_messages_that_we_do_not_read_are_passed_over(caplog: pytest.LogCaptureFixture) -> None:
+    """Other addresses, other values, and unknown types of values, without a word in the log."""
+    packet = osc(("/VMC/Ext/OK", 1), (VALUE, 3, "JawOpen"), (VALUE, "JawOpen", 0.5), (APPLY,))
+    assert channels_of(parse_vmc(packet)) == {"jawOpen": 0.5}
+    assert parse_vmc(b"/VMC/Ext/Blend/Val\0\0,zz\0") is None
+    assert parse_vmc(osc(("/other", 1.0))) is None
+    assert not caplog.records
+
+
+# All of them
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_is_sent_is_what_is_read(kind: str, generator: np.random.Generator) -> None:
+    """Packets as our sender writes them hold every shape and angle, in packets of a net's size."""
+    shapes = {name: float(generator.random()) for name in ARKIT}
+    angles = {name: float(generator.uniform(-40.0, 40.0)) for name in (*HEAD_ANGLES, *EYE_ANGLES)}
+    protocol, found = PROTOCOLS[kind], {}
+    packets = protocol.packets({**shapes, **angles}, subject="x", frame=1)
+    frames = [protocol.parse(packet) for packet in packets]
+    for frame in frames:
+        found.update(channels_of(frame))
+    assert [frame is not None and frame.is_complete for frame in frames[:-1]] == [False] * (
+        len(frames) - 1
+    )
+    assert found == pytest.approx({**shapes, **angles}, abs=0.006)
+    assert max(map(len, packets)) < 1400
+
+
+def test_an_osc_library_reads_what_we_send() -> None:
+    """A reader of others finds name and value of each shape, and Apply at the end."""
+    packets = PROTOCOLS["vmc"].packets({"jawOpen": 0.5, "tongueOut": 0.25}, subject="x", frame=1)
+    messages = [each.message for packet in packets for each in OscPacket(packet).messages]
+    values = {tuple(each.params) for each in messages if each.address == VALUE}
+    assert values == {("JawOpen", 0.5), ("TongueOut", 0.25)}
+    assert messages[-1].address == APPLY
+
+
+def is_sound(frame: Frame | None) -> bool:
+    """Whether there is no frame, or one that may be believed."""
+    if frame is None:
+        return True
+    known = {*ARKIT, *VISEMES, *ANGLES}
+    shapes = [value for name, value in frame.channels.items() if name not in ANGLES]
+    angles = [abs(value) for name, value in frame.channels.items() if name in ANGLES]
+    return (
+        frame.channels.keys() <= known
+        and all(0.0 <= value <= 1.0 for value in shapes)
+        and all(value <= 180.0 for value in angles)
+    )
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_random_packets_do_no_harm(kind: str, generator: np.random.Generator) -> None:
+    """10 000, half of them beginning like good ones: no exception, no frame that is not sound."""
+    parse, good = PROTOCOLS[kind].parse, GOOD[kind]
+    for index in range(10_000):
+        noise = generator.bytes(int(generator.integers(0, 400)))
+        packet = good[: int(generator.integers(1, len(good)))] + noise if index % 2 else noise
+        assert is_sound(parse(packet)), packet
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_flipped_bits_do_no_harm(kind: str, generator: np.random.Generator) -> None:
+    """Every single bit of a good packet, and then several at once."""
+    parse, good = PROTOCOLS[kind].parse, GOOD[kind]
+    for bit in range(8 * len(good)):
+        flipped = bytearray(good)
+        flipped[bit // 8] ^= 1 << bit % 8
+        assert is_sound(parse(bytes(flipped))), bit
+    for _ in range(2000):
+        flipped = bytearray(good)
+        for bit in generator.integers(0, 8 * len(good), 5):
+            flipped[bit // 8] ^= 1 << bit % 8
+        assert is_sound(parse(bytes(flipped))), bytes(flipped)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@given(data=st.data())
+def test_hypothesis_finds_no_packet_that_does_harm(kind: str, data: st.DataObject) -> None:
+    """Good packets with a piece replaced by anything, or text of anything."""
+    good = GOOD[kind]
+    begin = data.draw(st.integers(0, len(good)))
+    end = data.draw(st.integers(begin, len(good)))
+    text = st.text(alphabet="|=#-&,.0123456789enaif_LR/\0jawOpen").map(str.encode)
+    middle = data.draw(st.one_of(st.binary(max_size=64), text))
+    assert is_sound(PROTOCOLS[kind].parse(good[:begin] + middle + good[end:]))
+
+
+def test_names_that_nobody_knows_do_not_pile_up() -> None:
+    """A sender who invents names without end fills no memory."""
+    for index in range(2 * MOST_NAMES):
+        parse_vmc(vmc({f"name{index}": 0.5}))
+    tracemalloc.start()
+    before = tracemalloc.get_traced_memory()[0]
+    for index in range(2 * MOST_NAMES):
+        parse_vmc(vmc({f"other{index}" + 30 * "x": 0.5}))
+        parse_ifacialmocap(ifacialmocap(f"more{index}-5|" + 9000 * "x" + "-5"))
+    grown = tracemalloc.get_traced_memory()[0] - before
+    tracemalloc.stop()
+    assert grown < 100_000
+    assert _known_shape.cache_info().currsize <= MOST_NAMES

@@ -1,0 +1,233 @@
+"""A live face in the real window: it is driven by `risorius send`, and by real clicks."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius.app.errors import UserError
+from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace, State
+from risorius.app.live.sender import Sender
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.live_commands import LiveCommands
+
+from .driving import NEEDS_A_SCREEN, click, draw_frames, moved, until, xdotool
+
+pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "silent")]
+
+
+@pytest.fixture
+def silent(viewer: Viewer) -> Iterator[None]:
+    """Listen to nobody before and after."""
+    viewer.live.stop()
+    viewer.live.wanted = Listening("livelink", port=0)
+    yield
+    viewer.live.stop()
+
+
+def listen(viewer: Viewer, kind: str = "livelink") -> LiveFace:
+    """Listen on a free port."""
+    viewer.listen(Listening(kind, port=0))
+    face = viewer.live.face
+    assert face is not None
+    return face
+
+
+@contextmanager
+def sending(face: LiveFace, file: Path) -> Iterator[None]:
+    """Another process plays a recording to the window, again and again."""
+    words = ["send", file, "--loop", "--to", face.listening.kind, "--port", face.port]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "risorius", *map(str, words)], stdout=subprocess.DEVNULL
+    )
+    try:
+        yield
+    finally:
+        process.terminate()
+        process.wait()
+
+
+def hold(viewer: Viewer, face: LiveFace, seconds: float, **channels: float) -> None:
+    """Send the same face for a while, sixty times a second, while the window runs."""
+    end = time.monotonic() + seconds
+    with Sender("livelink", LOOPBACK, face.port, "Ada") as sender:
+        while time.monotonic() < end:
+            sender.send(channels)
+            viewer.frame()
+
+
+def write_take(file: Path, **channels: float) -> Path:
+    """A recording of two seconds in which the channels rise and stay."""
+    lines = [",".join(("time", *channels))]
+    for index in range(120):
+        share = min(index / 30.0, 1.0)
+        values = [f"{share * value:.4f}" for value in channels.values()]
+        lines.append(",".join((f"{index / 60.0:.4f}", *values)))
+    file.write_text("\n".join(lines) + "\n")
+    return file
+
+
+@pytest.mark.parametrize("kind", list(PROTOCOLS))
+def test_a_recording_that_is_sent_moves_the_face(viewer: Viewer, tmp_path: Path, kind: str) -> None:
+    """In every protocol the mouth opens; when nothing comes any more it closes and all is idle."""
+    face = listen(viewer, kind)
+    assert until(viewer, lambda: "live state" in viewer.gui.places)
+    with sending(face, write_take(tmp_path / "take.csv", jawOpen=0.9, browInnerUp=0.5)):
+        assert until(viewer, lambda: moved(viewer) > 8.0, 60.0)
+        assert face.state is State.RECEIVING and not viewer.is_idle
+        assert viewer.session.current["jawOpen"] > 0.1 and not face.unusable
+    assert until(viewer, lambda: viewer.live.presence == 0.0)
+    assert face.state is State.LOST
+    assert until(viewer, lambda: moved(viewer) < 0.3)
+    assert until(viewer, lambda: viewer.is_idle)
+    assert not viewer.session.unsaved
+
+
+def test_live_leads_what_it_names_and_sliders_keep_the_rest(viewer: Viewer) -> None:
+    """A slider of a control that is led has its value again when the lead is over."""
+    face = listen(viewer)
+    viewer.session.set("jawOpen", 0.2)
+    viewer.session.set("cheek_puff" if "cheek_puff" in viewer.session.limits else "AU9", 0.3)
+    other = next(n for n, v in viewer.session.values.items() if v == 0.3)
+    hold(viewer, face, 1.0, jawOpen=0.8)
+    assert viewer.session.current["jawOpen"] == pytest.approx(0.8)
+    assert viewer.session.current[other] == 0.3
+    assert viewer.session.values["jawOpen"] == 0.2
+    assert until(viewer, lambda: viewer.live.presence == 0.0)
+    assert viewer.session.current["jawOpen"] == 0.2
+    viewer.session.undo()
+    assert viewer.session.values["jawOpen"] == 0.0
+
+
+def test_a_signal_that_comes_back_is_taken_up_smoothly(viewer: Viewer) -> None:
+    """No control jumps by more than a little from one step to the next."""
+    face = listen(viewer)
+    hold(viewer, face, 1.0, jawOpen=0.8)
+    steps: list[float] = []
+    advance = viewer.session.advance
+
+    def noting(seconds: float) -> None:
+        steps.append(viewer.session.current["jawOpen"])
+        advance(seconds)
+
+    viewer.session.advance = noting  # type: ignore[method-assign]
+    try:
+        assert until(viewer, lambda: viewer.live.presence == 0.0)
+        draw_frames(viewer, 10)
+        hold(viewer, face, 1.0, jawOpen=0.8)
+    finally:
+        viewer.session.advance = advance  # type: ignore[method-assign]
+    assert min(steps) < 0.05 and steps[-1] == pytest.approx(0.8)
+    # The longest frame that counts eases by a tenth of a second.
+    assert np.abs(np.diff(steps)).max() < 0.5
+
+
+def test_buttons_listen_calibrate_mirror_and_stop(viewer: Viewer) -> None:
+    """All by hand, in the panel; the neutral face does not move ours any more."""
+    click(viewer, "tab Live")
+    click(viewer, "listen")
+    face = viewer.live.face
+    assert face is not None
+    assert not viewer.live.can_calibrate
+    frown = {"browDownLeft": 0.3, "mouthFrownLeft": 0.2}
+    hold(viewer, face, 0.6, **frown)
+    assert viewer.session.current["browDownLeft"] > 0.2
+    place = viewer.gui.places["calibrate"]
+    assert place
+    viewer.live.calibrate()
+    hold(viewer, face, 1.2, **frown)
+    assert viewer.messages.text == "this face is neutral now"
+    assert viewer.session.current["browDownLeft"] == pytest.approx(0.0, abs=1e-6)
+    click(viewer, "mirror live")
+    hold(viewer, face, 0.5, **{**frown, "mouthSmileLeft": 0.6})
+    assert viewer.session.current["mouthSmileRight"] == pytest.approx(0.6, abs=1e-6)
+    click(viewer, "listen")
+    assert viewer.live.face is None and viewer.session.current == viewer.session.values
+
+
+def test_gains_are_sliders(viewer: Viewer) -> None:
+    """Half the gain is half the smile; blinks and the head have one of their own."""
+    face = listen(viewer)
+    hold(viewer, face, 0.5, mouthSmileLeft=0.8, eyeBlinkLeft=0.5, head_yaw=20.0)
+    for name, value in (("live Gain", "0.5"), ("live Blink", "2"), ("live Head", "0")):
+        click(viewer, name, times=2)
+        xdotool(viewer, "key", "ctrl+a")
+        xdotool(viewer, "type", value)
+        xdotool(viewer, "key", "Return")
+    hold(viewer, face, 0.5, mouthSmileLeft=0.8, eyeBlinkLeft=0.5, head_yaw=20.0)
+    current = viewer.session.current
+    assert current["mouthSmileLeft"] == pytest.approx(0.4, abs=1e-3)
+    assert current["eyeBlinkLeft"] == 1.0 and current["head_yaw"] == 0.0
+
+
+def test_a_live_face_is_recorded_into_a_script(viewer: Viewer) -> None:
+    """What it did becomes tracks; the script plays it without anybody who sends."""
+    face = listen(viewer)
+    hold(viewer, face, 0.5)
+    click(viewer, "record live")
+    assert viewer.session.is_recording
+    hold(viewer, face, 0.5, jawOpen=0.7)
+    hold(viewer, face, 0.5)
+    click(viewer, "record live")
+    script = viewer.session.script
+    viewer.live.stop()
+    assert max(key.value for key in script.tracks["jawOpen"].keys) == pytest.approx(0.7)
+    assert viewer.session.unsaved == "the script"
+    viewer.session.toggle_playing()
+    assert until(viewer, lambda: viewer.session.values["jawOpen"] > 0.6)
+
+
+def test_a_packet_wakes_an_idle_window(viewer: Viewer) -> None:
+    """It sleeps while nothing comes, and does not wait for its time when something does."""
+    face = listen(viewer)
+    viewer.messages.text = ""
+    assert until(viewer, lambda: viewer.is_idle)
+    with Sender("livelink", LOOPBACK, face.port, "Ada") as sender:
+        sender.send({"jawOpen": 0.8})
+        viewer.wait_for_frame()
+        assert face.received == 1 and viewer.session.current["jawOpen"] >= 0.0
+        assert not viewer.is_idle
+
+
+def test_a_face_that_holds_still_lets_the_window_rest(viewer: Viewer) -> None:
+    """The same frame again and again moves nothing; when it ends, that is noticed in time."""
+    face = listen(viewer)
+    hold(viewer, face, 2.0, jawOpen=0.3)
+    assert viewer.physics.is_at_rest
+    assert 0.0 < viewer.live.due_in() < 1.0
+    assert until(viewer, lambda: face.state is State.LOST)
+
+
+def test_rubbish_is_counted_and_shown(viewer: Viewer) -> None:
+    """The panel asks for the protocol when packets come that are none of it."""
+    face = listen(viewer, "vmc")
+    with Sender("livelink", LOOPBACK, face.port, "Ada") as sender:
+        for _ in range(3):
+            sender.send({"jawOpen": 0.8})
+    assert until(viewer, lambda: face.received == 3)
+    draw_frames(viewer)
+    assert face.unusable == 3 and face.state is State.WAITING
+    assert not moved(viewer) > 0.5
+
+
+def test_a_port_that_is_taken_is_a_message(viewer: Viewer) -> None:
+    """The window goes on, and says what to do."""
+    other = LiveCommands(viewer.session, lambda: None)
+    other.start(Listening("livelink", port=0))
+    assert other.face is not None
+    try:
+        viewer.live.wanted = Listening("livelink", port=other.face.port)
+        xdotool(viewer, "key", "ctrl+l")
+        assert viewer.messages.is_error and "cannot listen" in viewer.messages.text
+        assert viewer.live.face is None
+        with pytest.raises(UserError):
+            viewer.listen(viewer.live.wanted)
+    finally:
+        other.stop()
