@@ -1,0 +1,83 @@
+"""Channels without holes over times that rise: what every reader ends with.
+
+A face that is out of sight keeps the last pose that was seen, and goes over to the next one in the
+last 0.3 s before it is seen again. A shorter gap is one straight way. So nothing is invented, and
+nothing jumps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ..errors import UserError
+from .take import Array, Take
+
+SHORT_GAP = 0.3  # [s] that is bridged by a straight line
+LONGEST_TAKE = 86_400.0  # [s]
+
+
+def whole_take(
+    kind: str,
+    source: str,
+    times: Array,
+    channels: Mapping[str, Array],
+    *,
+    notes: Sequence[str] = (),
+    unknown: Sequence[str] = (),
+    is_calibrated: bool = False,
+) -> Take:
+    """The Take of rows that may be out of order, and of channels that may be NaN.
+
+    times: [s], shape (T,). channels: name -> shape (T,). UserError where no face is in it.
+    """
+    told = list(notes)
+    channels = {name: values for name, values in channels.items() if np.isfinite(values).any()}
+    if not channels:
+        raise UserError(
+            f"{source}: {kind}: no frame shows a face; nothing is there that could be played"
+        )
+    kept = _in_order(times)
+    if not kept.any():
+        raise UserError(f"{source}: {kind}: no row has a time that can be read")
+    if not kept.all():
+        told.append(f"{int((~kept).sum())} rows out of the order of time were left out.")
+    times = times[kept] - times[kept][0]
+    if times[-1] > LONGEST_TAKE:
+        raise UserError(
+            f"{source}: {kind}: lasts {times[-1]:.6g} s; a recording lasts a day at most"
+        )
+    rows = {name: values[kept] for name, values in channels.items()}
+    seen = np.any([np.isfinite(values) for values in rows.values()], axis=0)
+    if not seen.all():
+        told.append(
+            f"No face in {int((~seen).sum())} of {len(seen)} frames: the last pose is held there."
+        )
+    filled = {
+        name: _filled(times, values) for name, values in rows.items() if np.isfinite(values).any()
+    }
+    if not filled:
+        raise UserError(f"{source}: {kind}: no frame shows a face with a time")
+    return Take(kind, source, times, filled, is_calibrated, tuple(told), tuple(unknown))
+
+
+def _in_order(times: Array) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """The rows whose time is later than all before."""
+    latest = np.maximum.accumulate(np.where(np.isfinite(times), times, -np.inf))
+    before = np.concatenate([[-np.inf], latest[:-1]])
+    return np.isfinite(times) & (times > before)
+
+
+def _filled(times: Array, values: Array) -> Array:
+    """A channel without NaN: held over gaps, with a straight line at their end."""
+    known = np.isfinite(values)
+    if known.all():
+        return values
+    at, there = times[known], values[known]
+    is_long = np.diff(at) > SHORT_GAP
+    # Before each frame that ends a long gap: the old value once more, 0.3 s earlier.
+    at = np.concatenate([at, at[1:][is_long] - SHORT_GAP])
+    there = np.concatenate([there, there[:-1][is_long]])
+    order = np.argsort(at, kind="stable")
+    return np.interp(times, at[order], there[order])
