@@ -28,7 +28,6 @@ Before its first key a channel keeps that key's value, after its last key the la
 `docs/scripts.md` is the user's page of this format.
 """
 
-from .choice import script_for
 from .model import Channel, Key, Limits, Pose, Script, rounded
 from .reader import LARGEST, LONGEST_FILE, load_script, parse_script, preface_of
 from .writer import is_pose, pose_script, save_script, script_text
@@ -48,6 +47,5 @@ __all__ = [
     "preface_of",
     "rounded",
     "save_script",
-    "script_for",
     "script_text",
 ]

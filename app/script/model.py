@@ -61,6 +61,7 @@ class Script:
     poses: tuple[Pose, ...] = ()  # in the order of time
     tracks: dict[str, Channel] = field(default_factory=dict)
     preface: str = ""  # the lines of comment with which the file begins
+    is_converted: bool = field(default=False, compare=False)  # source is a recording, no script
 
     @functools.cached_property
     def posed_names(self) -> tuple[str, ...]:

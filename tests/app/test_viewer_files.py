@@ -228,7 +228,7 @@ def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> No
     assert viewer.files.is_waiting and taken.read_text() == "precious"
     xdotool(viewer, "key", "Escape")
     viewer.session.open(
-        viewer.session.read(Path(str(resources.files("risorius.assets"))) / EXAMPLE)
+        load_script(Path(str(resources.files("risorius.assets"))) / EXAMPLE)
     )
     xdotool(viewer, "key", "ctrl+s")
     assert viewer.files.is_waiting

@@ -9,6 +9,7 @@ import pytest
 from viewer import STOPS
 
 from risorius.app.errors import UserError
+from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script import (
     Script,
@@ -17,7 +18,6 @@ from risorius.app.script import (
     parse_script,
     pose_script,
     save_script,
-    script_for,
     script_text,
 )
 from risorius.app.viewer import picking
@@ -91,7 +91,7 @@ def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path
     assert not session.unsaved
     session.neutral()
     run(session)
-    session.open(session.read(tmp_path / "take.toml"))
+    session.open(load_script(tmp_path / "take.toml"))
     session.toggle_playing()
     while session.is_playing:
         session.advance(STEP)

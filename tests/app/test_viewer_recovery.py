@@ -14,8 +14,9 @@ from pathlib import Path
 import pytest
 
 from risorius.app.errors import UserError
+from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.app.script import load_script, script_for
+from risorius.app.script import load_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.physics import STEP
 from risorius.app.viewer.recovery import LONGEST, QUIET, Recovery
