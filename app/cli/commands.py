@@ -154,7 +154,8 @@ def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> N
     save_script(output, script)
     if not quiet:
         keys = sum(len(channel) for channel in script.tracks.values())
-        click.echo(f"{in_one_line(output)}: {len(script.tracks)} tracks, {keys} keys")
+        what = f"{len(script.tracks)} tracks with {keys} keys" if keys else "a pose"
+        click.echo(f"{in_one_line(output)}: {what}")
 
 
 def _tell(report: Report) -> None:

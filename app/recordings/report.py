@@ -23,6 +23,8 @@ from .take import Array, Take
 WIDTH = 100  # [characters] of a line
 MOST_LINES = 3  # of one heading
 MOST_NOTES = 6
+MOST_NAMED = 5  # of neutral channels
+SLIGHT = 0.02  # of a neutral channel: no need to be told
 OFTEN = 0.01  # of all frames, in which a control is cut off, before that is said
 
 
@@ -128,11 +130,16 @@ def _used(names: set[str]) -> str:
 
 
 def _neutral(calibration: Calibration) -> str:
-    """The channels whose neutral face is furthest from 0."""
-    furthest = sorted(calibration.neutral.items(), key=lambda item: -abs(item[1]))
-    told = [f"{name} {value:.2g}" for name, value in furthest[:5] if abs(value) >= 0.05]
-    count = sum(abs(value) >= 0.005 for value in calibration.neutral.values())
-    return f"taken away from {count} channels: {', '.join(told)}, ..." if told else ""
+    """How far the face is from 0 at rest, and where most."""
+    neutral = {name: abs(value) for name, value in calibration.neutral.items() if name in ARKIT}
+    neutral |= {n: abs(v) for n, v in calibration.neutral.items() if n.startswith("AU")}
+    count = sum(value > SLIGHT for value in neutral.values())
+    if not count:
+        return ""
+    furthest = sorted(neutral, key=lambda name: -neutral[name])[:MOST_NAMED]
+    far = [name for name in furthest if neutral[name] > SLIGHT]
+    most = neutral[furthest[0]]
+    return f"{count} channels rest above 0, by up to {most:.2g}; most {_listed(far)}"
 
 
 def _gains(calibration: Calibration, used: set[str]) -> str:
