@@ -289,8 +289,8 @@ class Session:
 
     @property
     def recording_so_far(self) -> Script | None:
-        """What would be the script if the recording was stopped now, or nearly so."""
-        return self._recorder.draft() if self._recorder is not None else None
+        """What would be the script if the recording was stopped now."""
+        return self._recorder.script() if self._recorder is not None else None
 
     @property
     def recorded_seconds(self) -> float:

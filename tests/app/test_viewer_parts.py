@@ -12,6 +12,7 @@ from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script import (
+    TOLERANCE,
     Script,
     is_pose,
     load_script,
@@ -26,7 +27,7 @@ from risorius.app.viewer.history import History
 from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.overlays import OVERLAYS, overlays_of
 from risorius.app.viewer.physics import MOST_STEPS, STEP, Clock
-from risorius.app.viewer.recorder import TOLERANCE, Recorder
+from risorius.app.viewer.recorder import Recorder
 from risorius.app.viewer.session import Session
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger
