@@ -61,7 +61,7 @@ def frame_times(numbers: Array | None, count: int, rate: float | None, notes: li
         rate = DEFAULT_RATE
         if count > 1:
             notes.append(f"No times are given: {rate:g} frames a second were assumed.")
-    if numbers is None or not _mostly_rises(numbers):
+    if count == 1 or numbers is None or not _mostly_rises(numbers):
         return np.arange(count) / rate
     step = np.nanmedian(np.diff(numbers))
     if step > 1.0:
