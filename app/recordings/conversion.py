@@ -8,15 +8,13 @@ sound.
 from __future__ import annotations
 
 from collections.abc import Mapping as AnyMapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from risorius.sim.controls import GAZE_RATE, MUSCLE_RATE
-from risorius.sim.skull import HEAD_RATE
-
 from ..errors import in_one_line
-from ..playback import Playback
+from ..playback import LEAD, Playback
 from ..script import TOLERANCE, Channel, Limits, Pose, Script, rounded, thinned
 from .calibration import calibration_for
 from .mapping import load_mapping
@@ -25,10 +23,10 @@ from .smoothing import OneEuro
 from .take import Array, Take
 
 LEAST_STEP = 1e-3  # [s] between the first two keys
+CAMERA = "front"  # from where recorded faces were seen
 HELD = 1.0  # [s] that a take of a single frame lasts, as a pose does
-# How late eyes and head are, to how late muscles are: each a critically damped oscillator.
-_LATENESS = {"gaze_": MUSCLE_RATE / GAZE_RATE, "eyeLook": MUSCLE_RATE / GAZE_RATE,
-             "head_": MUSCLE_RATE / HEAD_RATE}  # fmt: skip
+# How late eyes and head follow [s], where muscles and skin do by LEAD; all measured at 60 Hz.
+_LATE = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.125}
 
 
 def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, Report]:
@@ -56,29 +54,28 @@ def _script(take: Take, curves: AnyMapping[str, Array], lead: float) -> Script:
     title = Path(take.source).stem
     preface = f"# Made of {in_one_line(Path(take.source).name)}, {take.kind}.\n"
     moved = {name: values for name, values in curves.items() if np.abs(values).max() > TOLERANCE}
-    if len(take.times) == 1:
-        pose = Pose(0.0, {name: rounded(values[0]) for name, values in moved.items()})
-        return Script(title, HELD, take.source, poses=(pose,), preface=preface, is_converted=True)
-    tracks = {
-        name: _track(take.times, values, lead * lateness(name)) for name, values in moved.items()
-    }
-    return Script(
+    script = Script(
         title,
         duration=rounded(take.duration),
         source=take.source,
-        poses=() if tracks else (Pose(0.0),),
-        tracks=tracks,
+        camera=CAMERA,
+        poses=(Pose(0.0),),
         preface=preface,
         is_converted=True,
     )
+    if len(take.times) == 1:
+        pose = Pose(0.0, {name: rounded(values[0]) for name, values in moved.items()})
+        return replace(script, duration=HELD, poses=(pose,))
+    tracks = {
+        name: _track(take.times, values, lead_of(name, lead)) for name, values in moved.items()
+    }
+    return replace(script, poses=(), tracks=tracks) if tracks else script
 
 
-def lateness(control: str) -> float:
-    """How late a control is followed, in shares of how late muscles are."""
-    for beginning, share in _LATENESS.items():
-        if control.startswith(beginning):
-            return share
-    return 1.0
+def lead_of(control: str, lead: float) -> float:
+    """How much earlier a control is asked for [s], if muscles are by `lead`."""
+    late = next((each for start, each in _LATE.items() if control.startswith(start)), LEAD)
+    return lead * late / LEAD
 
 
 def _track(times: Array, values: Array, lead: float) -> Channel:

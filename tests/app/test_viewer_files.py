@@ -227,9 +227,7 @@ def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> No
     xdotool(viewer, "key", "Return")
     assert viewer.files.is_waiting and taken.read_text() == "precious"
     xdotool(viewer, "key", "Escape")
-    viewer.session.open(
-        load_script(Path(str(resources.files("risorius.assets"))) / EXAMPLE)
-    )
+    viewer.session.open(load_script(Path(str(resources.files("risorius.assets"))) / EXAMPLE))
     xdotool(viewer, "key", "ctrl+s")
     assert viewer.files.is_waiting
     xdotool(viewer, "key", "Escape")
