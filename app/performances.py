@@ -42,7 +42,7 @@ def script_for(
         )
     if path is None:
         if playback != Playback():
-            raise UserError(f"{options_in(playback)}: is for recordings, and none is given")
+            raise UserError(f"{options_in(playback)} is for recordings, and none is given")
         own = Path(str(files("risorius.assets") / "scripts" / f"{scene or 'face'}.toml"))
         script = held_pose(settings) if settings else load_script(own)
     else:
