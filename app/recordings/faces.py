@@ -12,6 +12,12 @@ COLUMNS = ("face_id", "identity", "face_idx", "faceid", "face")
 MOST_LISTED = 8  # faces in a message
 
 
+def only_one(source: str, request: Request) -> None:
+    """UserError where a face is asked for in a file that names none."""
+    if request.face is not None:
+        raise UserError(f"{source}: names no faces; leave out the face '{request.face}'")
+
+
 def one_face(table: Table, request: Request) -> Table:
     """The rows of the face that is asked for, or of the one that most rows show.
 
@@ -19,8 +25,7 @@ def one_face(table: Table, request: Request) -> Table:
     """
     column = next((found for name in COLUMNS if (found := table.column(name)) is not None), None)
     if column is None:
-        if request.face is not None:
-            raise UserError(f"{table.source}: names no faces; leave out the face '{request.face}'")
+        only_one(table.source, request)
         return table
     cells = table.cells(column)
     counts: dict[str, int] = {}

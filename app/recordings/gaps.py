@@ -7,6 +7,7 @@ nothing jumps. Rows that are missing are such a gap, too.
 
 from __future__ import annotations
 
+import bisect
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -72,10 +73,27 @@ def whole_take(
 
 
 def _in_order(times: Array) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """The rows whose time is later than all before."""
-    latest = np.maximum.accumulate(np.where(np.isfinite(times), times, -np.inf))
-    before = np.concatenate([[-np.inf], latest[:-1]])
-    return np.isfinite(times) & (times > before)
+    """The most rows whose times rise from one to the next: one wrong time costs one row.
+
+    The longest rising subsequence, by patience sorting.
+    """
+    kept = np.isfinite(times)
+    if np.all(np.diff(times[kept]) > 0.0):
+        return kept
+    ends: list[float] = []  # the lowest time that ends a sequence of this length,
+    end_rows: list[int] = []  # its row,
+    before = np.full(len(times), -1)  # and the row before each in its sequence
+    for row in np.flatnonzero(kept):
+        length = bisect.bisect_left(ends, times[row])
+        before[row] = end_rows[length - 1] if length else -1
+        ends[length : length + 1] = [float(times[row])]
+        end_rows[length : length + 1] = [int(row)]
+    kept[:] = False
+    row = end_rows[-1]
+    while row >= 0:
+        kept[row] = True
+        row = int(before[row])
+    return kept
 
 
 def _holes(times: Array) -> np.ndarray[tuple[int], np.dtype[np.intp]]:

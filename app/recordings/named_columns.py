@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .angles import in_degrees
+from .faces import COLUMNS as FACE_COLUMNS
+from .faces import one_face
 from .gaps import whole_take
 from .names import ARKIT
 from .request import Request
@@ -70,6 +72,7 @@ def recognises(names: tuple[str, ...]) -> bool:
 
 def read(table: Table, request: Request, kind: str = "Table of named columns") -> Take:
     """The take in the table."""
+    table = one_face(table, request)
     notes = list(table.notes)
     columns = Columns.of(table.names)
     times, used = times_of(table, request.rate, notes)
@@ -88,7 +91,7 @@ def read(table: Table, request: Request, kind: str = "Table of named columns") -
         times,
         channels,
         notes=notes,
-        unknown=[name for name in unknown if name.casefold() not in used],
+        unknown=[name for name in unknown if name.casefold() not in {*used, *FACE_COLUMNS}],
         is_calibrated=is_calibrated(shapes, notes),
     )
 

@@ -91,8 +91,8 @@ def read(table: Table, request: Request) -> Take:
 
 def _head(numbers: dict[str, Array], notes: list[str]) -> dict[str, Array]:
     """The head's angles in degrees, whatever unit this version has."""
-    pose = {name: numbers[name] for name in POSE if name in numbers}
-    if not any(np.isfinite(values).any() for values in pose.values()):
+    pose = {n: numbers[n] for n in POSE if n in numbers and np.isfinite(numbers[n]).any()}
+    if not pose:
         return {}
     size = max(float(np.nanmax(np.abs(values))) for values in pose.values())
     unit, scale = ("radians", 180.0 / np.pi) if size <= LARGEST_RADIANS else ("degrees", 1.0)

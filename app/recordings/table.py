@@ -122,11 +122,12 @@ def table_in(text: str, *, source: str) -> Table:
         rows = [(number, line.replace(",", ".")) for number, line in rows]
         notes.append("Decimal commas were read as points.")
     kept = _of_one_length(rows, len(names), delimiter_within, notes)
-    if not kept:
-        number, line = rows[0]
+    if 2 * len(kept) < len(rows):
+        fitting = {number for number, _ in kept}
+        number, line = next(row for row in rows if row[0] not in fitting)
         raise UserError(
             f"{source}: line {number} has {line.count(delimiter_within) + 1} cells, the header has "
-            f"{len(names)} names; each row needs as many"
+            f"{len(names)} names, and so it is in most rows; each row needs as many"
         )
     return Table(
         source,

@@ -17,6 +17,7 @@ RATES = (24000 / 1001, 24.0, 25.0, 30000 / 1001, 30.0, 50.0, 60000 / 1001, 60.0)
 DEFAULT_RATE = 30.0  # of most cameras
 TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})(?:([:;.,])(\d+)(?:[.,](\d+))?)?$")
 DAY = 86_400.0  # [s]
+LONGEST_PAUSE = 3600.0  # [s] over midnight; what goes back further is a wrong time
 MOST_FRAMES = 240  # in a second; larger numbers in a timecode's last place are milliseconds
 SHORTEST_STEP = 0.004  # [s] between frames; shorter ones are no seconds
 UNITS = (  # shortest step, longest step, of which length [s]; of a time stamp
@@ -138,7 +139,7 @@ def _timecode_times(
     else:
         rate = float(base) if abs(rate - base) < 0.1 else rate
     if fractions.any():
-        if _jumps(numbers + fractions) > _jumps(numbers) + 0.02 * len(numbers):
+        if _jumps(numbers + fractions) > _jumps(numbers) + 0.005 * len(numbers):
             notes.append(
                 "The fraction in the timecode makes frames jump to and fro, and was not used."
             )
@@ -175,7 +176,7 @@ def _rate_in(frames: Array, seconds: Array, is_drop_frame: bool, notes: list[str
 def _unwrapped(seconds: Array) -> Array:
     """Seconds of the day that go on after midnight."""
     steps = np.diff(seconds, prepend=seconds[:1])
-    return seconds + DAY * np.cumsum(np.nan_to_num(steps) < -DAY / 2.0)
+    return seconds + DAY * np.cumsum(np.nan_to_num(steps) < LONGEST_PAUSE - DAY)
 
 
 def _date(cell: str) -> float:

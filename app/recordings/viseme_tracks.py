@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import UserError
+from .faces import only_one
 from .gaps import whole_take
 from .request import Request
 from .spelling import viseme_of
@@ -56,6 +57,7 @@ def recognises_tracks(document: Any) -> bool:
 
 def read_tracks(document: Any, source: str, request: Request) -> Take:
     """The take in tracks of visemes: `{"channels": [{"name": "PP", "keys": [[time, value]]}]}`."""
+    only_one(source, request)
     tracks: dict[str, Array] = {}
     unknown = []
     for number, channel in enumerate(document["channels"]):
@@ -131,6 +133,7 @@ def recognises_mouths(document: Any) -> bool:
 
 def read_mouths(document: Any, source: str, request: Request) -> Take:
     """The take in `{"mouthCues": [{"start": 0.0, "end": 0.2, "value": "A"}]}`."""
+    only_one(source, request)
     cues, end = [], 0.0
     for number, cue in enumerate(document["mouthCues"]):
         where = f"{source}: mouth cue {number + 1}"
@@ -151,6 +154,7 @@ def recognises_rows(names: tuple[str, ...]) -> bool:
 
 def read_rows(table: Table, request: Request) -> Take:
     """The take in Rhubarb's TSV; its first row is no header."""
+    only_one(table.source, request)
     rows = [(1, *table.names)]
     rows += zip(table.line_numbers, table.cells(0), table.cells(1), strict=True)
     cues = []
