@@ -62,14 +62,8 @@ class Report:
     @property
     def in_brief(self) -> str:
         """All of it in a line, for the window's message."""
-        name = Path(self.source).name
-        count = len(self.notes)
-        more = (
-            f"; {count} note{'s' if count > 1 else ''}: `risorius convert {name}` tells"
-            if count
-            else ""
-        )
-        return f"{name}: {self.recognised}{more}"
+        name, count = Path(self.source).name, len(self.notes)
+        return f"{name}: {self.recognised}" + (f"; {count} notes" if count else "")
 
 
 def report_of(

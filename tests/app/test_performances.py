@@ -149,14 +149,14 @@ def test_smoothing_calms_and_costs_little() -> None:
 
 def test_the_report_says_what_moves_the_face_and_what_does_not() -> None:
     take = take_of(
-        jawOpen=wave(), browDownLeft=0.3 + 0.1 * wave(), cheekPuff=0.2, AU12=wave(),
+        jawOpen=wave(), browDownLeft=0.3 + 0.1 * wave(), cheekPuff=0.2, AU26=wave(),
         head_yaw=90.0 * wave(), head_roll=0.0
     )  # fmt: skip
     _, report = script_of(take, Playback(), face_limits())
     said = {heading: text for heading, text in report.rows}
     assert report.lines[0] == "take.csv: Live Link Face, 181 frames in 3.00 s, 60 a second"
     assert said["used"] == "2 shapes of ARKit, 1 angles of the head"
-    assert said["left out"] == "AU12: told by others"
+    assert said["left out"] == "AU26: told by others"
     assert said["constant"] == "cheekPuff head_roll"
     assert "mouthSmileLeft/Right" in said["missing"] and "jawOpen" not in said["missing"].split()
     assert "head_yaw in " in said["cut off"]
