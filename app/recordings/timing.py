@@ -72,7 +72,10 @@ def frame_times(numbers: Array | None, count: int, rate: float | None, notes: li
 
 def stamp_times(stamps: Array, notes: list[str]) -> Array | None:
     """Time stamps in seconds, whatever their unit is; None where they are of no use."""
-    if len(stamps) == 1 or not np.isfinite(stamps).any():
+    if len(stamps) == 1:
+        return None
+    if not np.isfinite(stamps).any():
+        notes.append("The time stamps are no numbers, and were not used.")
         return None
     if not _mostly_rises(stamps):
         notes.append("The time stamps do not rise, and were not used.")
