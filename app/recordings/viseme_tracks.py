@@ -79,7 +79,7 @@ def read_tracks(document: Any, source: str, request: Request) -> Take:
     }
     channels = _made_clear(channels, notes)
     return whole_take(
-        "OpenFaceFX track", source, times, channels, notes=notes, unknown=unknown,
+        "Viseme tracks", source, times, channels, notes=notes, unknown=unknown,
         is_calibrated=True,
     )  # fmt: skip
 
