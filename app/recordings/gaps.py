@@ -83,11 +83,11 @@ def _in_order(times: Array) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     ends: list[float] = []  # the lowest time that ends a sequence of this length,
     end_rows: list[int] = []  # its row,
     before = np.full(len(times), -1)  # and the row before each in its sequence
-    for row in np.flatnonzero(kept):
+    for row in np.flatnonzero(kept).tolist():
         length = bisect.bisect_left(ends, times[row])
         before[row] = end_rows[length - 1] if length else -1
         ends[length : length + 1] = [float(times[row])]
-        end_rows[length : length + 1] = [int(row)]
+        end_rows[length : length + 1] = [row]
     kept[:] = False
     row = end_rows[-1]
     while row >= 0:

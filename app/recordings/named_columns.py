@@ -20,6 +20,7 @@ from .table import Table
 from .take import Array, Take
 from .timing import times_of
 
+NAMED = "Table of named columns"
 PERCENT = 2.0  # shapes beyond are no shares: 0 to 100
 NONSENSE = 3.0  # and shares beyond are no measurements
 NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
@@ -70,7 +71,7 @@ def recognises(names: tuple[str, ...]) -> bool:
     return Columns.of(names).are_known
 
 
-def read(table: Table, request: Request, kind: str = "Table of named columns") -> Take:
+def read(table: Table, request: Request, kind: str = NAMED) -> Take:
     """The take in the table."""
     table = one_face(table, request)
     notes = list(table.notes)
@@ -84,6 +85,8 @@ def read(table: Table, request: Request, kind: str = "Table of named columns") -
     channels = shapes | intensities({name: numbers[name] for name in columns.units}, notes)
     channels |= {name: np.clip(numbers[name], 0.0, 1.0) for name in columns.visemes}
     channels |= in_degrees({name: numbers[name] for name in columns.angles}, shapes, notes)
+    if columns.angles and kind == NAMED:
+        notes.append("Angles were taken to count down and to the subject's right, as ARKit's do.")
     unknown = [table.names[number] for number in columns.unknown]
     return whole_take(
         kind,

@@ -89,8 +89,15 @@ class Table:
 
 def header_of(text: str) -> tuple[tuple[str, ...], str]:
     """The names in the first line that is one, and the delimiter; no names: there is no table."""
-    line, _, asked = _first_line(text)
-    delimiter = asked or max(DELIMITERS, key=line.count)
+    line, start, asked = _first_line(text)
+    following = text[start + len(line) :].lstrip("\n ").partition("\n")[0]
+
+    def fit(delimiter: str) -> tuple[bool, int]:
+        """How well the line is divided: first into as many cells as the next one."""
+        count = line.count(delimiter)
+        return 0 < count == following.count(delimiter), count
+
+    delimiter = asked or max(DELIMITERS, key=fit)
     try:
         names = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
     except csv.Error:

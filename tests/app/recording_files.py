@@ -132,6 +132,7 @@ def pyfeat_2(count: int = 20) -> dict[str, Sequence[object] | Array]:
         "_neutral": np.zeros(count),
         **shapes,
         **mesh,
+        "FrameHeight": np.full(count, 1080.0),
         "approx_time": ["00:00"] * count,
         "Identity": ["Person_0"] * count,
     }

@@ -183,7 +183,7 @@ def tracks(height: float = 0.42) -> dict[str, Any]:
 def test_tracks_of_visemes(tmp_path: Path) -> None:
     """Its I, O, U are our ih, oh, ou; where lips are to meet they do, and silence is silent."""
     take = read_take(written(tmp_path / "take", tracks()))
-    assert take.kind == "OpenFaceFX track"
+    assert take.kind == "Viseme tracks"
     assert take.is_calibrated
     assert take.unknown == ("tail",)
     assert set(take.channels) == {"viseme_sil", "viseme_aa", "viseme_PP", "viseme_oh"}

@@ -261,6 +261,12 @@ def test_a_rate_that_the_user_knows(tmp_path: Path) -> None:
     assert times[-1] == pytest.approx(9 / 30.0)
 
 
+def test_a_rate_a_little_lower(tmp_path: Path) -> None:
+    """59.94 frames a second are counted to 60, and last longer."""
+    times, _ = take_of(tmp_path, timecodes(np.arange(600)), rate=59.94)
+    assert times == pytest.approx(np.arange(600) / 59.94)
+
+
 def test_frames_that_are_missing(tmp_path: Path) -> None:
     """A second that held 59 rows is a second all the same."""
     frames = np.delete(np.arange(180), 77)

@@ -197,12 +197,28 @@ def test_pyfeat_2(tmp_path: Path) -> None:
     assert not take.unknown
     assert take.duration == pytest.approx(38 / 30.0)
     assert take.channels["mouthSmileLeft"][-1] == pytest.approx(0.5)
-    assert take.channels["head_pitch"][-1] == pytest.approx(10.0, abs=1e-3)
+    assert take.channels["head_pitch"][-1] == pytest.approx(-10.0, abs=1e-3)
+    assert take.channels["head_yaw"][-1] == pytest.approx(-20.0, abs=1e-3)
+    assert take.channels["head_roll"][-1] == pytest.approx(-3.0, abs=1e-3)
     assert "AU12" not in take.channels
     assert "cheekSquintLeft" not in take.channels
     assert take.channels["AU6"] == pytest.approx(0.4)
     assert told(take.notes, "twice")
     assert told(take.notes, "one in 2 frames")
+
+
+def test_pyfeat_of_the_time_between(tmp_path: Path) -> None:
+    """Radians without shapes: pitch + down, roll + to the left shoulder; a gaze of its own."""
+    columns = pyfeat_2()
+    columns = {name: values for name, values in columns.items() if name not in ARKIT}
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert take.kind == "py-feat 1"
+    assert not take.unknown
+    assert take.channels["head_pitch"][-1] == pytest.approx(-10.0, abs=1e-3)
+    assert take.channels["head_roll"][-1] == pytest.approx(3.0, abs=1e-3)
+    assert take.channels["AU12"][-1] == pytest.approx(0.9)
+    assert np.median(take.channels["eye_yaw_left"]) == pytest.approx(0.0, abs=1e-9)
+    assert np.ptp(take.channels["eye_yaw_left"] + take.channels["head_yaw"]) < 1e-3
 
 
 def test_pyfeat_without_a_face(tmp_path: Path) -> None:
@@ -240,7 +256,8 @@ def test_one_picture(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "spelled",
     ["mouthSmileLeft", "MouthSmileLeft", "mouthSmile_L", "MOUTHSMILE_LEFT", "mouth_smile_left",
-     "blendShapes.mouthSmileLeft", "head:mouthSmile_L", " mouthSmileLeft ", "Mouth Smile Left"],
+     "blendShapes.mouthSmileLeft", "head:mouthSmile_L", "head|mouthSmile_L",
+     " mouthSmileLeft ", "Mouth Smile Left"],
 )  # fmt: skip
 def test_spellings_of_a_shape(spelled: str, tmp_path: Path) -> None:
     """Capitals, underscores, blanks, and what stands before the last dot do not count."""
