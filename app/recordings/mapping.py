@@ -40,7 +40,11 @@ _SHAPE_OF_UNIT = {  # which shapes, by the beginning of their names, tell what a
     "AU45": "eyeBlink", "AU46": "eyeBlink",
 }  # fmt: skip
 _SHAPES = frozenset(ARKIT)
-_EYE_LOOKS = frozenset(name for name in ARKIT if name.startswith("eyeLook"))
+_LOOKS_OF_ANGLE = {
+    f"eye_{angle}_{side.lower()}": frozenset(f"eyeLook{way}{side}" for way in ways)
+    for angle, ways in (("yaw", ("In", "Out")), ("pitch", ("Up", "Down")))
+    for side in ("Left", "Right")
+}
 
 
 @dataclass(frozen=True)
@@ -82,13 +86,13 @@ def chosen(channels: AnyMapping[str, Any]) -> tuple[str, ...]:
     """The channels that move the face, where some tell the same thing twice.
 
     Eyes by their angles: these have a sign and know no limit, and eyeLook shapes are made of them.
-    A tracker that measures no angles leaves all four at 0; then the shapes count. An action unit
-    only where no shape of ARKit tells the same: shapes know left from right.
+    A tracker that measures no angle leaves it at 0; then the shapes count. An action unit only
+    where no shape of ARKit tells the same: shapes know left from right.
     """
     left_out: set[str] = set()
-    if all(angle in channels for angle in EYE_ANGLES) and _EYE_LOOKS & channels.keys():
-        are_measured = any(np.any(channels[angle]) for angle in EYE_ANGLES)
-        left_out |= _EYE_LOOKS if are_measured else set(EYE_ANGLES)
+    for angle, looks in _LOOKS_OF_ANGLE.items():
+        if angle in channels and not looks.isdisjoint(channels):
+            left_out |= looks if np.any(channels[angle]) else {angle}
     shapes = tuple(name for name in channels if name in _SHAPES)
     for name in channels:
         unit = _ACTION_UNIT.fullmatch(name) if shapes else None

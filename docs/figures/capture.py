@@ -56,6 +56,7 @@ PLAYED = (  # shapes by the beginning of their names, and when: rise, full, fall
     (("mouthPucker",), 0.8, (4.35, 4.65, 4.9, 5.2)),
     (("HeadYaw",), -0.35, (5.3, 5.8, 6.4, 6.9)),
     (("LeftEyeYaw", "RightEyeYaw"), -0.2, (5.2, 5.3, 6.2, 6.5)),
+    (("eyeLookOutLeft", "eyeLookInRight"), 0.33, (5.2, 5.3, 6.2, 6.5)),
 )
 
 

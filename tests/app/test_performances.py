@@ -155,7 +155,7 @@ def test_the_report_says_what_moves_the_face_and_what_does_not() -> None:
     _, report = script_of(take, Playback(), face_limits())
     said = {heading: text for heading, text in report.rows}
     assert report.lines[0] == "take.csv: Live Link Face, 181 frames in 3.00 s, 60 a second"
-    assert said["used"] == "2 shapes of ARKit, 1 angles of the head"
+    assert said["used"] == "2 of ARKit's shapes, 1 of the head's angles"
     assert said["left out"] == "AU26: told by others"
     assert said["constant"] == "cheekPuff head_roll"
     assert "mouthSmileLeft/Right" in said["missing"] and "jawOpen" not in said["missing"].split()
