@@ -21,7 +21,6 @@ import numpy as np
 
 from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace
 from risorius.app.live.sender import Sender
-from risorius.app.recordings.mapping import usual_mapping
 from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import build_scene
 from risorius.app.script import script_for
@@ -72,9 +71,7 @@ class Chain:
 
     def __init__(self, kind: str, session: Session) -> None:
         self._woken = threading.Event()
-        self.face = LiveFace(
-            Listening(kind, LOOPBACK, port=0), usual_mapping(), wake=self._woken.set
-        )
+        self.face = LiveFace(Listening(kind, port=0), wake=self._woken.set)
         self._session = session
 
     def turn(self) -> tuple[int, tuple[float, ...]] | None:

@@ -18,8 +18,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..recordings.calibration import ANGLES, Calibration, gains_of, neutral_now, usual_gains
-from ..recordings.mapping import Mapping as Table
-from ..recordings.names import ARKIT
+from ..recordings.mapping import load_mapping
+from ..recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
 from .frame import Frame
 from .protocols import Listening
 from .receiver import Receiver
@@ -27,6 +27,7 @@ from .receiver import Receiver
 LOST_AFTER = 0.4  # [s] without a frame; at 30 a second a network may swallow ten
 EASING_IN, EASING_OUT = 0.25, 0.6  # [s]
 CALIBRATING = 0.5  # [s] of a neutral face
+CHANNELS = (*ARKIT, *HEAD_ANGLES, *EYE_ANGLES, *VISEMES)  # that may come
 RATED = 1.0  # [s] over which frames are counted
 MOST_RATED = 1000  # frames
 
@@ -43,6 +44,7 @@ class State(enum.Enum):
 class LiveFace:
     """What a receiver brings, as a face.
 
+    table: which controls the channels move.
     calibration: what is done to the channels; may be replaced at any time.
     channels: those of the newest frame, and older ones that it did not name; as they came.
     subject: whose face it is, "" where nobody says so.
@@ -53,18 +55,17 @@ class LiveFace:
     def __init__(
         self,
         listening: Listening,
-        table: Table,
         *,
         wake: Callable[[], None] = lambda: None,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         """Listen from now on; UserError where that cannot be. wake: see `Receiver`."""
-        self.listening = listening
-        self._table, self._clock = table, clock
+        self.listening, self._clock = listening, clock
+        self.table = load_mapping(listening.mapping)
+        usual = usual_gains(listening.protocol.title)
+        gains, default = gains_of(listening.gains, CHANNELS, usual)
+        self.calibration = Calibration({}, gains, default, listening.mirror)
         self._receiver = Receiver(listening, wake, clock)
-        gains, default = gains_of((), ARKIT, usual_gains(listening.protocol.title))
-        self.calibration = Calibration({}, gains, default)
-        self._usual_blink = gains["eyeBlinkLeft"]
         self.channels: dict[str, float] = {}
         self.subject = ""
         self.has_news = False  # a frame was taken in by the last `advance`
@@ -75,11 +76,6 @@ class LiveFace:
         self._times: deque[float] = deque(maxlen=MOST_RATED)
         self._neutral: list[dict[str, float]] = []
         self._neutral_until: float | None = None
-
-    @property
-    def usual_blink(self) -> float:
-        """The gain of blinks unless told."""
-        return self._usual_blink
 
     def close(self) -> None:
         """Stop listening."""
@@ -178,7 +174,7 @@ class LiveFace:
 
     def controls(self) -> dict[str, float]:
         """Our controls as the face has them, not yet cut off at their limits."""
-        return self._table.controls(self.calibration.apply(self.channels))
+        return self.table.controls(self.calibration.apply(self.channels))
 
     def calibrate(self) -> None:
         """The face of the next half second is neutral."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 from . import ifacialmocap, livelink, vmc
 from .addresses import LOOPBACK
@@ -41,16 +42,20 @@ PROTOCOLS: Mapping[str, Protocol] = {
 
 @dataclass(frozen=True)
 class Listening:
-    """Where packets are expected, and of which protocol.
+    """Where packets are expected, of which protocol, and how they are taken at first.
 
     kind: a key of PROTOCOLS. address: the only one that is listened on. port: None for the
     protocol's own. phone: address of a phone that has to be asked to send; "" for none.
+    mapping: a table of one's own. gains: "NAME=x" each. mirror: left and right change places.
     """
 
     kind: str
     address: str = LOOPBACK
     port: int | None = None
     phone: str = ""
+    mapping: Path | None = None
+    gains: tuple[str, ...] = ()
+    mirror: bool = False
 
     @property
     def protocol(self) -> Protocol:

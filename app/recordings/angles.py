@@ -38,10 +38,14 @@ def in_degrees(
     angles: name of ours -> as the file has it. shapes: ARKit name -> 0 to 1, for comparison. Both
     of shape (T,), NaN where nothing is known.
     """
-    if not any(np.any(np.nan_to_num(values)) for values in angles.values()):
-        return {}  # all are 0: the writer's switch was off
+    moving = {name: values for name, values in angles.items() if np.nan_to_num(values).any()}
+    if len(moving) < len(angles):
+        still = ", ".join(name for name in angles if name not in moving)
+        notes.append(f"Always 0, as if switched off, and left out: {still}.")
+    if not moving:
+        return {}
     looks = looks_of(shapes)
-    angles = _head_unswapped(_eyes_unswapped(dict(angles), looks, notes), looks, notes)
+    angles = _head_unswapped(_eyes_unswapped(moving, looks, notes), looks, notes)
     unit = _unit(angles, looks, notes)
     found = {}
     for name, values in angles.items():

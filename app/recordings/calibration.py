@@ -115,9 +115,6 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
     neutral = _median_of_first(take, [n for n in names if n in HEAD_ANGLES], FIRST_SECONDS)
     if method is None and take.is_calibrated:
         return neutral
-    if take.kind.startswith("OpenFace"):  # whose gaze depends on where the camera stood
-        eyes = [name for name in names if name in EYE_ANGLES]
-        neutral |= {name: float(np.median(take.channels[name])) for name in eyes}
     for name in names:
         if name not in ANGLES and not _matches(name, _NEVER_NEUTRAL):
             neutral[name] = float(np.percentile(take.channels[name], LOW))

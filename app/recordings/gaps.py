@@ -2,11 +2,12 @@
 
 A face that is out of sight keeps the last pose that was seen, and goes over to the next one in the
 last 0.3 s before it is seen again. A shorter gap is one straight way. So nothing is invented, and
-nothing jumps.
+nothing jumps. Rows that are missing are such a gap, too.
 """
 
 from __future__ import annotations
 
+import bisect
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -15,6 +16,7 @@ from ..errors import UserError
 from .take import Array, Take
 
 SHORT_GAP = 0.3  # [s] that is bridged by a straight line
+MISSING_ROWS = 4.0  # of usual steps: what is longer, and no short gap, is a hole in the recording
 LONGEST_TAKE = 86_400.0  # [s]
 
 
@@ -54,6 +56,14 @@ def whole_take(
         told.append(
             f"No face in {int((~seen).sum())} of {len(seen)} frames: the last pose is held there."
         )
+    holes = _holes(times)
+    if len(holes):
+        told.append(
+            f"Rows are missing in {len(holes)} places, {float(np.diff(times)[holes].max()):.3g} s "
+            "at most: the last pose is held there."
+        )
+        times = np.insert(times, holes + 1, times[holes + 1] - SHORT_GAP)
+        rows = {name: np.insert(values, holes + 1, np.nan) for name, values in rows.items()}
     filled = {
         name: _filled(times, values) for name, values in rows.items() if np.isfinite(values).any()
     }
@@ -63,10 +73,36 @@ def whole_take(
 
 
 def _in_order(times: Array) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """The rows whose time is later than all before."""
-    latest = np.maximum.accumulate(np.where(np.isfinite(times), times, -np.inf))
-    before = np.concatenate([[-np.inf], latest[:-1]])
-    return np.isfinite(times) & (times > before)
+    """The most rows whose times rise from one to the next: one wrong time costs one row.
+
+    The longest rising subsequence, by patience sorting.
+    """
+    kept = np.isfinite(times)
+    if np.all(np.diff(times[kept]) > 0.0):
+        return kept
+    ends: list[float] = []  # the lowest time that ends a sequence of this length,
+    end_rows: list[int] = []  # its row,
+    before = np.full(len(times), -1)  # and the row before each in its sequence
+    for row in np.flatnonzero(kept).tolist():
+        length = bisect.bisect_left(ends, times[row])
+        before[row] = end_rows[length - 1] if length else -1
+        ends[length : length + 1] = [float(times[row])]
+        end_rows[length : length + 1] = [row]
+    kept[:] = False
+    row = end_rows[-1]
+    while row >= 0:
+        kept[row] = True
+        row = int(before[row])
+    return kept
+
+
+def _holes(times: Array) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    """The rows after which others are missing."""
+    steps = np.diff(times)
+    if len(steps) < 3:
+        return np.empty(0, dtype=np.intp)
+    longest = max(SHORT_GAP, MISSING_ROWS * float(np.median(steps)))
+    return np.flatnonzero(steps > longest)
 
 
 def _filled(times: Array, values: Array) -> Array:

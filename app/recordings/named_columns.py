@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .angles import in_degrees
+from .faces import COLUMNS as FACE_COLUMNS
+from .faces import one_face
 from .gaps import whole_take
 from .names import ARKIT
 from .request import Request
@@ -18,6 +20,7 @@ from .table import Table
 from .take import Array, Take
 from .timing import times_of
 
+NAMED = "Table of named columns"
 PERCENT = 2.0  # shapes beyond are no shares: 0 to 100
 NONSENSE = 3.0  # and shares beyond are no measurements
 NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
@@ -68,8 +71,9 @@ def recognises(names: tuple[str, ...]) -> bool:
     return Columns.of(names).are_known
 
 
-def read(table: Table, request: Request, kind: str = "Table of named columns") -> Take:
+def read(table: Table, request: Request, kind: str = NAMED) -> Take:
     """The take in the table."""
+    table = one_face(table, request)
     notes = list(table.notes)
     columns = Columns.of(table.names)
     times, used = times_of(table, request.rate, notes)
@@ -81,6 +85,8 @@ def read(table: Table, request: Request, kind: str = "Table of named columns") -
     channels = shapes | intensities({name: numbers[name] for name in columns.units}, notes)
     channels |= {name: np.clip(numbers[name], 0.0, 1.0) for name in columns.visemes}
     channels |= in_degrees({name: numbers[name] for name in columns.angles}, shapes, notes)
+    if columns.angles and kind == NAMED:
+        notes.append("Angles were taken to count down and to the subject's right, as ARKit's do.")
     unknown = [table.names[number] for number in columns.unknown]
     return whole_take(
         kind,
@@ -88,7 +94,7 @@ def read(table: Table, request: Request, kind: str = "Table of named columns") -
         times,
         channels,
         notes=notes,
-        unknown=[name for name in unknown if name.casefold() not in used],
+        unknown=[name for name in unknown if name.casefold() not in {*used, *FACE_COLUMNS}],
         is_calibrated=is_calibrated(shapes, notes),
     )
 

@@ -89,8 +89,15 @@ class Table:
 
 def header_of(text: str) -> tuple[tuple[str, ...], str]:
     """The names in the first line that is one, and the delimiter; no names: there is no table."""
-    line, _, asked = _first_line(text)
-    delimiter = asked or max(DELIMITERS, key=line.count)
+    line, start, asked = _first_line(text)
+    following = text[start + len(line) :].lstrip("\n ").partition("\n")[0]
+
+    def fit(delimiter: str) -> tuple[bool, int]:
+        """How well the line is divided: first into as many cells as the next one."""
+        count = line.count(delimiter)
+        return 0 < count == following.count(delimiter), count
+
+    delimiter = asked or max(DELIMITERS, key=fit)
     try:
         names = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
     except csv.Error:
@@ -122,11 +129,12 @@ def table_in(text: str, *, source: str) -> Table:
         rows = [(number, line.replace(",", ".")) for number, line in rows]
         notes.append("Decimal commas were read as points.")
     kept = _of_one_length(rows, len(names), delimiter_within, notes)
-    if not kept:
-        number, line = rows[0]
+    if 2 * len(kept) < len(rows):
+        fitting = {number for number, _ in kept}
+        number, line = next(row for row in rows if row[0] not in fitting)
         raise UserError(
             f"{source}: line {number} has {line.count(delimiter_within) + 1} cells, the header has "
-            f"{len(names)} names; each row needs as many"
+            f"{len(names)} names, and so it is in most rows; each row needs as many"
         )
     return Table(
         source,

@@ -17,6 +17,7 @@ RATES = (24000 / 1001, 24.0, 25.0, 30000 / 1001, 30.0, 50.0, 60000 / 1001, 60.0)
 DEFAULT_RATE = 30.0  # of most cameras
 TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})(?:([:;.,])(\d+)(?:[.,](\d+))?)?$")
 DAY = 86_400.0  # [s]
+LONGEST_PAUSE = 3600.0  # [s] over midnight; what goes back further is a wrong time
 MOST_FRAMES = 240  # in a second; larger numbers in a timecode's last place are milliseconds
 SHORTEST_STEP = 0.004  # [s] between frames; shorter ones are no seconds
 UNITS = (  # shortest step, longest step, of which length [s]; of a time stamp
@@ -61,7 +62,7 @@ def frame_times(numbers: Array | None, count: int, rate: float | None, notes: li
         rate = DEFAULT_RATE
         if count > 1:
             notes.append(f"No times are given: {rate:g} frames a second were assumed.")
-    if numbers is None or not _mostly_rises(numbers):
+    if count == 1 or numbers is None or not _mostly_rises(numbers):
         return np.arange(count) / rate
     step = np.nanmedian(np.diff(numbers))
     if step > 1.0:
@@ -71,7 +72,10 @@ def frame_times(numbers: Array | None, count: int, rate: float | None, notes: li
 
 def stamp_times(stamps: Array, notes: list[str]) -> Array | None:
     """Time stamps in seconds, whatever their unit is; None where they are of no use."""
-    if len(stamps) == 1 or not np.isfinite(stamps).any():
+    if len(stamps) == 1:
+        return None
+    if not np.isfinite(stamps).any():
+        notes.append("The time stamps are no numbers, and were not used.")
         return None
     if not _mostly_rises(stamps):
         notes.append("The time stamps do not rise, and were not used.")
@@ -116,35 +120,17 @@ def clock_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> A
     if len(cells) > 1 and not frames.any() and set(np.diff(seconds)) == {1.0}:
         notes.append("The timecode counts whole seconds, one for each row: rows are frames.")
         return frame_times(None, len(cells), rate, notes)
-    if rate is None:
-        rate = _rate_in(frames, seconds, is_drop_frame, notes)
-    return _timecode_times(seconds, frames, fractions, rate, is_drop_frame, notes)
-
-
-def _timecode_times(
-    seconds: Array,
-    frames: Array,
-    fractions: Array,
-    rate: float,
-    is_drop_frame: bool,
-    notes: list[str],
-) -> Array:
-    """Times from the parts of timecodes; the fraction only where it makes steps no worse."""
-    base = math.ceil(rate - 1e-6)  # how many frames the timecode counts in a second
+    counted = _rate_in(frames, seconds, is_drop_frame, notes if rate is None else [])
+    rate = rate or counted
+    base = math.ceil(rate if frames.max() < rate <= RATES[-1] else counted)
     numbers = _unwrapped(seconds) * base + frames
     if is_drop_frame:  # two numbers a minute (four of 60) are left out, but in each tenth minute
         minutes = np.floor(_unwrapped(seconds) / 60.0)
         numbers -= (base // 15) * (minutes - np.floor(minutes / 10.0))
-    else:
-        rate = float(base) if abs(rate - base) < 0.1 else rate
-    if fractions.any():
-        if _jumps(numbers + fractions) > _jumps(numbers) + 0.02 * len(numbers):
-            notes.append(
-                "The fraction in the timecode makes frames jump to and fro, and was not used."
-            )
-        else:
-            numbers = numbers + fractions
-    return numbers / rate
+    if _jumps(numbers + fractions) > _jumps(numbers) + 0.005 * len(numbers):
+        notes.append("The fraction in the timecode makes frames jump to and fro, and was not used.")
+        return numbers / rate
+    return (numbers + fractions) / rate
 
 
 def _jumps(numbers: Array) -> int:
@@ -175,7 +161,7 @@ def _rate_in(frames: Array, seconds: Array, is_drop_frame: bool, notes: list[str
 def _unwrapped(seconds: Array) -> Array:
     """Seconds of the day that go on after midnight."""
     steps = np.diff(seconds, prepend=seconds[:1])
-    return seconds + DAY * np.cumsum(np.nan_to_num(steps) < -DAY / 2.0)
+    return seconds + DAY * np.cumsum(np.nan_to_num(steps) < LONGEST_PAUSE - DAY)
 
 
 def _date(cell: str) -> float:

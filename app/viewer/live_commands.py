@@ -11,7 +11,6 @@ from dataclasses import replace
 
 from ..errors import UserError
 from ..live import LOST_AFTER, Listening, LiveFace, State, own_address
-from ..recordings.mapping import usual_mapping
 from .messages import Message
 from .session import Session
 
@@ -56,9 +55,14 @@ class LiveCommands:
         """Listen from now on; UserError where that cannot be."""
         check_scene(self._session.scene.name)
         self.stop()
-        self.wanted, self.own_address = wanted, own_address()
-        self.face = LiveFace(wanted, usual_mapping(), wake=self._wake, clock=self._clock)
-        return f"{wanted.protocol.title}: listening on {wanted.address}, port {self.face.port}"
+        face = LiveFace(wanted, wake=self._wake, clock=self._clock)
+        try:
+            face.table.check(self._session.limits)
+        except UserError:
+            face.close()
+            raise
+        self.face, self.wanted, self.own_address = face, wanted, own_address()
+        return f"{wanted.protocol.title}: listening on {wanted.address}, port {face.port}"
 
     def stop(self) -> None:
         """Listen no longer; the face is where sliders or script have it."""

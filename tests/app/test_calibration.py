@@ -116,10 +116,11 @@ def test_short_and_calibrated_takes_keep_their_faces() -> None:
     assert neutral_of(calibrated) == {}
 
 
-def test_only_the_gaze_of_openface_depends_on_the_camera() -> None:
-    gaze = dict.fromkeys(EYE_ANGLES, 6.0)
-    assert neutral_of(take_of("OpenFace 2", **gaze)) == gaze
-    assert neutral_of(take_of("Live Link Face", **gaze)) == {}
+def test_eyes_look_where_they_were_seen_to_look() -> None:
+    """A gaze is no neutral face; only a neutral second that was asked for makes it straight."""
+    looking = take_of(eye_pitch_left=-6.0)
+    assert neutral_of(looking) == {}
+    assert neutral_of(looking, "first:1") == {"eye_pitch_left": -6.0}
 
 
 def test_gains_suit_the_kind_of_file() -> None:

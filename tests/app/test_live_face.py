@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
@@ -15,7 +16,6 @@ from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace, Receiver
 from risorius.app.live.frame import MOST_BYTES
 from risorius.app.live.live_face import CALIBRATING, EASING_IN, EASING_OUT, LOST_AFTER
 from risorius.app.live.receiver import MOST_WAITING
-from risorius.app.recordings.mapping import usual_mapping
 
 from .live_packets import ifacialmocap, live_link, osc
 
@@ -37,9 +37,7 @@ class Wire:
 
     def __init__(self, kind: str) -> None:
         self.clock, self.woken = Clock(), 0
-        self.face = LiveFace(
-            Listening(kind, port=0), usual_mapping(), wake=self._wake, clock=self.clock
-        )
+        self.face = LiveFace(Listening(kind, port=0), wake=self._wake, clock=self.clock)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 
     def _wake(self) -> None:
@@ -188,6 +186,26 @@ def test_a_mirror_exchanges_the_sides(wire: Wire) -> None:
     controls = wire.face.controls()
     assert controls["mouthSmileRight"] == 0.5 and controls["mouthSmileLeft"] == 0.0
     assert controls["head_yaw"] == pytest.approx(-0.5, abs=1e-3)
+
+
+def test_mapping_gains_and_mirror_may_be_given_from_the_start(tmp_path: Path) -> None:
+    """As for recordings; what is wrong with them is told before anything is listened to."""
+    table = tmp_path / "my.toml"
+    table.write_text("jawOpen = { AU26 = 0.5 }\n")
+    listening = Listening(
+        "livelink", port=0, mapping=table, gains=("jawOpen=2", "mouth*=0.5"), mirror=True
+    )
+    face = LiveFace(listening)
+    try:
+        face.channels.update({"jawOpen": 0.3, "mouthSmileLeft": 0.8})
+        controls = face.controls()
+        assert controls["AU26"] == pytest.approx(0.3) and "jawOpen" not in controls
+        assert controls["mouthSmileRight"] == pytest.approx(0.4)
+    finally:
+        face.close()
+    for wrong in (replace(listening, gains=("nobody=2",)), replace(listening, mapping=tmp_path)):
+        with pytest.raises(UserError):
+            LiveFace(wrong)
 
 
 @pytest.mark.parametrize("wire", ["ifacialmocap"], indirect=True)

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 from imgui_bundle import imgui
 
-from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening, LiveFace, State
-from ...recordings.calibration import ANGLES, HIGHEST_GAIN
+from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, LiveFace, State
+from ...recordings.calibration import ANGLES, BLINK_GAIN, HIGHEST_GAIN
 from ...recordings.names import mirror_of
 from ..command import Command
 from ..gui import Gui, colour, em
@@ -79,7 +79,7 @@ class LivePanel:
         by_title = {each.title: kind for kind, each in PROTOCOLS.items()}
         chosen = self._choose("Protocol", title, tuple(by_title))
         if chosen is not None:
-            wanted = Listening(by_title[chosen], wanted.address)
+            wanted = replace(wanted, kind=by_title[chosen], port=None)
         here = COMPUTERS.get(wanted.address, wanted.address)
         by_name = {name: address for address, name in COMPUTERS.items()}
         by_name.setdefault(here, wanted.address)
@@ -147,7 +147,7 @@ class LivePanel:
         gain = self._slide("Gain", calibration.default_gain, 1.0)
         if gain is not None:
             face.calibration = replace(calibration, default_gain=gain)
-        for label, names, usual in (("Blink", BLINK, face.usual_blink), ("Head", HEAD, 1.0)):
+        for label, names, usual in (("Blink", BLINK, BLINK_GAIN), ("Head", HEAD, 1.0)):
             gain = self._slide(label, calibration.gains.get(names[0], 1.0), usual)
             if gain is not None:
                 gains = {**calibration.gains, **dict.fromkeys(names, gain)}
