@@ -21,9 +21,9 @@ import numpy as np
 
 from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace
 from risorius.app.live.sender import Sender
+from risorius.app.performances import script_for
 from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import build_scene
-from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.frame_times import FrameTimes
 from risorius.app.viewer.physics import STEP, Physics
