@@ -12,7 +12,7 @@ import click
 from click.core import ParameterSource
 
 from ..errors import UserError
-from ..live import LOOPBACK, PROTOCOLS, Listening
+from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from ..playback import LEAD, Playback
 from .parameters import FiniteRange, Looks, Refiner, Size
@@ -174,6 +174,11 @@ class Live:
             return None
         if self.phone is not None and not PROTOCOLS[self.live].request:
             raise UserError(f"--phone goes with --live ifacialmocap, not with {self.live}")
+        if self.phone is not None and self.address == LOOPBACK:
+            raise UserError(
+                f"--phone: no phone is reached from {LOOPBACK}; add --address {ANYWHERE}, the whole "
+                "network of this computer"
+            )
         return Listening(
             self.live,
             self.address,

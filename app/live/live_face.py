@@ -100,7 +100,7 @@ class LiveFace:
 
     @property
     def has_frame(self) -> bool:
-        """Whether `advance` would find a whole frame."""
+        """Whether `advance` would find a whole frame with a face."""
         return self._receiver.has_frame
 
     @property

@@ -1,7 +1,8 @@
 """Frames as they come: a thread reads packets from the socket and wakes whoever waits for them.
 
 A window sleeps until something happens, and a frame must be such a thing: asking for it once in a
-while would let it lie. Nobody is woken for a part of a frame, or for what is none.
+while would let it lie. Nobody is woken for a part of a frame, for one without a face, or for what
+is none.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ class Receiver:
     """A socket and its thread; `close` ends both.
 
     received, unusable: packets so far, and those of them that are none of the protocol.
-    has_frame: whether a whole frame waits to be taken.
+    has_frame: whether a whole frame with a face waits to be taken.
     """
 
     def __init__(
@@ -92,7 +93,7 @@ class Receiver:
             self.unusable += 1
             return
         self._waiting.append((at, frame))
-        if frame.is_complete and not self.has_frame:
+        if frame.is_complete and frame.has_face and not self.has_frame:
             self.has_frame = True
             self._wake()
 

@@ -7,6 +7,7 @@ quarter of a frown in a face at rest.
 from __future__ import annotations
 
 import tempfile
+import threading
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -18,9 +19,12 @@ from imgui_bundle import imgui
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.captions import contact_sheet
 from risorius.app.files import Image
+from risorius.app.live import LOOPBACK, Listening
+from risorius.app.live.sender import Sender
 from risorius.app.performances import read_performance, script_for
 from risorius.app.playback import Playback
 from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.reading import read_take
 from risorius.app.scenes import FaceScene
 from risorius.app.viewer import Viewer
 from risorius.bench import figures
@@ -38,6 +42,8 @@ MOMENTS = {
     6.1: "to the left",
 }
 WINDOW = (1160, 700)
+TALL_WINDOW = (1160, 760)
+SMILING = 0.7  # of a smile, live
 ANGLES = ("HeadYaw", "HeadPitch", "HeadRoll", "LeftEyeYaw", "LeftEyePitch", "LeftEyeRoll",
           "RightEyeYaw", "RightEyePitch", "RightEyeRoll")  # fmt: skip
 AT_REST = {  # what a phone reads in a face that does nothing
@@ -98,8 +104,8 @@ def neutral(take: Path) -> Image:
             script, _ = read_performance(take, Playback(neutral=method))
             last = iter(MOMENTS.items())
             moment, what = next(last)
-            for time in capture.play(script, until=max(MOMENTS), progress=False):
-                if abs(time - moment) < 0.5 / options.frames_per_second:
+            for now in capture.play(script, until=max(MOMENTS), progress=False):
+                if abs(now - moment) < 0.5 / options.frames_per_second:
                     rows.append((f"{title}, {what}", capture.draw_image()))
                     moment, what = next(last, (np.inf, ""))
     sheet = contact_sheet(rows, columns=len(MOMENTS), cell_width=CELL[0])
@@ -119,6 +125,27 @@ def window(take: Path) -> Image:
         return figures.without_noise(viewer.surface.read())
 
 
+def live(take: Path) -> Image:
+    """A window that follows the recording, sent by another thread as a phone does."""
+    with Viewer(script_for(None, "face"), TALL_WINDOW) as viewer:
+        imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
+        viewer.panel_cache.refresh = 0.0  # panels in every frame
+        viewer.listen(Listening("livelink"))
+        with Sender("livelink", LOOPBACK, None, "my phone") as sender:
+            thread = threading.Thread(target=sender.play, args=(read_take(take),))
+            thread.start()
+            while not viewer.live.can_calibrate:
+                viewer.frame()
+            viewer.live.calibrate()
+            while viewer.session.current["mouthSmileLeft"] < SMILING:
+                viewer.frame()
+            for _ in range(8):  # muscles follow
+                viewer.frame()
+            picture = figures.without_noise(viewer.surface.read())
+            thread.join()
+    return picture
+
+
 def main(arguments: Sequence[str]) -> None:
     """Draw the pictures into the folder given."""
     given = figures.parse(arguments, __doc__)
@@ -127,6 +154,7 @@ def main(arguments: Sequence[str]) -> None:
         every = {
             "capture_neutral": partial(neutral, take),
             "capture_window": partial(window, take),
+            "capture_live": partial(live, take),
         }
         figures.draw(given.folder, figures.chosen(every, given.only))
 

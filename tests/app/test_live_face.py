@@ -148,7 +148,7 @@ def test_a_sender_that_sees_no_face_lets_go_of_ours(wire: Wire) -> None:
     """Packets without values are no lost signal, but the face eases to rest."""
     wire.take(live_link({"JawOpen": 0.5}))
     wire.take(live_link(None), seconds=0.1)
-    assert wire.face.state is State.NO_FACE
+    assert wire.face.state is State.NO_FACE and wire.woken == 1
     for _ in range(60):
         wire.take(live_link(None), seconds=1.0 / 60.0)
     assert wire.face.presence == 0.0 and wire.face.state is State.NO_FACE
