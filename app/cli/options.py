@@ -212,7 +212,7 @@ with_playback = packed(
     click.option(
         "--smooth",
         is_flag=True,
-        help="Calm channels that tremble; costs 16 to 50 ms and up to 14 % of a short peak.",
+        help="Calm channels that tremble; costs 15 to 45 ms and up to 14 % of a short peak.",
     ),
     click.option(
         "--lead",
