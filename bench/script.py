@@ -15,13 +15,13 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script import (
     Floats,
     Script,
     load_script,
     save_script,
-    script_for,
     script_text,
     thinned,
 )
@@ -135,7 +135,7 @@ def _window_rows(path: Path, size: tuple[int, int]) -> Iterator[Row]:
     with Viewer(few, size, Display()) as viewer:
         session, selection = viewer.session, viewer.selection
         viewer.settings.folds[TRACKS] = True
-        take = session.read(path)
+        take = load_script(path)
         moments = np.random.default_rng(SEED)
 
         def scrub() -> None:

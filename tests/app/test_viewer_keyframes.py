@@ -220,7 +220,7 @@ def test_the_file_goes_with_its_script(session: Session, tmp_path: Path) -> None
     """Undo past opening another script gives back the first one's file, too."""
     own, other = session.file.path, tmp_path / "other.toml"
     other.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")
-    session.open(session.read(other))
+    session.open(load_script(other))
     assert session.file.path == other and session.name == "other.toml"
     session.undo()
     assert session.file.path == own and not session.script_is_unsaved
@@ -239,10 +239,10 @@ def test_what_a_file_would_lose_is_noticed(session: Session) -> None:
     text = path.read_text()
     path.write_text(text + "# mine\n")
     assert "another program" in session.file.objection
-    session.open(session.read(path))
+    session.open(load_script(path))
     assert "comments" in session.file.objection
     path.write_text(text.replace('"Hello"', '"No. #1 \\" # 2"'))
-    session.open(session.read(path))
+    session.open(load_script(path))
     assert session.script.title == 'No. #1 " # 2' and session.file.objection == ""
     path.unlink()
     assert session.file.objection == ""
