@@ -2,7 +2,7 @@
 
 The head's numbers lie in `data/head.npz`, written by `python -m risorius.assets.build`; its rig and
 the layers of controls above the muscles are text files, written by hand (`rigs/face.toml`,
-`action_units.toml`, `expressions.toml`, `visemes.toml`).
+`action_units.toml`, `expressions.toml`, `visemes.toml`, `arkit.toml`).
 """
 
 from collections.abc import Mapping
@@ -27,6 +27,7 @@ LAYER_FILES = MappingProxyType(  # title -> file, from the lowest layer up
         "Action units": FOLDER / "action_units.toml",
         "Expressions": FOLDER / "expressions.toml",
         "Visemes": FOLDER / "visemes.toml",
+        "ARKit shapes": FOLDER / "arkit.toml",
     }
 )
 

@@ -79,15 +79,15 @@ class Part:
 
 @dataclass(frozen=True)
 class Layer:
-    """A table of controls above the muscles: action units, expressions or visemes.
+    """A table of controls above the muscles: action units, expressions, visemes, ARKit shapes.
 
     title: heading under which a panel lists them.
     source: the file it was read from, for error texts.
-    rows: control name -> {name of a lower control, "action" or "pair": value}, as in the file;
+    rows: control name -> {name of a lower control, or one of NOT_SHARES: value}, as in the file;
         sim/layers.py says what they mean.
     """
 
-    NOT_SHARES: ClassVar[tuple[str, ...]] = ("action", "pair")  # keys of a row that are no shares
+    NOT_SHARES: ClassVar[tuple[str, ...]] = ("action", "pair", "share_of")  # keys of a row
     title: str
     source: str
     rows: Mapping[str, Mapping[str, Any]]
@@ -169,7 +169,8 @@ class Head:
     openness_file: how open it is to light from all around; app/ambient.py makes it.
     finer_file: what the finer meshes of the same form need; read by `finer`.
     rig: the parsed rig file, {} where there is none.
-    layers: action units, expressions and visemes, from the lowest up; () where there are no files.
+    layers: action units, expressions, visemes, ARKit shapes, from the lowest up; () where there
+        are no files.
     """
 
     vertices: FloatArray

@@ -31,7 +31,9 @@ REPEATED = 60.0  # s of simulated time that are run twice
 MIRRORED_FRAMES = 240
 BLOW = 100.0  # mm/s
 ROUNDING = 1e-9  # of the energy: growth below it is arithmetic
-MIRRORED_SIGN = ("jaw_sideways", "gaze_horizontal", "head_yaw", "head_roll")
+MIRRORED_SIGN = (
+    "jaw_sideways", "gaze_horizontal_left", "gaze_horizontal_right", "head_yaw", "head_roll",
+)  # fmt: skip
 OTHER = {"left": "right", "right": "left"}
 
 

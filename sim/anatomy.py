@@ -35,7 +35,7 @@ from .landmarks import (
     polyline_distance,
     smoothstep,
 )
-from .layers import NO_LAYERS, Layers, read_layers
+from .layers import Layers, read_layers
 from .lids import Lids, place_lids
 from .lip_lid_sides import lip_side
 from .muscle_forces import MuscleForces, build_muscle_forces
@@ -267,8 +267,10 @@ def _controls(rig: Rig, skull: Skull, lips: LipPairs, is_face: bool) -> tuple[Co
         controls.append(Control("jaw_open", "Jaw"))
         controls += [Control(name, "Jaw", -1.0) for name in ("jaw_forward", "jaw_sideways")]
     if skull.eyeballs:
-        for name in ("gaze_horizontal", "gaze_vertical"):
-            controls.append(Control(name, "Gaze", -1.0, 1.0, GAZE_RATE))
+        for way in ("horizontal", "vertical"):
+            for ball in skull.eyeballs:
+                name = f"gaze_{way}_{ball.side.value}"
+                controls.append(Control(name, "Gaze", -1.0, 1.0, GAZE_RATE))
     if is_face:
         for name in HEAD_CONTROLS:
             controls.append(Control(name, "Head", -1.0, 1.0, HEAD_RATE))
@@ -276,7 +278,6 @@ def _controls(rig: Rig, skull: Skull, lips: LipPairs, is_face: bool) -> tuple[Co
 
 
 def _layers(head: Any, rig: Rig, controls: tuple[Control, ...]) -> Layers:
-    """The head's layers; a face without muscles has nothing that they could speak of."""
-    if not rig.muscles:
-        return NO_LAYERS
-    return read_layers(getattr(head, "layers", ()), [control.name for control in controls])
+    """The head's layers; a face without muscles has nothing that its tables could speak of."""
+    tables = getattr(head, "layers", ()) if rig.muscles else ()
+    return read_layers(tables, [control.name for control in controls])

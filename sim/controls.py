@@ -24,7 +24,7 @@ from ..jit import njit
 from .checked import number as finite
 from .checked import quoted
 from .landmarks import Array
-from .layers import NO_LAYERS, Layers
+from .layers import BOTH_SIDES, NO_LAYERS, SIDES, Layers, share_of_whole
 
 MUSCLE_RATE = 45.0  # rad/s
 GAZE_RATE = 120.0  # rad/s: a saccade takes some 35 ms
@@ -53,8 +53,7 @@ class Controls:
     def __init__(self, controls: tuple[Control, ...], layers: Layers = NO_LAYERS) -> None:
         self.lowest = tuple(control.name for control in controls)
         self.names = (*self.lowest, *layers.shares)
-        limits = {c.name: (c.low, c.high) for c in controls}
-        self.limits = MappingProxyType({**limits, **dict.fromkeys(layers.shares, (0.0, 1.0))})
+        self.limits = MappingProxyType(_limits(controls, layers))
         groups: dict[str, tuple[str, ...]] = {}
         for control in controls:
             groups[control.group] = (*groups.get(control.group, ()), control.name)
@@ -66,6 +65,9 @@ class Controls:
         self._low = np.array([c.low for c in controls], dtype=np.float64)
         self._high = np.array([c.high for c in controls], dtype=np.float64)
         self._shares = np.array([layers.shares[name] for name in layers.shares])  # (N - C, C)
+        self._share_of = [
+            (self._index[name], self._index[whole]) for name, whole in layers.share_of.items()
+        ]
         self._values: Array = np.zeros(len(self.names))
         self.wanted: Array = np.zeros(len(controls))
         self.activation: Array = np.zeros(len(controls))
@@ -116,7 +118,10 @@ class Controls:
         count = len(self.lowest)
         self.wanted[:] = self._values[:count]
         if len(self._shares):
-            self.wanted += self._values[count:] @ self._shares
+            counted = self._values.copy()
+            for index, whole in self._share_of:
+                counted[index] = share_of_whole(self._values[index], self._values[whole])
+            self.wanted += counted[count:] @ self._shares
             np.clip(self.wanted, self._low, self._high, out=self.wanted)
 
     def advance(self, dt: float) -> None:
@@ -127,6 +132,16 @@ class Controls:
         """All values and activations to zero at once."""
         for array in (self._values, self.wanted, self.activation, self._speed):
             array[:] = 0.0
+
+
+def _limits(controls: tuple[Control, ...], layers: Layers) -> dict[str, tuple[float, float]]:
+    """Least and greatest value of each control; both sides at once have those of a side."""
+    limits = {control.name: (control.low, control.high) for control in controls}
+    for name in layers.shares:
+        sides = [limits[name + side] for side in SIDES if name + side in limits]
+        of_both = sides and name in layers.groups.get(BOTH_SIDES, ())
+        limits[name] = sides[0] if of_both else (0.0, 1.0)
+    return limits
 
 
 @njit

@@ -33,6 +33,7 @@ from .contact import SEALED
 from .controls import Controls
 from .coordinates import to_posed_head
 from .drive import MuscleDrive
+from .landmarks import Array
 from .lids import turn_lids
 from .skin_model import Tick
 from .skull import REST, RigidMotion
@@ -247,8 +248,8 @@ class Simulation:
         carry(state, surface.positions, surface.normals, weight, self._mandible)
         if anatomy.lids is not None:
             drive = anatomy.lids.drive(self._controls.activation)
-            gaze = self._gaze_angle()
-            turn_lids(state, surface.positions, anatomy.lids.vertices, drive, gaze)
+            angle = np.radians(anatomy.skull.eyes.gaze_deg) * self._gaze()[:, 1]
+            turn_lids(state, surface.positions, anatomy.lids.vertices, drive, angle)
         activation = self._drive.activation()
         state.hold[:] = anatomy.passive_hold
         state.pull[:] = 0.0
@@ -265,10 +266,12 @@ class Simulation:
         now = Tick(count, tick / count, self._grip, self._mandible)
         advance(self._state, self._anatomy.skin, now)
 
-    def _gaze_angle(self) -> float:
-        """Vertical angle of the eyes [rad]."""
-        most = float(np.radians(self._anatomy.skull.eyes.gaze_deg))
-        return most * self._controls.now("gaze_vertical")
+    def _gaze(self) -> Array:
+        """Where each eyeball looks: to the subject's left and up, -1 to 1, shape (eyes, 2)."""
+        sides = [ball.side.value for ball in self._anatomy.skull.eyeballs]
+        ways = ("horizontal", "vertical")
+        gaze = [[self._controls.now(f"gaze_{way}_{side}") for way in ways] for side in sides]
+        return np.array(gaze, dtype=np.float64).reshape(-1, 2)
 
     # What others draw or check.
 
@@ -279,8 +282,7 @@ class Simulation:
             "cranium": self._head.matrix(anatomy.space),
             "mandible": self._head.after(self._mandible).matrix(anatomy.space),
         }
-        gaze = self._controls.now("gaze_horizontal"), self._controls.now("gaze_vertical")
-        for ball in anatomy.skull.eyeballs:
+        for ball, gaze in zip(anatomy.skull.eyeballs, self._gaze(), strict=True):
             motion = anatomy.skull.eye_motion(ball, *gaze)
             transforms[f"eye_{ball.side.value}"] = self._head.after(motion).matrix(anatomy.space)
         return transforms

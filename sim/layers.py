@@ -1,11 +1,12 @@
-"""Layers of controls: action units, expressions and visemes as plain tables into what lies below.
+"""Layers of controls: tables that speak of what lies below them, down to the muscles.
 
-    muscles, jaw, gaze   <   both sides at once   <   action units   <   expressions   <   visemes
+    muscles, jaw, gaze  <  both sides  <  action units  <  expressions  <  visemes  <  ARKit shapes
 
 A layer is a table of rows; a row is a control of its own, named by its key. Each entry of a row is
 a share: the row at 1 adds so much to the control that the entry names, which must stand in a layer
-below. Two keys of a row are no entries: `action` says in words what it does, and `pair = true`
-makes three controls of one row, for both sides, `..._left` and `..._right`:
+below. Three keys of a row are no entries. `action` says in words what it does. `pair = true` makes
+three controls of one row, for both sides, `..._left` and `..._right`; `pair = "Left Right"` makes
+two, `...Left` and `...Right`, the way ARKit spells them:
 
     [AU4]
     action = "brow lowerer"
@@ -14,18 +15,26 @@ makes three controls of one row, for both sides, `..._left` and `..._right`:
     procerus = 0.9                  # one in the middle: AU4_left takes half, so that left + right
                                     # is AU4
 
+`share_of` names a control above it in the same table, or in a layer below: the row's value says how
+much of that one's it makes good, and counts as value / the other's value, at most 1:
+
+    [mouthClose]
+    action = "lips shut over the open jaw"
+    share_of = "jawOpen"            # mouthClose 0.3 shuts the lips where jawOpen is 0.3, and
+    lips_closed = 1.0               # where that is 0.6 half; without jawOpen it does nothing
+
 How layers combine: everything adds up, whatever was set first. A muscle's value is its own plus,
 for each control above it, that control's value times its share, cut off at the muscle's limits
 once, at the end.
 
-Source: Ekman, Friesen, Hager 2002, "Facial Action Coding System" (what an action unit is); the
-tables themselves are files of assets/.
+Source: Ekman, Friesen, Hager 2002, "Facial Action Coding System" (what an action unit is); Apple,
+ARFaceAnchor.BlendShapeLocation (what an ARKit shape is); the tables themselves are files of assets.
 Differs from FACS: units add, where some of theirs exclude each other.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -38,7 +47,11 @@ from .rig_reader import question
 
 BOTH_SIDES = "Both sides"  # title of the layer that every face with paired muscles has
 SIDES = ("_left", "_right")
+ENDINGS: Mapping[bool | str, tuple[str, ...]] = MappingProxyType(  # of the names of a pair's sides
+    {True: SIDES, "Left Right": ("Left", "Right")}
+)
 GREATEST_SHARE = 2.0  # a share beyond it is a slip of the pen
+LEAST_WHOLE = 0.08  # of what a control is a share of: below it the share fades instead of jumping
 
 
 @dataclass(frozen=True)
@@ -48,14 +61,21 @@ class Layers:
     groups: title of the layer -> its names, from the lowest layer up.
     actions: name -> what it does, in words; "" where the table does not say.
     shares: name -> what it adds to each of the C lowest controls at value 1, shape (C,).
+    share_of: name -> the control whose value its own is a share of, where there is one.
     """
 
     groups: Mapping[str, tuple[str, ...]]
     actions: Mapping[str, str]
     shares: Mapping[str, Array]
+    share_of: Mapping[str, str]
 
 
-NO_LAYERS = Layers(MappingProxyType({}), MappingProxyType({}), MappingProxyType({}))
+NO_LAYERS = Layers(*(MappingProxyType({}) for _ in range(4)))
+
+
+def share_of_whole(value: float, whole: float) -> float:
+    """How a value counts that is a share of another control's: 0 .. 1, and 0 where that is 0."""
+    return min(value, max(whole, 0.0)) / max(whole, LEAST_WHOLE)
 
 
 def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
@@ -68,12 +88,11 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
     no number, a name that is taken, and a pair that names a side.
     """
     reader = _Reader(lowest)
-    paired = [n.removesuffix("_left") for n in lowest if n.endswith("_left")]
-    reader.add(BOTH_SIDES, (base for base in paired if f"{base}_right" in reader.shares))
+    reader.add_both_sides()
     for layer in several("head.layers", given, ("title", "source", "rows")):
         if not isinstance(layer.rows, Mapping):
             raise ValueError(f"{layer.source}: was {quoted(layer.rows)}, must be a table of rows")
-        below = reader.everything()
+        below = dict(reader.shares)  # what a row of this layer may name
         names: list[str] = []
         for row, table in layer.rows.items():
             names += reader.row(f"{layer.source}, row '{row}'", str(row), table, below)
@@ -83,6 +102,7 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
         MappingProxyType({title: names for title, names in reader.groups.items() if names}),
         MappingProxyType(reader.actions),
         MappingProxyType(dict(list(reader.shares.items())[count:])),
+        MappingProxyType(reader.share_of),
     )
 
 
@@ -93,65 +113,95 @@ class _Reader:
         self.shares: dict[str, Array] = dict(zip(lowest, np.eye(len(lowest)), strict=True))
         self.groups: dict[str, tuple[str, ...]] = {}
         self.actions: dict[str, str] = {}
+        self.share_of: dict[str, str] = {}
 
-    def everything(self) -> dict[str, Array]:
-        """The shares of all names so far: what a row of the next layer may name."""
-        return dict(self.shares)
-
-    def add(self, title: str, bases: Iterable[str]) -> None:
-        """A layer of names without side, each for both of its sides."""
-        names = tuple(base for base in bases if base not in self.shares)
+    def add_both_sides(self) -> None:
+        """The layer of names without side, each for both of its sides, or the one that there is."""
+        sides: dict[str, list[Array]] = {}
+        for name, share in self.shares.items():
+            if name.endswith(SIDES):
+                sides.setdefault(name.rpartition("_")[0], []).append(share)
+        names = tuple(name for name in sides if name not in self.shares)
         for name in names:
-            self.shares[name] = self.shares[f"{name}_left"] + self.shares[f"{name}_right"]
+            self.shares[name] = np.sum(sides[name], axis=0)
             self.actions[name] = ""
-        self.groups[title] = names
+        self.groups[BOTH_SIDES] = names
 
     def row(self, where: str, name: str, table: Any, below: Mapping[str, Array]) -> list[str]:
         """Take in one row; the names of the controls that it makes."""
         if not isinstance(table, Mapping):
             raise ValueError(f"{where}: was {quoted(table)}, must be a table of control = share")
         entries = dict(table)
-        action, is_pair = entries.pop("action", ""), entries.pop("pair", False)
+        action, pair = entries.pop("action", ""), entries.pop("pair", False)
+        whole = entries.pop("share_of", None)
         if not isinstance(action, str):
             raise ValueError(f"{where}: 'action' was {quoted(action)}, must be a text")
-        if not isinstance(is_pair, bool):
-            raise ValueError(f"{where}: 'pair' was {quoted(is_pair)}, must be true or false")
-        if is_pair and name.endswith(SIDES):
-            raise ValueError(f"{where}: a pair adds the sides by itself; leave '_left' away")
-        sides = SIDES if is_pair else ("",)
-        names = [name + side for side in sides]
-        for side, full in zip(sides, names, strict=True):
-            self._new(where, full)
-            share = np.zeros(len(next(iter(below.values()), ())))
-            for control, value in entries.items():
-                part = number_within(
-                    f"{where}, '{control}'", value, -GREATEST_SHARE, GREATEST_SHARE
+        if not isinstance(pair, bool | str) or pair not in (False, *ENDINGS):
+            allowed = 'true, false or "Left Right"'
+            raise ValueError(f"{where}: 'pair' was {quoted(pair)}, must be {allowed}")
+        if whole is not None:
+            self._check_whole(where, whole)
+        if not pair:
+            made = {name: self._sum(where, entries, "", below)}
+        else:
+            self._check_entries_of_pair(where, name, entries)
+            ends = zip(ENDINGS[pair], SIDES, strict=True)
+            made = {name + end: self._sum(where, entries, side, below) for end, side in ends}
+            if pair is True:
+                made = {name: np.sum(list(made.values()), axis=0), **made}
+        for each, share in made.items():
+            if each in self.shares:
+                raise ValueError(
+                    f"{where}: there is a control called '{each}' already; rename the row"
                 )
-                share += part * _side_of(where, control, side, below)
-            self.shares[full] = share
-            self.actions[full] = action
-        if is_pair:
-            self._new(where, name)
-            self.shares[name] = self.shares[names[0]] + self.shares[names[1]]
-            self.actions[name] = action
-            names.insert(0, name)
-        return names
+            self.shares[each], self.actions[each] = share, action
+            if whole is not None:
+                self.share_of[each] = whole
+        return list(made)
 
-    def _new(self, where: str, name: str) -> None:
-        if name in self.shares:
-            raise ValueError(f"{where}: there is a control called '{name}' already; rename the row")
+    def _check_whole(self, where: str, whole: Any) -> None:
+        """ValueError unless `share_of` names a control that has been read."""
+        if not isinstance(whole, str):
+            raise ValueError(
+                f"{where}: 'share_of' was {quoted(whole)}, must be the name of a control"
+            )
+        if whole not in self.shares:
+            raise ValueError(
+                f"{where}, 'share_of': no row above and no layer below has a control called "
+                f"'{whole}'{question(whole, self.shares)}"
+            )
 
+    def _check_entries_of_pair(self, where: str, name: str, entries: Mapping[str, Any]) -> None:
+        """ValueError where a row for two sides names a side."""
+        endings = (*SIDES, *ENDINGS["Left Right"])
+        if name.endswith(endings):
+            side = next(end for end in endings if name.endswith(end))
+            raise ValueError(f"{where}: a pair adds the sides by itself; leave '{side}' away")
+        for control in entries:
+            if control.endswith(SIDES):
+                raise ValueError(f"{where}: in a pair leave the side of '{control}' away")
 
-def _side_of(where: str, control: str, side: str, below: Mapping[str, Array]) -> Array:
-    """Shares of what an entry names; for a side of a pair, of that side or half of the middle."""
-    if control not in below:
-        raise ValueError(
-            f"{where}: no layer below has a control called '{control}'{question(control, below)}"
-        )
-    if not side:
-        return below[control]
-    if control.endswith(SIDES):
-        raise ValueError(f"{where}: in a pair leave the side of '{control}' away")
-    if control + side in below:
-        return below[control + side]
-    return 0.5 * below[control]
+    def _sum(
+        self, where: str, entries: Mapping[str, Any], side: str, below: Mapping[str, Array]
+    ) -> Array:
+        """What the entries of a row add up to, shape (C,); of one `side` of a pair, or "" of all.
+
+        A side takes its side of each entry, or half of what has none.
+        """
+        total = np.zeros(len(next(iter(below.values()), ())))
+        for control, value in entries.items():
+            named = f"{where}, '{control}'"
+            part = number_within(named, value, -GREATEST_SHARE, GREATEST_SHARE)
+            if control not in below:
+                raise ValueError(
+                    f"{where}: no layer below has a control called '{control}'"
+                    f"{question(control, below)}"
+                )
+            if control in self.share_of:
+                raise ValueError(
+                    f"{named}: is a share of '{self.share_of[control]}', which only a value that "
+                    "is set can be; name what it moves instead"
+                )
+            whole = below[control] if not side else 0.5 * below[control]
+            total += part * below.get(control + side, whole)
+        return total

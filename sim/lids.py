@@ -8,6 +8,7 @@ it that runs from corner to corner of the eye. Angles are measured per column of
 
 so that at close = 1 the margins meet on every eye, however wide, and wherever the lower lid is.
 A closing lid also slides towards the nose, as the ring of fibres in it is fixed there.
+The lids of each eye follow the gaze of that eye alone.
 The turn fades from the margin to the edge of the lid. It moves the tissue springs' far ends, not
 the skin: skin still slides and is still kept off the eyeball.
 
@@ -211,18 +212,19 @@ def _lid_muscles(
 def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
     """Turn the far ends of the tissue springs of all lid vertices, and their normals.
 
-    drive: of each eye, shape (eyes, 3), see Lids.drive; gaze: vertical angle of the eyes [rad].
+    drive: of each eye, shape (eyes, 3), see Lids.drive; gaze: vertical angle of each [rad],
+    shape (eyes,).
     """
     carried, normals = state.carried, state.normals
     centres, up, forward = lids.centres, lids.up, lids.forward
     for row in range(len(lids.vertex)):
         i, e, alpha = lids.vertex[row], lids.eye[row], lids.opening[row]
         close = min(drive[e, 0], 1.0)
-        lower = (1.0 - close) * (alpha * drive[e, 1] + lids.lower_follows * gaze)
+        lower = (1.0 - close) * (alpha * drive[e, 1] + lids.lower_follows * gaze[e])
         lower = min(lower + close * lids.meeting * alpha, alpha)
         angle = lower
         if lids.upper[row]:
-            raised = max(alpha * drive[e, 2] + lids.upper_follows * gaze, lower - alpha)
+            raised = max(alpha * drive[e, 2] + lids.upper_follows * gaze[e], lower - alpha)
             overlap = OVERLAP if alpha > LEAST_OPENING else 0.0
             angle = (1.0 - close) * raised + close * (lower - alpha - overlap)
         inward = close * lids.along[row] * lids.slide[0 if lids.upper[row] else 1]

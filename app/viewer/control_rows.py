@@ -5,10 +5,17 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-# Controls of the middle that a mirror turns round, by the end of their names; and action units
-# that are each other's mirror image without saying so (eyes turn left, right).
-TURNED = ("_sideways", "_horizontal", "_yaw", "_roll")
-TWINS = {"AU61": "AU62", "AU62": "AU61"}
+SIDES = (("_left", "_right"), ("Left", "Right"))  # how names end: ours, ARKit's
+TURNED = (  # values that a mirror turns round
+    "jaw_sideways", "gaze_horizontal", "gaze_horizontal_left", "gaze_horizontal_right",
+    "head_yaw", "head_roll",
+)  # fmt: skip
+# Action units that are each other's mirror image without saying so (eyes turn left, right ...), and
+# names that are sides of a motion, not of the face: both at once stand still.
+TWINS = {
+    "AU61": "AU62", "AU62": "AU61", "AU51": "AU52", "AU52": "AU51", "AU55": "AU56", "AU56": "AU55",
+}  # fmt: skip
+OPPOSITE = ("AU30", "lips_sideways", "jaw", "mouth")
 
 
 @dataclass(frozen=True)
@@ -19,11 +26,20 @@ class Row:
     names: tuple[str, ...]
 
 
+def parted(name: str) -> tuple[str, str]:
+    """A control's name without its side, and the side as it is spelled; "" for the middle."""
+    for side in (side for pair in SIDES for side in pair):
+        if name.endswith(side):
+            return name.removesuffix(side), side
+    return name, ""
+
+
 def twin_of(name: str) -> str:
     """The control of the other side; itself for one of the middle."""
-    for side, other in (("_left", "_right"), ("_right", "_left")):
-        if name.endswith(side):
-            return name.removesuffix(side) + other
+    base, side = parted(name)
+    for left, right in SIDES:
+        if side in (left, right):
+            return base + (right if side == left else left)
     return TWINS.get(name, name)
 
 
@@ -37,7 +53,7 @@ def mirrored(values: Mapping[str, float]) -> dict[str, float]:
     result = dict(values)
     for name, value in values.items():
         if twin_of(name) in values:
-            result[twin_of(name)] = -value if name.endswith(TURNED) else value
+            result[twin_of(name)] = -value if name in TURNED else value
     return result
 
 
@@ -50,8 +66,8 @@ def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) 
     known = set(names)
     rows = []
     for name in names:
-        base, _, side = name.rpartition("_")
-        if side not in ("left", "right"):
+        base, side = parted(name)
+        if not side:
             sides = (f"{name}_right", f"{name}_left")
             if not known.issuperset(sides):
                 rows.append(Row(readable(name), (name,)))
@@ -59,22 +75,24 @@ def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) 
             whole = [name] if linked or values[name] else []
             is_apart = not linked or any(values[one] for one in sides)
             rows.append(Row(readable(name), (*whole, *(sides if is_apart else ()))))
-        elif base not in known and (side == "left" or twin_of(name) not in known):
-            both = (twin_of(name), name) if twin_of(name) in known else (name,)
-            rows.append(Row(readable(base), both))
+        elif base in OPPOSITE or twin_of(name) not in known:
+            rows.append(Row(readable(name), (name,)))
+        elif base not in known and side in ("_left", "Left"):
+            rows.append(Row(readable(base), (twin_of(name), name)))
     return rows
 
 
 def search_rows(
     rows: Iterable[Row], query: str, *, group: str, actions: Mapping[str, str]
 ) -> list[Row]:
-    """The rows in which all words of the query occur: in name, group, or what the control does."""
+    """The rows in which all words of the query occur: in names, group, or what a control does."""
     wanted = query.lower().split()
     return [
         row
         for row in rows
         if all(
-            word in f"{row.label} {group} {actions.get(row.names[0], '')}".lower()
+            word
+            in f"{row.label} {' '.join(row.names)} {group} {actions.get(row.names[0], '')}".lower()
             for word in wanted
         )
     ]

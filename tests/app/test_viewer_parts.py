@@ -183,6 +183,32 @@ def test_random_faces_are_symmetric_and_within_limits(session: Session) -> None:
     assert not any(session.values.values())
 
 
+def test_mirror_of_gaze_and_of_arkit_shapes(session: Session) -> None:
+    """Each eye looks to the other side, up stays up, and sides spelled in capitals change, too."""
+    session.set("gaze_horizontal_left", 0.3)
+    session.set("gaze_vertical_left", -0.2)
+    session.set("gaze_horizontal", 0.1)
+    session.set("mouthSmileLeft", 0.4)
+    session.set("jawRight", 0.5)
+    session.set("AU51", 0.6)
+    session.mirror()
+    assert {name: value for name, value in session.values.items() if value} == {
+        "gaze_horizontal_right": -0.3, "gaze_vertical_right": -0.2, "gaze_horizontal": -0.1,
+        "mouthSmileRight": 0.4, "jawLeft": 0.5, "AU52": 0.6,
+    }  # fmt: skip
+
+
+def test_rows_of_arkit_shapes() -> None:
+    """Sides share a row, found by any of its names; directions do not: both at once do nothing."""
+    names = ["mouthSmileLeft", "mouthSmileRight", "jawLeft", "jawRight", "jawOpen"]
+    rows = rows_of(names, dict.fromkeys(names, 0.0), linked=True)
+    assert [row.names for row in rows] == [
+        ("mouthSmileRight", "mouthSmileLeft"), ("jawLeft",), ("jawRight",), ("jawOpen",),
+    ]  # fmt: skip
+    (found,) = search_rows(rows, "mouthsmileleft", group="", actions={})
+    assert found.label == "mouthSmile"
+
+
 def test_rows_join_sides() -> None:
     """Twins share a row; a control for both sides stands for them unless they differ."""
     names = ["AU12", "AU12_left", "AU12_right", "lid_left", "lid_right", "procerus"]

@@ -66,7 +66,7 @@ def test_types_and_shapes_are_those_of_the_docstrings() -> None:
     assert head.mandible_weight.dtype == np.float64 and head.mandible_weight.shape == (count,)
     assert head.jaw_axis.shape == (2, 3)
     assert [eye.name for eye in head.eyes] == ["right", "left"]
-    assert isinstance(head.rig, dict) and len(head.layers) == 3
+    assert isinstance(head.rig, dict) and len(head.layers) == 4
 
 
 def test_arrays_cannot_be_written() -> None:

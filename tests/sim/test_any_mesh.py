@@ -79,7 +79,7 @@ def test_input_arrays_are_copied(head: Head) -> None:
 def test_mesh_with_landmarks_but_no_rig_has_no_muscles(head: Head) -> None:
     """Landmarks alone give gaze and head pose, own weights a jaw and lips; a rig gives muscles."""
     simulation = sim.create(without(head, "rig"))
-    assert set(simulation.groups) == {"Lips", "Jaw", "Gaze", "Head"}
+    assert set(simulation.groups) == {"Lips", "Jaw", "Gaze", "Head", "Both sides"}
     assert moved_landmarks(head, settled_displacement(simulation, {"jaw_open": 1.0}), 8)[1] < -15.0
 
 

@@ -24,12 +24,21 @@ def test_every_control_has_limits_a_value_and_one_group(simulation: sim.Simulati
     "name",
     [
         "zygomaticus_major_left", "frontalis_medial_right", "procerus", "jaw_open",
-        "orbicularis_oculi_palpebral_upper_left", "gaze_vertical", "mentalis_right",
+        "orbicularis_oculi_palpebral_upper_left", "gaze_vertical_left", "mentalis_right",
     ],
 )  # fmt: skip
 def test_expected_controls_exist(simulation: sim.Simulation, name: str) -> None:
     """Muscles are there under their anatomical names, paired ones by side."""
     assert name in simulation.controls
+
+
+def test_both_sides_have_the_limits_of_their_sides(simulation: sim.Simulation) -> None:
+    """Both eyes look down as well as up; rows of tables run from 0 to 1."""
+    assert simulation.limits["gaze_vertical"] == simulation.limits["gaze_vertical_left"] == (-1, 1)
+    assert simulation.limits["zygomaticus_major"] == simulation.limits["AU12"] == (0, 1)
+    simulation.pose({"gaze_horizontal": -0.5, "gaze_horizontal_left": 0.2})
+    assert simulation.sums["gaze_horizontal_left"] == pytest.approx(-0.3)
+    assert simulation.sums["gaze_horizontal_right"] == -0.5
 
 
 def test_unknown_control_suggests_near_names(simulation: sim.Simulation) -> None:

@@ -250,6 +250,17 @@ def test_gaze_turns_the_eyes(simulation: sim.Simulation, head: Head) -> None:
     assert moved_landmarks(head, moved, 37, 38, 43, 44)[1] > 1.0
 
 
+def test_each_eye_looks_for_itself(simulation: sim.Simulation, head: Head) -> None:
+    """Eyes converge, and a lid follows its own eye: the other one stays where it is."""
+    gaze = {"gaze_horizontal_left": -0.5, "gaze_horizontal_right": 0.5, "gaze_vertical_left": -1.0}
+    moved = settled_displacement(simulation, gaze)
+    left, right = (simulation.bone_transforms()[f"eye_{side}"][:3, 2] for side in ("left", "right"))
+    assert left[0] < -0.2 < 0.2 < right[0]
+    assert left[1] < -0.4 and abs(right[1]) < 0.01
+    assert moved_landmarks(head, moved, 43, 44)[1] < -1.5
+    assert abs(moved_landmarks(head, moved, 37, 38)[1]) < 0.1
+
+
 def test_fibres_shorten(simulation: sim.Simulation) -> None:
     """The drawn fibres of a contracting muscle get shorter; there are some for every muscle."""
     relaxed = simulation.fibres()

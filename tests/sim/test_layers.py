@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from risorius import sim
 from risorius.assets.model import Head
 from risorius.sim.controls import Control, Controls
-from risorius.sim.layers import read_layers
-from tests.sim.poses import FRAME, inverted_triangles, settled_displacement
+from risorius.sim.layers import BOTH_SIDES, LEAST_WHOLE, read_layers
+from tests.sim.poses import FRAME, inverted_triangles, lip_gap, settled_displacement
 
 LOWEST = ("puller_left", "puller_right", "middle", "slide")
 ACTION_UNITS = (
@@ -26,6 +28,11 @@ EXPRESSIONS = (
 )  # fmt: skip
 HEAD_UNITS = ("AU51", "AU52", "AU53", "AU54", "AU55", "AU56")
 AXIS_OF_NECK = 15.0  # [mm] z, from which the neck is seen outward
+ARKIT = {  # as many shapes as ARKit has of each part of the face
+    "eye": 14, "jaw": 4, "mouth": 23, "brow": 5, "cheek": 3, "nose": 2, "tongue": 1,
+}  # fmt: skip
+TITLES = ("Action units", "Expressions", "Visemes", "ARKit shapes")
+STILL = ("viseme_sil", "tongueOut")
 VISEMES = "sil PP FF TH DD kk CH SS nn RR aa E ih oh ou".split()
 
 
@@ -77,6 +84,44 @@ def test_sides_of_a_pair_add_up_to_the_whole() -> None:
     assert wanted(subject, A=1.0) == pytest.approx({n: left[n] + right[n] for n in LOWEST})
 
 
+def test_sides_may_be_spelled_as_arkit_does() -> None:
+    """Two controls of one row, and none for both."""
+    subject = controls(layer("Shapes", smile={"pair": "Left Right", "puller": 0.5, "middle": 0.2}))
+    assert subject.groups["Shapes"] == ("smileLeft", "smileRight")
+    assert "smile" not in subject.names
+    assert wanted(subject, smileLeft=1.0) == pytest.approx(
+        {"puller_left": 0.5, "puller_right": 0.0, "middle": 0.1, "slide": 0.0}
+    )
+
+
+SHARED = layer(
+    "Shapes", whole={"slide": 1.0}, part={"share_of": "whole", "middle": 0.8, "puller": 0.5}
+)
+
+
+@given(part=st.floats(0.0, 1.0), whole=st.floats(0.0, 1.0))
+def test_a_share_counts_as_part_of_the_whole(part: float, whole: float) -> None:
+    """All of a whole counts as 1, half of it as a half, none of it as nothing; it never jumps."""
+    subject = controls(SHARED)
+    share = wanted(subject, part=part, whole=whole)["middle"] / 0.8
+    assert 0.0 <= share <= 1.0
+    if whole > LEAST_WHOLE:
+        assert share == pytest.approx(min(part / whole, 1.0))
+    assert share <= whole / LEAST_WHOLE + 1e-12
+    near = wanted(subject, part=part, whole=min(whole + 1e-4, 1.0))["middle"] / 0.8
+    assert abs(near - share) < 2e-4 / LEAST_WHOLE
+
+
+def test_a_share_follows_the_whole_that_is_set_later() -> None:
+    """The order in which both are set does not matter, and all that it moves follows."""
+    subject = controls(SHARED)
+    subject.set_all({"part": 0.3})
+    assert not subject.wanted.any()
+    subject.set_all({"whole": 0.6})
+    assert subject.wanted.tolist() == pytest.approx([0.25, 0.25, 0.4, 0.6])
+    assert subject.value("part") == 0.3
+
+
 def test_sums_are_cut_off_once_and_in_any_order() -> None:
     """Own value and contributions add up, opposite ones cancel, and limits hold at the end."""
     subject, other = controls(UNITS, FACES), controls(UNITS, FACES)
@@ -118,7 +163,13 @@ def test_groups_end_with_the_layers() -> None:
         ({"X": {"middle": float("nan")}}, r"row 'X', 'middle': was nan, must be a number"),
         ({"X": 3}, r"row 'X': was 3, must be a table"),
         ({"X": {"action": 3}}, r"row 'X': 'action' was 3, must be a text"),
-        ({"X": {"pair": 1}}, r"row 'X': 'pair' was 1, must be true or false"),
+        ({"X": {"pair": 1}}, r"row 'X': 'pair' was 1, must be true, false or \"Left Right\""),
+        ({"X": {"pair": "Left"}}, r"row 'X': 'pair' was 'Left', must be true, false or \"Left R"),
+        ({"X": {"pair": ["Left"]}}, r"row 'X': 'pair' was \['Left'\], must be true, false or"),
+        ({"XLeft": {"pair": "Left Right"}}, r"row 'XLeft': a pair adds the .*; leave 'Left' away"),
+        ({"X": {"share_of": 1.0}}, r"row 'X': 'share_of' was 1.0, must be the name of a control"),
+        ({"X": {"share_of": "midle"}}, r"'share_of': no row above .* 'midle'; did you mean 'mid"),
+        ({"X": {"share_of": "X"}}, r"'share_of': no row above and no layer below .* called 'X'"),
         ({"X": {"pair": True, "puller_left": 1.0}}, r"in a pair leave the side of 'puller_left'"),
         ({"X_left": {"pair": True, "puller": 1.0}}, r"row 'X_left': a pair adds the sides"),
         ({"middle": {"slide": 1.0}}, r"row 'middle': there is a control called 'middle' already"),
@@ -131,6 +182,12 @@ def test_a_wrong_row_is_named(rows: dict[str, Any], message: str) -> None:
         controls(layer("X", **rows))
 
 
+def test_a_row_cannot_hold_what_is_a_share() -> None:
+    """A share counts by the values that are set, which a row above does not know."""
+    with pytest.raises(ValueError, match=r"row 'above', 'part': is a share of 'whole', which"):
+        controls(SHARED, layer("Y", above={"part": 1.0}))
+
+
 def test_the_shipped_tables_are_complete(simulation: sim.Simulation, head: Head) -> None:
     """Every action unit, expression and viseme is there, with words for what it does."""
     names = simulation.limits
@@ -140,16 +197,20 @@ def test_the_shipped_tables_are_complete(simulation: sim.Simulation, head: Head)
     assert all(f"{unit}{side}" in names for unit in ONE_SIDED for side in ("_left", "_right"))
     assert set(EXPRESSIONS) <= set(simulation.layers["Expressions"])
     assert simulation.layers["Visemes"] == tuple(f"viseme_{sound}" for sound in VISEMES)
-    for title in ("Action units", "Expressions", "Visemes"):
+    shapes = simulation.layers["ARKit shapes"]
+    assert {part: sum(name.startswith(part) for name in shapes) for part in ARKIT} == ARKIT
+    assert len(shapes) == 52
+    assert tuple(simulation.layers) == (BOTH_SIDES, *TITLES)
+    for title in TITLES:
         assert all(simulation.actions[name] for name in simulation.layers[title])
 
 
 def test_each_row_of_the_shipped_tables_does_something(simulation: sim.Simulation) -> None:
     """At full value a muscle or a bone is asked for something; silence is silent."""
-    for title in ("Action units", "Expressions", "Visemes"):
+    for title in TITLES:
         for name in simulation.layers[title]:
-            simulation.pose({name: 1.0})
-            assert any(simulation.sums.values()) == (name != "viseme_sil"), name
+            simulation.pose({name: 1.0, **({"jawOpen": 0.5} if name == "mouthClose" else {})})
+            assert any(simulation.sums.values()) == (name not in STILL), name
 
 
 def test_sides_of_shipped_units_mirror_each_other(simulation: sim.Simulation, head: Head) -> None:
@@ -160,7 +221,39 @@ def test_sides_of_shipped_units_mirror_each_other(simulation: sim.Simulation, he
         assert np.abs(left[head.mirror] * (-1.0, 1.0, 1.0) - right).max() < 1e-6
 
 
-@pytest.mark.parametrize("title", ["Action units", "Visemes"])
+def test_sides_of_arkit_shapes_ask_for_the_same(simulation: sim.Simulation) -> None:
+    """Whatever a shape of the left asks of the left, its twin asks of the right."""
+    turned = ("gaze_horizontal_left", "gaze_horizontal_right", "jaw_sideways")
+    other = {"_left": "_right", "_right": "_left"}
+
+    def sums(name: str) -> dict[str, float]:
+        simulation.pose({name: 1.0})
+        return simulation.sums
+
+    shapes = simulation.layers["ARKit shapes"]
+    twins = [name.removesuffix("Left") for name in shapes if name.endswith("Left")]
+    assert len(twins) == 20
+    for base in twins:
+        mirrored = {}
+        for name, value in sums(f"{base}Left").items():
+            stem, mark, side = name.rpartition("_")
+            twin = stem + other.get(mark + side, mark + side)
+            mirrored[twin] = -value if name in turned else value
+        assert sums(f"{base}Right") == pytest.approx(mirrored), base
+
+
+def test_mouth_close_shuts_an_open_jaw(simulation: sim.Simulation, head: Head) -> None:
+    """As much mouthClose as jawOpen brings the lips together at any opening; half of it, half."""
+    for opening in (0.2, 0.6):
+        gaps = []
+        for share in (0.0, 0.5, 1.0):
+            settled_displacement(simulation, {"jawOpen": opening, "mouthClose": share * opening})
+            gaps.append(lip_gap(simulation, head))
+        assert gaps[0] > 5.0 and gaps[2] < 1.0, (opening, gaps)
+        assert gaps[2] < gaps[1] < gaps[0]
+
+
+@pytest.mark.parametrize("title", ["Action units", "Visemes", "ARKit shapes"])
 def test_rows_keep_the_mesh_sound(simulation: sim.Simulation, head: Head, title: str) -> None:
     """No row turns more than a few triangles over, nor throws skin away."""
     for name in simulation.layers[title]:

@@ -204,14 +204,15 @@ def test_lids_turn_about_the_eyeball(simulation: sim.Simulation) -> None:
     anatomy, state = simulation._anatomy, simulation._state
     assert anatomy.lids is not None
     lids, rest = anatomy.lids.vertices, anatomy.surface.positions
-    turn_lids(state, rest, lids, np.array([[1.0, 0.4, 0.0]] * len(lids.centres)), 0.3)
+    gaze = np.array([0.3, -0.2])
+    turn_lids(state, rest, lids, np.array([[1.0, 0.4, 0.0]] * len(lids.centres)), gaze)
     centre = lids.centres[lids.eye]
     before = np.linalg.norm(rest[lids.vertex] - centre, axis=1)
     after = np.linalg.norm(state.carried[lids.vertex] - centre, axis=1)
     assert np.allclose(before, after)
     state.carried[:] = rest
     straight = lids._replace(slide=(0.0, 0.0))
-    turn_lids(state, rest, straight, np.array([[1.0, 0.4, 0.0]] * len(lids.centres)), 0.3)
+    turn_lids(state, rest, straight, np.array([[1.0, 0.4, 0.0]] * len(lids.centres)), gaze)
 
     def angle(x: Array) -> Array:
         high = ((x[lids.vertex] - centre) * lids.up[lids.eye]).sum(axis=1)
