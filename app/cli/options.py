@@ -159,6 +159,7 @@ class Filming:
     compare: str | None
     captions: bool
     camera: str | None
+    alive: bool
     still_time: float | None
     samples: int
     overwrite: bool
@@ -180,6 +181,11 @@ with_filming = packed(
     ),
     click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
     click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
+    click.option(
+        "--alive",
+        is_flag=True,
+        help="What the script leaves alone lives: eyes blink and look at the camera.",
+    ),
     click.option(
         "--time",
         "still_time",

@@ -73,7 +73,6 @@ class Session:
         # The lowest controls, to which all others add up; all where a scene does not tell.
         self.muscles = frozenset(simulation.controls if simulation is not None else self.limits)
         self.groups = highest_first(scene.groups, self.muscles, scene.expressions)
-        self._moved_by: dict[str, frozenset[str]] = {}
 
     def move_to(self, scene: Scene) -> None:
         """Go on with another scene that has the same controls; UserError if it has not.
@@ -140,18 +139,11 @@ class Session:
         self.pose_is_unsaved, self.is_following = is_unsaved, False
         self.note()
 
-    def moved_by(self, name: str) -> frozenset[str]:
-        """The muscles that a control moves: itself, or those that a layer's control adds to."""
-        simulation = getattr(self.scene, "simulation", None)
-        if simulation is None or name in self.muscles:
-            return frozenset({name})
-        if name not in self._moved_by:
-            # Asked of the simulation, between two steps, so that nothing of it is known here.
-            simulation.pose({name: self.limits[name][1]})
-            sums = simulation.sums
-            self.scene.pose(self.values)
-            self._moved_by[name] = frozenset(each for each, share in sums.items() if share)
-        return self._moved_by[name]
+    @property
+    def moved(self) -> frozenset[str]:
+        """The lowest controls that are moved by hand, or by the script."""
+        active = (name for name, value in self.values.items() if value)
+        return frozenset().union(*map(self.scene.moved_by, active))
 
     # Undo
 
@@ -251,8 +243,11 @@ class Session:
         self.note()
         return time
 
-    def advance(self, seconds: float) -> None:
-        """Let time pass: the script moves the controls, the scene follows them."""
+    def advance(self, seconds: float, beneath: Mapping[str, float] | None = None) -> None:
+        """Let time pass: the script moves the controls, the scene follows them.
+
+        beneath: what else moves the scene, at controls that are 0; no script ever has it.
+        """
         if self.is_playing:
             self.time += self.speed * seconds
             if self.time >= self.script.duration:
@@ -261,7 +256,7 @@ class Session:
             self._follow_script()
         if self._recorder is not None:
             self._recorder.add(seconds, self.values)
-        self.scene.pose(self.values)
+        self.scene.pose({**self.values, **(beneath or {})})
         self.scene.step(seconds)
 
     def _follow_script(self) -> None:

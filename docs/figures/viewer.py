@@ -139,6 +139,7 @@ STOPS: dict[str, Callable[[Viewer], None]] = {
 def draw_image(stop: Callable[[Viewer], None]) -> Image:
     """A window, brought to a stop of the tour."""
     with Viewer(script_for(None, "face"), SIZE) as viewer:
+        viewer.settings.is_alive = False  # the same picture every time
         # Wherever the mouse happens to be, it points at nothing: no hint comes up.
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
         wait_until_settled(viewer)
