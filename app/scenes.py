@@ -19,7 +19,7 @@ from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
 
 from .errors import UserError
-from .mouth import shaded_mouth
+from .mouth import Tongue, shaded_mouth
 
 MOST_BAKED = 3000  # vertices; a larger head would take seconds, and takes the built-in one's light
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
@@ -83,6 +83,10 @@ class Scene:
         """Where the rigid parts are now: a (4, 4) matrix for each bone."""
         return {}
 
+    def moved_by(self, name: str) -> frozenset[str]:
+        """The lowest controls that a control moves: itself, or what a layer's control adds to."""
+        return frozenset({name})
+
 
 class FaceScene(Scene):
     """A head, moved by muscles, jaw and gaze through the spring simulation."""
@@ -99,11 +103,13 @@ class FaceScene(Scene):
         self.actions = simulation.actions
         self.expressions = simulation.layers.get("Expressions", ())
         self.parts = shaded_mouth(head.parts)
+        self._tongues = [part for part in self.parts if isinstance(part, Tongue)]
         self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
         self.wrinkles = head.wrinkles
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
+        self._moved_by: dict[str, frozenset[str]] = {}
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
@@ -134,12 +140,31 @@ class FaceScene(Scene):
         count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))
         for _ in range(count):
             self.simulation.step(seconds / count)
+        self._bend_tongue()
 
     def reset(self) -> None:
         self.simulation.reset()
+        self._bend_tongue()
+
+    def _bend_tongue(self) -> None:
+        bent = self.simulation.tongue()
+        for tongue in self._tongues:
+            if bent is not None:
+                tongue.bend(bent)
 
     def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
         return self.simulation.bone_transforms()
+
+    def moved_by(self, name: str) -> frozenset[str]:
+        simulation = self.simulation
+        if name not in self._moved_by:
+            # Asked of the simulation, between two steps, so that nothing of layers is known here.
+            values = simulation.values
+            simulation.pose({name: self.limits[name][1]})
+            sums = simulation.sums
+            simulation.pose(values)
+            self._moved_by[name] = frozenset(each for each, share in sums.items() if share)
+        return self._moved_by[name]
 
 
 class SheetScene(Scene):

@@ -15,6 +15,7 @@ from risorius.assets.fitting import FittedHead
 from ..cameras import camera_for
 from ..errors import UserError
 from ..files import Image, check_file, check_png, save_png
+from ..idle import Idle
 from ..looks import Refinement
 from ..pipeline import Pipeline, side_by_side
 from ..scenes import Scene, build_scene
@@ -39,6 +40,7 @@ class CaptureOptions:
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in one
+    is_alive: bool = False  # what the script leaves alone moves by itself
 
 
 class Capture:
@@ -83,8 +85,17 @@ class Capture:
 
         It begins in the script's first pose, as if that had been held for a while.
         """
+        idle = Idle(self.scene) if self.options.is_alive else None
+        named = (*script.posed_names, *script.tracks)
+        moved = frozenset[str]().union(*map(self.scene.moved_by, named))
+
+        def pose(time: float) -> None:
+            """Ask for what the script and the life beneath it have at this time."""
+            beneath = {} if idle is None else idle.beneath(moved, self.camera.eye, time)
+            self.scene.pose({**script.at(time), **beneath})
+
         self.scene.reset()
-        self.scene.pose(script.at(0.0))
+        pose(0.0)
         if any(self.scene.values.values()):
             self.pipeline.step(SETTLING)
         rate = self.options.frames_per_second
@@ -92,7 +103,7 @@ class Capture:
         bar = tqdm(range(last + 1), unit="frame", disable=not progress or None, leave=False)
         with cleaned_up_if_stopped(bar.close):
             for index in bar:
-                self.scene.pose(script.at(index / rate))
+                pose(index / rate)
                 if index:
                     self.pipeline.step(1.0 / rate)
                 yield index / rate

@@ -82,6 +82,7 @@ def capture(
         style=drawing.style(),
         samples=filming.samples,
         head=drawing.fitted_head(),
+        is_alive=filming.alive,
     )
     most = film_of(
         performance,

@@ -176,8 +176,8 @@ class Live:
             raise UserError(f"--phone goes with --live ifacialmocap, not with {self.live}")
         if self.phone is not None and self.address == LOOPBACK:
             raise UserError(
-                f"--phone: no phone is reached from {LOOPBACK}; add --address {ANYWHERE}, the whole "
-                "network of this computer"
+                f"--phone: no phone is reached from {LOOPBACK}; add --address {ANYWHERE}, "
+                "the whole network of this computer"
             )
         return Listening(
             self.live,
@@ -217,6 +217,7 @@ class Filming:
     compare: str | None
     captions: bool
     camera: str | None
+    alive: bool
     still_time: float | None
     samples: int
     overwrite: bool
@@ -238,6 +239,11 @@ with_filming = packed(
     ),
     click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
     click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
+    click.option(
+        "--alive",
+        is_flag=True,
+        help="What the script leaves alone lives: eyes blink and look at the camera.",
+    ),
     click.option(
         "--time",
         "still_time",
@@ -270,7 +276,7 @@ with_playback = packed(
     click.option(
         "--smooth",
         is_flag=True,
-        help="Calm channels that tremble; costs 16 to 50 ms and up to 14 % of a short peak.",
+        help="Calm channels that tremble; costs 15 to 45 ms and up to 14 % of a short peak.",
     ),
     click.option(
         "--lead",

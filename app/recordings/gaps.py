@@ -17,6 +17,7 @@ from .take import Array, Take
 
 SHORT_GAP = 0.3  # [s] that is bridged by a straight line
 MISSING_ROWS = 4.0  # of usual steps: what is longer, and no short gap, is a hole in the recording
+LARGEST_ANGLE = 360.0  # [degrees]; a larger one is no measurement, and shares are 1 at most
 LONGEST_TAKE = 86_400.0  # [s]
 
 
@@ -35,6 +36,10 @@ def whole_take(
     times: [s], shape (T,). channels: name -> shape (T,). UserError where no face is in it.
     """
     told = list(notes)
+    channels = {
+        name: np.where(np.abs(values) > LARGEST_ANGLE, np.nan, values)
+        for name, values in channels.items()
+    }
     channels = {name: values for name, values in channels.items() if np.isfinite(values).any()}
     if not channels:
         raise UserError(

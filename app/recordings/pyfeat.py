@@ -95,7 +95,7 @@ def _head(numbers: dict[str, Array], is_second: bool, notes: list[str]) -> dict[
     pose = {n: numbers[n] for n in POSE if n in numbers and np.isfinite(numbers[n]).any()}
     if not pose:
         return {}
-    size = max(float(np.nanmax(np.abs(values))) for values in pose.values())
+    size = max(float(np.nanpercentile(np.abs(values), 90)) for values in pose.values())
     is_early = size > LARGEST_RADIANS
     notes.append(
         f"Angles of the head reach {size:.2g} and were taken for "

@@ -16,6 +16,11 @@ class Lead:
         """Lead these controls from now on, and no others."""
         self._controls, self._share = controls, share
 
+    @property
+    def is_on(self) -> bool:
+        """Whether anything is led."""
+        return self._share > 0.0
+
     def over(
         self, values: Mapping[str, float], limits: Mapping[str, tuple[float, float]]
     ) -> dict[str, float]:

@@ -43,6 +43,8 @@ class LiveCommands:
         self.wanted = Listening("livelink")
         self.face: LiveFace | None = None
         self.own_address = ""
+        self.has_changed = False  # what can be said of who sends, in the last `advance`
+        self._told: object = None
 
     # Commands
 
@@ -106,9 +108,12 @@ class LiveCommands:
         """Take in what has come, and lead the session by it."""
         face = self.face
         if face is None:
+            self.has_changed = False
             return None
         was_calibrating = face.is_calibrating
         face.advance(min(seconds, LONGEST_STEP))
+        told = face.state, face.received > 0
+        self.has_changed, self._told = told != self._told, told
         self._session.live.take(face.controls(), face.presence)
         if was_calibrating and not face.is_calibrating:
             return "this face is neutral now"

@@ -132,6 +132,7 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         command("Next shading", "S", lambda: settings.display.next_shading()),
         switch("Texture", "T", "skin", "textured", "plain"),
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
+        command("Idle life", "A", settings.toggle_life, lambda: settings.is_alive),
         command("Frame the face", "F", view.fit_scene),
         command("Hide panels", "Tab", panels.toggle_hidden, lambda: panels.are_hidden),
         full("Full screen", "F11", toggle_full),

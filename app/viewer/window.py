@@ -31,6 +31,7 @@ from .file_drop import FileDrop
 from .files import Files
 from .frame_times import FrameTimes
 from .gui import Gui, on_drop, poll_events, wait_for_event, wake_up
+from .idle_life import IdleLife
 from .key_selection import KeySelection
 from .live_commands import PACING, LiveCommands
 from .messages import Messages
@@ -70,6 +71,7 @@ from .view import View
 
 IDLE_WAIT = 2.0  # [s] between two frames while nothing happens
 WATCHFUL_WAIT = 0.1  # [s] the same while a file dialog is open, or words are typed
+LIFE_WAIT = 1.0 / 30.0  # [s] from one frame to the next while the face does no more than live
 FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
 
 
@@ -149,6 +151,7 @@ class Viewer:
             *menus.live_menu(self.live, self.panel_state),
             *menus.help_menu(self.panel_state),
         )
+        self.life = IdleLife(session, settings, self.view)
         self.physics = Physics(session, self.times)
         self.painter = Painter(self.stage, self.view, self.exporter, self.messages)
         self.panel_cache = PanelCache()
@@ -210,16 +213,9 @@ class Viewer:
                     break
                 self.pause()
 
-    def pause(self) -> None:
-        """What is between two frames: nothing, or a wait for what the next one is to show."""
-        if self.is_idle:
-            self._wait()
-        elif self.live.is_receiving and not self.live.has_frame:
-            wait_for_event(PACING)  # a frame that begins with a packet shows it at once
-
     def wait_for_frame(self) -> None:
         """Wait until something happens, or it is time to look around; then show a frame."""
-        self._wait()
+        self.pause()
         self.frame()
 
     # One turn of the loop
@@ -229,6 +225,7 @@ class Viewer:
         poll_events()
         if self.gui.has_events:
             self._awake = FRAMES_AFTER_EVENT
+            self.life.note_input()
         now = time.perf_counter()
         elapsed, self._last = now - self._last, now
         self.times.note_frame(elapsed)
@@ -238,20 +235,27 @@ class Viewer:
         seconds = 1.0 / FRAMES_PER_SECOND if is_filming else elapsed
         is_skin_dragged = self.mouse.is_dragging_skin
         self.messages.attempt(partial(self.live.advance, seconds))
-        is_urgent = self.live.is_urgent
-        self.messages.attempt(
-            lambda: self.physics.advance(
-                seconds, is_skin_dragged=is_skin_dragged, is_urgent=is_urgent
-            )
+        if self.live.has_changed:
+            self._awake = FRAMES_AFTER_EVENT
+        is_held = is_skin_dragged or imgui.is_any_item_active()
+        life = partial(self.life.after, is_held=is_held) if self.life.is_on else None
+        advance = partial(self.physics.advance, seconds, is_skin_dragged=is_skin_dragged)
+        self.messages.attempt(partial(advance, is_urgent=self.live.is_urgent, life=life))
+        is_moving = self.painter.paint(
+            elapsed, has_moved=self.physics.has_moved, is_alive=self.physics.is_left_alone
         )
-        is_moving = self.painter.paint(elapsed, has_moved=self.physics.has_stepped)
+        is_moving = self.painter.paint(
+            elapsed, has_moved=self.physics.has_moved, is_alive=self.physics.is_left_alone
+        )
+        if self.is_left_alone and not (is_moving or imgui.get_io().want_text_input):
+            return  # what is shown stays as it is; of a line of text the cursor blinks
         self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
         if self.file_drop.has_announced:
             self.messages.text = ""
             self.messages.attempt(self.file_drop.open_announced)
             self._last = time.perf_counter()
-        if is_moving:
+        if is_moving and not self.is_left_alone:
             self.painter.level_of_detail.note(time.perf_counter() - now)
         if self.exporter.film is not None:  # on a fast machine a film is made in real time
             time.sleep(max(1.0 / FRAMES_PER_SECOND - (time.perf_counter() - now), 0.0))
@@ -262,6 +266,7 @@ class Viewer:
         """Whether nothing moves, and nothing is about to."""
         return (
             self.physics.is_at_rest
+            and not self.life.is_on
             and self._awake == 0
             and self.painter.is_complete
             and not self.session.is_recording
@@ -269,6 +274,31 @@ class Viewer:
             and not self.messages.is_fading
             and self.exporter.film is None
         )
+
+    @property
+    def is_left_alone(self) -> bool:
+        """Whether the face does no more than live, and nothing else happens."""
+        return (
+            self.physics.is_left_alone
+            and self._awake == 0
+            and not self.messages.is_fading
+            and not self.files.is_waiting
+            and self.exporter.film is None
+        )
+
+    def pause(self) -> None:
+        """Sleep where nothing happens, and between frames where the face only lives.
+
+        The latter half of the time at least, however long a frame takes. A live face that has just
+        been shown is waited for: a frame that begins with what it sent shows that at once.
+        """
+        if self.is_idle:
+            self._wait()
+        elif self.is_left_alone:
+            spent = time.perf_counter() - self._last
+            wait_for_event(max(LIFE_WAIT - spent, spent))
+        elif self.live.is_receiving and not self.live.has_frame:
+            wait_for_event(PACING)
 
     def _wait(self) -> None:
         """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
@@ -284,7 +314,8 @@ class Viewer:
     def _show_panels(self, elapsed: float, *, is_moving: bool) -> None:
         """Answer the user, and draw the panels around the scene where their image is not stored."""
         size, is_answering = self.surface.size, self._awake > 0 or imgui.is_any_item_active()
-        self.panel_cache.age(elapsed)
+        if not self.is_left_alone:  # what the face does by itself moves no slider
+            self.panel_cache.age(elapsed)
         # What is dragged in the scene moves no slider.
         has_input = is_answering and not self.mouse.is_dragging
         is_visible = self.panel_cache.are_due(size, is_moving=is_moving, has_input=has_input)

@@ -68,6 +68,9 @@ DOCUMENTS: dict[str, Any] = {
     "lists of numbers": {"jawOpen": JAW, "mouthClose": [0.125] * 4, "fps": 30},
     "lists of numbers below": {"fps": 30, "blendshapes": {"jaw_open": JAW}},
     "lists with times": {"jawOpen": JAW, "time": [0.0, 1 / 30, 2 / 30, 0.1]},
+    "lists with milliseconds": {
+        "jawOpen": JAW, "timestamp_ms": [round(1e4 + n * 100 / 3, 4) for n in range(4)],
+    },
     "an export of Audio2Face": {
         "exportFps": 30.0, "trackPath": "x", "numFrames": 4, "facsNames": ["jawOpen", "mouthClose"],
         "weightMat": [[jaw, 0.125] for jaw in JAW],

@@ -104,6 +104,20 @@ def test_values_that_are_none(tmp_path: Path) -> None:
     assert told(take.notes, "far from 0 to 1")
 
 
+def test_angles_that_are_none(tmp_path: Path) -> None:
+    """Angles of -9.8e5 neither hide the unit nor turn the head."""
+    columns = live_link()
+    yaw, pitch = np.array(columns["HeadYaw"]), np.array(columns["LeftEyePitch"])
+    yaw[5], pitch[[7, 50]] = -9.8e5, 1e300
+    take = read_take(
+        written(tmp_path / "take.csv", columns | {"HeadYaw": yaw, "LeftEyePitch": pitch})
+    )
+    assert told(take.notes, "in radians")
+    there = -np.degrees(np.array(columns["LeftEyePitch"], dtype=float))
+    assert take.channels["eye_pitch_left"] == pytest.approx(there, abs=0.1)
+    assert np.abs(take.channels["head_yaw"]).max() < 30.0
+
+
 @pytest.mark.parametrize(
     ("name", "unit"),
     [("radians", 1.0), ("degrees", math.pi / 180.0), ("halves of a turn", math.pi)],

@@ -10,8 +10,9 @@ from imgui_bundle import imgui
 
 from risorius.app.script import load_script
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.keyframes import POSES, KeyPlace, on_frame, places_of
+from risorius.app.viewer.keyframes import POSES, on_frame, places_of
 from risorius.app.viewer.panel_cache import REFRESH
+from risorius.app.viewer.places import NOWHERE, KeyPlace
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -40,7 +41,7 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
     path = tmp_path / "own.toml"
     path.write_text(SCRIPT.read_text(encoding="utf-8"))
     viewer.session.open(load_script(path))
-    viewer.selection.places = frozenset()
+    viewer.selection.places = NOWHERE
     viewer.time_axis.is_whole = True
     # While the face moves, panels are drawn anew a few times a second only.
     end = time.monotonic() + 2.0 * REFRESH
