@@ -26,7 +26,7 @@ from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import build_scene
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.frame_times import FrameTimes
-from risorius.app.viewer.physics import STEP, Physics
+from risorius.app.viewer.physics import STEP, Life, Physics
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.settings import Display
 
@@ -59,9 +59,16 @@ class _NotingPhysics(Physics):
         self._face = face
         self.done: dict[int, tuple[float, ...]] = {}
 
-    def advance(self, seconds: float, **told: bool) -> None:
+    def advance(
+        self,
+        seconds: float,
+        *,
+        is_skin_dragged: bool,
+        is_urgent: bool = False,
+        life: Life | None = None,
+    ) -> None:
         """Step, and note what that was of."""
-        super().advance(seconds, **told)
+        super().advance(seconds, is_skin_dragged=is_skin_dragged, is_urgent=is_urgent, life=life)
         if self.has_stepped:
             self.done.setdefault(_number(self._face), (time.perf_counter(),))
 

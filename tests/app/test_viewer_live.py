@@ -129,6 +129,20 @@ def test_a_signal_that_comes_back_is_taken_up_smoothly(viewer: Viewer) -> None:
     assert np.abs(np.diff(steps)).max() < 0.5
 
 
+def test_when_nobody_is_there_the_face_lives_by_itself(viewer: Viewer) -> None:
+    """Somebody who sends moves it alone; once lost, it blinks and looks again."""
+    face = listen(viewer)
+    viewer.settings.is_alive = True
+    try:
+        assert viewer.life.is_on
+        hold(viewer, face, 0.5, jawOpen=0.3)
+        assert not viewer.life.is_on
+        assert until(viewer, lambda: viewer.live.presence == 0.0)
+        assert viewer.life.is_on
+    finally:
+        viewer.settings.is_alive = False
+
+
 def test_buttons_listen_calibrate_mirror_and_stop(viewer: Viewer) -> None:
     """All by hand, in the panel; the neutral face does not move ours any more."""
     click(viewer, "tab Live")
