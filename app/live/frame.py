@@ -9,13 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
 
 from ..recordings.spelling import shape_of
 
 MOST_BYTES = 16384  # of a packet; the largest that anybody sends has about 3000
 LONGEST_NAME = 40  # letters of a shape
-MOST_NAMES = 500  # that are remembered, those that nobody knows among them
 LONGEST_SUBJECT = 40  # letters; it is shown in the window
 
 
@@ -56,11 +54,6 @@ def readable_subject(name: bytes) -> str:
     return "".join(filter(str.isprintable, text))[:LONGEST_SUBJECT]
 
 
-@lru_cache(maxsize=MOST_NAMES)
-def _known_shape(name: str) -> str | None:
-    return shape_of(name)
-
-
 def shape_named(name: str) -> str | None:
     """The shape that a sender calls so, None for another name."""
-    return _known_shape(name) if len(name) <= LONGEST_NAME else None
+    return shape_of(name) if len(name) <= LONGEST_NAME else None

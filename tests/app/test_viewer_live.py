@@ -8,6 +8,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -55,10 +56,10 @@ def sending(face: LiveFace, file: Path) -> Iterator[None]:
 
 
 def hold(viewer: Viewer, face: LiveFace, seconds: float, **channels: float) -> None:
-    """Send the same face for a while, sixty times a second, while the window runs."""
+    """Send the same face with every frame of the window, for a while and until it leads."""
     end = time.monotonic() + seconds
     with Sender("livelink", LOOPBACK, face.port, "Ada") as sender:
-        while time.monotonic() < end:
+        while time.monotonic() < end or (face.presence < 1.0 and time.monotonic() < end + 20.0):
             sender.send(channels)
             viewer.frame()
 
@@ -113,9 +114,9 @@ def test_a_signal_that_comes_back_is_taken_up_smoothly(viewer: Viewer) -> None:
     steps: list[float] = []
     advance = viewer.session.advance
 
-    def noting(seconds: float) -> None:
+    def noting(*given: Any) -> None:
         steps.append(viewer.session.current["jawOpen"])
-        advance(seconds)
+        advance(*given)
 
     viewer.session.advance = noting  # type: ignore[method-assign]
     try:
