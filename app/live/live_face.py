@@ -189,7 +189,3 @@ class LiveFace:
             }
             self.calibration = replace(self.calibration, neutral=neutral_now(median))
         self._neutral, self._neutral_until = [], None
-
-    def forget_neutral(self) -> None:
-        """Take the channels as they come again."""
-        self.calibration = replace(self.calibration, neutral={})

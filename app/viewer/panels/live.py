@@ -259,5 +259,5 @@ def advice_in_words(face: LiveFace, own_address: str) -> str:
 
 def packets_in_words(face: LiveFace) -> str:
     """How many packets came, and how many were of no use."""
-    unusable = f", {face.unusable} of no use" if face.unusable else ""
-    return f"{face.received} packets{unusable}"
+    unusable = f", of no use: {face.unusable}" if face.unusable else ""
+    return f"packets: {face.received}{unusable}"
