@@ -244,9 +244,6 @@ class Viewer:
         is_moving = self.painter.paint(
             elapsed, has_moved=self.physics.has_moved, is_alive=self.physics.is_left_alone
         )
-        is_moving = self.painter.paint(
-            elapsed, has_moved=self.physics.has_moved, is_alive=self.physics.is_left_alone
-        )
         if self.is_left_alone and not (is_moving or imgui.get_io().want_text_input):
             return  # what is shown stays as it is; of a line of text the cursor blinks
         self._show_panels(elapsed, is_moving=is_moving)
