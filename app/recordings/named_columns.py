@@ -23,6 +23,7 @@ from .timing import times_of
 NAMED = "Table of named columns"
 PERCENT = 2.0  # shapes beyond are no shares: 0 to 100
 NONSENSE = 3.0  # and shares beyond are no measurements
+MOST_PERCENT = 110.0  # an intensity beyond is none in any unit
 NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
                  "mouthShrugUpper")  # fmt: skip
 OF_NO_USE = ("blendshapecount", "timecode", "index", "")
@@ -123,6 +124,7 @@ def shares(shapes: dict[str, Array], notes: list[str]) -> dict[str, Array]:
 
 def intensities(units: dict[str, Array], notes: list[str]) -> dict[str, Array]:
     """Action units as intensities 0 to 1; FACS' 0 to 5 (A to E) and percent are divided."""
+    units = {name: np.where(np.abs(v) > MOST_PERCENT, np.nan, v) for name, v in units.items()}
     highest = max((float(np.nanmax(values, initial=0.0)) for values in units.values()), default=0.0)
     largest = 1.0 if highest <= 1.0 else 5.0 if highest <= 6.0 else 100.0
     if units and largest > 1.0:
@@ -133,7 +135,7 @@ def intensities(units: dict[str, Array], notes: list[str]) -> dict[str, Array]:
 def is_calibrated(shapes: dict[str, Array], notes: list[str]) -> bool:
     """Whether the neutral face was taken away: then shapes that never rest are often at 0."""
     resting = [shapes[name] for name in NEVER_AT_REST if name in shapes]
-    calibrated = sum(bool(np.nanmean(values <= 1e-6) > 0.2) for values in resting) >= 3
+    calibrated = sum(bool(np.mean(values <= 1e-6) > 0.2) for values in resting) >= 3
     if calibrated and len(shapes) == len(ARKIT):
         notes.append("The take is calibrated: its neutral face is at 0.")
     return calibrated

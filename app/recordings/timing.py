@@ -124,6 +124,9 @@ def clock_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> A
     rate = rate or counted
     base = math.ceil(rate if frames.max() < rate <= RATES[-1] else counted)
     numbers = _unwrapped(seconds) * base + frames
+    if not _mostly_rises(numbers + fractions):
+        notes.append("The timecode stands still, and was not used.")
+        return frame_times(None, len(cells), rate, notes)
     if is_drop_frame:  # two numbers a minute (four of 60) are left out, but in each tenth minute
         minutes = np.floor(_unwrapped(seconds) / 60.0)
         numbers -= (base // 15) * (minutes - np.floor(minutes / 10.0))

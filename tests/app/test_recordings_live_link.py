@@ -333,6 +333,14 @@ def test_a_second_for_each_row(tmp_path: Path) -> None:
     assert told(notes, "rows are frames")
 
 
+def test_whole_seconds(tmp_path: Path) -> None:
+    """A clock that many rows share tells nothing: rows are frames."""
+    codes = [f"10:00:{n // 30:02}" for n in range(90)]
+    times, notes = take_of(tmp_path, codes, rate=30.0)
+    assert times == pytest.approx(np.arange(90) / 30.0)
+    assert told(notes, "stands still")
+
+
 def test_rows_out_of_order(tmp_path: Path) -> None:
     """Times that come twice or go back are left out, with their number."""
     frames = [0.0, 1.0, 1.0, 2.0, 1.0, 3.0]
