@@ -100,10 +100,9 @@ class TrackPainter:
         self._lines = imgui.get_window_draw_list()
         self._low, self._high = axis.x(axis.start) - em(0.5), axis.x(axis.end) + em(0.5)
         margin = axis.seconds(em(0.5))
-        count = max(round((self._high - self._low) / CLOSEST), 1)
+        count = max(round((self._high - self._low) / CLOSEST), 2)
         self._edges = np.linspace(axis.start - margin, axis.end + margin, count + 1)  # of columns
-        halves = np.linspace(self._edges[0], self._edges[-1], 4 * count + 1)[1::2]
-        self._halves = axis.x(halves)
+        self._halves = axis.x(np.linspace(self._edges[0], self._edges[-1], 4 * count + 1)[1::2])
         self._script_end = min(max(axis.x(duration), self._low), self._high)
 
     def draw(self, track: Track, top: float, unit: float) -> bool:
@@ -163,6 +162,7 @@ class TrackPainter:
         return is_dense
 
     def _draw_diamonds(self, marks: Floats, middle: float, reach: float, fill: int) -> None:
+        """A diamond for each mark."""
         for x in marks.tolist():
             left, right = (x - reach, middle), (x + reach, middle)
             top, bottom = (x, middle - reach), (x, middle + reach)
