@@ -1,7 +1,8 @@
 """The keys in time: a ruler to scrub in, below it a row of keys for the poses and the tracks.
 
 As in every dope sheet: a click selects a key and goes there, a drag moves what is selected, Shift
-adds, a drag over nothing draws a box, the wheel zooms.
+adds, a drag over nothing draws a box, the wheel zooms. Where keys are too dense to be told apart,
+only those that are selected are dragged, and a drag over others draws a box.
 """
 
 from __future__ import annotations
@@ -70,9 +71,10 @@ class DopeSheet:
         self._messages, self._menus = messages, menus
         self._selection, self._axis = selection, axis
         self._drag: Drag | None = None
-        self._grabbed = NOWHERE  # the keys at one time that are dragged
+        self._grabbed = NOWHERE  # the keys at one time that the mouse was pressed on
         self._tracks: tuple[Track, ...] = ()
         self._known: tuple[Script | None, bool] = None, False  # of which the tracks are
+        self._are_dense: dict[str, bool] = {}  # by label: keys cannot be told apart
         self._tops = [0.0]  # of each row, and of what would come below the last [window units]
         self._gutter = 0.0  # the width of their names [window units]
         self._name_line = PoseNameLine(gui, session, messages, selection)
@@ -153,7 +155,7 @@ class DopeSheet:
         for track, (top, bottom) in zip(self._tracks, itertools.pairwise(self._tops), strict=True):
             corners = (place.x, top), (place.x + room.x, bottom)
             if imgui.is_rect_visible(*corners):
-                painter.draw(track, top, em(ROW))
+                self._are_dense[track.label] = painter.draw(track, top, em(ROW))
                 arrow = em(0.9) if track.is_sum else 0.0
                 label = shortened(track.label, self._gutter - arrow - em(0.3))
                 corner = place.x, bottom - em(ROW)
@@ -180,7 +182,7 @@ class DopeSheet:
         if under and not imgui.is_mouse_down(LEFT):
             imgui.set_tooltip(described(self._session.script, under))
         if imgui.is_mouse_clicked(LEFT):
-            self._press(io, under)
+            self._press(io, under, is_dense=track is not None and self._are_dense[track.label])
         elif imgui.is_mouse_clicked(RIGHT):
             if under and not under <= selection.places:
                 selection.places = under
@@ -200,11 +202,12 @@ class DopeSheet:
         places = self._selection.places if selected is None else selected
         self._drag = Drag(doing, began, self._session.script, places)
 
-    def _press(self, io: Any, under: Places) -> None:
+    def _press(self, io: Any, under: Places, *, is_dense: bool) -> None:
         selection = self._selection
         if under and imgui.is_mouse_double_clicked(LEFT) and selection.can_rename:
             selection.rename()
-        elif not under:
+        elif not under or (is_dense and not under <= selection.places):
+            self._grabbed = under
             self._begin("box", io, selection.places if io.key_shift else NOWHERE)
         else:
             if io.key_shift and under <= selection.places:
@@ -290,12 +293,13 @@ class DopeSheet:
         if drag.doing == "keys" and drag.has_moved:
             lost = len(keyframes.places_of(drag.script)) - len(keyframes.places_of(session.script))
             line = f"{counted(lost)} replaced; Ctrl+Z brings back" if lost > 0 else None
-        elif drag.doing == "keys" and not io.key_shift:
-            self._selection.places = self._grabbed
-            session.is_playing = False
-            session.seek(self._grabbed.first)
-        elif drag.doing == "box" and not drag.has_moved:
-            self._selection.places = drag.selected
+        elif drag.doing in ("keys", "box") and not drag.has_moved:
+            if drag.doing == "box":
+                self._selection.places = drag.selected | self._grabbed
+            if self._grabbed and not io.key_shift:
+                self._selection.places = self._grabbed
+                session.is_playing = False
+                session.seek(self._grabbed.first)
         if drag.doing != "pan":
             session.note()
         return line
