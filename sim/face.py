@@ -287,6 +287,20 @@ class Simulation:
             transforms[f"eye_{ball.side.value}"] = self._head.after(motion).matrix(anatomy.space)
         return transforms
 
+    def tongue(self) -> npt.NDArray[np.float64] | None:
+        """Vertices of the part "tongue" now, shape (T, 3); None for a head without one.
+
+        As the mandible's motion finds them: its bone's matrix has still to be applied.
+        """
+        anatomy, now = self._anatomy, self._controls.now
+        if anatomy.tongue is None:
+            return None
+        out, up = max(now("tongue_out"), 0.0), max(now("tongue_up"), 0.0)
+        if out == up == 0.0:
+            return anatomy.space.to_head(anatomy.tongue.rest)
+        bent = anatomy.tongue.bent(out, up, self._state.x, self._mandible)
+        return anatomy.space.to_head(bent)
+
     def fibres(self) -> dict[str, list[npt.NDArray[np.float64]]]:
         """Contracted muscle fibres now, control name -> polylines (n, 3) [head units], to draw."""
         pull = self._drive.pull(self._drive.activation())
