@@ -296,7 +296,7 @@ def take(viewer: Viewer, own: Path, tmp_path: Path) -> Script:
     tracks = {name: Channel(times, chance.uniform(0.0, 0.4, 9000).round(3)) for name in names}
     path = tmp_path / "take.toml"
     save_script(path, Script("take", 600.0, "take", tracks=tracks))
-    viewer.session.open(viewer.session.read(path))
+    viewer.session.open(load_script(path))
     viewer.settings.folds["Tracks"] = True
     draw_frames(viewer)
     return viewer.session.script
