@@ -12,6 +12,7 @@ import os
 import stat
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 import numpy.typing as npt
@@ -31,23 +32,30 @@ def read_text(path: Path, *, what: str, longest: int) -> str:
     what: what the file is to be, for error texts ("script"). Raises UserError for what is there
     and of no use, FileNotFoundError where there is nothing.
     """
-    try:
-        if not stat.S_ISREG(path.stat().st_mode):
-            kind = "folder" if path.is_dir() else "pipe or a device"
-            raise UserError(f"{path}: is a {kind}, not a file; a {what} is a plain file")
-        with path.open("rb") as file:
-            content = file.read(longest + 1)
-    except FileNotFoundError:
-        raise
-    except (OSError, ValueError) as error:  # a name that no file can have is a ValueError
-        why = getattr(error, "strerror", None) or error
-        raise UserError(f"{path}: cannot be read: {why}") from None
+    with plain_file(path, what=what) as file:
+        content = file.read(longest + 1)
     if len(content) > longest:
         raise UserError(f"{path}: is longer than a {what} may be, {longest >> 20} MB")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise UserError(f"{path}: cannot be read as a text file: {error}") from None
+
+
+@contextlib.contextmanager
+def plain_file(path: Path, *, what: str) -> Iterator[BinaryIO]:
+    """Open a plain file to read; errors are those of `read_text`."""
+    try:
+        if not stat.S_ISREG(path.stat().st_mode):
+            kind = "folder" if path.is_dir() else "pipe or a device"
+            raise UserError(f"{path}: is a {kind}, not a file; a {what} is a plain file")
+        with path.open("rb") as file:
+            yield file
+    except FileNotFoundError:
+        raise
+    except (OSError, ValueError) as error:  # a name that no file can have is a ValueError
+        why = getattr(error, "strerror", None) or error
+        raise UserError(f"{path}: cannot be read: {why}") from None
 
 
 @contextlib.contextmanager

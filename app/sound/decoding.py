@@ -1,0 +1,80 @@
+"""A sound file -> its samples. Any file that ffmpeg hears something in: WAV, MP3, a film."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import UserError
+from ..ffmpeg import FROM_THE_START, program, sound_input
+from ..files import plain_file
+from ..script import Script
+
+RATE = 48_000  # [samples/s] of everything that is read; what devices and films have, too
+LONGEST = 3600.0  # [s]; all of it is held in memory, 690 MB for so long in stereo
+PATIENCE = 300.0  # [s] for ffmpeg to read a file
+
+
+@dataclass(frozen=True, eq=False)
+class Sound:
+    """Samples over time.
+
+    samples: (N, C) int16; C is 2, or what was asked for. rate: samples per second.
+    """
+
+    file: Path
+    samples: npt.NDArray[np.int16]
+    rate: int = RATE
+
+    @property
+    def duration(self) -> float:
+        """Of all of it [s]."""
+        return len(self.samples) / self.rate
+
+
+def load_sound(file: Path, *, rate: int = RATE, channels: int = 2) -> Sound:
+    """Read a sound file, or the sound of a film; UserError says why there is none in it."""
+    try:
+        with plain_file(file, what="sound"):
+            pass
+    except FileNotFoundError:
+        raise UserError(f"{file}: no such sound file") from None
+    name = program()
+    form = f"-map 0:a:0 -ac {channels} -ar {rate} -f s16le -"
+    source = sound_input(Path(os.path.abspath(file)), LONGEST + 1.0)
+    try:
+        heard = subprocess.run(
+            [name, "-v", "error", "-nostdin", *source, *FROM_THE_START, *form.split()],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=PATIENCE,
+        )
+    except OSError as error:
+        raise UserError(f"no sound without ffmpeg: {name}: {error.strerror}") from None
+    except subprocess.TimeoutExpired:
+        raise UserError(f"{file}: ffmpeg did not read it within {PATIENCE:g} s") from None
+    samples = np.frombuffer(
+        heard.stdout[: len(heard.stdout) // (2 * channels) * 2 * channels], "<i2"
+    )
+    if not samples.size:
+        raise UserError(
+            f"{file}: there is no sound in it that ffmpeg can read; give a WAV, MP3, FLAC, M4A, "
+            "or a film that is heard"
+        )
+    sound = Sound(file, samples.reshape(-1, channels), rate)
+    if sound.duration > LONGEST:
+        raise UserError(f"{file}: is longer than a sound may be, {LONGEST / 60:g} minutes")
+    return sound
+
+
+def with_sound(script: Script, file: Path | None) -> Script:
+    """The script with this sound file beside it; None leaves what it has. UserError for no file."""
+    if file is None:
+        return script
+    load_sound(file)
+    return replace(script, sound=Path(os.path.abspath(file)))
