@@ -143,6 +143,26 @@ def open_window(
 
 
 @click.command()
+@click.argument("audio", type=PATH)
+@click.option("--text", default="", help="The words that are spoken, in English: better by far.")
+@click.option("-o", "--output", type=PATH, required=True, help="script.toml")
+def speak(audio: Path, text: str, output: Path) -> None:
+    """Make a script that speaks what is heard in AUDIO, with visemes in step."""
+    from ..files import check_apart, check_file
+    from ..script import save_script
+    from ..sound import load_sound
+    from ..sound.speech import phones_in
+    from ..sound.visemes import spoken
+
+    check_apart((output,), (audio,))
+    check_file(output)
+    phones = phones_in(audio, text)
+    script = spoken(phones, audio, load_sound(audio).duration)
+    save_script(output, script)
+    click.echo(f"{in_one_line(output)}: {len(phones)} sounds of speech in {script.duration:.1f} s")
+
+
+@click.command()
 def demo() -> None:
     """Render the built-in head through its expressions to out/demo.mp4 and out/demo.png."""
     from ..capture import CaptureOptions
@@ -197,4 +217,4 @@ def warm(quiet: bool) -> None:
     compile_all(quiet)
 
 
-ALL = (capture, view, replay, demo, controls, doctor, warm)
+ALL = (capture, view, replay, speak, demo, controls, doctor, warm)
