@@ -11,8 +11,7 @@ import imageio_ffmpeg
 
 from .errors import UserError
 
-# A sound that begins late in its file (in a film, say) begins as late here.
-FROM_THE_START = ("-af", "aresample=async=1:first_pts=0")
+RATE = 48_000  # [samples/s] of sounds, unless told; what devices and films have, too
 
 
 def program() -> str:
@@ -23,6 +22,16 @@ def program() -> str:
         raise UserError(
             "no film without ffmpeg: install it, or write frames to a folder (-o NAME)"
         ) from None
+
+
+def sound_form(rate: int = RATE, *, is_mono: bool = False) -> tuple[str, ...]:
+    """Options for a sound of this form; of both sides, where it has them, unless it is mono.
+
+    What begins late in its file (the sound of a film, say) begins as late here.
+    """
+    layouts = "mono" if is_mono else "mono|stereo"
+    form = f"aformat=sample_rates={rate}:channel_layouts={layouts}"
+    return "-af", f"aresample=async=1:first_pts=0,{form}"
 
 
 def sound_input(file: Path, seconds: float) -> tuple[str, ...]:

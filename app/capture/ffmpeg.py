@@ -24,10 +24,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import UserError
-from ..ffmpeg import FROM_THE_START, program, sound_input
+from ..ffmpeg import program, sound_form, sound_input
 
 # AAC, as every player wants it, at a quality that nobody tells from the source.
-SOUND_CODING = "-map 0:v -map 1:a:0 -acodec aac -b:a 192k -ac 2 -ar 48000"
+SOUND_CODING = "-map 0:v -map 1:a:0 -acodec aac -b:a 192k"
 PATIENCE = 60.0  # [s] without a sign of life, until ffmpeg is given up
 TICK = 0.01  # [s] between two looks at it
 DYING = 1.0  # [s] for the end of a killed process
@@ -46,7 +46,7 @@ class Soundtrack:
     def options(self) -> list[str]:
         """Of ffmpeg, which has the frames as its first input."""
         source = sound_input(self.file, self.seconds)
-        return [*source, *SOUND_CODING.split(), *FROM_THE_START]
+        return [*source, *SOUND_CODING.split(), *sound_form()]
 
 
 class Encoder:

@@ -10,8 +10,8 @@ from typing import Any
 
 from risorius import __version__, render
 
+from .. import ffmpeg
 from ..errors import UserError, in_one_line
-from ..ffmpeg import program as ffmpeg_program
 
 PATIENCE = 20.0  # [s] for ffmpeg to say which it is
 
@@ -90,7 +90,7 @@ def _sound() -> str:
     from ..sound.player import NoDeviceError, open_device
 
     try:
-        device = open_device(48_000, 2)
+        device = open_device(ffmpeg.RATE, 2)
     except NoDeviceError as error:
         return f"no. {error}; the window is silent, films have their sound"
     name = str(device.backend)
@@ -106,7 +106,7 @@ def _films() -> tuple[bool, str]:
     )
     cure = f"Cure: {mend}"
     try:
-        program = ffmpeg_program()
+        program = ffmpeg.program()
         said = subprocess.run(
             [program, "-version"],
             stdin=subprocess.DEVNULL,

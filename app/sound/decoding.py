@@ -11,11 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import UserError
-from ..ffmpeg import FROM_THE_START, program, sound_input
+from ..ffmpeg import RATE, program, sound_form, sound_input
 from ..files import plain_file
 from ..script import Script
 
-RATE = 48_000  # [samples/s] of everything that is read; what devices and films have, too
 LONGEST = 3600.0  # [s]; all of it is held in memory, 690 MB for so long in stereo
 PATIENCE = 300.0  # [s] for ffmpeg to read a file
 
@@ -24,7 +23,7 @@ PATIENCE = 300.0  # [s] for ffmpeg to read a file
 class Sound:
     """Samples over time.
 
-    samples: (N, C) int16; C is 2, or what was asked for. rate: samples per second.
+    samples: (N, C) int16, where C is 1 or 2. rate: of each channel [samples/s].
     """
 
     file: Path
@@ -37,7 +36,7 @@ class Sound:
         return len(self.samples) / self.rate
 
 
-def load_sound(file: Path, *, rate: int = RATE, channels: int = 2) -> Sound:
+def load_sound(file: Path, *, rate: int = RATE, is_mono: bool = False) -> Sound:
     """Read a sound file, or the sound of a film; UserError says why there is none in it."""
     try:
         with plain_file(file, what="sound"):
@@ -45,11 +44,11 @@ def load_sound(file: Path, *, rate: int = RATE, channels: int = 2) -> Sound:
     except FileNotFoundError:
         raise UserError(f"{file}: no such sound file") from None
     name = program()
-    form = f"-map 0:a:0 -ac {channels} -ar {rate} -f s16le -"
     source = sound_input(Path(os.path.abspath(file)), LONGEST + 1.0)
+    form = ["-map", "0:a:0", *sound_form(rate, is_mono=is_mono), "-f", "wav", "-c", "pcm_s16le"]
     try:
         heard = subprocess.run(
-            [name, "-v", "error", "-nostdin", *source, *FROM_THE_START, *form.split()],
+            [name, "-v", "error", "-nostdin", *source, *form, "-"],
             stdin=subprocess.DEVNULL,
             capture_output=True,
             timeout=PATIENCE,
@@ -58,18 +57,27 @@ def load_sound(file: Path, *, rate: int = RATE, channels: int = 2) -> Sound:
         raise UserError(f"no sound without ffmpeg: {name}: {error.strerror}") from None
     except subprocess.TimeoutExpired:
         raise UserError(f"{file}: ffmpeg did not read it within {PATIENCE:g} s") from None
-    samples = np.frombuffer(
-        heard.stdout[: len(heard.stdout) // (2 * channels) * 2 * channels], "<i2"
-    )
+    samples = _samples(heard.stdout)
     if not samples.size:
         raise UserError(
             f"{file}: there is no sound in it that ffmpeg can read; give a WAV, MP3, FLAC, M4A, "
             "or a film that is heard"
         )
-    sound = Sound(file, samples.reshape(-1, channels), rate)
+    sound = Sound(file, samples, rate)
     if sound.duration > LONGEST:
         raise UserError(f"{file}: is longer than a sound may be, {LONGEST / 60:g} minutes")
     return sound
+
+
+def _samples(wav: bytes) -> npt.NDArray[np.int16]:
+    """The samples in a WAV of 16 bits as ffmpeg writes it into a pipe, (N, C)."""
+    channels = int.from_bytes(wav[22:24], "little") or 1
+    begin = wav.find(b"data") + 8  # behind the chunk's name and its length, which no pipe knows
+    count = (len(wav) - begin) // (2 * channels)
+    if len(wav) < begin or count <= 0:
+        return np.zeros((0, channels), np.int16)
+    samples = np.frombuffer(wav, "<i2", count * channels, begin)
+    return samples.reshape(-1, channels)
 
 
 def with_sound(script: Script, file: Path | None) -> Script:

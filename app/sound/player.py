@@ -29,6 +29,7 @@ except ImportError:  # no wheel for this machine; whatever else there is works w
     miniaudio = None
 
 PERIOD = 0.04  # [s] of samples that are asked for at once
+STUCK = 0.5  # [s] without a request, after which a device is taken for lost
 PERIODS = 3  # that the device holds: what it is given now is heard after the others
 Samples = npt.NDArray[np.int16]
 
@@ -44,6 +45,7 @@ class _Part:
     start: float
     speed: float
     end: float
+    since: float  # when that was wanted [s]
 
 
 class Player:
@@ -73,16 +75,24 @@ class Player:
         return part.start + max(heard, 0.0) * part.speed
 
     @property
+    def is_stuck(self) -> bool:
+        """Whether the device asks for nothing any more, as one that was unplugged."""
+        part, when = self._part, self._asked[0]
+        return part is not None and self._clock() - max(when, part.since) > STUCK
+
+    @property
     def is_heard(self) -> bool:
         """Whether it plays, and is not at the end."""
-        return self._part is not None and self.position < self._part.end
+        part = self._part
+        return part is not None and self.position < part.end and not self.is_stuck
 
     def play(self, start: float, speed: float = 1.0, seconds: float = math.inf) -> None:
         """Play from a time of the sound [s] on, in place of what is played.
 
         speed: other than 1 it is higher or lower, as a tape would be. seconds: for so long at most.
         """
-        self._part = _Part(start, speed, min(start + seconds * speed, self._sound.duration))
+        end = min(start + seconds * speed, self._sound.duration)
+        self._part = _Part(start, speed, end, self._clock())
         if not self._device.running:
             samples = self._samples()
             next(samples)

@@ -49,7 +49,7 @@ def phones_in(file: Path, text: str = "") -> tuple[Phone, ...]:
             "hearing speech needs PocketSphinx: pip install 'risorius[speech]' "
             "(it has no wheel for Python 3.14 yet; take 3.13 for this command)"
         ) from None
-    samples = load_sound(file, rate=RATE, channels=1).samples.tobytes()
+    samples = load_sound(file, rate=RATE, is_mono=True).samples.tobytes()
     if text:
         phones = _aligned(pocketsphinx, samples, _words(text), file)
     else:

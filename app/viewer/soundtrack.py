@@ -1,8 +1,8 @@
 """The script's sound in the window: heard while the script plays, and what the picture keeps to.
 
 The picture follows the sound: a device keeps the time of its own clock, and what is heard must not
-jump. So a little more or less time passes for the picture, until both agree. Only where they are
-far apart (the script began anew, or the window was stalled) the sound goes to where the picture is.
+jump. So a little more or less time passes for the picture, until both agree, and a window that was
+stalled skips what was heard meanwhile. The sound follows where the user goes, or a loop begins.
 """
 
 from __future__ import annotations
@@ -12,9 +12,11 @@ from pathlib import Path
 from ..errors import UserError
 from ..sound import Player, Sound, load_sound
 from ..sound.player import NoDeviceError
+from .physics import MOST_STEPS, STEP
 from .session import Session
 
-APART = 0.2  # [s] of drift that is not made up for, but jumped over
+APART = 0.1  # [s] by which the picture is late before it skips
+LONGEST_FRAME = (MOST_STEPS + 1) * STEP  # [s] of the script at most; more was not the script's own
 CATCHING_UP = 0.3  # [s] in which most of a drift is gone
 SNIPPET = 0.07  # [s] that are heard of each place while the time is dragged
 
@@ -66,21 +68,30 @@ class Soundtrack:
         if is_silent or session.time >= self.sound.duration:
             player.stop()
         elif session.is_playing:
-            return self._in_step(player, seconds)
+            return self._in_step(player, seconds, session.time - before)
         elif was_playing:
             player.stop()
         elif session.time != before:
             player.play(session.time, seconds=SNIPPET)
         return seconds
 
-    def _in_step(self, player: Player, seconds: float) -> float:
-        """How much time shall pass for the picture, that it is where the sound is."""
+    def _in_step(self, player: Player, seconds: float, went: float) -> float:
+        """How much time shall pass for the picture, that it is where the sound is.
+
+        went: how far the script went in the last frame [s].
+        """
         session = self._session
-        drift = (player.position - session.time) / session.speed
-        if abs(drift) > APART or player.speed != session.speed:
+        has_jumped = not 0.0 <= went <= LONGEST_FRAME * session.speed
+        if has_jumped or player.speed != session.speed:
             player.play(session.time, session.speed)
+        if player.is_stuck:
             return seconds
-        return max(seconds + drift * min(seconds / CATCHING_UP, 1.0), 0.0)
+        late = (player.position - session.time) / session.speed - seconds
+        if late > APART:
+            session.time = min(session.time + late * session.speed, session.script.duration)
+            self._time = session.time
+            return seconds
+        return max(seconds + late * min(seconds / CATCHING_UP, 1.0), 0.0)
 
     def rest(self) -> None:
         """Be silent, as long as the window waits."""
