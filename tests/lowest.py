@@ -18,7 +18,7 @@ REQUIREMENT = re.compile(r"(?P<name>[\w.-]+)>=(?P<version>[\w.]+)(?P<marker>;.*)
 
 
 def lowest(requirements: Sequence[str]) -> list[str]:
-    """Turn each NAME>=VERSION into NAME==VERSION, also with a marker; ValueError for other forms."""
+    """Turn each NAME>=VERSION (; MARKER) into NAME==VERSION; ValueError for any other form."""
     pinned = []
     for requirement in requirements:
         match = REQUIREMENT.fullmatch(requirement)
