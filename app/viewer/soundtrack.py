@@ -15,7 +15,7 @@ from ..sound.player import NoDeviceError
 from .physics import MOST_STEPS, STEP
 from .session import Session
 
-APART = 0.1  # [s] by which the picture is late before it skips
+APART = 0.05  # [s] by which the picture is late before it skips
 LONGEST_FRAME = (MOST_STEPS + 1) * STEP  # [s] of the script at most; more was not the script's own
 CATCHING_UP = 0.3  # [s] in which most of a drift is gone
 SNIPPET = 0.07  # [s] that are heard of each place while the time is dragged
