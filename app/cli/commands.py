@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..errors import in_one_line
+from ..errors import UserError, in_one_line
 from ..looks import STATIC, Refinement
-from .options import PATH, SCENE_NAMES, Drawing, Filming, with_drawing, with_filming
+from .options import PATH, SCENE_NAMES, SOUND, Drawing, Filming, with_drawing, with_filming
 from .parameters import Size
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 @click.option("-o", "--output", type=PATH, help="out.mp4, a folder, or .png")
 @click.option("--sheet", type=PATH, help="Contact sheet of the named poses.")
 @click.option("--scene", type=SCENE_NAMES, help="What is animated.")
+@SOUND
 @with_filming
 @with_drawing
 def capture(
@@ -34,6 +35,7 @@ def capture(
     output: Path | None,
     sheet: Path | None,
     scene: str | None,
+    sound: Path | None,
     filming: Filming,
     drawing: Drawing,
 ) -> None:
@@ -43,12 +45,17 @@ def capture(
     """
     from ..capture import CaptureOptions
     from ..capture import capture as film_of
+    from ..capture.outputs import FILM_SUFFIXES
     from ..files import check_apart
     from ..refining import parse_comparison
     from ..script import script_for
+    from ..sound import with_sound
 
-    check_apart((output, sheet), (script, drawing.head, drawing.landmarks))
-    performance = script_for(script, scene, settings)
+    check_apart((output, sheet), (script, sound, drawing.head, drawing.landmarks))
+    if sound is not None and (output is None or output.suffix.lower() not in FILM_SUFFIXES):
+        allowed = ", ".join(FILM_SUFFIXES)
+        raise UserError(f"--sound {sound}: only a film is heard; give -o a name in {allowed}")
+    performance = with_sound(script_for(script, scene, settings), sound)
     refinement = drawing.refinement()
     options = CaptureOptions(
         size=filming.size,
@@ -79,26 +86,41 @@ def capture(
 @click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
 @click.option("--scene", type=SCENE_NAMES, help="face, unless told.")
 @click.option("--script", type=PATH, help="What the space key plays.")
+@SOUND
 @with_drawing
 def view(
-    size: tuple[int, int] | None, scene: str | None, script: Path | None, drawing: Drawing
+    size: tuple[int, int] | None,
+    scene: str | None,
+    script: Path | None,
+    sound: Path | None,
+    drawing: Drawing,
 ) -> None:
     """Open the window: a face with a slider for every muscle."""
     from ..script import script_for
+    from ..sound import with_sound
 
-    open_window(script_for(script, scene), size, drawing)
+    open_window(with_sound(script_for(script, scene), sound), size, drawing)
 
 
 @click.command()
 @click.argument("script", type=PATH)
 @click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
 @click.option("--once", is_flag=True, help="Close the window at the end of the script.")
+@SOUND
 @with_drawing
-def replay(script: Path, size: tuple[int, int] | None, once: bool, drawing: Drawing) -> None:
+def replay(
+    script: Path,
+    size: tuple[int, int] | None,
+    once: bool,
+    sound: Path | None,
+    drawing: Drawing,
+) -> None:
     """Play SCRIPT in real time in the window."""
     from ..script import script_for
+    from ..sound import with_sound
 
-    open_window(script_for(script, None), size, drawing, playing=True, once=once)
+    performance = with_sound(script_for(script, None), sound)
+    open_window(performance, size, drawing, playing=True, once=once)
 
 
 def open_window(
@@ -119,6 +141,26 @@ def open_window(
         display = display_of(drawing.refinement(), script.scene, **drawing.style_options)
     with Viewer(script, size, display, head=head, settings_path=settings_path()) as viewer:
         viewer.run(playing=playing, once=once)
+
+
+@click.command()
+@click.argument("audio", type=PATH)
+@click.option("--text", default="", help="The words that are spoken, in English: better by far.")
+@click.option("-o", "--output", type=PATH, required=True, help="script.toml")
+def speak(audio: Path, text: str, output: Path) -> None:
+    """Make a script that speaks what is heard in AUDIO, with visemes in step."""
+    from ..files import check_apart, check_file
+    from ..script import save_script
+    from ..sound import load_sound
+    from ..sound.speech import phones_in
+    from ..sound.visemes import spoken
+
+    check_apart((output,), (audio,))
+    check_file(output)
+    phones = phones_in(audio, text)
+    script = spoken(phones, audio, load_sound(audio).duration)
+    save_script(output, script)
+    click.echo(f"{in_one_line(output)}: {len(phones)} sounds of speech in {script.duration:.1f} s")
 
 
 @click.command()
@@ -176,4 +218,4 @@ def warm(quiet: bool) -> None:
     compile_all(quiet)
 
 
-ALL = (capture, view, replay, demo, controls, doctor, warm)
+ALL = (capture, view, replay, speak, demo, controls, doctor, warm)

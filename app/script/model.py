@@ -8,6 +8,7 @@ import functools
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from operator import attrgetter
+from pathlib import Path
 from typing import TypeVar
 
 from ..errors import UserError
@@ -58,6 +59,7 @@ class Script:
     source: str = field(compare=False)  # the file it came from, for error texts
     scene: str = "face"
     camera: str | None = None
+    sound: Path | None = None  # the file of what is heard with it, its whole path
     poses: tuple[Pose, ...] = ()  # in the order of time
     tracks: dict[str, Channel] = field(default_factory=dict)
     preface: str = ""  # the lines of comment with which the file begins

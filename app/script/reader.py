@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 import sys
 import tomllib
 from collections.abc import Mapping
@@ -20,7 +21,7 @@ from .model import Channel, Key, Pose, Script
 LONGEST_FILE = 2**24  # [bytes]; a day of speech has less, and /dev/zero has no end
 SOON_READ = 2**20  # [bytes]; a longer script is said to be read, about a second for each megabyte
 LARGEST = 86_400.0  # of any number in a script; as a time [s] it is a day
-TOP_LEVEL_KEYS = ("title", "scene", "camera", "duration", "pose", "tracks")
+TOP_LEVEL_KEYS = ("title", "scene", "camera", "sound", "duration", "pose", "tracks")
 POSE_KEYS = ("time", "easing", "name")
 TRACK_KEYS = ("time", "value", "easing")
 
@@ -73,6 +74,7 @@ def parse_script(text: str, *, source: str) -> Script:
         source=source,
         scene=reader.text(document, "scene", default="face"),
         camera=reader.text(document, "camera", default=None),
+        sound=reader.sound(document),
         poses=poses,
         tracks=tracks,
         preface=preface_of(text),
@@ -118,6 +120,13 @@ class _Reader:
         if value is not default and not isinstance(value, str):
             raise self.fail(f"top level: '{key}' is {value!r}; it must be a text in quotes")
         return value
+
+    def sound(self, document: Mapping[str, Any]) -> Path | None:
+        """The whole path of the sound file, which is named as seen from the script."""
+        name = self.text(document, "sound", default=None)
+        if name == "":
+            raise self.fail("top level: 'sound' is empty; it must be the name of a sound file")
+        return None if name is None else Path(os.path.abspath(Path(self.source).parent / name))
 
     def easing(self, table: Mapping[str, Any], *, where: str) -> str:
         """The name of an easing that there is."""
