@@ -48,6 +48,7 @@ from .panels.message_line import draw_message
 from .panels.question_box import draw_question
 from .panels.recovery_banner import draw_recovery
 from .panels.timeline import Timeline
+from .panels.waveform import Waveform
 from .physics import Physics
 from .placement import Placement, first_size
 from .question import Question
@@ -62,6 +63,7 @@ from .settings import (
     rename_unusable,
     save_settings,
 )
+from .soundtrack import Soundtrack
 from .stage import Stage
 from .time_axis import TimeAxis
 from .view import View
@@ -98,6 +100,7 @@ class Viewer:
         self.session = Session(scene, script)
         self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
         self.recovery.find(self.session)
+        self.soundtrack = Soundtrack(self.session)
         if display is None:
             refused = remove_refused_options(self.settings.display, scene)
             if refused and settings_path is not None and not complaint:
@@ -156,7 +159,10 @@ class Viewer:
         gui, session, settings, messages = self.gui, self.session, self.settings, self.messages
         view, commands, axis = self.view, self.commands, self.time_axis
         bar = MenuBar(gui, session, messages, commands)
-        dope_sheet = DopeSheet(gui, session, settings, messages, self.selection, axis, bar)
+        waveform = Waveform(gui, self.soundtrack, axis)
+        dope_sheet = DopeSheet(
+            gui, session, settings, messages, self.selection, axis, bar, waveform
+        )
         self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
         self.face_panel = FacePanel(gui, session, settings, view)
         mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
@@ -172,6 +178,7 @@ class Viewer:
         with contextlib.suppress(UserError):  # a disk that is full must not keep the window open
             self._remember()
         self.exporter.close()
+        self.soundtrack.close()
         self.recovery.close()
         self._resources.close()
 
@@ -225,6 +232,8 @@ class Viewer:
         self.placement.set_title(f"Risorius: {self.session.name}{mark}")
         is_filming = self.exporter.film is not None
         seconds = 1.0 / FRAMES_PER_SECOND if is_filming else elapsed
+        self.messages.attempt(self.soundtrack.refresh)
+        seconds = self.soundtrack.elapsed(seconds, is_silent=is_filming)
         is_skin_dragged = self.mouse.is_dragging_skin
         is_held = is_skin_dragged or imgui.is_any_item_active()
         life = partial(self.life.after, is_held=is_held) if self.life.is_on else None
@@ -258,6 +267,7 @@ class Viewer:
             and self.painter.is_complete
             and not self.session.is_recording
             and not self.messages.is_fading
+            and not self.soundtrack.is_heard
             and self.exporter.film is None
         )
 
@@ -288,6 +298,7 @@ class Viewer:
         is_watching = self.files.is_waiting or imgui.get_io().want_text_input  # a cursor blinks
         patience = WATCHFUL_WAIT if is_watching else IDLE_WAIT
         patience = min(patience, max(self.recovery.due_in(), 0.0))
+        self.soundtrack.rest()
         begin = time.perf_counter()
         wait_for_event(patience)
         self._last = time.perf_counter()

@@ -27,6 +27,7 @@ from ..time_axis import TimeAxis
 from ..tracks import TRACKS, Track, described, visible_tracks
 from . import key_marks
 from .menu_bar import MenuBar
+from .waveform import Waveform
 from .widgets import shortened
 
 ROW, RULER = 1.35, 1.45  # [em] of a row's and the ruler's height
@@ -66,10 +67,11 @@ class DopeSheet:
         selection: KeySelection,
         axis: TimeAxis,
         menus: MenuBar,
+        waveform: Waveform,
     ) -> None:
         self._gui, self._session, self._settings = gui, session, settings
         self._messages, self._menus = messages, menus
-        self._selection, self._axis = selection, axis
+        self._selection, self._axis, self._waveform = selection, axis, waveform
         self._drag: Drag | None = None
         self._grabbed = NOWHERE  # the keys at one time that the mouse was pressed on
         self._tracks: tuple[Track, ...] = ()
@@ -89,7 +91,8 @@ class DopeSheet:
         """Of ruler and rows [window units], no more than there is room for."""
         self._refresh()
         wanted = sum(track.height for track in self._tracks[:MOST_ROWS]) * em(ROW)
-        return em(RULER) + max(min(wanted, room - em(RULER)), em(ROW))
+        above = em(RULER) + self._waveform.height
+        return above + max(min(wanted, room - above), em(ROW))
 
     def where(self, place: KeyPlace) -> tuple[float, float]:
         """Where a key is drawn, in the first row that has it [window units]."""
@@ -114,18 +117,20 @@ class DopeSheet:
         axis.place(place.x + self._gutter + inset, room.x - self._gutter - 2.0 * inset - em(0.6))
         duration = session.script.duration
         if self._drag is None:
-            axis.fit(max([duration, *(track.end for track in self._tracks)]))
+            ends = [track.end for track in self._tracks]
+            axis.fit(max([duration, self._waveform.duration, *ends]))
             if session.is_playing:
                 axis.follow(session.time)
         imgui.set_cursor_screen_pos((place.x + self._gutter, place.y))
-        imgui.invisible_button("##time", (room.x - self._gutter, em(RULER)))
+        imgui.invisible_button("##time", (room.x - self._gutter, em(RULER) + self._waveform.height))
         self._gui.remember("time")
         if imgui.is_item_hovered():
             self._press_in_ruler(io)
             self._turn_wheel(io)
         edges = place.y, place.y + em(RULER)
         key_marks.draw_ruler(self._gui.theme, axis, session.time, duration, edges)
-        imgui.set_cursor_screen_pos((place.x, edges[1]))
+        self._waveform.draw(session.time, duration, (place.x, edges[1]))
+        imgui.set_cursor_screen_pos((place.x, edges[1] + self._waveform.height))
         self._draw_rows(io)
         if self._drag is not None:
             self._follow(io, self._drag)
