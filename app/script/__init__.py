@@ -24,20 +24,30 @@ A script is a list of poses and, beside them, tracks::
         { time = 2.12, value = 1, easing = "ease-in" },
         { time = 2.3, value = 0 },
     ]
+    smile = '''
+    2.0 0.1
+    2.0167 0.12
+    '''                          # lines of time and value, eased linearly, as recordings have
 
 Before its first key a channel keeps that key's value, after its last key the last one's.
 `docs/scripts.md` is the user's page of this format.
 """
 
+from .bounds import LONGEST_FILE
 from .choice import script_for
-from .model import Channel, Key, Limits, Pose, Script, rounded
-from .reader import LARGEST, LONGEST_FILE, load_script, parse_script, preface_of
-from .writer import is_pose, pose_script, save_script, script_text
+from .model import DECIMALS, EASING_NAMES, Channel, Floats, Key, Limits, Pose, Script, rounded
+from .reader import LARGEST, load_script, parse_script, preface_of
+from .thinning import TOLERANCE, thinned
+from .writer import is_pose, pose_script, prepare_text, save_script, script_text
 
 __all__ = [
+    "DECIMALS",
+    "EASING_NAMES",
     "LARGEST",
     "LONGEST_FILE",
+    "TOLERANCE",
     "Channel",
+    "Floats",
     "Key",
     "Limits",
     "Pose",
@@ -47,8 +57,10 @@ __all__ = [
     "parse_script",
     "pose_script",
     "preface_of",
+    "prepare_text",
     "rounded",
     "save_script",
     "script_for",
     "script_text",
+    "thinned",
 ]

@@ -38,6 +38,12 @@ class Document:
     file: ScriptFile  # in which the script is kept
 
 
+def _new_keys(before: Document, after: Document) -> int:
+    """How many keys of tracks a state has that the one before does not share with it."""
+    known = {id(track) for track in before.script.tracks.values()}
+    return sum(len(track) for track in after.script.tracks.values() if id(track) not in known)
+
+
 class Session:
     """The controls of a scene and the script that may move them."""
 
@@ -58,7 +64,7 @@ class Session:
         self.is_following = False  # the controls are where the script has them
         self._recorder: Recorder | None = None
         self._held: dict[str, float] = {}  # by hand while a recording plays the script
-        self._history = History(self._document())
+        self._history = History(self._document(), _new_keys)
 
     def _enter(self, scene: Scene) -> None:
         self.scene = scene
@@ -209,10 +215,8 @@ class Session:
 
     def seek_key(self, direction: int) -> None:
         """Pause at the next time at which the script has a key, or with -1 at the one before."""
-        times = {place.time for place in keyframes.places_of(self.script)}
-        beyond = [time for time in times if (time - self.time) * direction > 1e-6]
         self.is_playing = False
-        self.seek((min if direction > 0 else max)(beyond, default=self.time))
+        self.seek(keyframes.time_beyond(self.script, self.time, direction))
 
     # Keys
 
@@ -291,8 +295,8 @@ class Session:
 
     @property
     def recording_so_far(self) -> Script | None:
-        """What would be the script if the recording was stopped now, or nearly so."""
-        return self._recorder.draft() if self._recorder is not None else None
+        """What would be the script if the recording was stopped now."""
+        return self._recorder.script() if self._recorder is not None else None
 
     @property
     def recorded_seconds(self) -> float:

@@ -101,9 +101,7 @@ def timeline(viewer: Viewer) -> None:
     viewer.session.seek(2.3)
     viewer.frame()
     axis.zoom(0.6, axis.x(0.0))
-    places = places_of(viewer.session.script)
-    chosen = (place for place in places if 1.5 < place.time < 3.0)
-    viewer.selection.places = frozenset(chosen)
+    viewer.selection.places = places_of(viewer.session.script).between(1.5, 3.0)
 
 
 def keys(viewer: Viewer) -> None:
