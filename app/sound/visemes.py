@@ -10,11 +10,12 @@ from __future__ import annotations
 import os
 from collections import defaultdict
 from collections.abc import Sequence
-from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
-from ..script import Channel, Key, Script, rounded
+import numpy as np
+
+from ..script import Script, rounded, thinned
 from .speech import Phone
 
 # How strongly a sound forms the mouth, by its name in ARPABET; two visemes for one that glides.
@@ -86,10 +87,8 @@ def spoken(phones: Sequence[Phone], file: Path, duration: float) -> Script:
     values = [shares(each, time) for time, each in zip(corners, around, strict=True)]
     tracks = {}
     for viseme in sorted({gesture.viseme for gesture in gestures}):
-        track = [(time, each.get(viseme, 0.0)) for time, each in zip(corners, values, strict=True)]
-        tracks[f"viseme_{viseme}"] = Channel.of(
-            Key(time, round(value, 3), "linear") for time, value in _needed(track)
-        )
+        track = [round(each.get(viseme, 0.0), 3) for each in values]
+        tracks[f"viseme_{viseme}"] = thinned(np.array(corners), np.array(track))
     return Script(
         title=file.stem,
         duration=rounded(duration),
@@ -112,7 +111,9 @@ def gestures_of(phone: Phone) -> tuple[Gesture, ...]:
         if viseme in DOMINANT:
             left = first + HELD * (last - first)
             onset, offset = SHORT_ONSET, SHORT_OFFSET
-        gestures.append(Gesture(viseme, strength, first - onset, formed, left, last + offset))
+        left = max(left, 0.0)  # what is heard at once is formed when the sound begins
+        end = max(last + offset, left + SHORT_OFFSET)
+        gestures.append(Gesture(viseme, strength, first - onset, formed, left, end))
     return tuple(gestures)
 
 
@@ -147,13 +148,3 @@ def _around(gestures: Sequence[Gesture], times: Sequence[float]) -> list[list[Ge
         present = [each for each in present if each.end > time]
         found.append(list(present))
     return found
-
-
-def _needed(track: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The keys of a track without those amid a rest."""
-    padded = [(-1.0, 0.0), *track, (-1.0, 0.0)]
-    return [
-        now
-        for (before, now), (_, after) in zip(pairwise(padded), pairwise(padded[1:]), strict=False)
-        if now[0] >= 0.0 and (before[1] or now[1] or after[1] or now[0] == 0.0)
-    ]

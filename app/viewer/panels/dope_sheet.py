@@ -117,8 +117,9 @@ class DopeSheet:
         axis.place(place.x + self._gutter + inset, room.x - self._gutter - 2.0 * inset - em(0.6))
         duration = session.script.duration
         if self._drag is None:
-            ends = [track.end for track in self._tracks]
-            axis.fit(max([duration, self._waveform.duration, *ends]))
+            axis.fit(
+                max([duration, self._waveform.duration, *(track.end for track in self._tracks)])
+            )
             if session.is_playing:
                 axis.follow(session.time)
         imgui.set_cursor_screen_pos((place.x + self._gutter, place.y))
