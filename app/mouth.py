@@ -34,6 +34,7 @@ class Tongue:
     shine: float
     unlit: Floats  # its colours in full light
     front: float  # z of the front teeth [mm]
+    shape: npt.NDArray[np.float64] | None = None  # taken last
 
     @classmethod
     def of(cls, part: Any, front: float) -> Tongue:
@@ -45,7 +46,10 @@ class Tongue:
         )  # fmt: skip
 
     def bend(self, vertices: npt.NDArray[np.float64]) -> None:
-        """Take another shape (n, 3), lit as it is in its place."""
+        """Take another shape (n, 3), lit as it is in its place; nothing for the same array."""
+        if vertices is self.shape:
+            return
+        self.shape = vertices
         self.vertices = vertices.astype(np.float32)
         self.normals = vertex_normals(vertices, self.faces).astype(np.float32)
         painted = np.minimum(self.unlit * _painted_light(vertices, self.front), 1.0)

@@ -38,7 +38,7 @@ NOISE = (
 )
 LOADING, FRAME, EDIT = 3000.0, 0.2, 50.0  # [ms] promised: to read it, for a frame, for an edit
 ROUNDS = 5
-FRAMES = 60  # of the window in each round
+FRAMES = 20  # of the window in each round
 
 
 @dataclass(frozen=True)

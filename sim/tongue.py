@@ -40,10 +40,10 @@ BODY = 5.0, 4.0  # mm that its middle comes forward and up
 BEHIND = 10.0  # mm behind the lower incisors' edges, where the path over them begins
 RISING = 0.25  # of tongue_out, by which the tip has risen from behind the incisors onto the path
 FILLED, THICKEST = 0.8, 8.5  # of the room between teeth and lips, and at most [mm]
-LEAST_ROOM, FREE_ROOM = 1.2, 2.8  # mm between teeth and lips: nothing comes through, anything does
+LEAST_ROOM, FREE_ROOM = 1.0, 3.5  # mm between teeth and lips: nothing comes through, anything does
 CLEARANCE = 0.6  # mm above teeth and lip
-LIP_FRONT = 1.0  # mm that the lip's most forward skin is in front of its landmarks
-OVERHANG, DROP = 2.5, 9.0  # mm that the tip is in front of the lip and below its edge at the end
+LIP_FRONT = 2.0  # mm that the lip's most forward skin is in front of its landmarks
+OVERHANG, DROP = 4.0, 9.0  # mm that the tip is in front of the lip and below its edge at the end
 PALATE = (5.0, -6.0)  # mm up and forward from the upper incisors' edges: where a risen tip is
 FARTHEST_UP = 24.0  # mm that the tip rises
 SUNK = 0.25  # of the way to where it lies on the lip
@@ -71,7 +71,7 @@ class Tongue:
         """
         lips = (x[self.lips] - mandible.shift) @ mandible.rotation
         upper_edge = (self.upper_edge - mandible.shift) @ mandible.rotation
-        room = min(lips[0, 1] - lips[1, 1], upper_edge[1] - self.lower_edge[1])
+        room = min(lips[0, 1], upper_edge[1]) - max(lips[1, 1], self.lower_edge[1])
         out *= float(np.clip((room - LEAST_ROOM) / (FREE_ROOM - LEAST_ROOM), 0.0, 1.0))
         thickness = float(np.clip(FILLED * room, LEAST_ROOM, THICKEST))
         risen = float(smoothstep(np.array(out / RISING)))

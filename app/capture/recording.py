@@ -20,9 +20,11 @@ from ..looks import Refinement
 from ..pipeline import Pipeline, side_by_side
 from ..scenes import Scene, build_scene
 from ..script import Script
+from ..sound import load_sound
 from ..stopping import cleaned_up_if_stopped
 from . import outputs
 from .captions import captioned, contact_sheet
+from .ffmpeg import Soundtrack
 
 SETTLING = 1.0  # [s] after which the face rests in a pose
 
@@ -137,7 +139,7 @@ def capture(
         recording = stack.enter_context(Capture(scene_of(script, options.head), options))
         film = None
         if output is not None and not still:
-            film = stack.enter_context(_sink_for(output, options, overwrite))
+            film = stack.enter_context(_sink_for(output, options, overwrite, soundtrack_of(script)))
         for now in recording.play(script, until=until, progress=progress):
             is_wanted = bool(wanted) and wanted[0].time <= now + 0.5 / rate
             if film is None and not is_wanted and now != still_at:
@@ -172,6 +174,13 @@ def _check(script: Script, output: Path | None, sheet: Path | None, time: float 
         check_png(output)
     elif output is not None and output.suffix.lower() in outputs.FILM_SUFFIXES:
         check_file(output)
+        if script.sound is not None:
+            load_sound(script.sound)
+
+
+def soundtrack_of(script: Script) -> Soundtrack | None:
+    """What is heard in a film of a script: its sound, as far as the script goes."""
+    return None if script.sound is None else Soundtrack(script.sound, script.duration)
 
 
 def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
@@ -182,12 +191,12 @@ def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
 
 
 def _sink_for(
-    output: Path, options: CaptureOptions, overwrite: bool
+    output: Path, options: CaptureOptions, overwrite: bool, soundtrack: Soundtrack | None
 ) -> contextlib.AbstractContextManager[outputs.FrameSink]:
     """A film or a folder of frames, by what the output is called."""
     suffix = output.suffix.lower()
     if suffix in outputs.FILM_SUFFIXES:
-        return outputs.film(output, options.size, options.frames_per_second)
+        return outputs.film(output, options.size, options.frames_per_second, soundtrack)
     if suffix == "" or output.is_dir():
         return outputs.folder(output, overwrite=overwrite)
     raise UserError(

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 Command = Callable[..., Any]
 PATH = click.Path(path_type=Path)
 SCENE_NAMES = click.Choice(["face", "plane", "cloth"])
+SOUND = click.option(
+    "--sound", type=PATH, help="What is heard: a WAV, MP3, ..., or a film with sound."
+)
 STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "wrinkles")
 
 

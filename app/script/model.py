@@ -8,6 +8,7 @@ import functools
 from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -178,6 +179,7 @@ class Script:
     source: str = field(compare=False)  # the file it came from, for error texts
     scene: str = "face"
     camera: str | None = None
+    sound: Path | None = None  # the file of what is heard with it, its whole path
     poses: tuple[Pose, ...] = ()  # in the order of time
     tracks: dict[str, Channel] = field(default_factory=dict)
     preface: str = ""  # the lines of comment with which the file begins

@@ -36,6 +36,8 @@ def file_menu(
         command("New script", "Ctrl+N", scripts.new),
         command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
         command("Open head ...", "Ctrl+H", file_drop.ask_head),
+        command("Open sound ...", "Ctrl+U", scripts.ask_sound),
+        command("Remove sound", "", scripts.remove_sound, can_run=lambda: scripts.has_sound),
         command("Save script", "Ctrl+S", scripts.save),
         command("Save script as ...", "Ctrl+Shift+S", scripts.save_as),
         command("Save pose ...", "Ctrl+P", scripts.save_pose),

@@ -88,8 +88,10 @@ class Recovery:
             self.discard()
             self._safe = state
         elif self.due_in() <= 0.0:
-            # A long script is made into text in many calls, lest the window stands still.
-            if not (session.script_is_unsaved and prepare_text(session.script)):
+            # A long script is made into text in many calls, lest the window stands still; where
+            # it changes all the time, at once.
+            is_urgent = self.due_in() < -LONGEST
+            if is_urgent or not (session.script_is_unsaved and prepare_text(session.script)):
                 self.save(session)
 
     def due_in(self) -> float:

@@ -7,7 +7,7 @@ units, expressions, visemes) is one entry of `values`; the scene adds them up.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -283,8 +283,15 @@ class Session:
     def toggle_recording(self) -> None:
         """Record the controls from now on, or make what was recorded the script."""
         if self._recorder is None:
-            scene, camera = self.script.scene, self.script.camera
-            empty = Script("Recording", 0.0, "Recording", scene=scene, camera=camera)
+            empty = replace(
+                self.script,
+                title="Recording",
+                duration=0.0,
+                source="Recording",
+                poses=(),
+                tracks={},
+                preface="",
+            )
             self._recorder, self._held = Recorder(empty), {}
             return
         recording = self._recorder.script()

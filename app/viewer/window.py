@@ -51,6 +51,7 @@ from .panels.message_line import draw_message
 from .panels.question_box import draw_question
 from .panels.recovery_banner import draw_recovery
 from .panels.timeline import Timeline
+from .panels.waveform import Waveform
 from .physics import Physics
 from .placement import Placement, first_size
 from .question import Question
@@ -65,6 +66,7 @@ from .settings import (
     rename_unusable,
     save_settings,
 )
+from .soundtrack import Soundtrack
 from .stage import Stage
 from .time_axis import TimeAxis
 from .view import View
@@ -101,6 +103,7 @@ class Viewer:
         self.session = Session(scene, script)
         self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
         self.recovery.find(self.session)
+        self.soundtrack = Soundtrack(self.session)
         if display is None:
             refused = remove_refused_options(self.settings.display, scene)
             if refused and settings_path is not None and not complaint:
@@ -161,7 +164,10 @@ class Viewer:
         gui, session, settings, messages = self.gui, self.session, self.settings, self.messages
         view, commands, axis = self.view, self.commands, self.time_axis
         bar = MenuBar(gui, session, messages, commands)
-        dope_sheet = DopeSheet(gui, session, settings, messages, self.selection, axis, bar)
+        waveform = Waveform(gui, self.soundtrack, axis)
+        dope_sheet = DopeSheet(
+            gui, session, settings, messages, self.selection, axis, bar, waveform
+        )
         self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
         self.face_panel = FacePanel(gui, session, settings, view)
         mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
@@ -180,6 +186,7 @@ class Viewer:
             self._remember()
         self.live.stop()
         self.exporter.close()
+        self.soundtrack.close()
         self.recovery.close()
         self._resources.close()
 
@@ -233,8 +240,10 @@ class Viewer:
         self.placement.set_title(f"Risorius: {self.session.name}{mark}")
         is_filming = self.exporter.film is not None
         seconds = 1.0 / FRAMES_PER_SECOND if is_filming else elapsed
+        self.messages.attempt(self.soundtrack.refresh)
+        seconds = self.soundtrack.elapsed(seconds, is_silent=is_filming)
         is_skin_dragged = self.mouse.is_dragging_skin
-        self.messages.attempt(partial(self.live.advance, seconds))
+        self.messages.attempt(partial(self.live.advance, elapsed))
         if self.live.has_changed:
             self._awake = FRAMES_AFTER_EVENT
         is_held = is_skin_dragged or imgui.is_any_item_active()
@@ -269,6 +278,7 @@ class Viewer:
             and not self.session.is_recording
             and not self.live.is_busy
             and not self.messages.is_fading
+            and not self.soundtrack.is_heard
             and self.exporter.film is None
         )
 
@@ -301,7 +311,9 @@ class Viewer:
         """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
         is_watching = self.files.is_waiting or imgui.get_io().want_text_input  # a cursor blinks
         patience = WATCHFUL_WAIT if is_watching else IDLE_WAIT
-        patience = min(patience, max(self.recovery.due_in(), 0.0), max(self.live.due_in(), 0.0))
+        due_in = min(self.recovery.due_in(), self.live.due_in())
+        patience = min(patience, max(due_in, 0.0))
+        self.soundtrack.rest()
         begin = time.perf_counter()
         wait_for_event(patience)
         self._last = time.perf_counter()

@@ -13,8 +13,9 @@ from risorius.app.cameras import camera_for
 from risorius.app.capture.recording import Capture, CaptureOptions
 from risorius.app.idle import EYES_MOST, Idle, looking_at
 from risorius.app.life import EYE_RANGE, HEAD_RANGES, LID, Blinks, Glances, Life, breath
+from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.app.script import Channel, Key, Script, script_for
+from risorius.app.script import Channel, Key, Script
 from risorius.app.viewer.frame_times import FrameTimes
 from risorius.app.viewer.physics import SEEN, STEP, Physics
 from risorius.app.viewer.session import Session
@@ -287,7 +288,9 @@ def test_only_what_can_be_seen_is_drawn() -> None:
 def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone() -> None:
     """What a script names anywhere is the script's for the whole film; the rest lives beneath."""
     keys = (Key(0.0, 0.0), Key(2.9, 0.0), Key(3.0, 0.4))
-    script = Script("smile", 3.0, "here", tracks={"AU12": Channel(keys), "AU1": Channel(keys)})
+    script = Script(
+        "smile", 3.0, "here", tracks={"AU12": Channel.of(keys), "AU1": Channel.of(keys)}
+    )
     options = CaptureOptions(size=(64, 64), samples=0, is_alive=True)
     films = []
     for _ in range(2):

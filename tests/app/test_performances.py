@@ -189,7 +189,7 @@ def test_a_recording_is_filmed_as_its_script_is(tmp_path: Path) -> None:
         still = tmp_path / "still.png"
         size = ("--size", "96x96", "--time", 1, "--quiet")
         result = risorius("capture", played, "-o", still, *size, *options)
-        assert (result.exit_code, result.stderr) == (0, "")
+        assert result.exit_code == 0 and "frames in" not in result.stderr
         return np.asarray(Image.open(still))
 
     recorded = picture(path)
@@ -204,7 +204,7 @@ def test_the_mapping_table_is_printed_and_taken(tmp_path: Path) -> None:
     table.write_text(f"{printed.stdout}\nmouthSmileLeft = {{ jaw_open = 1.0 }}\n")
     output = tmp_path / "script.toml"
     result = risorius("convert", written(tmp_path), "-o", output, "--mapping", table, "--quiet")
-    assert (result.exit_code, result.output) == (0, "")
+    assert result.exit_code == 0 and "take.csv" not in result.output
     assert set(load_script(output).tracks) == {"jaw_open", "head_yaw"}
 
 

@@ -79,7 +79,7 @@ def test_the_tongue_comes_out_over_the_lip(
         settled_displacement(simulation, {"jaw_open": jaw, "tongue_out": out})
         reach.append(tongue_now(simulation)[:, 2].max())
     lip = simulation.positions[head.landmarks[LOWER_LIP]]
-    assert np.all(np.diff(reach) > 1.0)
+    assert np.all(np.diff(reach) > 0.3)
     assert reach[-1] > lip[2] + 5.0
     assert tongue_now(simulation)[tip, 1] < lip[1] - 8.0
 
@@ -142,7 +142,7 @@ def test_the_tongue_keeps_its_volume_about(simulation: sim.Simulation, head: Hea
 
 
 def test_the_tongue_follows_in_time(simulation: sim.Simulation) -> None:
-    """It does not jump, and is back after a tenth of a second or two."""
+    """It needs some frames, even as the lips burst open, and is back half a second later."""
     simulation.pose({"jaw_open": 0.4, "tongue_out": 1.0})
     before, steps = tongue_now(simulation), []
     for frame in range(60):
@@ -152,7 +152,7 @@ def test_the_tongue_follows_in_time(simulation: sim.Simulation) -> None:
         now = tongue_now(simulation)
         steps.append(np.linalg.norm(now - before, axis=1).max())
         before = now
-    assert max(steps) < 25.0 and steps[-1] < 0.1
+    assert max(steps) < 40.0 and steps[-1] < 0.1
 
 
 def test_a_head_without_a_tongue_has_the_controls_all_the_same(head: Head) -> None:

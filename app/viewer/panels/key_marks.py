@@ -100,14 +100,16 @@ class TrackPainter:
         self._lines = imgui.get_window_draw_list()
         self._low, self._high = axis.x(axis.start) - em(0.5), axis.x(axis.end) + em(0.5)
         margin = axis.seconds(em(0.5))
-        count = max(round((self._high - self._low) / CLOSEST), 1)
+        count = max(round((self._high - self._low) / CLOSEST), 2)
         self._edges = np.linspace(axis.start - margin, axis.end + margin, count + 1)  # of columns
-        halves = np.linspace(self._edges[0], self._edges[-1], 4 * count + 1)[1::2]
-        self._halves = axis.x(halves)
+        self._halves = axis.x(np.linspace(self._edges[0], self._edges[-1], 4 * count + 1)[1::2])
         self._script_end = min(max(axis.x(duration), self._low), self._high)
 
-    def draw(self, track: Track, top: float, unit: float) -> None:
-        """A row of `unit` times its height: its ground, where nothing moves, keys, names."""
+    def draw(self, track: Track, top: float, unit: float) -> bool:
+        """A row of `unit` times its height: its ground, where nothing moves, keys, names.
+
+        Returns whether the keys that are visible are too dense to be drawn one by one.
+        """
         lines, theme, axis = self._lines, self._theme, self._axis
         bottom, low, high = top + track.height * unit, self._low, self._high
         middle = bottom - 0.5 * unit
@@ -120,8 +122,8 @@ class TrackPainter:
                 lines.add_line(*ends, _ink(theme.muted, 0.45), em(0.22))
         if track.channel is not None:
             self._draw_curve(track.channel, bottom - 0.15 * unit, bottom - 0.85 * unit)
-        self._draw_keys(track, middle, unit)
         self._draw_names(track, top)
+        return self._draw_keys(track, middle, unit)
 
     def _draw_curve(self, channel: Channel, low: float, high: float) -> None:
         """The values of a track over time, between two heights [window units]."""
@@ -134,8 +136,8 @@ class TrackPainter:
         line: Any = np.stack([self._halves, heights], axis=1).tolist()
         self._lines.add_polyline(line, _ink(self._theme.muted), 1.0, 0)
 
-    def _draw_keys(self, track: Track, middle: float, unit: float) -> None:
-        """The visible keys, selected ones on top: one by one, or where they would overlap as bars.
+    def _draw_keys(self, track: Track, middle: float, unit: float) -> bool:
+        """The visible keys, selected ones on top: one by one, or if they are dense as bars.
 
         In rows with a curve, which tells more, bars show what is selected only.
         """
@@ -146,7 +148,8 @@ class TrackPainter:
             self._axis.x(places.latest_in(self._edges, names))
             for places in (track.places, self._selected)
         )
-        if len(marks) * 2.0 * size < MOST_COVERED * (self._high - self._low):
+        is_dense = len(marks) * 2.0 * size > MOST_COVERED * (self._high - self._low)
+        if not is_dense:
             self._draw_diamonds(marks, middle, size, ink)
             self._draw_diamonds(chosen, middle, 1.2 * size, _ink(self._theme.accent))
         elif track.channel is None:
@@ -156,8 +159,10 @@ class TrackPainter:
         else:
             row = middle - 0.5 * unit + 1.0, middle + 0.5 * unit - 1.0
             self._draw_bars(chosen, size, row, _ink(self._theme.accent, 0.35))
+        return is_dense
 
     def _draw_diamonds(self, marks: Floats, middle: float, reach: float, fill: int) -> None:
+        """A diamond for each mark."""
         for x in marks.tolist():
             left, right = (x - reach, middle), (x + reach, middle)
             top, bottom = (x, middle - reach), (x, middle + reach)
