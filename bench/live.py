@@ -159,7 +159,7 @@ def _window_lines(seconds: float) -> list[str]:
 
 def _time_window(case: _Case, viewer: Viewer, seconds: float) -> list[float]:
     """Let the window follow one protocol; how long its frames took [s]."""
-    viewer.listen(Listening(case.kind, LOOPBACK, port=0))
+    viewer.live.start(Listening(case.kind, LOOPBACK, port=0))
     face = viewer.live.face
     assert face is not None
     viewer.physics = noting = _NotingPhysics(viewer.session, viewer.times, face)

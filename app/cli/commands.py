@@ -244,7 +244,7 @@ def open_window(
         display = display_of(drawing.refinement(), script.scene, **drawing.style_options)
     with Viewer(script, size, display, head=head, settings_path=settings_path()) as viewer:
         if listening is not None:
-            viewer.listen(listening)
+            viewer.messages.say(viewer.live.start(listening) or "")
         viewer.run(playing=playing, once=once)
 
 

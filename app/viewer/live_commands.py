@@ -12,6 +12,7 @@ from dataclasses import replace
 from ..errors import UserError
 from ..live import LOST_AFTER, Listening, LiveFace, State, own_address
 from .messages import Message
+from .panel_state import PanelState
 from .session import Session
 
 PACING = 0.008  # [s] that a frame waits for a packet: half a frame of the phone's
@@ -35,11 +36,12 @@ class LiveCommands:
     def __init__(
         self,
         session: Session,
+        panels: PanelState,
         wake: Callable[[], None],
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         """wake: makes a window that waits for events go on; it is called from another thread."""
-        self._session, self._wake, self._clock = session, wake, clock
+        self._session, self._panels, self._wake, self._clock = session, panels, wake, clock
         self.wanted = Listening("livelink")
         self.face: LiveFace | None = None
         self.own_address = ""
@@ -54,7 +56,7 @@ class LiveCommands:
         return self.face is not None
 
     def start(self, wanted: Listening) -> Message:
-        """Listen from now on; UserError where that cannot be."""
+        """Listen from now on, and show the panel that tells of it; UserError if that cannot be."""
         check_scene(self._session.scene.name)
         self.stop()
         face = LiveFace(wanted, wake=self._wake, clock=self._clock)
@@ -64,6 +66,7 @@ class LiveCommands:
             face.close()
             raise
         self.face, self.wanted, self.own_address = face, wanted, own_address()
+        self._panels.wanted_tab = "Live"
         return f"{wanted.protocol.title}: listening on {wanted.address}, port {face.port}"
 
     def stop(self) -> None:

@@ -158,19 +158,12 @@ def expression_menu(session: Session) -> Menu:
     )
 
 
-def live_menu(live: LiveCommands, panels: PanelState) -> Menu:
+def live_menu(live: LiveCommands) -> Menu:
     """A face that is sent while it moves."""
     command = partial(Command, "Live")
-
-    def toggle() -> Message:
-        """Listen or stop, and show the panel that tells what comes."""
-        line = live.toggle()
-        panels.wanted_tab = "Live" if live.is_on else panels.wanted_tab
-        return line
-
     mirrored = partial(getattr, live, "is_mirrored")
     return (
-        command("Listen", "Ctrl+L", toggle, lambda: live.is_on),
+        command("Listen", "Ctrl+L", live.toggle, lambda: live.is_on),
         command("Calibrate", "Shift+N", live.calibrate, can_run=lambda: live.can_calibrate),
         command("Mirror", "", live.toggle_mirror, mirrored, lambda: live.is_on),
     )

@@ -20,7 +20,6 @@ from risorius import render
 from risorius.assets.fitting import FittedHead
 
 from ..errors import UserError
-from ..live import Listening
 from ..scenes import Scene, build_scene
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped
@@ -142,7 +141,7 @@ class Viewer:
         self.selection = KeySelection(session, self.panel_state)
         self.scripts = ScriptCommands(session, self.files, self.question)
         self.exporter = Exporter(self.stage, self.view)
-        self.live = LiveCommands(session, wake_up)
+        self.live = LiveCommands(session, self.panel_state, wake_up)
         self.file_drop = FileDrop(self.files, self.scripts, self.show_scene)
         self.commands: tuple[Command, ...] = (
             *menus.file_menu(self.scripts, self.file_drop, self.exporter, self.ask_to_close),
@@ -151,7 +150,7 @@ class Viewer:
             *menus.keys_menu(self.selection),
             *menus.view_menu(settings, self.view, self.placement, self.panel_state),
             *menus.expression_menu(session),
-            *menus.live_menu(self.live, self.panel_state),
+            *menus.live_menu(self.live),
             *menus.help_menu(self.panel_state),
         )
         self.life = IdleLife(session, settings, self.view)
@@ -362,11 +361,6 @@ class Viewer:
                 self.mouse.follow()
 
     # What is done to the window as a whole
-
-    def listen(self, listening: Listening) -> None:
-        """Follow a live face, and show the panel that tells of it; UserError if that cannot be."""
-        self.messages.say(self.live.start(listening) or "")
-        self.panel_state.wanted_tab = "Live"
 
     def drop(self, paths: Sequence[str]) -> None:
         """Open files that were dropped onto the window."""

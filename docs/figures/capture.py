@@ -130,7 +130,7 @@ def live(take: Path) -> Image:
     with Viewer(script_for(None, "face"), TALL_WINDOW) as viewer:
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
         viewer.panel_cache.refresh = 0.0  # panels in every frame
-        viewer.listen(Listening("livelink"))
+        viewer.live.start(Listening("livelink"))
         with Sender("livelink", LOOPBACK, None, "my phone") as sender:
             thread = threading.Thread(target=sender.play, args=(read_take(take),))
             thread.start()

@@ -18,6 +18,7 @@ from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace, State
 from risorius.app.live.sender import Sender
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.live_commands import LiveCommands
+from risorius.app.viewer.panel_state import PanelState
 
 from .driving import NEEDS_A_SCREEN, click, draw_frames, moved, until, xdotool
 
@@ -35,7 +36,7 @@ def silent(viewer: Viewer) -> Iterator[None]:
 
 def listen(viewer: Viewer, kind: str = "livelink") -> LiveFace:
     """Listen on a free port."""
-    viewer.listen(Listening(kind, port=0))
+    viewer.live.start(Listening(kind, port=0))
     face = viewer.live.face
     assert face is not None
     return face
@@ -234,7 +235,7 @@ def test_rubbish_is_counted_and_shown(viewer: Viewer) -> None:
 
 def test_a_port_that_is_taken_is_a_message(viewer: Viewer) -> None:
     """The window goes on, and says what to do."""
-    other = LiveCommands(viewer.session, lambda: None)
+    other = LiveCommands(viewer.session, PanelState(), lambda: None)
     other.start(Listening("livelink", port=0))
     assert other.face is not None
     try:
@@ -243,6 +244,6 @@ def test_a_port_that_is_taken_is_a_message(viewer: Viewer) -> None:
         assert viewer.messages.is_error and "cannot listen" in viewer.messages.text
         assert viewer.live.face is None
         with pytest.raises(UserError):
-            viewer.listen(viewer.live.wanted)
+            viewer.live.start(viewer.live.wanted)
     finally:
         other.stop()
