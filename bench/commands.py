@@ -169,6 +169,26 @@ def bench_motion(reference: Path) -> None:
         click.echo(motion.report(*motion.measure(reference)))
 
 
+@bench.command("seen")
+@click.option(
+    "--model",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    required=True,
+    help="face_landmarker.task, the model of MediaPipe's face landmarker.",
+)
+@click.option(
+    "--reference", type=FOLDER, help="A folder with face.npz: scans, to be shown as well."
+)
+@click.option("--pictures", type=PATH, help="A folder for all that the tracker is shown.")
+def bench_seen(model: Path, reference: Path | None, pictures: Path | None) -> None:
+    """Show every shape of ARKit to a face tracker: is it seen under its own name?"""
+    from . import seen
+    from .face_tracker import FaceTracker
+
+    with FaceTracker(model) as tracker, _told("--reference: "):
+        click.echo(seen.report(seen.measure(tracker, pictures, reference)))
+
+
 @bench.command("reference")
 @click.argument("checkout", type=FOLDER)
 @click.option("-o", "--output", "folder", type=PATH, required=True, help="A folder.")
