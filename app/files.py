@@ -32,22 +32,30 @@ def read_text(path: Path, *, what: str, longest: int) -> str:
     and of no use, FileNotFoundError where there is nothing.
     """
     try:
-        if not stat.S_ISREG(path.stat().st_mode):
+        return read_bytes(path, what=what, longest=longest).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise UserError(f"{path}: cannot be read as a text file: {error}") from None
+
+
+def read_bytes(path: Path, *, what: str, longest: int, first: int | None = None) -> bytes:
+    """What is in a plain file of `longest` bytes at most, or only the `first` bytes of it.
+
+    The errors are those of `read_text`.
+    """
+    try:
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):
             kind = "folder" if path.is_dir() else "pipe or a device"
             raise UserError(f"{path}: is a {kind}, not a file; a {what} is a plain file")
+        if status.st_size > longest:
+            raise UserError(f"{path}: is longer than a {what} may be, {longest >> 20} MB")
         with path.open("rb") as file:
-            content = file.read(longest + 1)
+            return file.read(longest if first is None else first)
     except FileNotFoundError:
         raise
     except (OSError, ValueError) as error:  # a name that no file can have is a ValueError
         why = getattr(error, "strerror", None) or error
         raise UserError(f"{path}: cannot be read: {why}") from None
-    if len(content) > longest:
-        raise UserError(f"{path}: is longer than a {what} may be, {longest >> 20} MB")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise UserError(f"{path}: cannot be read as a text file: {error}") from None
 
 
 @contextlib.contextmanager

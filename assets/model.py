@@ -87,7 +87,7 @@ class Layer:
         sim/layers.py says what they mean.
     """
 
-    NOT_SHARES: ClassVar[tuple[str, ...]] = ("action", "pair", "share_of")  # keys of a row
+    NOT_SHARES: ClassVar[tuple[str, ...]] = ("action", "pair", "share_of", "at_least")
     title: str
     source: str
     rows: Mapping[str, Mapping[str, Any]]

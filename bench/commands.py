@@ -272,6 +272,17 @@ def bench_meshes(folder: Path, seed: int, seconds: float, most: int) -> None:
     sys.exit(1 if any(each.broken for each in results) else 0)
 
 
+@bench.command("take")
+@click.option(
+    "--minutes", type=FiniteRange(0.05, 120), default=10.0, show_default=True, help="Recorded."
+)
+def bench_take(minutes: float) -> None:
+    """Time a long recording of a face: reading it, making a script of it, playing that."""
+    from . import takes
+
+    click.echo(takes.report(minutes))
+
+
 @bench.command("window")
 @click.option("--size", type=Size(), default=(1280, 720), show_default="1280x720")
 @click.option(

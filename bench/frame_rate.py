@@ -20,8 +20,8 @@ import numpy.typing as npt
 
 from risorius import refine
 from risorius.app.cameras import camera_for
+from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
-from risorius.app.script import script_for
 
 from .canvas import Canvas, Drawing
 from .claims import Measured, Outcome

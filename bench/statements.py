@@ -14,8 +14,8 @@ import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from risorius import assets, refine
+from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene, PlaneScene, Scene
-from risorius.app.script import script_for
 from risorius.refine.kahler.coherence import sequence_tables
 from risorius.refine.kahler.table import CONFIGURATIONS
 

@@ -17,7 +17,8 @@ import numpy as np
 
 from risorius import render
 from risorius.app.looks import FIRST_LOOK, PAPERS_LOOK
-from risorius.app.script import Pose, Script, script_for
+from risorius.app.performances import script_for
+from risorius.app.script import Pose, Script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.frame_times import PHASES
 from risorius.app.viewer.level_of_detail import LEVELS, LevelOfDetail

@@ -65,6 +65,7 @@ class Controls:
         self._low = np.array([c.low for c in controls], dtype=np.float64)
         self._high = np.array([c.high for c in controls], dtype=np.float64)
         self._shares = np.array([layers.shares[name] for name in layers.shares])  # (N - C, C)
+        self._floors = np.array([layers.floors[name] for name in layers.shares])  # (N - C, C)
         self._share_of = [
             (self._index[name], self._index[whole]) for name, whole in layers.share_of.items()
         ]
@@ -122,6 +123,8 @@ class Controls:
             for index, whole in self._share_of:
                 counted[index] = share_of_whole(self._values[index], self._values[whole])
             self.wanted += counted[count:] @ self._shares
+            least = (counted[count:, None] * self._floors).max(axis=0)
+            np.maximum(self.wanted, least, out=self.wanted, where=least > 0.0)
             np.clip(self.wanted, self._low, self._high, out=self.wanted)
 
     def advance(self, dt: float) -> None:

@@ -4,7 +4,7 @@
 
 A layer is a table of rows; a row is a control of its own, named by its key. Each entry of a row is
 a share: the row at 1 adds so much to the control that the entry names, which must stand in a layer
-below. Three keys of a row are no entries. `action` says in words what it does. `pair = true` makes
+below. Four keys of a row are no entries. `action` says in words what it does. `pair = true` makes
 three controls of one row, for both sides, `..._left` and `..._right`; `pair = "Left Right"` makes
 two, `...Left` and `...Right`, the way ARKit spells them:
 
@@ -23,9 +23,15 @@ much of that one's it makes good, and counts as value / the other's value, at mo
     share_of = "jawOpen"            # mouthClose 0.3 shuts the lips where jawOpen is 0.3, and
     lips_closed = 1.0               # where that is 0.6 half; without jawOpen it does nothing
 
+`at_least` holds shares that do not add to others: they are made sure of.
+
+    [AU22]
+    action = "lip funneler"
+    at_least = { jaw_open = 0.22 }  # lips need room for a funnel: nothing where the jaw is open
+
 How layers combine: everything adds up, whatever was set first. A muscle's value is its own plus,
-for each control above it, that control's value times its share, cut off at the muscle's limits
-once, at the end.
+for each control above it, that control's value times its share; then at least the greatest of what
+rows make sure of; cut off at the muscle's limits once, at the end.
 
 Source: Ekman, Friesen, Hager 2002, "Facial Action Coding System" (what an action unit is); Apple,
 ARFaceAnchor.BlendShapeLocation (what an ARKit shape is); the tables themselves are files of assets.
@@ -61,16 +67,18 @@ class Layers:
     groups: title of the layer -> its names, from the lowest layer up.
     actions: name -> what it does, in words; "" where the table does not say.
     shares: name -> what it adds to each of the C lowest controls at value 1, shape (C,).
+    floors: name -> the least that it makes of each lowest control at value 1, 0 for none, (C,).
     share_of: name -> the control whose value its own is a share of, where there is one.
     """
 
     groups: Mapping[str, tuple[str, ...]]
     actions: Mapping[str, str]
     shares: Mapping[str, Array]
+    floors: Mapping[str, Array]
     share_of: Mapping[str, str]
 
 
-NO_LAYERS = Layers(*(MappingProxyType({}) for _ in range(4)))
+NO_LAYERS = Layers(*(MappingProxyType({}) for _ in range(5)))
 
 
 def share_of_whole(value: float, whole: float) -> float:
@@ -102,6 +110,7 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
         MappingProxyType({title: names for title, names in reader.groups.items() if names}),
         MappingProxyType(reader.actions),
         MappingProxyType(dict(list(reader.shares.items())[count:])),
+        MappingProxyType(dict(list(reader.floors.items())[count:])),
         MappingProxyType(reader.share_of),
     )
 
@@ -111,6 +120,7 @@ class _Reader:
 
     def __init__(self, lowest: Sequence[str]) -> None:
         self.shares: dict[str, Array] = dict(zip(lowest, np.eye(len(lowest)), strict=True))
+        self.floors = {name: np.zeros(len(lowest)) for name in lowest}
         self.groups: dict[str, tuple[str, ...]] = {}
         self.actions: dict[str, str] = {}
         self.share_of: dict[str, str] = {}
@@ -124,6 +134,7 @@ class _Reader:
         names = tuple(name for name in sides if name not in self.shares)
         for name in names:
             self.shares[name] = np.sum(sides[name], axis=0)
+            self.floors[name] = np.zeros_like(self.shares[name])
             self.actions[name] = ""
         self.groups[BOTH_SIDES] = names
 
@@ -133,7 +144,7 @@ class _Reader:
             raise ValueError(f"{where}: was {quoted(table)}, must be a table of control = share")
         entries = dict(table)
         action, pair = entries.pop("action", ""), entries.pop("pair", False)
-        whole = entries.pop("share_of", None)
+        whole, floors = entries.pop("share_of", None), entries.pop("at_least", {})
         if not isinstance(action, str):
             raise ValueError(f"{where}: 'action' was {quoted(action)}, must be a text")
         if not isinstance(pair, bool | str) or pair not in (False, *ENDINGS):
@@ -141,20 +152,22 @@ class _Reader:
             raise ValueError(f"{where}: 'pair' was {quoted(pair)}, must be {allowed}")
         if whole is not None:
             self._check_whole(where, whole)
-        if not pair:
-            made = {name: self._sum(where, entries, "", below)}
-        else:
-            self._check_entries_of_pair(where, name, entries)
-            ends = zip(ENDINGS[pair], SIDES, strict=True)
-            made = {name + end: self._sum(where, entries, side, below) for end, side in ends}
-            if pair is True:
-                made = {name: np.sum(list(made.values()), axis=0), **made}
-        for each, share in made.items():
+        if not isinstance(floors, Mapping):
+            allowed = "a table of control = share"
+            raise ValueError(f"{where}: 'at_least' was {quoted(floors)}, must be {allowed}")
+        if pair:
+            self._check_pair(where, name, (*entries, *floors))
+        ends = zip(ENDINGS[pair], SIDES, strict=True) if pair else [("", "")]
+        made = {name + end: self._sums(where, entries, floors, side, below) for end, side in ends}
+        if pair is True:
+            shares, least = zip(*made.values(), strict=True)
+            made = {name: (np.sum(shares, axis=0), np.max(least, axis=0)), **made}
+        for each, (share, floor) in made.items():
             if each in self.shares:
                 raise ValueError(
                     f"{where}: there is a control called '{each}' already; rename the row"
                 )
-            self.shares[each], self.actions[each] = share, action
+            self.shares[each], self.floors[each], self.actions[each] = share, floor, action
             if whole is not None:
                 self.share_of[each] = whole
         return list(made)
@@ -171,37 +184,47 @@ class _Reader:
                 f"'{whole}'{question(whole, self.shares)}"
             )
 
-    def _check_entries_of_pair(self, where: str, name: str, entries: Mapping[str, Any]) -> None:
+    def _check_pair(self, where: str, name: str, entries: Sequence[str]) -> None:
         """ValueError where a row for two sides names a side."""
-        endings = (*SIDES, *ENDINGS["Left Right"])
-        if name.endswith(endings):
-            side = next(end for end in endings if name.endswith(end))
-            raise ValueError(f"{where}: a pair adds the sides by itself; leave '{side}' away")
+        for side in (*SIDES, *ENDINGS["Left Right"]):
+            if name.endswith(side):
+                raise ValueError(f"{where}: a pair adds the sides by itself; leave '{side}' away")
         for control in entries:
             if control.endswith(SIDES):
                 raise ValueError(f"{where}: in a pair leave the side of '{control}' away")
 
-    def _sum(
-        self, where: str, entries: Mapping[str, Any], side: str, below: Mapping[str, Array]
-    ) -> Array:
-        """What the entries of a row add up to, shape (C,); of one `side` of a pair, or "" of all.
+    def _sums(
+        self,
+        where: str,
+        entries: Mapping[str, Any],
+        floors: Mapping[str, Any],
+        side: str,
+        below: Mapping[str, Array],
+    ) -> tuple[Array, Array]:
+        """What a row adds and what it makes sure of, shape (C,) each; `side` of a pair, or "".
 
-        A side takes its side of each entry, or half of what has none.
+        A side takes its side of each entry. Of what has none it adds half, and makes sure of all.
         """
-        total = np.zeros(len(next(iter(below.values()), ())))
+        share, floor = (np.zeros(len(next(iter(below.values()), ()))) for _ in range(2))
         for control, value in entries.items():
-            named = f"{where}, '{control}'"
-            part = number_within(named, value, -GREATEST_SHARE, GREATEST_SHARE)
-            if control not in below:
-                raise ValueError(
-                    f"{where}: no layer below has a control called '{control}'"
-                    f"{question(control, below)}"
-                )
-            if control in self.share_of:
-                raise ValueError(
-                    f"{named}: is a share of '{self.share_of[control]}', which only a value that "
-                    "is set can be; name what it moves instead"
-                )
-            whole = below[control] if not side else 0.5 * below[control]
-            total += part * below.get(control + side, whole)
-        return total
+            part = number_within(f"{where}, '{control}'", value, -GREATEST_SHARE, GREATEST_SHARE)
+            self._check_entry(where, control, below)
+            sided = control + side
+            share += part * (below[sided] if sided in below else 0.5 * below[control])
+            floor = np.maximum(floor, part * self.floors[sided if sided in below else control])
+        for control, value in floors.items():
+            part = number_within(f"{where}, 'at_least', '{control}'", value, 0.0, GREATEST_SHARE)
+            self._check_entry(where, control, below)
+            floor = np.maximum(floor, part * below.get(control + side, below[control]))
+        return share, floor
+
+    def _check_entry(self, where: str, control: str, below: Mapping[str, Array]) -> None:
+        """ValueError unless a layer below has the control, and it can be part of a row."""
+        if control not in below:
+            hint = question(control, below)
+            raise ValueError(f"{where}: no layer below has a control called '{control}'{hint}")
+        if control in self.share_of:
+            raise ValueError(
+                f"{where}, '{control}': is a share of '{self.share_of[control]}', which only a "
+                "value that is set can be; name what it moves instead"
+            )

@@ -11,12 +11,24 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..errors import in_one_line
+from ..errors import UserError, in_one_line
 from ..looks import STATIC, Refinement
-from .options import PATH, SCENE_NAMES, Drawing, Filming, with_drawing, with_filming
+from ..playback import Playback
+from .options import (
+    PATH,
+    QUIET,
+    SCENE_NAMES,
+    Drawing,
+    Filming,
+    mapping_table,
+    with_drawing,
+    with_filming,
+    with_playback,
+)
 from .parameters import Size
 
 if TYPE_CHECKING:
+    from ..recordings.report import Report
     from ..script import Script
 
 
@@ -27,6 +39,7 @@ if TYPE_CHECKING:
 @click.option("--sheet", type=PATH, help="Contact sheet of the named poses.")
 @click.option("--scene", type=SCENE_NAMES, help="What is animated.")
 @with_filming
+@with_playback
 @with_drawing
 def capture(
     script: Path | None,
@@ -35,20 +48,23 @@ def capture(
     sheet: Path | None,
     scene: str | None,
     filming: Filming,
+    playback: Playback,
     drawing: Drawing,
 ) -> None:
     """Render SCRIPT offscreen into a film, frames, a picture or a contact sheet.
 
+    A recording of a face is a SCRIPT, too: Live Link Face, OpenFace, py-feat, MediaPipe, ...
     Without SCRIPT the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
     """
     from ..capture import CaptureOptions
     from ..capture import capture as film_of
     from ..files import check_apart
+    from ..performances import script_for
     from ..refining import parse_comparison
-    from ..script import script_for
 
-    check_apart((output, sheet), (script, drawing.head, drawing.landmarks))
-    performance = script_for(script, scene, settings)
+    check_apart((output, sheet), (script, drawing.head, drawing.landmarks, playback.mapping))
+    tell = None if filming.quiet else _tell
+    performance = script_for(script, scene, settings, playback=playback, tell=tell)
     refinement = drawing.refinement()
     options = CaptureOptions(
         size=filming.size,
@@ -77,27 +93,75 @@ def capture(
 @click.command()
 @click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
 @click.option("--scene", type=SCENE_NAMES, help="face, unless told.")
-@click.option("--script", type=PATH, help="What the space key plays.")
+@click.option("--script", type=PATH, help="What the space key plays: a script or a recording.")
+@QUIET
+@with_playback
 @with_drawing
 def view(
-    size: tuple[int, int] | None, scene: str | None, script: Path | None, drawing: Drawing
+    size: tuple[int, int] | None,
+    scene: str | None,
+    script: Path | None,
+    quiet: bool,
+    playback: Playback,
+    drawing: Drawing,
 ) -> None:
     """Open the window: a face with a slider for every muscle."""
-    from ..script import script_for
+    from ..performances import script_for
 
-    open_window(script_for(script, scene), size, drawing)
+    tell = None if quiet else _tell
+    open_window(script_for(script, scene, playback=playback, tell=tell), size, drawing)
 
 
 @click.command()
 @click.argument("script", type=PATH)
 @click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
 @click.option("--once", is_flag=True, help="Close the window at the end of the script.")
+@QUIET
+@with_playback
 @with_drawing
-def replay(script: Path, size: tuple[int, int] | None, once: bool, drawing: Drawing) -> None:
-    """Play SCRIPT in real time in the window."""
-    from ..script import script_for
+def replay(
+    script: Path,
+    size: tuple[int, int] | None,
+    once: bool,
+    quiet: bool,
+    playback: Playback,
+    drawing: Drawing,
+) -> None:
+    """Play SCRIPT, or a recording of a face, in real time in the window."""
+    from ..performances import script_for
 
-    open_window(script_for(script, None), size, drawing, playing=True, once=once)
+    tell = None if quiet else _tell
+    performance = script_for(script, None, playback=playback, tell=tell)
+    open_window(performance, size, drawing, playing=True, once=once)
+
+
+@click.command()
+@click.argument("recording", type=PATH)
+@click.option("-o", "--output", type=PATH, required=True, help="script.toml")
+@mapping_table
+@QUIET
+@with_playback
+def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> None:
+    """Write the script that plays RECORDING: Live Link Face, OpenFace, py-feat, MediaPipe, ..."""
+    from ..files import check_apart
+    from ..performances import script_for
+    from ..script import save_script
+
+    check_apart((output,), (recording, playback.mapping))
+    script = script_for(recording, None, playback=playback, tell=None if quiet else _tell)
+    if not script.is_converted:
+        raise UserError(f"{recording}: is a script already")
+    save_script(output, script)
+    if not quiet:
+        keys = sum(len(channel) for channel in script.tracks.values())
+        what = f"{len(script.tracks)} tracks with {keys} keys" if keys else "a pose"
+        click.echo(f"{in_one_line(output)}: {what}")
+
+
+def _tell(report: Report) -> None:
+    """Say on the error stream what a recording was taken for."""
+    for line in report.lines:
+        click.echo(line, err=True)
 
 
 def open_window(
@@ -125,7 +189,7 @@ def demo() -> None:
     """Render the built-in head through its expressions to out/demo.mp4 and out/demo.png."""
     from ..capture import CaptureOptions
     from ..capture import capture as film_of
-    from ..script import script_for
+    from ..performances import script_for
 
     script = script_for(None, "face")
     options = CaptureOptions(beside=(Refinement(refiner=STATIC),), camera=script.camera)
@@ -175,4 +239,4 @@ def warm(quiet: bool) -> None:
     compile_all(quiet)
 
 
-ALL = (capture, view, replay, demo, controls, doctor, warm)
+ALL = (capture, view, replay, convert, demo, controls, doctor, warm)

@@ -68,6 +68,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
 
     from ..ambient import openness
     from ..scenes import ClothScene, FaceScene, PlaneScene
+    from ..script import thinned
 
     face, plane, cloth = FaceScene(), PlaneScene(), ClothScene()
 
@@ -82,6 +83,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
         face.reset()
 
     yield "muscles and springs", simulate
+    yield "keys of recordings", partial(thinned, [0.0, 1.0], [0.0, 1.0])
     yield "light", partial(openness, face.head, face.simulation)
     for look in LOOKS:
         for scene in (face, plane):

@@ -12,6 +12,7 @@ import click
 from click.core import ParameterSource
 
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
+from ..playback import LEAD, Playback
 from .parameters import FiniteRange, Looks, Refiner, Size
 
 if TYPE_CHECKING:
@@ -188,4 +189,59 @@ with_filming = packed(
     click.option("--samples", type=click.IntRange(0, 16), default=4, show_default=True),
     click.option("--overwrite", is_flag=True, help="Replace the frames in a folder."),
     click.option("--quiet", is_flag=True, help="No progress bar."),
+)
+
+
+with_playback = packed(
+    "playback",
+    Playback,
+    click.option(
+        "--neutral",
+        metavar="HOW",
+        help="The face at rest, which is taken away: first:1, the median of the first second; "
+        "percentile, the 5th of each channel; none. Else as suits the kind of file.",
+    ),
+    click.option(
+        "--gain",
+        "gains",
+        multiple=True,
+        metavar="NAME=x",
+        help="How strongly a channel counts; NAME may be a pattern (mouth*, *Left), or all.",
+    ),
+    click.option("--mirror", is_flag=True, help="Left and right change places."),
+    click.option(
+        "--smooth",
+        is_flag=True,
+        help="Calm channels that tremble; costs 16 to 50 ms and up to 14 % of a short peak.",
+    ),
+    click.option(
+        "--lead",
+        type=FiniteRange(0, 0.5),
+        default=LEAD,
+        show_default=True,
+        help="How far muscles are ahead of the recording [s], since skin follows late.",
+    ),
+    click.option("--mapping", type=PATH, help="Your table of channels and controls, TOML."),
+    click.option("--face", metavar="ID", help="Which face, where a file has several."),
+    click.option("--rate", type=FiniteRange(1, 1000), help="Frames a second, for wrong times."),
+)
+QUIET = click.option("--quiet", is_flag=True, help="Say nothing of a recording.")
+
+
+def _write_mapping_table(context: click.Context, _: click.Parameter, asked: bool) -> None:
+    """Print the table that comes along, and end."""
+    if asked:
+        from ..recordings.mapping import mapping_text
+
+        click.echo(mapping_text(), nl=False)
+        context.exit()
+
+
+mapping_table = click.option(
+    "--mapping-table",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_write_mapping_table,
+    help="Print the table that --mapping replaces, to be copied and edited.",
 )

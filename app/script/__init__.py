@@ -23,19 +23,25 @@ A script is a list of poses and, beside them, tracks::
         { time = 2.12, value = 1, easing = "ease-in" },
         { time = 2.3, value = 0 },
     ]
+    smile = '''
+    2.0 0.1
+    2.0167 0.12
+    '''                          # lines of time and value, eased linearly, as recordings have
 
 Before its first key a channel keeps that key's value, after its last key the last one's.
 `docs/scripts.md` is the user's page of this format.
 """
 
-from .choice import script_for
+from .bounds import LONGEST_FILE
 from .model import Channel, Key, Limits, Pose, Script, rounded
-from .reader import LARGEST, LONGEST_FILE, load_script, parse_script, preface_of
+from .reader import LARGEST, load_script, parse_script, preface_of
+from .thinning import TOLERANCE, thinned
 from .writer import is_pose, pose_script, save_script, script_text
 
 __all__ = [
     "LARGEST",
     "LONGEST_FILE",
+    "TOLERANCE",
     "Channel",
     "Key",
     "Limits",
@@ -48,6 +54,6 @@ __all__ = [
     "preface_of",
     "rounded",
     "save_script",
-    "script_for",
     "script_text",
+    "thinned",
 ]

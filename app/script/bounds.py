@@ -1,13 +1,16 @@
 """What a script may be at most, measured in its text before anything is built from it.
 
 A TOML parser makes a table for each part of a key and calls itself for each bracket, so that a few
-kilobytes of dots could fill the memory. `docs/scripts.md` names these limits.
+kilobytes of dots could fill the memory. Lines of keys in quotes are cheap: it passes them by.
+`docs/scripts.md` names these limits.
 """
 
 from __future__ import annotations
 
 import re
 
+LONGEST_FILE = 2**25  # [bytes]; three quarters of an hour of capture, and /dev/zero has no end
+LONGEST_BARE = 2**24  # [characters] outside of quotes and comments
 DEEPEST = 8  # brackets in one another; a script needs two, and lists of lists of lists no more
 MOST_PARTS = 3  # of a key with dots; a script needs two, as in [[tracks.blink]]
 MOST_TABLES = 100_000  # headers but for [[pose]], and keys with dots: they take most memory by far
@@ -32,6 +35,8 @@ def excess_in(text: str) -> str:
     Text that is no TOML at all is left to the parser, which stops at the first mistake.
     """
     bare = _QUOTED.sub(_lines_only, text)
+    if len(bare) > LONGEST_BARE:
+        return f"more than {LONGEST_BARE >> 20} MB outside of quotes, where long tracks have lines"
     long_key = _LONG_KEY.search(bare)
     if long_key:
         line = _line_of(bare, long_key)

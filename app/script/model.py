@@ -5,13 +5,20 @@ from __future__ import annotations
 import bisect
 import difflib
 import functools
+from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from operator import attrgetter
-from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
 
 from ..errors import UserError
 from .easing import EASINGS
+
+Floats = npt.NDArray[np.float64]
+Easings = npt.NDArray[np.uint8]  # places in EASING_NAMES
+EASING_NAMES = tuple(EASINGS)
+_CURVES = tuple(EASINGS.values())
 
 Limits = Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
 
@@ -27,16 +34,99 @@ class Key:
     easing: str = "smooth"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Channel:
-    """The keys of one control, in the order of time."""
+    """The keys of one control, at least one, in the order of time.
 
-    keys: tuple[Key, ...]
+    A recorded take has half a million keys, so they are kept in arrays, which nobody may write.
+
+    times: of the keys [s], shape (K,). values: at these times, shape (K,). easings: how each key is
+    approached, numbers of EASING_NAMES, shape (K,), or the name of one easing for all.
+    """
+
+    times: Floats
+    values: Floats
+    easings: Easings
+
+    def __init__(
+        self, times: npt.ArrayLike, values: npt.ArrayLike, easings: npt.ArrayLike | str = "linear"
+    ) -> None:
+        if isinstance(easings, str):
+            easings = np.full(np.shape(times), EASING_NAMES.index(easings))
+        for name, part, kind in (
+            ("times", times, np.float64),
+            ("values", values, np.float64),
+            ("easings", easings, np.uint8),
+        ):
+            own = np.array(part, kind)
+            own.flags.writeable = False
+            object.__setattr__(self, name, own)
+
+    @classmethod
+    def of(cls, keys: Iterable[Key]) -> Channel:
+        """The channel that has these keys, which are in the order of time."""
+        keys = tuple(keys)
+        return cls(
+            [key.time for key in keys],
+            [key.value for key in keys],
+            [EASING_NAMES.index(key.easing) for key in keys],
+        )
+
+    @property
+    def keys(self) -> tuple[Key, ...]:
+        """The keys one by one, made anew at each call: for a few of them, or few channels."""
+        parts = zip(self.times.tolist(), self.values.tolist(), self.easings.tolist(), strict=True)
+        return tuple(Key(time, value, EASING_NAMES[easing]) for time, value, easing in parts)
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Channel):
+            return NotImplemented
+        return self is other or (
+            np.array_equal(self.times, other.times)
+            and np.array_equal(self.values, other.values)
+            and np.array_equal(self.easings, other.easings)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @functools.cached_property
+    def _parts(self) -> tuple[array[float], array[float], bytes]:
+        """The same numbers in sequences of Python's own, which are quicker to look into."""
+        return array("d", self.times), array("d", self.values), self.easings.tobytes()
+
+    @functools.cached_property
+    def lines(self) -> str:
+        """A line for each key, as files have them: time, value, and an easing if not linear.
+
+        Kept, since a script is written again and again while one of its channels changes.
+        """
+        times, values, easings = self._parts
+        names = ["", *(f" {name}" for name in EASING_NAMES[1:])]
+        return "\n".join(
+            [f"{t!r} {v!r}{names[e]}" for t, v, e in zip(times, values, easings, strict=True)]
+        )
+
+    def continued(self, further: Channel) -> Channel:
+        """This channel and the keys of another one, whose first key is the last one of this."""
+        joined = Channel(
+            np.concatenate([self.times, further.times[1:]]),
+            np.concatenate([self.values, further.values[1:]]),
+            np.concatenate([self.easings, further.easings[1:]]),
+        )
+        if len(further) > 1:
+            new = further.lines.partition("\n")[2]
+            joined.__dict__["lines"] = f"{self.lines}\n{new}"  # not made anew from the first key on
+        return joined
 
     def value(self, time: float) -> float:
         """The eased value at `time` [s]; constant before the first and after the last key."""
-        previous, following, share = _between(self.keys, time)
-        return previous.value + (following.value - previous.value) * share
+        times, values, easings = self._parts
+        previous, following, share = _between(times, time)
+        start = values[previous]
+        return start + (values[following] - start) * _CURVES[easings[following]](share)
 
 
 @dataclass(frozen=True)
@@ -61,20 +151,27 @@ class Script:
     poses: tuple[Pose, ...] = ()  # in the order of time
     tracks: dict[str, Channel] = field(default_factory=dict)
     preface: str = ""  # the lines of comment with which the file begins
+    is_converted: bool = field(default=False, compare=False)  # source is a recording, no script
 
     @functools.cached_property
     def posed_names(self) -> tuple[str, ...]:
         """The controls that any pose names."""
         return tuple(sorted({name for pose in self.poses for name in pose.values}))
 
+    @functools.cached_property
+    def _pose_times(self) -> tuple[float, ...]:
+        return tuple(pose.time for pose in self.poses)
+
     def posed(self, time: float) -> dict[str, float]:
         """What the poses alone make of each control that they name, at `time` [s]."""
         values = dict.fromkeys(self.posed_names, 0.0)
         if self.poses:
-            previous, following, share = _between(self.poses, time)
+            before, after, share = _between(self._pose_times, time)
+            previous, following = self.poses[before], self.poses[after]
+            share = EASINGS[following.easing](share)
             for name in {**previous.values, **following.values}:
-                before = previous.values.get(name, 0.0)
-                values[name] = before + (following.values.get(name, 0.0) - before) * share
+                start = previous.values.get(name, 0.0)
+                values[name] = start + (following.values.get(name, 0.0) - start) * share
         return values
 
     @property
@@ -105,9 +202,10 @@ class Script:
                 self._check_value(name, value, when, *limits[name])
         for name, channel in self.tracks.items():
             low, high = limits[name]
-            for key in channel.keys:
-                when = f" at {key.time:g} s" if len(channel.keys) > 1 else ""
-                self._check_value(f"track '{name}'", key.value, when, low - high, high - low)
+            for place in np.flatnonzero(np.abs(channel.values) > high - low)[:1]:
+                when = f" at {channel.times[place]:g} s" if len(channel) > 1 else ""
+                value = channel.values[place]
+                self._check_value(f"track '{name}'", value, when, low - high, high - low)
 
     def _check_value(self, what: str, value: float, when: str, low: float, high: float) -> None:
         if not low <= value <= high:
@@ -116,21 +214,17 @@ class Script:
             )
 
 
-Timed = TypeVar("Timed", Key, Pose)
+def _between(times: Sequence[float], time: float) -> tuple[int, int, float]:
+    """Which of the times are before and after `time` [s], and the share of the way between them.
 
-
-def _between(keys: Sequence[Timed], time: float) -> tuple[Timed, Timed, float]:
-    """The keys before and after `time` [s], and the eased share of the way between them.
-
-    Before the first and after the last key both are that one.
+    Before the first and after the last both are that one.
     """
-    after = bisect.bisect_right(keys, time, key=attrgetter("time"))
-    if after in (0, len(keys)):
-        outermost = keys[0 if after == 0 else -1]
+    after = bisect.bisect_right(times, time)
+    if after in (0, len(times)):
+        outermost = min(after, len(times) - 1)
         return outermost, outermost, 0.0
-    previous, following = keys[after - 1], keys[after]
-    share = (time - previous.time) / (following.time - previous.time)
-    return previous, following, EASINGS[following.easing](share)
+    previous, following = times[after - 1], times[after]
+    return after - 1, after, (time - previous) / (following - previous)
 
 
 def rounded(number: float) -> float:

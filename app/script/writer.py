@@ -1,5 +1,8 @@
 """Scripts and poses back into TOML files; what is written reads back as the same script.
 
+Tracks of a few keys are written as tables, which explain themselves, those of more keys as lines,
+which are short and quickly read.
+
 A pose by itself is a script with one [[pose]] at time 0.
 """
 
@@ -10,16 +13,25 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
+from ..errors import UserError
 from ..files import save_text
+from .bounds import LONGEST_FILE
 from .model import Channel, Pose, Script, rounded
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
+MOST_TABLES = 24  # keys of a track that are written as tables; those of more as lines
 POSE_SECONDS = 1.0  # duration of a script that is one pose
 
 
 def save_script(target: Path, script: Script) -> None:
     """Write a script file, whole or not at all; UserError where it cannot be written."""
-    save_text(target, script_text(script))
+    text = script_text(script)
+    if len(text) > LONGEST_FILE:
+        raise UserError(
+            f"{target}: the script would be longer than can be read again, "
+            f"{LONGEST_FILE >> 20} MB; leave out some keys"
+        )
+    save_text(target, text)
 
 
 def script_text(script: Script) -> str:
@@ -46,7 +58,7 @@ def pose_script(values: Mapping[str, float], *, title: str, scene: str) -> Scrip
 
 def is_pose(script: Script) -> bool:
     """Whether a script holds one pose and no motion."""
-    is_still = all(len(channel.keys) == 1 for channel in script.tracks.values())
+    is_still = all(len(channel) == 1 for channel in script.tracks.values())
     is_something = bool(script.posed_names or script.tracks)
     return is_something and is_still and len(script.poses) <= 1
 
@@ -62,6 +74,8 @@ def _pose(pose: Pose) -> str:
 
 
 def _track(name: str, channel: Channel) -> str:
+    if len(channel) > MOST_TABLES:
+        return f"{_key(name)} = '''\n{channel.lines}\n'''"
     lines = [f"{_key(name)} = ["]
     for key in channel.keys:
         easing = "" if key.easing == "smooth" else f", easing = {_quoted(key.easing)}"

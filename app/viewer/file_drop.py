@@ -1,4 +1,4 @@
-"""Several files let go over the window at once: a script or pose, a head, and what is too much."""
+"""Several files let go over the window at once: one to play, a head, and what is too much."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from risorius import assets
 from risorius.assets.meshes import FORMATS
 
 from ..errors import UserError
+from ..recordings import is_recording
 from ..scenes import Scene, build_scene, head_for
 from .files import Files
 from .messages import Message
@@ -23,16 +24,18 @@ LANDMARKS = ".json"
 class DroppedFiles:
     """What the files are taken for."""
 
-    script: Path | None = None  # or a pose; anything else is tried as one, and told what is wrong
+    script: Path | None = None  # or a pose or recording; anything else is tried, and told wrong
     mesh: Path | None = None
     landmarks: Path | None = None
     left_over: tuple[Path, ...] = ()  # of each kind the first one counts
 
     @classmethod
     def of(cls, paths: Sequence[Path]) -> DroppedFiles:
-        """Sort out files by the ends of their names."""
+        """Sort out files by the ends of their names; JSON may be a recording, too."""
         meshes = [path for path in paths if path.suffix.lower() in MESHES]
-        landmarks = [path for path in paths if path.suffix.lower() == LANDMARKS]
+        landmarks = [
+            path for path in paths if path.suffix.lower() == LANDMARKS and not is_recording(path)
+        ]
         scripts = [path for path in paths if path not in (*meshes, *landmarks)]
         firsts = [next(iter(kind), None) for kind in (scripts, meshes, landmarks)]
         left_over = (*scripts[1:], *meshes[1:], *landmarks[1:])

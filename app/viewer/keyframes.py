@@ -142,7 +142,7 @@ def _with_track_keys(script: Script, time: float, values: Mapping[str, float]) -
         before = next((key for key in keys if abs(key.time - time) < SAME), None)
         easing = before.easing if before else _easing_at(keys, time)
         key = Key(before.time if before else time, rounded(value), easing)
-        tracks[name] = Channel(tuple(_merged(keys, [key])))
+        tracks[name] = Channel.of(_merged(keys, [key]))
     return replace(script, tracks=tracks)
 
 
@@ -207,7 +207,7 @@ def _is_among(time: float, times: list[float]) -> bool:
 def _with(script: Script, tracks: Mapping[str, Iterable[Any]]) -> Script:
     """The script with other keys; a track without any is none."""
     keys = {name: tuple(each) for name, each in tracks.items()}
-    channels = {name: Channel(each) for name, each in keys.items() if each and name != POSES}
+    channels = {name: Channel.of(each) for name, each in keys.items() if each and name != POSES}
     return replace(script, poses=keys.get(POSES, ()), tracks=channels)
 
 

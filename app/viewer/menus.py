@@ -33,7 +33,7 @@ def file_menu(
     command = partial(Command, "File")
     return (
         command("New script", "Ctrl+N", scripts.new),
-        command("Open script or pose ...", "Ctrl+O", scripts.ask_open),
+        command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
         command("Open head ...", "Ctrl+H", file_drop.ask_head),
         command("Save script", "Ctrl+S", scripts.save),
         command("Save script as ...", "Ctrl+Shift+S", scripts.save_as),

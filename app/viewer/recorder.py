@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Mapping
 from dataclasses import replace
 
-from ..script import Channel, Key, Script, rounded
-
-TOLERANCE = 2e-3  # of a value: what a straight line between keys may be off
+from ..script import Channel, Script, rounded, thinned
 
 
 class Recorder:
@@ -17,62 +16,40 @@ class Recorder:
         """empty: the script without tracks, which gets those that are recorded."""
         self._empty = empty
         self.time = 0.0
-        self._tracks: dict[str, list[tuple[float, float]]] = {}
-        self._drafts: dict[str, tuple[list[tuple[float, float]], int]] = {}
+        # Of each control that has moved: times [s] and values from the last key of its track on.
+        self._samples: dict[str, tuple[array[float], array[float]]] = {}
+        self._tracks: dict[str, Channel] = {}
+        thinned([0.0, 1.0], [0.0, 1.0])  # if this must be compiled, then before anything moves
 
     def add(self, seconds: float, values: Mapping[str, float]) -> None:
         """`seconds` went by since the last call, and the controls are now at `values`."""
         before, self.time = self.time, self.time + seconds
         for name, value in values.items():
-            track = self._tracks.get(name)
-            if track is None:
+            if name not in self._samples:
                 if value == 0.0:
                     continue
-                track = self._tracks[name] = [(0.0, 0.0 if before else value)]
-            if value != track[-1][1]:
-                if track[-1][0] < before:
-                    track.append((before, track[-1][1]))
-                track.append((self.time, value))
+                first = 0.0 if before else value
+                self._samples[name] = array("d", [0.0]), array("d", [first])
+            times, its_values = self._samples[name]
+            if value != its_values[-1]:
+                if times[-1] < before:
+                    times.append(before)
+                    its_values.append(its_values[-1])
+                times.append(self.time)
+                its_values.append(value)
 
     def script(self) -> Script | None:
-        """What was recorded, or None where nothing was."""
-        return self._with({name: straightened(track) for name, track in self._tracks.items()})
+        """What was recorded so far, or None where nothing was.
 
-    def draft(self) -> Script | None:
-        """The same so far, with a few more keys: only what is new since the last one is thinned."""
-        for name, track in self._tracks.items():
-            thinned, count = self._drafts.get(name, (track[:1], 1))
-            if len(track) > count:
-                thinned += straightened(track[count - 1 :])[1:]
-            self._drafts[name] = thinned, len(track)
-        return self._with({name: thinned for name, (thinned, _) in self._drafts.items()})
-
-    def _with(self, tracks: Mapping[str, list[tuple[float, float]]]) -> Script | None:
-        if self.time <= 0.0 or not tracks:
+        Only what is new since the last call is thinned, so that a long recording does not stutter.
+        """
+        for name, (times, values) in self._samples.items():
+            if name not in self._tracks:
+                self._tracks[name] = thinned(times, values)
+            elif len(times) > 1:
+                self._tracks[name] = self._tracks[name].continued(thinned(times, values))
+            del times[:-1], values[:-1]
+        if self.time <= 0.0 or not self._tracks:
             return None
-        channels = {
-            name: Channel(
-                tuple(Key(rounded(time), rounded(value), "linear") for time, value in each)
-            )
-            for name, each in sorted(tracks.items())
-        }
-        return replace(self._empty, duration=rounded(self.time), tracks=channels)
-
-
-def straightened(track: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Leave out keys that lie on a straight line between others (Ramer, Douglas, Peucker)."""
-    corners = {0, len(track) - 1}
-    spans = [(0, len(track) - 1)]
-    while spans:
-        first, last = spans.pop()
-        (start, low), (end, high) = track[first], track[last]
-        most, worst = TOLERANCE, -1
-        for index in range(first + 1, last):
-            time, value = track[index]
-            off = abs(low + (high - low) * (time - start) / (end - start) - value)
-            if off > most:
-                most, worst = off, index
-        if worst >= 0:
-            corners.add(worst)
-            spans += [(first, worst), (worst, last)]
-    return [track[index] for index in sorted(corners)]
+        tracks = dict(sorted(self._tracks.items()))
+        return replace(self._empty, duration=rounded(self.time), tracks=tracks)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..performances import read_performance
 from ..script import is_pose
-from .files import Files
+from .files import SUFFIX, Files
 from .messages import Message, Task
 from .question import Question
 from .session import Session
+
+RECORDINGS = (".csv", ".json", ".tsv", ".txt")  # how their names may end; content tells what it is
 
 
 class ScriptCommands:
@@ -31,20 +34,29 @@ class ScriptCommands:
         return self._question.before("Begin", begin)
 
     def ask_open(self) -> None:
-        """Ask for a script or a pose, and show it."""
-        self._files.ask("Open script or pose", self.open, saving=False)
+        """Ask for a script, a pose or a recording, and show it."""
+        self._files.ask(
+            "Open script, pose or recording",
+            self.open,
+            saving=False,
+            kind="Scripts, poses and recordings",
+            suffixes=(SUFFIX, *RECORDINGS),
+        )
 
     def open(self, path: Path, remark: str = "") -> Message:
-        """Show the script or pose of a file, unless work would be lost: then ask first.
+        """Show the script, pose or recording of a file; if work would be lost, ask first.
 
         remark: what else there is to say when it is opened.
         """
-        script = self._session.read(path)
+        session = self._session
+        limits = session.limits if session.scene.name == "face" else None
+        script, report = read_performance(path, limits=limits)
+        session.check(script)
 
         def show() -> Message:
             """Do so."""
-            self._session.open(script)
-            return f"{path.name}: opened{remark}"
+            session.open(script)
+            return f"{report.in_brief if report else f'{path.name}: opened'}{remark}"
 
         if is_pose(script) and not self._session.has_unsaved_pose:
             return show()  # whatever else is unsaved stays
@@ -62,12 +74,13 @@ class ScriptCommands:
 
     def save_as(self, then: Task = lambda: None) -> None:
         """Ask for a name, and write the script."""
-        path = self._session.file.path
+        path, script = self._session.file.path, self._session.script
+        name = f"{Path(script.source).stem}{SUFFIX}" if script.is_converted else "script.toml"
         self._files.ask(
             "Save script",
             lambda chosen: self._write(chosen, then),
             saving=True,
-            proposed=str(path.absolute()) if path is not None else "script.toml",
+            proposed=str(path.absolute()) if path is not None else name,
         )
 
     def _write(self, path: Path, then: Task) -> Message:

@@ -24,9 +24,10 @@ class ScriptFile:
 
     @classmethod
     def of(cls, script: Script) -> ScriptFile:
-        """The file that a script was read from; the program's own examples are nobody's file."""
+        """The file that a script was read from; examples and recordings are no file to save to."""
         path = Path(script.source)
-        is_own = path.is_file() and not path.resolve().is_relative_to(str(files("risorius.assets")))
+        is_own = not script.is_converted and path.is_file()
+        is_own = is_own and not path.resolve().is_relative_to(str(files("risorius.assets")))
         return cls(path if is_own else None, script)
 
     @classmethod

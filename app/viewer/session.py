@@ -14,7 +14,7 @@ import numpy as np
 
 from ..errors import UserError
 from ..scenes import Scene, clamped
-from ..script import Pose, Script, is_pose, load_script, pose_script, rounded, save_script
+from ..script import Pose, Script, is_pose, pose_script, rounded, save_script
 from . import keyframes
 from .control_rows import highest_first, mirrored, twin_of
 from .history import History
@@ -289,8 +289,8 @@ class Session:
 
     @property
     def recording_so_far(self) -> Script | None:
-        """What would be the script if the recording was stopped now, or nearly so."""
-        return self._recorder.draft() if self._recorder is not None else None
+        """What would be the script if the recording was stopped now."""
+        return self._recorder.script() if self._recorder is not None else None
 
     @property
     def recorded_seconds(self) -> float:
@@ -299,16 +299,15 @@ class Session:
 
     # Files
 
-    def read(self, path: Path) -> Script:
-        """The script or pose in a file, if it is for this scene; UserError says what is wrong."""
-        script = load_script(path)
+    def check(self, script: Script) -> None:
+        """UserError says why a script or pose cannot be opened here."""
         if script.scene != self.script.scene:
             raise UserError(
-                f"{path}: is for the scene '{script.scene}', and this window shows "
-                f"'{self.script.scene}': `risorius view --scene {script.scene} --script {path}`"
+                f"{script.source}: is for the scene '{script.scene}', and this window shows "
+                f"'{self.script.scene}': "
+                f"`risorius view --scene {script.scene} --script {script.source}`"
             )
         script.check(self.limits)
-        return script
 
     def open(self, script: Script) -> None:
         """A pose to show, which a recording takes in, or a script to play, which ends it."""

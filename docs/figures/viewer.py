@@ -13,7 +13,7 @@ from imgui_bundle import imgui
 
 from risorius.app.cameras import camera_for
 from risorius.app.files import Image
-from risorius.app.script import script_for
+from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.keyframes import places_of
 from risorius.app.viewer.mouse import SkinDrag

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from imgui_bundle import imgui
 
-from risorius.app.script import script_for
+from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.files import Files
 from risorius.app.viewer.session import Session

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 from Xlib import Xatom, display
 
-from risorius.app.script import script_for
+from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.files import Files
 

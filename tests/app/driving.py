@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -114,3 +116,15 @@ def nose(viewer: Viewer) -> tuple[int, int]:
     clip = np.append(tip, 1.0) @ matrix
     x, y = clip[:2] / clip[3]
     return on_screen(viewer, left + width * (0.5 + 0.5 * x), top + height * (0.5 - 0.5 * y))
+
+
+def drop(viewer: Viewer, *paths: Path) -> None:
+    """Let another program drop files onto the face; the window must have taken them."""
+    command = [sys.executable, "-m", "tests.app.dropping", "Risorius", *map(str, nose(viewer))]
+    source = subprocess.Popen(
+        [*command, *map(str, paths)], stderr=subprocess.PIPE, text=True,
+        cwd=Path(__file__).parents[2],
+    )  # fmt: skip
+    assert until(viewer, lambda: source.poll() is not None, 20.0)
+    assert source.returncode == 0, source.communicate()[1]
+    draw_frames(viewer)

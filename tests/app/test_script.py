@@ -7,12 +7,23 @@ import sys
 import tracemalloc
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from risorius.app.errors import UserError
-from risorius.app.script import load_script, parse_script
+from risorius.app.script import (
+    LARGEST,
+    Channel,
+    Key,
+    Pose,
+    Script,
+    load_script,
+    parse_script,
+    save_script,
+    script_text,
+)
 from risorius.app.script.easing import EASINGS
 
 HELLO = """
@@ -50,6 +61,64 @@ def test_before_the_first_key() -> None:
     assert script.at(0.0) == {"joy": 0.5}
 
 
+def test_lines_are_keys_as_tables_are() -> None:
+    """A track of lines and one of tables mean the same; only the default easing differs."""
+    lines = parse_script("[tracks]\njoy = '''\n0 0.5\n 1.5  1 hold\n\n2 -0\n'''", source="s")
+    tables = parse_script(
+        "[tracks]\njoy = [{ time = 0, value = 0.5, easing = 'linear' },"
+        "{ time = 1.5, value = 1, easing = 'hold' }, { time = 2, value = 0, easing = 'linear' }]",
+        source="s",
+    )
+    assert lines == tables and lines.tracks["joy"].keys == tables.tracks["joy"].keys
+    assert lines.at(1.75) == {"joy": 0.5} and lines.at(1.0) == {"joy": 0.5}
+
+
+@st.composite
+def channels(draw: st.DrawFn) -> Channel:
+    """Channels of few keys and of many, of one easing and of all."""
+    times = draw(
+        st.lists(st.floats(0.0, LARGEST), unique=True, min_size=1, max_size=60).map(sorted)
+    )
+    size = {"min_size": len(times), "max_size": len(times)}
+    values = draw(st.lists(st.floats(-LARGEST, LARGEST), **size))
+    easings = draw(st.just(len(times) * ["linear"]) | st.lists(st.sampled_from([*EASINGS]), **size))
+    return Channel.of(map(Key, times, values, easings))
+
+
+@given(tracks=st.dictionaries(st.text(max_size=5), channels(), max_size=3))
+def test_what_is_written_reads_back(tracks: dict[str, Channel]) -> None:
+    """To the last digit, whether a track is written as tables or as lines, and in its order."""
+    script = Script("t", 1.0, "t", poses=(Pose(0.0),), tracks=tracks)
+    read = parse_script(script_text(script), source="t")
+    assert read == script and list(read.tracks) == list(tracks)
+    assert script_text(read) == script_text(script)
+
+
+@given(channel=channels(), data=st.data())
+def test_a_channel_has_the_values_of_its_keys(channel: Channel, data: st.DataObject) -> None:
+    """At a key its own value; between two keys what their easing makes of them."""
+    keys = channel.keys
+    assert channel == Channel.of(keys) and len(channel) == len(keys)
+    assert [channel.value(key.time) for key in keys] == [key.value for key in keys]
+    time = data.draw(st.floats(0.0, LARGEST))
+    before = [key for key in keys if key.time <= time][-1:] or keys[:1]
+    after = [key for key in keys if key.time > time][:1] or before
+    share = (time - before[0].time) / (after[0].time - before[0].time or 1.0)
+    way = (after[0].value - before[0].value) * EASINGS[after[0].easing](min(max(share, 0.0), 1.0))
+    assert channel.value(time) == before[0].value + (way if before[0].time <= time else 0.0)
+
+
+def test_nobody_can_change_the_keys_of_a_channel() -> None:
+    """The undo history and the file share them; even the arrays that it was made from are apart."""
+    times = np.array([0.0, 1.0])
+    channel = Channel(times, [0.0, 1.0])
+    times[1] = 5.0
+    assert channel.value(1.0) == 1.0
+    for part in (channel.times, channel.values, channel.easings):
+        with pytest.raises(ValueError, match="read-only"):
+            part[0] = 1
+
+
 @given(fraction=st.floats(0.0, 1.0), name=st.sampled_from(sorted(EASINGS)))
 def test_easings_stay_between_the_keys(fraction: float, name: str) -> None:
     """Every easing goes from 0 to 1 and never leaves that range."""
@@ -85,6 +154,21 @@ def test_easings_stay_between_the_keys(fraction: float, name: str) -> None:
         ("duration=1\n[[pose]]\ntime=2\nname='x'", r"pose 'x' at 2 s comes after the duration"),
         ("pose = 3", r"'pose' must be a list of tables"),
         ("[tracks]\nblink = 3", r"track 'blink' must be a list"),
+        ("[tracks]\nblink = ' '", r"track 'blink' must be a list .* or lines of a time"),
+        ("[tracks]\nb='''\n0 0\n\n1\n'''", r"track 'b', key 2: '1' must be a time, a value"),
+        ("[tracks]\nb='1 0 linear 1'", r"key 1: '1 0 linear 1' must be a time, a value"),
+        ("[tracks]\nb='1 0 lineal'", r"key 1: '1 0 lineal' must be .* easing: linear, smooth"),
+        ("[tracks]\nb='1 much'", r"key 1: '1 much' must be a time, a value"),
+        ("[tracks]\nb='1 nan'", r"track 'b', key 1: 'value' is nan; it must be a number"),
+        ("[tracks]\nb='1 inf'", r"track 'b', key 1: 'value' must lie between -86400 and 86400"),
+        ("[tracks]\nb='nan 1'", r"track 'b', key 1: 'time' is nan; it must be a number"),
+        ("[tracks]\nb='-1 1'", r"track 'b', key 1: time is -1 s; it must be 0 or more"),
+        ("[tracks]\nb='1e6 1'", r"track 'b', key 1: 'time' must lie between"),
+        (
+            "[tracks]\nb='''\n0 0\n2 1 hold\n2 0\n'''",
+            r"key 3: time 2 s does not come after the key before it \(2 s\)",
+        ),
+        ("a = [" + 9_000_000 * "1," + "]", r"bad.toml: more than 16 MB outside of quotes"),
         ("[tracks]\nblink = [3]", r"track 'blink', key 1 must be written"),
         ("[tracks]\nblink = [{time=1}]", r"track 'blink', key 1: 'value' is missing"),
         ("[tracks]\nblink = [{time=1,value=1,x=2}]", r"key 1: unknown key 'x'"),
@@ -108,6 +192,7 @@ def test_unknown_names_get_a_suggestion() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
+        ("[tracks]\njoy='''0 0\n2 1.5\n3 2'''", r"track 'joy' is 1.5 at 2 s; it must be from -1"),
         ("[[pose]]\ntime=1\njoy=7", r"bad.toml: joy is 7; it must be from 0 to 1$"),
         ("[[pose]]\ntime=1\n[[pose]]\ntime=2.5\njoy=-1", r"joy is -1 at 2.5 s; it must"),
         ("[[pose]]\ntime=1\njaw=-1.1", r"jaw is -1.1; it must be from -1 to 1"),
@@ -142,8 +227,8 @@ def test_missing_and_unreadable_files(tmp_path: Path) -> None:
         load_script(binary)
     long = tmp_path / "long.toml"
     with long.open("wb") as file:
-        file.truncate(2**24 + 1)
-    with pytest.raises(UserError, match="is longer than a script may be, 16 MB"):
+        file.truncate(2**25 + 1)
+    with pytest.raises(UserError, match="is longer than a script may be, 32 MB"):
         load_script(long)
 
 
@@ -214,3 +299,13 @@ def test_scripts_of_other_editors(tmp_path: Path) -> None:
     path = tmp_path / "windows.toml"
     path.write_bytes(b"\xef\xbb\xbf[[pose]]\r\ntime = 2.0\r\njoy = 1.0\r\n")
     assert load_script(path).at(2.0) == {"joy": 1.0}
+
+
+def test_what_could_not_be_read_is_not_written(tmp_path: Path) -> None:
+    """A script that is too long for its reader leaves the file that there is alone."""
+    path, many = tmp_path / "long.toml", np.arange(1_700_000)
+    path.write_text("before")
+    script = Script("t", 1.0, "t", tracks={"joy": Channel(many * np.pi / 1e4, many * 0.0)})
+    with pytest.raises(UserError, match="longer than can be read again, 32 MB"):
+        save_script(path, script)
+    assert path.read_text() == "before"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from risorius.app.script import script_for
+from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 
 from .driving import NEEDS_A_SCREEN, draw_frames, until

@@ -20,7 +20,7 @@ import pytest
 from Xlib import X, display
 from Xlib.protocol import event
 
-from risorius.app.script import script_for
+from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.placement import FIRST_SIZE
 from risorius.app.viewer.settings import load_settings

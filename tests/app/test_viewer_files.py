@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 from importlib import resources
 from pathlib import Path
 
@@ -23,6 +22,7 @@ from .driving import (
     click,
     drag,
     draw_frames,
+    drop,
     moved,
     nose,
     replace_state,
@@ -36,18 +36,6 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 EXAMPLE = "scripts/speech.toml"
 SCRIPT = "duration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
 POSE = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
-
-
-def drop(viewer: Viewer, *paths: Path) -> None:
-    """Let another program drop files onto the face; the window must have taken them."""
-    command = [sys.executable, "-m", "tests.app.dropping", "Risorius", *map(str, nose(viewer))]
-    source = subprocess.Popen(
-        [*command, *map(str, paths)], stderr=subprocess.PIPE, text=True,
-        cwd=Path(__file__).parents[2],
-    )  # fmt: skip
-    assert until(viewer, lambda: source.poll() is not None, 20.0)
-    assert source.returncode == 0, source.communicate()[1]
-    draw_frames(viewer)
 
 
 def test_files_can_be_dropped_onto_the_window(viewer: Viewer, tmp_path: Path) -> None:
@@ -227,9 +215,7 @@ def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> No
     xdotool(viewer, "key", "Return")
     assert viewer.files.is_waiting and taken.read_text() == "precious"
     xdotool(viewer, "key", "Escape")
-    viewer.session.open(
-        viewer.session.read(Path(str(resources.files("risorius.assets"))) / EXAMPLE)
-    )
+    viewer.session.open(load_script(Path(str(resources.files("risorius.assets"))) / EXAMPLE))
     xdotool(viewer, "key", "ctrl+s")
     assert viewer.files.is_waiting
     xdotool(viewer, "key", "Escape")

@@ -9,15 +9,9 @@ import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
+from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
-from risorius.app.script import (
-    Script,
-    load_script,
-    parse_script,
-    save_script,
-    script_for,
-    script_text,
-)
+from risorius.app.script import Script, load_script, parse_script, save_script, script_text
 from risorius.app.viewer import keyframes
 from risorius.app.viewer.keyframes import FRAME, POSES, KeyPlace
 from risorius.app.viewer.session import Session

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from risorius.app.script import script_for
+from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.keyframes import places_of
 

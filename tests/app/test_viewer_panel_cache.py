@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from risorius.app.script import script_for
+from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.panel_cache import REFRESH
 

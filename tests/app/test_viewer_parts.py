@@ -9,15 +9,16 @@ import pytest
 from viewer import STOPS
 
 from risorius.app.errors import UserError
+from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script import (
+    TOLERANCE,
     Script,
     is_pose,
     load_script,
     parse_script,
     pose_script,
     save_script,
-    script_for,
     script_text,
 )
 from risorius.app.viewer import picking
@@ -26,7 +27,7 @@ from risorius.app.viewer.history import History
 from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.overlays import OVERLAYS, overlays_of
 from risorius.app.viewer.physics import MOST_STEPS, STEP, Clock
-from risorius.app.viewer.recorder import TOLERANCE, Recorder
+from risorius.app.viewer.recorder import Recorder
 from risorius.app.viewer.session import Session
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger
@@ -91,7 +92,7 @@ def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path
     assert not session.unsaved
     session.neutral()
     run(session)
-    session.open(session.read(tmp_path / "take.toml"))
+    session.open(load_script(tmp_path / "take.toml"))
     session.toggle_playing()
     while session.is_playing:
         session.advance(STEP)

@@ -14,8 +14,9 @@ from pathlib import Path
 import pytest
 
 from risorius.app.errors import UserError
+from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.app.script import load_script, script_for
+from risorius.app.script import load_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.physics import STEP
 from risorius.app.viewer.recovery import LONGEST, QUIET, Recovery
@@ -158,7 +159,7 @@ def test_saved_work_is_kept_no_more(
 
 
 def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Path) -> None:
-    """Script, recording and pose, each digit; the script knows its file, comments and all."""
+    """Script and pose to each digit, the recording; the script knows its file, comments and all."""
     session.set("jaw_open", 0.25)
     session.set_key()
     edited = session.script
@@ -176,7 +177,7 @@ def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Pa
     next_one.accept_found(after)
     assert next_one.found is None and after.unsaved == "the pose and the script"
     assert after.values["jaw_open"] == session.values["jaw_open"]
-    assert after.script.tracks["jaw_open"].value(1.0) == pytest.approx(1.0 / 3.0, abs=1e-6)
+    assert after.script.tracks["jaw_open"].value(1.0) == pytest.approx(1.0 / 3.0, abs=1e-4)
     after.undo()  # the pose
     after.undo()  # the recording
     assert after.script == edited and after.script.preface == "# mine"

@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
+from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.app.script import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import (
     Display,

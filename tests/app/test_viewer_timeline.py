@@ -39,7 +39,7 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
     """A script of the user's own, opened."""
     path = tmp_path / "own.toml"
     path.write_text(SCRIPT.read_text(encoding="utf-8"))
-    viewer.session.open(viewer.session.read(path))
+    viewer.session.open(load_script(path))
     viewer.selection.places = frozenset()
     viewer.time_axis.is_whole = True
     # While the face moves, panels are drawn anew a few times a second only.

@@ -26,6 +26,12 @@ ACCEPTED: dict[str, bytes] = {
     "quoted keys": b"[[pose]]\n'time' = 1\n\"joy\" = 1\n",
     "hexadecimal": b"[[pose]]\ntime = 0x1\njoy = 0b1\n",
     "underscores": b"[[pose]]\ntime = 1_0.0\n",
+    "a track of lines": b"[tracks]\njoy = '''\n0 0\n 1\t0.5 hold \r\n\n2 -1e-320\n'''\n",
+    "a track of one line": b'[tracks]\njoy = "1 0.5"\n',
+    "numbers of Python in lines": b"[tracks]\njoy = '1_0 +.5'\n",
+    "a million lines": b"[tracks]\njoy = '''\n"
+    + b"\n".join(b"%d.%02d 0" % divmod(n, 100) for n in range(1_000_000))
+    + b"'''\n",
     "ten thousand keys": b"".join(b"[[pose]]\ntime = %d\njoy = 1\n" % n for n in range(10_000)),
 }
 
@@ -41,7 +47,7 @@ REFUSED: dict[str, tuple[bytes, str]] = {
     "Latin": ("# Kähler\n".encode("latin-1"), "cannot be read as a text file"),
     "half a letter": (b"# \xe2\x82", "cannot be read as a text file"),
     "line ends of old Macs": (KEY.replace("\n", "\r").encode(), "not valid TOML"),
-    "too long": (b"#" * (2**24 + 1), "is longer than a script may be"),
+    "too long": (b"#" * (2**25 + 1), "is longer than a script may be"),
     "JSON": (b'{"pose": []}', "not valid TOML"),
     "a picture": (b"\x89PNG\r\n\x1a\n", "cannot be read as a text file"),
     # TOML.
@@ -141,6 +147,19 @@ REFUSED: dict[str, tuple[bytes, str]] = {
     "a track too high": (b"[tracks]\njoy = [{time = 1, value = 3}]\n", "must be from -1 to 1"),
     "a track with line end": (b'[tracks]\n"a\\nb" = [{time = 1, value = 1}]\n', "unknown name"),
     "an empty track with line end": (b'[tracks]\n"a\\nb" = []\n', "must be a list of"),
+    "a track of no lines": (b"[tracks]\njoy = ' '\n", "or lines of a time and a value"),
+    "a line of one number": (b"[tracks]\njoy = '1'\n", "key 1: '1' must be a time, a value"),
+    "a line of words": (b"[tracks]\njoy = 'a b'\n", "must be a time, a value"),
+    "a line of many numbers": (b"[tracks]\njoy = '" + b"1 " * 9000 + b"'\n", "must be a time"),
+    "a line with escape": (b'[tracks]\njoy = "1 \\u001b[2J"\n', "must be a time, a value"),
+    "a line of hexadecimals": (b"[tracks]\njoy = '0x1 1'\n", "must be a time, a value"),
+    "a line with unknown easing": (b"[tracks]\njoy = '1 1 slow'\n", "easing: linear, smooth"),
+    "a line that is none": (b"[tracks]\njoy = '1 nan'\n", "'value' is nan"),
+    "a line that is endless": (b"[tracks]\njoy = 'inf 1'\n", "'time' must lie between"),
+    "a line too high": (b"[tracks]\njoy = '''0 0\n1 3'''\n", "is 3 at 1 s; it must be from -1"),
+    "lines that fall": (b"[tracks]\njoy = '''1 1\n0 1'''\n", "key 2: time 0 s does not come"),
+    "lines at one time": (b"[tracks]\njoy = '''" + b"0 0\n" * 10**6 + b"'''\n", "does not come"),
+    "too much outside of quotes": (b"a = [" + b"1," * 9_000_000 + b"]", "outside of quotes"),
     "a track that falls": (
         b"[tracks]\njoy = [{time = 1, value = 1}, {time = 0, value = 1}]\n", "does not come after"
     ),

@@ -10,8 +10,9 @@ import pytest
 
 from risorius.app.cameras import camera_for
 from risorius.app.errors import UserError
+from risorius.app.performances import script_for
 from risorius.app.scenes import SCENES, FaceScene, Scene
-from risorius.app.script import Script, parse_script, script_for, script_text
+from risorius.app.script import Script, parse_script, script_text
 
 from .sandbox import bounded, check_line
 from .script_inputs import ACCEPTED, REFUSED

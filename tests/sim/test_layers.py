@@ -122,6 +122,26 @@ def test_a_share_follows_the_whole_that_is_set_later() -> None:
     assert subject.value("part") == 0.3
 
 
+def test_what_rows_make_sure_of_does_not_add() -> None:
+    """The greatest of them holds, through every layer, unless the sum is greater by itself."""
+    units = layer(
+        "Units",
+        A={"puller": 0.5, "at_least": {"slide": 0.4}},
+        B={"pair": True, "at_least": {"slide": 0.2, "puller": 0.3}},
+    )
+    subject = controls(units, layer("Faces", both={"A": 0.5, "B": 1.0, "slide": 0.1}))
+    assert wanted(subject, A=1.0)["slide"] == 0.4
+    assert wanted(subject, A=1.0, slide=0.3)["slide"] == 0.4
+    assert wanted(subject, A=1.0, slide=0.5)["slide"] == 0.5
+    assert wanted(subject, A=0.5, B=1.0)["slide"] == pytest.approx(0.2)
+    assert wanted(subject, both=1.0)["slide"] == pytest.approx(0.2)
+    assert wanted(subject, both=1.0, slide=0.3)["slide"] == pytest.approx(0.4)
+    assert wanted(subject, slide=-0.5)["slide"] == -0.5
+    left = wanted(subject, B_left=1.0)
+    assert left == {"puller_left": 0.3, "puller_right": 0.0, "middle": 0.0, "slide": 0.2}
+    assert wanted(subject, B_left=1.0, B_right=1.0) == wanted(subject, B=1.0)
+
+
 def test_sums_are_cut_off_once_and_in_any_order() -> None:
     """Own value and contributions add up, opposite ones cancel, and limits hold at the end."""
     subject, other = controls(UNITS, FACES), controls(UNITS, FACES)
@@ -167,6 +187,9 @@ def test_groups_end_with_the_layers() -> None:
         ({"X": {"pair": "Left"}}, r"row 'X': 'pair' was 'Left', must be true, false or \"Left R"),
         ({"X": {"pair": ["Left"]}}, r"row 'X': 'pair' was \['Left'\], must be true, false or"),
         ({"XLeft": {"pair": "Left Right"}}, r"row 'XLeft': a pair adds the .*; leave 'Left' away"),
+        ({"X": {"at_least": 0.2}}, r"row 'X': 'at_least' was 0.2, must be a table of control"),
+        ({"X": {"at_least": {"slide": -1}}}, r"row 'X', 'at_least', 'slide': was -1, .* 0 to 2"),
+        ({"X": {"at_least": {"slid": 1.0}}}, r"row 'X': no layer below .* 'slid'; did you mean"),
         ({"X": {"share_of": 1.0}}, r"row 'X': 'share_of' was 1.0, must be the name of a control"),
         ({"X": {"share_of": "midle"}}, r"'share_of': no row above .* 'midle'; did you mean 'mid"),
         ({"X": {"share_of": "X"}}, r"'share_of': no row above and no layer below .* called 'X'"),
@@ -240,6 +263,14 @@ def test_sides_of_arkit_shapes_ask_for_the_same(simulation: sim.Simulation) -> N
             twin = stem + other.get(mark + side, mark + side)
             mirrored[twin] = -value if name in turned else value
         assert sums(f"{base}Right") == pytest.approx(mirrored), base
+
+
+def test_the_jaw_of_a_funnel_counts_once(simulation: sim.Simulation) -> None:
+    """Lips that funnel open the jaw where it is shut, and leave it where it is open."""
+    simulation.pose({"mouthFunnel": 1.0, "mouthPucker": 0.5})
+    assert simulation.sums["jaw_open"] == pytest.approx(0.22)
+    simulation.pose({"mouthFunnel": 1.0, "jawOpen": 0.5})
+    assert simulation.sums["jaw_open"] == 0.5
 
 
 def test_mouth_close_shuts_an_open_jaw(simulation: sim.Simulation, head: Head) -> None:

@@ -1,0 +1,105 @@
+"""What is played: a script, a recording made to fit the face, a pose, or the scene's own script."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import fields, replace
+from importlib.resources import files
+from pathlib import Path
+
+from .errors import UserError
+from .playback import Playback
+from .recordings import is_recording, read_take
+from .recordings.conversion import script_of
+from .recordings.report import Report
+from .scenes import SCENES
+from .script import Limits, Pose, Script, load_script
+
+HELD = 1.0  # [s] that a pose of --set lasts
+TABLES = (".csv", ".tsv", ".json")  # how recordings are called; for error texts alone
+
+
+def script_for(
+    path: Path | None,
+    scene: str | None,
+    settings: Sequence[str] = (),
+    *,
+    playback: Playback | None = None,
+    tell: Callable[[Report], None] | None = None,
+) -> Script:
+    """What the file at `path` plays, or the pose of `settings`, or the script of the scene.
+
+    playback: how a recording is played; tell: is called with what there is to say of
+    it.
+    """
+    playback = playback or Playback()
+    if settings and path is not None:
+        raise UserError(
+            f"{path}: a script and --set exclude each other; "
+            "every NAME=VALUE has a --set of its own"
+        )
+    if path is None:
+        if playback != Playback():
+            raise UserError(f"{options_in(playback)} is for recordings, and none is given")
+        own = Path(str(files("risorius.assets") / "scripts" / f"{scene or 'face'}.toml"))
+        script = held_pose(settings) if settings else load_script(own)
+    else:
+        script, report = read_performance(path, playback)
+        if report is not None and tell is not None:
+            tell(report)
+    if scene is not None:
+        script = replace(script, scene=scene)
+    if script.scene not in SCENES:
+        raise UserError(f"{path}: scene '{script.scene}'; allowed are {', '.join(SCENES)}")
+    return script
+
+
+def read_performance(
+    path: Path, playback: Playback | None = None, limits: Limits | None = None
+) -> tuple[Script, Report | None]:
+    """The script in a file, or the one that plays a recording, with what there is to say of that.
+
+    limits: of the face, where one is there already. Raises UserError for a file that is neither,
+    and for options of recordings for what is none.
+    """
+    playback = playback or Playback()
+    if is_recording(path) or (path.suffix.lower() in TABLES and path.exists()):
+        take = read_take(path, face=playback.face, rate=playback.rate)
+        return script_of(take, playback, limits or face_limits())
+    script = load_script(path)
+    if playback != Playback():
+        raise UserError(f"{path}: is a script, and {options_in(playback)} is for recordings")
+    return script, None
+
+
+def options_in(playback: Playback) -> str:
+    """The first option of a playback that is not as usual, as the command line has it."""
+    usual = Playback()
+    first = next(
+        f.name for f in fields(playback) if getattr(playback, f.name) != getattr(usual, f.name)
+    )
+    return f"--{first.removesuffix('s')}"
+
+
+@functools.cache
+def face_limits() -> Limits:
+    """The lowest and highest value of each control that faces have."""
+    return SCENES["face"]().limits
+
+
+def held_pose(settings: Sequence[str]) -> Script:
+    """The script that `--set NAME=VALUE ...` stands for: one pose, held. A bare NAME is at 1."""
+    values = {}
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        try:
+            value = float(text) if equals else 1.0
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise UserError(f"--set {setting}: '{text}' is no number; write NAME=VALUE")
+        values[name] = value
+    title = ", ".join(settings)
+    return Script(title, duration=HELD, source="--set", poses=(Pose(0.0, values),))

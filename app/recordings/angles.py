@@ -1,0 +1,163 @@
+"""Angles of head and eyes as ARKit's writers give them; unit, axes and signs come from the data.
+
+ARKit's shapes eyeLookDown, eyeLookIn ... follow its eye angles, so they tell what the angles are.
+Live Link Face writes, fitted to a real take (correlation 0.98 to 0.999; [rad], + is down and to the
+subject's right):
+
+    pitch = 0.61 down - 0.44 up
+    yaw = 0.62 in - 0.59 out - 0.07 of the left eye, the opposite of the right eye
+
+So its axes stand 4 degrees outwards of where the eyes look, as the axis of a real eyeball does.
+Other writers use degrees, or halves of a turn as Unreal's plug-in does.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from .names import EYE_ANGLES
+from .take import Array
+
+UNITS = {"radians": 180.0 / math.pi, "degrees": 1.0, "halves of a turn": 180.0}  # in degrees
+LARGEST_RADIANS = 2.0 * math.pi
+MOVES = 0.005  # [rad] standard deviation of a look that tells something
+AGREES = 0.5  # correlation
+FOLLOWS = 0.9  # correlation that tells where an eye looks ahead
+CENTRED = 0.01  # [rad] by which it may be off unnoticed
+CLEARLY = 0.6  # correlation that swaps axes
+
+
+def in_degrees(
+    angles: Mapping[str, Array], shapes: Mapping[str, Array], notes: list[str]
+) -> dict[str, Array]:
+    """Angles in degrees, + to the subject's left, up, to the left shoulder.
+
+    angles: name of ours -> as the file has it. shapes: ARKit name -> 0 to 1, for comparison. Both
+    of shape (T,), NaN where nothing is known.
+    """
+    moving = {name: values for name, values in angles.items() if np.nan_to_num(values).any()}
+    if len(moving) < len(angles):
+        still = ", ".join(name for name in angles if name not in moving)
+        notes.append(f"Always 0, as if switched off, and left out: {still}.")
+    if not moving:
+        return {}
+    looks = looks_of(shapes)
+    angles = _head_unswapped(_eyes_unswapped(moving, looks, notes), looks, notes)
+    unit = _unit(angles, looks, notes)
+    found = {}
+    for name, values in angles.items():
+        sign = -1.0  # ARKit's writers count down and to the right
+        if name in looks and _correlation(values, looks[name]) < -AGREES:
+            sign = 1.0
+            notes.append(f"{name} runs against the eyeLook shapes; its sign was turned.")
+        found[name] = sign * UNITS[unit] * (values - _outward(values, looks.get(name)))
+    if any(_outward(angles[name], looks.get(name)) for name in angles):
+        notes.append("The eyeballs' axes stand outwards of where the eyes look; that was undone.")
+    return found
+
+
+def looks_of(shapes: Mapping[str, Array]) -> dict[str, Array]:
+    """The eye angles [rad], + = down and to the subject's right, that the eyeLook shapes tell."""
+    found = {}
+    for side, towards_right in (("left", 1.0), ("right", -1.0)):
+        name = side.capitalize()
+        down, up = shapes.get(f"eyeLookDown{name}"), shapes.get(f"eyeLookUp{name}")
+        inward, out = shapes.get(f"eyeLookIn{name}"), shapes.get(f"eyeLookOut{name}")
+        if down is not None and up is not None:
+            found[f"eye_pitch_{side}"] = 0.61 * down - 0.44 * up
+        if inward is not None and out is not None:
+            found[f"eye_yaw_{side}"] = towards_right * (0.62 * inward - 0.59 * out)
+    return found
+
+
+def _outward(values: Array, look: Array | None) -> float:
+    """How far an angle is off, in its own unit, where the shapes say that the eye looks ahead."""
+    if look is None or abs(_correlation(values, look)) < FOLLOWS:
+        return 0.0
+    angle, seen = _both_known(values, look)
+    slope, offset = np.polyfit(seen, angle, 1)
+    return float(offset) if abs(offset) > CENTRED * abs(slope) else 0.0
+
+
+def _unit(angles: Mapping[str, Array], looks: Mapping[str, Array], notes: list[str]) -> str:
+    """The unit by least squares of eye angles on looks; by size where the eyes do not tell."""
+    product = square = 0.0
+    for name in EYE_ANGLES:
+        if name in angles and abs(_correlation(angles[name], looks.get(name))) > AGREES:
+            angle, look = _both_known(angles[name], looks[name])
+            product += abs(float(np.dot(angle - angle.mean(), look - look.mean())))
+            square += float(np.dot(look - look.mean(), look - look.mean()))
+    if square > 0.0:
+        slope = product / square  # of the file's unit in radians
+        unit = min(UNITS, key=lambda each: abs(math.log(slope * UNITS[each] * math.pi / 180.0)))
+        size = max(float(np.nanmax(np.abs(values))) for values in angles.values())
+        if size <= LARGEST_RADIANS or unit == "degrees":
+            notes.append(f"Angles are in {unit}, as the eyes' angles and the eyeLook shapes tell.")
+            return unit
+    size = max(float(np.nanpercentile(np.abs(values), 99)) for values in angles.values())
+    unit = "degrees" if size > LARGEST_RADIANS else "radians"
+    notes.append(f"Angles reach {size:.2g} and were taken for {unit}; the eyes do not tell.")
+    return unit
+
+
+def _eyes_unswapped(
+    angles: dict[str, Array], looks: Mapping[str, Array], notes: list[str]
+) -> dict[str, Array]:
+    """Pitch and yaw of the eyes exchanged, where each follows the look along the other axis."""
+    straight, crossed = [], []
+    for side in ("left", "right"):
+        for axis, other in (("yaw", "pitch"), ("pitch", "yaw")):
+            column = angles.get(f"eye_{axis}_{side}")
+            straight.append(abs(_correlation(column, looks.get(f"eye_{axis}_{side}"))))
+            crossed.append(abs(_correlation(column, looks.get(f"eye_{other}_{side}"))))
+    if max(crossed) > CLEARLY and sum(crossed) > sum(straight) + CLEARLY:
+        notes.append("The writer swapped pitch and yaw of the eyes; they were put back.")
+        return angles | {
+            name: angles[_other_axis(name)] for name in EYE_ANGLES if _other_axis(name) in angles
+        }
+    return angles
+
+
+def _head_unswapped(
+    angles: dict[str, Array], looks: Mapping[str, Array], notes: list[str]
+) -> dict[str, Array]:
+    """The same of the head: eyes that keep their goal turn against the head, on the same axis."""
+    if not {"head_yaw", "head_pitch"} <= angles.keys():
+        return angles
+    across, along = looks.get("eye_yaw_left"), looks.get("eye_pitch_left")
+    crossed = (
+        _correlation(angles["head_yaw"], along),
+        _correlation(angles["head_pitch"], across),
+    )
+    straight = (
+        _correlation(angles["head_yaw"], across),
+        _correlation(angles["head_pitch"], along),
+    )
+    if max(crossed) < -CLEARLY and min(straight) > -AGREES:
+        notes.append("The writer swapped pitch and yaw of the head; they were put back.")
+        return angles | {"head_yaw": angles["head_pitch"], "head_pitch": angles["head_yaw"]}
+    return angles
+
+
+def _other_axis(name: str) -> str:
+    """The name with pitch for yaw, or yaw for pitch."""
+    return name.replace("yaw", "P").replace("pitch", "yaw").replace("P", "pitch")
+
+
+def _both_known(first: Array, second: Array) -> tuple[Array, Array]:
+    """The frames of two channels in which both are known."""
+    known = np.isfinite(first) & np.isfinite(second)
+    return first[known], second[known]
+
+
+def _correlation(column: Array | None, look: Array | None) -> float:
+    """Of an angle with what the shapes tell; 0 where either is missing or does not move."""
+    if column is None or look is None:
+        return 0.0
+    column, look = _both_known(column, look)
+    if len(column) < 10 or np.std(look) < MOVES or np.std(column) < 1e-9:
+        return 0.0
+    return float(np.corrcoef(column, look)[0, 1])

@@ -1,0 +1,206 @@
+"""Calibration: what a recording's channels are of this person's face, and how strongly they count.
+
+No face is at 0 while it rests: a phone reads a quarter of a frown in most. Calibration takes the
+neutral face away and keeps the greatest value where it is:
+
+    v -> (v - n) / (1 - n),  then times the gain,  cut off at 0 and 1
+
+and of angles, which have no greatest value, only subtracts. A mirror comes last. The same object
+serves whole takes, whose values are arrays, and single frames, whose values are numbers.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import math
+from collections.abc import Iterable, Sequence
+from collections.abc import Mapping as AnyMapping
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+import numpy as np
+
+from ..errors import UserError
+from .names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES, mirror_of
+from .take import Array, Take
+
+Value = TypeVar("Value", float, Array)
+
+ANGLES = frozenset((*HEAD_ANGLES, *EYE_ANGLES))
+LEAST_RANGE = 0.2  # what a neutral face leaves of a channel; more would stretch noise to a motion
+HIGHEST_GAIN = 10.0
+LOW = 5.0  # percentile that counts as neutral
+FIRST_SECONDS = 1.0  # [s] of a take in which the head is held straight
+SHORTEST = 2.0  # [s]; a shorter take has no neutral face in it that could be told from the others
+BLINK_GAIN = 1.15  # blinks are recorded with peaks of 0.86 to 0.94
+OPENFACE_GAIN = 1.4  # intensity E, 5 of 5, is next to never given
+# What is at 0 by itself while the face rests, or is a share of another channel.
+_NEVER_NEUTRAL = ("eyeLook*", "eyeBlink*", "jawOpen", "mouthClose", "AU43*", "AU45*", "AU46*")
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """What is done to the channels of one face before they move another.
+
+    neutral: channel -> its value in the neutral face, in its own unit; 0 for what is not named.
+    gains: channel -> what it is multiplied with.
+    default_gain: of all other channels but angles.
+    mirror: whether left and right change places.
+    """
+
+    neutral: AnyMapping[str, float] = field(default_factory=dict)
+    gains: AnyMapping[str, float] = field(default_factory=dict)
+    default_gain: float = 1.0
+    mirror: bool = False
+
+    def apply(self, channels: AnyMapping[str, Value]) -> dict[str, Value]:
+        """The calibrated channels: arrays of shape (T,) or numbers, as they were given."""
+        calibrated = {name: self._value(name, value) for name, value in channels.items()}
+        if not self.mirror:
+            return calibrated
+        mirrored = {}
+        for name, value in calibrated.items():
+            other, sign = mirror_of(name)
+            mirrored[other] = value * sign if sign < 0.0 else value
+        return mirrored
+
+    def _value(self, name: str, value: Value) -> Value:
+        """One channel without its neutral value, times its gain."""
+        neutral = self.neutral.get(name, 0.0)
+        if name in ANGLES:
+            return (value - neutral) * self.gains.get(name, 1.0)
+        scale = self.gains.get(name, self.default_gain) / max(1.0 - neutral, LEAST_RANGE)
+        return _between_0_and_1((value - neutral) * scale)
+
+
+def _between_0_and_1(value: Value) -> Value:
+    if isinstance(value, np.ndarray):
+        return np.clip(value, 0.0, 1.0)
+    return min(max(value, 0.0), 1.0)  # ten times as fast for one number, and live has sixty a frame
+
+
+def calibration_for(
+    take: Take,
+    *,
+    neutral: str | None = None,
+    gains: Iterable[str] = (),
+    mirror: bool = False,
+) -> Calibration:
+    """The calibration of a take: as asked for, and otherwise as suits what wrote it.
+
+    neutral: "first:SECONDS", "percentile" or "none"; gains: "NAME=x" each, where NAME may be a
+    pattern as mouth*. Raises UserError for anything else.
+    """
+    own, default = gains_of(gains, take.channels, usual_gains(take.kind))
+    return Calibration(neutral_of(take, neutral), own, default, mirror)
+
+
+def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
+    """The neutral face of a take: channel -> value.
+
+    method: "first:SECONDS", the median of so much of its beginning; "percentile", the 5th of each
+    channel (LOW), but the first second of the head's turn; "none". None: percentile for what is
+    neither calibrated nor too short to tell, of what does rest at a value of its own. Raises
+    UserError for another method.
+    """
+    if method == "none":
+        return {}
+    names = [name for name in take.channels if name not in VISEMES]
+    if method is not None and method.startswith("first"):
+        return _median_of_first(take, names, _seconds_in(method))
+    if method not in (None, "percentile"):
+        raise UserError(f"--neutral {method}: allowed are first:SECONDS, percentile and none")
+    if method is None and take.duration < SHORTEST:
+        return {}
+    neutral = _median_of_first(take, [n for n in names if n in HEAD_ANGLES], FIRST_SECONDS)
+    if method is None and take.is_calibrated:
+        return neutral
+    for name in names:
+        if name not in ANGLES and not _matches(name, _NEVER_NEUTRAL):
+            neutral[name] = float(np.percentile(take.channels[name], LOW))
+    return neutral
+
+
+def neutral_now(channels: AnyMapping[str, float]) -> dict[str, float]:
+    """The neutral face of somebody who holds it in this frame."""
+    return {name: value for name, value in channels.items() if name not in VISEMES}
+
+
+def _median_of_first(take: Take, names: Iterable[str], seconds: float) -> dict[str, float]:
+    first = take.times <= seconds
+    return {name: float(np.median(take.channels[name][first])) for name in names}
+
+
+def _seconds_in(method: str) -> float:
+    """The number in first:SECONDS."""
+    text = method.removeprefix("first").removeprefix(":")
+    try:
+        seconds = float(text) if text else FIRST_SECONDS
+    except ValueError:
+        seconds = math.nan
+    if not 0.0 <= seconds < math.inf:
+        raise UserError(f"--neutral {method}: '{text}' is no time; write first:1 for one second")
+    return seconds
+
+
+def usual_gains(kind: str) -> dict[str, float]:
+    """The gains, by pattern, that suit what wrote a take."""
+    if kind.startswith("OpenFace"):
+        return {"AU*": OPENFACE_GAIN}
+    return {"eyeBlink*": BLINK_GAIN}
+
+
+def gains_of(
+    settings: Iterable[str],
+    channels: Iterable[str],
+    usual: AnyMapping[str, float] | None = None,
+) -> tuple[dict[str, float], float]:
+    """What `--gain NAME=x ...` makes of channels: the gain of each named one, and of all others.
+
+    NAME is a channel, a pattern (mouth*, *Left), or all; what comes later counts. usual: gains by
+    pattern that hold where nothing else is said. Raises UserError for a name that fits no channel.
+    """
+    names = list(channels)
+    gains, default = _spread(usual or {}, names), 1.0
+    for setting in settings:
+        name, value = _gain_in(setting)
+        if name == "all":
+            default = value
+            gains.clear()
+            continue
+        fitting = [each for each in names if fnmatch.fnmatchcase(each, name)]
+        if not fitting and not any(fnmatch.fnmatchcase(each, name) for each in ARKIT):
+            raise UserError(
+                f"--gain {setting}: no channel of this recording is called '{name}'; "
+                "write a channel's name, a pattern as mouth*, or all"
+            )
+        gains.update(dict.fromkeys(fitting, value))
+    return gains, default
+
+
+def _gain_in(setting: str) -> tuple[str, float]:
+    """Name and number of NAME=x."""
+    name, _, text = setting.partition("=")
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not name or not 0.0 <= value <= HIGHEST_GAIN:
+        raise UserError(
+            f"--gain {setting}: write NAME=x, where x is a number from 0 to {HIGHEST_GAIN:g}"
+        )
+    return name, value
+
+
+def _spread(by_pattern: AnyMapping[str, float], names: Sequence[str]) -> dict[str, float]:
+    """Gains by pattern as gains of channels."""
+    return {
+        name: gain
+        for pattern, gain in by_pattern.items()
+        for name in names
+        if fnmatch.fnmatchcase(name, pattern)
+    }
+
+
+def _matches(name: str, patterns: Iterable[str]) -> bool:
+    return any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)

@@ -1,0 +1,88 @@
+"""A take -> a script that plays it: smoothed if asked, calibrated, mapped, read ahead, thinned.
+
+Muscles, eyes and head follow their controls late, each in its own time. A script that is made of a
+recording therefore asks for everything earlier by just that, so that the face is on time, as is its
+sound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping as AnyMapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import in_one_line
+from ..playback import LEAD, Playback
+from ..script import TOLERANCE, Channel, Limits, Pose, Script, rounded, thinned
+from .calibration import calibration_for
+from .mapping import load_mapping
+from .report import Report, report_of
+from .smoothing import OneEuro
+from .take import Array, Take
+
+LEAST_STEP = 1e-3  # [s] between the first two keys
+CAMERA = "front"  # from where recorded faces were seen
+HELD = 1.0  # [s] that a take of a single frame lasts, as a pose does
+# How late eyes and head follow [s], where muscles and skin do by LEAD; all measured at 60 Hz.
+_LATE = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.125}
+
+
+def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, Report]:
+    """The script that plays a take on a face with these controls, and what there is to say.
+
+    Raises UserError for a neutral, a gain or a mapping that cannot be.
+    """
+    mapping = load_mapping(playback.mapping)
+    mapping.check(limits)
+    calibration = calibration_for(
+        take, neutral=playback.neutral, gains=playback.gains, mirror=playback.mirror
+    )
+    smooth = OneEuro().take(take) if playback.smooth else take
+    controls = mapping.controls(calibration.apply(smooth.channels))
+    curves = {
+        name: np.clip(values, *limits[name]) for name, values in controls.items() if name in limits
+    }
+    report = report_of(take, calibration, mapping, controls, limits)
+    script = _script(take, curves, playback.lead)
+    return script, report
+
+
+def _script(take: Take, curves: AnyMapping[str, Array], lead: float) -> Script:
+    """Tracks of what moves; of a single frame a pose."""
+    title = Path(take.source).stem
+    preface = f"# Made of {in_one_line(Path(take.source).name)}, {take.kind}.\n"
+    moved = {name: values for name, values in curves.items() if np.abs(values).max() > TOLERANCE}
+    script = Script(
+        title,
+        duration=rounded(take.duration),
+        source=take.source,
+        camera=CAMERA,
+        poses=(Pose(0.0),),
+        preface=preface,
+        is_converted=True,
+    )
+    if len(take.times) == 1:
+        pose = Pose(0.0, {name: rounded(values[0]) for name, values in moved.items()})
+        return replace(script, duration=HELD, poses=(pose,))
+    tracks = {
+        name: _track(take.times, values, lead_of(name, lead)) for name, values in moved.items()
+    }
+    return replace(script, poses=(), tracks=tracks) if tracks else script
+
+
+def lead_of(control: str, lead: float) -> float:
+    """How much earlier a control is asked for [s], if muscles are by `lead`."""
+    late = next((each for start, each in _LATE.items() if control.startswith(start)), LEAD)
+    return lead * late / LEAD
+
+
+def _track(times: Array, values: Array, lead: float) -> Channel:
+    """The keys of one control, so much earlier [s]; what comes before the beginning is left out."""
+    at_beginning = np.interp(lead, times, values)
+    later = times > lead + 1e-3
+    return thinned(
+        np.concatenate([[0.0], times[later] - lead]),
+        np.concatenate([[at_beginning], values[later]]),
+    )

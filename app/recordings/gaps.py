@@ -1,0 +1,119 @@
+"""Channels without holes over times that rise: what every reader ends with.
+
+A face that is out of sight keeps the last pose that was seen, and goes over to the next one in the
+last 0.3 s before it is seen again. A shorter gap is one straight way. So nothing is invented, and
+nothing jumps. Rows that are missing are such a gap, too.
+"""
+
+from __future__ import annotations
+
+import bisect
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ..errors import UserError
+from .take import Array, Take
+
+SHORT_GAP = 0.3  # [s] that is bridged by a straight line
+MISSING_ROWS = 4.0  # of usual steps: what is longer, and no short gap, is a hole in the recording
+LONGEST_TAKE = 86_400.0  # [s]
+
+
+def whole_take(
+    kind: str,
+    source: str,
+    times: Array,
+    channels: Mapping[str, Array],
+    *,
+    notes: Sequence[str] = (),
+    unknown: Sequence[str] = (),
+    is_calibrated: bool = False,
+) -> Take:
+    """The Take of rows that may be out of order, and of channels that may be NaN.
+
+    times: [s], shape (T,). channels: name -> shape (T,). UserError where no face is in it.
+    """
+    told = list(notes)
+    channels = {name: values for name, values in channels.items() if np.isfinite(values).any()}
+    if not channels:
+        raise UserError(
+            f"{source}: {kind}: no frame shows a face; nothing is there that could be played"
+        )
+    kept = _in_order(times)
+    if not kept.any():
+        raise UserError(f"{source}: {kind}: no row has a time that can be read")
+    if not kept.all():
+        told.append(f"{int((~kept).sum())} rows out of the order of time were left out.")
+    times = times[kept] - times[kept][0]
+    if times[-1] > LONGEST_TAKE:
+        raise UserError(
+            f"{source}: {kind}: lasts {times[-1]:.6g} s; a recording lasts a day at most"
+        )
+    rows = {name: values[kept] for name, values in channels.items()}
+    seen = np.any([np.isfinite(values) for values in rows.values()], axis=0)
+    if not seen.all():
+        told.append(
+            f"No face in {int((~seen).sum())} of {len(seen)} frames: the last pose is held there."
+        )
+    holes = _holes(times)
+    if len(holes):
+        told.append(
+            f"Rows are missing in {len(holes)} places, {float(np.diff(times)[holes].max()):.3g} s "
+            "at most: the last pose is held there."
+        )
+        times = np.insert(times, holes + 1, times[holes + 1] - SHORT_GAP)
+        rows = {name: np.insert(values, holes + 1, np.nan) for name, values in rows.items()}
+    filled = {
+        name: _filled(times, values) for name, values in rows.items() if np.isfinite(values).any()
+    }
+    if not filled:
+        raise UserError(f"{source}: {kind}: no frame shows a face with a time")
+    return Take(kind, source, times, filled, is_calibrated, tuple(told), tuple(unknown))
+
+
+def _in_order(times: Array) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """The most rows whose times rise from one to the next: one wrong time costs one row.
+
+    The longest rising subsequence, by patience sorting.
+    """
+    kept = np.isfinite(times)
+    if np.all(np.diff(times[kept]) > 0.0):
+        return kept
+    ends: list[float] = []  # the lowest time that ends a sequence of this length,
+    end_rows: list[int] = []  # its row,
+    before = np.full(len(times), -1)  # and the row before each in its sequence
+    for row in np.flatnonzero(kept):
+        length = bisect.bisect_left(ends, times[row])
+        before[row] = end_rows[length - 1] if length else -1
+        ends[length : length + 1] = [float(times[row])]
+        end_rows[length : length + 1] = [int(row)]
+    kept[:] = False
+    row = end_rows[-1]
+    while row >= 0:
+        kept[row] = True
+        row = int(before[row])
+    return kept
+
+
+def _holes(times: Array) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    """The rows after which others are missing."""
+    steps = np.diff(times)
+    if len(steps) < 3:
+        return np.empty(0, dtype=np.intp)
+    longest = max(SHORT_GAP, MISSING_ROWS * float(np.median(steps)))
+    return np.flatnonzero(steps > longest)
+
+
+def _filled(times: Array, values: Array) -> Array:
+    """A channel without NaN: held over gaps, with a straight line at their end."""
+    known = np.isfinite(values)
+    if known.all():
+        return values
+    at, there = times[known], values[known]
+    is_long = np.diff(at) > SHORT_GAP
+    # Before each frame that ends a long gap: the old value once more, 0.3 s earlier.
+    at = np.concatenate([at, at[1:][is_long] - SHORT_GAP])
+    there = np.concatenate([there, there[:-1][is_long]])
+    order = np.argsort(at, kind="stable")
+    return np.interp(times, at[order], there[order])

@@ -1,0 +1,145 @@
+"""Mapping: from the channels of a recording to the controls of the face, by a table.
+
+The table is TOML that users copy and edit; mapping.toml is the one that comes along, and says what
+may stand in it. Where a recording tells the same thing twice, only one of the two moves the face,
+see `chosen`.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+from collections.abc import Container, Iterable
+from collections.abc import Mapping as AnyMapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ..errors import UserError
+from ..files import read_text
+from .names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
+from .take import Array
+
+Value = TypeVar("Value", float, Array)
+
+LONGEST_FILE = 2**18  # [bytes]
+GREATEST_SHARE = 2.0  # a share beyond it is a slip of the pen
+_ACTION_UNIT = re.compile(r"AU[0-9]{1,2}(_left|_right)?")
+_EYE_LOOKS = frozenset(name for name in ARKIT if name.startswith("eyeLook"))
+
+
+@dataclass(frozen=True)
+class Mapping:
+    """Channel -> {control: share}; what has no row moves the control of its own name."""
+
+    rows: AnyMapping[str, AnyMapping[str, float]]
+    source: str = ""  # the file, for error texts
+
+    def controls(self, channels: AnyMapping[str, Value]) -> dict[str, Value]:
+        """The values of the controls that the channels move: arrays or numbers, as given.
+
+        Nothing is cut off, and `app.scenes.clamped` does that.
+        """
+        controls: dict[str, Value] = {}
+        for channel in chosen(channels):
+            value = channels[channel]
+            for control, share in self.row(channel).items():
+                part = value * share
+                controls[control] = controls[control] + part if control in controls else part
+        return controls
+
+    def row(self, channel: str) -> AnyMapping[str, float]:
+        """What the channel moves: {control: share}."""
+        return self.rows.get(channel, {channel: 1.0})
+
+    def check(self, controls: Container[str]) -> None:
+        """Raise UserError if a row names what is no control of the face."""
+        for channel, row in self.rows.items():
+            for control in row:
+                if control not in controls:
+                    raise UserError(
+                        f"{self.source}: row '{channel}': there is no control called '{control}'; "
+                        "`risorius controls` lists every control"
+                    )
+
+
+def chosen(channels: AnyMapping[str, Any]) -> tuple[str, ...]:
+    """The channels that move the face, where some tell the same thing twice.
+
+    Eyes by their angles where there are some: these have a sign and know no limit, and eyeLook
+    shapes are made of them. Else a tracker that measures no angles leaves all four at 0, and the
+    shapes count. ARKit's shapes rather than action units: they tell left from right.
+    """
+    left_out: set[str] = set()
+    if all(angle in channels for angle in EYE_ANGLES) and _EYE_LOOKS & channels.keys():
+        are_measured = any(np.any(channels[angle]) for angle in EYE_ANGLES)
+        left_out |= _EYE_LOOKS if are_measured else set(EYE_ANGLES)
+    if any(name in channels for name in ARKIT if name not in _EYE_LOOKS):
+        left_out |= {name for name in channels if _ACTION_UNIT.fullmatch(name)}
+    return tuple(name for name in channels if name not in left_out)
+
+
+@cache
+def usual_mapping() -> Mapping:
+    """The mapping that comes along."""
+    return parse_mapping(mapping_text(), source="mapping.toml")
+
+
+def mapping_text() -> str:
+    """The table that comes along, to be copied and edited."""
+    return (files(__package__) / "mapping.toml").read_text("utf-8")
+
+
+def load_mapping(path: Path | None) -> Mapping:
+    """The mapping in a file, over the usual one. Raises UserError with file and row."""
+    if path is None:
+        return usual_mapping()
+    try:
+        text = read_text(path, what="mapping", longest=LONGEST_FILE)
+    except FileNotFoundError:
+        raise UserError(
+            f"{path}: no such mapping; `risorius convert --mapping-table > {path.name}` writes one"
+        ) from None
+    own = parse_mapping(text, source=str(path))
+    return Mapping({**usual_mapping().rows, **own.rows}, own.source)
+
+
+def parse_mapping(text: str, *, source: str) -> Mapping:
+    """Turn the TOML text of a table into a Mapping; `source` names it in error texts."""
+    try:
+        table = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise UserError(f"{source}: not valid TOML: {error}") from None
+    for channel, row in table.items():
+        where = f"{source}: row '{channel}'"
+        if not is_channel(channel):
+            raise UserError(
+                f"{where}: no recording has such a channel; rows are named as mouthSmileLeft, AU12,"
+                " viseme_PP, head_yaw"
+            )
+        if not isinstance(row, dict):
+            raise UserError(f"{where}: was {row!r}, must be {{ control = share, ... }}")
+        for control, share in row.items():
+            if not _is_share(share):
+                raise UserError(
+                    f"{where}: '{control}' was {share!r}, must be a number from "
+                    f"{-GREATEST_SHARE:g} to {GREATEST_SHARE:g}"
+                )
+    return Mapping(table, source)
+
+
+def is_channel(name: str) -> bool:
+    """Whether recordings may have a channel of this name, see names.py."""
+    known: Iterable[str] = (*ARKIT, *VISEMES, *HEAD_ANGLES, *EYE_ANGLES)
+    return name in known or _ACTION_UNIT.fullmatch(name) is not None
+
+
+def _is_share(share: object) -> bool:
+    if isinstance(share, bool) or not isinstance(share, int | float):
+        return False
+    return math.isfinite(share) and abs(share) <= GREATEST_SHARE

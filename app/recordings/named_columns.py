@@ -1,0 +1,136 @@
+"""Any table whose columns are shapes, action units, visemes or angles by name, in any spelling.
+
+Live Link Face's is one of them; so is what scripts write that read a phone or a tracker.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .angles import in_degrees
+from .faces import COLUMNS as FACE_COLUMNS
+from .faces import one_face
+from .gaps import whole_take
+from .names import ARKIT
+from .request import Request
+from .spelling import ACTION_UNIT, angle_of, is_eye_roll, shape_of, viseme_of
+from .table import Table
+from .take import Array, Take
+from .timing import times_of
+
+PERCENT = 2.0  # shapes beyond are no shares: 0 to 100
+NONSENSE = 3.0  # and shares beyond are no measurements
+NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
+                 "mouthShrugUpper")  # fmt: skip
+OF_NO_USE = ("blendshapecount", "timecode", "index", "")
+
+
+@dataclass
+class Columns:
+    """What the columns of a table hold: channel -> number of the column."""
+
+    shapes: dict[str, int] = field(default_factory=dict)
+    units: dict[str, int] = field(default_factory=dict)
+    visemes: dict[str, int] = field(default_factory=dict)
+    angles: dict[str, int] = field(default_factory=dict)
+    unknown: list[int] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, names: tuple[str, ...]) -> Columns:
+        """Sort out the names of columns; the first of a name counts."""
+        found = cls()
+        units = [match for name in names if (match := ACTION_UNIT.match(name.casefold()))]
+        has_sides = any(match[2] in ("l", "left") for match in units)
+        for number, name in enumerate(names):
+            unit = ACTION_UNIT.match(name.casefold())
+            if unit and unit[2] != "c":
+                sides = {"l": "_left", "left": "_left", "right": "_right"}
+                side = "_right" if unit[2] == "r" and has_sides else sides.get(unit[2] or "", "")
+                found.units.setdefault(f"AU{unit[1]}{side}", number)
+            elif shape := shape_of(name):
+                found.shapes.setdefault(shape, number)
+            elif angle := angle_of(name):
+                found.angles.setdefault(angle, number)
+            elif name.casefold().startswith("viseme_") and (viseme := viseme_of(name)):
+                found.visemes.setdefault(viseme, number)
+            elif not is_eye_roll(name) and name.casefold() not in OF_NO_USE:
+                found.unknown.append(number)
+        return found
+
+    @property
+    def are_known(self) -> bool:
+        """Whether there is anything that can be played."""
+        return bool(self.shapes or self.units or self.visemes)
+
+
+def recognises(names: tuple[str, ...]) -> bool:
+    """Whether any column has a name that we know."""
+    return Columns.of(names).are_known
+
+
+def read(table: Table, request: Request, kind: str = "Table of named columns") -> Take:
+    """The take in the table."""
+    table = one_face(table, request)
+    notes = list(table.notes)
+    columns = Columns.of(table.names)
+    times, used = times_of(table, request.rate, notes)
+    wanted = columns.shapes | columns.units | columns.visemes | columns.angles
+    before = len(table.notes)
+    numbers = dict(zip(wanted, table.numbers(list(wanted.values())).T, strict=True))
+    notes += table.notes[before:]
+    shapes = shares({name: numbers[name] for name in columns.shapes}, notes)
+    channels = shapes | intensities({name: numbers[name] for name in columns.units}, notes)
+    channels |= {name: np.clip(numbers[name], 0.0, 1.0) for name in columns.visemes}
+    channels |= in_degrees({name: numbers[name] for name in columns.angles}, shapes, notes)
+    unknown = [table.names[number] for number in columns.unknown]
+    return whole_take(
+        kind,
+        table.source,
+        times,
+        channels,
+        notes=notes,
+        unknown=[name for name in unknown if name.casefold() not in {*used, *FACE_COLUMNS}],
+        is_calibrated=is_calibrated(shapes, notes),
+    )
+
+
+def shares(shapes: dict[str, Array], notes: list[str]) -> dict[str, Array]:
+    """ARKit's shapes as shares 0 to 1; NaN where the value is none."""
+    if not shapes:
+        return {}
+    every = np.concatenate([values[np.isfinite(values)] for values in shapes.values()])
+    if len(every) and np.mean(every > PERCENT) > 0.01:
+        notes.append("Shapes go from 0 to 100 and were divided by 100.")
+        shapes = {name: values / 100.0 for name, values in shapes.items()}
+    found, far, beyond = {}, 0, 0
+    for name, values in shapes.items():
+        is_far = np.abs(values) > NONSENSE
+        far += int(is_far.sum())
+        values = np.where(is_far, np.nan, values)
+        beyond += int(np.sum((values < -0.001) | (values > 1.001)))
+        found[name] = np.clip(values, 0.0, 1.0)
+    if far:
+        notes.append(f"{far} values of shapes are far from 0 to 1 and were left out.")
+    if beyond:
+        notes.append(f"{beyond} values of shapes were cut off at 0 and 1.")
+    return found
+
+
+def intensities(units: dict[str, Array], notes: list[str]) -> dict[str, Array]:
+    """Action units as intensities 0 to 1; FACS' 0 to 5 (A to E) and percent are divided."""
+    highest = max((float(np.nanmax(values, initial=0.0)) for values in units.values()), default=0.0)
+    largest = 1.0 if highest <= 1.0 else 5.0 if highest <= 6.0 else 100.0
+    if units and largest > 1.0:
+        notes.append(f"Action units go from 0 to {largest:g} and were divided by it.")
+    return {name: np.clip(values / largest, 0.0, 1.0) for name, values in units.items()}
+
+
+def is_calibrated(shapes: dict[str, Array], notes: list[str]) -> bool:
+    """Whether the neutral face was taken away: then shapes that never rest are often at 0."""
+    resting = [shapes[name] for name in NEVER_AT_REST if name in shapes]
+    calibrated = sum(bool(np.nanmean(values <= 1e-6) > 0.2) for values in resting) >= 3
+    if calibrated and len(shapes) == len(ARKIT):
+        notes.append("The take is calibrated: its neutral face is at 0.")
+    return calibrated

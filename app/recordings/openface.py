@@ -1,0 +1,136 @@
+"""OpenFace's CSV (1 and 2): action units 0 to 5, head pose, and gaze as the camera sees it.
+
+Source: OpenFace's wiki, "Output Format". The camera's x points to the subject's left, y down:
+pose_Rx + is down, pose_Ry + to the subject's right, pose_Rz + to the subject's left shoulder;
+gaze x + is to the subject's left, y + down; all in radians. Left and right muscles are not told
+apart.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from .faces import COLUMNS as FACE_COLUMNS
+from .faces import one_face
+from .gaps import whole_take
+from .names import EYE_ANGLES
+from .request import Request
+from .table import Table
+from .take import Array, Take
+from .timing import times_of
+
+INTENSITY = re.compile(r"au(\d\d)_r$")
+PRESENCE = re.compile(r"au(\d\d)_c$")
+POSE = {
+    "pose_rx": ("head_pitch", -1.0),
+    "pose_ry": ("head_yaw", -1.0),
+    "pose_rz": ("head_roll", 1.0),
+}
+GAZE = ("gaze_angle_x", "gaze_angle_y")
+VECTORS = ("gaze_0_x", "gaze_0_y", "gaze_0_z", "gaze_1_x", "gaze_1_y", "gaze_1_z")
+LANDMARKS = re.compile(r"(eye_lmk_)?[xyz]_\d+$|p_(\d+|scale|[rt][xyz])$|pose_t[xyz]$")
+SEEN = 0.5  # success is 0 or 1; a confidence below is none
+
+
+def recognises(names: tuple[str, ...]) -> bool:
+    """Whether these are columns of OpenFace; many tools keep only some of them."""
+    folded = {name.casefold() for name in names}
+    units = [name for name in folded if INTENSITY.match(name) or PRESENCE.match(name)]
+    own = folded & {"success", "confidence", "pose_rx", *GAZE, *VECTORS}
+    has_sides = any(re.match(r"au\d\d_l(eft)?$", name) for name in folded)
+    return bool(units) and not has_sides and (bool(own) or len(units) > 1)
+
+
+def read(table: Table, request: Request) -> Take:
+    """The take in the table."""
+    table = one_face(table, request)
+    notes: list[str] = []
+    times, used = times_of(table, request.rate, notes)
+    places = {name.casefold(): number for number, name in reversed([*enumerate(table.names)])}
+    intensities = {
+        f"AU{int(m[1])}": n for name, n in places.items() if (m := INTENSITY.match(name))
+    }
+    presences = {f"AU{int(m[1])}": n for name, n in places.items() if (m := PRESENCE.match(name))}
+    only_present = {name: n for name, n in presences.items() if name not in intensities}
+    others = [n for n in ("success", "confidence", *POSE, *GAZE, *VECTORS) if n in places]
+    wanted = intensities | only_present | {name: places[name] for name in others}
+    numbers = dict(zip(wanted, table.numbers(list(wanted.values())).T, strict=True))
+
+    channels = _units({name: numbers[name] for name in intensities}, notes)
+    channels |= {name: np.clip(numbers[name], 0.0, 1.0) for name in only_present}
+    if only_present:
+        notes.append(f"{', '.join(sorted(only_present))}: only present or absent, 0 or 1.")
+    for column, (name, sign) in POSE.items():
+        if column in numbers:
+            channels[name] = sign * np.degrees(numbers[column])
+    channels |= _eyes(numbers, channels, notes)
+    seen = numbers.get("success", numbers.get("confidence"))
+    if seen is not None:
+        lost = seen < SEEN
+        channels = {name: np.where(lost, np.nan, values) for name, values in channels.items()}
+    known = {*others, *used, *FACE_COLUMNS}
+    version = 2 if "face_id" in places or "gaze_angle_x" in places else 1
+    return whole_take(
+        f"OpenFace {version}",
+        table.source,
+        times,
+        channels,
+        notes=[*table.notes, *notes],
+        unknown=[
+            name
+            for name in table.names
+            if (folded := name.casefold()) not in known
+            and name
+            and not any(each.match(folded) for each in (INTENSITY, PRESENCE, LANDMARKS))
+        ],
+    )
+
+
+def _units(units: dict[str, Array], notes: list[str]) -> dict[str, Array]:
+    """Intensities 0 to 1: OpenFace writes 0 to 5, and some tools divide without a new name."""
+    if not units:
+        return {}
+    highest = max(float(np.nanmax(values, initial=0.0)) for values in units.values())
+    if highest > 1.0:
+        return {name: np.clip(values / 5.0, 0.0, 1.0) for name, values in units.items()}
+    notes.append(
+        f"Action units reach {highest:.2g} at most: they were taken for 0 to 1, not for the 0 to 5 "
+        "that OpenFace writes."
+    )
+    return {name: np.clip(values, 0.0, 1.0) for name, values in units.items()}
+
+
+def _eyes(numbers: dict[str, Array], head: dict[str, Array], notes: list[str]) -> dict[str, Array]:
+    """Both eyes' angles in the head: the gaze that the camera sees, less the head's own turn."""
+    if set(GAZE) <= numbers.keys():
+        across, down = numbers[GAZE[0]], numbers[GAZE[1]]
+    elif set(VECTORS) <= numbers.keys():
+        x, y, z = (numbers[f"gaze_0_{each}"] + numbers[f"gaze_1_{each}"] for each in "xyz")
+        across, down = np.arctan2(x, -z), np.arctan2(y, -z)
+    else:
+        return {}
+    still = np.zeros(len(across))
+    return eyes_in_head(
+        np.degrees(across), -np.degrees(down), head.get("head_yaw", still),
+        head.get("head_pitch", still), notes,
+    )  # fmt: skip
+
+
+def eyes_in_head(
+    left: Array, up: Array, head_yaw: Array, head_pitch: Array, notes: list[str]
+) -> dict[str, Array]:
+    """The eyes' angles from a gaze in the camera's frame; the middle of the take looks ahead.
+
+    A camera stands above the screen that people look at, so that their gaze is never 0.
+    """
+    if np.isfinite(left).any() and (np.nan_to_num(left).any() or np.nan_to_num(up).any()):
+        notes.append(
+            "Gaze is as the camera sees it: the head's turn was taken away, and the middle of the "
+            "take looks straight ahead."
+        )
+        yaw, pitch = left - head_yaw, up - head_pitch
+        yaw, pitch = yaw - np.nanmedian(yaw), pitch - np.nanmedian(pitch)
+        return {name: yaw if "yaw" in name else pitch for name in EYE_ANGLES}
+    return {}

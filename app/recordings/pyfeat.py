@@ -1,0 +1,110 @@
+"""py-feat's CSV (1 and 2): action units 0 to 1, head pose, and in 2 the shapes of MediaPipe.
+
+Version 1 has angles in degrees, version 2 in radians. Pitch + is up, Yaw + to the subject's right,
+Roll + to the subject's left shoulder (its conversion of img2pose's rotation; the same as drawn by
+its plots). Both versions give no time but the number of a frame of the film.
+
+Version 2 tells most of the face twice. Its shapes know left from right and how far, its units only
+how likely they are. So the shapes count, and of the units those which MediaPipe never sees: AU6,
+AU9.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from .faces import COLUMNS as FACE_COLUMNS
+from .faces import one_face
+from .gaps import whole_take
+from .named_columns import shares
+from .openface import eyes_in_head
+from .request import Request
+from .spelling import shape_of
+from .table import Table
+from .take import Array, Take
+from .timing import times_of
+
+UNIT = re.compile(r"au(\d\d)$")
+BOX = {"facerectx", "facerecty", "facerectwidth", "facerectheight", "facescore"}
+POSE = {"pitch": ("head_pitch", 1.0), "yaw": ("head_yaw", -1.0), "roll": ("head_roll", 1.0)}
+GAZE = ("gaze_pitch", "gaze_yaw")
+NOT_TAKEN = re.compile(
+    r"(mesh_|mesh_norm_)?[xyz](_?\d+)?$|identity(_\d+)?$|input$|gaze_angle$|_neutral$|mesh_.*|"
+    r"(anger|disgust|fear|happiness|sadness|surprise|neutral|happy|sad|contempt|valence|arousal)$"
+)
+NEVER_SEEN = ("cheekPuff", "cheekSquintLeft", "cheekSquintRight", "noseSneerLeft", "noseSneerRight")
+INSTEAD = ("AU6", "AU9")
+LARGEST_RADIANS = 1.6  # a head that is seen turns no further
+
+
+def recognises(names: tuple[str, ...]) -> bool:
+    """Whether these are columns of py-feat."""
+    folded = {name.casefold() for name in names}
+    return bool(folded & BOX) and any(UNIT.match(name) for name in folded)
+
+
+def read(table: Table, request: Request) -> Take:
+    """The take in the table."""
+    table = one_face(table, request)
+    notes: list[str] = []
+    times, used = times_of(table, request.rate, notes)
+    places = {name.casefold(): number for number, name in reversed([*enumerate(table.names)])}
+    units = {f"AU{int(m[1])}": n for name, n in places.items() if (m := UNIT.match(name))}
+    shapes = {shape: n for name, n in places.items() if (shape := shape_of(name))}
+    if len(shapes) > len(NEVER_SEEN):
+        shapes = {name: n for name, n in shapes.items() if name not in NEVER_SEEN}
+        units = {name: n for name, n in units.items() if name in INSTEAD}
+        notes.append(
+            "Shapes and action units tell the same face twice: the shapes were taken, and AU6 and "
+            "AU9, which the shapes do not know."
+        )
+    others = {name: places[name] for name in ("facescore", *POSE, *GAZE) if name in places}
+    wanted = units | shapes | others
+    numbers = dict(zip(wanted, table.numbers(list(wanted.values())).T, strict=True))
+    channels = {name: np.clip(numbers[name], 0.0, 1.0) for name in units}
+    channels |= shares({name: numbers[name] for name in shapes}, notes)
+    channels |= _head(numbers, notes)
+    if not any(name.startswith("eyeLook") for name in shapes):
+        channels |= _eyes(numbers, channels, notes)
+    score = numbers.get("facescore")
+    if score is not None:
+        lost = ~(score > 0.0)
+        channels = {name: np.where(lost, np.nan, values) for name, values in channels.items()}
+    known = {*others, *used, *FACE_COLUMNS, *BOX}
+    return whole_take(
+        "py-feat 2" if shapes or "gaze_pitch" in places else "py-feat 1",
+        table.source,
+        times,
+        channels,
+        notes=[*table.notes, *notes],
+        unknown=[
+            name
+            for name in table.names
+            if name
+            and (folded := name.casefold()) not in known
+            and not (UNIT.match(folded) or NOT_TAKEN.match(folded) or shape_of(folded))
+        ],
+    )
+
+
+def _head(numbers: dict[str, Array], notes: list[str]) -> dict[str, Array]:
+    """The head's angles in degrees, whatever unit this version has."""
+    pose = {n: numbers[n] for n in POSE if n in numbers and np.isfinite(numbers[n]).any()}
+    if not pose:
+        return {}
+    size = max(float(np.nanmax(np.abs(values))) for values in pose.values())
+    unit, scale = ("radians", 180.0 / np.pi) if size <= LARGEST_RADIANS else ("degrees", 1.0)
+    notes.append(f"Angles of the head reach {size:.2g} and were taken for {unit}.")
+    return {POSE[name][0]: POSE[name][1] * scale * values for name, values in pose.items()}
+
+
+def _eyes(numbers: dict[str, Array], head: dict[str, Array], notes: list[str]) -> dict[str, Array]:
+    """The eyes' angles in the head; gaze_pitch + is up, gaze_yaw + to the subject's right."""
+    if not set(GAZE) <= numbers.keys():
+        return {}
+    up, left = np.degrees(numbers["gaze_pitch"]), -np.degrees(numbers["gaze_yaw"])
+    still = np.zeros(len(up))
+    yaw, pitch = head.get("head_yaw", still), head.get("head_pitch", still)
+    return eyes_in_head(left, up, yaw, pitch, notes)

@@ -1,0 +1,120 @@
+"""A file -> a Take: its format is recognised from what it holds, never from its name.
+
+`TABLES` and `DOCUMENTS` list the formats, the most special first. A new one is two functions, one
+that recognises it and one that reads it, and a row here.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..errors import UserError
+from . import live_link, mediapipe_json, named_columns, openface, pyfeat, viseme_tracks
+from .request import Request
+from .table import Table, header_of, table_in
+from .take import Take
+from .text import read_beginning, read_recording
+
+
+class TableFormat(NamedTuple):
+    """A kind of table: whether the names of columns are its own, and how it is read."""
+
+    recognises: Callable[[tuple[str, ...]], bool]
+    read: Callable[[Table, Request], Take]
+
+
+class DocumentFormat(NamedTuple):
+    """A kind of JSON: whether the document is of it, and how it is read from which file."""
+
+    recognises: Callable[[Any], bool]
+    read: Callable[[Any, str, Request], Take]
+
+
+TABLES = (
+    TableFormat(viseme_tracks.recognises_rows, viseme_tracks.read_rows),
+    TableFormat(live_link.recognises, live_link.read),
+    TableFormat(pyfeat.recognises, pyfeat.read),
+    TableFormat(openface.recognises, openface.read),
+    TableFormat(named_columns.recognises, named_columns.read),
+)
+DOCUMENTS = (
+    DocumentFormat(viseme_tracks.recognises_tracks, viseme_tracks.read_tracks),
+    DocumentFormat(viseme_tracks.recognises_mouths, viseme_tracks.read_mouths),
+    DocumentFormat(mediapipe_json.recognises, mediapipe_json.read),
+)
+KNOWN = (
+    "Live Link Face, OpenFace and py-feat tables, tables with ARKit or AU names above columns, "
+    "MediaPipe JSON, OpenFaceFX and Rhubarb tracks"
+)
+JSON = re.compile(r"\s*(\{|\[\s*(\[\s*)*[\{\]])")  # no script in TOML begins so
+SPEAKS_OF_FACES = re.compile(
+    r'"(category_?name|(face_?)?blend_?shapes|mouthcues|viseme_set|facsnames|jaw_?open|'
+    r'eyeblink_?l(eft)?|mouthsmile_?l(eft)?)"',
+    re.IGNORECASE,
+)
+
+
+def read_take(path: Path, *, face: str | None = None, rate: float | None = None) -> Take:
+    """The take in a file that another program wrote.
+
+    face: which one, where a file holds several; the default is the one seen in most frames.
+    rate: frames a second, where the file's own times are wrong or missing.
+
+    Raises UserError: which file, what is wrong, where, and what is allowed.
+    """
+    if rate is not None and not 1.0 <= rate <= 1000.0:
+        raise UserError(f"rate {rate:g}: must lie within 1 and 1000 frames a second")
+    text = read_recording(path)
+    request = Request(face, rate)
+    if JSON.match(text):
+        document = _document(text, str(path))
+        for kind in DOCUMENTS:
+            if kind.recognises(document):
+                return kind.read(document, str(path), request)
+        raise UserError(f"{path}: is JSON without shapes of a face; known are {KNOWN}")
+    names, _ = header_of(text)
+    for table_kind in TABLES:
+        if table_kind.recognises(names):
+            return table_kind.read(table_in(text, source=str(path)), request)
+    raise UserError(f"{path}: {_strange(names)}; known are {KNOWN}")
+
+
+def is_recording(path: Path) -> bool:
+    """Whether a file looks like a recording, by its first lines; `read_take` tells what is wrong.
+
+    False for scripts, heads and what is no text.
+    """
+    text = read_beginning(path)
+    if JSON.match(text):
+        return bool(SPEAKS_OF_FACES.search(text))
+    names, _ = header_of(text)
+    return any(kind.recognises(names) for kind in TABLES)
+
+
+def _document(text: str, source: str) -> Any:
+    """The JSON in a text, also where each line is a document of its own (JSON Lines)."""
+    try:
+        return json.loads(text)
+    except RecursionError:
+        raise UserError(f"{source}: is nested too deep for a recording") from None
+    except ValueError as error:
+        why = error
+    lines = [line for line in text.split("\n") if line.strip()]
+    try:
+        if len(lines) > 1:
+            return [json.loads(line) for line in lines]
+    except (ValueError, RecursionError):
+        pass
+    raise UserError(f"{source}: is not valid JSON: {why}") from None
+
+
+def _strange(names: tuple[str, ...]) -> str:
+    """What a file is that nobody knows."""
+    if len(names) < 2:
+        return "is no table and no JSON"
+    listed = ", ".join(f"'{name}'" for name in names[:4])
+    return f"is a table of which no column is known ({listed}, ...)"

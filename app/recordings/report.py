@@ -1,0 +1,176 @@
+"""What is said of a take that is played: as what it was taken, what of it moves the face.
+
+A line that says what it is, and under it a few short ones, aligned; one screen at most.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable
+from collections.abc import Mapping as AnyMapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import in_one_line
+from ..script import Limits
+from .calibration import Calibration
+from .mapping import Mapping, chosen
+from .names import ARKIT
+from .take import Array, Take
+
+WIDTH = 100  # [characters] of a line
+MOST_LINES = 3  # of one heading
+MOST_NOTES = 6
+MOST_NAMED = 5  # of neutral channels
+SLIGHT = 0.02  # of a neutral channel: no need to be told
+OFTEN = 0.01  # of all frames, in which a control is cut off, before that is said
+
+
+@dataclass(frozen=True)
+class Report:
+    """recognised: the first line, without the file. rows: heading and text, in order."""
+
+    source: str
+    recognised: str
+    rows: tuple[tuple[str, str], ...]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was guessed, skipped or left out, each a sentence."""
+        return tuple(text for heading, text in self.rows if heading == "note")
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """All of it, as a terminal shows it."""
+        wide = max((len(heading) for heading, _ in self.rows), default=0)
+        shown = [f"{in_one_line(self.source)}: {self.recognised}"]
+        for heading, text in self.rows:
+            start = f"  {heading:<{wide}}  "
+            shown += textwrap.wrap(
+                in_one_line(text),
+                WIDTH,
+                initial_indent=start,
+                subsequent_indent=" " * len(start),
+                max_lines=MOST_LINES,
+                placeholder=" ...",
+                break_on_hyphens=False,
+            )
+        return tuple(shown)
+
+    @property
+    def in_brief(self) -> str:
+        """All of it in a line, for the window's message."""
+        name = Path(self.source).name
+        count = len(self.notes)
+        more = (
+            f"; {count} note{'s' if count > 1 else ''}: `risorius convert {name}` tells"
+            if count
+            else ""
+        )
+        return f"{name}: {self.recognised}{more}"
+
+
+def report_of(
+    take: Take,
+    calibration: Calibration,
+    mapping: Mapping,
+    controls: AnyMapping[str, Array],
+    limits: Limits,
+) -> Report:
+    """What there is to say of a take; controls: what it makes of each, not yet cut off."""
+    channels = take.channels
+    still = _still(take)
+    used = set(chosen(channels)) - still
+    silent = {name for name in used if not set(mapping.row(name)) & limits.keys()}
+    shapes = [name for name in ARKIT if name in channels]
+    rows = [
+        ("used", _used(used - silent)),
+        ("neutral", _neutral(calibration)),
+        ("gain", _gains(calibration, used)),
+        ("left out", _listed(set(channels) - set(chosen(channels)) - still, "told by others")),
+        ("constant", _listed(still)),
+        ("missing", _listed(name for name in ARKIT if shapes and name not in channels)),
+        ("not mapped", _listed(silent)),
+        ("unknown", _listed(take.unknown)),
+        ("cut off", _listed(_beyond(controls, limits), "goes further than the face can")),
+        *(("note", note) for note in take.notes[:MOST_NOTES]),
+    ]
+    return Report(take.source, _recognised(take), tuple(row for row in rows if row[1]))
+
+
+def _recognised(take: Take) -> str:
+    """What it was taken for, and how much it is."""
+    calibrated = ", calibrated" if take.is_calibrated else ""
+    count = len(take.times)
+    if count == 1:
+        return f"{take.kind}{calibrated}, one frame"
+    rate = 1.0 / float(np.median(np.diff(take.times)))
+    return f"{take.kind}{calibrated}, {count} frames in {take.duration:.2f} s, {rate:.4g} a second"
+
+
+def _still(take: Take) -> set[str]:
+    """Channels that never change; of a single frame those that are 0."""
+    if len(take.times) == 1:
+        return {name for name, values in take.channels.items() if not values.any()}
+    return {name for name, values in take.channels.items() if not np.ptp(values)}
+
+
+def _used(names: set[str]) -> str:
+    kinds = {
+        "shapes of ARKit": {name for name in names if name in ARKIT},
+        "action units": {name for name in names if name.startswith("AU")},
+        "visemes": {name for name in names if name.startswith("viseme")},
+        "angles of the head": {name for name in names if name.startswith("head_")},
+        "angles of the eyes": {name for name in names if name.startswith("eye_")},
+    }
+    counts = [f"{len(found)} {kind}" for kind, found in kinds.items() if found]
+    return ", ".join(counts) or "nothing: no channel ever changes"
+
+
+def _neutral(calibration: Calibration) -> str:
+    """How far the face is from 0 at rest, and where most."""
+    neutral = {name: abs(value) for name, value in calibration.neutral.items() if name in ARKIT}
+    neutral |= {n: abs(v) for n, v in calibration.neutral.items() if n.startswith("AU")}
+    count = sum(value > SLIGHT for value in neutral.values())
+    if not count:
+        return ""
+    furthest = sorted(neutral, key=lambda name: -neutral[name])[:MOST_NAMED]
+    far = [name for name in furthest if neutral[name] > SLIGHT]
+    most = neutral[furthest[0]]
+    return f"{count} channels rest above 0, by up to {most:.2g}; most {_listed(far)}"
+
+
+def _gains(calibration: Calibration, used: set[str]) -> str:
+    """What is not taken as it is."""
+    by_gain: dict[float, list[str]] = {}
+    for name in sorted(used & calibration.gains.keys()):
+        by_gain.setdefault(calibration.gains[name], []).append(name)
+    told = [f"{gain:g} of {_listed(names)}" for gain, names in by_gain.items() if gain != 1.0]
+    others = [f"{calibration.default_gain:g} of all others"] * (calibration.default_gain != 1.0)
+    return "; ".join([*told, *others])
+
+
+def _beyond(controls: AnyMapping[str, Array], limits: Limits) -> list[str]:
+    """The controls that are asked for more than there is in many frames."""
+    beyond = []
+    for name in controls.keys() & limits.keys():
+        low, high = limits[name]
+        share = np.mean((controls[name] < low - OFTEN) | (controls[name] > high + OFTEN))
+        if share > OFTEN:
+            beyond.append(f"{name} in {share:.0%} of frames")
+    return beyond
+
+
+def _listed(names: Iterable[str], why: str = "") -> str:
+    """Names one after another, pairs in one word, and why."""
+    listed = sorted(names)
+    told: list[str] = []
+    for name in listed:
+        other = name.removesuffix("Left") + "Right"
+        if name.endswith("Left") and other in listed:
+            told.append(name.removesuffix("Left") + "Left/Right")
+        elif not (name.endswith("Right") and name.removesuffix("Right") + "Left" in listed):
+            told.append(name)
+    return " ".join(told) + (f": {why}" if told and why else "")

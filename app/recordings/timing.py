@@ -1,0 +1,193 @@
+"""When each row of a recording was seen: from timecode, a time stamp, or the number of a frame."""
+
+from __future__ import annotations
+
+import datetime
+import math
+import re
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from .table import Table
+from .take import Array
+
+RATES = (24000 / 1001, 24.0, 25.0, 30000 / 1001, 30.0, 50.0, 60000 / 1001, 60.0)  # [frames / s]
+DEFAULT_RATE = 30.0  # of most cameras
+TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})(?:([:;.,])(\d+)(?:[.,](\d+))?)?$")
+DAY = 86_400.0  # [s]
+LONGEST_PAUSE = 3600.0  # [s] over midnight; what goes back further is a wrong time
+MOST_FRAMES = 240  # in a second; larger numbers in a timecode's last place are milliseconds
+SHORTEST_STEP = 0.004  # [s] between frames; shorter ones are no seconds
+UNITS = (  # shortest step, longest step, of which length [s]; of a time stamp
+    (SHORTEST_STEP, 2.5, 1.0, "seconds"),
+    (4.0, 2.5e3, 1e-3, "milliseconds"),
+    (4e3, 2.5e6, 1e-6, "microseconds"),
+    (4e6, 2.5e9, 1e-9, "nanoseconds"),
+)
+STAMPS = (
+    "timestamp", "time", "t", "timestamp_ms", "timestampms", "time_ms", "seconds", "time_s",
+    "timestamp_s", "time_sec", "timestampseconds", "timecode", "elapsed", "elapsed_time",
+)  # fmt: skip
+FRAMES = ("frame", "frame_number", "framenumber", "frame_id", "frameid", "frame_index", "frames")
+
+
+def times_of(table: Table, rate: float | None, notes: list[str]) -> tuple[Array, set[str]]:
+    """Seconds of each row, shape (rows,), NaN where none can be told; and the columns of times.
+
+    rate: frames a second, where the user knows better than the file.
+    """
+    stamp = next((name for name in STAMPS if table.column(name) is not None), None)
+    frame = next((name for name in FRAMES if table.column(name) is not None), None)
+    used = {name for name in (*STAMPS, *FRAMES) if table.column(name) is not None}
+    used.add("approx_time")  # of py-feat: minutes and whole seconds, of no use
+    column = table.column(stamp) if stamp else None
+    if column is not None:
+        cells = table.cells(column)
+        if sum(":" in cell for cell in cells[:100]) * 2 > len(cells[:100]):
+            return clock_times(cells, rate, notes), used
+        if rate is None:
+            times = stamp_times(table.numbers([column])[:, 0], notes)
+            if times is not None:
+                return times, used
+    column = table.column(frame) if frame else None
+    numbers = None if column is None else table.numbers([column])[:, 0]
+    return frame_times(numbers, len(table.lines), rate, notes), used
+
+
+def frame_times(numbers: Array | None, count: int, rate: float | None, notes: list[str]) -> Array:
+    """Times of frames by their numbers, or one row after the other where they have none."""
+    if rate is None:
+        rate = DEFAULT_RATE
+        if count > 1:
+            notes.append(f"No times are given: {rate:g} frames a second were assumed.")
+    if count == 1 or numbers is None or not _mostly_rises(numbers):
+        return np.arange(count) / rate
+    step = np.nanmedian(np.diff(numbers))
+    if step > 1.0:
+        notes.append(f"Only one in {step:g} frames was recorded.")
+    return (numbers - np.nanmin(numbers)) / rate
+
+
+def stamp_times(stamps: Array, notes: list[str]) -> Array | None:
+    """Time stamps in seconds, whatever their unit is; None where they are of no use."""
+    if len(stamps) == 1 or not np.isfinite(stamps).any():
+        return None
+    if not _mostly_rises(stamps):
+        notes.append("The time stamps do not rise, and were not used.")
+        return None
+    steps = np.diff(stamps)
+    step = float(np.nanmedian(steps[steps > 0.0]))
+    if step in (1.0, 2.0) and np.all(stamps % 1.0 == 0.0):
+        notes.append("The time stamps count frames.")
+        return None
+    for shortest, longest, unit, name in UNITS:
+        if shortest <= step < longest:
+            if unit != 1.0:
+                notes.append(f"Time stamps were read as {name}.")
+            return (stamps - np.nanmin(stamps)) * unit
+    notes.append(f"The time stamps are {step:g} apart, which no camera is, and were not used.")
+    return None
+
+
+def clock_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> Array:
+    """Times of SMPTE timecode (HH:MM:SS:FF.fraction) or of the clock (HH:MM:SS.mmm, a date)."""
+    parts = [TIMECODE.match(cell) for cell in cells]
+    if sum(part is not None for part in parts) * 2 < len(cells):
+        return _unwrapped(np.array([_date(cell) for cell in cells]))
+    seconds = np.full(len(cells), np.nan)
+    frames = np.zeros(len(cells))
+    fractions = np.zeros(len(cells))
+    is_clock = is_drop_frame = False
+    for row, part in enumerate(parts):
+        if part is None:
+            continue
+        hours, minutes, second, mark, last, fraction = part.groups()
+        seconds[row] = int(hours) * 3600 + int(minutes) * 60 + int(second)
+        is_clock |= mark in (".", ",")
+        is_drop_frame |= mark == ";"
+        frames[row] = float(f"0.{last}" if mark in (".", ",") else last or 0)
+        fractions[row] = float(f"0.{fraction}") if fraction else 0.0
+    if is_clock:
+        return _unwrapped(seconds + frames)
+    if frames.max() >= MOST_FRAMES:
+        notes.append("The last number of the timecode was read as milliseconds.")
+        return _unwrapped(seconds + frames / 1000.0)
+    if len(cells) > 1 and not frames.any() and set(np.diff(seconds)) == {1.0}:
+        notes.append("The timecode counts whole seconds, one for each row: rows are frames.")
+        return frame_times(None, len(cells), rate, notes)
+    if rate is None:
+        rate = _rate_in(frames, seconds, is_drop_frame, notes)
+    return _timecode_times(seconds, frames, fractions, rate, is_drop_frame, notes)
+
+
+def _timecode_times(
+    seconds: Array,
+    frames: Array,
+    fractions: Array,
+    rate: float,
+    is_drop_frame: bool,
+    notes: list[str],
+) -> Array:
+    """Times from the parts of timecodes; the fraction only where it makes steps no worse."""
+    base = math.ceil(rate - 1e-6)  # how many frames the timecode counts in a second
+    numbers = _unwrapped(seconds) * base + frames
+    if is_drop_frame:  # two numbers a minute (four of 60) are left out, but in each tenth minute
+        minutes = np.floor(_unwrapped(seconds) / 60.0)
+        numbers -= (base // 15) * (minutes - np.floor(minutes / 10.0))
+    else:
+        rate = float(base) if abs(rate - base) < 0.1 else rate
+    if fractions.any():
+        if _jumps(numbers + fractions) > _jumps(numbers) + 0.005 * len(numbers):
+            notes.append(
+                "The fraction in the timecode makes frames jump to and fro, and was not used."
+            )
+        else:
+            numbers = numbers + fractions
+    return numbers / rate
+
+
+def _jumps(numbers: Array) -> int:
+    """How many steps differ from the usual one by more than half a frame."""
+    steps = np.diff(numbers[np.isfinite(numbers)])
+    return int(np.sum(np.abs(steps - np.median(steps)) > 0.5)) if len(steps) else 0
+
+
+def _rate_in(frames: Array, seconds: Array, is_drop_frame: bool, notes: list[str]) -> float:
+    """The frame rate of timecodes, from the highest number of a frame in a second."""
+    highest = int(frames.max())
+    if is_drop_frame:
+        rate = RATES[6] if highest >= 30 else RATES[3]
+        notes.append(f"Drop-frame timecode: {rate:.2f} frames a second.")
+        return rate
+    whole = [each for each in RATES if each == int(each)]
+    rate = next((each for each in whole if each > highest), float(MOST_FRAMES))
+    if rate == MOST_FRAMES:
+        rate = next(each for each in (72.0, 90.0, 100.0, 120.0, 240.0) if each > highest)
+    if len(np.unique(seconds)) > 1:
+        notes.append(f"{rate:g} frames a second, as the timecode counts to {highest}.")
+    elif len(frames) > 1:
+        rate = max(rate, 60.0)
+        notes.append(f"Less than a second of timecode: {rate:g} frames a second were assumed.")
+    return rate
+
+
+def _unwrapped(seconds: Array) -> Array:
+    """Seconds of the day that go on after midnight."""
+    steps = np.diff(seconds, prepend=seconds[:1])
+    return seconds + DAY * np.cumsum(np.nan_to_num(steps) < LONGEST_PAUSE - DAY)
+
+
+def _date(cell: str) -> float:
+    """Seconds of an ISO 8601 date with time; NaN for what is none."""
+    try:
+        return datetime.datetime.fromisoformat(cell).timestamp()
+    except (ValueError, OverflowError, OSError):
+        return math.nan
+
+
+def _mostly_rises(values: Array) -> bool:
+    """Whether more than half of the steps go up."""
+    steps: npt.NDArray[np.bool_] = np.diff(values) > 0.0
+    return len(values) == 1 or 2 * int(steps.sum()) > len(steps)

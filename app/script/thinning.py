@@ -1,0 +1,59 @@
+"""Tracks of few keys from many samples: straight lines that follow a recorded channel."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius.jit import njit
+
+from .model import DECIMALS, Channel, Floats
+
+TOLERANCE = 2e-3  # of a value: what a straight line between keys may be off; nobody sees it
+
+
+def thinned(times: npt.ArrayLike, values: npt.ArrayLike, tolerance: float = TOLERANCE) -> Channel:
+    """Linear keys at some of the samples, off from none of them by more than `tolerance`.
+
+    times: of the samples [s], shape (T,), T at least 1, rising. They are rounded to microseconds,
+    and a sample that comes no later than the one before it is left out. values: shape (T,), finite.
+    Those of keys are rounded, by a twentieth of the tolerance at most, so that files stay short.
+    tolerance: above 0, of a value.
+
+    From each key the next is the farthest sample found that a straight line can lead to, as in
+    Imai and Iri, "Computational-geometric methods for polygonal approximations of a curve" (1986);
+    one pass, in which the directions that are still possible become fewer.
+    """
+    moments = np.array(times, np.float64).round(DECIMALS)
+    is_later = np.diff(moments, prepend=-np.inf) > 0.0
+    moments, samples = moments[is_later], np.array(values, np.float64)[is_later]
+    decimals = math.ceil(-math.log10(0.1 * tolerance))
+    ends = samples.round(decimals) + 0.0  # which makes -0.0 to 0.0
+    kept = _corners(moments, samples, ends, tolerance)
+    return Channel(moments[kept], ends[kept], "linear")
+
+
+@njit
+def _corners(
+    times: Floats, values: Floats, ends: Floats, tolerance: float
+) -> npt.NDArray[np.bool_]:
+    """Which samples are keys, shape (T,); a key has the value in `ends`."""
+    count = len(times)
+    is_corner = np.zeros(count, np.bool_)
+    start = 0
+    is_corner[0] = True
+    while start < count - 1:
+        low, high, farthest = -np.inf, np.inf, start + 1
+        for index in range(start + 1, count):
+            seconds = times[index] - times[start]
+            if low <= (ends[index] - ends[start]) / seconds <= high:
+                farthest = index
+            low = max(low, (values[index] - tolerance - ends[start]) / seconds)
+            high = min(high, (values[index] + tolerance - ends[start]) / seconds)
+            if low > high:
+                break
+        start = farthest
+        is_corner[start] = True
+    return is_corner

@@ -1,0 +1,137 @@
+"""Files of recordings, written from the descriptions of their formats."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius.app.recordings.names import ARKIT
+
+Array = npt.NDArray[np.float64]
+Columns = Mapping[str, Sequence[object] | Array]
+
+ANGLES = (
+    "HeadYaw", "HeadPitch", "HeadRoll", "LeftEyeYaw", "LeftEyePitch", "LeftEyeRoll",
+    "RightEyeYaw", "RightEyePitch", "RightEyeRoll",
+)  # fmt: skip
+
+
+def table(columns: Columns, delimiter: str = ",", comma: bool = False) -> str:
+    """A table in text; comma: of decimals."""
+    rows = zip(*columns.values(), strict=True)
+    lines = [delimiter.join(columns)]
+    for row in rows:
+        cells = [f"{cell:.6f}" if isinstance(cell, float) else str(cell) for cell in row]
+        lines.append(delimiter.join(cell.replace(".", ",") if comma else cell for cell in cells))
+    return "\n".join(lines) + "\n"
+
+
+def written(path: Path, columns: Columns) -> Path:
+    """The table in a file."""
+    path.write_text(table(columns), encoding="utf-8")
+    return path
+
+
+def timecodes(frames: Sequence[float] | Array, rate: int = 60, start: int = 36_000) -> list[str]:
+    """`HH:MM:SS:FF.fff` of frames counted from `start` [s], .fff being parts of a frame."""
+    found = []
+    for frame in frames:
+        whole, part = divmod(round(float(frame) * 1000), 1000)
+        second, number = divmod(whole, rate)
+        second += start
+        hours, minutes = second // 3600, second // 60 % 60
+        found.append(f"{hours:02}:{minutes:02}:{second % 60:02}:{number:02}.{part:03}")
+    return found
+
+
+def live_link(count: int = 120, unit: float = 1.0) -> dict[str, Sequence[object] | Array]:
+    """A raw take of Live Link Face that looks around, its angles in a unit of `unit` radians.
+
+    Eyes and shapes move as those of the app: pitch = 0.61 down - 0.44 up, yaw = 0.62 in - 0.59 out
+    of the left eye, the opposite of the right eye [rad]; + is down and to the subject's right.
+    """
+    time = np.arange(count) / 60.0
+    down, right = 0.3 * np.sin(3.0 * time), 0.2 * np.sin(5.0 * time + 1.0)
+    shapes = {name: 0.2 + 0.1 * np.sin(time + place) for place, name in enumerate(ARKIT)}
+    for side, inward in (("Left", right), ("Right", -right)):
+        shapes[f"eyeLookDown{side}"] = np.maximum(down, 0.0) / 0.61
+        shapes[f"eyeLookUp{side}"] = np.maximum(-down, 0.0) / 0.44
+        shapes[f"eyeLookIn{side}"] = np.maximum(inward, 0.0) / 0.62
+        shapes[f"eyeLookOut{side}"] = np.maximum(-inward, 0.0) / 0.59
+    angles = {name: np.zeros(count) for name in ANGLES}
+    angles |= {"HeadYaw": 0.5 * np.sin(time), "HeadPitch": 0.2 * np.cos(time)}
+    angles |= {"HeadRoll": 0.1 * np.sin(2.0 * time)}
+    angles |= {"LeftEyeYaw": right, "RightEyeYaw": right}
+    angles |= {"LeftEyePitch": down, "RightEyePitch": down}
+    named = {name[0].upper() + name[1:]: values for name, values in shapes.items()}
+    return {
+        "Timecode": timecodes(np.arange(count)),
+        "BlendShapeCount": [61] * count,
+        **named,
+        **{name: values / unit for name, values in angles.items()},
+    }
+
+
+def openface(count: int = 60) -> dict[str, Sequence[object] | Array]:
+    """OpenFace 2 with some of its columns: a face that smiles, turns, and looks at the camera."""
+    time = np.arange(count) / 30.0
+    turn = 0.3 * np.sin(time)  # to the subject's right
+    return {
+        "frame": np.arange(1, count + 1).tolist(),
+        "face_id": [0] * count,
+        "timestamp": time,
+        "confidence": [0.98] * count,
+        "success": [1] * count,
+        "gaze_angle_x": np.full(count, 0.02),
+        "gaze_angle_y": np.full(count, 0.25),
+        "eye_lmk_x_0": np.full(count, 300.0),
+        "pose_Tx": np.full(count, 12.0),
+        "pose_Rx": 0.1 * np.cos(time),
+        "pose_Ry": turn,
+        "pose_Rz": 0.05 * np.sin(2.0 * time),
+        "X_0": np.full(count, -40.0),
+        "p_scale": np.full(count, 2.5),
+        "AU01_r": np.full(count, -0.2),
+        "AU12_r": 2.5 + 2.5 * np.sin(time),
+        "AU45_r": np.full(count, 0.5),
+        "AU12_c": [1] * count,
+        "AU28_c": [0, 1] * (count // 2),
+    }
+
+
+def pyfeat(count: int = 20) -> dict[str, Sequence[object] | Array]:
+    """py-feat 1: each frame of a film, no times, head angles in degrees."""
+    return {
+        "frame": list(range(count)),
+        "FaceRectX": np.full(count, 190.0),
+        "FaceScore": np.full(count, 0.99),
+        "x_0": np.full(count, 192.0),
+        "AU01": np.full(count, 0.5),
+        "AU12": np.linspace(0.0, 0.9, count),
+        "Pitch": np.linspace(-5.0, 10.0, count),
+        "Roll": np.full(count, 3.0),
+        "Yaw": np.linspace(0.0, 20.0, count),
+        "happiness": np.full(count, 0.9),
+        "input": ["film.mp4"] * count,
+    }
+
+
+def pyfeat_2(count: int = 20) -> dict[str, Sequence[object] | Array]:
+    """py-feat 2: units and the shapes of MediaPipe, every other frame, head angles in radians."""
+    columns = pyfeat(count)
+    columns |= {"frame": list(range(0, 2 * count, 2)), "AU06": np.full(count, 0.4)}
+    columns |= {name: np.radians(columns[name]) for name in ("Pitch", "Roll", "Yaw")}
+    shapes = {name: np.linspace(0.0, 0.5, count) for name in ARKIT if name != "tongueOut"}
+    mesh = {f"mesh_{axis}_{number}": np.full(count, 0.1) for axis in "xy" for number in range(900)}
+    return columns | {
+        "gaze_pitch": np.full(count, 0.1),
+        "gaze_yaw": np.full(count, 0.2),
+        "_neutral": np.zeros(count),
+        **shapes,
+        **mesh,
+        "approx_time": ["00:00"] * count,
+        "Identity": ["Person_0"] * count,
+    }

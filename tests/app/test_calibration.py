@@ -1,0 +1,156 @@
+"""Calibration of recordings: neutral faces, gains, the mirror; for takes and for single frames."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from risorius.app.errors import UserError
+from risorius.app.recordings import Take
+from risorius.app.recordings.calibration import (
+    BLINK_GAIN,
+    LEAST_RANGE,
+    OPENFACE_GAIN,
+    Calibration,
+    calibration_for,
+    gains_of,
+    neutral_now,
+    neutral_of,
+)
+from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
+
+Frame = dict[str, float]
+SHAPES = (*ARKIT, "AU12", "AU12_left", "AU4_right")
+ANGLES = (*HEAD_ANGLES, *EYE_ANGLES)
+
+shapes = st.dictionaries(st.sampled_from(SHAPES), st.floats(0.0, 1.0), min_size=1)
+angles = st.dictionaries(st.sampled_from(ANGLES), st.floats(-90.0, 90.0))
+frames = st.builds(lambda of_shapes, of_angles: {**of_shapes, **of_angles}, shapes, angles)
+
+
+def take_of(kind: str = "Live Link Face", seconds: float = 4.0, **channels: object) -> Take:
+    """A take at 10 frames a second; a channel is a number that it keeps, or its values."""
+    times = np.arange(round(seconds * 10) + 1) / 10.0
+    arrays = {
+        name: np.broadcast_to(np.asarray(values, float), times.shape).copy()
+        for name, values in channels.items()
+    }
+    return Take(kind, "take.csv", times, arrays)
+
+
+@given(frames)
+def test_two_mirrors_show_the_face_itself(frame: Frame) -> None:
+    mirror = Calibration(mirror=True)
+    assert mirror.apply(mirror.apply(frame)) == frame
+
+
+def test_a_mirror_swaps_sides_and_turns_the_head() -> None:
+    frame = {"mouthSmileLeft": 0.5, "head_yaw": 10.0, "head_pitch": 5.0, "eye_yaw_left": 3.0}
+    mirrored = Calibration(mirror=True).apply(frame)
+    assert mirrored == {
+        "mouthSmileRight": 0.5, "head_yaw": -10.0, "head_pitch": 5.0, "eye_yaw_right": -3.0
+    }  # fmt: skip
+
+
+@given(shapes, st.dictionaries(st.sampled_from(SHAPES), st.floats(0.0, 1.0)), st.floats(0.0, 10.0))
+def test_shapes_stay_between_0_and_1_whatever_neutral_and_gain(
+    frame: Frame, neutral: Frame, gain: float
+) -> None:
+    calibrated = Calibration(neutral, default_gain=gain).apply(frame)
+    assert all(0.0 <= value <= 1.0 for value in calibrated.values())
+
+
+@given(st.floats(0.0, 1.0 - LEAST_RANGE))
+def test_the_greatest_value_stays_the_greatest(neutral: float) -> None:
+    calibrated = Calibration({"mouthFunnel": neutral}).apply({"mouthFunnel": 1.0})
+    assert calibrated["mouthFunnel"] == pytest.approx(1.0)
+
+
+@given(frames)
+def test_what_is_neutral_now_is_rest(frame: Frame) -> None:
+    calibrated = Calibration(neutral_now(frame)).apply(frame)
+    assert not any(calibrated.values())
+
+
+@given(frames, st.sampled_from(["first:1", "first:0", "first"]))
+def test_a_face_that_never_moves_is_neutral_by_its_first_second(frame: Frame, method: str) -> None:
+    take = take_of(**frame)
+    calibrated = Calibration(neutral_of(take, method)).apply(take.channels)
+    assert not any(np.any(values) for values in calibrated.values())
+
+
+@given(frames, frames)
+def test_a_frame_alone_is_calibrated_as_it_is_in_a_take(neutral: Frame, frame: Frame) -> None:
+    calibration = Calibration(neutral, {"mouthSmileLeft": 1.5}, default_gain=0.7, mirror=True)
+    alone = calibration.apply(frame)
+    in_take = calibration.apply({name: np.array([0.0, value]) for name, value in frame.items()})
+    assert {name: float(values[1]) for name, values in in_take.items()} == pytest.approx(alone)
+
+
+def test_the_usual_neutral_face_spares_what_rests_at_nothing() -> None:
+    """A blink, a gaze or an open jaw that is held is no neutral face."""
+    held = take_of(browDownLeft=0.3, jawOpen=0.3, mouthClose=0.2, eyeBlinkLeft=0.4, eyeLookInLeft=1)
+    neutral = neutral_of(held)
+    assert neutral == {"browDownLeft": pytest.approx(0.3)}
+
+
+def test_the_head_is_straight_in_the_first_second() -> None:
+    turning = take_of(seconds=3.0, head_yaw=np.r_[np.full(11, 8.0), np.full(20, 30.0)])
+    calibrated = Calibration(neutral_of(turning)).apply(turning.channels)
+    assert calibrated["head_yaw"][0] == pytest.approx(0.0)
+    assert calibrated["head_yaw"][-1] == pytest.approx(22.0)
+
+
+def test_visemes_are_as_they_were_written() -> None:
+    take = take_of(viseme_sil=0.4)
+    for method in (None, "first:1", "percentile"):
+        assert set(neutral_of(take, method)) & set(VISEMES) == set()
+
+
+def test_short_and_calibrated_takes_keep_their_faces() -> None:
+    assert neutral_of(take_of(seconds=1.0, browDownLeft=0.3)) == {}
+    calibrated = take_of(browDownLeft=0.3)
+    object.__setattr__(calibrated, "is_calibrated", True)
+    assert neutral_of(calibrated) == {}
+
+
+def test_eyes_look_where_they_were_seen_to_look() -> None:
+    """A gaze is no neutral face; only a neutral second that was asked for makes it straight."""
+    looking = take_of(eye_pitch_left=-6.0)
+    assert neutral_of(looking) == {}
+    assert neutral_of(looking, "first:1") == {"eye_pitch_left": -6.0}
+
+
+def test_gains_suit_the_kind_of_file() -> None:
+    blinking = calibration_for(take_of(seconds=0.5, eyeBlinkLeft=0.5, jawOpen=0.5))
+    assert blinking.apply({"eyeBlinkLeft": 0.5, "jawOpen": 0.5}) == {
+        "eyeBlinkLeft": pytest.approx(0.5 * BLINK_GAIN),
+        "jawOpen": 0.5,
+    }
+    units = calibration_for(take_of("OpenFace 2", seconds=0.5, AU12=0.5))
+    assert units.apply({"AU12": 0.5})["AU12"] == pytest.approx(0.5 * OPENFACE_GAIN)
+
+
+def test_later_gains_count_and_patterns_reach_many() -> None:
+    channels = ("mouthSmileLeft", "mouthSmileRight", "jawOpen", "head_yaw")
+    gains, default = gains_of(["all=2", "mouth*=1.5", "mouthSmileLeft=0"], channels)
+    assert (gains, default) == ({"mouthSmileLeft": 0.0, "mouthSmileRight": 1.5}, 2.0)
+    turned = Calibration(gains=gains, default_gain=default).apply({"head_yaw": 10.0})
+    assert turned == {"head_yaw": 10.0}, "all is all shapes: a head turns as far as it did"
+
+
+@pytest.mark.parametrize(
+    "setting",
+    ["mouthSmile=1", "jawOpen", "jawOpen=", "jawOpen=wide", "jawOpen=nan", "=1", "all=-1"],
+)
+def test_a_wrong_gain_is_told(setting: str) -> None:
+    with pytest.raises(UserError, match=rf"--gain {setting}: "):
+        gains_of([setting], ["jawOpen", "mouthSmileLeft"])
+
+
+@pytest.mark.parametrize("method", ["", "last", "first:x", "first:-1", "first:nan", "percentile:5"])
+def test_a_wrong_neutral_is_told(method: str) -> None:
+    with pytest.raises(UserError, match=rf"--neutral {method}: "):
+        neutral_of(take_of(jawOpen=0.1), method)

@@ -1,0 +1,281 @@
+"""Recordings as scripts: in time, in few keys, with a report; and the commands that take them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from click.testing import CliRunner, Result
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+
+from risorius.__main__ import command
+from risorius.app.errors import UserError
+from risorius.app.performances import face_limits, read_performance, script_for
+from risorius.app.playback import LEAD, Playback
+from risorius.app.recordings import Take
+from risorius.app.recordings.conversion import lead_of, script_of
+from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.smoothing import OneEuro
+from risorius.app.scenes import FaceScene
+from risorius.app.script import TOLERANCE, load_script
+
+RATE = 60
+Curve = npt.NDArray[np.float64]
+
+
+def take_of(kind: str = "Live Link Face", seconds: float = 3.0, **channels: object) -> Take:
+    """A take at 60 frames a second; a channel is a number that it keeps, or its values."""
+    times = np.arange(round(seconds * RATE) + 1) / RATE
+    arrays = {
+        name: np.broadcast_to(np.asarray(values, float), times.shape).copy()
+        for name, values in channels.items()
+    }
+    return Take(kind, "take.csv", times, arrays)
+
+
+def wave(seconds: float = 3.0) -> Curve:
+    """A channel that comes and goes, from 0 to 1."""
+    times = np.arange(round(seconds * RATE) + 1) / RATE
+    return 0.5 - 0.5 * np.cos(5.0 * times)
+
+
+def written(folder: Path, seconds: float = 1.0) -> Path:
+    """A recording in a file, of a smile that comes and a head that turns to its right."""
+    times = np.arange(round(seconds * RATE) + 1) / RATE
+    path = folder / "take.csv"
+    rows = [f"{t:.4f},{t / seconds:.4f},{20.0 * t / seconds:.4f},7" for t in times]
+    path.write_text("\n".join(["time,mouthSmileLeft,headYaw,mood", *rows]), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def face() -> FaceScene:
+    """The built-in face."""
+    return FaceScene()
+
+
+def risorius(*arguments: object) -> Result:
+    """Run the command in this process."""
+    return CliRunner().invoke(command(), [str(argument) for argument in arguments])
+
+
+@given(st.floats(0.0, 0.3), st.floats(0.0, 2.5))
+def test_the_lead_shifts_what_is_played(lead: float, moment: float) -> None:
+    take = take_of(jawOpen=wave(), head_yaw=20.0 * wave())
+    script, _ = script_of(take, Playback(neutral="none", lead=lead), face_limits())
+    for name, size in (("jawOpen", 1.0), ("head_yaw", 20.0 / 45.0)):
+        recorded = np.interp(moment + lead_of(name, lead), take.times, size * wave())
+        assert script.at(moment)[name] == pytest.approx(recorded, abs=2.0 * TOLERANCE)
+    assert script.duration == pytest.approx(3.0), "as long as its sound"
+
+
+def test_the_usual_lead_is_what_the_skin_is_late(face: FaceScene) -> None:
+    """A jaw that opens in a wave is open when it was recorded open, within a frame."""
+    scene, take = face, take_of(jawOpen=0.6 * wave())
+    lips = scene.landmarks[[62, 66]]
+    late = {}
+    for lead in (0.0, LEAD):
+        script, _ = script_of(take, Playback(neutral="none", lead=lead), scene.limits)
+        scene.reset()
+        gaps = []
+        for moment in take.times:
+            scene.pose(script.at(float(moment)))
+            scene.step(1.0 / RATE)
+            upper, lower = scene.positions[lips, 1]
+            gaps.append(upper - lower)
+        shifts = range(-5, 11)
+        middle = np.arange(20, len(gaps) - 20)
+        fits = [np.corrcoef(take.channels["jawOpen"][middle], np.array(gaps)[middle + shift])[0, 1]
+                for shift in shifts]  # fmt: skip
+        late[lead] = shifts[int(np.argmax(fits))]
+    assert late[0.0] >= 2, "frames that the lips are late"
+    assert abs(late[LEAD]) <= 1
+
+
+def test_a_script_follows_the_recording_with_fewer_keys() -> None:
+    take = take_of(jawOpen=wave())
+    script, _ = script_of(take, Playback(neutral="none", lead=0.0), face_limits())
+    played = [script.at(float(time))["jawOpen"] for time in take.times]
+    np.testing.assert_allclose(played, take.channels["jawOpen"], atol=2.0 * TOLERANCE)
+    assert len(script.tracks["jawOpen"]) < len(take.times) / 2
+
+
+@given(st.dictionaries(st.sampled_from(ARKIT), st.floats(0.0, 1.0), min_size=1))
+def test_a_face_that_never_moves_rests(held: dict[str, float]) -> None:
+    script, _ = script_of(take_of(**held), Playback(neutral="first:1"), face_limits())
+    assert not any(script.at(1.0).values())
+    script.check(face_limits())
+
+
+@given(
+    st.dictionaries(
+        st.sampled_from([*ARKIT, "AU12", "viseme_PP"]), st.floats(0.0, 1.0), min_size=1
+    ),
+    st.floats(-180.0, 180.0),
+    st.floats(0.0, 10.0),
+)
+def test_whatever_is_recorded_can_be_played(
+    ends: dict[str, float], yaw: float, gain: float
+) -> None:
+    """Values of a script are within the limits of its controls, whatever the gain."""
+    curves = {name: end * wave() for name, end in ends.items()}
+    take = take_of(**curves, head_yaw=yaw * wave(), eye_yaw_left=yaw * wave())
+    script, _ = script_of(take, Playback(gains=(f"all={gain}",)), face_limits())
+    script.check(face_limits())
+
+
+def test_one_frame_is_a_pose() -> None:
+    one = Take("MediaPipe", "one.json", np.zeros(1), {"mouthSmileLeft": np.array([0.4])})
+    script, report = script_of(one, Playback(), face_limits())
+    assert script.poses[0].values == {"mouthSmileLeft": 0.4} and not script.tracks
+    assert report.recognised == "MediaPipe, one frame"
+
+
+def test_smoothing_calms_and_costs_little() -> None:
+    """A tremor becomes half; a slow wave stays; frames one by one are smoothed as the take is."""
+    tremor = 0.01 * np.random.default_rng(1).standard_normal(3 * RATE + 1)
+    trembling, waving = take_of(jawOpen=0.5 + tremor), take_of(jawOpen=wave())
+    calm = OneEuro().take(trembling).channels["jawOpen"]
+    assert np.std(calm[RATE:]) < 0.5 * np.std(tremor[RATE:])
+    np.testing.assert_allclose(OneEuro().take(waving).channels["jawOpen"], wave(), atol=0.15)
+    euro = OneEuro()
+    frames = [euro.frame({"jawOpen": value}, 1.0 / RATE)["jawOpen"] for value in 0.5 + tremor]
+    np.testing.assert_allclose(frames, calm, atol=1e-12)
+
+
+def test_the_report_says_what_moves_the_face_and_what_does_not() -> None:
+    take = take_of(
+        jawOpen=wave(), browDownLeft=0.3 + 0.1 * wave(), cheekPuff=0.2, AU12=wave(),
+        head_yaw=90.0 * wave(), head_roll=0.0
+    )  # fmt: skip
+    _, report = script_of(take, Playback(), face_limits())
+    said = {heading: text for heading, text in report.rows}
+    assert report.lines[0] == "take.csv: Live Link Face, 181 frames in 3.00 s, 60 a second"
+    assert said["used"] == "2 shapes of ARKit, 1 angles of the head"
+    assert said["left out"] == "AU12: told by others"
+    assert said["constant"] == "cheekPuff head_roll"
+    assert "mouthSmileLeft/Right" in said["missing"] and "jawOpen" not in said["missing"].split()
+    assert "head_yaw in " in said["cut off"]
+    assert "browDownLeft" in said["neutral"]
+    assert len(report.lines) <= 24 and max(map(len, report.lines)) <= 100
+
+
+def test_a_recording_becomes_a_script_that_plays_the_same(tmp_path: Path) -> None:
+    path, output = written(tmp_path), tmp_path / "script.toml"
+    result = risorius("convert", path, "-o", output, "--gain", "mouth*=0.5")
+    assert result.exit_code == 0, result.output
+    assert "Table of named columns" in result.stderr and "unknown" in result.stderr
+    assert "mood" in result.stderr
+    script, converted = (
+        load_script(output),
+        read_performance(path, Playback(gains=("mouth*=0.5",)))[0],
+    )
+    assert script.tracks == converted.tracks and script.duration == converted.duration
+    assert script.at(1.0)["mouthSmileLeft"] == pytest.approx(0.5, abs=0.01)
+    assert script.at(1.0)["head_yaw"] == pytest.approx(-20.0 / 45.0, abs=0.01)
+
+
+def test_a_recording_is_filmed_as_its_script_is(tmp_path: Path) -> None:
+    """The same picture of both; mirrored it is another one."""
+    path, script = written(tmp_path), tmp_path / "script.toml"
+    assert risorius("convert", path, "-o", script, "--quiet").exit_code == 0
+
+    def picture(played: Path, *options: str) -> npt.NDArray[np.uint8]:
+        """What is filmed at the end, of a file."""
+        still = tmp_path / "still.png"
+        size = ("--size", "96x96", "--time", 1, "--quiet")
+        result = risorius("capture", played, "-o", still, *size, *options)
+        assert (result.exit_code, result.stderr) == (0, "")
+        return np.asarray(Image.open(still))
+
+    recorded = picture(path)
+    np.testing.assert_array_equal(recorded, picture(script))
+    assert np.abs(recorded.astype(int) - picture(path, "--mirror")).mean() > 5.0
+
+
+def test_the_mapping_table_is_printed_and_taken(tmp_path: Path) -> None:
+    table = tmp_path / "my.toml"
+    printed = risorius("convert", "--mapping-table")
+    assert printed.exit_code == 0
+    table.write_text(f"{printed.stdout}\nmouthSmileLeft = {{ jaw_open = 1.0 }}\n")
+    output = tmp_path / "script.toml"
+    result = risorius("convert", written(tmp_path), "-o", output, "--mapping", table, "--quiet")
+    assert (result.exit_code, result.output) == (0, "")
+    assert set(load_script(output).tracks) == {"jaw_open", "head_yaw"}
+
+
+@pytest.mark.parametrize(
+    ("option", "told"),
+    [
+        (("--neutral", "last"), "--neutral last: allowed are"),
+        (("--gain", "mouth=1"), "--gain mouth=1: no channel"),
+        (("--mapping", "no.toml"), "no.toml: no such mapping"),
+        (("--rate", "0"), "--rate"),
+        (("--lead", "-1"), "--lead"),
+    ],
+)
+def test_wrong_options_are_one_line(tmp_path: Path, option: tuple[str, str], told: str) -> None:
+    result = risorius("convert", written(tmp_path), "-o", tmp_path / "out.toml", *option)
+    assert result.exit_code == 2 and result.stderr.count("\n") == 1
+    assert told in result.stderr
+    assert not (tmp_path / "out.toml").exists()
+
+
+@pytest.mark.parametrize(
+    "options", [("--mirror",), ("--gain", "all=2"), ("--lead", "0"), ("--smooth",)]
+)
+def test_a_script_takes_no_options_of_recordings(tmp_path: Path, options: tuple[str, ...]) -> None:
+    script = tmp_path / "smile.toml"
+    script.write_text("[[pose]]\ntime = 1\njoy = 1\n")
+    for what, output in (("capture", "a.png"), ("convert", "b.toml")):
+        result = risorius(what, script, "-o", tmp_path / output, *options)
+        assert result.exit_code == 2, result.output
+        assert f"is a script, and {options[0]} is for recordings" in result.stderr
+    result = risorius("capture", "--set", "joy", "-o", tmp_path / "a.png", *options)
+    assert result.exit_code == 2
+    assert f"{options[0]} is for recordings, and none is given" in result.stderr
+
+
+def test_a_script_cannot_be_converted(tmp_path: Path) -> None:
+    script = tmp_path / "smile.toml"
+    script.write_text("[[pose]]\ntime = 1\njoy = 1\n")
+    result = risorius("convert", script, "-o", tmp_path / "out.toml")
+    assert result.exit_code == 2
+    assert "is a script already" in result.stderr
+
+
+@pytest.mark.parametrize("name", ["take.csv", "take.json", "take.toml", "take"])
+def test_what_is_neither_script_nor_recording_is_told(tmp_path: Path, name: str) -> None:
+    path = tmp_path / name
+    path.write_text("a,b,c\n1,2,3\n")
+    with pytest.raises(UserError) as error:
+        script_for(path, None)
+    assert str(error.value).startswith(str(path))
+
+
+@pytest.mark.parametrize(
+    ("channel", "degrees", "axis", "towards"),
+    [
+        ("head_yaw", 20.0, 2, 0),  # forward goes to the subject's left, which is +x
+        ("head_pitch", 20.0, 2, 1),  # forward goes up
+        ("head_roll", 20.0, 1, 0),  # the crown goes to the left shoulder
+        ("eye_yaw_left", 15.0, 2, 0),
+        ("eye_pitch_right", 15.0, 2, 1),
+    ],
+)
+def test_angles_turn_head_and_eyes_as_they_were_recorded(
+    face: FaceScene, channel: str, degrees: float, axis: int, towards: int
+) -> None:
+    """So many degrees, to the subject's left, up, and to the left shoulder; no other bone's."""
+    bones = {"eye_yaw_left": "eye_left", "eye_pitch_right": "eye_right"}
+    script, _ = script_of(take_of(**{channel: degrees}), Playback(neutral="none"), face.limits)
+    face.reset()
+    face.pose(script.at(1.0))
+    face.step(2.0)
+    matrix = face.bone_transforms()[bones.get(channel, "cranium")]
+    turned = np.degrees(np.arctan2(matrix[towards, axis], matrix[axis, axis]))
+    assert turned == pytest.approx(degrees, abs=1.0)

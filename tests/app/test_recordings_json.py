@@ -1,0 +1,259 @@
+"""Takes in JSON: shapes as MediaPipe and pages that use it write them, and speech as visemes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from risorius.app.errors import UserError
+from risorius.app.recordings import is_recording, read_take
+from risorius.app.recordings.names import ARKIT
+
+NAMES = [name for name in sorted(ARKIT) if name != "tongueOut"]
+
+
+def told(notes: tuple[str, ...], words: str) -> bool:
+    """Whether a note has these words."""
+    return any(words in note for note in notes)
+
+
+def written(path: Path, document: Any) -> Path:
+    """The document in a file that is known as a recording."""
+    path.write_text(json.dumps(document))
+    assert is_recording(path)
+    return path
+
+
+def categories(jaw: float, key: str = "category_name", as_text: bool = False) -> list[Any]:
+    """What the landmarker answers for one face."""
+    scores = {name: jaw if name == "jawOpen" else 0.125 for name in ("_neutral", *NAMES)}
+    return [
+        {"index": number, "score": str(score) if as_text else score, key: name, "displayName": ""}
+        for number, (name, score) in enumerate(scores.items())
+    ]
+
+
+@pytest.mark.parametrize("key", ["category_name", "categoryName", "name"])
+@pytest.mark.parametrize("as_text", [False, True])
+def test_one_picture(key: str, as_text: bool, tmp_path: Path) -> None:
+    """Both spellings of keys, scores as numbers and as texts; `_neutral` is no shape."""
+    take = read_take(written(tmp_path / "take", categories(0.75, key, as_text)))
+    assert take.kind == "MediaPipe JSON"
+    assert take.duration == 0.0
+    assert set(take.channels) == set(NAMES)
+    assert take.channels["jawOpen"] == pytest.approx([0.75])
+    assert not take.unknown
+
+
+JAW = [0.1, 0.2, 0.4, 0.3]
+DOCUMENTS: dict[str, Any] = {
+    "a list of pictures": [categories(jaw) for jaw in JAW],
+    "frames of faces": {"frames": [{"faceBlendshapes": [categories(jaw)]} for jaw in JAW]},
+    "results": {"results": [{"face_blendshapes": [{"categories": categories(j)}]} for j in JAW]},
+    "stamps in seconds": [
+        {"time": number / 30.0, "blendshapes": {"jawOpen": jaw, "mouthClose": 0.125}}
+        for number, jaw in enumerate(JAW)
+    ],
+    "stamps in milliseconds": {
+        "frames": [
+            {"timestampMs": 1000 + number * 100 / 3, "blendshapes": categories(jaw, "categoryName")}
+            for number, jaw in enumerate(JAW)
+        ]
+    },
+    "flat": [{"jawOpen": jaw, "mouthClose": 0.125, "frame": n} for n, jaw in enumerate(JAW)],
+    "lists of numbers": {"jawOpen": JAW, "mouthClose": [0.125] * 4, "fps": 30},
+    "lists of numbers below": {"fps": 30, "blendshapes": {"jaw_open": JAW}},
+    "lists with times": {"jawOpen": JAW, "time": [0.0, 1 / 30, 2 / 30, 0.1]},
+    "an export of Audio2Face": {
+        "exportFps": 30.0, "trackPath": "x", "numFrames": 4, "facsNames": ["jawOpen", "mouthClose"],
+        "weightMat": [[jaw, 0.125] for jaw in JAW],
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", DOCUMENTS)
+def test_a_film(kind: str, tmp_path: Path) -> None:
+    """However the frames are packed, the take is the same."""
+    take = read_take(written(tmp_path / "take", DOCUMENTS[kind]))
+    assert take.channels["jawOpen"] == pytest.approx(JAW)
+    assert take.times == pytest.approx(np.arange(4) / 30.0)
+
+
+def test_a_document_in_each_line(tmp_path: Path) -> None:
+    """JSON Lines, as programs write that must not lose a film when they stop."""
+    path = tmp_path / "take"
+    path.write_text("\n".join(json.dumps({"t": n / 25, "jawOpen": 0.5}) for n in range(4)))
+    assert is_recording(path)
+    assert read_take(path).times == pytest.approx(np.arange(4) / 25.0)
+
+
+def test_frames_without_a_face(tmp_path: Path) -> None:
+    """An empty list is a frame in which nobody was."""
+    frames = [{"faceBlendshapes": [categories(jaw)] if jaw else []} for jaw in (0.2, 0, 0.4)]
+    take = read_take(written(tmp_path / "take", {"frames": frames}))
+    assert take.channels["jawOpen"] == pytest.approx([0.2, 0.3, 0.4])
+    assert told(take.notes, "No face in 1 of 3")
+
+
+def test_several_faces(tmp_path: Path) -> None:
+    """The first face is taken, or the one that is asked for by its number."""
+    frames = [{"faceBlendshapes": [categories(0.2), categories(0.6)]} for _ in range(3)]
+    path = written(tmp_path / "take", frames)
+    assert read_take(path).channels["jawOpen"] == pytest.approx([0.2] * 3)
+    assert told(read_take(path).notes, "Up to 2 faces")
+    assert read_take(path, face="1").channels["jawOpen"] == pytest.approx([0.6] * 3)
+    with pytest.raises(UserError, match=r"no face '2'; in it are '0', '1'"):
+        read_take(path, face="2")
+
+
+@pytest.mark.parametrize("layout", ["rows", "columns", "data"])
+def test_the_matrix_of_the_head(layout: str, tmp_path: Path) -> None:
+    """A head turned 20 degrees to its left, in all layouts of MediaPipe's matrix."""
+    cos, sin = np.cos(np.radians(20.0)), np.sin(np.radians(20.0))
+    matrix = np.array([[cos, 0, sin, 1.0], [0, 1, 0, 2.0], [-sin, 0, cos, -40.0], [0, 0, 0, 1.0]])
+    packed: Any = {
+        "rows": [matrix.tolist()],
+        "columns": [matrix.T.ravel().tolist()],
+        "data": [{"rows": 4, "columns": 4, "data": matrix.T.ravel().tolist()}],
+    }[layout]
+    frame = {"faceBlendshapes": [categories(0.2)], "facialTransformationMatrixes": packed}
+    take = read_take(written(tmp_path / "take", [frame] * 2))
+    assert take.channels["head_yaw"] == pytest.approx([20.0] * 2)
+    assert take.channels["head_pitch"] == pytest.approx([0.0] * 2, abs=1e-9)
+    assert take.channels["head_roll"] == pytest.approx([0.0] * 2, abs=1e-9)
+
+
+def test_the_nod_and_tilt_of_a_matrix(tmp_path: Path) -> None:
+    """Up is up, and a tilt to the left shoulder is positive; x is to the subject's left, y up."""
+    up, tilt = np.radians(10.0), np.radians(15.0)
+    nod = np.array([[1, 0, 0], [0, np.cos(up), np.sin(up)], [0, -np.sin(up), np.cos(up)]])
+    roll = np.array([[np.cos(tilt), np.sin(tilt), 0], [-np.sin(tilt), np.cos(tilt), 0], [0, 0, 1]])
+    for turn, name, angle in ((nod, "head_pitch", 10.0), (roll, "head_roll", 15.0)):
+        matrix = np.eye(4)
+        matrix[:3, :3] = turn
+        frame = {"blendshapes": categories(0.2), "matrix": matrix.tolist()}
+        take = read_take(written(tmp_path / "take", [frame]))
+        assert take.channels[name] == pytest.approx([angle])
+
+
+def test_names_that_nobody_knows(tmp_path: Path) -> None:
+    """They are listed once."""
+    more = [{"category_name": "earWiggle", "score": 0.5}]
+    take = read_take(written(tmp_path / "take", [categories(0.1) + more] * 3))
+    assert take.unknown == ("earWiggle",)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["{", "[[[", '{"category_name"', '{"a": 1}', "[]", "{}", "[1, 2]", '{"frames": 3}',
+     '[{"category_name": "jawOpen"}]', '{"blendshapes": []}', '{"jawOpen": []}', "[" * 100_000,
+     '{"jawOpen": "wide"}', '{"channels": []}', '{"frames": [{"blendshapes": null}]}',
+     '{"jawOpen": ' + "9" * 5000 + "}"],
+)  # fmt: skip
+def test_json_of_something_else(text: str, tmp_path: Path) -> None:
+    """One line says what is wrong."""
+    path = tmp_path / "take"
+    path.write_text(text)
+    with pytest.raises(UserError, match="take"):
+        read_take(path)
+
+
+# Visemes
+
+
+def tracks(height: float = 0.42) -> dict[str, Any]:
+    """A word of OpenFaceFX: silence, aa, PP, oh, silence; each moment is shared out."""
+    keys = {
+        "sil": [[0.0, 0.44], [0.2, 0.0], [0.8, 0.0], [1.0, 0.44]],
+        "aa": [[0.0, 0.3], [0.2, 0.8], [0.4, 0.4], [0.6, 0.1]],
+        "PP": [[0.2, 0.05], [0.4, height], [0.6, 0.05]],
+        "O": [[0.0, 0.2], [0.4, 0.1], [0.6, 0.7], [1.0, 0.3]],
+        "tail": [[0.0, 1.0]],
+    }
+    return {
+        "format": "openfacefx.track", "version": 1, "fps": 60, "duration": 1.0,
+        "viseme_set": list(keys), "channels": [{"name": n, "keys": k} for n, k in keys.items()],
+    }  # fmt: skip
+
+
+def test_tracks_of_visemes(tmp_path: Path) -> None:
+    """Its I, O, U are our ih, oh, ou; where lips are to meet they do, and silence is silent."""
+    take = read_take(written(tmp_path / "take", tracks()))
+    assert take.kind == "OpenFaceFX track"
+    assert take.is_calibrated
+    assert take.unknown == ("tail",)
+    assert set(take.channels) == {"viseme_sil", "viseme_aa", "viseme_PP", "viseme_oh"}
+    at = list(take.times).index(0.4)
+    assert take.channels["viseme_PP"][at] == pytest.approx(1.0)
+    assert take.channels["viseme_sil"][0] == pytest.approx(1.0)
+    assert take.channels["viseme_aa"][0] == pytest.approx(0.0, abs=1e-9)
+    assert take.channels["viseme_oh"][-1] == pytest.approx(0.0, abs=1e-9)
+    assert take.channels["viseme_aa"][list(take.times).index(0.2)] == pytest.approx(0.8)
+
+
+def test_clear_tracks_stay_as_they_are(tmp_path: Path) -> None:
+    """Weights that reach far are not raised."""
+    take = read_take(written(tmp_path / "take", tracks(height=0.95)))
+    assert take.channels["viseme_PP"].max() == pytest.approx(0.95)
+    assert take.channels["viseme_sil"][0] == pytest.approx(0.44)
+    assert not take.notes
+
+
+@pytest.mark.parametrize(
+    "keys", [3, [1], [[0.0]], [["a", 1]], [[0.0, None]], [[0, True]], [{"time": 0}], [[1e300, 0]]]
+)
+def test_wrong_keys(keys: Any, tmp_path: Path) -> None:
+    """The channel is named."""
+    document = {"channels": [{"name": "aa", "keys": [[0, 1]]}, {"name": "PP", "keys": keys}]}
+    path = tmp_path / "take"
+    path.write_text(json.dumps(document))
+    with pytest.raises(UserError, match="channel 'PP'"):
+        read_take(path)
+
+
+CUES = [(0.0, "X"), (0.4, "A"), (0.5, "D"), (1.0, "F"), (1.4, "X")]
+
+
+@pytest.mark.parametrize("kind", ["json", "tsv"])
+def test_mouth_shapes_of_rhubarb(kind: str, tmp_path: Path) -> None:
+    """Each shape holds, and goes over into the next around the moment of change."""
+    path = tmp_path / "take"
+    if kind == "json":
+        ends = [start for start, _ in CUES[1:]] + [1.6]
+        cues = [
+            {"start": start, "end": end, "value": value}
+            for (start, value), end in zip(CUES, ends, strict=True)
+        ]
+        written(path, {"metadata": {"soundFile": "a.wav", "duration": 1.6}, "mouthCues": cues})
+    else:
+        path.write_text("".join(f"{start:.2f}\t{value}\n" for start, value in CUES))
+        assert is_recording(path)
+    take = read_take(path)
+    assert take.kind == "Rhubarb Lip Sync"
+
+    def value(name: str, time: float) -> float:
+        """Of a channel at a time."""
+        return float(np.interp(time, take.times, take.channels[name]))
+
+    assert take.channels.keys() == {f"viseme_{sound}" for sound in ("sil", "PP", "aa", "ou")}
+    assert value("viseme_PP", 0.45) == pytest.approx(1.0)
+    assert value("viseme_aa", 0.75) == pytest.approx(0.9)
+    assert value("viseme_aa", 0.5) == pytest.approx(0.45)
+    assert value("viseme_ou", 1.2) == pytest.approx(0.9)
+    assert value("viseme_sil", 0.2) == pytest.approx(1.0)
+    assert np.all(np.diff(take.times) > 0.0)
+
+
+@pytest.mark.parametrize(
+    ("cues", "words"),
+    [([], "no mouth cues"), ([3], "cue 1"), ([{"start": 0}], "A, B, C"),
+     ([{"start": 0, "value": "Q"}], "'Q'; allowed are A"), ([{"start": "x"}], "no start")],
+)  # fmt: skip
+def test_wrong_mouth_shapes(cues: Any, words: str, tmp_path: Path) -> None:
+    """The cue is counted, and what is allowed is named."""
+    with pytest.raises(UserError, match=words):
+        read_take(written(tmp_path / "take", {"mouthCues": cues}))

@@ -1,0 +1,345 @@
+"""Takes of Live Link Face: times, names, units and signs are found from what the file holds."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius.app.recordings import is_recording, read_take
+from risorius.app.recordings.names import ARKIT
+
+from .recording_files import ANGLES, live_link, timecodes, written
+
+
+def told(notes: tuple[str, ...], words: str) -> bool:
+    """Whether a note has these words."""
+    return any(words in note for note in notes)
+
+
+def test_a_raw_take(tmp_path: Path) -> None:
+    """All 52 shapes and seven angles are there, as they were, in degrees with our signs."""
+    columns = live_link()
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert take.kind == "Live Link Face"
+    assert not take.is_calibrated
+    assert not take.unknown
+    assert set(ARKIT) < set(take.channels)
+    assert take.times == pytest.approx(np.arange(120) / 60.0, abs=1e-9)
+    for name in ARKIT:
+        there = np.array(columns[name[0].upper() + name[1:]])
+        assert take.channels[name] == pytest.approx(there, abs=1e-6)
+    for ours, theirs in (
+        ("head_yaw", "HeadYaw"),
+        ("head_pitch", "HeadPitch"),
+        ("head_roll", "HeadRoll"),
+        ("eye_yaw_left", "LeftEyeYaw"),
+        ("eye_pitch_right", "RightEyePitch"),
+    ):
+        there = np.degrees(np.array(columns[theirs], dtype=float))
+        assert take.channels[ours] == pytest.approx(-there, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", ["take.csv", "take.toml", "take", "take.json"])
+def test_the_name_of_the_file_does_not_count(name: str, tmp_path: Path) -> None:
+    """What a file holds says what it is."""
+    path = written(tmp_path / name, live_link())
+    assert is_recording(path)
+    assert read_take(path).kind == "Live Link Face"
+
+
+def test_the_other_spelling_and_order(tmp_path: Path) -> None:
+    """Writers differ in the header's count, in capitals, and in which side comes first."""
+    columns = live_link()
+    columns["JawLeft"], columns["JawRight"] = np.full(120, 0.3), np.full(120, 0.1)
+    names = list(columns)
+    left, right = names.index("JawLeft"), names.index("JawRight")
+    names[left], names[right] = names[right], names[left]
+    turned = {name: columns[name] for name in reversed(names[2:])}
+    head = {"timecode": columns["Timecode"], " BlendshapeCount": columns["BlendShapeCount"]}
+    for several in (head | turned, head | {name: columns[name] for name in names[2:]}):
+        take = read_take(written(tmp_path / "take.csv", several))
+        assert take.channels["jawLeft"] == pytest.approx(0.3)
+        assert take.channels["jawRight"] == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("left_out", [("TongueOut",), (), ("TongueOut", *ANGLES), ANGLES])
+def test_fewer_columns(left_out: tuple[str, ...], tmp_path: Path) -> None:
+    """60, 61, 51 and 52 columns; what is not there is no channel."""
+    columns = {name: values for name, values in live_link().items() if name not in left_out}
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert ("tongueOut" in take.channels) == ("TongueOut" not in left_out)
+    assert ("head_yaw" in take.channels) == ("HeadYaw" not in left_out)
+
+
+def test_sixty_eight_columns(tmp_path: Path) -> None:
+    """Seven emotions from 0 to 100 are unknown, and do not turn the shapes into percent."""
+    emotions = ("Angry", "Disgusted", "Fearful", "Happy", "Neutral", "Sad", "Surprised")
+    columns = live_link() | {name: np.full(120, 88.0) for name in emotions}
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert take.unknown == emotions
+    assert take.channels["jawOpen"].max() > 0.2
+
+
+def test_shapes_in_percent(tmp_path: Path) -> None:
+    """Shapes from 0 to 100 are divided, which is told."""
+    columns = live_link()
+    shapes = {name[0].upper() + name[1:] for name in ARKIT}
+    percent = {n: np.array(v) * 100.0 if n in shapes else v for n, v in columns.items()}
+    take = read_take(written(tmp_path / "take.csv", percent))
+    assert take.channels["jawOpen"] == pytest.approx(np.array(columns["JawOpen"]), abs=1e-6)
+    assert told(take.notes, "0 to 100")
+
+
+def test_values_that_are_none(tmp_path: Path) -> None:
+    """A value like -9.8e5 is no measurement, the frames beside it count; 1.2 is cut off at 1."""
+    columns = live_link()
+    jaw = np.full(120, 0.5)
+    jaw[7], jaw[9] = -9.8e5, 1.2
+    take = read_take(written(tmp_path / "take.csv", columns | {"JawOpen": jaw}))
+    assert take.channels["jawOpen"][7] == pytest.approx((0.5 + 0.5) / 2.0)
+    assert take.channels["jawOpen"][9] == 1.0
+    assert told(take.notes, "far from 0 to 1")
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [("radians", 1.0), ("degrees", math.pi / 180.0), ("halves of a turn", math.pi)],
+)
+def test_units_of_angles(name: str, unit: float, tmp_path: Path) -> None:
+    """The eyes' angles beside the eyeLook shapes tell the unit, also of the head's."""
+    take = read_take(written(tmp_path / "take.csv", live_link(unit=unit)))
+    assert told(take.notes, f"in {name}")
+    known = live_link()
+    for ours, theirs in (("head_yaw", "HeadYaw"), ("eye_pitch_left", "LeftEyePitch")):
+        there = -np.degrees(np.array(known[theirs], dtype=float))
+        assert take.channels[ours] == pytest.approx(there, abs=0.02)
+
+
+def test_angles_of_a_head_alone(tmp_path: Path) -> None:
+    """Where the eyes do not move, the size tells radians from degrees, and a note says so."""
+    columns = {
+        name: values
+        for name, values in live_link(unit=math.pi / 180.0).items()
+        if "Look" not in name and "Eye" not in name.removeprefix("Eye")
+    }
+    take = read_take(written(tmp_path / "take.csv", columns))
+    there = -np.array(columns["HeadYaw"], dtype=float)
+    assert take.channels["head_yaw"] == pytest.approx(there, abs=1e-4)
+    assert told(take.notes, "taken for degrees")
+
+
+def test_pitch_and_yaw_of_the_eyes_swapped(tmp_path: Path) -> None:
+    """The eyeLook shapes tell which is which."""
+    columns = live_link()
+    swapped = columns | {
+        f"{side}Eye{one}": columns[f"{side}Eye{other}"]
+        for side in ("Left", "Right")
+        for one, other in (("Yaw", "Pitch"), ("Pitch", "Yaw"))
+    }
+    take = read_take(written(tmp_path / "take.csv", swapped))
+    right = read_take(written(tmp_path / "right.csv", columns))
+    assert told(take.notes, "swapped pitch and yaw of the eyes")
+    for name in ("eye_yaw_left", "eye_pitch_left", "head_yaw", "head_pitch"):
+        assert take.channels[name] == pytest.approx(right.channels[name], abs=1e-3)
+
+
+def test_pitch_and_yaw_of_the_head_swapped(tmp_path: Path) -> None:
+    """Eyes that rest on the camera turn against the head, on the same axis."""
+    columns = live_link()
+    down, right = np.array(columns["LeftEyePitch"]), np.array(columns["LeftEyeYaw"])
+    straight = columns | {"HeadPitch": -down, "HeadYaw": -right}
+    swapped = columns | {"HeadPitch": -right, "HeadYaw": -down}
+    takes = [read_take(written(tmp_path / "take.csv", each)) for each in (straight, swapped)]
+    assert not told(takes[0].notes, "swapped")
+    assert told(takes[1].notes, "swapped pitch and yaw of the head")
+    for name in ("head_yaw", "head_pitch"):
+        assert takes[1].channels[name] == pytest.approx(takes[0].channels[name], abs=1e-6)
+
+
+def test_a_sign_turned(tmp_path: Path) -> None:
+    """An eye that looks up where its shapes look down has its sign the other way round."""
+    columns = live_link()
+    turned = columns | {"LeftEyePitch": -np.array(columns["LeftEyePitch"])}
+    take = read_take(written(tmp_path / "take.csv", turned))
+    assert take.channels["eye_pitch_left"] == pytest.approx(
+        take.channels["eye_pitch_right"], abs=1e-3
+    )
+    assert told(take.notes, "eye_pitch_left runs against")
+
+
+def test_axes_of_the_eyeballs(tmp_path: Path) -> None:
+    """The app's axes stand 4 degrees outwards of where an eye looks; a face must not squint out."""
+    columns = live_link()
+    outward = columns | {
+        "LeftEyeYaw": np.array(columns["LeftEyeYaw"]) - 0.07,
+        "RightEyeYaw": np.array(columns["RightEyeYaw"]) + 0.07,
+    }
+    take = read_take(written(tmp_path / "take.csv", outward))
+    apart = take.channels["eye_yaw_left"] - take.channels["eye_yaw_right"]
+    assert np.abs(apart).max() < 0.1
+    assert told(take.notes, "outwards")
+
+
+def test_angles_that_are_switched_off(tmp_path: Path) -> None:
+    """The app writes 0 where the head's rotation is off: then the head is not held at 0."""
+    off = {name: np.zeros(120) for name in ("HeadYaw", "HeadPitch", "HeadRoll")}
+    take = read_take(written(tmp_path / "take.csv", live_link() | off))
+    assert "head_yaw" not in take.channels
+    assert "eye_yaw_left" in take.channels
+    assert told(take.notes, "switched off")
+
+
+def test_a_calibrated_take(tmp_path: Path) -> None:
+    """A calibrated take is told from a raw one by brows and nose, which otherwise never rest."""
+    columns = live_link()
+    shapes = {name[0].upper() + name[1:] for name in ARKIT}
+    calibrated = {
+        name: np.maximum(np.array(values) - 0.2, 0.0) if name in shapes else values
+        for name, values in columns.items()
+    }
+    assert read_take(written(tmp_path / "cal.csv", calibrated)).is_calibrated
+    assert not read_take(written(tmp_path / "raw.csv", columns)).is_calibrated
+
+
+# Times
+
+
+def take_of(path: Path, codes: list[str], rate: float | None = None) -> tuple[object, ...]:
+    """Times and notes of a take with these timecodes."""
+    columns = {
+        "Timecode": codes,
+        "BlendShapeCount": [61] * len(codes),
+        "JawOpen": [0.1] * len(codes),
+    }
+    take = read_take(written(path / "take.csv", columns), rate=rate)
+    return take.times, take.notes
+
+
+def test_the_fraction_of_a_frame(tmp_path: Path) -> None:
+    """Where frames come a little slower than 60 a second, the fraction tells each one's time."""
+    frames = 37.867 + 1.003 * np.arange(400)
+    times, notes = take_of(tmp_path, timecodes(frames))
+    assert times == pytest.approx(1.003 * np.arange(400) / 60.0, abs=1e-4)
+    assert told(notes, "60 frames a second")
+
+
+def test_a_fraction_that_jumps(tmp_path: Path) -> None:
+    """One writer repeats milliseconds in the fraction: frames would jump, so it does not count."""
+    codes = [
+        f"{code[:-4]}.{round(frame % 60 / 60 * 1000) % 1000:03}"
+        for frame, code in enumerate(timecodes(np.arange(400)))
+    ]
+    times, notes = take_of(tmp_path, codes)
+    assert times == pytest.approx(np.arange(400) / 60.0, abs=1e-9)
+    assert told(notes, "was not used")
+
+
+def test_a_fraction_at_random(tmp_path: Path) -> None:
+    """The same of one that has nothing to do with the frame."""
+    parts = np.random.default_rng(1).integers(0, 1000, 400)
+    codes = [f"{c[:-4]}.{p:03}" for c, p in zip(timecodes(np.arange(400)), parts, strict=True)]
+    times, notes = take_of(tmp_path, codes)
+    assert times == pytest.approx(np.arange(400) / 60.0, abs=1e-9)
+    assert told(notes, "was not used")
+
+
+@pytest.mark.parametrize("rate", [24, 25, 30, 50, 60])
+def test_rates(rate: int, tmp_path: Path) -> None:
+    """The highest number of a frame in a second tells the rate, also without a fraction."""
+    codes = [code[:-4] for code in timecodes(np.arange(3 * rate), rate)]
+    times, notes = take_of(tmp_path, codes)
+    assert times == pytest.approx(np.arange(3 * rate) / rate, abs=1e-9)
+    assert told(notes, f"{rate} frames a second")
+
+
+def test_a_rate_that_the_user_knows(tmp_path: Path) -> None:
+    """It counts more than what was inferred."""
+    times, _ = take_of(tmp_path, timecodes(np.arange(10)), rate=30.0)
+    assert times[-1] == pytest.approx(9 / 30.0)
+
+
+def test_frames_that_are_missing(tmp_path: Path) -> None:
+    """A second that held 59 rows is a second all the same."""
+    frames = np.delete(np.arange(180), 77)
+    times, _ = take_of(tmp_path, timecodes(frames))
+    assert times == pytest.approx(frames / 60.0, abs=1e-9)
+
+
+def test_midnight(tmp_path: Path) -> None:
+    """Time goes on after 23:59:59."""
+    codes = [code[:-4] for code in timecodes(np.arange(60), 60, start=86_399)]
+    codes += [code[:-4] for code in timecodes(np.arange(60), 60, start=0)]
+    times, _ = take_of(tmp_path, codes)
+    assert times == pytest.approx(np.arange(120) / 60.0, abs=1e-9)
+
+
+def test_drop_frame(tmp_path: Path) -> None:
+    """29.97 frames a second: numbers 0 and 1 are left out in each minute but each tenth."""
+    codes, number = [], 0
+    for _ in range(1900):
+        second, frame = divmod(number, 30)
+        codes.append(f"00:{second // 60:02}:{second % 60:02};{frame:02}")
+        number += 1
+        if number % 1800 == 0 and number % 18_000:
+            number += 2
+    times, notes = take_of(tmp_path, codes)
+    assert times == pytest.approx(np.arange(1900) * 1001 / 30000, abs=1e-6)
+    assert told(notes, "Drop-frame")
+
+
+def test_a_clock(tmp_path: Path) -> None:
+    """`HH:MM:SS.mmm` is no timecode, and milliseconds in the place of frames are none either."""
+    seconds = np.arange(100) / 25.0
+    for mark in (".", ":"):
+        codes = [f"10:00:{s:02.0f}{mark}{m:03.0f}" for s, m in zip(*split(seconds), strict=True)]
+        times, _ = take_of(tmp_path, codes)
+        assert times == pytest.approx(seconds, abs=1e-9)
+
+
+def split(seconds: np.ndarray[tuple[int], np.dtype[np.float64]]) -> tuple[object, object]:
+    """Whole seconds and milliseconds."""
+    milliseconds = np.round(seconds * 1000.0)
+    return milliseconds // 1000, milliseconds % 1000
+
+
+def test_a_second_for_each_row(tmp_path: Path) -> None:
+    """One writer counts seconds where frames are meant; rows are frames then."""
+    codes = [f"00:{n // 60:02}:{n % 60:02}:00.000" for n in range(90)]
+    times, notes = take_of(tmp_path, codes, rate=25.0)
+    assert times == pytest.approx(np.arange(90) / 25.0)
+    assert told(notes, "rows are frames")
+
+
+def test_rows_out_of_order(tmp_path: Path) -> None:
+    """Times that come twice or go back are left out, with their number."""
+    frames = [0.0, 1.0, 1.0, 2.0, 1.0, 3.0]
+    times, notes = take_of(tmp_path, timecodes(frames))
+    assert times == pytest.approx(np.arange(4) / 60.0)
+    assert told(notes, "2 rows out of the order of time")
+
+
+def test_one_wrong_time(tmp_path: Path) -> None:
+    """It costs its own row, not all that come after it."""
+    codes = timecodes(np.arange(90))
+    codes[30] = "23:59:59:00.000"
+    times, notes = take_of(tmp_path, codes)
+    assert times == pytest.approx(np.delete(np.arange(90), 30) / 60.0)
+    assert told(notes, "1 rows out of the order of time")
+
+
+def test_a_hole_in_the_recording(tmp_path: Path) -> None:
+    """Where rows are missing the pose is held, and goes over to the next in the last 0.3 s."""
+    frames = np.r_[np.arange(60), np.arange(180, 240)]
+    columns = {
+        "Timecode": timecodes(frames),
+        "BlendShapeCount": [61] * 120,
+        "JawOpen": np.r_[np.zeros(60), np.ones(60)],
+    }
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert np.interp(2.69, take.times, take.channels["jawOpen"]) == pytest.approx(0.0, abs=1e-6)
+    assert np.interp(2.85, take.times, take.channels["jawOpen"]) == pytest.approx(0.5, abs=1e-6)
+    assert np.all(np.diff(take.times) > 0.0)
+    assert told(take.notes, "missing in 1 places")

@@ -1,0 +1,200 @@
+"""Recordings as text: encodings, delimiters, commas, quotes, rows that do not belong."""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from risorius.app.errors import UserError
+from risorius.app.recordings import is_recording, read_take
+from risorius.app.recordings.table import table_in
+
+from .recording_files import live_link, table, written
+
+COLUMNS = {"time": np.arange(6) / 30.0, "jawOpen": np.arange(6) / 10.0, "AU4": np.full(6, 0.25)}
+
+
+def told(notes: tuple[str, ...], words: str) -> bool:
+    """Whether a note has these words."""
+    return any(words in note for note in notes)
+
+
+def check(path: Path) -> tuple[str, ...]:
+    """The table above is in the file; its notes."""
+    assert is_recording(path)
+    take = read_take(path)
+    assert take.channels["jawOpen"] == pytest.approx(COLUMNS["jawOpen"], abs=1e-6)
+    assert take.channels["AU4"] == pytest.approx(0.25)
+    assert take.times == pytest.approx(COLUMNS["time"], abs=1e-6)
+    return take.notes
+
+
+@pytest.mark.parametrize(
+    "encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "utf-32", "cp1252"]
+)
+def test_encodings(encoding: str, tmp_path: Path) -> None:
+    """Found from the bytes, also without a mark; a name that is no ASCII stays what it is."""
+    path = tmp_path / "take.csv"
+    text = table({"Stimmung für später": [1] * 6} | COLUMNS)
+    path.write_bytes(text.encode(encoding))
+    check(path)
+    assert read_take(path).unknown == ("Stimmung für später",)
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("delimiter", [",", ";", "\t", "|"])
+def test_delimiters_and_line_ends(delimiter: str, ending: str, tmp_path: Path) -> None:
+    """What stands between cells is found from the header."""
+    path = tmp_path / "take.csv"
+    path.write_bytes(table(COLUMNS, delimiter).replace("\n", ending).encode())
+    check(path)
+
+
+@pytest.mark.parametrize("delimiter", [";", "\t"])
+def test_decimal_commas(delimiter: str, tmp_path: Path) -> None:
+    """Numbers may have commas where cells have another delimiter."""
+    path = tmp_path / "take.csv"
+    path.write_text(table(COLUMNS, delimiter, comma=True))
+    assert told(check(path), "Decimal commas")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: f"sep=,\n{text}",
+        lambda text: f"\n\n{text}\n\n\n",
+        lambda text: f"# recorded today, in the studio\n{text}",
+        lambda text: text.replace(",", " , "),
+        lambda text: text.replace(",", '","').replace("\n", '"\n"').join('""')[:-2],
+        lambda text: text.replace("\n", ",\n"),
+        lambda text: text.replace("\n", ",\n").replace(",\n", "\n", 1),
+        lambda text: text.replace("jawOpen", '"jawOpen"'),
+    ],
+    ids=["sep", "empty lines", "comment", "blanks", "quotes", "comma at the end",
+         "comma at the end of rows", "a quoted name"],
+)  # fmt: skip
+def test_odd_tables(change: object, tmp_path: Path) -> None:
+    """What spreadsheets and scripts add is passed over."""
+    path = tmp_path / "take.csv"
+    assert callable(change)
+    path.write_text(change(table(COLUMNS)))
+    check(path)
+
+
+def test_a_cell_with_a_delimiter(tmp_path: Path) -> None:
+    """Quoted cells may hold delimiters and line ends."""
+    path = written(tmp_path / "take.csv", {"input": ['"films, old\n/one.mp4"'] * 6} | COLUMNS)
+    check(path)
+
+
+def test_a_torn_last_row(tmp_path: Path) -> None:
+    """It is left out, and told."""
+    path = tmp_path / "take.csv"
+    path.write_text(table(COLUMNS) + "0.2,0.6")
+    assert told(check(path), "The last row, line 8, is torn")
+
+
+def test_rows_of_other_length(tmp_path: Path) -> None:
+    """They are left out, with their number and the first line."""
+    path = tmp_path / "take.csv"
+    lines = table(COLUMNS).splitlines()
+    path.write_text("\n".join([*lines[:3], "0.05,1", "0.06,1,1,1", *lines[3:]]))
+    assert told(check(path), "2 rows of other length were left out, the first in line 4")
+
+
+def test_all_rows_of_other_length(tmp_path: Path) -> None:
+    """The message counts cells and names: this is no table."""
+    path = tmp_path / "take.csv"
+    path.write_text("time,jawOpen\n0,1,0,2\n0,3,0,4\n")
+    with pytest.raises(UserError, match=r"line 2 has 4 cells, the header has 2 names"):
+        read_take(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"", "is empty"),
+        (b" \n\n", "is empty"),
+        (b"time,jawOpen\n", "no rows"),
+        (b"time,jawOpen\n,\n", "no rows"),
+        (bytes(range(256)) * 40, "not a text file"),
+        (b"\x89PNG\r\n\x1a\n\x00\x00", "not a text file"),
+        (b"Dear diary,\ntoday I smiled.\n", "known are"),
+        (b"Hello\n", "no table and no JSON"),
+    ],
+)
+def test_what_is_no_recording(content: bytes, words: str, tmp_path: Path) -> None:
+    """One line says what the file is, and what is known."""
+    path = tmp_path / "take.csv"
+    path.write_bytes(content)
+    with pytest.raises(UserError, match=words):
+        read_take(path)
+
+
+def test_no_file(tmp_path: Path) -> None:
+    """What is not there, a folder and a pipe are told at once, and are no recordings."""
+    os.mkfifo(tmp_path / "pipe")
+    for name, words in (("nowhere", "no such recording"), ("", "folder"), ("pipe", "pipe")):
+        assert not is_recording(tmp_path / name)
+        with pytest.raises(UserError, match=words):
+            read_take(tmp_path / name)
+
+
+def test_a_huge_file(tmp_path: Path) -> None:
+    """It is refused by its size, not read."""
+    path = tmp_path / "take.csv"
+    with path.open("wb") as file:
+        file.truncate(2**40)
+    with pytest.raises(UserError, match="512 MB"):
+        read_take(path)
+
+
+@pytest.mark.parametrize("rate", [0.0, -1.0, 1e9, math.nan])
+def test_a_rate_that_is_none(rate: float, tmp_path: Path) -> None:
+    """The limits are named."""
+    with pytest.raises(UserError, match="1 and 1000"):
+        read_take(written(tmp_path / "take.csv", live_link()), rate=rate)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[[pose]]\ntime = 0\n",
+        "title = 'a, b, c'\n[tracks]\n",
+        "# jawOpen, AU12\n[[pose]]\ntime = 0\n",
+        '{"landmarks": [1, 2, 3]}',
+        "v 0 0 0\nv 1 0 0\nf 1 2 3\n",
+    ],
+)
+def test_files_of_ours_are_no_recordings(text: str, tmp_path: Path) -> None:
+    """Scripts, landmarks and heads are told from takes by what is in them."""
+    path = tmp_path / "take.csv"
+    path.write_text(text)
+    assert not is_recording(path)
+
+
+@given(
+    st.lists(
+        st.lists(st.floats(allow_nan=False, width=32, min_value=-1e6, max_value=1e6), min_size=3,
+                 max_size=3),
+        min_size=1, max_size=8,
+    ),
+    st.sampled_from(",;\t|"),
+    st.booleans(),
+)  # fmt: skip
+def test_numbers_are_read_as_they_are(
+    rows: list[list[float]], delimiter: str, is_quoted: bool
+) -> None:
+    """Also where one cell of the table is none, and each cell is read by itself."""
+    quote = '"' if is_quoted else ""
+    for odd in (False, True):
+        lines = [delimiter.join(f"{quote}{cell!r}{quote}" for cell in row) for row in rows]
+        lines += [delimiter.join(["1", "none", "1"])] * odd
+        found = table_in("\n".join([delimiter.join("abc"), *lines]), source="x")
+        assert np.array_equal(found.numbers([0, 2])[: len(rows)], np.array(rows)[:, [0, 2]])

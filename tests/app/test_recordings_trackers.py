@@ -1,0 +1,305 @@
+"""Takes of OpenFace and py-feat, and of tables that name shapes and units in ways of their own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius.app.errors import UserError
+from risorius.app.recordings import read_take
+from risorius.app.recordings.names import ARKIT
+
+from .recording_files import live_link, openface, pyfeat, pyfeat_2, table, written
+
+
+def told(notes: tuple[str, ...], words: str) -> bool:
+    """Whether a note has these words."""
+    return any(words in note for note in notes)
+
+
+# OpenFace
+
+
+def test_openface(tmp_path: Path) -> None:
+    """Units from 0 to 5, presence where there is no more, and angles with our signs."""
+    columns = openface()
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert take.kind == "OpenFace 2"
+    assert not take.unknown
+    assert take.times == pytest.approx(np.arange(60) / 30.0, abs=1e-6)
+    smile = np.array(columns["AU12_r"]) / 5.0
+    assert take.channels["AU12"] == pytest.approx(smile, abs=1e-6)
+    assert np.all(take.channels["AU1"] == 0.0), "a negative intensity is none"
+    assert set(take.channels["AU28"]) == {0.0, 1.0}
+    assert set(take.channels) == {
+        "AU1", "AU12", "AU45", "AU28", "head_yaw", "head_pitch", "head_roll",
+        "eye_yaw_left", "eye_yaw_right", "eye_pitch_left", "eye_pitch_right",
+    }  # fmt: skip
+    for ours, theirs, sign in (
+        ("head_pitch", "pose_Rx", -1.0),
+        ("head_yaw", "pose_Ry", -1.0),
+        ("head_roll", "pose_Rz", 1.0),
+    ):
+        there = sign * np.degrees(np.array(columns[theirs], dtype=float))
+        assert take.channels[ours] == pytest.approx(there, abs=1e-3)
+
+
+def test_openface_sees_the_gaze_from_the_camera(tmp_path: Path) -> None:
+    """Eyes that stay on the camera turn against the head, and look ahead in the middle."""
+    take = read_take(written(tmp_path / "take.csv", openface()))
+    head, eye = take.channels["head_yaw"], take.channels["eye_yaw_left"]
+    assert np.ptp(head + eye) < 1e-3
+    assert np.median(eye) == pytest.approx(0.0, abs=1e-9)
+    assert told(take.notes, "camera")
+
+
+def test_openface_1(tmp_path: Path) -> None:
+    """No face_id, no gaze_angle, blanks before names; the vectors of both eyes tell the gaze."""
+    columns = openface()
+    for name in ("face_id", "gaze_angle_x", "gaze_angle_y"):
+        del columns[name]
+    turn = np.array(columns["pose_Ry"], dtype=float)
+    columns |= {"gaze_0_x": np.full(60, -0.1), "gaze_1_x": np.full(60, 0.1)}
+    for eye in "01":
+        columns |= {f"gaze_{eye}_y": np.full(60, 0.2), f"gaze_{eye}_z": np.full(60, -0.97)}
+    path = tmp_path / "take.csv"
+    header, _, rows = table(columns).partition("\n")
+    path.write_text(header.replace(",", ", ") + "\n" + rows)
+    take = read_take(path)
+    assert take.kind == "OpenFace 1"
+    assert not take.unknown
+    eye = take.channels["eye_yaw_right"]
+    assert eye == pytest.approx(np.degrees(turn - np.median(turn)), abs=1e-3)
+
+
+def test_units_that_somebody_divided(tmp_path: Path) -> None:
+    """Where `AU12_r` never exceeds 1 it is not divided again."""
+    columns = openface()
+    columns = {
+        name: np.array(values) / 5.0 if name.endswith("_r") else values
+        for name, values in columns.items()
+    }
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert take.channels["AU12"].max() == pytest.approx(1.0, abs=1e-3)
+    assert told(take.notes, "0 to 1")
+
+
+def test_stamps_of_nonsense(tmp_path: Path) -> None:
+    """Steps of a millisecond are no camera's; frames are counted, and the rate is the user's."""
+    columns = openface() | {"timestamp": np.arange(60) / 1000.0}
+    path = written(tmp_path / "take.csv", columns)
+    take = read_take(path)
+    assert take.duration == pytest.approx(59 / 30.0)
+    assert told(take.notes, "no camera")
+    assert read_take(path, rate=25.0).duration == pytest.approx(59 / 25.0)
+
+
+@pytest.mark.parametrize(("unit", "name"), [(1e3, "milli"), (1e6, "micro"), (1e9, "nano")])
+def test_stamps_in_other_units(unit: float, name: str, tmp_path: Path) -> None:
+    """Time stamps are in seconds, milliseconds, microseconds or nanoseconds, by their steps."""
+    columns = openface()
+    columns["timestamp"] = [round(stamp * unit) for stamp in np.arange(60) / 30.0]
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert take.duration == pytest.approx(59 / 30.0, abs=1e-3)
+    assert told(take.notes, name)
+
+
+def test_frames_without_a_face_are_held(tmp_path: Path) -> None:
+    """The last pose stays, and goes over to the next one in the last 0.3 s."""
+    columns = openface()
+    success = np.ones(60)
+    success[20:50] = 0.0
+    smile = np.r_[np.full(20, 1.0), np.zeros(30), np.full(10, 4.0)]
+    take = read_take(
+        written(tmp_path / "take.csv", columns | {"success": success, "AU12_r": smile})
+    )
+    assert take.channels["AU12"][20:40] == pytest.approx(0.2)
+    assert take.channels["AU12"][50] == pytest.approx(0.8)
+    assert 0.2 < take.channels["AU12"][45] < 0.8
+    assert told(take.notes, "No face in 30 of 60 frames")
+
+
+def test_a_short_gap_is_bridged(tmp_path: Path) -> None:
+    """A few frames without a face are a straight line, at both ends the nearest pose."""
+    success = np.ones(60)
+    success[[0, 20, 21, 22, 59]] = 0.0
+    smile = np.arange(60) / 12.0
+    take = read_take(
+        written(tmp_path / "take.csv", openface() | {"success": success, "AU12_r": smile})
+    )
+    straight = np.clip(np.arange(60), 1, 58) / 60.0
+    assert take.channels["AU12"] == pytest.approx(straight, abs=1e-6)
+
+
+def test_no_face_at_all(tmp_path: Path) -> None:
+    """There is nothing to play."""
+    path = written(tmp_path / "take.csv", openface() | {"success": [0] * 60})
+    with pytest.raises(UserError, match="no frame shows a face"):
+        read_take(path)
+
+
+def test_rows_of_nan(tmp_path: Path) -> None:
+    """Cells without a number are gaps, whatever stands there."""
+    columns = openface()
+    cells: list[object] = list(np.full(60, 2.0))
+    cells[10:14] = ["nan", "", "NaN", "N/A"]
+    take = read_take(written(tmp_path / "take.csv", columns | {"AU12_r": cells}))
+    assert take.channels["AU12"] == pytest.approx(0.4)
+    cells[20] = "two"
+    take = read_take(written(tmp_path / "take.csv", columns | {"AU12_r": cells}))
+    assert take.channels["AU12"] == pytest.approx(0.4)
+    assert told(take.notes, "1 cells hold no number, the first in line 22, column 'AU12_r': 'two'")
+
+
+def test_several_faces(tmp_path: Path) -> None:
+    """The face that most rows show is taken, or the one that is asked for."""
+    one, other = openface(), openface(20)
+    rows = table(one).splitlines() + table(other | {"face_id": [3] * 20}).splitlines()[1:]
+    path = tmp_path / "take.csv"
+    path.write_text("\n".join(rows))
+    take = read_take(path)
+    assert len(take.times) == 60
+    assert told(take.notes, "2 faces are in the file; taken was '0'")
+    assert len(read_take(path, face="3").times) == 20
+    with pytest.raises(UserError, match=r"no face '7'; in it are '0', '3'"):
+        read_take(path, face="7")
+
+
+def test_a_face_where_none_is_named(tmp_path: Path) -> None:
+    """A file that names no faces has none to choose from."""
+    path = written(tmp_path / "take.csv", live_link())
+    with pytest.raises(UserError, match="names no faces"):
+        read_take(path, face="1")
+
+
+# py-feat
+
+
+def test_pyfeat_1(tmp_path: Path) -> None:
+    """Frames are the times; the head's angles are degrees, + up, right, left shoulder."""
+    take = read_take(written(tmp_path / "take.csv", pyfeat()))
+    assert take.kind == "py-feat 1"
+    assert not take.unknown
+    assert take.duration == pytest.approx(19 / 30.0)
+    assert take.channels["AU12"][-1] == pytest.approx(0.9)
+    assert take.channels["head_pitch"][-1] == pytest.approx(10.0)
+    assert take.channels["head_yaw"][-1] == pytest.approx(-20.0)
+    assert take.channels["head_roll"][-1] == pytest.approx(3.0)
+    assert told(take.notes, "degrees")
+
+
+def test_pyfeat_2(tmp_path: Path) -> None:
+    """Every other frame; radians; the shapes count, and only units that they do not know."""
+    take = read_take(written(tmp_path / "take.csv", pyfeat_2()))
+    assert take.kind == "py-feat 2"
+    assert not take.unknown
+    assert take.duration == pytest.approx(38 / 30.0)
+    assert take.channels["mouthSmileLeft"][-1] == pytest.approx(0.5)
+    assert take.channels["head_pitch"][-1] == pytest.approx(10.0, abs=1e-3)
+    assert "AU12" not in take.channels
+    assert "cheekSquintLeft" not in take.channels
+    assert take.channels["AU6"] == pytest.approx(0.4)
+    assert told(take.notes, "twice")
+    assert told(take.notes, "one in 2 frames")
+
+
+def test_pyfeat_without_a_face(tmp_path: Path) -> None:
+    """A score of 0 and empty cells mean that no face was there."""
+    columns = pyfeat()
+    for name in ("AU01", "AU12", "Pitch", "Roll", "Yaw"):
+        columns[name] = ["" if row == 5 else cell for row, cell in enumerate(columns[name])]
+    columns["FaceScore"] = [0.0 if row == 5 else 0.9 for row in range(20)]
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert take.channels["AU12"] == pytest.approx(np.linspace(0.0, 0.9, 20), abs=1e-6)
+    assert told(take.notes, "No face in 1 of 20")
+
+
+def test_pyfeat_names_persons(tmp_path: Path) -> None:
+    """Its faces are called Person_0 and so on, and come in turn."""
+    columns = pyfeat_2(20)
+    columns["Identity"] = ["Person_0", "Person_1"] * 10
+    columns["frame"] = np.repeat(np.arange(10), 2).tolist()
+    take = read_take(written(tmp_path / "take.csv", columns), face="Person_1")
+    assert len(take.times) == 10
+    assert take.channels["jawOpen"] == pytest.approx(np.linspace(0.0, 0.5, 20)[1::2], abs=1e-6)
+
+
+def test_one_picture(tmp_path: Path) -> None:
+    """A table of one row is a take of one pose."""
+    columns = {name: [values[-1]] for name, values in pyfeat().items()}
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert take.duration == 0.0
+    assert take.channels["AU12"] == pytest.approx([0.9])
+
+
+# Named columns
+
+
+@pytest.mark.parametrize(
+    "spelled",
+    ["mouthSmileLeft", "MouthSmileLeft", "mouthSmile_L", "MOUTHSMILE_LEFT", "mouth_smile_left",
+     "blendShapes.mouthSmileLeft", "head:mouthSmile_L", " mouthSmileLeft ", "Mouth Smile Left"],
+)  # fmt: skip
+def test_spellings_of_a_shape(spelled: str, tmp_path: Path) -> None:
+    """Capitals, underscores, blanks, and what stands before the last dot do not count."""
+    columns = {"time": np.arange(5) / 30.0, spelled: np.arange(5) / 10.0}
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert take.channels.keys() == {"mouthSmileLeft"}
+    assert take.channels["mouthSmileLeft"] == pytest.approx(np.arange(5) / 10.0)
+
+
+def test_every_shape_has_a_side_of_its_own(tmp_path: Path) -> None:
+    """All 52 names are told apart, also with L and R."""
+    short = [name.replace("Left", "_L").replace("Right", "_R") for name in ARKIT]
+    columns = {name: np.full(3, place / 100.0) for place, name in enumerate(short)}
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert {name: values[0] for name, values in take.channels.items()} == pytest.approx(
+        {name: place / 100.0 for place, name in enumerate(ARKIT)}
+    )
+
+
+@pytest.mark.parametrize(
+    ("spelled", "meant"),
+    [
+        (["AU12"], ["AU12"]),
+        (["au6", "AU_07"], ["AU6", "AU7"]),
+        (["AU12_L", "AU12_R"], ["AU12_left", "AU12_right"]),
+        (["AU12_left", "AU12right", "AU4"], ["AU12_left", "AU12_right", "AU4"]),
+        (["AU01_r", "AU12_r"], ["AU1", "AU12"]),
+        (["viseme_PP", "viseme_O", "viseme_I"], ["viseme_PP", "viseme_oh", "viseme_ih"]),
+    ],
+)
+def test_spellings_of_units_and_visemes(
+    spelled: list[str], meant: list[str], tmp_path: Path
+) -> None:
+    """`_r` is OpenFace's regression, and the right side where there is a left one."""
+    columns = {name: np.full(3, 0.1 + place / 10.0) for place, name in enumerate(spelled)}
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert {name: values[0] for name, values in take.channels.items()} == pytest.approx(
+        {name: 0.1 + place / 10.0 for place, name in enumerate(meant)}
+    )
+
+
+@pytest.mark.parametrize("largest", [1.0, 5.0, 100.0])
+def test_units_of_action_units(largest: float, tmp_path: Path) -> None:
+    """0 to 1, 0 to 5 (A to E), and percent."""
+    columns = {"t": np.arange(11) / 30.0, "AU12": np.linspace(0.0, largest, 11)}
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert take.channels["AU12"] == pytest.approx(np.linspace(0.0, 1.0, 11))
+    assert told(take.notes, "divided") == (largest > 1.0)
+
+
+def test_columns_that_nobody_knows(tmp_path: Path) -> None:
+    """They are listed as the file spells them; times are not among them."""
+    columns = {"Frame": range(4), "jawOpen": [0.5] * 4, "Mood": [1] * 4, "jawAjar": [0.2] * 4}
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert take.unknown == ("Mood", "jawAjar")
+
+
+def test_a_table_of_something_else(tmp_path: Path) -> None:
+    """A table in which nothing is known is told from no table at all."""
+    path = written(tmp_path / "take.csv", {"date": ["x"] * 3, "price": [1.0] * 3})
+    with pytest.raises(UserError, match=r"no column is known \('date', 'price'.*Live Link Face"):
+        read_take(path)
