@@ -14,7 +14,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 
@@ -78,6 +78,14 @@ class FaceTracker:
 def in_mirror(scores: Scores) -> Scores:
     """Scores of a mirrored picture as those of the face itself: left and right change places."""
     return {mirror_of(name)[0] if name in ARKIT else name: score for name, score in scores.items()}
+
+
+def mean_of(scores: Sequence[Scores]) -> Scores:
+    """The mean of each score over the pictures in which there is a face; {} where none is."""
+    found = [each for each in scores if each]
+    return (
+        {name: float(np.mean([each[name] for each in found])) for name in found[0]} if found else {}
+    )
 
 
 @contextlib.contextmanager

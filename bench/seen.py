@@ -31,15 +31,15 @@ from risorius.app.recordings.names import ARKIT, mirror_of
 from risorius.app.scenes import FaceScene, Scene
 from risorius.assets.fitting import FittedHead
 
-from .face_tracker import FaceTracker, Scores, in_mirror
+from .face_tracker import FaceTracker, Scores, in_mirror, mean_of
 from .report import table
 from .scans import read_scans
 
-VIEWS = ("0,0,1.4", "-8,0,1.4", "8,0,1.4")  # as people sit before a camera
+VIEWS = ("front", "-8,0", "8,0")  # as people sit before a camera
 SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face
 SEEN = 0.1  # a score below says nothing
 # Sides that cannot be posed together: they are one shape to either side.
-TO_ONE_SIDE = ("mouth", "jaw", "eyeLookIn", "eyeLookOut")
+TO_ONE_SIDE = ("mouthLeft, Right", "jawLeft, Right", "eyeLookIn", "eyeLookOut")
 # No eye looks to the side alone.
 TOGETHER = {
     "eyeLookInLeft": ("eyeLookOutRight",),
@@ -70,7 +70,9 @@ class Report:
     scanned: Mapping[str, Shape]
     neutral: Scores
     repeated: float  # how far two readings of the same pictures differ at most
-    sides: float  # how far the own scores of a picture and of its mirror image differ, in the median
+    sides: (
+        float  # how far the own scores of a picture and of its mirror image differ, in the median
+    )
 
 
 def verdict(own: float, highest: str, score: float) -> str:
@@ -120,12 +122,6 @@ class Sitting:
         return mean_of(both)
 
 
-def mean_of(scores: Sequence[Scores]) -> Scores:
-    """The mean of each score over the pictures in which there is a face; {} where none is."""
-    found = [each for each in scores if each]
-    return {name: float(np.mean([each[name] for each in found])) for name in found[0]} if found else {}
-
-
 def bases() -> Iterator[tuple[str, tuple[str, ...]]]:
     """Every shape of ARKit: its name without side, and its names with them."""
     for name in ARKIT:
@@ -133,7 +129,8 @@ def bases() -> Iterator[tuple[str, tuple[str, ...]]]:
         if mirrored == name:
             yield name, (name,)
         elif name.endswith("Left"):
-            yield name.removesuffix("Left"), (name, mirrored)
+            stem = name.removesuffix("Left")
+            yield stem if stem not in ("jaw", "mouth") else f"{name}, Right", (name, mirrored)
 
 
 def compared(
@@ -224,11 +221,14 @@ def _scanned(tracker: FaceTracker, reference: Path, pictures: Path | None) -> di
         neutral = sitting.look("scan_neutral")
         found = {}
         for name, names in bases():
-            ways = (name, f"{name}Left", f"{name}Right")  # with sides, too, where ARKit has none
+            stem = names[0].removesuffix("Left")
+            ways = (stem, f"{stem}Left", f"{stem}Right")  # with sides, too, where ARKit has none
             parts = [by_name[each] for each in ways if each in by_name]
+            own = tuple(each for each in names if each in by_name)
             if not parts:
                 continue
-            own = tuple(each for each in names if each in by_name)
+            if name in TO_ONE_SIDE:
+                parts, own = parts[:1], own[:1]
             moved = np.sum([scans.field(part) for part in parts], axis=0)
             scene.shown = scene.rest_positions + moved
             seen = sitting.look(f"scan_{name}")
@@ -246,9 +246,9 @@ def _arkit_name(field: str) -> str:
 
 def report(found: Report) -> str:
     """The text to print."""
-    columns = "shape:<16|own:6.2f| highest:<18|score:6.2f| verdict:<20|left:6.2f|right:6.2f"
+    columns = "shape:<17|own:6.2f| highest:<19|score:6.2f| verdict:<22|left:6.2f|right:6.2f"
     if found.scanned:
-        columns += "|scan own:9.2f| highest:<18|score:6.2f"
+        columns += "|scan own:9.2f| highest:<19|score:6.2f"
     rows = []
     for shape in found.shapes:
         row = [*astuple(shape)]

@@ -1,7 +1,8 @@
 """A film of a recorded face, read back by a face tracker: does it see what was recorded?
 
-The recording is played on the built-in head as `risorius capture` plays it, each frame is shown to
-the tracker, and each shape that it scores is compared with the calibrated recording at that time:
+The recording is played on the built-in head as `risorius capture` plays it, each frame and its
+mirror image are shown to the tracker, and each shape that it scores is compared with the
+calibrated recording at that time:
 
     moves   standard deviation of the recording; what moves less than MOVES is left out
     r       correlation over time; "-" where the tracker always answers the same
@@ -27,7 +28,7 @@ from risorius.app.recordings.calibration import calibration_for
 from risorius.app.recordings.conversion import script_of
 from risorius.app.scenes import FaceScene
 
-from .face_tracker import FaceTracker, Scores
+from .face_tracker import FaceTracker, Scores, in_mirror, mean_of
 from .report import table
 from .seen import SIZE, bases
 
@@ -36,7 +37,7 @@ Array = npt.NDArray[np.float64]
 MOVES = 0.02  # standard deviation of a channel
 ANSWERS = 0.001  # standard deviation of a score
 RATE = 30.0  # frames a second
-VIEW = "0,0,1.4"
+VIEW = "front"
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,8 @@ def measure(
             image = film.draw_image()
             if pictures is not None:
                 save_png(pictures / f"frame_{number:05d}.png", image)
-            scores = tracker.scores(image)
+            both = tracker.scores(image), in_mirror(tracker.scores(image[:, ::-1]))
+            scores = mean_of(both)
             frames += 1
             if scores:
                 times.append(time)
@@ -120,8 +122,6 @@ def report(channels: Sequence[Channel], frames: int, lost: int) -> str:
             "right, or both at once. What the tracker always scores alike has no correlation.",
             f"It found no face in {lost} frames.",
             "",
-            *table(
-                "shape:<16|moves:6.2f|left:6.2f|right:6.2f", map(astuple, channels), empty="-"
-            ),
+            *table("shape:<17|moves:6.2f|left:6.2f|right:6.2f", map(astuple, channels), empty="-"),
         ]
     )
