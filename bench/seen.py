@@ -165,13 +165,15 @@ def measure(
         neutral = sitting.pose("neutral", ())
         repeated = sitting.pose("neutral", ())
         shapes = [_shape(sitting, name, names, neutral) for name, names in bases()]
-        own = [
-            abs(straight[name] - mirrored[name])
-            for straight, mirrored in sitting.sides
-            for name in (max(straight, key=lambda name: straight[name]),)
-        ]
+        sides = [_apart(*pair) for pair in sitting.sides]
     differences = [abs(repeated[name] - neutral[name]) for name in neutral]
-    return Report(shapes, scanned, neutral, max(differences), float(np.median(own)))
+    return Report(shapes, scanned, neutral, max(differences), float(np.median(sides)))
+
+
+def _apart(straight: Scores, mirrored: Scores) -> float:
+    """How far the greatest score of a picture is from that of its mirror image."""
+    name = max(straight, key=lambda name: straight[name])
+    return abs(straight[name] - mirrored[name])
 
 
 def _shape(sitting: Sitting, name: str, names: tuple[str, ...], neutral: Scores) -> Shape:
