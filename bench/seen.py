@@ -70,9 +70,7 @@ class Report:
     scanned: Mapping[str, Shape]
     neutral: Scores
     repeated: float  # how far two readings of the same pictures differ at most
-    sides: (
-        float  # how far the own scores of a picture and of its mirror image differ, in the median
-    )
+    sides: float  # how far mirror images differ in their greatest score, in the median
 
 
 def verdict(own: float, highest: str, score: float) -> str:
