@@ -1,28 +1,84 @@
-"""Teeth, gums and tongue get darker toward the back, where less light from all around gets in."""
+"""What is in the mouth: darker toward the back, where less light from all around gets in; and a
+tongue that bends, out of the dark.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+
+from risorius.assets.generator.ambient import INCISORS, in_mouth_light
+from risorius.assets.topology import vertex_normals
 
 IN_MOUTH = ("teeth", "gums", "tongue")  # names begin so; the cavity is painted dark
 LIT, DARK = 2.0, 34.0  # [mm] behind the front teeth, where it begins to get dark and no darker
 DIMMED = 0.4  # of the colour (sRGB) that is lost there
 
+Floats = npt.NDArray[np.float32]
+
+
+@dataclass(eq=False)
+class Tongue:
+    """A part that changes its shape; drawn as any other (render/parts.py)."""
+
+    name: str
+    vertices: Floats
+    normals: Floats
+    faces: npt.NDArray[np.int32]
+    colours: Floats
+    bone: str
+    shine: float
+    unlit: Floats  # its colours in full light
+    front: float  # z of the front teeth [mm]
+    shape: npt.NDArray[np.float64] | None = None  # taken last
+
+    @classmethod
+    def of(cls, part: Any, front: float) -> Tongue:
+        """The tongue of a head, which is painted as dark as it is at rest."""
+        unlit = part.colours / _painted_light(part.vertices, front)
+        return cls(
+            part.name, part.vertices, part.normals, part.faces,
+            _shaded(part.vertices, part.colours, front), part.bone, part.shine, unlit, front,
+        )  # fmt: skip
+
+    def bend(self, vertices: npt.NDArray[np.float64]) -> None:
+        """Take another shape (n, 3), lit as it is in its place; nothing for the same array."""
+        if vertices is self.shape:
+            return
+        self.shape = vertices
+        self.vertices = vertices.astype(np.float32)
+        self.normals = vertex_normals(vertices, self.faces).astype(np.float32)
+        painted = np.minimum(self.unlit * _painted_light(vertices, self.front), 1.0)
+        self.colours = _shaded(vertices, painted, self.front)
+
 
 def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
-    """The parts, those of the mouth the darker the farther back they are."""
+    """The parts, those of the mouth the darker the farther back they are; the tongue can bend."""
     front = max((part.vertices[:, 2].max() for part in parts if "teeth" in part.name), default=0.0)
 
     def shaded(part: Any) -> Any:
         """The part itself where it is not of the mouth."""
+        if part.name == "tongue":
+            return Tongue.of(part, float(front))
         if not part.name.startswith(IN_MOUTH):
             return part
-        share = np.clip((front - part.vertices[:, 2] - LIT) / (DARK - LIT), 0.0, 1.0)
-        light = 1.0 - DIMMED * share * share * (3.0 - 2.0 * share)
-        return replace(part, colours=(part.colours * light[:, None]).astype(np.float32))
+        return replace(part, colours=_shaded(part.vertices, part.colours, front))
 
     return tuple(shaded(part) for part in parts)
+
+
+def _shaded(points: npt.NDArray[Any], colours: npt.NDArray[Any], front: float) -> Floats:
+    """Colours (n, 3) as they are seen behind the front teeth."""
+    share = np.clip((front - points[:, 2] - LIT) / (DARK - LIT), 0.0, 1.0)
+    light = 1.0 - DIMMED * share * share * (3.0 - 2.0 * share)
+    return (colours * light[:, None]).astype(np.float32)
+
+
+def _painted_light(points: npt.NDArray[Any], front: float) -> npt.NDArray[Any]:
+    """What the light of the mouth leaves of colours, shape (n, 3); see assets/generator."""
+    there = points - np.array([0.0, 0.0, front - INCISORS])
+    return in_mouth_light(there, np.ones((len(points), 3)))

@@ -19,7 +19,7 @@ from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
 
 from .errors import UserError
-from .mouth import shaded_mouth
+from .mouth import Tongue, shaded_mouth
 
 MOST_BAKED = 3000  # vertices; a larger head would take seconds, and takes the built-in one's light
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
@@ -99,6 +99,7 @@ class FaceScene(Scene):
         self.actions = simulation.actions
         self.expressions = simulation.layers.get("Expressions", ())
         self.parts = shaded_mouth(head.parts)
+        self._tongues = [part for part in self.parts if isinstance(part, Tongue)]
         self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
         self.wrinkles = head.wrinkles
         self.landmarks = head.landmarks
@@ -134,9 +135,17 @@ class FaceScene(Scene):
         count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))
         for _ in range(count):
             self.simulation.step(seconds / count)
+        self._bend_tongue()
 
     def reset(self) -> None:
         self.simulation.reset()
+        self._bend_tongue()
+
+    def _bend_tongue(self) -> None:
+        bent = self.simulation.tongue()
+        for tongue in self._tongues:
+            if bent is not None:
+                tongue.bend(bent)
 
     def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
         return self.simulation.bone_transforms()

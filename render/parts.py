@@ -1,4 +1,4 @@
-"""Rigid coloured parts: uploaded once, moved by bones."""
+"""Coloured parts, moved by bones: uploaded once, or again where one changes its shape."""
 
 from collections.abc import Iterable, Mapping
 from typing import Protocol
@@ -12,9 +12,10 @@ from .style import linear
 
 
 class Part(Protocol):
-    """What is read of a rigid part.
+    """What is read of a part.
 
-    name: for messages. vertices, normals: shape (n, 3), float32.
+    name: for messages. vertices, normals: shape (n, 3), float32. A part that is not rigid hands out
+        other arrays of the same shape whenever its shape has changed.
     faces: counter-clockwise from the side that is seen, shape (m, 3), int32; the other side is not
         drawn. colours: sRGB 0..1, shape (n, 3), float32.
     bone: whose transform moves it. shine: 0 dull, 1 wet.
@@ -37,7 +38,7 @@ class Part(Protocol):
 
 
 class PartBuffers:
-    """A rigid part on the graphics card, uploaded once; keeps the part alive, and so its id."""
+    """A part on the graphics card; keeps the part alive, and so its id."""
 
     def __init__(self, gl: moderngl.Context, part: Part) -> None:
         self.part = part
@@ -47,12 +48,22 @@ class PartBuffers:
                 f"part '{part.name}': vertices {np.shape(part.vertices)}, normals "
                 f"{np.shape(part.normals)} and colours {np.shape(part.colours)} must all be (n, 3)"
             )
-        self.corners = box_corners(part.vertices)
-        rows = np.hstack([part.vertices, part.normals, linear(part.colours)]).astype(np.float32)
         self._gl = gl
-        self._vertices = gl.buffer(rows.tobytes())
+        self._vertices = gl.buffer(reserve=36 * len(part.vertices))
+        self._uploaded: npt.NDArray[np.float32] | None = None
+        self.upload()
         self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
         self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
+
+    def upload(self) -> None:
+        """Upload the part's vertices, unless they are those that were uploaded last."""
+        part, vertices = self.part, self.part.vertices
+        if vertices is self._uploaded:
+            return
+        self.corners = box_corners(vertices)
+        rows = np.hstack([vertices, part.normals, linear(part.colours)]).astype(np.float32)
+        self._vertices.write(rows.tobytes())
+        self._uploaded = vertices
 
     def draw(self, program: moderngl.Program) -> None:
         """Draw it with a program that has in_position, in_normal and in_colour."""
@@ -81,7 +92,7 @@ class PartStore:
     def placed(
         self, parts: Iterable[Part], transforms: Mapping[str, npt.NDArray[np.float64]]
     ) -> list[PlacedPart]:
-        """Each part, uploaded when it is first seen, with the matrix of its bone.
+        """Each part, uploaded when it is first seen or has changed, with the matrix of its bone.
 
         Raises ValueError for a bone without one.
         """
@@ -94,5 +105,6 @@ class PartStore:
                     f"part '{part.name}' moves with bone '{part.bone}'; transforms has only "
                     f"{', '.join(sorted(transforms)) or 'none'}"
                 )
+            self.known[id(part)].upload()
             placed.append((self.known[id(part)], transforms[part.bone]))
         return placed

@@ -246,10 +246,11 @@ class Renderer:
         viewport: Viewport | None = None,
         clip: Viewport | None = None,
     ) -> None:
-        """Draw rigid coloured parts, each moved by the matrix of its bone (column vectors).
+        """Draw coloured parts, each moved by the matrix of its bone (column vectors).
 
         Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
-        is first seen and must not change after. Raises ValueError for a bone without transform.
+        is first seen and must not change after; a part that changes its shape hands out others.
+        Raises ValueError for a bone without transform.
         """
         view = self._camera_view(camera, viewport, clip)
         shadow = self._shadow if style.shadows else None

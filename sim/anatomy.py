@@ -8,7 +8,8 @@ A head may be any object with `vertices` and `faces`. What else it brings makes 
     layers                      action units, expressions, ... above the muscles (layers.py)
     jaw_axis, mandible_weight   a jaw; guessed from landmarks where one is missing
     eyes                        gaze and contact; guessed from landmarks
-    parts                       teeth (parts named "teeth_..."), which lips and cheeks rest on
+    parts                       teeth (parts named "teeth_..."), which lips and cheeks rest on, and
+                                a "tongue"
 
 Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landmarks alone.
 """
@@ -56,6 +57,7 @@ from .springs import EdgeSprings
 from .surface import Surface, build_surface
 from .teeth import watch_teeth
 from .tissue import TissueSprings, masses_for_step
+from .tongue import Tongue, place_tongue
 
 SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
 SEAL_LOST_BY_THRUST = 0.15  # at full jaw_forward: lips slide, or the upper turns inside out
@@ -79,6 +81,7 @@ class Anatomy:
     muscles: MuscleForces
     lids: Lids | None
     skin: SkinModel
+    tongue: Tongue | None
     turns: Array  # (V, 1) share of the head's pose: 1, fading to 0 down the neck
     passive_hold: Array  # (V,)
     closed_weight: Array  # (V,) of the mandible while the lips are kept closed over an open jaw
@@ -145,7 +148,8 @@ def build_anatomy(head: Any) -> Anatomy:
     )
     return Anatomy(
         vertices=vertices, space=space, rig=rig, surface=surface, skull=skull, muscles=muscles,
-        lids=lids, skin=skin, passive_hold=passive, turns=_turning_share(surface, landmarks),
+        lids=lids, skin=skin, tongue=place_tongue(getattr(head, "parts", None), space, numbers),
+        passive_hold=passive, turns=_turning_share(surface, landmarks),
         closed_weight=_closed_weight(surface, known, skull.mandible_weight, lips),
         controls=controls, layers=_layers(head, rig, controls),
     )  # fmt: skip
@@ -266,6 +270,8 @@ def _controls(rig: Rig, skull: Skull, lips: LipPairs, is_face: bool) -> tuple[Co
     if skull.mandible_weight.any():
         controls.append(Control("jaw_open", "Jaw"))
         controls += [Control(name, "Jaw", -1.0) for name in ("jaw_forward", "jaw_sideways")]
+        controls.append(Control("tongue_out", "Jaw", action="tongue out over the lower lip"))
+        controls.append(Control("tongue_up", "Jaw", action="tip of the tongue to the upper teeth"))
     if skull.eyeballs:
         for way in ("horizontal", "vertical"):
             for ball in skull.eyeballs:

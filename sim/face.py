@@ -71,6 +71,10 @@ class Simulation:
         self._rest = anatomy.vertices.copy()
         self._positions = anatomy.vertices.copy()
         self._rest.flags.writeable = False
+        self._resting_tongue: Array | None = None
+        if anatomy.tongue is not None:
+            self._resting_tongue = anatomy.space.to_head(anatomy.tongue.rest)
+            self._resting_tongue.flags.writeable = False
         self._view = self._positions.view()
         self._view.flags.writeable = False
         self.end_drag()
@@ -286,6 +290,21 @@ class Simulation:
             motion = anatomy.skull.eye_motion(ball, *gaze)
             transforms[f"eye_{ball.side.value}"] = self._head.after(motion).matrix(anatomy.space)
         return transforms
+
+    def tongue(self) -> npt.NDArray[np.float64] | None:
+        """Vertices of the part "tongue" now, shape (T, 3); None for a head without one.
+
+        As the mandible's motion finds them: its bone's matrix has still to be applied. A tongue at
+        rest is the same array each time.
+        """
+        anatomy, now = self._anatomy, self._controls.now
+        if anatomy.tongue is None:
+            return None
+        out, up = max(now("tongue_out"), 0.0), max(now("tongue_up"), 0.0)
+        if out == up == 0.0:
+            return self._resting_tongue
+        bent = anatomy.tongue.bent(out, up, self._state.x, self._mandible)
+        return anatomy.space.to_head(bent)
 
     def fibres(self) -> dict[str, list[npt.NDArray[np.float64]]]:
         """Contracted muscle fibres now, control name -> polylines (n, 3) [head units], to draw."""

@@ -14,7 +14,8 @@ from .fields import Points, smooth_step
 from .solids import Solid, grid_faces, joined, mix, welded
 
 PALATE, CHEEK, FLOOR = (0.66, 0.33, 0.31), (0.92, 0.40, 0.36), (0.60, 0.27, 0.25)
-TONGUE, TONGUE_ROOT = (0.74, 0.41, 0.40), (0.62, 0.30, 0.29)
+TONGUE, TONGUE_ROOT = (0.80, 0.50, 0.49), (0.62, 0.30, 0.29)
+TONGUE_RINGS, TONGUE_AROUND = 24, 28  # fine enough for its rim when it is out
 CENTRE = np.array([0.0, -66.0, 56.0])  # [mm]
 HALF_WIDTH, ROOF, FRONT, BACK = 30.0, 17.0, 29.0, 38.0  # [mm]; FRONT ends inside the gums
 FRONT_RISE, FRONT_FROM_DEG = 8.0, 100.0  # the roof ends above the upper gums
@@ -86,13 +87,13 @@ def lower_cavity() -> Solid:
 
 def tongue() -> Solid:
     """Return the resting tongue, its tip behind the lower incisors."""
-    lengthwise = np.linspace(0.0, 1.0, 17) ** 1.25  # tip to root
-    around = 2.0 * np.pi * np.arange(20) / 20
+    lengthwise = np.linspace(0.0, 1.0, TONGUE_RINGS) ** 1.6  # tip to root, closest at the tip
+    around = 2.0 * np.pi * np.arange(TONGUE_AROUND) / TONGUE_AROUND
     rows, roots = [], []
     for way in lengthwise:
-        swell = np.sqrt(1.0 - (1.0 - min(way / 0.55, 1.0)) ** 2) if way > 0 else 0.03
-        half_width = 18.5 * max(swell, 0.03)
-        height = 10.0 * max(swell, 0.03)
+        swell = np.sqrt(1.0 - (1.0 - min(way / 0.55, 1.0)) ** 2)
+        half_width = 18.5 * swell
+        height = 10.0 * swell
         centre_y = -79.5 + 5.0 * np.sin(np.pi * min(way, 0.8)) - 5.0 * max(way - 0.6, 0.0)
         centre_z = 83.0 - 50.0 * way
         x = half_width * np.cos(around)
@@ -104,4 +105,5 @@ def tongue() -> Solid:
     colours = mix(TONGUE, TONGUE_ROOT, smooth_step(0.15, 0.85, np.concatenate(roots)))
     hollow = 0.88 + 0.12 * smooth_step(0.0, 5.0, np.abs(vertices[:, 0]))
     colours = in_mouth_light(vertices, colours * hollow[:, None])
-    return Solid(vertices, grid_faces(len(lengthwise), 20, wrapped=True)[:, ::-1], colours)
+    faces = grid_faces(len(lengthwise), TONGUE_AROUND, wrapped=True)[:, ::-1]
+    return welded(Solid(vertices, faces, colours))

@@ -1,8 +1,8 @@
 """Draw the pictures of docs/controls.md: `python docs/figures/controls.py [FOLDER]`.
 
-One contact sheet for each layer of controls: every action unit, expression and viseme at full
-value, settled and refined, from the front and in three-quarter view. `--only AU12 joy` draws
-some of them, larger with `--width`, into some.png: to judge a row while it is edited.
+One contact sheet for each layer of controls: every action unit, expression, viseme and ARKit shape
+at full value, settled and refined, from the front and in three-quarter view. With `--only AU12 joy`
+some of them, larger with `--width`, go into some.png: to judge a row while it is edited.
 """
 
 from __future__ import annotations
@@ -20,7 +20,13 @@ from risorius.app.files import Image
 from risorius.app.scenes import FaceScene, Scene
 from risorius.bench import figures
 
-LAYERS = {"Action units": "action_units", "Expressions": "expressions", "Visemes": "visemes"}
+LAYERS = {
+    "Action units": "action_units",
+    "Expressions": "expressions",
+    "Visemes": "visemes",
+    "ARKit shapes": "arkit",
+}
+SHOWN_OVER = {"mouthClose": {"mouthClose": 0.5, "jawOpen": 0.5}}  # a share shows nothing alone
 CELL = (150, 168)  # [pixels] of one view: a contact sheet stays below 1.5 MB
 VIEWS = ("0,0,1.7", "-34,3,1.7")  # front and three-quarter
 RAISED = 11.0  # [mm] that these look higher than at the landmarks: foreheads wrinkle
@@ -30,12 +36,13 @@ SETTLED = 1.5  # [s] after which a pose stands still
 
 
 def without_sides(names: Sequence[str]) -> list[str]:
-    """The names without the sides of pairs: one side looks like half of the whole."""
+    """The names without the sides of pairs, or with their left sides where no name has both."""
     known = set(names)
     return [
         name
         for name in names
-        if not name.endswith(("_left", "_right")) or name.rpartition("_")[0] not in known
+        if not (name.endswith(("_left", "_right")) and name.rpartition("_")[0] in known)
+        and not (name.endswith("Right") and f"{name.removesuffix('Right')}Left" in known)
     ]
 
 
@@ -69,7 +76,10 @@ def title_of(scene: Scene, name: str) -> str:
 
 def contact_sheet_of(capture: Capture, names: Sequence[str]) -> Image:
     """A labelled portrait of each control at full value."""
-    cells = [(title_of(capture.scene, name), portrait(capture, {name: 1.0})) for name in names]
+    cells = [
+        (title_of(capture.scene, name), portrait(capture, SHOWN_OVER.get(name, {name: 1.0})))
+        for name in names
+    ]
     width = len(VIEWS) * capture.surface.size[0]
     sheet = contact_sheet(cells, columns=columns_for(len(cells)), cell_width=width)
     return figures.without_noise(sheet)

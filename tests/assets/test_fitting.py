@@ -114,6 +114,17 @@ def test_a_fitted_head_makes_faces(fitted: FittedHead, simulation: sim.Simulatio
     assert lip_gap(simulation, fitted) > 20.0
 
 
+def test_the_tongue_of_a_fitted_head_comes_out(
+    fitted: FittedHead, simulation: sim.Simulation
+) -> None:
+    """Its own lips are what it lies on."""
+    settled_displacement(simulation, {"jaw_open": 0.4, "tongue_out": 1.0})
+    bent, jaw = simulation.tongue(), simulation.bone_transforms()["mandible"]
+    assert bent is not None
+    reach = (bent @ jaw[:3, :3].T + jaw[:3, 3])[:, 2].max()
+    assert 4.0 < reach - simulation.positions[fitted.landmarks[66], 2] < 20.0
+
+
 @pytest.mark.parametrize("name", ["joy", "sadness", "surprise", "anger", "disgust", "fear"])
 def test_expressions_keep_a_fitted_mesh_sound(
     fitted: FittedHead, simulation: sim.Simulation, name: str

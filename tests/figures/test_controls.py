@@ -35,6 +35,9 @@ def test_one_tile_for_both_sides() -> None:
     """Sides of a pair get no tile of their own; a name that only has sides does."""
     names = ("AU1", "AU1_left", "AU1_right", "AU30_left", "AU30_right")
     assert controls.without_sides(names) == ["AU1", "AU30_left", "AU30_right"]
+    assert controls.without_sides(("eyeBlinkLeft", "eyeBlinkRight", "jawOpen")) == [
+        "eyeBlinkLeft", "jawOpen",
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(

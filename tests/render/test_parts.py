@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -27,6 +29,24 @@ def test_parts_move_with_their_bones(surface: render.Surface) -> None:
         places.append(np.nonzero(drawn(frame))[1].mean())
     assert places[0] == pytest.approx(47.5 - 21.5, abs=1.5)
     assert places[1] == pytest.approx(47.5 + 21.5, abs=1.5)
+
+
+def test_a_part_that_changes_its_shape_is_drawn_anew(surface: render.Surface) -> None:
+    """Other arrays of the same part are uploaded, whatever was drawn before."""
+    renderer, pixels = render.Renderer(surface), []
+    ball = Ball()
+    part = SimpleNamespace(
+        **{name: getattr(ball, name) for name in ("name", "faces", "colours", "bone", "shine")},
+        vertices=ball.vertices, normals=ball.normals,
+    )  # fmt: skip
+    for scale in (1.0, 0.5):
+        part.vertices = (scale * ball.vertices).astype(np.float32)
+        surface.begin()
+        renderer.draw_background(PLAIN)
+        renderer.draw_parts([part], STILL, facing(), PLAIN)
+        surface.end()
+        pixels.append(drawn(surface.read().astype(np.int32)).sum())
+    assert 0.2 * pixels[0] < pixels[1] < 0.3 * pixels[0]
 
 
 def test_wet_parts_have_a_crisp_highlight(surface: render.Surface) -> None:

@@ -18,8 +18,8 @@ from tests.sim.poses import FRAME, inverted_triangles, lip_gap, settled_displace
 
 LOWEST = ("puller_left", "puller_right", "middle", "slide")
 ACTION_UNITS = (
-    *(f"AU{n}" for n in (1, 2, 4, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 20, 22, 23, 24)),
-    *(f"AU{n}" for n in (25, 26, 27, 28, 29, 30, 34, 43, 45, 46, 61, 62, 63, 64)),
+    *(f"AU{n}" for n in (1, 2, 4, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 20)),
+    *(f"AU{n}" for n in (22, 23, 24, 25, 26, 27, 28, 29, 30, 34, 43, 45, 46, 61, 62, 63, 64)),
 )
 ONE_SIDED = ("AU1", "AU2", "AU4", "AU6", "AU7", "AU9", "AU10", "AU12", "AU14", "AU15", "AU20")
 EXPRESSIONS = (
@@ -32,7 +32,6 @@ ARKIT = {  # as many shapes as ARKit has of each part of the face
     "eye": 14, "jaw": 4, "mouth": 23, "brow": 5, "cheek": 3, "nose": 2, "tongue": 1,
 }  # fmt: skip
 TITLES = ("Action units", "Expressions", "Visemes", "ARKit shapes")
-STILL = ("viseme_sil", "tongueOut")
 VISEMES = "sil PP FF TH DD kk CH SS nn RR aa E ih oh ou".split()
 
 
@@ -233,7 +232,7 @@ def test_each_row_of_the_shipped_tables_does_something(simulation: sim.Simulatio
     for title in TITLES:
         for name in simulation.layers[title]:
             simulation.pose({name: 1.0, **({"jawOpen": 0.5} if name == "mouthClose" else {})})
-            assert any(simulation.sums.values()) == (name not in STILL), name
+            assert any(simulation.sums.values()) == (name != "viseme_sil"), name
 
 
 def test_sides_of_shipped_units_mirror_each_other(simulation: sim.Simulation, head: Head) -> None:

@@ -1,0 +1,175 @@
+"""The tongue: a spine in the middle plane that bends, and flesh around it.
+
+The tongue hangs on the mandible, so everything here is in the mandible's place at rest. At rest the
+spine is the middle line of the part called "tongue". Two controls bend it:
+
+    tongue_out   the spine slides along a path over the lower incisors, over the lower lip and down
+                 in front of it; the root comes forward, and the tongue gets longer and thinner
+    tongue_up    the tip rises towards the palate, right behind the upper incisors
+
+The path lies over the lower lip where it is now, and the tongue is as thin as the room between
+teeth and lips makes it. Through a shut mouth it does not come at all. Each vertex keeps its place
+along the spine and turns with it.
+
+Source: own; a tongue keeps its volume (Kier, Smith 1985, "Tongues, tentacles and trunks").
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import PchipInterpolator
+
+from . import checked
+from .coordinates import FaceSpace
+from .landmarks import Array, smoothstep
+from .skull import RigidMotion
+
+PARTS = ("tongue", "teeth_lower", "teeth_upper")  # what a tongue needs, and what is around it
+LIPS = (62, 66, 57, 65, 67)  # landmarks: upper; middle, lower edge and both sides of the lower lip
+SAMPLES = 65  # points of the spine
+DEGREE = 4  # of the polynomial that is the spine at rest
+SLICES = 24  # in which its thickness is measured
+SHORTEST = 5.0  # mm: what is shorter cannot bend
+INCISORS = 5.0  # mm beside the middle: the incisors' edges
+ROOT_FORWARD = 10.0  # mm that the root comes forward
+BODY = 5.0, 4.0  # mm that its middle comes forward and up
+BEHIND = 10.0  # mm behind the lower incisors' edges, where the path over them begins
+RISING = 0.25  # of tongue_out, by which the tip has risen from behind the incisors onto the path
+FILLED, THICKEST = 0.8, 8.5  # of the room between teeth and lips, and at most [mm]
+LEAST_ROOM, FREE_ROOM = 1.0, 3.5  # mm between teeth and lips: nothing comes through, anything does
+CLEARANCE = 0.6  # mm above teeth and lip
+LIP_FRONT = 2.0  # mm that the lip's most forward skin is in front of its landmarks
+OVERHANG, DROP = 4.0, 9.0  # mm that the tip is in front of the lip and below its edge at the end
+PALATE = (5.0, -6.0)  # mm up and forward from the upper incisors' edges: where a risen tip is
+FARTHEST_UP = 24.0  # mm that the tip rises
+SUNK = 0.25  # of the way to where it lies on the lip
+FRONT = 0.75  # of the spine that rises with the tip
+THINNEST = 0.7  # of its width and height
+
+
+@dataclass(frozen=True)
+class Tongue:
+    """A tongue at rest, in the standard space, seen from the mandible."""
+
+    rest: Array  # (T, 3)
+    along: Array  # (T,) place along the spine: 0 the tip .. 1 the root
+    spine: Array  # (SAMPLES, 2) forward and up, from the tip
+    off: Array  # (T,) up from the spine
+    half: Array  # (SAMPLES,) half of the height
+    lower_edge: Array  # (3,) of the lower incisors
+    upper_edge: Array  # (3,) of the upper incisors, seen from the cranium
+    lips: npt.NDArray[np.int64]  # vertex numbers of LIPS
+
+    def bent(self, out: float, up: float, x: Array, mandible: RigidMotion) -> Array:
+        """The vertices for tongue_out and tongue_up, 0..1, shape (T, 3).
+
+        x: the skin now, shape (V, 3), and where the mandible is.
+        """
+        lips = (x[self.lips] - mandible.shift) @ mandible.rotation
+        upper_edge = (self.upper_edge - mandible.shift) @ mandible.rotation
+        room = min(lips[0, 1], upper_edge[1]) - max(lips[1, 1], self.lower_edge[1])
+        out *= float(np.clip((room - LEAST_ROOM) / (FREE_ROOM - LEAST_ROOM), 0.0, 1.0))
+        thickness = float(np.clip(FILLED * room, LEAST_ROOM, THICKEST))
+        risen = float(smoothstep(np.array(out / RISING)))
+        spine = self.spine + risen * (self._on_path(out, lips, thickness) - self.spine)
+        tip_up = upper_edge[[2, 1]] + (PALATE[1], PALATE[0]) - self.spine[0]
+        tip_up *= min(1.0, FARTHEST_UP / float(np.linalg.norm(tip_up)))
+        place = np.linspace(0.0, 1.0, SAMPLES)
+        spine += up * (1.0 - risen) * np.maximum(1.0 - place / FRONT, 0.0)[:, None] ** 2 * tip_up
+        # Flat where it passes between the teeth.
+        between = (spine[:, 0] - self.lower_edge[2] + 2.0 * BEHIND) / (1.5 * BEHIND)
+        flat = risen * smoothstep(between)
+        height = 1.0 + flat * (np.minimum(0.5 * thickness / self.half, 1.0) - 1.0)
+        slender = np.clip(np.sqrt(_length(self.spine) / _length(spine)), THINNEST, 1.0)
+        turn = _direction(spine) - _direction(self.spine)
+        # The thin tip hangs lower than the middle of the thick rest.
+        sunk = SUNK * risen * np.maximum(0.5 * thickness - self.half, 0.0)
+        # The lower lip is lowest in its middle: the tongue lies in it.
+        over_lip = smoothstep((spine[:, 0] - self.lower_edge[2]) / BEHIND)
+        rise = max(float(lips[3:, 1].mean()) - lips[1, 1], 0.0)
+        hollow = risen * over_lip * rise / max(abs(lips[3, 0] - lips[4, 0]) / 2.0, 1.0) ** 2
+
+        def here(samples: Array) -> Array:
+            return np.interp(self.along, place, samples)
+
+        beside = self.rest[:, 0] * slender
+        off = self.off * here(height) * slender + here(hollow) * beside**2 - here(sunk)
+        bent = self.rest.copy()
+        bent[:, 0] = beside
+        bent[:, 1] = here(spine[:, 1]) + off * np.cos(here(turn))
+        bent[:, 2] = here(spine[:, 0]) - off * np.sin(here(turn))
+        return bent
+
+    def _on_path(self, out: float, lips: Array, thickness: float) -> Array:
+        """The spine on its way out, shape (SAMPLES, 2)."""
+        _, middle, low, *_ = lips
+        above = 0.5 * thickness + CLEARANCE
+        front = max(middle[2], low[2]) + LIP_FRONT
+        over_lip = max(middle[1], self.lower_edge[1]) + above
+        path = np.array([
+            self.spine[-1] + (ROOT_FORWARD, 0.0),
+            self.spine[SAMPLES // 2] + BODY,
+            self.lower_edge[[2, 1]] + (-BEHIND, above),
+            (middle[2] - 1.0, over_lip),
+            (front + above + OVERHANG, low[1] - DROP),
+        ])  # fmt: skip
+        lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+        tip = lengths[2] + out * (lengths[-1] - lengths[2])
+        # Its root is drawn long, its tip keeps its shape.
+        place, rest = np.linspace(0.0, 1.0, SAMPLES), _length(self.spine)
+        way = tip - rest * place - (tip - rest) * place**2
+        on_path: Array = PchipInterpolator(lengths, path)(way)
+        return on_path
+
+
+def place_tongue(
+    parts: Any, space: FaceSpace, landmarks: npt.NDArray[np.int64] | None
+) -> Tongue | None:
+    """The tongue among a head's parts; None without one that could bend, teeth or landmarks.
+
+    parts: objects with `name` and `vertices`; landmarks: vertex numbers, shape (68,).
+    """
+    found = {}
+    for part in checked.several("head.parts", () if parts is None else parts, ("name", "vertices")):
+        if part.name in PARTS:
+            what = f"head.parts: {part.name}"
+            found[part.name] = checked.numbers(what, part.vertices, (None, 3), "(n, 3)")
+    if landmarks is None or any(not len(found.get(name, ())) for name in PARTS):
+        return None
+    rest, lower, upper = (space.to_standard(found[name]) for name in PARTS)
+    tip, root = rest[:, 2].max(), rest[:, 2].min()
+    if len(rest) < SLICES or tip - root < SHORTEST:
+        return None
+    along = (tip - rest[:, 2]) / (tip - root)
+    place = np.linspace(0.0, 1.0, SAMPLES)
+    middle = np.polynomial.Polynomial.fit(along, rest[:, 1], DEGREE)
+    off = rest[:, 1] - middle(along)
+    slices = np.array_split(np.argsort(along), SLICES)
+    half = np.interp(place, [along[s].mean() for s in slices], [np.ptp(off[s]) / 2 for s in slices])
+    spine = np.stack([tip - place * (tip - root), middle(place)], axis=1)
+    return Tongue(
+        rest, along, spine, off, np.maximum(half, 0.1),
+        _edge(lower, up=1.0), _edge(upper, up=-1.0), landmarks[list(LIPS)],
+    )  # fmt: skip
+
+
+def _edge(teeth: Array, *, up: float) -> Array:
+    """The edge of the incisors of one jaw, in the middle, shape (3,)."""
+    incisors = teeth[np.abs(teeth[:, 0]) < INCISORS]
+    among = incisors if len(incisors) else teeth
+    edge: Array = among[(up * among[:, 1]).argmax()] * (0.0, 1.0, 1.0)
+    return edge
+
+
+def _direction(spine: Array) -> Array:
+    """Angle [rad] by which the spine points up, towards its tip, at each of its points."""
+    forward, up = -np.gradient(spine, axis=0).T
+    return np.unwrap(np.arctan2(up, forward))
+
+
+def _length(spine: Array) -> float:
+    return float(np.linalg.norm(np.diff(spine, axis=0), axis=1).sum())

@@ -1,0 +1,172 @@
+"""The tongue: it comes out between the teeth and over the lip, rises, and pierces nothing."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from risorius import sim
+from risorius.assets.model import Head, Part
+from tests.sim.poses import FRAME, settled_displacement, without
+
+Array = npt.NDArray[np.float64]
+LOWER_LIP, UPPER_LIP = 66, 62
+POSES = (
+    {"tongueOut": 0.3}, {"tongueOut": 0.7}, {"tongueOut": 1.0},
+    {"tongue_out": 0.5, "jaw_open": 0.35}, {"tongue_out": 1.0, "jaw_open": 0.5},
+    {"tongue_out": 1.0, "jaw_open": 0.3, "AU12": 0.6},
+    {"tongue_up": 1.0, "jaw_open": 0.2}, {"viseme_TH": 1.0}, {"viseme_DD": 1.0},
+    {"viseme_nn": 1.0}, {"tongue_out": 1.0},
+)  # fmt: skip
+
+
+def part(head: Head, name: str) -> Part:
+    """The part of that name."""
+    return next(found for found in head.parts if found.name == name)
+
+
+def placed(simulation: sim.Simulation, points: Array, bone: str) -> Array:
+    """Points of a part where its bone has them."""
+    matrix = simulation.bone_transforms()[bone]
+    moved: Array = points @ matrix[:3, :3].T + matrix[:3, 3]
+    return moved
+
+
+def tongue_now(simulation: sim.Simulation) -> Array:
+    """The tongue's vertices in the head's coordinates."""
+    bent = simulation.tongue()
+    assert bent is not None
+    return placed(simulation, bent, "mandible")
+
+
+def is_within(
+    points: Array, vertices: Array, faces: npt.NDArray[np.int32]
+) -> npt.NDArray[np.bool_]:
+    """Which points lie in a closed surface: the angles that it fills around them add up."""
+    a, b, c = (vertices[faces[:, k]][None] - points[:, None] for k in range(3))
+    lengths = [np.linalg.norm(side, axis=2) for side in (a, b, c)]
+    triple = np.einsum("ijk,ijk->ij", a, np.cross(b, c))
+    beneath = lengths[0] * lengths[1] * lengths[2]
+    for one, other, third in ((a, b, 2), (b, c, 0), (c, a, 1)):
+        beneath += np.einsum("ijk,ijk->ij", one, other) * lengths[third]
+    winding = 2.0 * np.arctan2(triple, beneath).sum(axis=1) / (4.0 * np.pi)
+    return np.abs(winding) > 0.5
+
+
+def with_middles(vertices: Array, faces: npt.NDArray[np.int32]) -> Array:
+    """Vertices and the middles of faces."""
+    return np.vstack([vertices, vertices[faces].mean(axis=1)])
+
+
+def test_a_resting_tongue_is_the_part(simulation: sim.Simulation, head: Head) -> None:
+    """Without the controls nothing moves it, whatever the jaw does."""
+    settled_displacement(simulation, {"jaw_open": 0.6, "AU12": 1.0})
+    bent = simulation.tongue()
+    assert bent is not None
+    assert np.abs(bent - part(head, "tongue").vertices).max() < 1e-4
+
+
+@pytest.mark.parametrize("jaw", [0.2, 0.35, 0.6])
+def test_the_tongue_comes_out_over_the_lip(
+    simulation: sim.Simulation, head: Head, jaw: float
+) -> None:
+    """Farther and farther; at the end it hangs in front of the lower lip."""
+    tip, reach = part(head, "tongue").vertices[:, 2].argmax(), []
+    for out in (0.0, 0.25, 0.5, 0.75, 1.0):
+        settled_displacement(simulation, {"jaw_open": jaw, "tongue_out": out})
+        reach.append(tongue_now(simulation)[:, 2].max())
+    lip = simulation.positions[head.landmarks[LOWER_LIP]]
+    assert np.all(np.diff(reach) > 0.3)
+    assert reach[-1] > lip[2] + 5.0
+    assert tongue_now(simulation)[tip, 1] < lip[1] - 8.0
+
+
+def test_the_tongue_stays_in_a_shut_mouth(simulation: sim.Simulation, head: Head) -> None:
+    """Lips that are kept together keep it in, even over an open jaw."""
+    for pose in ({"tongue_out": 1.0}, {"tongue_out": 1.0, "jawOpen": 0.5, "mouthClose": 0.5}):
+        settled_displacement(simulation, pose)
+        lips = simulation.positions[head.landmarks[[UPPER_LIP, LOWER_LIP]], 2]
+        assert tongue_now(simulation)[:, 2].max() < lips.min() - 5.0
+
+
+def test_the_tip_rises_behind_the_upper_teeth(simulation: sim.Simulation, head: Head) -> None:
+    """As in t, d, n and l: near the incisors, above their edges, not in front of them."""
+    teeth = part(head, "teeth_upper").vertices
+    incisors = teeth[np.abs(teeth[:, 0]) < 5.0]
+    tip = part(head, "tongue").vertices[:, 2].argmax()
+    for sound in ("DD", "nn"):
+        settled_displacement(simulation, {f"viseme_{sound}": 1.0})
+        now = tongue_now(simulation)[tip]
+        assert incisors[:, 1].min() - 2.0 < now[1] < incisors[:, 1].max()
+        assert incisors[:, 2].min() - 8.0 < now[2] < incisors[:, 2].max() - 2.0
+
+
+@pytest.mark.parametrize("pose", POSES, ids=str)
+def test_the_tongue_pierces_nothing(
+    simulation: sim.Simulation, head: Head, pose: dict[str, float]
+) -> None:
+    """No skin and no front tooth is in the tongue."""
+    settled_displacement(simulation, pose)
+    tongue, faces = tongue_now(simulation), part(head, "tongue").faces
+    skin = with_middles(simulation.positions, head.faces)
+    skin = skin[(np.abs(skin[:, 0]) < 30.0) & (skin[:, 2] > 85.0) & (skin[:, 1] < -40.0)]
+    assert not is_within(skin, tongue, faces).any()
+    for name in ("teeth_upper", "teeth_lower"):
+        teeth = part(head, name)
+        points = placed(
+            simulation, with_middles(teeth.vertices.astype(float), teeth.faces), teeth.bone
+        )
+        front = with_middles(teeth.vertices, teeth.faces)[:, 2] > 83.0
+        assert not is_within(points[front], tongue, faces).any(), name
+
+
+def test_the_measure_sees_what_is_pierced(head: Head) -> None:
+    """The middle of the tongue is in it, a point above is not."""
+    tongue = part(head, "tongue")
+    points = np.array([[0.0, -77.0, 65.0], [0.0, -50.0, 65.0], [12.0, -77.0, 60.0]])
+    found = is_within(points, tongue.vertices.astype(float), tongue.faces)
+    assert found.tolist() == [True, False, True]
+
+
+def test_the_tongue_keeps_its_volume_about(simulation: sim.Simulation, head: Head) -> None:
+    """Out it is longer and thinner, not bigger."""
+    faces, volumes = part(head, "tongue").faces, []
+    for out in (0.0, 1.0):
+        settled_displacement(simulation, {"jaw_open": 0.4, "tongue_out": out})
+        corners = tongue_now(simulation)[faces] - [0.0, -78.0, 40.0]
+        volumes.append(np.linalg.det(corners).sum() / 6.0)
+    assert 0.4 < volumes[1] / volumes[0] < 1.1
+
+
+def test_the_tongue_follows_in_time(simulation: sim.Simulation) -> None:
+    """It needs some frames, even as the lips burst open, and is back half a second later."""
+    simulation.pose({"jaw_open": 0.4, "tongue_out": 1.0})
+    before, steps = tongue_now(simulation), []
+    for frame in range(60):
+        if frame == 30:
+            simulation.pose({"jaw_open": 0.4})
+        simulation.step(FRAME)
+        now = tongue_now(simulation)
+        steps.append(np.linalg.norm(now - before, axis=1).max())
+        before = now
+    assert max(steps) < 40.0 and steps[-1] < 0.1
+
+
+def test_a_head_without_a_tongue_has_the_controls_all_the_same(head: Head) -> None:
+    """Tables speak of it, and nothing is drawn."""
+    bare = sim.create(without(head))
+    bare.pose({"tongue_out": 1.0})
+    bare.step(FRAME)
+    assert bare.tongue() is None
+
+
+def test_a_tongue_too_short_to_bend_is_none(head: Head) -> None:
+    """A part of a few vertices does no harm."""
+    dot = SimpleNamespace(name="tongue", bone="mandible", vertices=np.zeros((3, 3)))
+    teeth = [part(head, "teeth_lower"), part(head, "teeth_upper")]
+    bare = without(head)
+    bare.parts = [dot, *teeth]
+    assert sim.create(bare).tongue() is None
