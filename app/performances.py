@@ -31,8 +31,7 @@ def script_for(
 ) -> Script:
     """What the file at `path` plays, or the pose of `settings`, or the script of the scene.
 
-    playback: how a recording is played; tell: is called with what there is to say of
-    it.
+    playback: how a recording is played; tell: is called with what there is to say of it.
     """
     playback = playback or Playback()
     if settings and path is not None:

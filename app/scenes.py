@@ -83,6 +83,10 @@ class Scene:
         """Where the rigid parts are now: a (4, 4) matrix for each bone."""
         return {}
 
+    def moved_by(self, name: str) -> frozenset[str]:
+        """The lowest controls that a control moves: itself, or what a layer's control adds to."""
+        return frozenset({name})
+
 
 class FaceScene(Scene):
     """A head, moved by muscles, jaw and gaze through the spring simulation."""
@@ -105,6 +109,7 @@ class FaceScene(Scene):
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
+        self._moved_by: dict[str, frozenset[str]] = {}
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
@@ -149,6 +154,17 @@ class FaceScene(Scene):
 
     def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
         return self.simulation.bone_transforms()
+
+    def moved_by(self, name: str) -> frozenset[str]:
+        simulation = self.simulation
+        if name not in self._moved_by:
+            # Asked of the simulation, between two steps, so that nothing of layers is known here.
+            values = simulation.values
+            simulation.pose({name: self.limits[name][1]})
+            sums = simulation.sums
+            simulation.pose(values)
+            self._moved_by[name] = frozenset(each for each, share in sums.items() if share)
+        return self._moved_by[name]
 
 
 class SheetScene(Scene):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import sys
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import asdict
@@ -304,6 +305,18 @@ def bench_window(size: tuple[int, int], seconds: float) -> None:
     from . import window
 
     click.echo(window.report(seconds, size))
+
+
+@bench.command("script")
+@click.option("--size", type=Size(), default=(1280, 720), show_default="1280x720")
+def bench_script(size: tuple[int, int]) -> None:
+    """Time a script that is a take of ten minutes; with a screen, in the window, too."""
+    from . import script
+
+    has_screen = sys.platform in ("win32", "darwin") or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
+    click.echo(script.report(size, has_screen=has_screen))
 
 
 def _json(target: Path | None) -> Callable[[object], None]:

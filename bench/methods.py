@@ -11,9 +11,8 @@ triangles as it may spend:
 and `RULE, blended` is the same with blend=True: nothing pops, at the price of triangles that are
 there before they have grown. Beside these stand the look of the application, with the
 thresholds that the refiner has by itself; everything split once or twice; and peers that refine the
-whole mesh: Loop subdivision (Loop 1987), its limit surface (loop_limit.py), limit surfaces through
-the vertices (limit_through.py), curved triangles (patches.py). `mended`, the best of those through
-the vertices, is also split by `bulge`, blended.
+whole mesh: Loop subdivision (Loop 1987), its limit surface (loop_limit.py), curved triangles
+(patches.py).
 """
 
 from __future__ import annotations
@@ -29,7 +28,6 @@ from risorius import refine
 from risorius.app.looks import FIRST_LOOK, LOOKS
 from risorius.refine.kahler.criterion import Thresholds
 
-from .limit_through import LimitThrough, MendedLimit, MendedLimitScheme
 from .loop_limit import LoopLimit
 from .patches import phong_triangles, pn_triangles
 from .pictures import Mesh, shaded
@@ -53,17 +51,7 @@ CRITERIA: Mapping[str, Callable[[], Any]] = {
 _TOLD = LOOKS[FIRST_LOOK]["face"].told("kahler")
 LOOK: tuple[str, str] = _TOLD["scheme"], _TOLD["criterion"]
 """Scheme and criterion by which the application shows a head, with thresholds as they are."""
-UNIFORM = (
-    "uniform Loop",
-    "Loop limit",
-    "through",
-    "through, normals",
-    "mended",
-    "PN",
-    "Phong",
-)
-PEER = "mended"
-"""The one that is a scheme, too."""
+UNIFORM = ("uniform Loop", "Loop limit", "PN", "Phong")
 STATIC = "static"
 LEVELS = (1, 2)
 """How often whole meshes are refined."""
@@ -123,25 +111,10 @@ def methods_for(
             Method((scheme, "", ONCE), once.refine, once),
             Method((scheme, "", EVERYWHERE), twice.refine, twice),
         ]
-    bound += _adaptive_peer(subject, budgets, view)
     for levels in LEVELS:
         makers = _whole(faces, rest, levels)
         bound += [Method((name, "", 4.0**levels), makers[name]) for name in UNIFORM]
     return bound
-
-
-def _adaptive_peer(subject: Subject, budgets: Iterable[float], view: refine.View) -> list[Method]:
-    """The peer that is a scheme, where its edges bulge."""
-    criterion = refine.Bulge()
-    faces, rest = subject.coarse_faces, subject.rest.coarse
-    refiner = refine.create(
-        "kahler", faces, rest, scheme=MendedLimitScheme(), criterion=criterion, blend=True
-    )
-    sliding = _Sliding(refiner, criterion, len(faces), view)
-    return [
-        Method((PEER, "bulge" + BLENDED, budget), sliding.within(budget), refiner)
-        for budget in budgets
-    ]
 
 
 def _whole(
@@ -149,13 +122,9 @@ def _whole(
 ) -> dict[str, Callable[[Points], Mesh]]:
     """Peers that refine the whole mesh."""
     pieces = 2**levels
-    through = LimitThrough(faces, rest, levels)
     return {
         "uniform Loop": refine.create("loop", faces, rest, levels=levels).refine,
         "Loop limit": LoopLimit(faces, len(rest), levels).mesh,
-        "through": through.mesh,
-        "through, normals": through.mesh_with_normals,
-        "mended": MendedLimit(faces, rest, levels).mesh,
         "PN": lambda points: pn_triangles(*shaded(points, faces), pieces),
         "Phong": lambda points: phong_triangles(*shaded(points, faces), pieces),
     }

@@ -186,8 +186,6 @@ def error_curves(
     start = 1.0, getattr(static, what)
     series = []
     for method in dict.fromkeys((*SCHEMES, *UNIFORM)):
-        if method.endswith(", normals"):
-            continue  # as `through` on the head, and the chart is full
         shown = SCHEMES.get(method, ("",))[-1]
         found = sorted(
             (score.triangles / static.triangles, getattr(score, what))

@@ -14,17 +14,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 PROJECT = Path(__file__).parents[1] / "pyproject.toml"
-REQUIREMENT = re.compile(r"(?P<name>[\w.-]+)>=(?P<version>[\w.]+)")
+REQUIREMENT = re.compile(r"(?P<name>[\w.-]+)>=(?P<version>[\w.]+)(?P<marker>;.*)?")
 
 
 def lowest(requirements: Sequence[str]) -> list[str]:
-    """Turn each NAME>=VERSION into NAME==VERSION; ValueError for any other form."""
+    """Turn each NAME>=VERSION (; MARKER) into NAME==VERSION; ValueError for any other form."""
     pinned = []
     for requirement in requirements:
         match = REQUIREMENT.fullmatch(requirement)
         if match is None:
             raise ValueError(f"{requirement!r} has no lowest version; write it NAME>=VERSION")
-        pinned.append(f"{match['name']}=={match['version']}")
+        pinned.append(f"{match['name']}=={match['version']}{match['marker'] or ''}")
     return pinned
 
 

@@ -1,7 +1,7 @@
 """Frames -> a film: ffmpeg as a process of its own, and its failures in one line.
 
-`imageio_ffmpeg` only finds the program. Its own writer takes no notice of how ffmpeg ends, so a
-film that a full disk cut short would pass as whole, and waits for ever for one that hangs.
+The writer of `imageio_ffmpeg` takes no notice of how ffmpeg ends, so a film that a full disk cut
+short would pass as whole, and waits for ever for one that hangs.
 """
 
 from __future__ import annotations
@@ -16,37 +16,60 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
-import imageio_ffmpeg
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import UserError
+from ..ffmpeg import program, sound_form, sound_input
 
+# AAC, as every player wants it, at a quality that nobody tells from the source.
+SOUND_CODING = "-map 0:v -map 1:a:0 -acodec aac -b:a 192k"
 PATIENCE = 60.0  # [s] without a sign of life, until ffmpeg is given up
 TICK = 0.01  # [s] between two looks at it
 DYING = 1.0  # [s] for the end of a killed process
 # H.264; 4:2:0 as every player wants it, at a quality without blocks.
-CODING = "-an -vcodec libx264 -pix_fmt yuv420p -crf 16 -preset veryfast -movflags +faststart"
+CODING = "-vcodec libx264 -pix_fmt yuv420p -crf 16 -preset veryfast -movflags +faststart"
+
+
+@dataclass(frozen=True)
+class Soundtrack:
+    """What is heard in a film: a sound file from its start on, for so many seconds at most."""
+
+    file: Path
+    seconds: float
+
+    @property
+    def options(self) -> list[str]:
+        """Of ffmpeg, which has the frames as its first input."""
+        source = sound_input(self.file, self.seconds)
+        return [*source, *SOUND_CODING.split(), *sound_form()]
 
 
 class Encoder:
     """An ffmpeg that takes frames and writes the file `part`; `target` names it in error texts."""
 
     def __init__(
-        self, target: Path, part: Path, size: tuple[int, int], frames_per_second: float
+        self,
+        target: Path,
+        part: Path,
+        size: tuple[int, int],
+        frames_per_second: float,
+        soundtrack: Soundtrack | None = None,
     ) -> None:
         """Start it, for frames of `size` pixels; UserError where there is none."""
         self._target, self._part = target, part
         rate = Fraction(frames_per_second).limit_denominator()
         frames = f"-f rawvideo -pix_fmt rgb24 -s {size[0]}x{size[1]} -r {rate} -i -"
+        sound = ["-an"] if soundtrack is None else soundtrack.options
         name = program()
         self._messages = tempfile.TemporaryFile()
         try:  # in a session of its own: Ctrl-C is for us alone
             self._process = subprocess.Popen(
-                [name, "-v", "error", *frames.split(), *CODING.split(), f"file:{part}"],
+                [name, "-v", "error", *frames.split(), *sound, *CODING.split(), f"file:{part}"],
                 stdin=subprocess.PIPE,
                 stderr=self._messages,
                 bufsize=0,
@@ -136,13 +159,3 @@ class Encoder:
         # Without the part of ffmpeg that speaks: "[out#0/mp4 @ 0x55e9629d] ".
         why = re.sub(r"^(\[[^]]*\] )+", "", said[-1]) if said else f"it ended with code {code}"
         return UserError(f"{self._target}: cannot be written: ffmpeg: {why}")
-
-
-def program() -> str:
-    """The ffmpeg that writes films here; UserError where there is none."""
-    try:
-        return str(imageio_ffmpeg.get_ffmpeg_exe())
-    except RuntimeError:
-        raise UserError(
-            "no film without ffmpeg: install it, or write frames to a folder (-o NAME)"
-        ) from None

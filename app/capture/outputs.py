@@ -22,7 +22,7 @@ from ..files import (
     written_atomically,
 )
 from ..stopping import cleaned_up_if_stopped, done_whole
-from .ffmpeg import Encoder
+from .ffmpeg import Encoder, Soundtrack
 
 FILM_SUFFIXES = (".mp4", ".mov", ".mkv")
 FRAME_NAME = re.compile(r"frame_\d{5,}\.png")
@@ -30,8 +30,13 @@ FrameSink = Callable[[Image], None]  # takes the frames of a film one after the 
 
 
 @contextlib.contextmanager
-def film(target: Path, size: tuple[int, int], frames_per_second: float) -> Iterator[FrameSink]:
-    """An H.264 film through ffmpeg.
+def film(
+    target: Path,
+    size: tuple[int, int],
+    frames_per_second: float,
+    soundtrack: Soundtrack | None = None,
+) -> Iterator[FrameSink]:
+    """An H.264 film through ffmpeg, with sound where there is some.
 
     Raises UserError where a film of this size cannot be written.
     """
@@ -42,7 +47,7 @@ def film(target: Path, size: tuple[int, int], frames_per_second: float) -> Itera
         )
     check_file(target)
     with written_atomically(target) as part:
-        encoder = Encoder(target, part, size, frames_per_second)
+        encoder = Encoder(target, part, size, frames_per_second, soundtrack)
         with cleaned_up_if_stopped(encoder.stop):
             try:
                 yield encoder.add

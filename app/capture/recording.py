@@ -15,13 +15,16 @@ from risorius.assets.fitting import FittedHead
 from ..cameras import camera_for
 from ..errors import UserError
 from ..files import Image, check_file, check_png, save_png
+from ..idle import Idle
 from ..looks import Refinement
 from ..pipeline import Pipeline, side_by_side
 from ..scenes import Scene, build_scene
 from ..script import Script
+from ..sound import load_sound
 from ..stopping import cleaned_up_if_stopped
 from . import outputs
 from .captions import captioned, contact_sheet
+from .ffmpeg import Soundtrack
 
 SETTLING = 1.0  # [s] after which the face rests in a pose
 
@@ -39,6 +42,7 @@ class CaptureOptions:
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in one
+    is_alive: bool = False  # what the script leaves alone moves by itself
 
 
 class Capture:
@@ -83,8 +87,17 @@ class Capture:
 
         It begins in the script's first pose, as if that had been held for a while.
         """
+        idle = Idle(self.scene) if self.options.is_alive else None
+        named = (*script.posed_names, *script.tracks)
+        moved = frozenset[str]().union(*map(self.scene.moved_by, named))
+
+        def pose(time: float) -> None:
+            """Ask for what the script and the life beneath it have at this time."""
+            beneath = {} if idle is None else idle.beneath(moved, self.camera.eye, time)
+            self.scene.pose({**script.at(time), **beneath})
+
         self.scene.reset()
-        self.scene.pose(script.at(0.0))
+        pose(0.0)
         if any(self.scene.values.values()):
             self.pipeline.step(SETTLING)
         rate = self.options.frames_per_second
@@ -92,7 +105,7 @@ class Capture:
         bar = tqdm(range(last + 1), unit="frame", disable=not progress or None, leave=False)
         with cleaned_up_if_stopped(bar.close):
             for index in bar:
-                self.scene.pose(script.at(index / rate))
+                pose(index / rate)
                 if index:
                     self.pipeline.step(1.0 / rate)
                 yield index / rate
@@ -126,7 +139,7 @@ def capture(
         recording = stack.enter_context(Capture(scene_of(script, options.head), options))
         film = None
         if output is not None and not still:
-            film = stack.enter_context(_sink_for(output, options, overwrite))
+            film = stack.enter_context(_sink_for(output, options, overwrite, soundtrack_of(script)))
         for now in recording.play(script, until=until, progress=progress):
             is_wanted = bool(wanted) and wanted[0].time <= now + 0.5 / rate
             if film is None and not is_wanted and now != still_at:
@@ -161,6 +174,13 @@ def _check(script: Script, output: Path | None, sheet: Path | None, time: float 
         check_png(output)
     elif output is not None and output.suffix.lower() in outputs.FILM_SUFFIXES:
         check_file(output)
+        if script.sound is not None:
+            load_sound(script.sound)
+
+
+def soundtrack_of(script: Script) -> Soundtrack | None:
+    """What is heard in a film of a script: its sound, as far as the script goes."""
+    return None if script.sound is None else Soundtrack(script.sound, script.duration)
 
 
 def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
@@ -171,12 +191,12 @@ def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
 
 
 def _sink_for(
-    output: Path, options: CaptureOptions, overwrite: bool
+    output: Path, options: CaptureOptions, overwrite: bool, soundtrack: Soundtrack | None
 ) -> contextlib.AbstractContextManager[outputs.FrameSink]:
     """A film or a folder of frames, by what the output is called."""
     suffix = output.suffix.lower()
     if suffix in outputs.FILM_SUFFIXES:
-        return outputs.film(output, options.size, options.frames_per_second)
+        return outputs.film(output, options.size, options.frames_per_second, soundtrack)
     if suffix == "" or output.is_dir():
         return outputs.folder(output, overwrite=overwrite)
     raise UserError(

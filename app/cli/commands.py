@@ -18,6 +18,7 @@ from .options import (
     PATH,
     QUIET,
     SCENE_NAMES,
+    SOUND,
     Drawing,
     Filming,
     mapping_table,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 @click.option("-o", "--output", type=PATH, help="out.mp4, a folder, or .png")
 @click.option("--sheet", type=PATH, help="Contact sheet of the named poses.")
 @click.option("--scene", type=SCENE_NAMES, help="What is animated.")
+@SOUND
 @with_filming
 @with_playback
 @with_drawing
@@ -47,6 +49,7 @@ def capture(
     output: Path | None,
     sheet: Path | None,
     scene: str | None,
+    sound: Path | None,
     filming: Filming,
     playback: Playback,
     drawing: Drawing,
@@ -58,13 +61,19 @@ def capture(
     """
     from ..capture import CaptureOptions
     from ..capture import capture as film_of
+    from ..capture.outputs import FILM_SUFFIXES
     from ..files import check_apart
     from ..performances import script_for
     from ..refining import parse_comparison
+    from ..sound import with_sound
 
-    check_apart((output, sheet), (script, drawing.head, drawing.landmarks, playback.mapping))
+    check_apart((output, sheet), (script, sound, drawing.head, drawing.landmarks, playback.mapping))
+    if sound is not None and (output is None or output.suffix.lower() not in FILM_SUFFIXES):
+        allowed = ", ".join(FILM_SUFFIXES)
+        raise UserError(f"--sound {sound}: only a film is heard; give -o a name in {allowed}")
     tell = None if filming.quiet else _tell
     performance = script_for(script, scene, settings, playback=playback, tell=tell)
+    performance = with_sound(performance, sound)
     refinement = drawing.refinement()
     options = CaptureOptions(
         size=filming.size,
@@ -76,6 +85,7 @@ def capture(
         style=drawing.style(),
         samples=filming.samples,
         head=drawing.fitted_head(),
+        is_alive=filming.alive,
     )
     most = film_of(
         performance,
@@ -94,6 +104,7 @@ def capture(
 @click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
 @click.option("--scene", type=SCENE_NAMES, help="face, unless told.")
 @click.option("--script", type=PATH, help="What the space key plays: a script or a recording.")
+@SOUND
 @QUIET
 @with_playback
 @with_drawing
@@ -101,21 +112,25 @@ def view(
     size: tuple[int, int] | None,
     scene: str | None,
     script: Path | None,
+    sound: Path | None,
     quiet: bool,
     playback: Playback,
     drawing: Drawing,
 ) -> None:
     """Open the window: a face with a slider for every muscle."""
     from ..performances import script_for
+    from ..sound import with_sound
 
     tell = None if quiet else _tell
-    open_window(script_for(script, scene, playback=playback, tell=tell), size, drawing)
+    performance = script_for(script, scene, playback=playback, tell=tell)
+    open_window(with_sound(performance, sound), size, drawing)
 
 
 @click.command()
 @click.argument("script", type=PATH)
 @click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
 @click.option("--once", is_flag=True, help="Close the window at the end of the script.")
+@SOUND
 @QUIET
 @with_playback
 @with_drawing
@@ -123,15 +138,17 @@ def replay(
     script: Path,
     size: tuple[int, int] | None,
     once: bool,
+    sound: Path | None,
     quiet: bool,
     playback: Playback,
     drawing: Drawing,
 ) -> None:
     """Play SCRIPT, or a recording of a face, in real time in the window."""
     from ..performances import script_for
+    from ..sound import with_sound
 
     tell = None if quiet else _tell
-    performance = script_for(script, None, playback=playback, tell=tell)
+    performance = with_sound(script_for(script, None, playback=playback, tell=tell), sound)
     open_window(performance, size, drawing, playing=True, once=once)
 
 
@@ -182,6 +199,26 @@ def open_window(
         display = display_of(drawing.refinement(), script.scene, **drawing.style_options)
     with Viewer(script, size, display, head=head, settings_path=settings_path()) as viewer:
         viewer.run(playing=playing, once=once)
+
+
+@click.command()
+@click.argument("audio", type=PATH)
+@click.option("--text", default="", help="The words that are spoken, in English: better by far.")
+@click.option("-o", "--output", type=PATH, required=True, help="script.toml")
+def speak(audio: Path, text: str, output: Path) -> None:
+    """Make a script that speaks what is heard in AUDIO, with visemes in step."""
+    from ..files import check_apart, check_file
+    from ..script import save_script
+    from ..sound import load_sound
+    from ..sound.speech import phones_in
+    from ..sound.visemes import spoken
+
+    check_apart((output,), (audio,))
+    check_file(output)
+    phones = phones_in(audio, text)
+    script = spoken(phones, audio, load_sound(audio).duration)
+    save_script(output, script)
+    click.echo(f"{in_one_line(output)}: {len(phones)} sounds of speech in {script.duration:.1f} s")
 
 
 @click.command()
@@ -239,4 +276,4 @@ def warm(quiet: bool) -> None:
     compile_all(quiet)
 
 
-ALL = (capture, view, replay, convert, demo, controls, doctor, warm)
+ALL = (capture, view, replay, convert, speak, demo, controls, doctor, warm)

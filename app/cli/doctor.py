@@ -10,7 +10,7 @@ from typing import Any
 
 from risorius import __version__, render
 
-from ..capture import ffmpeg
+from .. import ffmpeg
 from ..errors import UserError, in_one_line
 
 PATIENCE = 20.0  # [s] for ffmpeg to say which it is
@@ -38,7 +38,7 @@ def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
     ]
     if not offscreen_only:
         works["films"], answer = _films()
-        lines += [f"films: {answer}", *_names()]
+        lines += [f"films: {answer}", f"sound: {_sound()}", *_names()]
     lines = [in_one_line(line) for line in lines + _verdicts(works)]
     if all(works.values()):
         return Health.WHOLE, lines
@@ -83,6 +83,19 @@ def _names() -> list[str]:
             except ValueError as error:
                 lines.append(str(error))
     return lines
+
+
+def _sound() -> str:
+    """Whether the window can be heard; nothing is missing where it cannot."""
+    from ..sound.player import NoDeviceError, open_device
+
+    try:
+        device = open_device(ffmpeg.RATE, 2)
+    except NoDeviceError as error:
+        return f"no. {error}; the window is silent, films have their sound"
+    name = str(device.backend)
+    device.close()
+    return f"yes. miniaudio, {name}"
 
 
 def _films() -> tuple[bool, str]:

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 Command = Callable[..., Any]
 PATH = click.Path(path_type=Path)
 SCENE_NAMES = click.Choice(["face", "plane", "cloth"])
+SOUND = click.option(
+    "--sound", type=PATH, help="What is heard: a WAV, MP3, ..., or a film with sound."
+)
 STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "wrinkles")
 
 
@@ -159,6 +162,7 @@ class Filming:
     compare: str | None
     captions: bool
     camera: str | None
+    alive: bool
     still_time: float | None
     samples: int
     overwrite: bool
@@ -180,6 +184,11 @@ with_filming = packed(
     ),
     click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
     click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
+    click.option(
+        "--alive",
+        is_flag=True,
+        help="What the script leaves alone lives: eyes blink and look at the camera.",
+    ),
     click.option(
         "--time",
         "still_time",
@@ -212,7 +221,7 @@ with_playback = packed(
     click.option(
         "--smooth",
         is_flag=True,
-        help="Calm channels that tremble; costs 16 to 50 ms and up to 14 % of a short peak.",
+        help="Calm channels that tremble; costs 15 to 45 ms and up to 14 % of a short peak.",
     ),
     click.option(
         "--lead",

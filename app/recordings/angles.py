@@ -22,6 +22,7 @@ from .names import EYE_ANGLES
 from .take import Array
 
 UNITS = {"radians": 180.0 / math.pi, "degrees": 1.0, "halves of a turn": 180.0}  # in degrees
+LARGEST_DEGREES = 360.0  # what is larger is no angle in any unit
 LARGEST_RADIANS = 2.0 * math.pi
 MOVES = 0.005  # [rad] standard deviation of a look that tells something
 AGREES = 0.5  # correlation
@@ -38,6 +39,10 @@ def in_degrees(
     angles: name of ours -> as the file has it. shapes: ARKit name -> 0 to 1, for comparison. Both
     of shape (T,), NaN where nothing is known.
     """
+    angles = {
+        name: np.where(np.abs(values) > LARGEST_DEGREES, np.nan, values)
+        for name, values in angles.items()
+    }
     moving = {name: values for name, values in angles.items() if np.nan_to_num(values).any()}
     if len(moving) < len(angles):
         still = ", ".join(name for name in angles if name not in moving)
@@ -93,14 +98,18 @@ def _unit(angles: Mapping[str, Array], looks: Mapping[str, Array], notes: list[s
     if square > 0.0:
         slope = product / square  # of the file's unit in radians
         unit = min(UNITS, key=lambda each: abs(math.log(slope * UNITS[each] * math.pi / 180.0)))
-        size = max(float(np.nanmax(np.abs(values))) for values in angles.values())
-        if size <= LARGEST_RADIANS or unit == "degrees":
+        if _size(angles) <= LARGEST_RADIANS or unit == "degrees":
             notes.append(f"Angles are in {unit}, as the eyes' angles and the eyeLook shapes tell.")
             return unit
-    size = max(float(np.nanpercentile(np.abs(values), 99)) for values in angles.values())
+    size = _size(angles)
     unit = "degrees" if size > LARGEST_RADIANS else "radians"
     notes.append(f"Angles reach {size:.2g} and were taken for {unit}; the eyes do not tell.")
     return unit
+
+
+def _size(angles: Mapping[str, Array]) -> float:
+    """How far angles go, a few wrong ones aside, in their own unit."""
+    return max(float(np.nanpercentile(np.abs(values), 99)) for values in angles.values())
 
 
 def _eyes_unswapped(

@@ -81,7 +81,7 @@ def lead_of(control: str, lead: float) -> float:
 def _track(times: Array, values: Array, lead: float) -> Channel:
     """The keys of one control, so much earlier [s]; what comes before the beginning is left out."""
     at_beginning = np.interp(lead, times, values)
-    later = times > lead + 1e-3
+    later = times > lead + LEAST_STEP
     return thinned(
         np.concatenate([[0.0], times[later] - lead]),
         np.concatenate([[at_beginning], values[later]]),

@@ -17,6 +17,7 @@ from .take import Array, Take
 
 SHORT_GAP = 0.3  # [s] that is bridged by a straight line
 MISSING_ROWS = 4.0  # of usual steps: what is longer, and no short gap, is a hole in the recording
+LARGEST_ANGLE = 360.0  # [degrees]; a larger one is no measurement, and shares are 1 at most
 LONGEST_TAKE = 86_400.0  # [s]
 
 
@@ -35,6 +36,10 @@ def whole_take(
     times: [s], shape (T,). channels: name -> shape (T,). UserError where no face is in it.
     """
     told = list(notes)
+    channels = {
+        name: np.where(np.abs(values) > LARGEST_ANGLE, np.nan, values)
+        for name, values in channels.items()
+    }
     channels = {name: values for name, values in channels.items() if np.isfinite(values).any()}
     if not channels:
         raise UserError(
@@ -83,11 +88,11 @@ def _in_order(times: Array) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     ends: list[float] = []  # the lowest time that ends a sequence of this length,
     end_rows: list[int] = []  # its row,
     before = np.full(len(times), -1)  # and the row before each in its sequence
-    for row in np.flatnonzero(kept):
+    for row in np.flatnonzero(kept).tolist():
         length = bisect.bisect_left(ends, times[row])
         before[row] = end_rows[length - 1] if length else -1
         ends[length : length + 1] = [float(times[row])]
-        end_rows[length : length + 1] = [int(row)]
+        end_rows[length : length + 1] = [row]
     kept[:] = False
     row = end_rows[-1]
     while row >= 0:

@@ -29,8 +29,22 @@ Value = TypeVar("Value", float, Array)
 
 LONGEST_FILE = 2**18  # [bytes]
 GREATEST_SHARE = 2.0  # a share beyond it is a slip of the pen
-_ACTION_UNIT = re.compile(r"AU[0-9]{1,2}(_left|_right)?")
-_EYE_LOOKS = frozenset(name for name in ARKIT if name.startswith("eyeLook"))
+_ACTION_UNIT = re.compile(r"(AU[0-9]{1,2})(_left|_right)?")
+_SHAPE_OF_UNIT = {  # which shapes, by the beginning of their names, tell what an action unit tells
+    "AU1": "browInnerUp", "AU2": "browOuterUp", "AU4": "browDown", "AU5": "eyeWide",
+    "AU6": "cheekSquint", "AU7": "eyeSquint", "AU9": "noseSneer", "AU10": "mouthUpperUp",
+    "AU12": "mouthSmile", "AU14": "mouthDimple", "AU15": "mouthFrown", "AU16": "mouthLowerDown",
+    "AU17": "mouthShrug", "AU18": "mouthPucker", "AU20": "mouthStretch", "AU22": "mouthFunnel",
+    "AU23": "mouthPress", "AU24": "mouthPress", "AU25": "jawOpen", "AU26": "jawOpen",
+    "AU27": "jawOpen", "AU28": "mouthRoll", "AU34": "cheekPuff", "AU43": "eyeBlink",
+    "AU45": "eyeBlink", "AU46": "eyeBlink",
+}  # fmt: skip
+_SHAPES = frozenset(ARKIT)
+_LOOKS_OF_ANGLE = {
+    f"eye_{angle}_{side.lower()}": frozenset(f"eyeLook{way}{side}" for way in ways)
+    for angle, ways in (("yaw", ("In", "Out")), ("pitch", ("Up", "Down")))
+    for side in ("Left", "Right")
+}
 
 
 @dataclass(frozen=True)
@@ -71,16 +85,20 @@ class Mapping:
 def chosen(channels: AnyMapping[str, Any]) -> tuple[str, ...]:
     """The channels that move the face, where some tell the same thing twice.
 
-    Eyes by their angles where there are some: these have a sign and know no limit, and eyeLook
-    shapes are made of them. Else a tracker that measures no angles leaves all four at 0, and the
-    shapes count. ARKit's shapes rather than action units: they tell left from right.
+    Eyes by their angles: these have a sign and know no limit, and eyeLook shapes are made of them.
+    A tracker that measures no angle leaves it at 0; then the shapes count. An action unit only
+    where no shape of ARKit tells the same: shapes know left from right.
     """
     left_out: set[str] = set()
-    if all(angle in channels for angle in EYE_ANGLES) and _EYE_LOOKS & channels.keys():
-        are_measured = any(np.any(channels[angle]) for angle in EYE_ANGLES)
-        left_out |= _EYE_LOOKS if are_measured else set(EYE_ANGLES)
-    if any(name in channels for name in ARKIT if name not in _EYE_LOOKS):
-        left_out |= {name for name in channels if _ACTION_UNIT.fullmatch(name)}
+    for angle, looks in _LOOKS_OF_ANGLE.items():
+        if angle in channels and not looks.isdisjoint(channels):
+            left_out |= looks if np.any(channels[angle]) else {angle}
+    shapes = tuple(name for name in channels if name in _SHAPES)
+    for name in channels:
+        unit = _ACTION_UNIT.fullmatch(name) if shapes else None
+        twin = _SHAPE_OF_UNIT.get(unit[1]) if unit else None
+        if twin and any(shape.startswith(twin) for shape in shapes):
+            left_out.add(name)
     return tuple(name for name in channels if name not in left_out)
 
 

@@ -20,17 +20,21 @@ from .named_columns import is_calibrated, shares
 from .names import HEAD_ANGLES
 from .request import Request
 from .spelling import shape_of
+from .table import LARGEST
 from .take import Array, Take
 from .timing import FRAMES, STAMPS, frame_times, stamp_times
 
-NAMES = ("category_name", "categoryname", "name", "displayname", "display_name")
+NAMES = ("category_name", "categoryName", "name")  # of a category
 SCORES = ("score", "value", "weight")
+# The other keys without capitals and underscores.
 LISTS = ("frames", "results", "data", "recording", "samples")
 SHAPES = ("blendshapes", "faceblendshapes", "categories", "shapes", "weights", "scores", "arkit",
           "coefficients", "values")  # fmt: skip
 MATRICES = ("facialtransformationmatrixes", "facialtransformationmatrices", "matrix", "transform",
             "facialtransformationmatrix")  # fmt: skip
 RATES = ("fps", "framerate", "exportfps", "samplerate")
+TIMES = tuple(dict.fromkeys(name.replace("_", "") for name in STAMPS))
+NUMBERS = tuple(dict.fromkeys(name.replace("_", "") for name in FRAMES))
 SHAPE_ROWS = (("facsnames", "weightmat"), ("names", "weights"), ("blendshapenames", "weights"))
 Shapes = dict[str, float]
 
@@ -52,37 +56,40 @@ def read(document: Any, source: str, request: Request) -> Take:
         shapes, stamps, given = table
     else:
         frames, given = _frames(document)
-        shapes = _channels(frames, _index_of_face(frames, source, request, notes), unknown)
+        faces = [_faces(frame) for frame in frames]
+        shapes = _channels(faces, _index_of_face(faces, source, request, notes), unknown)
+        keyed = [_keys(frame) if isinstance(frame, dict) else {} for frame in frames]
         stamps = {
-            key: np.array([_number(_get(frame, (key,))) for frame in frames])
-            for key in (*_folded(STAMPS), *_folded(FRAMES))
-            if any(isinstance(frame, dict) and key in _keys(frame) for frame in frames)
+            key: np.array([_number(keys.get(key)) for keys in keyed])
+            for key in (*TIMES, *NUMBERS)
+            if any(key in keys for keys in keyed)
         }
-        shapes |= _head(frames)
+        shapes |= _head(keyed)
     count = len(next(iter(shapes.values())))
     times = _times(stamps, count, request.rate, given, notes)
     head = {name: values for name, values in shapes.items() if name in HEAD_ANGLES}
-    faces = shares({name: values for name, values in shapes.items() if name not in head}, notes)
+    shapes = shares({name: values for name, values in shapes.items() if name not in head}, notes)
     return whole_take(
         "MediaPipe JSON" if table is None else "JSON of shapes",
         source,
         times,
-        faces | head,
+        shapes | head,
         notes=notes,
         unknown=unknown,
-        is_calibrated=is_calibrated(faces, notes),
+        is_calibrated=is_calibrated(shapes, notes),
     )
 
 
 def _frames(document: Any) -> tuple[list[Any], float | None]:
     """What stands for the frames, and the frame rate where the document tells it."""
     if isinstance(document, dict):
-        rate = _number(_get(document, RATES))
+        keys = _keys(document)
+        rate = _number(_first(keys, RATES))
         given = rate if 1.0 <= rate <= 1000.0 else None
-        frames = _get(document, LISTS)
+        frames = _first(keys, LISTS)
         if isinstance(frames, list):
             return frames, given
-        shapes = _get(document, SHAPES)
+        shapes = _first(keys, SHAPES)
         if isinstance(shapes, list) and shapes and _category(shapes[0]) is None:
             return shapes, given
         return [document], given
@@ -102,7 +109,7 @@ def _faces(value: Any) -> list[Shapes]:
             and (shape := shape_of(key))
             and math.isfinite(number := _number(item))
         }
-        return [found] if found else _faces(_get(value, SHAPES))
+        return [found] if found else _faces(_first(_keys(value), SHAPES))
     if isinstance(value, list):
         categories = [_category(item) for item in value]
         if categories and all(category is not None for category in categories):
@@ -115,15 +122,18 @@ def _category(item: Any) -> tuple[str, float] | None:
     """Name and score, where the item is one category; the name is as written."""
     if not isinstance(item, dict):
         return None
-    name, score = _get(item, NAMES), _get(item, SCORES)
-    if not isinstance(name, str) or score is None or isinstance(score, dict | list):
+    name = next((item[key] for key in NAMES if key in item), None)
+    score = next((item[key] for key in SCORES if key in item), None)
+    if not isinstance(name, str) or not isinstance(score, str | int | float):
         return None
     return name, _number(score)
 
 
-def _index_of_face(frames: Sequence[Any], source: str, request: Request, notes: list[str]) -> int:
+def _index_of_face(
+    faces: Sequence[list[Shapes]], source: str, request: Request, notes: list[str]
+) -> int:
     """Which face of each frame is taken: they are counted from 0."""
-    most = max((len(_faces(frame)) for frame in frames), default=0)
+    most = max(len(each) for each in faces)
     if request.face is None:
         if most > 1:
             notes.append(f"Up to {most} faces are in a frame; taken was '0', the first.")
@@ -134,21 +144,20 @@ def _index_of_face(frames: Sequence[Any], source: str, request: Request, notes: 
     return int(request.face)
 
 
-def _channels(frames: Sequence[Any], face: int, unknown: list[str]) -> dict[str, Array]:
+def _channels(faces: Sequence[list[Shapes]], face: int, unknown: list[str]) -> dict[str, Array]:
     """Shape -> values, shape (frames,), NaN where there is no face."""
     values: dict[str, Array] = {}
-    for row, frame in enumerate(frames):
-        faces = _faces(frame)
-        if face >= len(faces):
+    for row, several in enumerate(faces):
+        if face >= len(several):
             continue
-        for spelled, score in faces[face].items():
+        for spelled, score in several[face].items():
             name = shape_of(spelled)
             if name is None:
                 if spelled not in unknown and spelled != "_neutral" and len(unknown) < 1000:
                     unknown.append(spelled)
                 continue
             if name not in values:
-                values[name] = np.full(len(frames), np.nan)
+                values[name] = np.full(len(faces), np.nan)
             values[name][row] = score
     return values
 
@@ -160,8 +169,9 @@ def _columns(
     if not isinstance(document, dict):
         return None
     _, rate = _frames(document)
+    keys = _keys(document)
     for names_key, rows_key in SHAPE_ROWS:
-        names, rows = _get(document, (names_key,)), _get(document, (rows_key,))
+        names, rows = keys.get(names_key), keys.get(rows_key)
         if isinstance(names, list) and isinstance(rows, list) and rows:
             shapes = {}
             for place, name in enumerate(names):
@@ -176,7 +186,7 @@ def _columns(
                     )
             if shapes:
                 return shapes, {}, rate
-    inner = _get(document, SHAPES)
+    inner = _first(keys, SHAPES)
     columns = inner if isinstance(inner, dict) else document
     lists = {
         shape: values
@@ -187,9 +197,9 @@ def _columns(
         return None
     count = min(len(values) for values in lists.values())
     stamps = {
-        key.casefold(): np.array([_number(value) for value in values[:count]])
-        for key, values in (document | columns).items()
-        if isinstance(values, list) and key.casefold() in STAMPS and len(values) >= count
+        key: np.array([_number(value) for value in values[:count]])
+        for key, values in _keys(document | columns).items()
+        if isinstance(values, list) and key in (*TIMES, *NUMBERS) and len(values) >= count
     }
     shapes = {
         shape: np.array([_number(value) for value in values[:count]])
@@ -198,11 +208,11 @@ def _columns(
     return shapes, stamps, rate
 
 
-def _head(frames: Sequence[Any]) -> dict[str, Array]:
+def _head(frames: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
     """The head's angles from MediaPipe's 4 x 4 matrices; x to the subject's left, y up, z ahead."""
     angles = np.full((3, len(frames)), np.nan)
     for row, frame in enumerate(frames):
-        matrix = _matrix(_get(frame, MATRICES)) if isinstance(frame, dict) else None
+        matrix = _matrix(_first(frame, MATRICES))
         if matrix is not None:
             ahead = matrix[:, 2] / (np.linalg.norm(matrix[:, 2]) or 1.0)
             angles[0, row] = math.degrees(math.atan2(ahead[0], ahead[2]))
@@ -216,7 +226,7 @@ def _matrix(value: Any) -> Array | None:
     while isinstance(value, list) and len(value) == 1:
         value = value[0]
     if isinstance(value, dict):
-        value = _get(value, ("data",))
+        value = value.get("data")
     if isinstance(value, list) and len(value) == 4:
         value = [number for row in value if isinstance(row, list) for number in row]
     if not isinstance(value, list) or len(value) != 16:
@@ -234,31 +244,23 @@ def _times(
 ) -> Array:  # fmt: skip
     """Times from the stamps of the frames, else from the rate."""
     if rate is None:
-        for key in _folded(STAMPS):
+        for key in TIMES:
             if key in stamps and (times := stamp_times(stamps[key], notes)) is not None:
                 return times
     if given is not None and rate is None:
         notes.append(f"{given:g} frames a second, as the file says.")
-    frame = next((stamps[key] for key in _folded(FRAMES) if key in stamps), None)
+    frame = next((stamps[key] for key in NUMBERS if key in stamps), None)
     return frame_times(frame, count, rate or given, notes)
 
 
-def _keys(item: Mapping[str, Any]) -> dict[str, str]:
-    """Keys without capitals and underscores -> as they are."""
-    return {key.casefold().replace("_", ""): key for key in item}
+def _keys(item: Mapping[str, Any]) -> dict[str, Any]:
+    """The same under keys without capitals and underscores."""
+    return {key.casefold().replace("_", ""): value for key, value in item.items()}
 
 
-def _folded(names: Sequence[str]) -> list[str]:
-    """Names as `_keys` has them, each once."""
-    return list(dict.fromkeys(name.casefold().replace("_", "") for name in names))
-
-
-def _get(item: Any, names: Sequence[str]) -> Any:
+def _first(keys: Mapping[str, Any], names: Sequence[str]) -> Any:
     """The value under the first of the names that is there; None where none is."""
-    if not isinstance(item, dict):
-        return None
-    keys = _keys(item)
-    return next((item[keys[name]] for name in _folded(names) if name in keys), None)
+    return next((keys[name] for name in names if name in keys), None)
 
 
 def _number(value: Any) -> float:
@@ -266,6 +268,7 @@ def _number(value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         return math.nan
     try:
-        return float(value)
+        number = float(value)
     except (ValueError, OverflowError):
         return math.nan
+    return number if abs(number) < LARGEST else math.nan

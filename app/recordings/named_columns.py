@@ -20,8 +20,10 @@ from .table import Table
 from .take import Array, Take
 from .timing import times_of
 
+NAMED = "Table of named columns"
 PERCENT = 2.0  # shapes beyond are no shares: 0 to 100
 NONSENSE = 3.0  # and shares beyond are no measurements
+MOST_PERCENT = 110.0  # an intensity beyond is none in any unit
 NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
                  "mouthShrugUpper")  # fmt: skip
 OF_NO_USE = ("blendshapecount", "timecode", "index", "")
@@ -70,7 +72,7 @@ def recognises(names: tuple[str, ...]) -> bool:
     return Columns.of(names).are_known
 
 
-def read(table: Table, request: Request, kind: str = "Table of named columns") -> Take:
+def read(table: Table, request: Request, kind: str = NAMED) -> Take:
     """The take in the table."""
     table = one_face(table, request)
     notes = list(table.notes)
@@ -84,6 +86,8 @@ def read(table: Table, request: Request, kind: str = "Table of named columns") -
     channels = shapes | intensities({name: numbers[name] for name in columns.units}, notes)
     channels |= {name: np.clip(numbers[name], 0.0, 1.0) for name in columns.visemes}
     channels |= in_degrees({name: numbers[name] for name in columns.angles}, shapes, notes)
+    if columns.angles and kind == NAMED:
+        notes.append("Angles were taken to count down and to the subject's right, as ARKit's do.")
     unknown = [table.names[number] for number in columns.unknown]
     return whole_take(
         kind,
@@ -120,6 +124,7 @@ def shares(shapes: dict[str, Array], notes: list[str]) -> dict[str, Array]:
 
 def intensities(units: dict[str, Array], notes: list[str]) -> dict[str, Array]:
     """Action units as intensities 0 to 1; FACS' 0 to 5 (A to E) and percent are divided."""
+    units = {name: np.where(np.abs(v) > MOST_PERCENT, np.nan, v) for name, v in units.items()}
     highest = max((float(np.nanmax(values, initial=0.0)) for values in units.values()), default=0.0)
     largest = 1.0 if highest <= 1.0 else 5.0 if highest <= 6.0 else 100.0
     if units and largest > 1.0:
@@ -130,7 +135,7 @@ def intensities(units: dict[str, Array], notes: list[str]) -> dict[str, Array]:
 def is_calibrated(shapes: dict[str, Array], notes: list[str]) -> bool:
     """Whether the neutral face was taken away: then shapes that never rest are often at 0."""
     resting = [shapes[name] for name in NEVER_AT_REST if name in shapes]
-    calibrated = sum(bool(np.nanmean(values <= 1e-6) > 0.2) for values in resting) >= 3
+    calibrated = sum(bool(np.mean(values <= 1e-6) > 0.2) for values in resting) >= 3
     if calibrated and len(shapes) == len(ARKIT):
         notes.append("The take is calibrated: its neutral face is at 0.")
     return calibrated

@@ -31,6 +31,7 @@ POSE = {
 GAZE = ("gaze_angle_x", "gaze_angle_y")
 VECTORS = ("gaze_0_x", "gaze_0_y", "gaze_0_z", "gaze_1_x", "gaze_1_y", "gaze_1_z")
 LANDMARKS = re.compile(r"(eye_lmk_)?[xyz]_\d+$|p_(\d+|scale|[rt][xyz])$|pose_t[xyz]$")
+FAR = 10.0  # an intensity beyond is none
 SEEN = 0.5  # success is 0 or 1; a confidence below is none
 
 
@@ -92,6 +93,7 @@ def _units(units: dict[str, Array], notes: list[str]) -> dict[str, Array]:
     """Intensities 0 to 1: OpenFace writes 0 to 5, and some tools divide without a new name."""
     if not units:
         return {}
+    units = {name: np.where(np.abs(v) > FAR, np.nan, v) for name, v in units.items()}
     highest = max(float(np.nanmax(values, initial=0.0)) for values in units.values())
     if highest > 1.0:
         return {name: np.clip(values / 5.0, 0.0, 1.0) for name, values in units.items()}

@@ -1,8 +1,9 @@
 """py-feat's CSV (1 and 2): action units 0 to 1, head pose, and in 2 the shapes of MediaPipe.
 
-Version 1 has angles in degrees, version 2 in radians. Pitch + is up, Yaw + to the subject's right,
-Roll + to the subject's left shoulder (its conversion of img2pose's rotation; the same as drawn by
-its plots). Both versions give no time but the number of a frame of the film.
+Versions differ in the head's angles: those before 0.7 write degrees, Pitch + up, later ones
+radians, Pitch + down. Yaw + is to the subject's right; Roll + to the subject's left shoulder, in
+version 2 to the right one. This was found by comparing angles in files of theirs with the landmarks
+beside them, in version 2 of yaw and roll alone. No version gives a time but the number of a frame.
 
 Version 2 tells most of the face twice. Its shapes know left from right and how far, its units only
 how likely they are. So the shapes count, and of the units those which MediaPipe never sees: AU6,
@@ -28,10 +29,10 @@ from .timing import times_of
 
 UNIT = re.compile(r"au(\d\d)$")
 BOX = {"facerectx", "facerecty", "facerectwidth", "facerectheight", "facescore"}
-POSE = {"pitch": ("head_pitch", 1.0), "yaw": ("head_yaw", -1.0), "roll": ("head_roll", 1.0)}
+POSE = ("pitch", "yaw", "roll")
 GAZE = ("gaze_pitch", "gaze_yaw")
 NOT_TAKEN = re.compile(
-    r"(mesh_|mesh_norm_)?[xyz](_?\d+)?$|identity(_\d+)?$|input$|gaze_angle$|_neutral$|mesh_.*|"
+    r"[xyz](_\d+)?$|frame(height|width)$|identity(_\d+)?$|input$|gaze_angle$|_neutral$|mesh_.*|"
     r"(anger|disgust|fear|happiness|sadness|surprise|neutral|happy|sad|contempt|valence|arousal)$"
 )
 NEVER_SEEN = ("cheekPuff", "cheekSquintLeft", "cheekSquintRight", "noseSneerLeft", "noseSneerRight")
@@ -65,7 +66,7 @@ def read(table: Table, request: Request) -> Take:
     numbers = dict(zip(wanted, table.numbers(list(wanted.values())).T, strict=True))
     channels = {name: np.clip(numbers[name], 0.0, 1.0) for name in units}
     channels |= shares({name: numbers[name] for name in shapes}, notes)
-    channels |= _head(numbers, notes)
+    channels |= _head(numbers, bool(shapes), notes)
     if not any(name.startswith("eyeLook") for name in shapes):
         channels |= _eyes(numbers, channels, notes)
     score = numbers.get("facescore")
@@ -74,7 +75,7 @@ def read(table: Table, request: Request) -> Take:
         channels = {name: np.where(lost, np.nan, values) for name, values in channels.items()}
     known = {*others, *used, *FACE_COLUMNS, *BOX}
     return whole_take(
-        "py-feat 2" if shapes or "gaze_pitch" in places else "py-feat 1",
+        "py-feat 2" if shapes else "py-feat 1",
         table.source,
         times,
         channels,
@@ -89,15 +90,20 @@ def read(table: Table, request: Request) -> Take:
     )
 
 
-def _head(numbers: dict[str, Array], notes: list[str]) -> dict[str, Array]:
-    """The head's angles in degrees, whatever unit this version has."""
+def _head(numbers: dict[str, Array], is_second: bool, notes: list[str]) -> dict[str, Array]:
+    """The head's angles in degrees, whatever units and signs the version has."""
     pose = {n: numbers[n] for n in POSE if n in numbers and np.isfinite(numbers[n]).any()}
     if not pose:
         return {}
-    size = max(float(np.nanmax(np.abs(values))) for values in pose.values())
-    unit, scale = ("radians", 180.0 / np.pi) if size <= LARGEST_RADIANS else ("degrees", 1.0)
-    notes.append(f"Angles of the head reach {size:.2g} and were taken for {unit}.")
-    return {POSE[name][0]: POSE[name][1] * scale * values for name, values in pose.items()}
+    size = max(float(np.nanpercentile(np.abs(values), 90)) for values in pose.values())
+    is_early = size > LARGEST_RADIANS
+    notes.append(
+        f"Angles of the head reach {size:.2g} and were taken for "
+        + ("degrees, pitch + up." if is_early else "radians, pitch + down.")
+    )
+    scale = 1.0 if is_early else 180.0 / np.pi
+    signs = {"pitch": 1.0 if is_early else -1.0, "yaw": -1.0, "roll": -1.0 if is_second else 1.0}
+    return {f"head_{name}": signs[name] * scale * values for name, values in pose.items()}
 
 
 def _eyes(numbers: dict[str, Array], head: dict[str, Array], notes: list[str]) -> dict[str, Array]:

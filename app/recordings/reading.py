@@ -53,7 +53,7 @@ KNOWN = (
 JSON = re.compile(r"\s*(\{|\[\s*(\[\s*)*[\{\]])")  # no script in TOML begins so
 SPEAKS_OF_FACES = re.compile(
     r'"(category_?name|(face_?)?blend_?shapes|mouthcues|viseme_set|facsnames|jaw_?open|'
-    r'eyeblink_?l(eft)?|mouthsmile_?l(eft)?)"',
+    r'eyeblink_?l(eft)?|mouthsmile_?l(eft)?|(viseme_)?(pp|sil))"',
     re.IGNORECASE,
 )
 

@@ -62,14 +62,8 @@ class Report:
     @property
     def in_brief(self) -> str:
         """All of it in a line, for the window's message."""
-        name = Path(self.source).name
-        count = len(self.notes)
-        more = (
-            f"; {count} note{'s' if count > 1 else ''}: `risorius convert {name}` tells"
-            if count
-            else ""
-        )
-        return f"{name}: {self.recognised}{more}"
+        name, count = Path(self.source).name, len(self.notes)
+        return f"{name}: {self.recognised}" + (f"; {count} notes" if count else "")
 
 
 def report_of(
@@ -119,11 +113,11 @@ def _still(take: Take) -> set[str]:
 
 def _used(names: set[str]) -> str:
     kinds = {
-        "shapes of ARKit": {name for name in names if name in ARKIT},
-        "action units": {name for name in names if name.startswith("AU")},
-        "visemes": {name for name in names if name.startswith("viseme")},
-        "angles of the head": {name for name in names if name.startswith("head_")},
-        "angles of the eyes": {name for name in names if name.startswith("eye_")},
+        "of ARKit's shapes": {name for name in names if name in ARKIT},
+        "of the action units": {name for name in names if name.startswith("AU")},
+        "of the visemes": {name for name in names if name.startswith("viseme")},
+        "of the head's angles": {name for name in names if name.startswith("head_")},
+        "of the eyes' angles": {name for name in names if name.startswith("eye_")},
     }
     counts = [f"{len(found)} {kind}" for kind, found in kinds.items() if found]
     return ", ".join(counts) or "nothing: no channel ever changes"

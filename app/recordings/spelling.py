@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 
 from .names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
@@ -45,6 +46,7 @@ _ANGLES = _angle_spellings()
 _EYE_ROLLS = ("lefteyeroll", "righteyeroll")
 
 
+@functools.lru_cache(maxsize=4096)  # JSON names each shape again in each frame
 def shape_of(column: str) -> str | None:
     """The ARKit shape that a column holds; None for another column."""
     return _SHAPES.get(_letters(column)) or _SHAPES.get(_letters(re.split(r"[.:/|]", column)[-1]))

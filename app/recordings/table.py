@@ -21,6 +21,7 @@ from .take import Array
 DELIMITERS = ",;\t|"
 UNIT_SEPARATOR = "\x1f"  # stands between cells that were quoted: it is in no cell
 LONGEST_NAME = 80  # [characters] of a column; what is longer is no header
+LARGEST = 1e30  # what is larger is no measurement; nanoseconds since 1970 are 1.8e18
 MOST_COLUMNS = 20_000
 NO_NUMBER = ("", "nan", "na", "n/a", "null", "none", "-", "inf", "-inf", "#n/a")
 
@@ -62,7 +63,7 @@ class Table:
             )
         except ValueError:  # not all are numbers: cell by cell
             values = self._numbers_one_by_one(columns)
-        return np.where(np.isfinite(values), values, np.nan)
+        return np.where(np.abs(values) < LARGEST, values, np.nan)
 
     def _numbers_one_by_one(self, columns: Sequence[int]) -> Array:
         """The same, slower, with a note of the first cell that holds something else."""
@@ -89,8 +90,15 @@ class Table:
 
 def header_of(text: str) -> tuple[tuple[str, ...], str]:
     """The names in the first line that is one, and the delimiter; no names: there is no table."""
-    line, _, asked = _first_line(text)
-    delimiter = asked or max(DELIMITERS, key=line.count)
+    line, start, asked = _first_line(text)
+    following = text[start + len(line) :].lstrip("\n ").partition("\n")[0]
+
+    def fit(delimiter: str) -> tuple[bool, int]:
+        """How well the line is divided: first into as many cells as the next one."""
+        count = line.count(delimiter)
+        return 0 < count == following.count(delimiter), count
+
+    delimiter = asked or max(DELIMITERS, key=fit)
     try:
         names = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
     except csv.Error:

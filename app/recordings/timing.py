@@ -72,7 +72,10 @@ def frame_times(numbers: Array | None, count: int, rate: float | None, notes: li
 
 def stamp_times(stamps: Array, notes: list[str]) -> Array | None:
     """Time stamps in seconds, whatever their unit is; None where they are of no use."""
-    if len(stamps) == 1 or not np.isfinite(stamps).any():
+    if len(stamps) == 1:
+        return None
+    if not np.isfinite(stamps).any():
+        notes.append("The time stamps are no numbers, and were not used.")
         return None
     if not _mostly_rises(stamps):
         notes.append("The time stamps do not rise, and were not used.")
@@ -117,35 +120,20 @@ def clock_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> A
     if len(cells) > 1 and not frames.any() and set(np.diff(seconds)) == {1.0}:
         notes.append("The timecode counts whole seconds, one for each row: rows are frames.")
         return frame_times(None, len(cells), rate, notes)
-    if rate is None:
-        rate = _rate_in(frames, seconds, is_drop_frame, notes)
-    return _timecode_times(seconds, frames, fractions, rate, is_drop_frame, notes)
-
-
-def _timecode_times(
-    seconds: Array,
-    frames: Array,
-    fractions: Array,
-    rate: float,
-    is_drop_frame: bool,
-    notes: list[str],
-) -> Array:
-    """Times from the parts of timecodes; the fraction only where it makes steps no worse."""
-    base = math.ceil(rate - 1e-6)  # how many frames the timecode counts in a second
+    counted = _rate_in(frames, seconds, is_drop_frame, notes if rate is None else [])
+    rate = rate or counted
+    base = math.ceil(rate if frames.max() < rate <= RATES[-1] else counted)
     numbers = _unwrapped(seconds) * base + frames
+    if not _mostly_rises(numbers + fractions):
+        notes.append("The timecode stands still, and was not used.")
+        return frame_times(None, len(cells), rate, notes)
     if is_drop_frame:  # two numbers a minute (four of 60) are left out, but in each tenth minute
         minutes = np.floor(_unwrapped(seconds) / 60.0)
         numbers -= (base // 15) * (minutes - np.floor(minutes / 10.0))
-    else:
-        rate = float(base) if abs(rate - base) < 0.1 else rate
-    if fractions.any():
-        if _jumps(numbers + fractions) > _jumps(numbers) + 0.005 * len(numbers):
-            notes.append(
-                "The fraction in the timecode makes frames jump to and fro, and was not used."
-            )
-        else:
-            numbers = numbers + fractions
-    return numbers / rate
+    if _jumps(numbers + fractions) > _jumps(numbers) + 0.005 * len(numbers):
+        notes.append("The fraction in the timecode makes frames jump to and fro, and was not used.")
+        return numbers / rate
+    return (numbers + fractions) / rate
 
 
 def _jumps(numbers: Array) -> int:

@@ -79,7 +79,7 @@ def read_tracks(document: Any, source: str, request: Request) -> Take:
     }
     channels = _made_clear(channels, notes)
     return whole_take(
-        "OpenFaceFX track", source, times, channels, notes=notes, unknown=unknown,
+        "Viseme tracks", source, times, channels, notes=notes, unknown=unknown,
         is_calibrated=True,
     )  # fmt: skip
 
@@ -155,7 +155,7 @@ def recognises_rows(names: tuple[str, ...]) -> bool:
 def read_rows(table: Table, request: Request) -> Take:
     """The take in Rhubarb's TSV; its first row is no header."""
     only_one(table.source, request)
-    rows = [(1, *table.names)]
+    rows = [(1, table.names[0], table.names[1])]
     rows += zip(table.line_numbers, table.cells(0), table.cells(1), strict=True)
     cues = []
     for number, start, mouth in rows:

@@ -5,6 +5,7 @@ A script is a list of poses and, beside them, tracks::
     title = "Hello"              # optional
     scene = "face"               # optional: face (default), plane or cloth
     camera = "three-quarter"     # optional: a named view
+    sound = "hello.wav"          # optional: what is heard with it, as seen from the script
     duration = 4.0               # optional [s]; the default is the time of the last key
 
     [[pose]]                     # a whole pose: what it does not name is 0
@@ -33,16 +34,19 @@ Before its first key a channel keeps that key's value, after its last key the la
 """
 
 from .bounds import LONGEST_FILE
-from .model import Channel, Key, Limits, Pose, Script, rounded
+from .model import DECIMALS, EASING_NAMES, Channel, Floats, Key, Limits, Pose, Script, rounded
 from .reader import LARGEST, load_script, parse_script, preface_of
 from .thinning import TOLERANCE, thinned
-from .writer import is_pose, pose_script, save_script, script_text
+from .writer import is_pose, pose_script, prepare_text, save_script, script_text
 
 __all__ = [
+    "DECIMALS",
+    "EASING_NAMES",
     "LARGEST",
     "LONGEST_FILE",
     "TOLERANCE",
     "Channel",
+    "Floats",
     "Key",
     "Limits",
     "Pose",
@@ -52,6 +56,7 @@ __all__ = [
     "parse_script",
     "pose_script",
     "preface_of",
+    "prepare_text",
     "rounded",
     "save_script",
     "script_text",

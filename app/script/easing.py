@@ -1,8 +1,10 @@
-"""Easing curves between two keyframes: pure functions of a fraction 0..1, each from 0 to 1."""
+"""Easing curves between two keyframes: pure functions of a fraction 0..1, each from 0 to 1.
+
+They take numbers and arrays of numbers alike.
+"""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 
@@ -28,7 +30,7 @@ def ease_out(fraction: float) -> float:
 
 def hold(fraction: float) -> float:
     """Stays at the previous key until the next one is reached, then jumps."""
-    return math.floor(fraction)
+    return fraction // 1.0
 
 
 EASINGS: dict[str, Callable[[float], float]] = {

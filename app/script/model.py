@@ -8,6 +8,7 @@ import functools
 from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -58,8 +59,10 @@ class Channel:
             ("values", values, np.float64),
             ("easings", easings, np.uint8),
         ):
-            own = np.array(part, kind)
-            own.flags.writeable = False
+            own = np.asarray(part, kind)
+            if own.flags.writeable:  # somebody else might write it
+                own = own.copy()
+                own.flags.writeable = False
             object.__setattr__(self, name, own)
 
     @classmethod
@@ -95,7 +98,8 @@ class Channel:
     @functools.cached_property
     def _parts(self) -> tuple[array[float], array[float], bytes]:
         """The same numbers in sequences of Python's own, which are quicker to look into."""
-        return array("d", self.times), array("d", self.values), self.easings.tobytes()
+        times, values = self.times.tobytes(), self.values.tobytes()
+        return array("d", times), array("d", values), self.easings.tobytes()
 
     @functools.cached_property
     def lines(self) -> str:
@@ -108,6 +112,11 @@ class Channel:
         return "\n".join(
             [f"{t!r} {v!r}{names[e]}" for t, v, e in zip(times, values, easings, strict=True)]
         )
+
+    @property
+    def has_lines(self) -> bool:
+        """Whether `lines` are made already."""
+        return "lines" in self.__dict__
 
     def continued(self, further: Channel) -> Channel:
         """This channel and the keys of another one, whose first key is the last one of this."""
@@ -127,6 +136,28 @@ class Channel:
         previous, following, share = _between(times, time)
         start = values[previous]
         return start + (values[following] - start) * _CURVES[easings[following]](share)
+
+    def extremes(self, edges: Floats) -> tuple[Floats, Floats]:
+        """The lowest and the highest value between each two of the times `edges` [s], which rise.
+
+        edges: shape (N,). Each of both: shape (N - 1,).
+        """
+        after = np.searchsorted(self.times, edges, "right")
+        before = np.maximum(after - 1, 0)
+        following = np.minimum(after, len(self) - 1)
+        seconds = np.where(before < following, self.times[following] - self.times[before], 1.0)
+        shares = np.where(before < following, (edges - self.times[before]) / seconds, 0.0)
+        for easing in set(self.easings[following].tolist()):
+            is_eased = self.easings[following] == easing
+            shares[is_eased] = _CURVES[easing](shares[is_eased])
+        start = self.values[before]
+        values = start + (self.values[following] - start) * shares
+        # Easings never turn back, so that all other extremes are at keys.
+        everything = np.insert(self.values[after[0] : after[-1]], after - after[0], values)
+        begins = after - after[0] + np.arange(len(edges))
+        lowest = np.minimum.reduceat(everything, begins)[:-1]
+        highest = np.maximum.reduceat(everything, begins)[:-1]
+        return np.minimum(lowest, values[1:]), np.maximum(highest, values[1:])
 
 
 @dataclass(frozen=True)
@@ -148,6 +179,7 @@ class Script:
     source: str = field(compare=False)  # the file it came from, for error texts
     scene: str = "face"
     camera: str | None = None
+    sound: Path | None = None  # the file of what is heard with it, its whole path
     poses: tuple[Pose, ...] = ()  # in the order of time
     tracks: dict[str, Channel] = field(default_factory=dict)
     preface: str = ""  # the lines of comment with which the file begins

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import itertools
+import os
 import sys
 import tomllib
 from array import array
@@ -22,7 +23,7 @@ from .model import EASING_NAMES, Channel, Key, Pose, Script
 
 SOON_READ = 2**20  # [bytes]; a longer script is said to be read
 LARGEST = 86_400.0  # of any number in a script; as a time [s] it is a day
-TOP_LEVEL_KEYS = ("title", "scene", "camera", "duration", "pose", "tracks")
+TOP_LEVEL_KEYS = ("title", "scene", "camera", "sound", "duration", "pose", "tracks")
 POSE_KEYS = ("time", "easing", "name")
 TRACK_KEYS = ("time", "value", "easing")
 
@@ -75,6 +76,7 @@ def parse_script(text: str, *, source: str) -> Script:
         source=source,
         scene=reader.text(document, "scene", default="face"),
         camera=reader.text(document, "camera", default=None),
+        sound=reader.sound(document),
         poses=poses,
         tracks=tracks,
         preface=preface_of(text),
@@ -120,6 +122,13 @@ class _Reader:
         if value is not default and not isinstance(value, str):
             raise self.fail(f"top level: '{key}' is {value!r}; it must be a text in quotes")
         return value
+
+    def sound(self, document: Mapping[str, Any]) -> Path | None:
+        """The whole path of the sound file, which is named as seen from the script."""
+        name = self.text(document, "sound", default=None)
+        if name == "":
+            raise self.fail("top level: 'sound' is empty; it must be the name of a sound file")
+        return None if name is None else Path(os.path.abspath(Path(self.source).parent / name))
 
     def easing(self, table: Mapping[str, Any], *, where: str) -> str:
         """The name of an easing that there is."""

@@ -8,7 +8,9 @@ A pose by itself is a script with one [[pose]] at time 0.
 
 from __future__ import annotations
 
+import contextlib
 import json
+import os
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -25,7 +27,7 @@ POSE_SECONDS = 1.0  # duration of a script that is one pose
 
 def save_script(target: Path, script: Script) -> None:
     """Write a script file, whole or not at all; UserError where it cannot be written."""
-    text = script_text(script)
+    text = script_text(script, target.parent)
     if len(text) > LONGEST_FILE:
         raise UserError(
             f"{target}: the script would be longer than can be read again, "
@@ -34,20 +36,30 @@ def save_script(target: Path, script: Script) -> None:
     save_text(target, text)
 
 
-def script_text(script: Script) -> str:
-    """The TOML text of a script."""
+def script_text(script: Script, folder: Path | None = None) -> str:
+    """The TOML text of a script; folder: where it will be, for what it names beside it."""
     head = [script.preface] if script.preface else []
     if script.title:  # else it is called as its file is
         head.append(f"title = {_quoted(script.title)}")
     head.append(f"scene = {_quoted(script.scene)}")
     if script.camera is not None:
         head.append(f"camera = {_quoted(script.camera)}")
+    if script.sound is not None:
+        head.append(f"sound = {_quoted(_as_seen_from(folder, script.sound))}")
     head.append(f"duration = {_number(script.duration)}")
     blocks = ["\n".join(head), *map(_pose, script.poses)]
     if script.tracks:
         tracks = [_track(name, channel) for name, channel in script.tracks.items()]
         blocks.append("\n".join(["[tracks]", *tracks]))
     return "\n\n".join(blocks) + "\n"
+
+
+def prepare_text(script: Script) -> bool:
+    """Do a part of what `script_text` has to do for a long script; False if all is done."""
+    for channel in script.tracks.values():
+        if len(channel) > MOST_TABLES and not channel.has_lines:
+            return bool(channel.lines)
+    return False
 
 
 def pose_script(values: Mapping[str, float], *, title: str, scene: str) -> Script:
@@ -61,6 +73,19 @@ def is_pose(script: Script) -> bool:
     is_still = all(len(channel) == 1 for channel in script.tracks.values())
     is_something = bool(script.posed_names or script.tracks)
     return is_something and is_still and len(script.poses) <= 1
+
+
+def _as_seen_from(folder: Path | None, file: Path) -> str:
+    """How a script in `folder` names a file, so that both may move together.
+
+    By its whole path where it is neither in the folder nor near it: then only the script moves.
+    """
+    if folder is not None:
+        with contextlib.suppress(ValueError):  # another drive
+            near = Path(os.path.relpath(file, folder))
+            if near.parts[:2] != ("..", ".."):
+                return near.as_posix()
+    return str(file)
 
 
 def _pose(pose: Pose) -> str:

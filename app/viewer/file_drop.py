@@ -1,7 +1,8 @@
-"""Several files let go over the window at once: one to play, a head, and what is too much."""
+"""Several files let go over the window: what to play, a sound, a head, and what is too much."""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +15,7 @@ from ..recordings import is_recording
 from ..scenes import Scene, build_scene, head_for
 from .files import Files
 from .messages import Message
-from .script_commands import ScriptCommands
+from .script_commands import SOUNDS, ScriptCommands
 
 MESHES = tuple(f".{name}" for name in FORMATS)
 LANDMARKS = ".json"
@@ -27,6 +28,7 @@ class DroppedFiles:
     script: Path | None = None  # or a pose or recording; anything else is tried, and told wrong
     mesh: Path | None = None
     landmarks: Path | None = None
+    sound: Path | None = None
     left_over: tuple[Path, ...] = ()  # of each kind the first one counts
 
     @classmethod
@@ -36,10 +38,12 @@ class DroppedFiles:
         landmarks = [
             path for path in paths if path.suffix.lower() == LANDMARKS and not is_recording(path)
         ]
-        scripts = [path for path in paths if path not in (*meshes, *landmarks)]
-        firsts = [next(iter(kind), None) for kind in (scripts, meshes, landmarks)]
-        left_over = (*scripts[1:], *meshes[1:], *landmarks[1:])
-        return cls(firsts[0], firsts[1], firsts[2], left_over)
+        sounds = [path for path in paths if path.suffix.lower() in SOUNDS]
+        scripts = [path for path in paths if path not in (*meshes, *landmarks, *sounds)]
+        kinds = (scripts, meshes, landmarks, sounds)
+        script, mesh, landmark, sound = (next(iter(kind), None) for kind in kinds)
+        left_over = tuple(itertools.chain.from_iterable(kind[1:] for kind in kinds))
+        return cls(script, mesh, landmark, sound, left_over)
 
     @property
     def has_head(self) -> bool:
@@ -104,6 +108,8 @@ class FileDrop:
             remark = f" with {dropped.mesh.name}{remark}"
         if dropped.script is not None:
             line = self._scripts.open(dropped.script, remark) or line
+        if dropped.sound is not None:
+            line = self._scripts.set_sound(dropped.sound)
         return line
 
     def ask_head(self) -> None:

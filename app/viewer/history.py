@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Callable
 from typing import Generic, TypeVar
 
 State = TypeVar("State")
-MOST = 200  # states; a state is some kilobytes
+MOST = 200  # states
+MOST_GROWTH = 5_000_000  # keys that are not shared with the state before, each some 50 bytes
 
 
 class History(Generic[State]):
     """The states that there were; the last one noted is the present."""
 
-    def __init__(self, present: State) -> None:
+    def __init__(self, present: State, growth: Callable[[State, State], int]) -> None:
+        """growth: how many keys the second of two states has that the first does not share."""
         self._states = [present]
         self._place = 0
+        self._growth = growth
 
     @property
     def can_undo(self) -> bool:
@@ -34,8 +39,14 @@ class History(Generic[State]):
         """Something was done; what was undone before is forgotten. Equal states count once."""
         if state == self.present:
             return
-        self._states = [*self._states[: self._place + 1], state][-MOST:]
+        self._states = [*self._states[: self._place + 1], state]
+        while len(self._states) > MOST or (len(self._states) > 2 and self._are_too_large):
+            del self._states[0]
         self._place = len(self._states) - 1
+
+    @property
+    def _are_too_large(self) -> bool:
+        return sum(itertools.starmap(self._growth, itertools.pairwise(self._states))) > MOST_GROWTH
 
     def undo(self) -> State:
         """Step back, as far as there is something."""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from ..script import Pose
 from . import keyframes
-from .keyframes import POSES, KeyPlace
+from .keyframes import POSES
 from .messages import Message
 from .panel_state import PanelState
+from .places import NOWHERE, Places
 from .session import Session
 
 COPY_OFFSET = 10  # frames by which a copy comes later, if it is not wanted elsewhere
@@ -17,7 +18,7 @@ class KeySelection:
 
     def __init__(self, session: Session, panels: PanelState) -> None:
         self._session, self._panels = session, panels
-        self.places: frozenset[KeyPlace] = frozenset()
+        self.places = NOWHERE
         self.pose_to_name: Pose | None = None  # for which the timeline is to ask a name
 
     @property
@@ -34,9 +35,8 @@ class KeySelection:
         """The face as it is becomes a key at the time shown."""
         time = self._session.set_key()
         script = self._session.script
-        there = [place for place in keyframes.places_of(script) if abs(place.time - time) < 1e-9]
-        poses = frozenset(place for place in there if place.track == POSES)
-        self.places = poses or frozenset(there)
+        there = keyframes.places_of(script).near(time, keyframes.SAME)
+        self.places = Places({POSES: there.times[POSES]}) if POSES in there.times else there
         return f"key set at {time:.2f} s"
 
     def delete(self) -> Message:
@@ -48,7 +48,7 @@ class KeySelection:
     def duplicate(self) -> Message:
         """Copies of the selected keys at the time shown, or a little later if they are there."""
         script = self._session.script
-        first = min(place.time for place in self.places)
+        first = self.places.first
         offset = keyframes.key_time(script, self._session.time) - first
         if abs(offset) < 0.5 * keyframes.FRAME:
             offset = COPY_OFFSET * keyframes.FRAME
@@ -59,7 +59,7 @@ class KeySelection:
 
     def nudge(self, frames: int) -> None:
         """Move the selected keys by so many frames."""
-        first = min(place.time for place in self.places)
+        first = self.places.first
         offset = keyframes.on_frame(first + frames * keyframes.FRAME) - first
         script, places = keyframes.moved(self._session.script, self.places, offset)
         self._session.edit(script)
@@ -71,7 +71,7 @@ class KeySelection:
 
     def _nameable(self) -> Pose | None:
         """The one pose that is selected, or else the one at the time shown."""
-        poses = [place.time for place in self.places if place.track == POSES]
+        poses = [] if POSES not in self.places.times else self.places.times[POSES].tolist()
         if len(poses) > 1:
             return None
         time = poses[0] if poses else self._session.time

@@ -1,47 +1,36 @@
 """Changes of a script's keys: set, move, copy, delete, rename. Each gives a new script.
 
 A key is known by its track and its time. The whole poses count as one track; no track has two keys
-at one time, so a key that arrives where another is takes its place.
+at one time, so a key that arrives where another is takes its place. Tracks that are not changed are
+shared by both scripts.
 """
 
 from __future__ import annotations
 
-import bisect
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from operator import attrgetter
-from typing import Any, NamedTuple, TypeVar
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from ..errors import UserError
 from ..scenes import clamped
-from ..script import LARGEST, Channel, Key, Limits, Pose, Script, rounded
+from ..script import DECIMALS, EASING_NAMES, LARGEST, Channel, Key, Limits, Pose, Script, rounded
+from .places import Places, among
 
 POSES = ""  # the track of whole poses; any other is called as its control is
 FRAME = 1.0 / 30.0  # [s] to which times are rounded, as in the films that the window makes
 SAME = 1e-6  # of a value or a time [s]: no difference
 
-
-class KeyPlace(NamedTuple):
-    """Where a key is: the track, and the time [s] in it."""
-
-    track: str
-    time: float
+# The keys of a track, an entry each in arrays: times [s], then values and easings, or the poses.
+Columns = tuple[npt.NDArray[Any], ...]
 
 
-Places = Collection[KeyPlace]
-AnyKey = Pose | Key
-Item = TypeVar("Item", bound=AnyKey)
-
-
-def keys_by_track(script: Script) -> dict[str, Sequence[AnyKey]]:
-    """All keys that a script has; the poses come first."""
-    return {POSES: script.poses} | {name: track.keys for name, track in script.tracks.items()}
-
-
-def places_of(script: Script) -> frozenset[KeyPlace]:
-    """Where all keys of a script are."""
-    tracks = keys_by_track(script).items()
-    return frozenset(KeyPlace(name, key.time) for name, keys in tracks for key in keys)
+def places_of(script: Script) -> Places:
+    """Where all keys of a script are; the poses come first."""
+    poses = {POSES: np.array([pose.time for pose in script.poses])}
+    return Places(poses | {name: track.times for name, track in script.tracks.items()})
 
 
 def on_frame(time: float) -> float:
@@ -51,9 +40,18 @@ def on_frame(time: float) -> float:
 
 def key_time(script: Script, time: float) -> float:
     """Where a key set at `time` goes: to one that is less than half a frame away, or a frame."""
-    times = {place.time for place in places_of(script)}
-    near = min(times, key=lambda each: abs(each - time), default=time)
-    return near if abs(near - time) < 0.5 * FRAME else on_frame(time)
+    near = places_of(script).near(time, 0.5 * FRAME)
+    return near.first if near else on_frame(time)
+
+
+def time_beyond(script: Script, time: float, direction: int) -> float:
+    """The next time at which the script has a key, or with -1 the one before; else `time` [s]."""
+    all_times = places_of(script).times.values()
+    if direction > 0:
+        later = (times[np.searchsorted(times, time + SAME, "right") :][:1] for times in all_times)
+        return float(min(np.concatenate([*later, []]), default=time))
+    earlier = (times[: np.searchsorted(times, time - SAME)][-1:] for times in all_times)
+    return float(max(np.concatenate([*earlier, []]), default=time))
 
 
 def pose_at(script: Script, time: float) -> Pose | None:
@@ -64,20 +62,27 @@ def pose_at(script: Script, time: float) -> Pose | None:
 # Changes
 
 
-def moved(script: Script, places: Places, seconds: float) -> tuple[Script, frozenset[KeyPlace]]:
+def moved(script: Script, places: Places, seconds: float) -> tuple[Script, Places]:
     """The script with keys later by `seconds` (none before 0), and where they are then."""
-    return _placed(_left(script, places), script, places, seconds)
+    return _placed(script, places, seconds, are_copies=False)
 
 
-def copied(script: Script, places: Places, seconds: float) -> tuple[Script, frozenset[KeyPlace]]:
+def copied(script: Script, places: Places, seconds: float) -> tuple[Script, Places]:
     """The script with copies of keys later by `seconds` (none before 0), and where these are."""
-    return _placed(script, script, places, seconds)
+    return _placed(script, places, seconds, are_copies=True)
 
 
 def without(script: Script, places: Places) -> Script:
     """The script without these keys; UserError where none would be left."""
-    left = _left(script, places)
-    if not places_of(left):
+    columns = _columns(script, places)
+    left = _with(
+        script,
+        {
+            name: _picked(each, ~among(each[0], places.times[name]))
+            for name, each in columns.items()
+        },
+    )
+    if not (left.poses or left.tracks):
         raise UserError("a script needs at least one key, so these stay")
     return left
 
@@ -93,8 +98,16 @@ def renamed(script: Script, time: float, name: str) -> Script:
 
 def eased(script: Script, places: Places, easing: str) -> Script:
     """The script with these keys approached in another way."""
-    chosen = frozenset(places)
-    return _each(script, lambda place, key: replace(key, easing=easing) if place in chosen else key)
+    changed = {}
+    for name, columns in _columns(script, places).items():
+        is_chosen = among(columns[0], places.times[name])
+        last = columns[-1].copy()  # the easings, or the poses, which have their own
+        if name == POSES:
+            last[is_chosen] = [replace(pose, easing=easing) for pose in last[is_chosen]]
+        else:
+            last[is_chosen] = EASING_NAMES.index(easing)
+        changed[name] = (*columns[:-1], last)
+    return _with(script, changed)
 
 
 def lasting(script: Script, seconds: float) -> Script:
@@ -130,85 +143,93 @@ def keyed(script: Script, time: float, values: Mapping[str, float], limits: Limi
         present.easing if present else _easing_at(script.poses, time),
         present.name if present else None,
     )
-    with_pose = replace(script, poses=tuple(_merged(script.poses, [pose])))
+    with_pose = _with(script, {POSES: _joined(_pose_columns(script.poses), _pose_columns([pose]))})
     return _reaching(_with_track_keys(with_pose, time, differing), time)
 
 
 def _with_track_keys(script: Script, time: float, values: Mapping[str, float]) -> Script:
     """The script with a key in each of these tracks, which are made where they are not there."""
-    tracks = dict(script.tracks)
+    changed = {}
     for name, value in values.items():
-        keys = tracks[name].keys if name in tracks else ()
-        before = next((key for key in keys if abs(key.time - time) < SAME), None)
-        easing = before.easing if before else _easing_at(keys, time)
-        key = Key(before.time if before else time, rounded(value), easing)
-        tracks[name] = Channel.of(_merged(keys, [key]))
-    return replace(script, tracks=tracks)
+        track = script.tracks.get(name, Channel([], []))
+        near = np.flatnonzero(np.abs(track.times - time) < SAME)[:1]
+        after = near if len(near) else np.flatnonzero(track.times > time)[:1]
+        easing = EASING_NAMES[track.easings[after[0]]] if len(after) else "smooth"
+        key = Key(float(track.times[near[0]]) if len(near) else time, rounded(value), easing)
+        changed[name] = _joined(_channel_columns(track), _channel_columns(Channel.of([key])))
+    return _with(script, changed)
 
 
-def _easing_at(keys: Iterable[Pose] | Iterable[Key], time: float) -> str:
-    """How a new key is approached: as the one after it is."""
-    return next((key.easing for key in keys if key.time > time), "smooth")
+def _easing_at(poses: Iterable[Pose], time: float) -> str:
+    """How a new pose is approached: as the one after it is."""
+    return next((pose.easing for pose in poses if pose.time > time), "smooth")
 
 
 # How they are made
 
 
-def _each(script: Script, change: Callable[[KeyPlace, AnyKey], AnyKey | None]) -> Script:
-    """The script with each key as `change` gives it back, without those that it does not."""
-    changed = {
-        name: [change(KeyPlace(name, key.time), key) for key in keys]
-        for name, keys in keys_by_track(script).items()
+def _columns(script: Script, places: Places) -> dict[str, Columns]:
+    """All keys of the tracks that any of these places is in."""
+    columns = {POSES: _pose_columns(script.poses)} if POSES in places.times else {}
+    return columns | {
+        name: _channel_columns(track)
+        for name, track in script.tracks.items()
+        if name in places.times
     }
-    return _with(script, {name: filter(None, keys) for name, keys in changed.items()})
 
 
-def _left(script: Script, places: Places) -> Script:
-    """The script without these keys, of which there may be none left."""
-    gone = frozenset(places)
-    return _each(script, lambda place, key: None if place in gone else key)
+def _channel_columns(track: Channel) -> Columns:
+    return track.times, track.values, track.easings
+
+
+def _pose_columns(poses: Sequence[Pose]) -> Columns:
+    column = np.empty(len(poses), object)
+    column[:] = poses
+    return np.array([pose.time for pose in poses]), column
 
 
 def _placed(
-    base: Script, source: Script, places: Places, seconds: float
-) -> tuple[Script, frozenset[KeyPlace]]:
-    """`base` with the keys of `source` at these places, later by `seconds`; and these alone."""
-    shift = max(seconds, -min((place.time for place in places), default=0.0))
-    chosen = frozenset(places)
-
-    def arrive(place: KeyPlace, key: AnyKey) -> AnyKey | None:
-        """The key as it is then, if it is meant."""
-        return replace(key, time=rounded(key.time + shift)) if place in chosen else None
-
-    arriving = _each(source, arrive)
-    there, coming = keys_by_track(base), keys_by_track(arriving)
-    merged = {
-        name: _merged(there.get(name, ()), coming.get(name, ())) for name in keys_by_track(source)
-    }
-    arrived = places_of(arriving)
-    return _reaching(_with(base, merged), *(place.time for place in arrived)), arrived
+    script: Script, places: Places, seconds: float, *, are_copies: bool
+) -> tuple[Script, Places]:
+    """The script with the keys at these places later by `seconds`, and where they are then."""
+    shift = max(seconds, -places.first) if places else 0.0
+    changed, arrived = {}, {}
+    for name, columns in _columns(script, places).items():
+        is_chosen = among(columns[0], places.times[name])
+        times, *rest = _picked(columns, is_chosen)
+        arrived[name] = np.round(times + shift, DECIMALS)
+        there = columns if are_copies else _picked(columns, ~is_chosen)
+        changed[name] = _joined(there, (arrived[name], *rest))
+    ends = [float(times[-1]) for times in arrived.values() if len(times)]
+    return _reaching(_with(script, changed), *ends), Places(arrived)
 
 
-def _merged(there: Iterable[Item], arriving: Iterable[Item]) -> list[Item]:
+def _picked(columns: Columns, which: npt.NDArray[Any]) -> Columns:
+    """Some keys; which: a mask, or their numbers."""
+    return tuple(column[which] for column in columns)
+
+
+def _joined(there: Columns, arriving: Columns) -> Columns:
     """Both in the order of time; what arrives takes the place of what is there."""
-    result: list[Item] = list(arriving)
-    taken_times = sorted(item.time for item in result)
-    result += [item for item in there if not _is_among(item.time, taken_times)]
-    result.sort(key=attrgetter("time"))
-    return result
+    left = _picked(there, ~among(there[0], arriving[0], SAME))
+    if not len(left[0]):
+        return arriving
+    both = tuple(np.concatenate(pair) for pair in zip(left, arriving, strict=True))
+    return _picked(both, np.argsort(both[0], kind="stable"))
 
 
-def _is_among(time: float, times: list[float]) -> bool:
-    """Whether one of these times, which are in order, is the same [s]."""
-    after = bisect.bisect_left(times, time - SAME)
-    return after < len(times) and times[after] <= time + SAME
-
-
-def _with(script: Script, tracks: Mapping[str, Iterable[Any]]) -> Script:
-    """The script with other keys; a track without any is none."""
-    keys = {name: tuple(each) for name, each in tracks.items()}
-    channels = {name: Channel.of(each) for name, each in keys.items() if each and name != POSES}
-    return replace(script, poses=keys.get(POSES, ()), tracks=channels)
+def _with(script: Script, changed: Mapping[str, Columns]) -> Script:
+    """The script with other keys in some tracks; a track without any is none."""
+    poses, tracks = script.poses, dict(script.tracks)
+    for name, columns in changed.items():
+        if name == POSES:
+            pairs = zip(*(column.tolist() for column in columns), strict=True)
+            poses = tuple(replace(pose, time=time) for time, pose in pairs)
+        elif len(columns[0]):
+            tracks[name] = Channel(*columns)
+        else:
+            tracks.pop(name)
+    return replace(script, poses=poses, tracks=tracks)
 
 
 def _reaching(script: Script, *times: float) -> Script:

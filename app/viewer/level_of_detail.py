@@ -38,6 +38,11 @@ class LevelOfDetail:
         """For a scene that moves."""
         return LEVELS[self.level]
 
+    @property
+    def unhurried(self) -> render.Detail:
+        """For a scene that moves a little now and then: not coarser than software begins with."""
+        return LEVELS[min(self.level, FIRST_ON_SOFTWARE)]
+
     def begin_motion(self) -> None:
         """Something begins to move: the one moment at which more detail goes unnoticed."""
         if self._fast >= PATIENCE and self.level > 0:

@@ -31,10 +31,11 @@ class Painter:
         """Whether the picture shows the present view, in full detail."""
         return self._painted == (self._view.state, FULL)
 
-    def paint(self, elapsed: float, *, has_moved: bool) -> bool:
+    def paint(self, elapsed: float, *, has_moved: bool, is_alive: bool) -> bool:
         """Draw the scene if it has changed, or is not drawn in full yet; whether it changed.
 
-        elapsed: since the last frame [s]. has_moved: whether the simulation went on.
+        elapsed: since the last frame [s]. has_moved: whether what is seen of it did. is_alive: it
+        only lives, and will move again in a moment: finer pictures in between would flicker.
         """
         surface = self._stage.surface
         surface.area = self._view.viewport
@@ -46,8 +47,10 @@ class Painter:
             self.level_of_detail.begin_motion()
         self._calm_for = 0.0 if has_changed else self._calm_for + elapsed
         if has_changed or self._exporter.film is not None:
-            self._draw(self.level_of_detail.detail, state)
-        elif detail != FULL and self._calm_for > CALM:
+            level = self.level_of_detail
+            is_unhurried = is_alive and state == painted
+            self._draw(level.unhurried if is_unhurried else level.detail, state)
+        elif detail != FULL and self._calm_for > CALM and not is_alive:
             self._draw(FULL, state)
         return has_changed
 

@@ -6,6 +6,8 @@ Real time is cut into steps of the same length, which no frame rate can upset. S
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
 import numpy as np
 
 from risorius import sim
@@ -20,6 +22,12 @@ EARLY = 0.25  # of a step that may be taken before it is due: a screen of 60 Hz 
 # late and now early gets one step for each of its frames, and motion does not judder
 CALM = 0.15  # [s] without change before physics rests and the scene is drawn in full
 STILL = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
+LEFT_ALONE = 0.5  # [s] after which a face that nobody moved any more only lives
+SEEN = 0.2  # [mm] of motion that is drawn while it only lives: about half a pixel
+EYE_RADIUS = 12.0  # [mm] about: of how far a turning eye moves
+
+
+Life = Callable[[float], Mapping[str, float]]  # what a face adds to its controls, so much [s] later
 
 
 class Clock:
@@ -50,6 +58,10 @@ class Physics:
     def begin_anew(self) -> None:
         """Another scene may be about to move."""
         self.has_stepped = False  # in this frame
+        self.has_moved = False  # since the last frame in which it had, as far as one can see
+        self._seen = self._session.scene.positions.copy()  # in that frame
+        self._seen_bones = self._session.scene.bone_transforms()
+        self._left_for = 0.0  # [s] that nobody has moved the face
         self._posed: dict[str, float] = {}  # the values at the last step
         self._still_for = 0.0  # [s] that no vertex has moved
 
@@ -58,8 +70,13 @@ class Physics:
         """Whether nothing has moved for some time."""
         return self._still_for > CALM
 
-    def advance(self, seconds: float, *, is_skin_dragged: bool) -> None:
-        """As many steps as are due; none for a face at rest that nobody moves.
+    @property
+    def is_left_alone(self) -> bool:
+        """Whether nobody has moved the face for some time, and it does no more than live."""
+        return self._left_for > LEFT_ALONE
+
+    def advance(self, seconds: float, *, is_skin_dragged: bool, life: Life | None = None) -> None:
+        """As many steps as are due; none for a face at rest that nobody moves and that has no life.
 
         is_skin_dragged: whether the mouse drags the skin. UserError where the simulation gave up.
         """
@@ -68,8 +85,10 @@ class Physics:
         wanted = dict(session.values)
         is_driven = session.is_playing or session.is_recording or is_skin_dragged
         is_driven = is_driven or wanted != self._posed
-        self.has_stepped = steps > 0 and (is_driven or not self.is_at_rest)
+        self._left_for = 0.0 if is_driven or life is None else self._left_for + steps * STEP
+        self.has_stepped = steps > 0 and (is_driven or life is not None or not self.is_at_rest)
         if not self.has_stepped:
+            self.has_moved = False
             return
         self._posed = wanted
         self._times.next_frame()
@@ -78,7 +97,7 @@ class Physics:
             try:
                 for _ in range(steps):
                     before = scene.positions.copy()
-                    session.advance(STEP)
+                    session.advance(STEP, life(STEP) if life is not None else {})
             except sim.SimulationUnstable as error:
                 session.neutral()
                 scene.reset()
@@ -87,3 +106,17 @@ class Physics:
         moved = float(np.abs(scene.positions - before).max(initial=0.0))
         # Muscles follow late: what has not moved yet may still be about to.
         self._still_for = 0.0 if is_driven or moved > STILL else self._still_for + steps * STEP
+        self.has_moved = not self.is_left_alone or self._is_to_be_seen()
+        if self.has_moved:
+            self._seen, self._seen_bones = scene.positions.copy(), scene.bone_transforms()
+
+    def _is_to_be_seen(self) -> bool:
+        """Whether the face has moved enough since it was last seen to move."""
+        scene = self._session.scene
+        if float(np.abs(scene.positions - self._seen).max(initial=0.0)) > SEEN:
+            return True
+        turns = (
+            float(np.abs(matrix[:3, :3] - self._seen_bones[name][:3, :3]).max())
+            for name, matrix in scene.bone_transforms().items()
+        )
+        return max(turns, default=0.0) * EYE_RADIUS > SEEN

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from ..errors import UserError
-from ..script import pose_script
+from ..script import pose_script, prepare_text
 from ..stopping import cleaned_up_if_stopped
 from .session import Session
 from .unsaved import Work, WorkFiles, left_behind
@@ -88,7 +88,11 @@ class Recovery:
             self.discard()
             self._safe = state
         elif self.due_in() <= 0.0:
-            self.save(session)
+            # A long script is made into text in many calls, lest the window stands still; where
+            # it changes all the time, at once.
+            is_urgent = self.due_in() < -LONGEST
+            if is_urgent or not (session.script_is_unsaved and prepare_text(session.script)):
+                self.save(session)
 
     def due_in(self) -> float:
         """How long until something is to be written [s]; infinite if nothing is."""

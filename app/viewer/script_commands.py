@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from ..performances import read_performance
 from ..script import is_pose
+from ..sound import with_sound
 from .files import SUFFIX, Files
 from .messages import Message, Task
 from .question import Question
 from .session import Session
 
 RECORDINGS = (".csv", ".json", ".tsv", ".txt")  # how their names may end; content tells what it is
+SOUNDS = (
+    *(".wav", ".mp3", ".m4a", ".aac", ".flac", ".ogg", ".opus", ".aif", ".aiff", ".wma"),
+    *(".mov", ".mp4", ".mkv", ".webm"),  # films that are heard: a phone's, beside its take
+)
 
 
 class ScriptCommands:
@@ -98,6 +104,30 @@ class ScriptCommands:
             return then() or f"{path}: pose written"
 
         self._files.ask("Save pose", write, saving=True, proposed="pose.toml")
+
+    def ask_sound(self) -> None:
+        """Ask for a sound file, and put it beside the script."""
+        self._files.ask(
+            "Open sound",
+            self.set_sound,
+            saving=False,
+            kind="Sounds",
+            suffixes=SOUNDS,
+        )
+
+    def set_sound(self, path: Path) -> Message:
+        """Put a sound file beside the script; UserError where nothing is heard in it."""
+        self._session.edit(with_sound(self._session.script, path))
+        return f"{path.name}: opened; Space plays it with the script"
+
+    @property
+    def has_sound(self) -> bool:
+        """Whether a sound is beside the script."""
+        return self._session.script.sound is not None
+
+    def remove_sound(self) -> None:
+        """The script without its sound."""
+        self._session.edit(replace(self._session.script, sound=None))
 
     def toggle_recording(self) -> Message:
         """Record the sliders, or make the recording the script."""

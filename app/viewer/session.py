@@ -7,7 +7,7 @@ units, expressions, visemes) is one entry of `values`; the scene adds them up.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +38,12 @@ class Document:
     file: ScriptFile  # in which the script is kept
 
 
+def _new_keys(before: Document, after: Document) -> int:
+    """How many keys of tracks a state has that the one before does not share with it."""
+    known = {id(track) for track in before.script.tracks.values()}
+    return sum(len(track) for track in after.script.tracks.values() if id(track) not in known)
+
+
 class Session:
     """The controls of a scene and the script that may move them."""
 
@@ -58,7 +64,7 @@ class Session:
         self.is_following = False  # the controls are where the script has them
         self._recorder: Recorder | None = None
         self._held: dict[str, float] = {}  # by hand while a recording plays the script
-        self._history = History(self._document())
+        self._history = History(self._document(), _new_keys)
 
     def _enter(self, scene: Scene) -> None:
         self.scene = scene
@@ -67,7 +73,6 @@ class Session:
         # The lowest controls, to which all others add up; all where a scene does not tell.
         self.muscles = frozenset(simulation.controls if simulation is not None else self.limits)
         self.groups = highest_first(scene.groups, self.muscles, scene.expressions)
-        self._moved_by: dict[str, frozenset[str]] = {}
 
     def move_to(self, scene: Scene) -> None:
         """Go on with another scene that has the same controls; UserError if it has not.
@@ -134,18 +139,11 @@ class Session:
         self.pose_is_unsaved, self.is_following = is_unsaved, False
         self.note()
 
-    def moved_by(self, name: str) -> frozenset[str]:
-        """The muscles that a control moves: itself, or those that a layer's control adds to."""
-        simulation = getattr(self.scene, "simulation", None)
-        if simulation is None or name in self.muscles:
-            return frozenset({name})
-        if name not in self._moved_by:
-            # Asked of the simulation, between two steps, so that nothing of it is known here.
-            simulation.pose({name: self.limits[name][1]})
-            sums = simulation.sums
-            self.scene.pose(self.values)
-            self._moved_by[name] = frozenset(each for each, share in sums.items() if share)
-        return self._moved_by[name]
+    @property
+    def moved(self) -> frozenset[str]:
+        """The lowest controls that are moved by hand, or by the script."""
+        active = (name for name, value in self.values.items() if value)
+        return frozenset().union(*map(self.scene.moved_by, active))
 
     # Undo
 
@@ -217,10 +215,8 @@ class Session:
 
     def seek_key(self, direction: int) -> None:
         """Pause at the next time at which the script has a key, or with -1 at the one before."""
-        times = {place.time for place in keyframes.places_of(self.script)}
-        beyond = [time for time in times if (time - self.time) * direction > 1e-6]
         self.is_playing = False
-        self.seek((min if direction > 0 else max)(beyond, default=self.time))
+        self.seek(keyframes.time_beyond(self.script, self.time, direction))
 
     # Keys
 
@@ -247,8 +243,11 @@ class Session:
         self.note()
         return time
 
-    def advance(self, seconds: float) -> None:
-        """Let time pass: the script moves the controls, the scene follows them."""
+    def advance(self, seconds: float, beneath: Mapping[str, float] | None = None) -> None:
+        """Let time pass: the script moves the controls, the scene follows them.
+
+        beneath: what else moves the scene, at controls that are 0; no script ever has it.
+        """
         if self.is_playing:
             self.time += self.speed * seconds
             if self.time >= self.script.duration:
@@ -257,7 +256,7 @@ class Session:
             self._follow_script()
         if self._recorder is not None:
             self._recorder.add(seconds, self.values)
-        self.scene.pose(self.values)
+        self.scene.pose({**self.values, **(beneath or {})})
         self.scene.step(seconds)
 
     def _follow_script(self) -> None:
@@ -276,8 +275,15 @@ class Session:
     def toggle_recording(self) -> None:
         """Record the controls from now on, or make what was recorded the script."""
         if self._recorder is None:
-            scene, camera = self.script.scene, self.script.camera
-            empty = Script("Recording", 0.0, "Recording", scene=scene, camera=camera)
+            empty = replace(
+                self.script,
+                title="Recording",
+                duration=0.0,
+                source="Recording",
+                poses=(),
+                tracks={},
+                preface="",
+            )
             self._recorder, self._held = Recorder(empty), {}
             return
         recording = self._recorder.script()

@@ -104,6 +104,7 @@ class Settings:
     theme: Annotated[str, rules.one_of(THEMES)] = "light"
     zoom: Annotated[float, rules.number(*rules.ZOOMS)] = 1.0  # of all words and sliders
     is_linked: Annotated[bool, rules.flag] = True  # sliders of both sides
+    is_alive: Annotated[bool, rules.flag] = True  # the face, where nobody moves it
     tab: Annotated[str, rules.one_of(rules.TABS)] = "Face"
     # [letters' heights]; layout.py has the limits of a screen.
     panel_width: Annotated[float, rules.number(0.0, 1000.0)] = 22.5
@@ -114,6 +115,10 @@ class Settings:
     def toggle_theme(self) -> None:
         """Light or dark."""
         self.theme = "light" if self.theme == "dark" else "dark"
+
+    def toggle_life(self) -> None:
+        """Whether a face that nobody moves lives."""
+        self.is_alive = not self.is_alive
 
     def enlarge(self, factor: float) -> None:
         """Make words and sliders larger or smaller."""

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
+from ..script import Floats
 from .keyframes import FRAME
 
 MARGIN = 1.06  # of the script: room behind its end, to drag keys there
 LEAST_SPAN = 8.0 * FRAME  # [s] as far as one may zoom in
 CLOSEST_TICKS = 0.12  # of the room for a label
 STEPS = (FRAME, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0, 3600.0, 86_400.0)
+
+Number = TypeVar("Number", float, Floats)
 
 
 class Tick(NamedTuple):
@@ -49,8 +52,8 @@ class TimeAxis:
         """The last time that is visible [s]."""
         return self.start + self.span
 
-    def x(self, time: float) -> float:
-        """Where a time is [window units]."""
+    def x(self, time: Number) -> Number:
+        """Where a time is, or each of an array of times [window units]."""
         return self._left + self._width * (time - self.start) / self.span
 
     def time(self, x: float) -> float:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import bisect
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
-from operator import attrgetter
 
-from ..script import Channel, Pose, Script
+import numpy as np
+
+from ..script import EASING_NAMES, Channel, Pose, Script
 from .control_rows import readable
-from .keyframes import POSES, SAME, KeyPlace, keys_by_track
+from .keyframes import POSES, places_of
+from .places import Places
 
 TRACKS = "Tracks"
 MOST_LINES = 7  # of a key's values that are told
@@ -21,9 +22,10 @@ class Track:
     """One row: the keys of the poses, of a track, or of all tracks together."""
 
     label: str
-    places: tuple[KeyPlace, ...]  # in the order of time
+    places: Places
+    channel: Channel | None = None  # that it shows alone
     names: tuple[tuple[float, str], ...] = ()  # of poses, by time [s]
-    held: tuple[tuple[float, float], ...] = ()  # from, to [s]: nothing moves in between
+    held: tuple[tuple[float, float], ...] = ()  # from, to [s]: two poses in a row are the same
     is_whole: bool = False  # poses, which are keys of all controls
     is_sum: bool = False  # of the rows below it, which may be folded
 
@@ -32,39 +34,27 @@ class Track:
         """Of the row, in ordinary ones: names stand above the keys."""
         return 1.75 if self.names else 1.0
 
-    def near(self, time: float, reach: float) -> frozenset[KeyPlace]:
-        """The keys at the time nearest to this one, none if that is further than `reach` [s]."""
-        found = self.between(time - reach, time + reach)
-        nearest = min((place.time for place in found), key=lambda t: abs(t - time), default=0.0)
-        return frozenset(place for place in found if place.time == nearest)
-
-    def between(self, first: float, last: float) -> Sequence[KeyPlace]:
-        """The keys from one time to another [s]."""
-        begin = bisect.bisect_left(self.places, first, key=attrgetter("time"))
-        return self.places[begin : bisect.bisect_right(self.places, last, key=attrgetter("time"))]
+    @property
+    def end(self) -> float:
+        """The time of its last key [s]."""
+        return max((float(times[-1]) for times in self.places.times.values()), default=0.0)
 
 
 def visible_tracks(script: Script, *, is_open: bool) -> tuple[Track, ...]:
     """The poses, then the tracks: one row for all of them, and if it is open one for each."""
-    tracks = []
+    tracks, times = [], places_of(script).times
     if script.poses or not script.tracks:
         names = tuple((pose.time, pose.name) for pose in script.poses if pose.name)
-        held = _held(script.poses)
-        tracks.append(Track("Poses", _places(script, (POSES,)), names, held, is_whole=True))
+        poses = Places({POSES: times.pop(POSES, np.empty(0))})
+        tracks.append(Track("Poses", poses, names=names, held=_held(script.poses), is_whole=True))
     if script.tracks:
-        tracks.append(Track(TRACKS, _places(script, tuple(script.tracks)), is_sum=True))
+        tracks.append(Track(TRACKS, Places(times), is_sum=True))
     if is_open:
         tracks += [
-            Track(readable(name), _places(script, (name,)), held=_still(track))
-            for name, track in script.tracks.items()
+            Track(readable(name), Places({name: times[name]}), channel)
+            for name, channel in script.tracks.items()
         ]
     return tuple(tracks)
-
-
-def _places(script: Script, names: Sequence[str]) -> tuple[KeyPlace, ...]:
-    keys = keys_by_track(script)
-    places = [KeyPlace(name, key.time) for name in names for key in keys[name]]
-    return tuple(sorted(places, key=attrgetter("time")))
 
 
 def _held(poses: Sequence[Pose]) -> tuple[tuple[float, float], ...]:
@@ -73,27 +63,21 @@ def _held(poses: Sequence[Pose]) -> tuple[tuple[float, float], ...]:
     return tuple((one.time, other.time) for one, other in pairs if one.values == other.values)
 
 
-def _still(track: Channel) -> tuple[tuple[float, float], ...]:
-    """Where two keys in a row have the same value."""
-    pairs = itertools.pairwise(track.keys)
-    return tuple((a.time, b.time) for a, b in pairs if abs(a.value - b.value) < SAME)
-
-
-def described(script: Script, places: frozenset[KeyPlace]) -> str:
+def described(script: Script, places: Places) -> str:
     """What there is to say about keys at one time: a title, then the values that they hold."""
     name, lines, easings = "", list[str](), set[str]()
-    for track, keys in sorted(keys_by_track(script).items()):  # the poses come first
-        for key in keys:
-            if KeyPlace(track, key.time) not in places:
-                continue
-            easings.add(key.easing)
-            if isinstance(key, Pose):
-                name = key.name or ""
-                lines += [_value(*each) for each in key.values.items() if each[1]] or ["neutral"]
-            else:
-                lines.append(_value(track, key.value))
-    time = f"{min(place.time for place in places):.2f} s"
-    title = ", ".join(filter(None, (name, time, *sorted(easings - {"smooth"}))))
+    for track, times in sorted(places.times.items()):  # the poses come first
+        if track == POSES:
+            for pose in (pose for pose in script.poses if pose.time in times):
+                name = pose.name or ""
+                lines += [_value(*each) for each in pose.values.items() if each[1]] or ["neutral"]
+                easings.add(pose.easing)
+        else:
+            channel = script.tracks[track]
+            for index in np.searchsorted(channel.times, times):
+                lines.append(_value(track, channel.values[index]))
+                easings.add(EASING_NAMES[channel.easings[index]])
+    title = ", ".join(filter(None, (name, f"{places.first:.2f} s", *sorted(easings - {"smooth"}))))
     more = [f"and {len(lines) - MOST_LINES} more"] if len(lines) > MOST_LINES else []
     return "\n".join([title, *lines[:MOST_LINES], *more])
 

@@ -30,6 +30,7 @@ from .file_drop import FileDrop
 from .files import Files
 from .frame_times import FrameTimes
 from .gui import Gui, on_drop, poll_events, wait_for_event
+from .idle_life import IdleLife
 from .key_selection import KeySelection
 from .messages import Messages
 from .mouse import Mouse
@@ -47,6 +48,7 @@ from .panels.message_line import draw_message
 from .panels.question_box import draw_question
 from .panels.recovery_banner import draw_recovery
 from .panels.timeline import Timeline
+from .panels.waveform import Waveform
 from .physics import Physics
 from .placement import Placement, first_size
 from .question import Question
@@ -61,12 +63,14 @@ from .settings import (
     rename_unusable,
     save_settings,
 )
+from .soundtrack import Soundtrack
 from .stage import Stage
 from .time_axis import TimeAxis
 from .view import View
 
 IDLE_WAIT = 2.0  # [s] between two frames while nothing happens
 WATCHFUL_WAIT = 0.1  # [s] the same while a file dialog is open, or words are typed
+LIFE_WAIT = 1.0 / 30.0  # [s] from one frame to the next while the face does no more than live
 FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
 
 
@@ -96,6 +100,7 @@ class Viewer:
         self.session = Session(scene, script)
         self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
         self.recovery.find(self.session)
+        self.soundtrack = Soundtrack(self.session)
         if display is None:
             refused = remove_refused_options(self.settings.display, scene)
             if refused and settings_path is not None and not complaint:
@@ -144,6 +149,7 @@ class Viewer:
             *menus.expression_menu(session),
             *menus.help_menu(self.panel_state),
         )
+        self.life = IdleLife(session, settings, self.view)
         self.physics = Physics(session, self.times)
         self.painter = Painter(self.stage, self.view, self.exporter, self.messages)
         self.panel_cache = PanelCache()
@@ -153,7 +159,10 @@ class Viewer:
         gui, session, settings, messages = self.gui, self.session, self.settings, self.messages
         view, commands, axis = self.view, self.commands, self.time_axis
         bar = MenuBar(gui, session, messages, commands)
-        dope_sheet = DopeSheet(gui, session, settings, messages, self.selection, axis, bar)
+        waveform = Waveform(gui, self.soundtrack, axis)
+        dope_sheet = DopeSheet(
+            gui, session, settings, messages, self.selection, axis, bar, waveform
+        )
         self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
         self.face_panel = FacePanel(gui, session, settings, view)
         mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
@@ -169,6 +178,7 @@ class Viewer:
         with contextlib.suppress(UserError):  # a disk that is full must not keep the window open
             self._remember()
         self.exporter.close()
+        self.soundtrack.close()
         self.recovery.close()
         self._resources.close()
 
@@ -200,12 +210,11 @@ class Viewer:
                 is_over = playing and not self.session.is_playing
                 if once and is_over and not self.session.unsaved:
                     break
-                if self.is_idle:
-                    self._wait()
+                self._rest()
 
     def wait_for_frame(self) -> None:
         """Wait until something happens, or it is time to look around; then show a frame."""
-        self._wait()
+        self._rest()
         self.frame()
 
     # One turn of the loop
@@ -215,6 +224,7 @@ class Viewer:
         poll_events()
         if self.gui.has_events:
             self._awake = FRAMES_AFTER_EVENT
+            self.life.note_input()
         now = time.perf_counter()
         elapsed, self._last = now - self._last, now
         self.times.note_frame(elapsed)
@@ -222,18 +232,26 @@ class Viewer:
         self.placement.set_title(f"Risorius: {self.session.name}{mark}")
         is_filming = self.exporter.film is not None
         seconds = 1.0 / FRAMES_PER_SECOND if is_filming else elapsed
+        self.messages.attempt(self.soundtrack.refresh)
+        seconds = self.soundtrack.elapsed(seconds, is_silent=is_filming)
         is_skin_dragged = self.mouse.is_dragging_skin
+        is_held = is_skin_dragged or imgui.is_any_item_active()
+        life = partial(self.life.after, is_held=is_held) if self.life.is_on else None
         self.messages.attempt(
-            lambda: self.physics.advance(seconds, is_skin_dragged=is_skin_dragged)
+            lambda: self.physics.advance(seconds, is_skin_dragged=is_skin_dragged, life=life)
         )
-        is_moving = self.painter.paint(elapsed, has_moved=self.physics.has_stepped)
+        is_moving = self.painter.paint(
+            elapsed, has_moved=self.physics.has_moved, is_alive=self.physics.is_left_alone
+        )
+        if self.is_left_alone and not (is_moving or imgui.get_io().want_text_input):
+            return  # what is shown stays as it is; of a line of text the cursor blinks
         self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
         if self.file_drop.has_announced:
             self.messages.text = ""
             self.messages.attempt(self.file_drop.open_announced)
             self._last = time.perf_counter()
-        if is_moving:
+        if is_moving and not self.is_left_alone:
             self.painter.level_of_detail.note(time.perf_counter() - now)
         if self.exporter.film is not None:  # on a fast machine a film is made in real time
             time.sleep(max(1.0 / FRAMES_PER_SECOND - (time.perf_counter() - now), 0.0))
@@ -244,18 +262,43 @@ class Viewer:
         """Whether nothing moves, and nothing is about to."""
         return (
             self.physics.is_at_rest
+            and not self.life.is_on
             and self._awake == 0
             and self.painter.is_complete
             and not self.session.is_recording
             and not self.messages.is_fading
+            and not self.soundtrack.is_heard
             and self.exporter.film is None
         )
+
+    @property
+    def is_left_alone(self) -> bool:
+        """Whether the face does no more than live, and nothing else happens."""
+        return (
+            self.physics.is_left_alone
+            and self._awake == 0
+            and not self.messages.is_fading
+            and not self.files.is_waiting
+            and self.exporter.film is None
+        )
+
+    def _rest(self) -> None:
+        """Sleep where nothing happens, and between frames where the face only lives.
+
+        The latter half of the time at least, however long a frame takes.
+        """
+        if self.is_idle:
+            self._wait()
+        elif self.is_left_alone:
+            spent = time.perf_counter() - self._last
+            wait_for_event(max(LIFE_WAIT - spent, spent))
 
     def _wait(self) -> None:
         """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
         is_watching = self.files.is_waiting or imgui.get_io().want_text_input  # a cursor blinks
         patience = WATCHFUL_WAIT if is_watching else IDLE_WAIT
         patience = min(patience, max(self.recovery.due_in(), 0.0))
+        self.soundtrack.rest()
         begin = time.perf_counter()
         wait_for_event(patience)
         self._last = time.perf_counter()
@@ -265,7 +308,8 @@ class Viewer:
     def _show_panels(self, elapsed: float, *, is_moving: bool) -> None:
         """Answer the user, and draw the panels around the scene where their image is not stored."""
         size, is_answering = self.surface.size, self._awake > 0 or imgui.is_any_item_active()
-        self.panel_cache.age(elapsed)
+        if not self.is_left_alone:  # what the face does by itself moves no slider
+            self.panel_cache.age(elapsed)
         # What is dragged in the scene moves no slider.
         has_input = is_answering and not self.mouse.is_dragging
         is_visible = self.panel_cache.are_due(size, is_moving=is_moving, has_input=has_input)

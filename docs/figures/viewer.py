@@ -101,9 +101,7 @@ def timeline(viewer: Viewer) -> None:
     viewer.session.seek(2.3)
     viewer.frame()
     axis.zoom(0.6, axis.x(0.0))
-    places = places_of(viewer.session.script)
-    chosen = (place for place in places if 1.5 < place.time < 3.0)
-    viewer.selection.places = frozenset(chosen)
+    viewer.selection.places = places_of(viewer.session.script).between(1.5, 3.0)
 
 
 def keys(viewer: Viewer) -> None:
@@ -141,6 +139,7 @@ STOPS: dict[str, Callable[[Viewer], None]] = {
 def draw_image(stop: Callable[[Viewer], None]) -> Image:
     """A window, brought to a stop of the tour."""
     with Viewer(script_for(None, "face"), SIZE) as viewer:
+        viewer.settings.is_alive = False  # the same picture every time
         # Wherever the mouse happens to be, it points at nothing: no hint comes up.
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
         wait_until_settled(viewer)

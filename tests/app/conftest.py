@@ -23,6 +23,7 @@ def viewer() -> Iterator[Viewer]:
     """One window for all tests of a file."""
     script = replace(script_for(None, "face"), duration=0.5)
     with Viewer(script, SIZE) as opened:
+        opened.settings.is_alive = False  # what is compared stands still
         io = imgui.get_io()  # slower than people, for a machine that is busy [s]
         io.mouse_single_click_delay, io.mouse_double_click_time = 1.5, 1.0
         draw_frames(opened)

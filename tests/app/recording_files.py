@@ -76,7 +76,7 @@ def live_link(count: int = 120, unit: float = 1.0) -> dict[str, Sequence[object]
 
 
 def openface(count: int = 60) -> dict[str, Sequence[object] | Array]:
-    """OpenFace 2 with some of its columns: a face that smiles, turns, and looks at the camera."""
+    """OpenFace 2 with some of its columns: a face that smiles, turns, and looks up and down."""
     time = np.arange(count) / 30.0
     turn = 0.3 * np.sin(time)  # to the subject's right
     return {
@@ -86,7 +86,7 @@ def openface(count: int = 60) -> dict[str, Sequence[object] | Array]:
         "confidence": [0.98] * count,
         "success": [1] * count,
         "gaze_angle_x": np.full(count, 0.02),
-        "gaze_angle_y": np.full(count, 0.25),
+        "gaze_angle_y": 0.25 + 0.1 * np.sin(2.0 * time),
         "eye_lmk_x_0": np.full(count, 300.0),
         "pose_Tx": np.full(count, 12.0),
         "pose_Rx": 0.1 * np.cos(time),
@@ -132,6 +132,7 @@ def pyfeat_2(count: int = 20) -> dict[str, Sequence[object] | Array]:
         "_neutral": np.zeros(count),
         **shapes,
         **mesh,
+        "FrameHeight": np.full(count, 1080.0),
         "approx_time": ["00:00"] * count,
         "Identity": ["Person_0"] * count,
     }

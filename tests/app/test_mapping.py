@@ -33,19 +33,22 @@ def test_angles_become_shares_of_what_neck_and_eyes_can() -> None:
 
 
 def test_eyes_move_by_their_angles_or_else_by_their_shapes() -> None:
-    shapes = {"eyeLookInLeft": 0.5, "jawOpen": 0.1}
+    """Each eye and each direction for itself; an angle that is always 0 was not measured."""
+    shapes = {"eyeLookInLeft": 0.5, "eyeLookUpLeft": 0.2, "eyeLookInRight": 0.1, "jawOpen": 0.1}
+    measured = {"eye_yaw_left": -3.0, "eye_pitch_left": 0.0, "eye_yaw_right": np.array([0.0, 2.0])}
+    assert set(chosen({**shapes, **measured})) == {
+        "eye_yaw_left", "eyeLookUpLeft", "eye_yaw_right", "jawOpen"
+    }  # fmt: skip
     angles = dict.fromkeys(EYE_ANGLES, 0.0)
-    assert set(chosen({**shapes, **angles, "eye_yaw_left": -3.0})) == {"jawOpen", *EYE_ANGLES}
-    assert set(chosen({**shapes, **angles})) == set(shapes), "angles that nobody measured"
-    assert set(chosen({**shapes, "eye_yaw_left": -3.0})) == {*shapes, "eye_yaw_left"}
+    assert set(chosen({**shapes, **angles})) == {*shapes, "eye_pitch_right"}
     assert set(chosen(angles)) == set(EYE_ANGLES)
 
 
-def test_arkit_shapes_go_before_action_units() -> None:
+def test_an_action_unit_counts_where_no_shape_tells_the_same() -> None:
     assert set(chosen({"AU12": 1.0, "AU4_left": 1.0})) == {"AU12", "AU4_left"}
-    assert set(chosen({"AU12": 1.0, "mouthSmileLeft": 0.2, "viseme_PP": 1.0})) == {
-        "mouthSmileLeft", "viseme_PP"
-    }  # fmt: skip
+    both = {"AU12": 1.0, "AU6": 1.0, "AU26_left": 1.0, "mouthSmileLeft": 0.2, "viseme_PP": 1.0}
+    assert set(chosen(both)) == {"AU6", "AU26_left", "mouthSmileLeft", "viseme_PP"}
+    assert set(chosen({**both, "jawOpen": 0.1})) == {*chosen(both), "jawOpen"} - {"AU26_left"}
 
 
 def test_shares_add_up_for_arrays_as_for_numbers() -> None:

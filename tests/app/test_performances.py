@@ -149,14 +149,14 @@ def test_smoothing_calms_and_costs_little() -> None:
 
 def test_the_report_says_what_moves_the_face_and_what_does_not() -> None:
     take = take_of(
-        jawOpen=wave(), browDownLeft=0.3 + 0.1 * wave(), cheekPuff=0.2, AU12=wave(),
+        jawOpen=wave(), browDownLeft=0.3 + 0.1 * wave(), cheekPuff=0.2, AU26=wave(),
         head_yaw=90.0 * wave(), head_roll=0.0
     )  # fmt: skip
     _, report = script_of(take, Playback(), face_limits())
     said = {heading: text for heading, text in report.rows}
     assert report.lines[0] == "take.csv: Live Link Face, 181 frames in 3.00 s, 60 a second"
-    assert said["used"] == "2 shapes of ARKit, 1 angles of the head"
-    assert said["left out"] == "AU12: told by others"
+    assert said["used"] == "2 of ARKit's shapes, 1 of the head's angles"
+    assert said["left out"] == "AU26: told by others"
     assert said["constant"] == "cheekPuff head_roll"
     assert "mouthSmileLeft/Right" in said["missing"] and "jawOpen" not in said["missing"].split()
     assert "head_yaw in " in said["cut off"]
@@ -189,7 +189,7 @@ def test_a_recording_is_filmed_as_its_script_is(tmp_path: Path) -> None:
         still = tmp_path / "still.png"
         size = ("--size", "96x96", "--time", 1, "--quiet")
         result = risorius("capture", played, "-o", still, *size, *options)
-        assert (result.exit_code, result.stderr) == (0, "")
+        assert result.exit_code == 0 and "frames in" not in result.stderr
         return np.asarray(Image.open(still))
 
     recorded = picture(path)
@@ -204,7 +204,7 @@ def test_the_mapping_table_is_printed_and_taken(tmp_path: Path) -> None:
     table.write_text(f"{printed.stdout}\nmouthSmileLeft = {{ jaw_open = 1.0 }}\n")
     output = tmp_path / "script.toml"
     result = risorius("convert", written(tmp_path), "-o", output, "--mapping", table, "--quiet")
-    assert (result.exit_code, result.output) == (0, "")
+    assert result.exit_code == 0 and "take.csv" not in result.output
     assert set(load_script(output).tracks) == {"jaw_open", "head_yaw"}
 
 

@@ -68,6 +68,9 @@ DOCUMENTS: dict[str, Any] = {
     "lists of numbers": {"jawOpen": JAW, "mouthClose": [0.125] * 4, "fps": 30},
     "lists of numbers below": {"fps": 30, "blendshapes": {"jaw_open": JAW}},
     "lists with times": {"jawOpen": JAW, "time": [0.0, 1 / 30, 2 / 30, 0.1]},
+    "lists with milliseconds": {
+        "jawOpen": JAW, "timestamp_ms": [round(1e4 + n * 100 / 3, 4) for n in range(4)],
+    },
     "an export of Audio2Face": {
         "exportFps": 30.0, "trackPath": "x", "numFrames": 4, "facsNames": ["jawOpen", "mouthClose"],
         "weightMat": [[jaw, 0.125] for jaw in JAW],
@@ -183,7 +186,7 @@ def tracks(height: float = 0.42) -> dict[str, Any]:
 def test_tracks_of_visemes(tmp_path: Path) -> None:
     """Its I, O, U are our ih, oh, ou; where lips are to meet they do, and silence is silent."""
     take = read_take(written(tmp_path / "take", tracks()))
-    assert take.kind == "OpenFaceFX track"
+    assert take.kind == "Viseme tracks"
     assert take.is_calibrated
     assert take.unknown == ("tail",)
     assert set(take.channels) == {"viseme_sil", "viseme_aa", "viseme_PP", "viseme_oh"}

@@ -104,6 +104,20 @@ def test_values_that_are_none(tmp_path: Path) -> None:
     assert told(take.notes, "far from 0 to 1")
 
 
+def test_angles_that_are_none(tmp_path: Path) -> None:
+    """Angles of -9.8e5 neither hide the unit nor turn the head."""
+    columns = live_link()
+    yaw, pitch = np.array(columns["HeadYaw"]), np.array(columns["LeftEyePitch"])
+    yaw[5], pitch[[7, 50]] = -9.8e5, 1e300
+    take = read_take(
+        written(tmp_path / "take.csv", columns | {"HeadYaw": yaw, "LeftEyePitch": pitch})
+    )
+    assert told(take.notes, "in radians")
+    there = -np.degrees(np.array(columns["LeftEyePitch"], dtype=float))
+    assert take.channels["eye_pitch_left"] == pytest.approx(there, abs=0.1)
+    assert np.abs(take.channels["head_yaw"]).max() < 30.0
+
+
 @pytest.mark.parametrize(
     ("name", "unit"),
     [("radians", 1.0), ("degrees", math.pi / 180.0), ("halves of a turn", math.pi)],
@@ -261,6 +275,12 @@ def test_a_rate_that_the_user_knows(tmp_path: Path) -> None:
     assert times[-1] == pytest.approx(9 / 30.0)
 
 
+def test_a_rate_a_little_lower(tmp_path: Path) -> None:
+    """59.94 frames a second are counted to 60, and last longer."""
+    times, _ = take_of(tmp_path, timecodes(np.arange(600)), rate=59.94)
+    assert times == pytest.approx(np.arange(600) / 59.94)
+
+
 def test_frames_that_are_missing(tmp_path: Path) -> None:
     """A second that held 59 rows is a second all the same."""
     frames = np.delete(np.arange(180), 77)
@@ -311,6 +331,14 @@ def test_a_second_for_each_row(tmp_path: Path) -> None:
     times, notes = take_of(tmp_path, codes, rate=25.0)
     assert times == pytest.approx(np.arange(90) / 25.0)
     assert told(notes, "rows are frames")
+
+
+def test_whole_seconds(tmp_path: Path) -> None:
+    """A clock that many rows share tells nothing: rows are frames."""
+    codes = [f"10:00:{n // 30:02}" for n in range(90)]
+    times, notes = take_of(tmp_path, codes, rate=30.0)
+    assert times == pytest.approx(np.arange(90) / 30.0)
+    assert told(notes, "stands still")
 
 
 def test_rows_out_of_order(tmp_path: Path) -> None:

@@ -114,6 +114,9 @@ def test_all_rows_of_other_length(tmp_path: Path) -> None:
     path.write_text("time,jawOpen\n0,1,0,2\n0,3,0,4\n")
     with pytest.raises(UserError, match=r"line 2 has 4 cells, the header has 2 names"):
         read_take(path)
+    path.write_text("time,jawOpen\n0,1\n0,3,0,4\n0,5,0,6\n")
+    with pytest.raises(UserError, match=r"line 3 has 4 cells"):
+        read_take(path)
 
 
 @pytest.mark.parametrize(

@@ -48,9 +48,12 @@ def test_openface(tmp_path: Path) -> None:
 
 def test_openface_sees_the_gaze_from_the_camera(tmp_path: Path) -> None:
     """Eyes that stay on the camera turn against the head, and look ahead in the middle."""
-    take = read_take(written(tmp_path / "take.csv", openface()))
+    columns = openface()
+    take = read_take(written(tmp_path / "take.csv", columns))
     head, eye = take.channels["head_yaw"], take.channels["eye_yaw_left"]
     assert np.ptp(head + eye) < 1e-3
+    up = -np.degrees(np.array(columns["gaze_angle_y"], dtype=float))
+    assert np.ptp(take.channels["head_pitch"] + take.channels["eye_pitch_left"] - up) < 1e-3
     assert np.median(eye) == pytest.approx(0.0, abs=1e-9)
     assert told(take.notes, "camera")
 
@@ -197,12 +200,28 @@ def test_pyfeat_2(tmp_path: Path) -> None:
     assert not take.unknown
     assert take.duration == pytest.approx(38 / 30.0)
     assert take.channels["mouthSmileLeft"][-1] == pytest.approx(0.5)
-    assert take.channels["head_pitch"][-1] == pytest.approx(10.0, abs=1e-3)
+    assert take.channels["head_pitch"][-1] == pytest.approx(-10.0, abs=1e-3)
+    assert take.channels["head_yaw"][-1] == pytest.approx(-20.0, abs=1e-3)
+    assert take.channels["head_roll"][-1] == pytest.approx(-3.0, abs=1e-3)
     assert "AU12" not in take.channels
     assert "cheekSquintLeft" not in take.channels
     assert take.channels["AU6"] == pytest.approx(0.4)
     assert told(take.notes, "twice")
     assert told(take.notes, "one in 2 frames")
+
+
+def test_pyfeat_of_the_time_between(tmp_path: Path) -> None:
+    """Radians without shapes: pitch + down, roll + to the left shoulder; a gaze of its own."""
+    columns = pyfeat_2()
+    columns = {name: values for name, values in columns.items() if name not in ARKIT}
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert take.kind == "py-feat 1"
+    assert not take.unknown
+    assert take.channels["head_pitch"][-1] == pytest.approx(-10.0, abs=1e-3)
+    assert take.channels["head_roll"][-1] == pytest.approx(3.0, abs=1e-3)
+    assert take.channels["AU12"][-1] == pytest.approx(0.9)
+    assert np.median(take.channels["eye_yaw_left"]) == pytest.approx(0.0, abs=1e-9)
+    assert np.ptp(take.channels["eye_yaw_left"] + take.channels["head_yaw"]) < 1e-3
 
 
 def test_pyfeat_without_a_face(tmp_path: Path) -> None:
@@ -240,7 +259,8 @@ def test_one_picture(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "spelled",
     ["mouthSmileLeft", "MouthSmileLeft", "mouthSmile_L", "MOUTHSMILE_LEFT", "mouth_smile_left",
-     "blendShapes.mouthSmileLeft", "head:mouthSmile_L", " mouthSmileLeft ", "Mouth Smile Left"],
+     "blendShapes.mouthSmileLeft", "head:mouthSmile_L", "head|mouthSmile_L",
+     " mouthSmileLeft ", "Mouth Smile Left"],
 )  # fmt: skip
 def test_spellings_of_a_shape(spelled: str, tmp_path: Path) -> None:
     """Capitals, underscores, blanks, and what stands before the last dot do not count."""
@@ -289,6 +309,18 @@ def test_units_of_action_units(largest: float, tmp_path: Path) -> None:
     take = read_take(written(tmp_path / "take.csv", columns))
     assert take.channels["AU12"] == pytest.approx(np.linspace(0.0, 1.0, 11))
     assert told(take.notes, "divided") == (largest > 1.0)
+
+
+def test_units_that_are_none(tmp_path: Path) -> None:
+    """One wrong value does not change the unit of all others."""
+    columns = {"t": np.arange(11) / 30.0, "AU12": np.full(11, 0.5), "AU4": np.full(11, 0.2)}
+    columns["AU12"][3] = 1e9
+    take = read_take(written(tmp_path / "take.csv", columns))
+    assert take.channels["AU12"] == pytest.approx(0.5)
+    smile = np.array(openface()["AU12_r"]) / 5.0
+    smile[7] = 1e9
+    take = read_take(written(tmp_path / "take.csv", openface() | {"AU12_r": smile}))
+    assert take.channels["AU12"].max() == pytest.approx(1.0, abs=1e-3)
 
 
 def test_columns_that_nobody_knows(tmp_path: Path) -> None:

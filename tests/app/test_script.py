@@ -108,6 +108,19 @@ def test_a_channel_has_the_values_of_its_keys(channel: Channel, data: st.DataObj
     assert channel.value(time) == before[0].value + (way if before[0].time <= time else 0.0)
 
 
+@given(channel=channels(), first=st.floats(0.0, LARGEST), steps=st.lists(st.floats(1e-3, 1e4)))
+def test_extremes_between_times(channel: Channel, first: float, steps: list[float]) -> None:
+    """The timeline's curve reaches as far as any moment between two times, keys among them."""
+    edges = np.cumsum([first, 1.0, *steps])
+    lowest, highest = channel.extremes(edges)
+    for low, high, begin, end in zip(lowest, highest, edges[:-1], edges[1:], strict=True):
+        moments = [*np.linspace(begin, end, 7).tolist()]
+        moments += [time for time in channel.times.tolist() if begin <= time < end]
+        values = [channel.value(moment) for moment in moments]
+        slack = 1e-6 * (1.0 + max(map(abs, values)))
+        assert abs(low - min(values)) <= slack and abs(high - max(values)) <= slack
+
+
 def test_nobody_can_change_the_keys_of_a_channel() -> None:
     """The undo history and the file share them; even the arrays that it was made from are apart."""
     times = np.array([0.0, 1.0])

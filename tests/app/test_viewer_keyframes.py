@@ -13,7 +13,8 @@ from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script import Script, load_script, parse_script, save_script, script_text
 from risorius.app.viewer import keyframes
-from risorius.app.viewer.keyframes import FRAME, POSES, KeyPlace
+from risorius.app.viewer.keyframes import FRAME, POSES
+from risorius.app.viewer.places import KeyPlace, Places
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.time_axis import LEAST_SPAN, TimeAxis
 from risorius.app.viewer.tracks import described, visible_tracks
@@ -50,7 +51,7 @@ def pose_times(script: Script) -> list[float]:
 
 def test_a_moved_key_keeps_everything_but_its_time(hello: Script) -> None:
     """Name, values and easing go along; what is not selected stays."""
-    script, places = keyframes.moved(hello, [JOY], 0.5)
+    script, places = keyframes.moved(hello, Places.of(JOY), 0.5)
     assert places == {KeyPlace(POSES, 1.5)}
     assert pose_times(script) == [0.0, 1.5, 3.0, 4.0]
     assert replace(script.poses[1], time=1.0) == hello.poses[1]
@@ -59,16 +60,16 @@ def test_a_moved_key_keeps_everything_but_its_time(hello: Script) -> None:
 
 def test_moved_keys_stay_in_order_and_after_zero(hello: Script) -> None:
     """A key can pass others; no key comes before 0; beyond the end the script grows."""
-    passed, _ = keyframes.moved(hello, [JOY], 2.5)
+    passed, _ = keyframes.moved(hello, Places.of(JOY), 2.5)
     assert pose_times(passed) == [0.0, 3.0, 3.5, 4.0]
     assert passed.poses[2].name == "joy"
     both = [JOY, KeyPlace("blink", 2.0)]
-    first, places = keyframes.moved(hello, both, -9.0)
+    first, places = keyframes.moved(hello, Places.of(*both), -9.0)
     assert places == {KeyPlace(POSES, 0.0), KeyPlace("blink", 1.0)}
     assert pose_times(first) == [0.0, 3.0, 4.0]  # it took the place of what was there
-    late, _ = keyframes.moved(hello, [KeyPlace(POSES, 4.0)], 2.0)
+    late, _ = keyframes.moved(hello, Places.of(KeyPlace(POSES, 4.0)), 2.0)
     assert late.duration == 6.0
-    assert keyframes.moved(hello, [JOY], 0.1)[0].duration == hello.duration
+    assert keyframes.moved(hello, Places.of(JOY), 0.1)[0].duration == hello.duration
 
 
 def test_moving_there_and_back_changes_nothing(hello: Script) -> None:
@@ -81,11 +82,11 @@ def test_moving_there_and_back_changes_nothing(hello: Script) -> None:
 
 def test_copies_and_deletions(hello: Script) -> None:
     """A copy is as the key was; deleting it gives the script back; the last key stays."""
-    script, copies = keyframes.copied(hello, [JOY, KeyPlace("blink", 2.12)], 0.25)
+    script, copies = keyframes.copied(hello, Places.of(JOY, KeyPlace("blink", 2.12)), 0.25)
     assert copies == {KeyPlace(POSES, 1.25), KeyPlace("blink", 2.37)}
     assert keyframes.places_of(script) == keyframes.places_of(hello) | copies
     assert keyframes.without(script, copies) == hello
-    blinks = {place for place in keyframes.places_of(hello) if place.track == "blink"}
+    blinks = Places({"blink": hello.tracks["blink"].times})
     assert keyframes.without(hello, blinks).tracks == {}
     with pytest.raises(UserError, match="at least one key"):
         keyframes.without(hello, keyframes.places_of(hello))
@@ -96,7 +97,7 @@ def test_names_easings_and_the_end(hello: Script) -> None:
     named = keyframes.renamed(hello, 3.0, "  rest ")
     assert [pose.name for pose in named.key_poses] == ["joy", "rest"]
     assert keyframes.renamed(named, 3.0, "") == hello
-    eased = keyframes.eased(hello, [JOY, KeyPlace("blink", 2.0)], "hold")
+    eased = keyframes.eased(hello, Places.of(JOY, KeyPlace("blink", 2.0)), "hold")
     assert eased.poses[1].easing == "hold" == eased.tracks["blink"].keys[0].easing
     assert eased.poses[2].easing == "smooth"
     assert keyframes.lasting(hello, 2.0).duration == 2.0
@@ -152,10 +153,10 @@ def test_edited_scripts_survive_a_file(session: Session, tmp_path: Path) -> None
     session.seek(0.77)
     session.set("jaw_open", 0.123456789)
     session.set_key()
-    script, _ = keyframes.moved(session.script, [JOY, KeyPlace("blink", 2.0)], 0.07)
+    script, _ = keyframes.moved(session.script, Places.of(JOY, KeyPlace("blink", 2.0)), 0.07)
     script, _ = keyframes.copied(script, keyframes.places_of(script), 1.0 / 3.0)
     script = keyframes.eased(
-        keyframes.renamed(script, 3.0, 'a "name"\t\x7f'), [KeyPlace(POSES, 3.0)], "hold"
+        keyframes.renamed(script, 3.0, 'a "name"\t\x7f'), Places.of(KeyPlace(POSES, 3.0)), "hold"
     )
     session.edit(script)
     target = tmp_path / "edited.toml"
@@ -172,7 +173,7 @@ def test_undo_takes_back_an_edit_wherever_one_looks(session: Session) -> None:
     before = session.script
     session.seek(1.0)
     session.note()
-    session.edit(keyframes.moved(session.script, [JOY], 0.5)[0])
+    session.edit(keyframes.moved(session.script, Places.of(JOY), 0.5)[0])
     for time in (0.5, 2.0, 3.0):
         session.seek(time)
         session.note()
@@ -201,10 +202,10 @@ def test_the_face_follows_an_edit_if_it_followed_the_script(session: Session) ->
     """A key that moves away from under the playhead is seen to; a pose by hand stays."""
     session.seek(1.0)
     assert session.values["joy"] == 1.0
-    session.edit(keyframes.moved(session.script, [JOY], 0.5)[0])
+    session.edit(keyframes.moved(session.script, Places.of(JOY), 0.5)[0])
     assert 0.0 < session.values["joy"] < 1.0
     session.set("joy", 0.3)
-    session.edit(keyframes.moved(session.script, [KeyPlace(POSES, 1.5)], -0.5)[0])
+    session.edit(keyframes.moved(session.script, Places.of(KeyPlace(POSES, 1.5)), -0.5)[0])
     assert session.values["joy"] == 0.3
 
 
@@ -212,14 +213,14 @@ def test_keys_cannot_be_changed_while_recording(session: Session) -> None:
     """What is being recorded takes the script's place: a change would be lost."""
     session.toggle_recording()
     with pytest.raises(UserError, match="stop the recording"):
-        session.edit(keyframes.moved(session.script, [JOY], 0.5)[0])
+        session.edit(keyframes.moved(session.script, Places.of(JOY), 0.5)[0])
 
 
 def test_the_file_goes_with_its_script(session: Session, tmp_path: Path) -> None:
     """Undo past opening another script gives back the first one's file, too."""
     own, other = session.file.path, tmp_path / "other.toml"
     other.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")
-    session.open(session.read(other))
+    session.open(load_script(other))
     assert session.file.path == other and session.name == "other.toml"
     session.undo()
     assert session.file.path == own and not session.script_is_unsaved
@@ -238,10 +239,10 @@ def test_what_a_file_would_lose_is_noticed(session: Session) -> None:
     text = path.read_text()
     path.write_text(text + "# mine\n")
     assert "another program" in session.file.objection
-    session.open(session.read(path))
+    session.open(load_script(path))
     assert "comments" in session.file.objection
     path.write_text(text.replace('"Hello"', '"No. #1 \\" # 2"'))
-    session.open(session.read(path))
+    session.open(load_script(path))
     assert session.script.title == 'No. #1 " # 2' and session.file.objection == ""
     path.unlink()
     assert session.file.objection == ""
@@ -253,11 +254,11 @@ def test_rows_of_the_timeline(hello: Script) -> None:
     assert [place.time for place in poses.places] == [0.0, 1.0, 3.0, 4.0]
     assert poses.names == ((1.0, "joy"),) and tracks.is_sum
     assert [track.label for track in visible_tracks(hello, is_open=True)][2:] == ["blink"]
-    assert visible_tracks(hello, is_open=True)[2].held == ((2.12, 2.22),)
-    assert poses.near(1.2, 0.3) == {JOY} and not poses.near(2.0, 0.3)
-    assert described(hello, frozenset({JOY})) == "joy, 1.00 s, ease-out\njoy 1.00\njaw open 0.10"
-    assert described(hello, frozenset({KeyPlace("blink", 2.12)})) == "2.12 s, ease-in\nblink 1.00"
-    assert described(hello, frozenset({KeyPlace(POSES, 0.0)})) == "0.00 s\nneutral"
+    assert visible_tracks(hello, is_open=True)[2].channel == hello.tracks["blink"]
+    assert poses.places.near(1.2, 0.3) == {JOY} and not poses.places.near(2.0, 0.3)
+    assert described(hello, Places.of(JOY)) == "joy, 1.00 s, ease-out\njoy 1.00\njaw open 0.10"
+    assert described(hello, Places.of(KeyPlace("blink", 2.12))) == "2.12 s, ease-in\nblink 1.00"
+    assert described(hello, Places.of(KeyPlace(POSES, 0.0))) == "0.00 s\nneutral"
 
 
 @pytest.mark.parametrize("end", [0.1, 4.0, 61.0, 5000.0, 86_400.0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script import (
     TOLERANCE,
+    Channel,
     Script,
     is_pose,
     load_script,
@@ -21,14 +23,15 @@ from risorius.app.script import (
     save_script,
     script_text,
 )
-from risorius.app.viewer import picking
+from risorius.app.viewer import keyframes, picking
 from risorius.app.viewer.control_rows import mirrored, rows_of, search_rows
-from risorius.app.viewer.history import History
+from risorius.app.viewer.history import MOST_GROWTH, History
 from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.overlays import OVERLAYS, overlays_of
 from risorius.app.viewer.physics import MOST_STEPS, STEP, Clock
+from risorius.app.viewer.places import Places
 from risorius.app.viewer.recorder import Recorder
-from risorius.app.viewer.session import Session
+from risorius.app.viewer.session import Document, Session, _new_keys
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger
 
@@ -156,11 +159,34 @@ def test_undo_brings_back_a_pose_that_a_script_moved_away(session: Session) -> N
 
 def test_history_ends_somewhere() -> None:
     """Undoing before the first state stays there; equal states count once."""
-    history = History(0)
+    history = History(0, lambda before, after: 0)
     for state in (1, 1, 2):
         history.note(state)
     assert [history.undo(), history.undo(), history.undo()] == [1, 0, 0]
     assert [history.redo(), history.redo(), history.redo()] == [1, 2, 2]
+
+
+def test_history_does_not_fill_the_memory() -> None:
+    """The oldest states go where many share nothing with the one before; one undo stays."""
+    history = History(0, lambda before, after: MOST_GROWTH // 3)
+    for state in range(1, 300):
+        history.note(state)
+    assert [history.undo() for _ in range(5)] == [298, 297, 296, 296, 296]
+    history = History(0, lambda before, after: 2 * MOST_GROWTH)
+    history.note(1)
+    history.note(2)
+    assert [history.undo(), history.undo()] == [1, 1] and history.redo() == 2
+
+
+def test_history_counts_what_is_not_shared(session: Session) -> None:
+    """An edit of one track of a long take costs that track only."""
+    times = np.arange(1, 1001) / 60.0
+    tracks = {name: Channel(times, 0.0 * times) for name in ("joy", "anger", "blink")}
+    before = replace(session.script, tracks=tracks)
+    after = keyframes.without(before, Places({"joy": times[:400]}))
+    assert all(after.tracks[name] is tracks[name] for name in ("anger", "blink"))
+    one, other = (Document(None, script, session.file) for script in (before, after))
+    assert _new_keys(one, other) == 600 and _new_keys(one, one) == 0
 
 
 def test_mirror_and_links(session: Session) -> None:

@@ -11,14 +11,16 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.app.script import load_script
-from risorius.app.viewer import Viewer
+from risorius.app.script import Channel, load_script
+from risorius.app.viewer import Viewer, keyframes
 from risorius.app.viewer.physics import STEP
+from risorius.app.viewer.places import Places
 from risorius.app.viewer.recovery import LONGEST, QUIET, Recovery
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.unsaved import Work, WorkFiles
@@ -116,6 +118,43 @@ def test_work_without_a_pause_is_written_too(
         clock.now += STEP
     written = load_script(next((tmp_path / "unsaved").glob("*.pose.toml"))).at(0.0)["jaw_open"]
     assert 0.2 <= written < 0.3
+
+
+def test_a_long_script_is_written_in_steps(
+    session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
+) -> None:
+    """One track is made into text at a time, then all is written; later only what has changed."""
+    names, times = list(session.limits)[:20], np.arange(1, 101) / 60.0
+    tracks = {name: Channel(times, 0.0 * times) for name in names}
+    session.edit(replace(session.script, tracks=tracks))
+    recovery.watch(session)
+    clock.now += 1.1 * QUIET
+    for number in range(20):
+        made = [track.has_lines for track in session.script.tracks.values()]
+        assert sum(made) == number and "script" not in stored_work(tmp_path)
+        recovery.watch(session)
+    recovery.watch(session)
+    path = next((tmp_path / "unsaved").glob("*.script.toml"))
+    assert load_script(path).tracks == tracks
+    session.edit(keyframes.without(session.script, Places({names[0]: times[:50]})))
+    recovery.watch(session)
+    clock.now += 1.1 * QUIET
+    recovery.watch(session)
+    recovery.watch(session)
+    assert load_script(path) == session.script
+
+
+def test_a_long_script_that_changes_all_the_time_is_written(
+    session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
+) -> None:
+    """A drag of many dense tracks is never finished with; some seconds of it are lost at most."""
+    times = np.arange(1, 101) / 60.0
+    for step in range(round(3.0 * LONGEST / STEP)):
+        tracks = {name: Channel(times + step * STEP, times) for name in list(session.limits)[:3]}
+        session.edit(replace(session.script, tracks=tracks), is_done=False)
+        recovery.watch(session)
+        clock.now += STEP
+    assert "script" in stored_work(tmp_path)
 
 
 def test_a_recording_is_kept_while_it_goes_on(

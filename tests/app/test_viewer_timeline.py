@@ -5,16 +5,20 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from imgui_bundle import imgui
 
-from risorius.app.script import load_script
+from risorius.app.script import Channel, Script, load_script, save_script
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.keyframes import POSES, KeyPlace, on_frame, places_of
+from risorius.app.viewer.keyframes import POSES, on_frame, places_of
 from risorius.app.viewer.panel_cache import REFRESH
+from risorius.app.viewer.panels.dope_sheet import ROW
+from risorius.app.viewer.places import NOWHERE, KeyPlace, Places
 
 from .driving import (
     NEEDS_A_SCREEN,
+    SIZE,
     clear_search,
     click,
     drag,
@@ -40,7 +44,7 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
     path = tmp_path / "own.toml"
     path.write_text(SCRIPT.read_text(encoding="utf-8"))
     viewer.session.open(load_script(path))
-    viewer.selection.places = frozenset()
+    viewer.selection.places = NOWHERE
     viewer.time_axis.is_whole = True
     # While the face moves, panels are drawn anew a few times a second only.
     end = time.monotonic() + 2.0 * REFRESH
@@ -281,3 +285,73 @@ def test_while_recording_keys_stay(viewer: Viewer) -> None:
     assert viewer.messages.is_error and "stop the recording" in viewer.messages.text
     assert viewer.session.script is before and viewer.session.is_recording
     assert places_of(before) >= viewer.selection.places
+
+
+@pytest.fixture
+def take(viewer: Viewer, own: Path, tmp_path: Path) -> Script:
+    """A script of half a million keys, opened, with a row for each of its 60 tracks."""
+    names = [name for name, (low, _) in viewer.session.limits.items() if low == 0.0][:60]
+    times = np.arange(9000) / 15.0
+    chance = np.random.default_rng(5)
+    tracks = {name: Channel(times, chance.uniform(0.0, 0.4, 9000).round(3)) for name in names}
+    path = tmp_path / "take.toml"
+    save_script(path, Script("take", 600.0, "take", tracks=tracks))
+    viewer.session.open(load_script(path))
+    viewer.settings.folds["Tracks"] = True
+    draw_frames(viewer)
+    return viewer.session.script
+
+
+def test_a_dense_script_is_scrubbed_and_edited(viewer: Viewer, take: Script) -> None:
+    """A click in the ruler shows that moment, a box is one edit, and one undo takes it back."""
+    sheet, axis = viewer.timeline.dope_sheet, viewer.time_axis
+    _, ruler = middle(viewer, "time")
+    place = on_screen(viewer, axis.x(300.0), 0.0)[0], ruler
+    press(viewer, place)
+    assert abs(viewer.session.time - 300.0) < 2.0 * axis.seconds(1.0)
+    for name, value in take.at(viewer.session.time).items():
+        assert viewer.session.values[name] == pytest.approx(value)
+    first, second = list(take.tracks)[:2]
+    row = sheet.where(KeyPlace(second, float(take.tracks[second].times[0])))[1]
+    # The first row that has it is that of all tracks; two further down is the second track's.
+    row += 2.0 * ROW * imgui.get_font_size()
+    low = on_screen(viewer, axis.x(100.0), row)
+    drag(viewer, low, (round(axis.x(200.0) - axis.x(100.0)), 2))
+    xdotool(viewer, "mouseup", 1)
+    chosen = viewer.selection.places
+    assert set(chosen.times) == {second}
+    assert 0.9 * 1500 < len(chosen) < 1.1 * 1500
+    xdotool(viewer, "key", "Delete")
+    edited = viewer.session.script
+    assert len(edited.tracks[second]) == 9000 - len(chosen)
+    assert edited.tracks[first] is take.tracks[first]
+    xdotool(viewer, "key", "ctrl+z")
+    assert viewer.session.script is take
+    drag(viewer, low, (1, 1))  # a click on the curve: the key there, and its moment
+    xdotool(viewer, "mouseup", 1)
+    assert len(viewer.selection.places) == 1
+    assert viewer.session.time == viewer.selection.places.first == pytest.approx(100.0, abs=5.0)
+
+
+def test_what_is_selected_of_a_dense_track_is_dragged(viewer: Viewer, take: Script) -> None:
+    """A drag on the bar moves all of it."""
+    axis, name = viewer.time_axis, next(iter(take.tracks))
+    draw_frames(viewer)
+    chosen = places_of(take).between(100.0, 200.0) & Places({name: take.tracks[name].times})
+    viewer.selection.places = chosen
+    row = viewer.timeline.dope_sheet.where(KeyPlace(name, 0.0))[1] + ROW * imgui.get_font_size()
+    drag(viewer, on_screen(viewer, axis.x(150.0), row), (40, 0))
+    xdotool(viewer, "mouseup", 1)
+    moved = viewer.selection.places
+    assert len(moved) == len(chosen)
+    assert moved.first - chosen.first == pytest.approx(axis.seconds(40.0), abs=0.1)
+    assert moved <= places_of(viewer.session.script)
+
+
+def test_a_dense_script_is_drawn_with_little(viewer: Viewer, take: Script) -> None:
+    """However many keys there are, and all of them selected: no more than a few for each column."""
+    viewer.selection.select_all()
+    viewer.wait_for_frame()
+    viewer._draw_gui(is_visible=True)
+    assert len(viewer.selection.places) == 60 * 9000
+    assert imgui.get_draw_data().total_vtx_count < 40 * SIZE[0]

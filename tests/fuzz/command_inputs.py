@@ -240,6 +240,16 @@ REFUSED = {
     "capture good.toml --sheet x": "pictures are written as .png",
     "capture good.toml --sheet ''": "pictures are written as .png",
     "capture good.toml -o x.png --sheet x.png": "two outputs at once",
+    "capture good.toml -o x.png --sound hum.wav": "only a film is heard",
+    "capture good.toml --sheet x.png --sound hum.wav": "only a film is heard",
+    "capture good.toml -o x.mp4 --sound notes.txt": "there is no sound in it",
+    "capture good.toml -o x.mp4 --sound pipe.png": "is a pipe",
+    "capture good.toml -o x.mp4 --sound 'http://localhost/x.wav'": "no such sound file",
+    "replay good.toml --sound folder": "is a folder",
+    "speak hum.wav": "Missing option '-o'",
+    "speak hum.wav -o hum.wav": "is read and would be written",
+    "speak hum.wav -o folder": "is a folder",
+    "speak notes.txt -o x.toml": "there is no sound in it",
     "capture good.toml -o pipe.png": "is a device",
     "capture good.toml -o /dev/full": "/dev/full",
     "capture good.toml -o /dev/null --overwrite": "/dev/null",
@@ -303,12 +313,14 @@ HOSTILE = {
 GIVEN = {  # what else a command needs to come as far as the option
     "capture": "good.toml -o x.png --size 16x16 --samples 0 --fps 5 --time 0 --quiet",
     "replay": "good.toml",
+    "speak": "hum.wav -o spoken.toml",
     "bench motion": "--reference folder",
     "bench meshes": "folder",
     "bench reference": "folder -o made",
 }
 INSTEAD = {  # where one option excludes what is given
     ("capture", "--set"): "-o x.png --size 16x16 --samples 0 --fps 5 --time 0 --quiet",
+    ("capture", "--sound"): "good.toml -o x.mp4 --size 16x16 --samples 0 --fps 5 --quiet",
     ("capture", "--head"): f"{GIVEN['capture']} --landmarks marks.json",
     ("capture", "--landmarks"): f"{GIVEN['capture']} --head head.obj",
 }

@@ -7,6 +7,7 @@ import re
 import resource
 import signal
 import time
+import wave
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -53,6 +54,9 @@ def furnish(folder: Path) -> None:
     (folder / "good.toml").write_text(GOOD)
     (folder / "notes.txt").write_text("mine")
     (folder / "keep.png").write_text("mine")
+    with wave.open(str(folder / "hum.wav"), "wb") as sound:
+        sound.setparams((1, 2, 8000, 0, "NONE", ""))
+        sound.writeframes(bytes(range(256)) * 30)
     (folder / "head.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     (folder / "marks.json").write_text('{"landmarks": [0, 1, 2]}')
     (folder / "folder").mkdir()

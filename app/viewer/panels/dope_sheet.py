@@ -1,7 +1,8 @@
 """The keys in time: a ruler to scrub in, below it a row of keys for the poses and the tracks.
 
 As in every dope sheet: a click selects a key and goes there, a drag moves what is selected, Shift
-adds, a drag over nothing draws a box, the wheel zooms.
+adds, a drag over nothing draws a box, the wheel zooms. Where keys are too dense to be told apart,
+only those that are selected are dragged, and a drag over others draws a box.
 """
 
 from __future__ import annotations
@@ -18,14 +19,15 @@ from ...script import Script
 from .. import keyframes
 from ..gui import LEFT, MIDDLE, RIGHT, Gui, em
 from ..key_selection import KeySelection, counted
-from ..keyframes import KeyPlace
 from ..messages import Message, Messages
+from ..places import NOWHERE, KeyPlace, Places
 from ..session import Session
 from ..settings import Settings
 from ..time_axis import TimeAxis
 from ..tracks import TRACKS, Track, described, visible_tracks
 from . import key_marks
 from .menu_bar import MenuBar
+from .waveform import Waveform
 from .widgets import shortened
 
 ROW, RULER = 1.35, 1.45  # [em] of a row's and the ruler's height
@@ -44,7 +46,7 @@ class Drag:
     doing: str  # keys, box, scrub, end, pan
     began: tuple[float, float]  # [window units]
     script: Script  # as it was then
-    selected: frozenset[KeyPlace]  # then
+    selected: Places  # then
     has_moved: bool = False
 
     @property
@@ -65,14 +67,16 @@ class DopeSheet:
         selection: KeySelection,
         axis: TimeAxis,
         menus: MenuBar,
+        waveform: Waveform,
     ) -> None:
         self._gui, self._session, self._settings = gui, session, settings
         self._messages, self._menus = messages, menus
-        self._selection, self._axis = selection, axis
+        self._selection, self._axis, self._waveform = selection, axis, waveform
         self._drag: Drag | None = None
-        self._grabbed: frozenset[KeyPlace] = frozenset()  # the keys at one time that are dragged
+        self._grabbed = NOWHERE  # the keys at one time that the mouse was pressed on
         self._tracks: tuple[Track, ...] = ()
         self._known: tuple[Script | None, bool] = None, False  # of which the tracks are
+        self._are_dense: dict[str, bool] = {}  # by label: keys cannot be told apart
         self._tops = [0.0]  # of each row, and of what would come below the last [window units]
         self._gutter = 0.0  # the width of their names [window units]
         self._name_line = PoseNameLine(gui, session, messages, selection)
@@ -87,7 +91,8 @@ class DopeSheet:
         """Of ruler and rows [window units], no more than there is room for."""
         self._refresh()
         wanted = sum(track.height for track in self._tracks[:MOST_ROWS]) * em(ROW)
-        return em(RULER) + max(min(wanted, room - em(RULER)), em(ROW))
+        above = em(RULER) + self._waveform.height
+        return above + max(min(wanted, room - above), em(ROW))
 
     def where(self, place: KeyPlace) -> tuple[float, float]:
         """Where a key is drawn, in the first row that has it [window units]."""
@@ -112,19 +117,21 @@ class DopeSheet:
         axis.place(place.x + self._gutter + inset, room.x - self._gutter - 2.0 * inset - em(0.6))
         duration = session.script.duration
         if self._drag is None:
-            last = max((each.places[-1].time for each in self._tracks if each.places), default=0.0)
-            axis.fit(max(duration, last))
+            axis.fit(
+                max([duration, self._waveform.duration, *(track.end for track in self._tracks)])
+            )
             if session.is_playing:
                 axis.follow(session.time)
         imgui.set_cursor_screen_pos((place.x + self._gutter, place.y))
-        imgui.invisible_button("##time", (room.x - self._gutter, em(RULER)))
+        imgui.invisible_button("##time", (room.x - self._gutter, em(RULER) + self._waveform.height))
         self._gui.remember("time")
         if imgui.is_item_hovered():
             self._press_in_ruler(io)
             self._turn_wheel(io)
         edges = place.y, place.y + em(RULER)
         key_marks.draw_ruler(self._gui.theme, axis, session.time, duration, edges)
-        imgui.set_cursor_screen_pos((place.x, edges[1]))
+        self._waveform.draw(session.time, duration, (place.x, edges[1]))
+        imgui.set_cursor_screen_pos((place.x, edges[1] + self._waveform.height))
         self._draw_rows(io)
         if self._drag is not None:
             self._follow(io, self._drag)
@@ -154,7 +161,7 @@ class DopeSheet:
         for track, (top, bottom) in zip(self._tracks, itertools.pairwise(self._tops), strict=True):
             corners = (place.x, top), (place.x + room.x, bottom)
             if imgui.is_rect_visible(*corners):
-                painter.draw(track, top, em(ROW))
+                self._are_dense[track.label] = painter.draw(track, top, em(ROW))
                 arrow = em(0.9) if track.is_sum else 0.0
                 label = shortened(track.label, self._gutter - arrow - em(0.3))
                 corner = place.x, bottom - em(ROW)
@@ -177,11 +184,11 @@ class DopeSheet:
                 self._settings.folds[TRACKS] = not self._is_open
             imgui.set_scroll_y(imgui.get_scroll_y() - em(ROW) * io.mouse_wheel)
             return
-        under = track.near(axis.time(x), axis.seconds(em(REACH))) if track else frozenset()
+        under = track.places.near(axis.time(x), axis.seconds(em(REACH))) if track else NOWHERE
         if under and not imgui.is_mouse_down(LEFT):
             imgui.set_tooltip(described(self._session.script, under))
         if imgui.is_mouse_clicked(LEFT):
-            self._press(io, under)
+            self._press(io, under, is_dense=track is not None and self._are_dense[track.label])
         elif imgui.is_mouse_clicked(RIGHT):
             if under and not under <= selection.places:
                 selection.places = under
@@ -195,18 +202,19 @@ class DopeSheet:
     def _row_at(self, y: float) -> int:
         return bisect.bisect_right(self._tops, y) - 1
 
-    def _begin(self, doing: str, io: Any, selected: frozenset[KeyPlace] | None = None) -> None:
+    def _begin(self, doing: str, io: Any, selected: Places | None = None) -> None:
         """Hold on to something; selected: from now on, where that is not what is selected."""
         began = (io.mouse_pos.x, io.mouse_pos.y)
         places = self._selection.places if selected is None else selected
         self._drag = Drag(doing, began, self._session.script, places)
 
-    def _press(self, io: Any, under: frozenset[KeyPlace]) -> None:
+    def _press(self, io: Any, under: Places, *, is_dense: bool) -> None:
         selection = self._selection
         if under and imgui.is_mouse_double_clicked(LEFT) and selection.can_rename:
             selection.rename()
-        elif not under:
-            self._begin("box", io, selection.places if io.key_shift else frozenset())
+        elif not under or (is_dense and not under <= selection.places):
+            self._grabbed = under
+            self._begin("box", io, selection.places if io.key_shift else NOWHERE)
         else:
             if io.key_shift and under <= selection.places:
                 selection.places -= under
@@ -267,7 +275,7 @@ class DopeSheet:
         return time if io.key_ctrl else keyframes.on_frame(time)
 
     def _move_keys(self, io: Any, drag: Drag) -> None:
-        time = min(place.time for place in self._grabbed)
+        time = self._grabbed.first
         target = time + self._axis.seconds(io.mouse_pos.x - drag.began[0])
         target = min(max(target, 0.0), self._axis.end)  # further right it would not be seen
         offset = self._snapped(target, io) - time
@@ -280,7 +288,10 @@ class DopeSheet:
         times = sorted(self._axis.time(x) for x in (drag.began[0], io.mouse_pos.x))
         rows = sorted(self._row_at(y) for y in (drag.began[1], io.mouse_pos.y))
         inside = self._tracks[max(rows[0], 0) : max(rows[1] + 1, 0)]
-        self._selection.places = drag.selected.union(*(each.between(*times) for each in inside))
+        places = drag.selected
+        for track in inside:
+            places |= track.places.between(*times)
+        self._selection.places = places
 
     def _release(self, io: Any, drag: Drag) -> Message:
         """The mouse has let go; what there is to say about it."""
@@ -288,12 +299,13 @@ class DopeSheet:
         if drag.doing == "keys" and drag.has_moved:
             lost = len(keyframes.places_of(drag.script)) - len(keyframes.places_of(session.script))
             line = f"{counted(lost)} replaced; Ctrl+Z brings back" if lost > 0 else None
-        elif drag.doing == "keys" and not io.key_shift:
-            self._selection.places = self._grabbed
-            session.is_playing = False
-            session.seek(min(place.time for place in self._grabbed))
-        elif drag.doing == "box" and not drag.has_moved:
-            self._selection.places = drag.selected
+        elif drag.doing in ("keys", "box") and not drag.has_moved:
+            if drag.doing == "box":
+                self._selection.places = drag.selected | self._grabbed
+            if self._grabbed and not io.key_shift:
+                self._selection.places = self._grabbed
+                session.is_playing = False
+                session.seek(self._grabbed.first)
         if drag.doing != "pan":
             session.note()
         return line

@@ -124,7 +124,7 @@ class FacePanel:
             if slid.is_done:
                 session.note()
         if is_pointed:
-            self._view.pointed = tuple(sorted(set().union(*map(session.moved_by, row.names))))
+            self._view.pointed = tuple(sorted(set().union(*map(session.scene.moved_by, row.names))))
         if is_selected and not self._flash:
             self._selected = None
 

@@ -1,0 +1,39 @@
+"""The ffmpeg that films and sounds go through: which program it is, and how it is told of a sound.
+
+`imageio_ffmpeg` brings one along.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import imageio_ffmpeg
+
+from .errors import UserError
+
+RATE = 48_000  # [samples/s] of sounds, unless told; what devices and films have, too
+
+
+def program() -> str:
+    """The ffmpeg that is used here; UserError where there is none."""
+    try:
+        return str(imageio_ffmpeg.get_ffmpeg_exe())
+    except RuntimeError:
+        raise UserError(
+            "no film without ffmpeg: install it, or write frames to a folder (-o NAME)"
+        ) from None
+
+
+def sound_form(rate: int = RATE, *, is_mono: bool = False) -> tuple[str, ...]:
+    """Options for a sound of this form; of both sides, where it has them, unless it is mono.
+
+    What begins late in its file (the sound of a film, say) begins as late here.
+    """
+    layouts = "mono" if is_mono else "mono|stereo"
+    form = f"aformat=sample_rates={rate}:channel_layouts={layouts}"
+    return "-af", f"aresample=async=1:first_pts=0,{form}"
+
+
+def sound_input(file: Path, seconds: float) -> tuple[str, ...]:
+    """Options for an input of so much sound: of a file, and of nothing that this may point to."""
+    return "-protocol_whitelist", "file", "-t", f"{seconds:.6f}", "-i", f"file:{file}"

@@ -1,0 +1,227 @@
+"""What a face does while nobody moves it: it blinks, glances about, breathes, is never quite still.
+
+Plain functions of time: the same seed and the same time give the same values, in whatever order
+they are asked for, and no clock is read. Moments (blinks, glances) are drawn from a generator as
+far ahead as somebody asks; what is slow is a sum of sines.
+
+Sources, for people at rest who look at somebody:
+    Bentivoglio et al. 1997, "Analysis of blink rate patterns in normal subjects": 17 blinks a
+        minute at rest, 26 in conversation.
+    Trutoiu et al. 2011, "Modeling and animating eye blinks": lids shut fast and open slowly; blinks
+        alike in both directions look unnatural.
+    Lee, Badler, Badler 2002, "Eyes alive": how large saccades are, how long eyes stay with somebody
+        and away from them, how long a saccade takes.
+Differs from them: every blink shuts the eye, while about half of real ones do not (Ousler et al.
+2014); glances away are shorter than 12 degrees, as there is nothing to be seen beside the viewer.
+"""
+
+from __future__ import annotations
+
+import bisect
+import math
+
+import numpy as np
+
+Values = dict[str, float]
+
+# Blinks. Times between them are log-normal: never short, at times long.
+BLINK_MEDIAN, BLINK_SPREAD = 3.3, 0.55  # [s] between two, and of its logarithm
+DOUBLE_BLINKS = 0.1  # share that a second one follows at once
+DOUBLE_AFTER = 0.34, 0.46  # [s] from the first to the second, least and most
+FIRST_BLINK = 1.5, 3.0  # [s] after the start
+# The lid's muscle follows late, and a short pulse would not shut the eye. With these the lid of the
+# simulation is down by 95 % after 0.12 s, stays so for 0.09 s (99 % at most), comes up in 0.13 s.
+SHUT_FOR, OPENS_IN = 0.14, 0.18  # [s] that the muscle is drawn, and then relaxes
+
+# Glances [degrees], [s]
+EYE_RANGE = 30.0  # that gaze = 1 stands for
+FACE_SPREAD = 1.1, 0.7  # of glances over the viewer's face, across and along
+FACE_LARGEST = 2.4
+FACE_MEDIAN, FACE_DURATION_SPREAD = 1.3, 0.55
+FIRST_LOOK = 2.5  # at the viewer, straight
+AWAY = 0.18  # share of glances that leave the viewer: eyes stay some 8 s, as a listener's
+AWAY_MEAN, AWAY_LEAST, AWAY_MOST = 6.9, 4.0, 12.0  # exponential, cut off
+AWAY_FLATNESS = 0.55  # up and down is shorter
+AWAY_MEDIAN, AWAY_DURATION_SPREAD = 0.7, 0.4
+# A saccade takes 21 ms and 2.2 ms more for each degree. The eye's own lag is the former.
+SECONDS_PER_DEGREE = 0.0022
+HEAD_SHARE = 0.2  # of a glance that the head takes part in
+
+# The head at rest: most that it strays [degrees], and what its controls stand for at 1.
+HEAD_STRAYS = {"head_yaw": 1.2, "head_pitch": 0.7, "head_roll": 0.6}
+HEAD_RANGES = {"head_yaw": 45.0, "head_pitch": 30.0, "head_roll": 30.0}
+HEAD_PERIODS = 4.7, 7.9, 13.3  # [s]
+
+# Breath: 13 or 14 a minute; in takes less than out, then there is a rest.
+BREATH_PERIOD, BREATH_WANDERS = 4.4, 0.12  # [s], and by what share of it breaths come early or late
+IN_UNTIL, OUT_UNTIL = 0.38, 0.88  # of a breath
+NOSTRILS, BREATH_PITCH = 0.14, 0.35  # of nasalis; of the head [degrees]
+
+# Muscles that are never quite relaxed, at most.
+TWITCHES = {
+    "frontalis_medial": 0.05,
+    "frontalis_lateral": 0.04,
+    "corrugator_supercilii": 0.03,
+    "orbicularis_oculi_palpebral_lower": 0.06,
+    "zygomaticus_major": 0.025,
+    "orbicularis_oris_marginal_lower": 0.04,
+}
+TWITCH_PERIODS = 2.9, 5.3, 8.3  # [s]
+TWITCH_SIDES = 0.25  # how far one side differs from the other
+
+LID = "orbicularis_oculi_palpebral_upper"
+SIDES = "left", "right"
+
+
+class Life:
+    """The idle life of one face."""
+
+    def __init__(self, seed: int = 0) -> None:
+        """seed: faces of different seeds do the same things at different times."""
+        lids, eyes, slow = (np.random.default_rng([seed, part]) for part in range(3))
+        self._blinks = Blinks(lids)
+        self._glances = Glances(eyes)
+        self._head = {name: Drift(slow, HEAD_PERIODS) for name in HEAD_STRAYS}
+        self._breath = Drift(slow, HEAD_PERIODS)
+        self._twitches = {name: Drift(slow, TWITCH_PERIODS) for name in TWITCHES}
+        self._uneven = {name: Drift(slow, TWITCH_PERIODS) for name in TWITCHES}
+
+    def values(self, time: float) -> Values:
+        """What to add to each control at `time` [s] from the start; what is not named is 0."""
+        return {name: value for part in self.parts(time).values() for name, value in part.items()}
+
+    def parts(self, time: float) -> dict[str, Values]:
+        """The same in parts, each of which is moved together: lids, eyes, head, breath, muscles."""
+        across, along = self._glances.at(time)
+        full, flow = breath(time / BREATH_PERIOD + BREATH_WANDERS * self._breath.at(time))
+        head = {name: most * self._head[name].at(time) for name, most in HEAD_STRAYS.items()}
+        head["head_yaw"] += HEAD_SHARE * across
+        head["head_pitch"] += HEAD_SHARE * along + BREATH_PITCH * full
+        return {
+            "lids": _both(LID, self._blinks.at(time)),
+            "eyes": {
+                **_both("gaze_horizontal", across / EYE_RANGE),
+                **_both("gaze_vertical", along / EYE_RANGE),
+            },
+            "head": {name: degrees / HEAD_RANGES[name] for name, degrees in head.items()},
+            "breath": _both("nasalis", NOSTRILS * flow),
+            **{name: self._twitch(name, time) for name in TWITCHES},
+        }
+
+    def _twitch(self, name: str, time: float) -> Values:
+        """A muscle that draws a little now and then, one side more than the other."""
+        drawn = TWITCHES[name] * max(self._twitches[name].at(time), 0.0)
+        uneven = TWITCH_SIDES * self._uneven[name].at(time)
+        return {
+            f"{name}_{side}": drawn * (1.0 + sign * uneven)
+            for side, sign in zip(SIDES, (1.0, -1.0), strict=True)
+        }
+
+
+def _both(name: str, value: float) -> Values:
+    return {f"{name}_{side}": value for side in SIDES}
+
+
+class Blinks:
+    """When the eyes shut."""
+
+    def __init__(self, generator: np.random.Generator) -> None:
+        self._generator = generator
+        self.starts = [float(generator.uniform(*FIRST_BLINK))]  # [s] in order, as far as drawn
+
+    def at(self, time: float) -> float:
+        """How far the lids' muscle is drawn, 0 to 1."""
+        self.reach(time)
+        last = bisect.bisect_right(self.starts, time) - 1
+        return 0.0 if last < 0 else lid(time - self.starts[last])
+
+    def reach(self, time: float) -> None:
+        """Draw all blinks that begin until `time`."""
+        generator = self._generator
+        while self.starts[-1] <= time:
+            wait = float(generator.lognormal(math.log(BLINK_MEDIAN), BLINK_SPREAD))
+            start = self.starts[-1] + max(wait, DOUBLE_AFTER[1])
+            self.starts.append(start)
+            if generator.random() < DOUBLE_BLINKS:
+                self.starts.append(start + float(generator.uniform(*DOUBLE_AFTER)))
+
+
+def lid(age: float) -> float:
+    """How far the lids' muscle is drawn `age` [s] after a blink began: at once, then less."""
+    if not 0.0 <= age < SHUT_FOR + OPENS_IN:
+        return 0.0
+    return 0.5 + 0.5 * math.cos(math.pi * max(age - SHUT_FOR, 0.0) / OPENS_IN)
+
+
+class Glances:
+    """Where the eyes look, seen from straight at the viewer: to the left and up [degrees]."""
+
+    def __init__(self, generator: np.random.Generator) -> None:
+        self._generator = generator
+        self.starts = [0.0, FIRST_LOOK]  # [s] in order, as far as drawn
+        self.places = [(0.0, 0.0), self._on_face()]  # that is looked at from then on
+
+    def at(self, time: float) -> tuple[float, float]:
+        """Where they look at `time` [s]; a saccade leads from one place to the next."""
+        while self.starts[-1] <= time:
+            self._draw()
+        last = max(bisect.bisect_right(self.starts, time) - 1, 0)
+        there = self.places[last]
+        before = self.places[max(last - 1, 0)]
+        duration = SECONDS_PER_DEGREE * math.dist(before, there)
+        share = min((time - self.starts[last]) / duration, 1.0) if duration else 1.0
+        return (
+            before[0] + share * (there[0] - before[0]),
+            before[1] + share * (there[1] - before[1]),
+        )
+
+    def _draw(self) -> None:
+        """How long the last place is looked at, and the next one."""
+        generator = self._generator
+        is_away = math.hypot(*self.places[-1]) > FACE_LARGEST
+        if is_away:
+            stays = generator.lognormal(math.log(AWAY_MEDIAN), AWAY_DURATION_SPREAD)
+        else:
+            stays = generator.lognormal(math.log(FACE_MEDIAN), FACE_DURATION_SPREAD)
+        self.starts.append(self.starts[-1] + float(stays))
+        leaves = not is_away and generator.random() < AWAY
+        self.places.append(self._away() if leaves else self._on_face())
+
+    def _on_face(self) -> tuple[float, float]:
+        """A place of the viewer's face: an eye, the other, the mouth."""
+        across, along = self._generator.normal(0.0, FACE_SPREAD)
+        shrink = min(FACE_LARGEST / max(math.hypot(across, along), 1e-9), 1.0)
+        return float(across * shrink), float(along * shrink)
+
+    def _away(self) -> tuple[float, float]:
+        """A place beside the viewer."""
+        size = AWAY_LEAST + float(self._generator.exponential(AWAY_MEAN - AWAY_LEAST))
+        size = min(size, AWAY_MOST)
+        angle = float(self._generator.uniform(0.0, 2.0 * math.pi))
+        return size * math.cos(angle), AWAY_FLATNESS * size * math.sin(angle)
+
+
+class Drift:
+    """Something slow that strays between -1 and 1: sines of periods that never meet."""
+
+    def __init__(self, generator: np.random.Generator, periods: tuple[float, ...]) -> None:
+        """periods: about [s]; phases, and a tenth of the periods, are left to chance."""
+        self._waves = [
+            (2.0 * math.pi / (period * generator.uniform(0.9, 1.1)), generator.uniform(0.0, 7.0))
+            for period in periods
+        ]
+
+    def at(self, time: float) -> float:
+        """Where it is at `time` [s]."""
+        waves = [math.sin(rate * time + phase) for rate, phase in self._waves]
+        return sum(waves) / len(waves)
+
+
+def breath(breaths: float) -> tuple[float, float]:
+    """How full the lungs are and how fast air streams in, each 0 to 1, after so many breaths."""
+    phase = breaths % 1.0
+    if phase < IN_UNTIL:
+        share = phase / IN_UNTIL
+        return 0.5 - 0.5 * math.cos(math.pi * share), math.sin(math.pi * share)
+    share = min((phase - IN_UNTIL) / (OUT_UNTIL - IN_UNTIL), 1.0)
+    return 0.5 + 0.5 * math.cos(math.pi * share), 0.0

@@ -1,0 +1,164 @@
+"""Sound out of a device, and how far it has been heard.
+
+Through miniaudio: MIT, wheels of half a megabyte for Linux, macOS and Windows, for each Python that
+we support, with nothing to install beside them (sounddevice needs PortAudio on Linux, pygame and
+pyglet bring windows of their own, soundcard knows PulseAudio alone there). It asks for samples when
+the device needs them. So what was asked for tells the time of the device's own clock, which the
+picture can follow, and going to another place is to answer with other samples.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+import sys
+import time
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .decoding import Sound
+
+try:
+    import miniaudio
+except ImportError:  # no wheel for this machine; whatever else there is works without
+    miniaudio = None
+
+PERIOD = 0.04  # [s] of samples that are asked for at once
+STUCK = 0.5  # [s] without a request, after which a device is taken for lost
+PERIODS = 3  # that the device holds: what it is given now is heard after the others
+Samples = npt.NDArray[np.int16]
+
+
+class NoDeviceError(Exception):
+    """Nothing can be heard on this machine; the text says why."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """What is to be heard: from a time of the sound [s] on, so fast, to another time [s]."""
+
+    start: float
+    speed: float
+    end: float
+    since: float  # when that was wanted [s]
+
+
+class Player:
+    """Plays one sound on the device that the system prefers; NoDeviceError where there is none."""
+
+    def __init__(self, sound: Sound, clock: Callable[[], float] = time.perf_counter) -> None:
+        """clock: tells seconds, as the device counts them too, if not just as many."""
+        self._sound, self._clock = sound, clock
+        self._device = open_device(sound.rate, sound.samples.shape[1])
+        self._part: _Part | None = None
+        # When the device asked last, for which part, and how much of it was given before [s].
+        self._asked: tuple[float, _Part | None, float] = 0.0, None, 0.0
+
+    @property
+    def speed(self) -> float:
+        """How fast it plays; 0 if it does not."""
+        return self._part.speed if self._part is not None else 0.0
+
+    @property
+    def position(self) -> float:
+        """The time of the sound that is heard just now [s]; between two requests by the clock."""
+        part, (when, asked_for, given) = self._part, self._asked
+        if part is None or asked_for is not part:
+            return part.start if part is not None else 0.0
+        since = min(self._clock() - when, 2.0 * PERIOD)  # a device that hangs stays where it is
+        heard = given - (PERIODS - 1) * PERIOD + since
+        return part.start + max(heard, 0.0) * part.speed
+
+    @property
+    def is_stuck(self) -> bool:
+        """Whether the device asks for nothing any more, as one that was unplugged."""
+        part, when = self._part, self._asked[0]
+        return part is not None and self._clock() - max(when, part.since) > STUCK
+
+    @property
+    def is_heard(self) -> bool:
+        """Whether it plays, and is not at the end."""
+        part = self._part
+        return part is not None and self.position < part.end and not self.is_stuck
+
+    def play(self, start: float, speed: float = 1.0, seconds: float = math.inf) -> None:
+        """Play from a time of the sound [s] on, in place of what is played.
+
+        speed: other than 1 it is higher or lower, as a tape would be. seconds: for so long at most.
+        """
+        end = min(start + seconds * speed, self._sound.duration)
+        self._part = _Part(start, speed, end, self._clock())
+        if not self._device.running:
+            samples = self._samples()
+            next(samples)
+            with contextlib.suppress(miniaudio.MiniaudioError):  # unplugged: nothing is heard
+                self._device.start(samples)
+
+    def stop(self) -> None:
+        """Be silent; the device runs on, to begin again at once."""
+        self._part = None
+
+    def rest(self) -> None:
+        """Be silent for some time: the device stops, too."""
+        self._part = None
+        with contextlib.suppress(miniaudio.MiniaudioError):
+            self._device.stop()
+
+    def close(self) -> None:
+        """Let go of the device."""
+        self._device.close()
+
+    def _samples(self) -> Generator[Samples | bytes, int, None]:
+        """Answers each request for a number of frames, in the device's own thread."""
+        part, given = None, 0
+        count = yield b""
+        while True:
+            if part is not self._part:
+                part, given = self._part, 0
+            self._asked = self._clock(), part, given / self._sound.rate
+            chunk = self._chunk(part, given, count)
+            given += count
+            count = yield chunk
+
+    def _chunk(self, part: _Part | None, first: int, count: int) -> Samples:
+        """So many frames of a part from its `first` on, (count, C); silence where there is none."""
+        sound, rate = self._sound.samples, self._sound.rate
+        chunk = np.zeros((count, sound.shape[1]), np.int16)
+        if part is not None:
+            places = part.start * rate + part.speed * np.arange(first, first + count)
+            is_in = (places >= 0.0) & (places < part.end * rate)
+            chunk[is_in] = sound[places[is_in].astype(np.int64)]
+        return chunk
+
+
+def open_device(rate: int, channels: int) -> Any:
+    """The device that the system prefers, stopped; NoDeviceError where there is none."""
+    if miniaudio is None:
+        raise NoDeviceError("miniaudio is not installed (pip install miniaudio)")
+    try:
+        return miniaudio.PlaybackDevice(
+            output_format=miniaudio.SampleFormat.SIGNED16,
+            nchannels=channels,
+            sample_rate=rate,
+            buffersize_msec=round(1000.0 * PERIOD),
+            callback_periods=PERIODS,
+            backends=backends(),
+            app_name="Risorius",
+        )
+    except miniaudio.MiniaudioError:
+        raise NoDeviceError("there is no device to play on") from None
+
+
+def backends() -> list[Any]:
+    """The ways to a device that this system has, in miniaudio's own order."""
+    kinds = miniaudio.Backend
+    unwanted = {kinds.NULL, kinds.CUSTOM, kinds.JACK}  # a server that is rarely the only way
+    if sys.platform == "linux" and not os.path.exists("/dev/snd"):
+        unwanted.add(kinds.ALSA)  # like JACK it would complain at length of what it does not find
+    found = miniaudio.get_enabled_backends() - unwanted
+    return sorted(found, key=lambda backend: int(backend.value))

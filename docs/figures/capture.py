@@ -1,0 +1,135 @@
+"""Draw the pictures of docs/capture.md: `xvfb-run -a python docs/figures/capture.py [FOLDER]`.
+
+The recording in them is made up here, in the layout of Live Link Face: as a phone does, it sees a
+quarter of a frown in a face at rest.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from imgui_bundle import imgui
+
+from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture.captions import contact_sheet
+from risorius.app.files import Image
+from risorius.app.performances import read_performance, script_for
+from risorius.app.playback import Playback
+from risorius.app.recordings.names import ARKIT
+from risorius.app.scenes import FaceScene
+from risorius.app.viewer import Viewer
+from risorius.bench import figures
+
+RATE = 60  # frames a second
+SECONDS = 7.0
+CELL = (260, 300)  # [pixels] of a frame
+CAMERA = "0,0,1.1"
+MOMENTS = {
+    0.5: "at rest",
+    1.2: "blink",
+    2.1: "surprise",
+    3.5: "smile",
+    4.75: "kiss",
+    6.1: "to the left",
+}
+WINDOW = (1160, 700)
+ANGLES = ("HeadYaw", "HeadPitch", "HeadRoll", "LeftEyeYaw", "LeftEyePitch", "LeftEyeRoll",
+          "RightEyeYaw", "RightEyePitch", "RightEyeRoll")  # fmt: skip
+AT_REST = {  # what a phone reads in a face that does nothing
+    "browDown": 0.28, "noseSneer": 0.16, "mouthShrugUpper": 0.16, "mouthStretch": 0.13,
+    "mouthLowerDown": 0.1, "cheekSquint": 0.1, "jawForward": 0.09, "mouthDimple": 0.08,
+    "mouthPress": 0.07, "eyeSquint": 0.06, "mouthFunnel": 0.06, "mouthUpperUp": 0.05,
+}  # fmt: skip
+PLAYED = (  # shapes by the beginning of their names, and when: rise, full, fall, rest [s]
+    (("eyeBlink",), 0.9, (1.08, 1.16, 1.24, 1.38)),
+    (("browInnerUp", "browOuterUp"), 0.9, (1.7, 1.95, 2.3, 2.7)),
+    (("eyeWide",), 0.8, (1.7, 1.95, 2.3, 2.7)),
+    (("jawOpen",), 0.35, (1.75, 2.0, 2.3, 2.6)),
+    (("mouthSmile",), 0.85, (2.9, 3.3, 3.8, 4.2)),
+    (("cheekSquint", "mouthUpperUp", "mouthDimple"), 0.3, (2.9, 3.3, 3.8, 4.2)),
+    (("eyeBlink",), 0.85, (4.28, 4.36, 4.42, 4.54)),
+    (("mouthPucker",), 0.8, (4.35, 4.65, 4.9, 5.2)),
+    (("HeadYaw",), -0.35, (5.3, 5.8, 6.4, 6.9)),
+    (("LeftEyeYaw", "RightEyeYaw"), -0.2, (5.2, 5.3, 6.2, 6.5)),
+    (("eyeLookOutLeft", "eyeLookInRight"), 0.33, (5.2, 5.3, 6.2, 6.5)),
+)
+
+
+def written(path: Path) -> Path:
+    """The recording, in a file."""
+    times = np.arange(round(SECONDS * RATE) + 1) / RATE
+    columns = [curve(name, times) for name in (*ARKIT, *ANGLES)]
+    header = [
+        "Timecode",
+        "BlendShapeCount",
+        *(name[0].upper() + name[1:] for name in ARKIT),
+        *ANGLES,
+    ]
+    lines = [",".join(header)]
+    for index, row in enumerate(np.stack(columns, axis=1)):
+        timecode = f"10:20:{30 + index // RATE}:{index % RATE:02}.000"
+        lines.append(f"{timecode},61," + ",".join(f"{value:.6f}" for value in row))
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def curve(name: str, times: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """One column: what it is at rest, and above that what is played."""
+    rest = next((value for start, value in AT_REST.items() if name.startswith(start)), 0.0)
+    values = np.full(len(times), rest)
+    for starts, most, stops in PLAYED:
+        if name.startswith(starts):
+            share = np.interp(times, stops, (0.0, 1.0, 1.0, 0.0))
+            values += (most - rest) * share * share * (3.0 - 2.0 * share)
+    return values
+
+
+def neutral(take: Path) -> Image:
+    """The same frames as they were recorded, and without the neutral face."""
+    rows = []
+    options = CaptureOptions(size=CELL, camera=CAMERA)
+    with Capture(FaceScene(), options) as capture:
+        for method, title in (("none", "as recorded"), (None, "calibrated")):
+            script, _ = read_performance(take, Playback(neutral=method))
+            last = iter(MOMENTS.items())
+            moment, what = next(last)
+            for time in capture.play(script, until=max(MOMENTS), progress=False):
+                if abs(time - moment) < 0.5 / options.frames_per_second:
+                    rows.append((f"{title}, {what}", capture.draw_image()))
+                    moment, what = next(last, (np.inf, ""))
+    sheet = contact_sheet(rows, columns=len(MOMENTS), cell_width=CELL[0])
+    return figures.without_noise(sheet)
+
+
+def window(take: Path) -> Image:
+    """A window into which the recording was dropped, in the smile."""
+    with Viewer(script_for(None, "face"), WINDOW) as viewer:
+        imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
+        viewer.messages.attempt(lambda: viewer.scripts.open(take))
+        said = viewer.messages.text
+        viewer.session.seek(3.5)
+        for _ in range(90):
+            viewer.messages.say(said)
+            viewer.frame()
+        return figures.without_noise(viewer.surface.read())
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Draw the pictures into the folder given."""
+    given = figures.parse(arguments, __doc__)
+    with tempfile.TemporaryDirectory() as folder:
+        take = written(Path(folder) / "take.csv")
+        every = {
+            "capture_neutral": partial(neutral, take),
+            "capture_window": partial(window, take),
+        }
+        figures.draw(given.folder, figures.chosen(every, given.only))
+
+
+if __name__ == "__main__":
+    figures.run(main)

@@ -1,0 +1,307 @@
+"""The life of a face that nobody moves: how often, how far, the same each time, beneath all."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from risorius.app.cameras import camera_for
+from risorius.app.capture.recording import Capture, CaptureOptions
+from risorius.app.idle import EYES_MOST, Idle, looking_at
+from risorius.app.life import EYE_RANGE, HEAD_RANGES, LID, Blinks, Glances, Life, breath
+from risorius.app.performances import script_for
+from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.app.script import Channel, Key, Script
+from risorius.app.viewer.frame_times import FrameTimes
+from risorius.app.viewer.physics import SEEN, STEP, Physics
+from risorius.app.viewer.session import Session
+from risorius.assets.fitting import fit_head
+from tests.heads import stranger
+
+HOUR = 3600.0
+NOBODY = frozenset[str]()
+VIEWER = np.array([0.0, 0.0, 900.0])
+
+
+@pytest.fixture(scope="module")
+def scene() -> FaceScene:
+    """One face for all tests of this file."""
+    return FaceScene()
+
+
+def lids_gap(scene: FaceScene) -> float:
+    """How wide the right eye is open [mm], in the middle of its lids."""
+    points = scene.positions[scene.landmarks]
+    return float((points[[37, 38]] - points[[41, 40]])[:, 1].mean())
+
+
+def pupils(scene: FaceScene) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Where each eyeball is now and which way it looks, by side."""
+    bones, found = scene.bone_transforms(), {}
+    for eye in scene.head.eyes:
+        motion = bones[f"eye_{eye.name}"]
+        centre = (motion @ [*eye.centre, 1.0])[:3]
+        found[eye.name] = centre, motion[:3, :3] @ [0.0, 0.0, 1.0]
+    return found
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_eyes_blink_as_often_as_people_do_at_rest(seed: int) -> None:
+    """17 a minute (Bentivoglio et al. 1997), a few of them double, none while another lasts."""
+    blinks = Blinks(np.random.default_rng(seed))
+    blinks.reach(HOUR)
+    waits = np.diff(blinks.starts)
+    assert 15.0 < len(waits) / 60.0 < 19.0
+    assert 2.6 < np.median(waits) < 3.8
+    assert 0.04 < np.mean(waits < 0.5) < 0.16
+    assert waits.min() > 0.3 and np.percentile(waits, 99.0) < 20.0
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_eyes_are_with_the_viewer_most_of_the_time(seed: int) -> None:
+    """Glances over his face, and at times beside it; they come back within some seconds."""
+    glances = Glances(np.random.default_rng(seed))
+    times = np.arange(0.0, HOUR, 0.1)
+    off = np.array([np.hypot(*glances.at(time)) for time in times])
+    assert off[:20].max() == 0.0  # at the start straight at him
+    assert 0.03 < np.mean(off > 3.0) < 0.15
+    assert off.max() < 12.5
+    changes = np.flatnonzero(np.diff(off > 3.0))
+    assert np.diff(times[changes])[::2].max() < 6.0  # as long as they are away
+
+
+@given(st.integers(0, 2**32), st.lists(st.floats(0.0, 900.0), min_size=1, max_size=20))
+def test_the_same_seed_and_time_give_the_same_values(seed: int, times: list[float]) -> None:
+    """In whatever order they are asked for, and whatever was asked before."""
+    one, other = Life(seed), Life(seed)
+    found = [one.values(time) for time in times]
+    assert [other.values(time) for time in reversed(times)] == found[::-1]
+
+
+def test_seeds_differ() -> None:
+    """Two faces side by side do not move as one."""
+    first, second = (
+        [Life(seed).values(t)[f"{LID}_left"] for t in np.arange(60.0)] for seed in (0, 1)
+    )
+    assert first != second
+
+
+@given(st.integers(0, 1000), st.floats(0.0, 3600.0))
+def test_values_stay_within_reach(seed: int, time: float) -> None:
+    """All are controls of the face within their limits; but for lids and eyes all are small."""
+    limits = _limits()
+    for name, value in Life(seed).values(time).items():
+        low, high = limits[name]
+        assert low <= value <= high, name
+        if not name.startswith((LID, "gaze")):
+            assert abs(value) < 0.2, name
+
+
+def _limits(found: dict[str, tuple[float, float]] = {}) -> dict[str, tuple[float, float]]:  # noqa: B006
+    """The limits of the face, asked for once."""
+    if not found:
+        found.update(FaceScene().limits)
+    return found
+
+
+def test_breath_goes_in_and_out() -> None:
+    """In a breath the lungs are full once; air streams in only while they fill."""
+    full, flow = np.transpose([breath(share) for share in np.linspace(3.0, 4.0, 101)])
+    filling = np.diff(full) > 0.0
+    assert full.min() == 0.0 and full.max() > 0.99
+    assert 0.3 < filling.mean() < 0.5 and not (flow[:-1] * ~filling).max() > 0.1
+
+
+def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene: FaceScene) -> None:
+    """The simulation follows late, and yet lids meet; down they are faster than up."""
+    life, gaps = Life(0), []
+    start = life_blinks(life)[0]
+    scene.reset()
+    open_wide = lids_gap(scene)
+    scene.pose({f"{LID}_{side}": 1.0 for side in ("left", "right")})
+    scene.step(1.0)
+    shut = lids_gap(scene)
+    scene.reset()
+    for frame in range(36):
+        lids = life.parts(start + frame / 60.0)["lids"]
+        scene.pose(lids)
+        scene.step(1.0 / 60.0)
+        gaps.append((open_wide - lids_gap(scene)) / (open_wide - shut))
+    closed = np.array(gaps)
+    down, up = np.flatnonzero(closed > 0.9)[[0, -1]] / 60.0
+    assert closed.max() > 0.985
+    assert 0.05 < down < 0.15  # of the way down
+    assert 0.05 < up - down < 0.16
+    assert abs(closed[-1]) < 0.02
+    assert np.diff(closed).max() > -1.15 * np.diff(closed).min()
+
+
+def life_blinks(life: Life) -> list[float]:
+    """When the lids of a life begin to shut in its first half minute [s]."""
+    drawn = [life.parts(frame / 60.0)["lids"][f"{LID}_left"] for frame in range(1800)]
+    return [frame / 60.0 for frame in range(1, 1800) if drawn[frame] == 1.0 > drawn[frame - 1]]
+
+
+def test_degrees_are_those_of_the_rig(scene: FaceScene) -> None:
+    """Controls at 1 turn eyes and head by what the life of the face counts with."""
+    scene.reset()
+    scene.pose({"gaze_horizontal_left": 1.0, "head_yaw": 0.0})
+    scene.step(1.0)
+    way = pupils(scene)["left"][1]
+    assert np.degrees(np.arctan2(way[0], way[2])) == pytest.approx(EYE_RANGE, abs=0.1)
+    for name, degrees in HEAD_RANGES.items():
+        scene.reset()
+        scene.pose({name: 1.0})
+        scene.step(2.0)
+        turn = scene.bone_transforms()["cranium"][:3, :3]
+        angle = np.degrees(np.arccos((np.trace(turn) - 1.0) / 2.0))
+        assert angle == pytest.approx(degrees, abs=0.1), name
+    scene.reset()
+
+
+@pytest.mark.parametrize("view", ["front", "three-quarter", "-20,15", "40,-10"])
+def test_both_eyes_meet_the_camera(scene: FaceScene, view: str) -> None:
+    """Each looks at it, closer than one sees (2 degrees), while the head takes its share."""
+    eye = camera_for(scene, view).eye
+    _look(scene, eye)
+    assert _off(scene, eye) < 1.5
+    left, right = (pupils(scene)[side][1] for side in ("left", "right"))
+    assert left[0] < right[0]  # they converge
+    scene.reset()
+
+
+def test_a_head_of_ones_own_meets_the_camera(tmp_path: Path) -> None:
+    """Elsewhere and of another size, its eyes do as well."""
+    scene = FaceScene(fit_head(*stranger().write(tmp_path)))
+    eye = camera_for(scene, "three-quarter").eye
+    _look(scene, eye)
+    assert _off(scene, eye) < 2.0
+
+
+def _off(scene: FaceScene, viewer: np.ndarray) -> float:
+    """How far the eye that looks least at a point looks past it [degrees]."""
+    off = []
+    for centre, way in pupils(scene).values():
+        there = (viewer - centre) / np.linalg.norm(viewer - centre)
+        off.append(np.degrees(np.arccos(min(way @ there, 1.0))))
+    return float(max(off))
+
+
+def test_who_stands_aside_is_not_followed(scene: FaceScene) -> None:
+    """In profile, and from behind, the face looks straight ahead; nothing jumps on the way."""
+    for view in ("profile", "180,0", "0,80"):
+        parts = looking_at(scene, camera_for(scene, view).eye)
+        assert all(value == 0.0 for part in parts.values() for value in part.values())
+    walk = [
+        looking_at(scene, camera_for(scene, f"{yaw},0").eye)["eyes"]["gaze_horizontal_left"]
+        for yaw in range(-120, 121)
+    ]
+    assert np.abs(np.diff(walk)).max() < 0.2
+    assert np.abs(walk).max() <= EYES_MOST / EYE_RANGE + 1e-9
+
+
+def test_mirrored_viewers_are_looked_at_alike(scene: FaceScene) -> None:
+    """Left and right change places."""
+    viewer = np.array([300.0, 120.0, 800.0])
+    one = looking_at(scene, viewer)["eyes"]
+    other = looking_at(scene, viewer * [-1.0, 1.0, 1.0])["eyes"]
+    for side, twin in (("left", "right"), ("right", "left")):
+        across = other[f"gaze_horizontal_{twin}"]
+        assert one[f"gaze_horizontal_{side}"] == pytest.approx(-across, abs=1e-6)
+        along = other[f"gaze_vertical_{twin}"]
+        assert one[f"gaze_vertical_{side}"] == pytest.approx(along, abs=1e-6)
+
+
+def _look(scene: FaceScene, viewer: np.ndarray) -> None:
+    """Let the face look at a point until it does."""
+    idle = Idle(scene)
+    scene.reset()
+    for _ in range(90):
+        scene.pose(idle.beneath(NOBODY, viewer, 0.0, is_still=True))
+        scene.step(1.0 / 60.0)
+
+
+def test_what_others_move_is_left_to_them(scene: FaceScene) -> None:
+    """With all that belongs to it: one lid stands for both, one way of the gaze for both eyes."""
+    viewer, idle = np.array([100.0, 0.0, 900.0]), Idle(scene)
+    whole = idle.beneath(NOBODY, viewer, 5.6)
+    assert {f"{LID}_left", "gaze_vertical_right", "head_roll", "nasalis_left"} <= whole.keys()
+    for control, gone in (
+        ("wink", LID),
+        ("gaze_horizontal", "gaze"),
+        ("AU61", "gaze"),
+        ("head_roll", "head"),
+    ):
+        left = idle.beneath(scene.moved_by(control), viewer, 5.6)
+        assert left and not any(name.startswith(gone) for name in left), control
+        assert all(whole[name] == value for name, value in left.items())
+    smiling = idle.beneath(scene.moved_by("AU12"), viewer, 5.6)
+    assert "zygomaticus_major_left" not in smiling and f"{LID}_left" in smiling
+
+
+def test_what_is_no_face_has_no_life() -> None:
+    """A scene without eyes stays as it is."""
+    assert Idle(PlaneScene()).beneath(NOBODY, np.array([0.0, 0.0, 900.0]), 3.0) == {}
+
+
+def test_asking_what_a_control_moves_moves_nothing(scene: FaceScene) -> None:
+    """Between two steps: what was set, the life beneath included, is as before."""
+    fresh = FaceScene()
+    fresh.pose({"AU12": 0.3, "head_yaw": 0.01})
+    before = fresh.values
+    smile = fresh.moved_by("AU12")
+    assert {"zygomaticus_major_left", "zygomaticus_major_right"} <= smile <= {*fresh.limits}
+    assert fresh.moved_by("jaw_open") == {"jaw_open"}
+    assert fresh.values == before
+
+
+def test_only_what_can_be_seen_is_drawn() -> None:
+    """Between blinks most steps move the face by less than a part of a pixel."""
+    scene = FaceScene()
+    session = Session(scene, script_for(None, "face"))
+    physics, idle, time = Physics(session, FrameTimes()), Idle(scene), 0.0
+
+    def life(seconds: float) -> dict[str, float]:
+        nonlocal time
+        time += seconds
+        return idle.beneath(frozenset(), VIEWER, time)
+
+    drawn, last = [], scene.positions.copy()
+    for _ in range(1200):
+        physics.advance(STEP, is_skin_dragged=False, life=life)
+        drawn.append(physics.has_moved)
+        if physics.has_moved:
+            last = scene.positions.copy()
+        assert not physics.is_left_alone or np.abs(scene.positions - last).max() <= SEEN
+    assert all(drawn[:20])  # until it is left alone
+    assert 0.02 < np.mean(drawn[60:]) < 0.6
+    assert not physics.is_at_rest
+    for _ in range(200):  # switched off
+        physics.advance(STEP, is_skin_dragged=False)
+    assert physics.is_at_rest and not physics.has_stepped
+
+
+def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone() -> None:
+    """What a script names anywhere is the script's for the whole film; the rest lives beneath."""
+    keys = (Key(0.0, 0.0), Key(2.9, 0.0), Key(3.0, 0.4))
+    script = Script(
+        "smile", 3.0, "here", tracks={"AU12": Channel.of(keys), "AU1": Channel.of(keys)}
+    )
+    options = CaptureOptions(size=(64, 64), samples=0, is_alive=True)
+    films = []
+    for _ in range(2):
+        with Capture(FaceScene(), options) as capture:
+            values = [dict(capture.scene.values) for _ in capture.play(script, progress=False)]
+            films.append((values, capture.scene.positions.copy()))
+    assert films[0][0] == films[1][0]
+    assert np.array_equal(films[0][1], films[1][1])
+    values = films[0][0]
+    assert max(each[f"{LID}_left"] for each in values) == 1.0
+    assert any(each["gaze_horizontal_left"] for each in values)
+    assert not any(each["zygomaticus_major_left"] for each in values)
+    assert not any(each["frontalis_medial_right"] for each in values)
+    assert [each["AU12"] for each in values] == [script.at(n / 30.0)["AU12"] for n in range(91)]

@@ -1,0 +1,65 @@
+"""Gaps and the order of time: whatever rows a reader found, a Take keeps its promises."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from risorius.app.errors import UserError
+from risorius.app.recordings.gaps import whole_take
+
+odd = st.sampled_from([math.nan, 0.0, 0.25, 1.0])
+moments = st.one_of(st.integers(-3, 40).map(lambda number: number / 8.0), st.just(math.nan))
+
+
+@given(st.lists(st.tuples(moments, odd, odd), min_size=1, max_size=30))
+def test_any_rows(rows: list[tuple[float, float, float]]) -> None:
+    """Times rise from 0, no value is missing, none lies beyond those that were there."""
+    times, jaw, smile = np.array(rows).T
+    channels = {"jawOpen": jaw, "mouthSmileLeft": smile}
+    try:
+        take = whole_take("any", "take.csv", times, channels)
+    except UserError as error:
+        assert "face" in str(error) or "time" in str(error)
+        assert not np.isfinite(rows).all()
+        return
+    assert take.times[0] == 0.0
+    assert np.all(np.diff(take.times) > 0.0)
+    assert take.channels
+    for name, values in take.channels.items():
+        there = channels[name][np.isfinite(channels[name])]
+        assert values.shape == take.times.shape
+        assert values.min() >= there.min()
+        assert values.max() <= there.max()
+
+
+@given(st.lists(moments.filter(math.isfinite), min_size=1, max_size=12))
+def test_as_many_rows_as_can_be(times: list[float]) -> None:
+    """No rising sequence of rows is longer than the one that is kept: all are tried."""
+    longest = [1] * len(times)
+    for row, time in enumerate(times):
+        before = [longest[other] for other in range(row) if times[other] < time]
+        longest[row] = 1 + max(before, default=0)
+    take = whole_take("any", "x", np.array(times), {"jawOpen": np.ones(len(times))})
+    left_out = [note for note in take.notes if "out of the order" in note]
+    kept = len(times) - (int(left_out[0].split()[0]) if left_out else 0)
+    assert kept == max(longest)
+
+
+def test_a_pose_is_held_and_left_at_the_end_of_the_gap() -> None:
+    """Half a second without a face at 10 frames a second, to the digit."""
+    values = np.array([0.2, 0.4, np.nan, np.nan, np.nan, np.nan, 1.0, 1.0])
+    take = whole_take("any", "x", np.arange(8) / 10.0, {"jawOpen": values})
+    expected = [0.2, 0.4, 0.4, 0.4, 0.6, 0.8, 1.0, 1.0]
+    assert take.channels["jawOpen"] == pytest.approx(expected)
+
+
+def test_a_slow_recording_has_no_holes() -> None:
+    """Two frames a second are far apart, and nobody is missing."""
+    take = whole_take("any", "x", np.arange(8) / 2.0, {"jawOpen": np.arange(8) / 8.0})
+    assert len(take.times) == 8
+    assert not take.notes

@@ -1,0 +1,451 @@
+"""Sound files: read, named by scripts, heard in films, seen at every zoom, played in step."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import time
+from collections.abc import Generator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from click.testing import CliRunner
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from risorius.app.capture import outputs
+from risorius.app.capture.ffmpeg import Soundtrack as Heard
+from risorius.app.cli import main
+from risorius.app.errors import UserError
+from risorius.app.scenes import PlaneScene
+from risorius.app.script import Script, load_script, parse_script, save_script, script_text
+from risorius.app.sound import Player, Sound, load_sound, player
+from risorius.app.sound.peaks import Peaks
+from risorius.app.viewer.physics import STEP, Clock
+from risorius.app.viewer.session import Session
+from risorius.app.viewer.soundtrack import Soundtrack
+
+from .sounds import noise, write_wav
+
+POSE = "[[pose]]\ntime = 1.0\n"
+GREY = np.full((48, 64, 3), 128, np.uint8)
+FRAME = 1.0 / 30.0  # [s]
+
+
+def lag(heard: Sound, source: Sound) -> float:
+    """By how much one sound comes later than the other that is in it [s]."""
+    first, second = (each.samples[:, 0].astype(float) for each in (heard, source))
+    length = len(first) + len(second)
+    spectrum = np.fft.rfft(first, length) * np.conj(np.fft.rfft(second, length))
+    best = int(np.fft.irfft(spectrum, length).argmax())
+    return (best if best < len(first) else best - length) / heard.rate
+
+
+# Files
+
+
+def test_a_wav_is_read_to_the_sample(tmp_path: Path) -> None:
+    """At the rate that everything has, nothing changes, with one side or two; more become two."""
+    for sides in (1, 2):
+        samples = np.stack([noise(0.5, 48_000, seed=seed) for seed in range(sides)], axis=1)
+        sound = load_sound(write_wav(tmp_path / "a b, ü.wav", samples, 48_000))
+        assert sound.samples.shape == (24_000, sides) and sound.duration == 0.5
+        assert np.abs(sound.samples / 32_767 - samples).max() < 1e-4
+    six = load_sound(write_wav(tmp_path / "six.wav", np.zeros((100, 6)), 48_000))
+    assert six.samples.shape == (100, 2)
+
+
+@pytest.mark.parametrize("rate", [8_000, 22_050, 44_100])
+def test_other_rates_are_in_step(tmp_path: Path, rate: int) -> None:
+    """A sound of another rate lasts as long, and nothing in it is elsewhere."""
+    source = noise(1.0, 48_000)
+    low = load_sound(write_wav(tmp_path / "high.wav", source, 48_000), rate=rate, is_mono=True)
+    again = load_sound(write_wav(tmp_path / "low.wav", low.samples[:, 0] / 32_767, rate))
+    assert again.duration == pytest.approx(1.0, abs=2e-3)
+    assert lag(again, load_sound(tmp_path / "high.wav")) == pytest.approx(0.0, abs=5e-4)
+
+
+def test_what_is_no_sound_is_told_in_one_line(tmp_path: Path) -> None:
+    """Missing, empty, damaged, mute, a folder, a pipe: what it is, and what would do."""
+    (tmp_path / "text.wav").write_text("no sound")
+    (tmp_path / "empty.wav").touch()
+    write_wav(tmp_path / "mute.wav", np.zeros(0))
+    (tmp_path / "list.m3u8").write_text(f"#EXTM3U\n#EXTINF:1,\n{tmp_path}/text.wav\n")
+    with outputs.film(tmp_path / "mute.mp4", (64, 48), 25.0) as add:
+        add(GREY)
+    for name in ("text.wav", "empty.wav", "mute.wav", "list.m3u8", "mute.mp4"):
+        with pytest.raises(UserError, match=f"{name}: there is no sound in it") as told:
+            load_sound(tmp_path / name)
+        assert "\n" not in str(told.value)
+    with pytest.raises(UserError, match=r"nothing\.wav: no such sound file"):
+        load_sound(tmp_path / "nothing.wav")
+    with pytest.raises(UserError, match="is a folder"):
+        load_sound(tmp_path)
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "pipe.wav")
+        with pytest.raises(UserError, match="is a pipe"):
+            load_sound(tmp_path / "pipe.wav")
+
+
+# Scripts
+
+
+def test_a_script_names_its_sound_as_seen_from_itself(tmp_path: Path) -> None:
+    """Wherever the program was started: beside the script, or by its whole path."""
+    for name in ("speech.wav", "sounds/speech.wav", "../speech.wav", str(tmp_path / "speech.wav")):
+        script = parse_script(f"sound = '{name}'\n{POSE}", source=str(tmp_path / "deep" / "s.toml"))
+        assert script.sound == Path(os.path.normpath(tmp_path / "deep" / name))
+    assert parse_script(POSE, source="s").sound is None
+    for wrong, why in (("7", "must be a text"), ("''", "is empty")):
+        with pytest.raises(UserError, match=f"'sound' .*{why}"):
+            parse_script(f"sound = {wrong}\n{POSE}", source="s")
+
+
+def test_a_project_stays_together(tmp_path: Path) -> None:
+    """Saved elsewhere the sound is found; moved as a whole, too."""
+    home = tmp_path / "home"
+    (home / "sounds").mkdir(parents=True)
+    sound = home / "sounds" / "a.wav"
+    script = parse_script(f"sound = '{sound}'\n{POSE}", source="s")
+    save_script(home / "s.toml", script)
+    assert 'sound = "sounds/a.wav"' in (home / "s.toml").read_text()
+    save_script(home / "other" / "s.toml", script)
+    assert 'sound = "../sounds/a.wav"' in (home / "other" / "s.toml").read_text()
+    far = tmp_path / "quite" / "elsewhere" / "s.toml"
+    save_script(far, script)
+    for path in (home / "s.toml", home / "other" / "s.toml", far):
+        assert load_script(path).sound == sound
+    assert parse_script(script_text(script), source="anywhere") == script
+    shutil.move(home, tmp_path / "moved")
+    found = load_script(tmp_path / "moved" / "s.toml").sound
+    assert found == tmp_path / "moved" / "sounds" / "a.wav"
+
+
+# Films
+
+
+@pytest.mark.parametrize("suffix", outputs.FILM_SUFFIXES)
+@pytest.mark.parametrize(("seconds", "rate"), [(2.0, 48_000), (0.6, 22_050)])
+def test_a_film_is_heard_in_step(tmp_path: Path, suffix: str, seconds: float, rate: int) -> None:
+    """Its first frame is the first sample; a longer sound is cut, a shorter one cuts nothing."""
+    source = write_wav(tmp_path / "noise.wav", noise(seconds, rate), rate)
+    film = tmp_path / f"film{suffix}"
+    with outputs.film(film, (64, 48), 30.0, Heard(source, 1.0)) as add:
+        for _ in range(31):
+            add(GREY)
+    heard = load_sound(film)
+    assert abs(lag(heard, load_sound(source))) < 5e-3
+    assert heard.duration == pytest.approx(min(seconds, 1.0), abs=0.05)
+    import imageio_ffmpeg
+
+    assert imageio_ffmpeg.count_frames_and_secs(str(film))[0] == 31
+
+
+def test_a_film_gives_its_sound_back(tmp_path: Path) -> None:
+    """The sound of a film is as good as a sound file, and begins where the film does."""
+    source = write_wav(tmp_path / "noise.wav", noise(1.0))
+    for name, given_by in (("first", source), ("second", tmp_path / "first.mov")):
+        with outputs.film(tmp_path / f"{name}.mov", (64, 48), 30.0, Heard(given_by, 1.0)) as add:
+            for _ in range(31):
+                add(GREY)
+    assert abs(lag(load_sound(tmp_path / "second.mov"), load_sound(source))) < 5e-3
+
+
+def test_capture_takes_the_sound_of_script_and_option(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """--sound goes before the script's own; pictures are silent, and only films take the option."""
+    monkeypatch.chdir(tmp_path)
+    write_wav(tmp_path / "own.wav", noise(0.4))
+    write_wav(tmp_path / "other.wav", noise(0.4, seed=1))
+    (tmp_path / "s.toml").write_text("scene = 'plane'\nsound = 'own.wav'\n[[pose]]\ntime = 0.2\n")
+
+    def capture(*words: str) -> tuple[int, str]:
+        result = CliRunner().invoke(
+            main, ["capture", "s.toml", "--size", "64x48", "--quiet", *words]
+        )
+        return result.exit_code, result.output
+
+    assert capture("-o", "own.mp4")[0] == 0
+    assert capture("-o", "other.mp4", "--sound", "other.wav")[0] == 0
+    for name in ("own", "other"):
+        assert abs(lag(load_sound(Path(f"{name}.mp4")), load_sound(Path(f"{name}.wav")))) < 5e-3
+    assert capture("-o", "frame.png")[0] == 0
+    for silent in ("frame.png", "frames"):
+        assert "only a film is heard" in capture("-o", silent, "--sound", "own.wav")[1]
+    assert "no such sound file" in capture("-o", "none.mp4", "--sound", "nothing.wav")[1]
+    assert "would be written" in capture("-o", "own.mp4", "--sound", "own.mp4")[1]
+    (tmp_path / "own.wav").unlink()
+    assert capture("-o", "frame.png")[0] == 0
+    assert "own.wav: no such sound file" in capture("-o", "gone.mp4")[1]
+    assert not (tmp_path / "gone.mp4").exists()
+
+
+# The waveform
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    length=st.integers(1, 20_000),
+    channels=st.integers(1, 2),
+    start=st.floats(0.0, 1.0),
+    span=st.floats(0.001, 2.0),
+    count=st.integers(1, 300),
+    seed=st.integers(0, 9),
+)
+def test_every_swing_is_seen_where_it_is(
+    length: int, channels: int, start: float, span: float, count: int, seed: int
+) -> None:
+    """Each stretch has all extremes of its own samples, and none from far beside it."""
+    rate = 10_000
+    samples = np.random.default_rng(seed).integers(-9000, 9000, (length, channels))
+    samples[samples < 8000] //= 4  # extremes are rare
+    low, high = Peaks(Sound(Path("x"), samples.astype(np.int16), rate)).between(
+        start, start + span, count
+    )
+    assert low.shape == high.shape == (count,)
+    assert -1.0 <= low.min() and high.max() <= 1.0
+    loudest = max(int(np.abs(samples).max()), 1)
+    edges = np.linspace(start, start + span, count + 1) * rate
+    near = max((edges[1] - edges[0]) / 4.0, 1.0) + 1.0  # a quarter of a stretch, or a sample
+    for stretch in range(0, count, 7):
+        first, end = edges[stretch], edges[stretch + 1]
+        inside = samples[int(np.ceil(first + near)) : max(int(end - near), 0)]
+        around = samples[max(int(first - near), 0) : int(np.ceil(end + near))]
+        if inside.size:
+            assert low[stretch] * loudest <= inside.min() + 1e-6
+            assert high[stretch] * loudest >= inside.max() - 1e-6
+        if around.size:
+            assert low[stretch] * loudest >= min(int(around.min()), 0) - 1e-6
+            assert high[stretch] * loudest <= max(int(around.max()), 0) + 1e-6
+        else:
+            assert low[stretch] == high[stretch] == 0.0
+
+
+# Playing
+
+
+class HandDevice:
+    """A device that asks for samples when a test says so, by a clock of the test's."""
+
+    def __init__(self) -> None:
+        self.running, self.now = False, 0.0
+        self._samples: Generator[Any, int, None] | None = None
+
+    def start(self, samples: Generator[Any, int, None]) -> None:
+        self.running, self._samples = True, samples
+
+    def stop(self) -> None:
+        self.running = False
+
+    close = stop
+
+    def ask(self, count: int) -> npt.NDArray[np.int16]:
+        """The next frames, (count, C)."""
+        assert self._samples is not None
+        return np.asarray(self._samples.send(count))
+
+
+COUNT = round(player.PERIOD * 48_000)
+
+
+@pytest.fixture
+def device(monkeypatch: pytest.MonkeyPatch) -> HandDevice:
+    """The device that players find."""
+    hand_device = HandDevice()
+    monkeypatch.setattr(player, "open_device", lambda rate, channels: hand_device)
+    return hand_device
+
+
+def ramp(seconds: float) -> Sound:
+    """A sound whose samples tell their time [ms]."""
+    samples = (np.arange(round(seconds * 48_000)) // 48).astype(np.int16)
+    return Sound(Path("ramp"), np.stack([samples, samples], axis=1))
+
+
+@pytest.mark.parametrize("speed", [0.25, 1.0, 2.0])
+def test_a_player_gives_the_sound_from_the_place_on(device: HandDevice, speed: float) -> None:
+    """At each speed the samples are those of the time; behind the end there is silence."""
+    played = Player(ramp(2.0), clock=lambda: device.now)
+    played.play(1.0, speed)
+    first = device.ask(COUNT)
+    assert first[0, 0] == 1000 and abs(first[-1, 0] - (1000 + 1000 * speed * player.PERIOD)) <= 1
+    second = device.ask(COUNT)
+    assert abs(int(second[0, 0]) - int(first[-1, 0])) <= 2
+    played.play(0.5)
+    assert device.ask(COUNT)[0, 0] == 500 and played.speed == 1.0
+    played.play(1.99)
+    end = device.ask(COUNT)
+    assert end[0, 0] == 1990 and not end[-1].any() and not device.ask(COUNT).any()
+    played.play(0.5, seconds=0.01)
+    snippet = device.ask(COUNT)
+    assert snippet[0, 0] == 500 and not snippet[round(0.01 * 48_000) :].any()
+    played.stop()
+    assert not device.ask(COUNT).any() and device.running and not played.is_heard
+    played.rest()
+    assert not device.running
+
+
+def test_the_position_is_that_of_what_is_heard(device: HandDevice) -> None:
+    """What was given is heard after what the device still holds; in between the clock goes on."""
+    played = Player(ramp(9.0), clock=lambda: device.now)
+    played.play(3.0)
+    assert played.position == 3.0
+    for _ in range(player.PERIODS):  # it fills itself at once
+        device.ask(COUNT)
+    assert played.position == pytest.approx(3.0)
+    for asked in range(1, 20):
+        device.now = asked * player.PERIOD
+        device.ask(COUNT)
+        assert played.position == pytest.approx(3.0 + device.now)
+        device.now += 0.3 * player.PERIOD
+        assert played.position == pytest.approx(3.0 + device.now)
+    held_at = played.position
+    device.now += 10.0  # it hangs
+    assert played.position < held_at + 2.0 * player.PERIOD
+
+
+@pytest.mark.parametrize("pace", [0.99, 1.0, 1.01])
+@pytest.mark.parametrize("frames_per_second", [12.0, 60.0, 144.0])
+def test_the_picture_keeps_to_the_sound(
+    device: HandDevice, pace: float, frames_per_second: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Over a minute both are less than a frame apart, whatever the device's clock counts.
+
+    pace: seconds of the device for one of ours. The steps of physics are the window's own.
+    """
+    played: list[Player] = []
+
+    def play(sound: Sound) -> Player:
+        played.append(Player(sound, clock=lambda: device.now))
+        return played[0]
+
+    monkeypatch.setattr("risorius.app.viewer.soundtrack.Player", play)
+    sound = ramp(30.0)
+    sound = replace(sound, samples=np.tile(sound.samples, (3, 1)))
+    monkeypatch.setattr("risorius.app.viewer.soundtrack.load_sound", lambda file: sound)
+    session = Session(PlaneScene(), Script("", 80.0, "s", "plane", sound=Path("ramp")))
+    soundtrack, clock = Soundtrack(session), Clock()
+    soundtrack.refresh()
+    session.toggle_playing()
+    soundtrack.elapsed(0.0)  # it begins to play, and the device fills itself
+    for _ in range(player.PERIODS):
+        device.ask(COUNT)
+    due, off = player.PERIOD / pace, []
+    for frame in range(1, round(60.0 * frames_per_second)):
+        now = frame / frames_per_second
+        while due <= now:
+            device.now = due
+            device.ask(COUNT)
+            due += player.PERIOD / pace
+        device.now = now
+        session.time += clock.steps(soundtrack.elapsed(1.0 / frames_per_second)) * STEP
+        assert played[0].position == pytest.approx(now * pace, abs=2e-3)
+        off.append(now * pace - session.time)
+    assert np.abs(off).max() < FRAME
+    assert abs(np.median(off)) < 0.5 * FRAME
+
+
+def test_a_stalled_window_skips_what_was_heard(
+    device: HandDevice, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After a standstill the picture is where the sound is, and one of a dead device goes on."""
+    session, soundtrack = ramp_with(device, monkeypatch)
+    session.toggle_playing()
+    soundtrack.elapsed(0.02)
+    for asked in range(player.PERIODS + 50):
+        device.now = max(asked - player.PERIODS + 1, 0) * player.PERIOD
+        device.ask(COUNT)
+    assert soundtrack.elapsed(0.1) == 0.1
+    assert session.time == pytest.approx(50 * player.PERIOD - 0.1, abs=0.01)
+    session.time += 0.1
+    device.now += 0.02
+    assert soundtrack.elapsed(0.02) == pytest.approx(0.02)  # which was no jump of the user's
+    assert player_of(soundtrack).position > 50 * player.PERIOD
+    device.now += player.STUCK + player.PERIOD  # it does not ask any more
+    assert soundtrack.elapsed(0.02) == 0.02 and not soundtrack.is_heard
+
+
+def player_of(soundtrack: Soundtrack) -> Player:
+    """What plays it."""
+    assert soundtrack._player is not None
+    return soundtrack._player
+
+
+def ramp_with(device: HandDevice, monkeypatch: pytest.MonkeyPatch) -> tuple[Session, Soundtrack]:
+    """A script of 20 s with a ramp to be heard, on the device."""
+    monkeypatch.setattr(
+        "risorius.app.viewer.soundtrack.Player",
+        lambda sound: Player(sound, clock=lambda: device.now),
+    )
+    monkeypatch.setattr("risorius.app.viewer.soundtrack.load_sound", lambda file: ramp(30.0))
+    session = Session(PlaneScene(), Script("", 20.0, "s", "plane", sound=Path("ramp")))
+    soundtrack = Soundtrack(session)
+    soundtrack.refresh()
+    return session, soundtrack
+
+
+def test_the_sound_goes_where_the_user_goes(
+    device: HandDevice, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While it plays, in a loop, by scrubbing, at another speed; it is silent for a film."""
+    session, soundtrack = ramp_with(device, monkeypatch)
+    assert soundtrack.elapsed(0.02) == 0.02 and not soundtrack.is_heard
+    session.toggle_playing()
+    for place in (0.0, 5.0, 19.0, 0.0):
+        session.time = place
+        soundtrack.elapsed(0.02)
+        assert soundtrack.is_heard and device.ask(COUNT)[0, 0] == 1000 * place
+    session.speed = 0.5
+    soundtrack.elapsed(0.02)
+    slow = device.ask(COUNT)
+    assert slow[-1, 0] == pytest.approx(1000 * 0.5 * player.PERIOD, abs=1)
+    assert soundtrack.elapsed(0.02, is_silent=True) == 0.02 and not soundtrack.is_heard
+    session.is_playing = False
+    soundtrack.elapsed(0.02)
+    session.seek(7.0)
+    soundtrack.elapsed(0.02)
+    assert device.ask(COUNT)[0, 0] == 7000  # a snippet of what is gone to
+    session.edit(replace(session.script, sound=None))
+    soundtrack.refresh()
+    assert soundtrack.sound is None and soundtrack.elapsed(0.02) == 0.02
+
+
+def test_a_real_device_asks_and_the_position_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Through miniaudio, on the device that it has for machines that have none."""
+    miniaudio = pytest.importorskip("miniaudio")
+    monkeypatch.setattr(player, "backends", lambda: [miniaudio.Backend.NULL])
+    played = Player(ramp(30.0))
+    played.play(1.0)
+    end = time.monotonic() + 20.0
+    while played.position < 1.2 and time.monotonic() < end:
+        time.sleep(0.01)
+    assert 1.2 <= played.position < 1.2 + 20.0 and played.is_heard
+    played.rest()
+    played.play(5.0)
+    assert played.position == pytest.approx(5.0, abs=1.0)
+    played.close()
+
+
+def test_without_a_device_all_is_silent_and_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No library, or no device: no error, the waveform is there, doctor says it."""
+    monkeypatch.setattr("risorius.app.viewer.soundtrack.load_sound", lambda file: ramp(3.0))
+    session = Session(PlaneScene(), Script("", 2.0, "s", "plane", sound=Path("ramp")))
+    for name, value in (("backends", lambda: []), ("miniaudio", None)):
+        with monkeypatch.context() as lacking:
+            lacking.setattr(player, name, value)
+            with pytest.raises(player.NoDeviceError):
+                player.open_device(48_000, 2)
+            soundtrack = Soundtrack(session)
+            soundtrack.refresh()
+            session.is_playing = True
+            assert soundtrack.elapsed(0.5) == 0.5 and soundtrack.sound is not None
+            assert not soundtrack.is_heard
+            soundtrack.rest()
+            soundtrack.close()
+            told = CliRunner().invoke(main, ["doctor"]).output
+            assert "sound: no." in told

@@ -1,0 +1,143 @@
+"""Places of keys as arrays: they do what sets and loops over keys would do."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from risorius.app.script import Channel, Key, Pose, Script
+from risorius.app.script.easing import EASINGS
+from risorius.app.viewer import keyframes
+from risorius.app.viewer.keyframes import POSES, places_of
+from risorius.app.viewer.places import KeyPlace, Places
+
+TIMES = st.integers(0, 40).map(lambda step: step / 8.0)  # few, so that they often meet
+TRACKS = st.sampled_from([POSES, "joy", "blink"])
+PLACES = st.frozensets(st.builds(KeyPlace, TRACKS, TIMES))
+EASING = st.sampled_from(sorted(EASINGS))
+
+
+def keys() -> st.SearchStrategy[list[Key]]:
+    """Keys of one track, in the order of time."""
+    key = st.builds(Key, TIMES, st.floats(0.0, 1.0), EASING)
+    each_once = st.lists(key, min_size=1, max_size=12, unique_by=lambda each: each.time)
+    return each_once.map(lambda found: sorted(found, key=lambda each: each.time))
+
+
+@st.composite
+def scripts(draw: st.DrawFn) -> Script:
+    """Scripts of poses and two tracks."""
+    poses = tuple(Pose(key.time, {"joy": key.value}, key.easing) for key in draw(keys()))
+    tracks = {name: Channel.of(draw(keys())) for name in ("joy", "blink")}
+    return Script("t", 5.0, "t", poses=poses, tracks=tracks)
+
+
+@given(one=PLACES, other=PLACES, track=TRACKS, time=TIMES)
+def test_they_are_sets(
+    one: frozenset[KeyPlace], other: frozenset[KeyPlace], track: str, time: float
+) -> None:
+    """Each operation gives what a frozenset gives."""
+    mine, theirs = Places.of(*one), Places.of(*other)
+    assert mine == one and len(mine) == len(one) and bool(mine) == bool(one)
+    assert sorted(mine) == sorted(one)
+    assert mine | theirs == one | other
+    assert mine & theirs == one & other
+    assert mine - theirs == one - other
+    assert (mine <= theirs) == (one <= other)
+    assert (mine == theirs) == (one == other)
+    assert (KeyPlace(track, time) in mine) == (KeyPlace(track, time) in one)
+
+
+@given(places=PLACES, ends=st.tuples(TIMES, TIMES).map(sorted), reach=st.floats(0.0, 2.0))
+def test_places_in_a_stretch_and_near(
+    places: frozenset[KeyPlace], ends: list[float], reach: float
+) -> None:
+    """What is between two times, and what is nearest to one."""
+    first, last = ends
+    chosen = Places.of(*places)
+    assert chosen.between(first, last) == {each for each in places if first <= each.time <= last}
+    near = chosen.near(first, reach)
+    least = min((abs(each.time - first) for each in places), default=np.inf)
+    assert bool(near) == (least <= reach)
+    assert {abs(each.time - first) for each in near} <= {least}
+    assert len({each.time for each in near}) <= 1
+    if near:
+        assert near == {each for each in places if each.time == near.first}
+
+
+@given(places=PLACES, start=TIMES, span=st.floats(0.1, 5.0), count=st.integers(1, 9))
+def test_the_latest_of_each_column(
+    places: frozenset[KeyPlace], start: float, span: float, count: int
+) -> None:
+    """What the timeline draws: one key of each column that has any, of the tracks of a row."""
+    edges = np.linspace(start, start + span, count + 1)
+    chosen = Places.of(*places)
+    for names in (["joy"], [POSES, "joy", "blink"], ["joy"]):
+        wanted = []
+        for low, high in itertools.pairwise(edges):
+            inside = [p.time for p in places if p.track in names and low <= p.time < high]
+            wanted += [max(inside)] if inside else []
+        assert chosen.latest_in(edges, names).tolist() == wanted
+
+
+@given(script=scripts(), places=PLACES, steps=st.integers(-9, 9), are_copies=st.booleans())
+def test_keys_arrive_as_one_by_one(
+    script: Script, places: frozenset[KeyPlace], steps: int, are_copies: bool
+) -> None:
+    """Moved or copied keys keep all but their time, and take the place of what was there."""
+    places &= places_of(script)
+    shift = max(steps / 8.0, -min((place.time for place in places), default=0.0))
+    before = dict(keyed_by_place(script))
+    arrived = {KeyPlace(track, time + shift): before[track, time] for track, time in places}
+    stays = {place: key for place, key in before.items() if are_copies or place not in places}
+    change = keyframes.copied if are_copies else keyframes.moved
+    changed, now = change(script, Places.of(*places), steps / 8.0)
+    assert now == set(arrived)
+    assert dict(keyed_by_place(changed)) == stays | arrived
+    for times in places_of(changed).times.values():
+        assert np.all(np.diff(times) > 0.0)
+
+
+@given(script=scripts(), places=PLACES, easing=EASING)
+def test_keys_go_and_are_eased_as_one_by_one(
+    script: Script, places: frozenset[KeyPlace], easing: str
+) -> None:
+    """Only the chosen keys; tracks without a chosen key are shared by both scripts."""
+    chosen = Places.of(*places)
+    before = dict(keyed_by_place(script))
+    eased = keyframes.eased(script, chosen, easing)
+    assert dict(keyed_by_place(eased)) == {
+        place: (*key[:-1], easing) if place in places else key for place, key in before.items()
+    }
+    if not places >= set(before):
+        left = keyframes.without(script, chosen)
+        assert dict(keyed_by_place(left)) == {
+            place: key for place, key in before.items() if place not in places
+        }
+    untouched = script.tracks.keys() - chosen.times.keys()
+    assert all(eased.tracks[name] is script.tracks[name] for name in untouched)
+
+
+@given(script=scripts(), time=TIMES)
+def test_the_next_key(script: Script, time: float) -> None:
+    """Forward and back, among the keys of all tracks; where there is none, one stays."""
+    times = {place.time for place in places_of(script)}
+    assert keyframes.time_beyond(script, time, 1) == min(
+        (t for t in times if t > time), default=time
+    )
+    assert keyframes.time_beyond(script, time, -1) == max(
+        (t for t in times if t < time), default=time
+    )
+
+
+def keyed_by_place(script: Script) -> list[tuple[KeyPlace, tuple[object, ...]]]:
+    """Each key but for its time, by its place, of poses and tracks."""
+    found: list[tuple[KeyPlace, tuple[object, ...]]] = []
+    for pose in script.poses:
+        found.append((KeyPlace(POSES, pose.time), (pose.values, pose.name, pose.easing)))
+    for name, track in script.tracks.items():
+        found += [(KeyPlace(name, key.time), (key.value, key.easing)) for key in track.keys]
+    return found

@@ -1,0 +1,102 @@
+"""Recordings that nobody should have, and what is told of each; good ones of every format.
+
+A row is a name, the file's bytes, and words of the message.
+"""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+
+from tests.app.recording_files import live_link, openface, pyfeat, table
+
+HEADER = b"Timecode,BlendShapeCount,JawOpen\n"
+ROW = b"10:00:00:00.000,61,0.5\n"
+DEEP = 100_000  # brackets
+ODD = "\u202e"  # turns what follows around
+PICTURE = [{"category_name": "jawOpen", "score": "0.5"}, {"category_name": "cheekPuff", "score": 0}]
+TRACKS = {"channels": [{"name": "PP", "keys": [[0, 0.1], [0.2, 0.4], [0.4, 0]]}]}
+CUES = {"mouthCues": [{"start": 0.0, "end": 0.2, "value": "A"}, {"start": 0.2, "value": "X"}]}
+FILM = {"frames": [{"t": n / 30, "blendshapes": {"jawOpen": n / 9}} for n in range(9)]}
+SIDES = {"time": np.arange(9) / 30, "mouthSmile_L": np.arange(9) / 9, "AU12_L": np.zeros(9)}
+
+GOOD: dict[str, bytes] = {
+    "Live Link Face": table(live_link(20)).encode(),
+    "OpenFace": table(openface(20)).encode(),
+    "py-feat": table(pyfeat(10)).encode(),
+    "named columns": table(SIDES).encode(),
+    "semicolons": table(SIDES, ";", comma=True).encode(),
+    "a picture": json.dumps(PICTURE).encode(),
+    "a film": json.dumps(FILM).encode(),
+    "lists": json.dumps({"jawOpen": [0.1, 0.2], "time": [0.0, 0.1]}).encode(),
+    "tracks": json.dumps(TRACKS).encode(),
+    "cues": json.dumps(CUES).encode(),
+    "cues in rows": b"0.00\tX\n0.20\tA\n0.45\tD\n1.00\tX\n",
+}
+
+REFUSED: dict[str, tuple[bytes, str]] = {
+    # Files.
+    "empty": (b"", "is empty"),
+    "blank": (b" \n\t\n", "is empty"),
+    "only a mark of byte order": (b"\xef\xbb\xbf", "known are"),
+    "zeros": (bytes(1000), "not a text file"),
+    "noise": (bytes(range(256)) * 4, "not a text file"),
+    "PNG": (b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR", "not a text file"),
+    "a film": (b"\x00\x00\x00\x18ftypmp42", "not a text file"),
+    "a zip": (b"PK\x03\x04" + bytes(30), "not a text file"),
+    "half of UTF-16": (b"\xff\xfeT", "known are"),
+    # What is no table.
+    "a letter": (b"Dear diary, today I smiled.\nIt was nice.\n", "known are"),
+    "a script": (b"[[pose]]\ntime = 0\njoy = 1\n", "known are"),
+    "OBJ": (b"v 0 0 0\nv 1 0 0\nf 1 2 3\n", "no table and no JSON"),
+    "XML": (b"<?xml version='1.0'?><a/>\n", "no table and no JSON"),
+    "a page": (b"<html><body>404, Not Found</body></html>\n", "known are"),
+    "only numbers": (b"1,2,3\n4,5,6\n", "known are"),
+    "a long line": (b"x" * 2**20, "known are"),
+    "very many columns": (b"a," * 2**17, "known are"),
+    "a pointer": (b"version https://git-lfs.github.com/spec/v1\nsize 9\n", "known are"),
+    # Tables.
+    "another table": (b"date,price\n1,2\n", "no column is known ('date', 'price'"),
+    "a name with escape": (b"da\x1b[2Jte,price\n1,2\n", "no column is known"),
+    "a name turned around": (f"{ODD}date,price\n1,2\n".encode(), "no column is known"),
+    "header only": (HEADER, "no rows"),
+    "header without end": (HEADER[:-1], "no rows"),
+    "empty rows": (HEADER + b",,\n,,\n", "no rows"),
+    "no times": (HEADER + b"so:on,61,0.5\nla:ter,61,0.5\n", "no row has a time"),
+    "no numbers": (HEADER + ROW.replace(b"0.5", b"wide") * 2, "no frame shows a face"),
+    "all NaN": (HEADER + ROW.replace(b"0.5", b"nan") * 2, "no frame shows a face"),
+    "all infinite": (HEADER + ROW.replace(b"0.5", b"1e999") * 2, "no frame shows a face"),
+    "all nonsense": (HEADER + ROW.replace(b"0.5", b"0.5e7,") * 2, "no frame shows a face"),
+    "too few cells": (HEADER + b"10:00:00:00\n" * 3, "line 2 has 1 cells, the header has 3"),
+    "too many cells": (HEADER + ROW[:-1] + b",1,1\n", "line 2 has 5 cells, the header has 3"),
+    "commas in numbers": (b"time,jawOpen\n0,1,0,5\n0,2,0,6\n", "line 2 has 4 cells"),
+    "most rows too short": (HEADER + ROW + b"10:00\n" * 5, "line 3 has 1 cells"),
+    "an open quote": (HEADER + b'"10:00:00:00,61,0.5\n' + ROW * 9000, "line "),
+    "days": (b"frame,jawOpen\n0,0.1\n1e7,0.2\n2e7,0.3\n", "lasts 666667 s"),
+    "no face": (b"timestamp,success,AU01_r,AU12_r\n0,0,1,1\n0.03,0,1,1\n", "no frame shows"),
+    # JSON.
+    "an open bracket": (b"{", "not valid JSON"),
+    "torn JSON": (json.dumps(FILM).encode()[:-9], "not valid JSON"),
+    "a comma too many": (b'{"jawOpen": [0.1, 0.2,],}', "not valid JSON"),
+    "deep lists": (b"[" * DEEP + b"]" * DEEP, "nested too deep"),
+    "deep tables": (b'{"a":' * DEEP, "nested too deep"),
+    "a long number": (b'{"jawOpen": ' + b"9" * 5000 + b"}", "not valid JSON"),
+    "an empty list": (b"[]", "without shapes"),
+    "an empty table": (b"{}", "without shapes"),
+    "numbers": (b"[[1, 2], [3, 4]]", "known are"),
+    "landmarks": (b'{"landmarks": [0, 1, 2]}', "without shapes"),
+    "scores that are none": (b'[{"category_name": "jawOpen", "score": "x"}]', "no frame"),
+    "frames of nobody": (b'{"frames": [{"blendshapes": []}, {}]}', "without shapes"),
+    # Speech.
+    "no keys": (b'{"channels": [{"name": "PP", "keys": []}]}', "no channel of visemes"),
+    "a wrong key": (b'{"channels": [{"name": "PP", "keys": [[0]]}]}', "channel 'PP'"),
+    "a channel of nobody": (
+        b'{"channels": [{"name": "PP", "keys": [[0, 1]]}, {"keys": 1}]}',
+        "channel 2 has no name",
+    ),
+    "no cues": (b'{"mouthCues": []}', "no mouth cues"),
+    "a wrong mouth": (b'{"mouthCues": [{"start": 0, "value": "Q"}]}', "allowed are A, B"),
+    "a wrong row": (b"0.0\tX\n0.1\tQ\n", "line 2: mouth shape 'Q'"),
+    "a row without time": (b"0.0\tX\nsoon\tA\n", "line 2: 'soon' is no time"),
+}

@@ -1,0 +1,112 @@
+"""Recordings: a table of broken ones, and hundreds of good ones that chance has damaged."""
+
+from __future__ import annotations
+
+import os
+import random
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius.app.errors import UserError
+from risorius.app.recordings import Take, is_recording, read_take
+from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
+
+from .recording_inputs import GOOD, REFUSED
+from .sandbox import bounded, check_line
+
+pytestmark = pytest.mark.slow
+
+SEED = int(os.environ.get("FUZZ_SEED", "20030214"))  # another one, other damages
+ROUNDS = 1000
+TOKENS = (
+    b"nan", b"inf", b"-1", b"1e400", b"9" * 400, b"-9.8e5", b"1e308", b"null", b"true", b"AU12",
+    b'"', b"'", b",", b";", b"\t", b"\n", b"\n\n", b"\r", b":", b"::", b"{", b"[", b"}", b"]",
+    b"{}", b"[]", b"\x00", b"\xff", b"\xef\xbb\xbf", b"time", "\u202e".encode(),
+)  # fmt: skip
+
+
+def check(take: Take) -> None:
+    """Whatever was in the file, a Take keeps its promises."""
+    assert len(take.times) > 0
+    assert take.times[0] == 0.0
+    assert np.isfinite(take.times).all()
+    assert np.all(np.diff(take.times) > 0.0)
+    assert take.channels
+    for name, values in take.channels.items():
+        assert values.shape == take.times.shape, name
+        assert np.isfinite(values).all(), name
+        if name not in (*HEAD_ANGLES, *EYE_ANGLES):
+            assert name in (*ARKIT, *VISEMES) or name.startswith("AU"), name
+            assert values.min() >= 0.0, name
+            assert values.max() <= 1.0, name
+    assert all(note.endswith(".") for note in take.notes)
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_good_recordings(name: str, tmp_path: Path) -> None:
+    """They are read, so that what follows damages something."""
+    path = tmp_path / "take"
+    path.write_bytes(GOOD[name])
+    assert is_recording(path)
+    check(read_take(path))
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_broken_recordings(name: str, tmp_path: Path) -> None:
+    """One line says what is wrong."""
+    path = tmp_path / "take"
+    path.write_bytes(REFUSED[name][0])
+    with bounded(), pytest.raises(UserError) as refusal:
+        is_recording(path)
+        read_take(path)
+    check_line(str(refusal.value))
+    assert REFUSED[name][1] in str(refusal.value)
+
+
+@pytest.mark.parametrize("name", ["pipe.toml", "zeros.toml", "loop.toml", "folder", "nowhere"])
+def test_no_files(name: str, sandbox: Path) -> None:
+    """What is no file, or not there, is told at once."""
+    with bounded(), pytest.raises(UserError) as refusal:
+        assert not is_recording(sandbox / name)
+        read_take(sandbox / name)
+    check_line(str(refusal.value))
+
+
+def damaged(chance: random.Random) -> bytes:
+    """A good recording with a few places changed, more often near its beginning."""
+    content = bytearray(GOOD[chance.choice(sorted(GOOD))])
+    if chance.random() < 0.2:
+        content = content[: chance.randrange(len(content))]
+    for _ in range(chance.randint(1, 4)):
+        place = chance.randrange(min(len(content), chance.choice((200, 2000, 2**30))) + 1)
+        end = min(len(content), place + chance.choice((0, 1, 1, 3, 20)))
+        kind = chance.random()
+        if kind < 0.5:
+            content[place:end] = chance.choice(TOKENS)
+        elif kind < 0.7:
+            content[place:end] = bytes([chance.randrange(256)])
+        elif kind < 0.85:
+            content[place:end] = b""
+        else:
+            content[place:place] = content[place : place + chance.randrange(60)]
+    return bytes(content)
+
+
+def test_damaged_recordings(tmp_path: Path) -> None:
+    """Read or refused in one line; of all damages a good part is read."""
+    path = tmp_path / "take"
+    read = 0
+    for seed in range(SEED, SEED + ROUNDS):
+        path.write_bytes(damaged(random.Random(seed)))
+        try:
+            with bounded():
+                is_recording(path)
+                take = read_take(path)
+        except UserError as error:
+            check_line(str(error))
+            continue
+        check(take)
+        read += 1
+    assert read > ROUNDS // 10
