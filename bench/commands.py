@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 MESHES = ("face", "2k", "20k", "200k", "200k shuffled", "1M", "1M shuffled")
 PATH = click.Path(path_type=Path)
 FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
+FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 json_option = click.option("--json", "json_file", type=PATH, help="Figures for programs.")
 
 
@@ -168,6 +169,36 @@ def bench_motion(reference: Path) -> None:
 
     with _told("--reference: "):
         click.echo(motion.report(*motion.measure(reference)))
+
+
+@bench.command("seen")
+@click.option(
+    "--model",
+    type=FILE,
+    required=True,
+    help="face_landmarker.task, the model of MediaPipe's face landmarker.",
+)
+@click.option(
+    "--reference", type=FOLDER, help="A folder with face.npz: scans, to be shown as well."
+)
+@click.option(
+    "--take", type=FILE, help="A recorded face, to be played and read back instead of the shapes."
+)
+@click.option("--pictures", type=PATH, help="A folder for all that the tracker is shown.")
+def bench_seen(
+    model: Path, reference: Path | None, take: Path | None, pictures: Path | None
+) -> None:
+    """Show every shape of ARKit to a face tracker: is it seen under its own name?"""
+    from . import seen, seen_take
+    from .face_tracker import FaceTracker
+
+    if take is not None and reference is not None:
+        raise UserError("--reference goes with the shapes, not with --take")
+    with FaceTracker(model) as tracker, _told("--reference: "):
+        if take is None:
+            click.echo(seen.report(seen.measure(tracker, pictures, reference)))
+        else:
+            click.echo(seen_take.report(*seen_take.measure(tracker, take, pictures)))
 
 
 @bench.command("reference")

@@ -1,10 +1,8 @@
 """How well the muscles move skin: simulated against scanned displacement, shape by shape.
 
-Takes a folder with a neutral face and displacement fields under ARKit-like names as `face.npz`
-(ICT-FaceKit's layout: `vertices`, `triangles`, `landmarks68`, then one (V, 3) field per shape;
-one-sided ones end in `_L` and `_R`, or `Left` and `Right`; capitals do not matter), fits the rig to
-that head as to anybody's, by its 68 landmarks (assets/fitting), and compares the fields, weighted
-by area. shapes.toml says which controls make a shape.
+Takes a folder of scans (scans.py), fits the rig to that head as to anybody's, by its 68 landmarks
+(assets/fitting), and compares the fields, weighted by area. One-sided fields end in `_L` and `_R`,
+or `Left` and `Right`; capitals do not matter. shapes.toml says which controls make a shape.
 
     cosine      1 = same directions and proportions          magnitude   |simulated| / |scanned|
     residual    |simulated - scanned|^2 / |scanned|^2        half        share of the motion that
@@ -28,20 +26,18 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import sim
-from risorius.assets.fitting import fit
-from risorius.assets.meshes import Mesh
 from risorius.sim.coordinates import FaceSpace
 from risorius.sim.landmarks import Side
 from risorius.sim.rig import LinearMuscle, RingMuscle
 
 from .report import table
-from .subjects import DENSE, read_arrays, settled_positions
+from .scans import read_scans
+from .subjects import settled_positions
 
 Array = npt.NDArray[np.float64]
 
 SHAPES = Path(__file__).parent / "shapes.toml"
 SETTLE = 60  # frames of 1/60 s until a pose is still
-NOT_SHAPES = ("vertices", "triangles", "landmarks68")
 SIDES = {"left": ("_left", "_l", "left"), "right": ("_right", "_r", "right")}  # endings of names
 SEAM = 10.0  # mm beside the midline over which a one-sided shape fades, where we have but one whole
 BLOB_WIDTHS = (6.0, 9.0, 13.0, 18.0, 25.0, 35.0, 50.0)  # mm
@@ -79,32 +75,19 @@ def measure(directory: str | Path) -> tuple[list[Row], list[str]]:
     Returns the scores, and the names of fields that have none: unknown ones, and those in which
     no skin moves. Raises ValueError, naming the file, if it is broken or no shape is left.
     """
-    arrays = read_arrays(Path(directory) / DENSE, NOT_SHAPES)
-    mesh = Mesh(arrays["vertices"].astype(np.float64), arrays["triangles"].astype(np.int32))
-    landmarks = arrays["landmarks68"].astype(np.int32)
-    if not _is_sound(mesh, landmarks):
-        raise ValueError(
-            f"{directory}: in {DENSE}, vertices must be finite, (V, 3), triangles (F, 3) and "
-            "landmarks68 (68,) numbers of them"
-        )
-    head = fit(mesh, landmarks)
+    scans = read_scans(directory)
+    head = scans.head
     simulation = sim.create(head)
     areas = _vertex_areas(head.vertices, head.faces)
     ruler = _Ruler(head.vertices, head.landmarks, areas, head.rig)
     shapes = _read_shapes()
     rows, left_out = [], []
-    for name in arrays:
-        if name in NOT_SHAPES:
-            continue
+    for name in scans.names:
         shape = _known(name, shapes, simulation)
         if shape is None:
             left_out.append(name)
             continue
-        if arrays[name].shape != mesh.vertices.shape or not np.isfinite(arrays[name]).all():
-            raise ValueError(
-                f"{directory}: {name} in {DENSE} must be finite displacements of all vertices"
-            )
-        scanned = head.to_millimetres.vectors(arrays[name][head.file_vertices])
+        scanned = scans.field(name)
         if scanned.any():
             rows.append(ruler.row(simulation, shape, scanned))
         else:
@@ -112,20 +95,6 @@ def measure(directory: str | Path) -> tuple[list[Row], list[str]]:
     if not rows:
         raise ValueError(f"{directory}: face.npz holds none of the shapes in {SHAPES.name}")
     return rows, left_out
-
-
-def _is_sound(mesh: Mesh, landmarks: npt.NDArray[np.int32]) -> bool:
-    """Whether vertices, triangles and landmarks have their shapes and name vertices there are."""
-    return (
-        mesh.vertices.ndim == mesh.faces.ndim == 2
-        and mesh.vertices.shape[1] == mesh.faces.shape[1] == 3
-        and landmarks.shape == (68,)
-        and bool(np.isfinite(mesh.vertices).all())
-        and all(
-            bool(((numbers >= 0) & (numbers < len(mesh.vertices))).all())
-            for numbers in (mesh.faces, landmarks)
-        )
-    )
 
 
 def mean_row(rows: list[Row]) -> Row:

@@ -12,6 +12,14 @@ from risorius.bench.motion import Row, measure
 from tests.heads import METRES, SHIFT, TURN, shape
 from tests.sim.poses import both_sides, settled_displacement
 
+PUFF = {
+    "cheek_puff": 0.8,
+    "orbicularis_oris_sphincter": 0.8,
+    "incisivus_labii_superioris": 0.3,
+    "incisivus_labii_inferioris": 0.4,
+    "orbicularis_oris_marginal_upper": 0.5,
+    "orbicularis_oris_marginal_lower": 0.6,
+}
 # What a field is called -> the controls that make it on the built-in head.
 WHOLE = {
     "jawOpen": {"jaw_open": 1.0},
@@ -21,18 +29,24 @@ WHOLE = {
     "mouthLeft": {"lips_sideways_left": 1.0},
     "MouthRight": {"lips_sideways_right": 1.0},
     "mouthRollUpper": {"orbicularis_oris_roll_upper": 1.0},
-    "mouthRollLower": {"orbicularis_oris_roll_lower": 1.0},
-    "mouthShrugUpper": {"upper_lip_shrug": 1.0},
-    "cheekPuff": {"cheek_puff": 1.0},
+    "mouthRollLower": {
+        "orbicularis_oris_roll_lower": 1.0,
+        "orbicularis_oris_marginal_lower_left": 0.25,
+        "orbicularis_oris_marginal_lower_right": 0.25,
+        "mentalis": 0.2,
+        "upper_lip_shrug": 0.15,
+    },
+    "mouthShrugUpper": {"upper_lip_shrug": 1.0, "depressor_anguli_oris": 0.25, "mentalis": 0.15},
+    "cheekPuff": {f"{name}_{side}": PUFF[name] for name in PUFF for side in ("left", "right")},
     "browInnerUp": {"frontalis_medial": 0.91, "frontalis_lateral": 0.11},
     "eyeBlink": {"orbicularis_oculi_palpebral_upper": 1.0},
 }
 HALVES = {
-    "cheekPuff_L": {"cheek_puff_left": 1.0},
-    "cheekPuffRight": {"cheek_puff_right": 1.0},
+    "cheekPuff_L": {f"{name}_left": share for name, share in PUFF.items()},
+    "cheekPuffRight": {f"{name}_right": share for name, share in PUFF.items()},
     "EyeWideLeft": {"levator_palpebrae_left": 1.0},
     "eyeWide_R": {"levator_palpebrae_right": 1.0},
-    "mouthDimpleLeft": {"buccinator_left": 1.0, "mentalis_left": 0.08},
+    "mouthDimpleLeft": {"buccinator_left": 1.0, "depressor_anguli_oris_left": 0.6},
     "mouthLowerDown_right": {"depressor_labii_inferioris_right": 1.0},
 }
 

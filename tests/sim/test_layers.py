@@ -266,9 +266,9 @@ def test_sides_of_arkit_shapes_ask_for_the_same(simulation: sim.Simulation) -> N
 
 def test_the_jaw_of_a_funnel_counts_once(simulation: sim.Simulation) -> None:
     """Lips that funnel open the jaw where it is shut, and leave it where it is open."""
-    simulation.pose({"mouthFunnel": 1.0, "mouthPucker": 0.5})
+    simulation.pose({"AU22": 1.0, "mouthPucker": 0.5})
     assert simulation.sums["jaw_open"] == pytest.approx(0.22)
-    simulation.pose({"mouthFunnel": 1.0, "jawOpen": 0.5})
+    simulation.pose({"AU22": 1.0, "jawOpen": 0.5})
     assert simulation.sums["jaw_open"] == 0.5
 
 
