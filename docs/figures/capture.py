@@ -70,6 +70,10 @@ PLAYED: tuple[
     (("LeftEyeYaw", "RightEyeYaw"), -0.2, (5.2, 5.3, 6.2, 6.5)),
     (("eyeLookOutLeft", "eyeLookInRight"), 0.33, (5.2, 5.3, 6.2, 6.5)),
 )
+SMILED: tuple[Part, ...] = (  # from some time on, so that slow machines see it, too
+    (("mouthSmile",), 0.85, (2.9, 3.3, 8.0, 9.0)),
+    (("cheekSquint", "mouthUpperUp", "mouthDimple"), 0.3, (2.9, 3.3, 8.0, 9.0)),
+)
 SYLLABLES = (0.5, 0.68, 0.9, 1.05, 1.3, 1.9, 2.1, 2.26, 2.5, 2.66, 2.9, 3.6, 3.8, 4.05, 4.2, 4.4,
              4.62, 5.3, 5.5, 5.7, 5.95)  # fmt: skip
 SPOKEN: tuple[
@@ -178,8 +182,9 @@ def tracks(folder: Path) -> Image:
         return figures.without_noise(viewer.surface.read())
 
 
-def live(take: Path) -> Image:
-    """A window that follows the recording, sent by another thread as a phone does."""
+def live(folder: Path) -> Image:
+    """A window that follows a recording, sent by another thread as a phone does."""
+    take = written(folder / "live.csv", SMILED)
     with Viewer(script_for(None, "face"), TALL_WINDOW) as viewer:
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
         viewer.panel_cache.refresh = 0.0  # panels in every frame
@@ -208,7 +213,7 @@ def main(arguments: Sequence[str]) -> None:
             "capture_neutral": partial(neutral, take),
             "capture_window": partial(window, take),
             "capture_tracks": partial(tracks, Path(folder)),
-            "capture_live": partial(live, take),
+            "capture_live": partial(live, Path(folder)),
         }
         figures.draw(given.folder, figures.chosen(every, given.only))
 
