@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,7 @@ import pytest
 from PIL import Image
 
 from risorius.app.viewer import Viewer
+from risorius.app.viewer.panels.help import COLUMNS, NARROW_COLUMNS
 from risorius.app.viewer.physics import MOST_STEPS
 from risorius.app.viewer.settings import Display, Settings, load_settings
 
@@ -379,6 +381,13 @@ def test_screenshot_and_film(viewer: Viewer, tmp_path: Path) -> None:
     films = list(tmp_path.glob("*.mp4"))
     assert len(films) == 1 and films[0].stat().st_size > 1000
     assert viewer.exporter.film is None
+
+
+@pytest.mark.parametrize("columns", [COLUMNS, NARROW_COLUMNS])
+def test_help_has_every_key(viewer: Viewer, columns: Sequence[Sequence[str]]) -> None:
+    """No menu that has keys is left out of the overview, in wide windows and in narrow ones."""
+    shown = {title for titles in columns for title in titles}
+    assert {command.menu for command in viewer.commands if command.key} <= shown
 
 
 def test_help_and_themes(viewer: Viewer) -> None:

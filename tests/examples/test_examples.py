@@ -11,7 +11,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from risorius import refine
+from risorius import assets, refine
 
 FOLDER = Path(__file__).parents[2] / "examples"
 
@@ -28,7 +28,7 @@ def example(name: str) -> ModuleType:
 def test_every_example_is_tested() -> None:
     """A new program in the folder needs a test here."""
     found = {path.stem for path in FOLDER.glob("*.py")}
-    assert found == {"plain_script", "in_trimesh", "in_pyvista", "own_refiner"}
+    assert found == {"plain_script", "in_trimesh", "in_pyvista", "own_refiner", "own_recording"}
 
 
 def test_plain_script(tmp_path: Path) -> None:
@@ -97,3 +97,19 @@ def test_own_refiner_carries_texture() -> None:
             own = uv[:3] if source == 0 else uv[3:]
             assert (mesh.uv[corners] >= own.min(axis=0)).all()
             assert (mesh.uv[corners] <= own.max(axis=0)).all()
+
+
+def test_own_recording(tmp_path: Path) -> None:
+    """The mouth of the mesh opens when that of the recording does, and shuts again."""
+    times = np.linspace(0.0, 3.0, 91)
+    jaw = np.interp(times, [0.5, 1.0, 1.5, 2.0], [0.0, 0.8, 0.8, 0.0])
+    rows = [f"{time:.4f},{value:.4f}" for time, value in zip(times, jaw, strict=True)]
+    take = tmp_path / "take.csv"
+    take.write_text("\n".join(["time,jawOpen", *rows]), encoding="utf-8")
+    head = assets.load("head")
+    frames = example("own_recording").main(take)
+    assert frames.shape == (181, *head.vertices.shape)
+    lips = frames[:, head.landmarks[[62, 66]]]
+    gaps = np.linalg.norm(lips[:, 0] - lips[:, 1], axis=1)
+    assert gaps[90] > gaps[0] + 10.0
+    assert abs(gaps[-1] - gaps[0]) < 0.5

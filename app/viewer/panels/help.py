@@ -18,7 +18,7 @@ MOUSE = (
     ("double click a slider", "type a number"),
     ("right click a slider", "back to 0"),
     ("drag a panel's edge", "make it wider"),
-    ("drop files", "script, pose, a head"),
+    ("drop files", "open them"),
 )
 TIMELINE = (
     ("click a key", "select it, go there"),
@@ -35,12 +35,12 @@ TIMELINE = (
 # Menus by column, and what the mouse does.
 COLUMNS = (
     ("File", "Edit", "Time"),
-    ("Keys", "Expression", "Help"),
+    ("Keys", "Expression", "Live", "Help"),
     ("View",),
     ("Mouse", "Timeline"),
 )
 NARROW_COLUMNS = (
-    ("File", "Edit", "Time", "Help"),
+    ("File", "Edit", "Time", "Live", "Help"),
     ("Keys", "View"),
     ("Mouse", "Timeline", "Expression"),
 )
