@@ -23,6 +23,11 @@ def in_one_line(message: object) -> str:
     return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
 
 
+def counted(number: int, noun: str) -> str:
+    """So many of something, in words: 1 key, 2 keys."""
+    return f"1 {noun}" if number == 1 else f"{number} {noun}s"
+
+
 class UserError(Exception):
     """Something the user gave cannot be used; the text says what, where, what is allowed."""
 

@@ -48,7 +48,8 @@ def read_bytes(path: Path, *, what: str, longest: int, first: int | None = None)
             kind = "folder" if path.is_dir() else "pipe or a device"
             raise UserError(f"{path}: is a {kind}, not a file; a {what} is a plain file")
         if status.st_size > longest:
-            raise UserError(f"{path}: is longer than a {what} may be, {longest >> 20} MB")
+            most = f"{longest >> 20} MB" if longest >= 2**20 else f"{longest >> 10} kB"
+            raise UserError(f"{path}: is longer than a {what} may be, {most}")
         with path.open("rb") as file:
             return file.read(longest if first is None else first)
     except FileNotFoundError:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from importlib.resources import files
@@ -14,11 +15,15 @@ from .playback import Playback
 from .recordings import is_recording, read_take
 from .recordings.conversion import script_of
 from .recordings.report import Report
+from .recordings.text import read_beginning
 from .scenes import SCENES
 from .script import Limits, Pose, Script, load_script
 
 HELD = 1.0  # [s] that a pose of --set lasts
-TABLES = (".csv", ".tsv", ".json")  # how recordings are called; for error texts alone
+TABLES = (".csv", ".tsv", ".json")  # how recordings are called that are not there
+SCRIPT = re.compile(
+    r"(\s|#[^\n]*\n)*(\[\[?[ \t]*[a-z]+[ \t]*[.\]]|[a-z]+[ \t]*=)"
+)  # how TOML begins
 
 
 def script_for(
@@ -64,13 +69,23 @@ def read_performance(
     and for options of recordings for what is none.
     """
     playback = playback or Playback()
-    if is_recording(path) or (path.suffix.lower() in TABLES and path.exists()):
+    if is_recording(path) or not _is_script(path):
         take = read_take(path, face=playback.face, rate=playback.rate)
         return script_of(take, playback, limits or face_limits())
     script = load_script(path)
     if playback != Playback():
         raise UserError(f"{path}: is a script, and {options_in(playback)} is for recordings")
     return script, None
+
+
+def _is_script(path: Path) -> bool:
+    """Whether a file that is no recording is to be read as a script; else it is a broken recording.
+
+    It only decides which of the two the error speaks of.
+    """
+    if not path.is_file():
+        return path.suffix.lower() not in TABLES
+    return path.suffix.lower() == ".toml" or bool(SCRIPT.match(read_beginning(path)))
 
 
 def options_in(playback: Playback) -> str:

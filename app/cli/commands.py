@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..errors import UserError, in_one_line
+from ..errors import UserError, counted, in_one_line
 from ..live import LOOPBACK, PROTOCOLS
 from ..looks import STATIC, Refinement
 from ..playback import Playback
@@ -212,7 +212,8 @@ def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> N
     save_script(output, script)
     if not quiet:
         keys = sum(len(channel) for channel in script.tracks.values())
-        what = f"{len(script.tracks)} tracks with {keys} keys" if keys else "a pose"
+        tracks = counted(len(script.tracks), "track")
+        what = f"{tracks} with {counted(keys, 'key')}" if keys else "a pose"
         click.echo(f"{in_one_line(output)}: {what}")
 
 

@@ -22,6 +22,7 @@ import numpy as np
 
 from ..errors import UserError
 from .names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES, mirror_of
+from .spelling import angle_of, shape_of
 from .take import Array, Take
 
 Value = TypeVar("Value", float, Array)
@@ -168,6 +169,7 @@ def gains_of(
             default = value
             gains.clear()
             continue
+        name = shape_of(name) or angle_of(name) or name  # also as a file spells it: JawOpen
         fitting = [each for each in names if fnmatch.fnmatchcase(each, name)]
         if not fitting and not any(fnmatch.fnmatchcase(each, name) for each in ARKIT):
             raise UserError(

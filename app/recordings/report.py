@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import in_one_line
+from ..errors import counted, in_one_line
 from ..script import Limits
 from .calibration import Calibration
 from .mapping import Mapping, chosen
@@ -63,7 +63,7 @@ class Report:
     def in_brief(self) -> str:
         """All of it in a line, for the window's message."""
         name, count = Path(self.source).name, len(self.notes)
-        return f"{name}: {self.recognised}" + (f"; {count} notes" if count else "")
+        return f"{name}: {self.recognised}" + (f"; {counted(count, 'note')}" if count else "")
 
 
 def report_of(
@@ -142,7 +142,8 @@ def _gains(calibration: Calibration, used: set[str]) -> str:
     for name in sorted(used & calibration.gains.keys()):
         by_gain.setdefault(calibration.gains[name], []).append(name)
     told = [f"{gain:g} of {_listed(names)}" for gain, names in by_gain.items() if gain != 1.0]
-    others = [f"{calibration.default_gain:g} of all others"] * (calibration.default_gain != 1.0)
+    rest = "all others" if told else "all"
+    others = [f"{calibration.default_gain:g} of {rest}"] * (calibration.default_gain != 1.0)
     return "; ".join([*told, *others])
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import UserError
+from ..errors import UserError, counted
 from .take import Array
 
 DELIMITERS = ",;\t|"
@@ -134,8 +134,8 @@ def table_in(text: str, *, source: str) -> Table:
         fitting = {number for number, _ in kept}
         number, line = next(row for row in rows if row[0] not in fitting)
         raise UserError(
-            f"{source}: line {number} has {line.count(delimiter_within) + 1} cells, the header has "
-            f"{len(names)} names, and so it is in most rows; each row needs as many"
+            f"{source}: line {number} has {counted(line.count(delimiter_within) + 1, 'cell')}, the "
+            f"header has {len(names)} names, and so it is in most rows; each row needs as many"
         )
     return Table(
         source,

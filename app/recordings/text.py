@@ -31,7 +31,9 @@ def read_recording(path: Path) -> str:
         raise UserError(f"{path}: is empty; a recording is a table (CSV) or JSON")
     text = decoded(content)
     if text is None:
-        raise UserError(f"{path}: is not a text file; a recording is a table (CSV) or JSON")
+        raise UserError(
+            f"{path}: is not a text file; a recording of a face is a table (CSV) or JSON, no film"
+        )
     return text
 
 

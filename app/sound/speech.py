@@ -24,6 +24,8 @@ from .decoding import load_sound
 RATE = 16_000  # [samples/s] for which its model was made
 FRAME = 0.01  # [s] in which it counts
 TRIES = 6  # at most; an alignment may fail on one sample and succeed with a little noise
+# Where the usual search loses the words on its way, all ways are kept, and the first end counts.
+PATIENT = {"beam": 1e-120, "pbeam": 1e-120, "wbeam": 1e-100, "bestpath": False}
 _STRESS_AND_VARIANT = re.compile(r"[0-9]|\(.*\)")
 _SILENT = frozenset({"SIL", "+NSN+", "+SPN+", "<s>", "</s>", "<sil>"})
 
@@ -66,8 +68,8 @@ def _words(text: str) -> list[str]:
 
 def _aligned(pocketsphinx: Any, samples: bytes, words: list[str], file: Path) -> tuple[Phone, ...]:
     for seed in range(TRIES):
-        noise = {"dither": True, "seed": seed} if seed else {}
-        decoder = pocketsphinx.Decoder(lm=None, loglevel="FATAL", **noise)
+        again = {"dither": True, "seed": seed, **PATIENT} if seed else {}
+        decoder = pocketsphinx.Decoder(lm=None, loglevel="FATAL", **again)
         unknown = sorted({word for word in words if decoder.lookup_word(word) is None})
         if unknown or not words:
             what = f"not in the dictionary: {', '.join(unknown)}" if words else "there are no words"
@@ -82,8 +84,14 @@ def _aligned(pocketsphinx: Any, samples: bytes, words: list[str], file: Path) ->
             _hear(decoder, samples)  # and each sound in it
         except RuntimeError:
             continue
-        sounds = [sound for word in decoder.get_alignment() or () for sound in word]
-        return _phones((each.name, each.start, each.start + each.duration) for each in sounds)
+        heard: list[str] = []
+        sounds: list[tuple[str, int, int]] = []
+        for word in decoder.get_alignment() or ():  # a word is gone when the next one is asked for
+            if word.name not in _SILENT:
+                heard.append(word.name.partition("(")[0])
+            sounds += [(each.name, each.start, each.start + each.duration) for each in word]
+        if heard == words:  # else it stopped before the last one
+            return _phones(sounds)
     raise UserError(
         f"{file}: the words of --text cannot be heard in it in this order; "
         "give all that is spoken and nothing else, or leave --text away"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..errors import counted
 from ..script import Pose
 from . import keyframes
 from .keyframes import POSES
@@ -43,7 +44,7 @@ class KeySelection:
         """Take the selected keys away."""
         places = self.places
         self._session.edit(keyframes.without(self._session.script, places))
-        return f"{counted(len(places))} deleted; Ctrl+Z brings back"
+        return f"{counted(len(places), 'key')} deleted; Ctrl+Z brings back"
 
     def duplicate(self) -> Message:
         """Copies of the selected keys at the time shown, or a little later if they are there."""
@@ -55,7 +56,7 @@ class KeySelection:
         script, copies = keyframes.copied(script, self.places, offset)
         self._session.edit(script)
         self.places = copies
-        return f"{counted(len(copies))} copied to {first + offset:.2f} s"
+        return f"{counted(len(copies), 'key')} copied to {first + offset:.2f} s"
 
     def nudge(self, frames: int) -> None:
         """Move the selected keys by so many frames."""
@@ -96,8 +97,3 @@ class KeySelection:
         """Whether all selected keys are approached so."""
         script = self._session.script
         return bool(self.places) and keyframes.eased(script, self.places, easing) == script
-
-
-def counted(number: int) -> str:
-    """So many keys, in words."""
-    return "1 key" if number == 1 else f"{number} keys"

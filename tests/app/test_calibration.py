@@ -141,6 +141,12 @@ def test_later_gains_count_and_patterns_reach_many() -> None:
     assert turned == {"head_yaw": 10.0}, "all is all shapes: a head turns as far as it did"
 
 
+def test_a_gain_names_a_channel_as_the_file_spells_it() -> None:
+    settings = ["JawOpen=0.5", "MouthSmile_L=2", "HeadYaw=3"]
+    gains, _ = gains_of(settings, ["jawOpen", "mouthSmileLeft", "head_yaw"])
+    assert gains == {"jawOpen": 0.5, "mouthSmileLeft": 2.0, "head_yaw": 3.0}
+
+
 @pytest.mark.parametrize(
     "setting",
     ["mouthSmile=1", "jawOpen", "jawOpen=", "jawOpen=wide", "jawOpen=nan", "=1", "all=-1"],

@@ -197,6 +197,37 @@ def test_a_recording_is_filmed_as_its_script_is(tmp_path: Path) -> None:
     assert np.abs(recorded.astype(int) - picture(path, "--mirror")).mean() > 5.0
 
 
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("take.mov", b"\0\0\0\x18ftypqt  \xb9\0", "is not a text file; a recording of a face"),
+        ("take.txt", b"hello, this is\na text\n", "is a table of which no column is known"),
+        ("take.csv", b"title = 'x'\n", r"no \[\[pose\]\] and no \[tracks\]"),
+        ("take.csv", b"# x\n\n[[pose]]\ntime = 'x'\n", "time"),
+        ("take.toml", b"hello, this is\na text\n", "not valid TOML"),
+    ],
+)
+def test_what_a_file_seems_to_be_is_what_the_error_speaks_of(
+    tmp_path: Path, name: str, content: bytes, words: str
+) -> None:
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(UserError, match=words):
+        read_performance(tmp_path / name)
+
+
+def test_a_file_that_is_not_there_is_what_its_name_says(tmp_path: Path) -> None:
+    for name, kind in (("take.csv", "recording"), ("take.toml", "script")):
+        with pytest.raises(UserError, match=f"no such {kind}"):
+            read_performance(tmp_path / name)
+
+
+def test_a_script_plays_whatever_its_name(tmp_path: Path) -> None:
+    path = tmp_path / "script.csv"
+    path.write_text("# A comment\ntitle = 'Smile'\n[[pose]]\ntime = 1.0\njoy = 1.0\n", "utf-8")
+    script, report = read_performance(path)
+    assert (script.title, report) == ("Smile", None)
+
+
 def test_the_mapping_table_is_printed_and_taken(tmp_path: Path) -> None:
     table = tmp_path / "my.toml"
     printed = risorius("convert", "--mapping-table")

@@ -123,7 +123,7 @@ REFUSED = {
     "view --live vmc --scene plane": "moves the scene 'face'",
     "view --port 11111": "--port goes with --live",
     "view --address 0.0.0.0": "--address goes with --live",
-    "send good.toml": "is no recording that is known",
+    "send good.toml": "is no table and no JSON",
     "send nothing.csv": "no such recording",
     "send good.toml --to phone": "'phone' is not one of",
     # Sizes.

@@ -15,10 +15,11 @@ from typing import Any
 
 from imgui_bundle import imgui
 
+from ...errors import counted
 from ...script import Script
 from .. import keyframes
 from ..gui import LEFT, MIDDLE, RIGHT, Gui, em
-from ..key_selection import KeySelection, counted
+from ..key_selection import KeySelection
 from ..messages import Message, Messages
 from ..places import NOWHERE, KeyPlace, Places
 from ..session import Session
@@ -298,7 +299,7 @@ class DopeSheet:
         session, line = self._session, None
         if drag.doing == "keys" and drag.has_moved:
             lost = len(keyframes.places_of(drag.script)) - len(keyframes.places_of(session.script))
-            line = f"{counted(lost)} replaced; Ctrl+Z brings back" if lost > 0 else None
+            line = f"{counted(lost, 'key')} replaced; Ctrl+Z brings back" if lost > 0 else None
         elif drag.doing in ("keys", "box") and not drag.has_moved:
             if drag.doing == "box":
                 self._selection.places = drag.selected | self._grabbed
