@@ -129,7 +129,7 @@ class LiveCommands:
 
     @property
     def has_frame(self) -> bool:
-        """Whether a frame has come that `advance` has not taken in."""
+        """Whether a frame has come that woke the window, and that `advance` has not taken in."""
         return self.face is not None and self.face.has_frame
 
     @property
