@@ -47,7 +47,7 @@ class Receiver:
         self.received = self.unusable = 0
         self.has_frame = False
         self._said: dict[str, float] = {}  # the newest value of each channel
-        self._is_new = False  # whether one has changed, or the face was away, since somebody was woken
+        self._is_new = False  # whether anything has changed since somebody was woken
         self._woke_at = -STILL_THERE
         self._phone = resolved(listening.phone) if listening.phone else ""
         self._socket = _bound_socket(listening)

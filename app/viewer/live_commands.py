@@ -61,7 +61,7 @@ class LiveCommands:
         self.stop()
         face = LiveFace(wanted, wake=self._wake, clock=self._clock)
         try:
-            face.table.check(self._session.limits)
+            face.table.check(self._session.controls.limits)
         except UserError:
             face.close()
             raise
