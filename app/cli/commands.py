@@ -245,7 +245,9 @@ def open_window(
         display = display_of(drawing.refinement(), script.scene, **drawing.style_options)
     with Viewer(script, size, display, head=head, settings_path=settings_path()) as viewer:
         if listening is not None:
-            viewer.messages.say(viewer.live.start(listening) or "")
+            line = viewer.live.start(listening)
+            if line and not viewer.messages.text:  # unless there is something wrong to be told
+                viewer.messages.say(line)
         viewer.run(playing=playing, once=once)
 
 

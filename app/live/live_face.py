@@ -100,7 +100,7 @@ class LiveFace:
 
     @property
     def has_frame(self) -> bool:
-        """Whether `advance` would find a whole frame with a face."""
+        """Whether `advance` would find a frame that somebody was woken for."""
         return self._receiver.has_frame
 
     @property

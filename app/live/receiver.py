@@ -2,7 +2,7 @@
 
 A window sleeps until something happens, and a frame must be such a thing: asking for it once in a
 while would let it lie. Nobody is woken for a part of a frame, for one without a face, or for what
-is none.
+is none; and only now and then for frames that say what those before them said.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from .frame import MOST_BYTES, Frame
 from .protocols import Listening
 
 MOST_WAITING = 256  # frames or parts of them; of more, the oldest are dropped
+STILL_THERE = 0.2  # [s] after which a frame wakes although it says nothing new
 LOOK_AROUND = 0.1  # [s] after which the thread sees that it is to end
 REQUEST_EVERY = 1.0  # [s] a phone is asked to send while nothing comes
 
@@ -28,7 +29,7 @@ class Receiver:
     """A socket and its thread; `close` ends both.
 
     received, unusable: packets so far, and those of them that are none of the protocol.
-    has_frame: whether a whole frame with a face waits to be taken.
+    has_frame: whether a frame waits that somebody was woken for.
     """
 
     def __init__(
@@ -45,6 +46,9 @@ class Receiver:
         self._waiting: deque[tuple[float, Frame]] = deque(maxlen=MOST_WAITING)
         self.received = self.unusable = 0
         self.has_frame = False
+        self._said: dict[str, float] = {}  # the newest value of each channel
+        self._is_new = False  # whether anything has changed since somebody was woken
+        self._woke_at = -STILL_THERE
         self._phone = resolved(listening.phone) if listening.phone else ""
         self._socket = _bound_socket(listening)
         self._socket.settimeout(LOOK_AROUND)
@@ -86,15 +90,23 @@ class Receiver:
             self._read(packet, last)
 
     def _read(self, packet: bytes, at: float) -> None:
-        """Keep what a packet says, and wake who waits if that makes a frame whole."""
-        self.received += 1
+        """Keep what a packet says, wake who waits for that, and count the packet as dealt with."""
         frame = self._listening.protocol.parse(packet) if len(packet) <= MOST_BYTES else None
         if frame is None:
             self.unusable += 1
-            return
-        self._waiting.append((at, frame))
-        if frame.is_complete and frame.has_face and not self.has_frame:
-            self.has_frame = True
+        else:
+            self._waiting.append((at, frame))
+            self._wake_for(frame, at)
+        self.received += 1
+
+    def _wake_for(self, frame: Frame, at: float) -> None:
+        """Wake who waits, if this makes a frame whole that is worth it."""
+        says_new = any(self._said.get(name) != value for name, value in frame.channels.items())
+        self._said.update(frame.channels)
+        self._is_new = self._is_new or says_new or not frame.has_face
+        is_due = self._is_new or at - self._woke_at >= STILL_THERE
+        if frame.is_complete and frame.has_face and is_due and not self.has_frame:
+            self.has_frame, self._is_new, self._woke_at = True, False, at
             self._wake()
 
     def _ask_phone(self, now: float) -> None:

@@ -1,6 +1,7 @@
 """The window: a face that answers to sliders, keys, the mouse and a script.
 
-window.py     joins everything, and one turn of the loop     (start reading here)
+parts.py      joins everything     (start reading here)
+window.py     one turn of the loop, and when it rests
 session.py    what the user does: controls, script, recording, undo, unsaved work; knows no window
 settings.py   what is remembered, how the scene is displayed among it
 view.py       camera, display and place of the scene in the window

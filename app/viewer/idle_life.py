@@ -54,5 +54,6 @@ class IdleLife:
             self._idle = Idle(self._session.scene)
         self._time += seconds
         self._without_input += seconds
-        viewer = self._view.camera.eye
-        return self._idle.beneath(self._session.moved, viewer, self._time, is_still=is_held)
+        viewer, session = self._view.camera.eye, self._session
+        moved = session.controls.moved_by(session.values)
+        return self._idle.beneath(moved, viewer, self._time, is_still=is_held)

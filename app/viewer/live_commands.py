@@ -61,7 +61,7 @@ class LiveCommands:
         self.stop()
         face = LiveFace(wanted, wake=self._wake, clock=self._clock)
         try:
-            face.table.check(self._session.limits)
+            face.table.check(self._session.controls.limits)
         except UserError:
             face.close()
             raise
@@ -129,7 +129,7 @@ class LiveCommands:
 
     @property
     def has_frame(self) -> bool:
-        """Whether a frame has come that `advance` has not taken in."""
+        """Whether a frame has come that woke the window, and that `advance` has not taken in."""
         return self.face is not None and self.face.has_frame
 
     @property

@@ -89,7 +89,6 @@ class Physics:
     ) -> None:
         """As many steps as are due; none for a face at rest that nobody moves and that has no life.
 
-
         is_skin_dragged: whether the mouse drags the skin. is_urgent: whether a live face has just
         moved. UserError where the simulation gave up.
         """

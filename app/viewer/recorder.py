@@ -12,9 +12,11 @@ from ..script import Channel, Script, rounded, thinned
 class Recorder:
     """Takes the value of every control at every step; `script` is what was played."""
 
-    def __init__(self, empty: Script) -> None:
-        """empty: the script without tracks, which gets those that are recorded."""
-        self._empty = empty
+    def __init__(self, played: Script) -> None:
+        """played: the script that the recording takes the place of."""
+        self._empty = replace(
+            played, title="Recording", source="Recording", poses=(), tracks={}, preface=""
+        )
         self.time = 0.0
         # Of each control that has moved: times [s] and values from the last key of its track on.
         self._samples: dict[str, tuple[array[float], array[float]]] = {}
@@ -22,7 +24,12 @@ class Recorder:
         thinned([0.0, 1.0], [0.0, 1.0])  # if this must be compiled, then before anything moves
 
     def add(self, seconds: float, values: Mapping[str, float]) -> None:
-        """`seconds` went by since the last call, and the controls are now at `values`."""
+        """`seconds` went by since the last call, and the controls are now at `values`.
+
+        Nothing is taken where no time went by.
+        """
+        if seconds <= 0.0:
+            return
         before, self.time = self.time, self.time + seconds
         for name, value in values.items():
             if name not in self._samples:

@@ -44,7 +44,7 @@ class Recovery:
         if self._folder is None:
             return
         for files in left_behind(self._folder):
-            if files.work.fits(session.script.scene, session.limits):
+            if files.work.fits(session.script.scene, session.controls.limits):
                 self._found = files
                 return
             files.leave()

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from ..errors import UserError
 from ..performances import read_performance
-from ..script import is_pose
+from ..script import Script, is_pose
 from ..sound import with_sound
 from .files import SUFFIX, Files
 from .messages import Message, Task
@@ -55,9 +56,9 @@ class ScriptCommands:
         remark: what else there is to say when it is opened.
         """
         session = self._session
-        limits = session.limits if session.scene.name == "face" else None
+        limits = session.controls.limits if session.scene.name == "face" else None
         script, report = read_performance(path, limits=limits)
-        session.check(script)
+        self._check(script)
 
         def show() -> Message:
             """Do so."""
@@ -67,6 +68,16 @@ class ScriptCommands:
         if is_pose(script) and not self._session.has_unsaved_pose:
             return show()  # whatever else is unsaved stays
         return self._question.before("Open", show)
+
+    def _check(self, script: Script) -> None:
+        """UserError says why a script or pose cannot be opened here."""
+        here = self._session.script.scene
+        if script.scene != here:
+            raise UserError(
+                f"{script.source}: is for the scene '{script.scene}', and this window shows "
+                f"'{here}': `risorius view --scene {script.scene} --script {script.source}`"
+            )
+        script.check(self._session.controls.limits)
 
     def save(self, then: Task = lambda: None) -> Message:
         """Write the script to its own file, or ask for one."""

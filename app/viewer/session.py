@@ -1,22 +1,23 @@
 """What a user does with a face: controls, a script in time, a recording, undo, unsaved work.
 
-Knows the scene and nothing of windows. Every control of every layer (muscles, jaw, gaze, action
-units, expressions, visemes) is one entry of `values`; the scene adds them up.
+Knows the scene and nothing of windows. Every control is one entry of `values`; the scene adds them
+up.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import UserError
-from ..scenes import Scene, clamped
+from ..scenes import Scene
 from ..script import Pose, Script, is_pose, pose_script, rounded, save_script
 from . import keyframes
-from .control_rows import highest_first, mirrored, twin_of
+from .control_rows import mirrored, twin_of
+from .controls import Controls
+from .document import Document
 from .history import History
 from .lead import Lead
 from .recorder import Recorder
@@ -24,25 +25,8 @@ from .script_file import ScriptFile
 from .unsaved import Work
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0)
-RANDOM_SHARE = 0.25  # of the muscles that a random pose moves
-RANDOM_STRENGTH = 0.8  # most of their range
 NEW_SECONDS = 4.0  # that a script begun from nothing lasts
 REPLAY_SETTLING = 1.0  # [s] for which the first pose of a replay was held, as in a film
-
-
-@dataclass(frozen=True)
-class Document:
-    """What can be undone and saved."""
-
-    values: Mapping[str, float] | None  # set by hand, what is not 0; None: as the script has it
-    script: Script
-    file: ScriptFile  # in which the script is kept
-
-
-def _new_keys(before: Document, after: Document) -> int:
-    """How many keys of tracks a state has that the one before does not share with it."""
-    known = {id(track) for track in before.script.tracks.values()}
-    return sum(len(track) for track in after.script.tracks.values() if id(track) not in known)
 
 
 class Session:
@@ -53,8 +37,8 @@ class Session:
 
     def __init__(self, scene: Scene, script: Script) -> None:
         script.check(scene.limits)
-        self._enter(scene)
-        self.values = dict.fromkeys(self.limits, 0.0)
+        self.scene, self.controls = scene, Controls(scene)
+        self.values = self.controls.pose({})
         self.script = script
         self.file = ScriptFile.of(script)
         self.time = 0.0
@@ -66,26 +50,18 @@ class Session:
         self._recorder: Recorder | None = None
         self._held: dict[str, float] = {}  # by hand while a recording plays the script
         self.live = Lead()  # a live face, which leaves no trace in what can be undone
-        self._history = History(self._document(), _new_keys)
-
-    def _enter(self, scene: Scene) -> None:
-        self.scene = scene
-        self.limits = scene.limits
-        simulation = getattr(scene, "simulation", None)
-        # The lowest controls, to which all others add up; all where a scene does not tell.
-        self.muscles = frozenset(simulation.controls if simulation is not None else self.limits)
-        self.groups = highest_first(scene.groups, self.muscles, scene.expressions)
+        self._history = History(self._document(), lambda before, after: after.new_keys(before))
 
     def move_to(self, scene: Scene) -> None:
         """Go on with another scene that has the same controls; UserError if it has not.
 
         Script, pose, what can be undone and what is unsaved: all of it stays.
         """
-        if scene.name != self.scene.name or not scene.limits.keys() >= self.limits.keys():
+        if scene.name != self.scene.name or not scene.limits.keys() >= self.controls.limits.keys():
             raise UserError(f"this window shows a {self.scene.name}, which has other controls")
         self.script.check(scene.limits)
-        self._enter(scene)
-        self.values = self._all(self.values)
+        self.scene, self.controls = scene, Controls(scene)
+        self.values = self.controls.pose(self.values)
 
     # Controls by hand
 
@@ -95,7 +71,7 @@ class Session:
         While recording, the script goes on and this control is held.
         """
         for each in {name, twin_of(name)} if linked else {name}:
-            low, high = self.limits[each]
+            low, high = self.controls.limits[each]
             self.values[each] = min(max(rounded(value), low), high)
             if self.is_playing and self.is_recording:
                 self._held[each] = self.values[each]
@@ -105,19 +81,16 @@ class Session:
 
     def toggle_alone(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""
-        pose = dict.fromkeys(self.limits, 0.0)
-        if not self.is_alone(name):
-            pose[name] = self.limits[name][1]
+        pose = self.controls.pose({}) if self.is_alone(name) else self.controls.alone(name)
         self._set_pose(pose, is_unsaved=False)
 
     def is_alone(self, name: str) -> bool:
         """Whether this control alone is not 0, and at its most."""
-        active = {each: value for each, value in self.values.items() if value}
-        return active == {name: self.limits[name][1]}
+        return self.values == self.controls.alone(name)
 
     def neutral(self) -> None:
         """All controls to zero; the skin swings back by itself."""
-        self._set_pose(dict.fromkeys(self.limits, 0.0), is_unsaved=False)
+        self._set_pose(self.controls.pose({}), is_unsaved=False)
 
     def mirror(self) -> None:
         """What is left becomes right."""
@@ -125,15 +98,7 @@ class Session:
 
     def randomise(self, generator: np.random.Generator | None = None) -> None:
         """A few muscles of each group by chance, both sides alike; layers stay at zero."""
-        generator = generator or np.random.default_rng()
-        pose = dict.fromkeys(self.limits, 0.0)
-        for names in self.scene.groups.values():
-            for name in names:
-                is_muscle = name in self.muscles and self.limits[name][0] == 0.0
-                if is_muscle and twin_of(name) <= name and generator.random() < RANDOM_SHARE:
-                    value = RANDOM_STRENGTH * generator.random() * self.limits[name][1]
-                    pose[name] = pose[twin_of(name)] = value
-        self._set_pose(pose)
+        self._set_pose(self.controls.random(generator or np.random.default_rng()))
 
     def _set_pose(self, pose: Mapping[str, float], *, is_unsaved: bool = True) -> None:
         self.is_playing = False
@@ -142,15 +107,9 @@ class Session:
         self.note()
 
     @property
-    def moved(self) -> frozenset[str]:
-        """The lowest controls that are moved by hand, or by the script."""
-        active = (name for name, value in self.values.items() if value)
-        return frozenset().union(*map(self.scene.moved_by, active))
-
-    @property
     def current(self) -> dict[str, float]:
         """Where each control is now: by hand or script, and over it what a live face leads."""
-        return self.live.over(self.values, self.limits)
+        return self.live.over(self.values, self.controls.limits)
 
     # Undo
 
@@ -188,7 +147,7 @@ class Session:
         if document.values is None:
             self._follow_script()
         else:
-            self.values, self.is_following = self._all(document.values), False
+            self.values, self.is_following = self.controls.pose(document.values), False
         self.pose_is_unsaved = bool(document.values)
 
     # Time
@@ -210,8 +169,8 @@ class Session:
         self.time = 0.0
         self._follow_script()
         self.scene.reset()
-        self.scene.pose(self.values)
-        if any(self.values.values()):
+        self.scene.pose(self.current)
+        if any(self.current.values()):
             self.scene.step(REPLAY_SETTLING)
 
     def seek(self, time: float) -> None:
@@ -245,7 +204,8 @@ class Session:
         """The face as it is becomes a key of the script; its time [s]."""
         time = keyframes.key_time(self.script, self.time)
         self.is_playing = False
-        self.edit(keyframes.keyed(self.script, time, self.current, self.limits), is_done=False)
+        keyed = keyframes.keyed(self.script, time, self.current, self.controls.limits)
+        self.edit(keyed, is_done=False)
         self.seek(time)
         self.note()
         return time
@@ -263,17 +223,15 @@ class Session:
             self._follow_script()
         current = self.current
         if self._recorder is not None:
-            self._recorder.add(seconds, current)
+            # Beside a sound a recording has the script's time, to stay in step with what is heard.
+            passed = seconds if self.script.sound is None else self.time - self._recorder.time
+            self._recorder.add(passed, current)
         self.scene.pose({**current, **(beneath or {})})
         self.scene.step(seconds)
 
     def _follow_script(self) -> None:
         self.is_following = True
-        self.values = self._all({**self.script.at(self.time), **self._held})
-
-    def _all(self, values: Mapping[str, float]) -> dict[str, float]:
-        """A value for each control, within its limits; 0 where none is given."""
-        return {**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, values)}
+        self.values = self.controls.pose({**self.script.at(self.time), **self._held})
 
     @property
     def is_recording(self) -> bool:
@@ -281,18 +239,15 @@ class Session:
         return self._recorder is not None
 
     def toggle_recording(self) -> None:
-        """Record the controls from now on, or make what was recorded the script."""
+        """Record the controls from now on, or make what was recorded the script.
+
+        A script with a sound plays meanwhile; while it is paused, or goes through a part again,
+        nothing is recorded.
+        """
         if self._recorder is None:
-            empty = replace(
-                self.script,
-                title="Recording",
-                duration=0.0,
-                source="Recording",
-                poses=(),
-                tracks={},
-                preface="",
-            )
-            self._recorder, self._held = Recorder(empty), {}
+            self._recorder, self._held = Recorder(self.script), {}
+            if self.script.sound is not None and not self.is_playing:
+                self.toggle_playing()
             return
         recording = self._recorder.script()
         self._recorder, self._held = None, {}
@@ -313,21 +268,11 @@ class Session:
 
     # Files
 
-    def check(self, script: Script) -> None:
-        """UserError says why a script or pose cannot be opened here."""
-        if script.scene != self.script.scene:
-            raise UserError(
-                f"{script.source}: is for the scene '{script.scene}', and this window shows "
-                f"'{self.script.scene}': "
-                f"`risorius view --scene {script.scene} --script {script.source}`"
-            )
-        script.check(self.limits)
-
     def open(self, script: Script) -> None:
         """A pose to show, which a recording takes in, or a script to play, which ends it."""
         self.is_playing = False
         if is_pose(script):
-            self._set_pose(self._all(script.at(0.0)), is_unsaved=False)
+            self._set_pose(self.controls.pose(script.at(0.0)), is_unsaved=False)
         else:
             self._replace_script(script, ScriptFile.of(script), 0.0)
 
@@ -358,7 +303,7 @@ class Session:
         if work.recording is not None:
             self._replace_script(work.recording, ScriptFile(None, None), work.recording.duration)
         if work.pose is not None:
-            self._set_pose(self._all(work.pose.at(0.0)))
+            self._set_pose(self.controls.pose(work.pose.at(0.0)))
 
     def save_script(self, path: Path) -> None:
         """Write the script to a file; UserError where it cannot be written."""

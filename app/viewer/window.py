@@ -1,4 +1,4 @@
-"""The window: the one place where all parts of the viewer meet, and one turn of its loop.
+"""The window as it runs: one turn of its loop, and when that rests. Its parts: parts.py.
 
 Physics goes in steps of its own, apart from frames (physics.py). The scene is drawn only when
 something in it has changed, with less detail while it moves if the machine is slow (painter.py);
@@ -8,67 +8,22 @@ for events.
 
 from __future__ import annotations
 
-import contextlib
 import time
 from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
 
 from imgui_bundle import imgui
 
-from risorius import render
-from risorius.assets.fitting import FittedHead
-
-from ..errors import UserError
-from ..scenes import Scene, build_scene
-from ..script import Script
 from ..stopping import cleaned_up_if_stopped
-from . import menus
-from .command import Command, run_pressed
-from .export import FRAMES_PER_SECOND, Exporter
-from .file_drop import FileDrop
-from .files import Files
-from .frame_times import FrameTimes
-from .gui import Gui, on_drop, poll_events, wait_for_event, wake_up
-from .idle_life import IdleLife
-from .key_selection import KeySelection
-from .live_commands import PACING, LiveCommands
-from .messages import Messages
-from .mouse import Mouse
-from .painter import Painter
-from .panel_cache import PanelCache
-from .panel_state import PanelState
-from .panels.chooser import FileChooser
-from .panels.dope_sheet import DopeSheet
-from .panels.face import FacePanel
+from .command import run_pressed
+from .export import FRAMES_PER_SECOND
+from .gui import on_drop, poll_events, wait_for_event
+from .live_commands import PACING
 from .panels.help import draw_help
-from .panels.layout import Layout
-from .panels.live import LivePanel
-from .panels.mechanism import MechanismPanel
-from .panels.menu_bar import MenuBar
 from .panels.message_line import draw_message
 from .panels.question_box import draw_question
 from .panels.recovery_banner import draw_recovery
-from .panels.timeline import Timeline
-from .panels.waveform import Waveform
-from .physics import Physics
-from .placement import Placement, first_size
-from .question import Question
-from .recovery import Recovery
-from .script_commands import ScriptCommands
-from .session import Session
-from .settings import (
-    Display,
-    Settings,
-    load_settings,
-    remove_refused_options,
-    rename_unusable,
-    save_settings,
-)
-from .soundtrack import Soundtrack
-from .stage import Stage
-from .time_axis import TimeAxis
-from .view import View
+from .parts import Parts
 
 IDLE_WAIT = 2.0  # [s] between two frames while nothing happens
 WATCHFUL_WAIT = 0.1  # [s] the same while a file dialog is open, or words are typed
@@ -76,132 +31,28 @@ LIFE_WAIT = 1.0 / 30.0  # [s] from one frame to the next while the face does no 
 FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
 
 
-class Viewer:
-    """The window with everything in it; a context manager."""
+class Viewer(Parts):
+    """The window with everything in it, as it runs; a context manager."""
 
-    def __init__(
-        self,
-        script: Script,
-        size: tuple[int, int] | None = None,
-        display: Display | None = None,
-        *,
-        head: FittedHead | None = None,
-        settings_path: Path | None = None,
-    ) -> None:
-        """Open the window.
-
-        head: a user's own, None for the built-in one. size, display: None takes what is remembered.
-        settings_path: where that is kept, and beside it what is not saved; None for nowhere.
-        Raises UserError for a script that names what the scene has not.
-        """
-        self._settings_path = settings_path
-        self.settings, complaint = Settings(), ""
-        if settings_path is not None:
-            self.settings, complaint = load_settings(settings_path)
-        scene = build_scene(script.scene, head)
-        self.session = Session(scene, script)
-        self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
-        self.recovery.find(self.session)
-        self.soundtrack = Soundtrack(self.session)
-        if display is None:
-            refused = remove_refused_options(self.settings.display, scene)
-            if refused and settings_path is not None and not complaint:
-                refused = f"{settings_path}: {refused}; {rename_unusable(settings_path)}"
-            complaint = "; ".join(filter(None, (complaint, refused)))
-        else:
-            self.settings.display = display
-        self.settings.display.remove_missing_overlays(scene)
-        self.times = FrameTimes()
-        with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
-            title = f"Risorius: {self.session.name}"
-            self.surface = render.open_window(size or first_size(self.settings.size), title)
-            stack.callback(self.surface.close)
-            self.gui = Gui(self.surface.handle)
-            stack.callback(self.gui.close)
-            self.stage = Stage(self.surface, scene, self.settings.display, self.times)
-            self._resources = stack.pop_all()
-        self._join_commands()
-        self._join_panels()
-        self._last = time.perf_counter()
-        self._awake = FRAMES_AFTER_EVENT
-        self.is_leaving = False
-        on_drop(self.surface.handle, self.drop)
-        if complaint:
-            self.messages.say(complaint, error=True)
-        for _ in range(2):  # panels and tabs find their places before the first picture
-            self._draw_gui(is_visible=False)
-
-    def _join_commands(self) -> None:
-        """What can be done, each with what it needs for that."""
-        session, settings = self.session, self.settings
-        self.view = View(session, settings, self.surface)
-        self.placement = Placement(self.surface.handle)
-        self.messages, self.files, self.question = Messages(), Files(), Question(session)
-        self.panel_state, self.time_axis = PanelState(wanted_tab=settings.tab), TimeAxis()
-        self.selection = KeySelection(session, self.panel_state)
-        self.scripts = ScriptCommands(session, self.files, self.question)
-        self.exporter = Exporter(self.stage, self.view)
-        self.live = LiveCommands(session, self.panel_state, wake_up)
-        self.file_drop = FileDrop(self.files, self.scripts, self.show_scene)
-        self.commands: tuple[Command, ...] = (
-            *menus.file_menu(self.scripts, self.file_drop, self.exporter, self.ask_to_close),
-            *menus.edit_menu(session),
-            *menus.time_menu(session, self.scripts, self.time_axis),
-            *menus.keys_menu(self.selection),
-            *menus.view_menu(settings, self.view, self.placement, self.panel_state),
-            *menus.expression_menu(session),
-            *menus.live_menu(self.live),
-            *menus.help_menu(self.panel_state),
-        )
-        self.life = IdleLife(session, settings, self.view)
-        self.physics = Physics(session, self.times)
-        self.painter = Painter(self.stage, self.view, self.exporter, self.messages)
-        self.panel_cache = PanelCache()
-
-    def _join_panels(self) -> None:
-        """What is around the picture, and the mouse in it."""
-        gui, session, settings, messages = self.gui, self.session, self.settings, self.messages
-        view, commands, axis = self.view, self.commands, self.time_axis
-        bar = MenuBar(gui, session, messages, commands)
-        waveform = Waveform(gui, self.soundtrack, axis)
-        dope_sheet = DopeSheet(
-            gui, session, settings, messages, self.selection, axis, bar, waveform
-        )
-        self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
-        self.face_panel = FacePanel(gui, session, settings, view)
-        mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
-        record = next(each for each in commands if each.label == "Record")
-        live = LivePanel(gui, settings, self.live, messages, record)
-        tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
-        self._layout = Layout(gui, settings, self.panel_state, bar, tabs, self.timeline)
-        self._chooser = FileChooser(gui, self.files)
-        self.mouse = Mouse(self.view, self.stage, self.select_muscle)
+    _last: float  # when the last frame began [s]
+    _awake: int  # frames that are drawn yet, whatever happens
 
     def __enter__(self) -> Viewer:
+        self._last, self._awake = time.perf_counter(), FRAMES_AFTER_EVENT
+        on_drop(self.surface.handle, self.drop)
+        for _ in range(2):  # panels and tabs find their places before the first picture
+            self._draw_gui(is_visible=False)
         return self
 
     def __exit__(self, *_: object) -> None:
-        with contextlib.suppress(UserError):  # a disk that is full must not keep the window open
-            self._remember()
-        self.live.stop()
-        self.exporter.close()
-        self.soundtrack.close()
-        self.recovery.close()
-        self._resources.close()
-
-    def _remember(self) -> None:
-        """Write the settings as they are now; UserError where that cannot be."""
-        if self._settings_path is not None:
-            self.settings.cameras[self.session.scene.name] = self.view.camera_place
-            self.settings.size = self.placement.size
-            save_settings(self._settings_path, self.settings)
+        self.close()
 
     def run(self, *, playing: bool = False, once: bool = False) -> None:
         """Show the window until it is closed (with `once`: until the script has ended)."""
         if playing:
             self.session.toggle_playing()
         self._last = time.perf_counter()
-        with self.recovery.guarding(self.session), cleaned_up_if_stopped(self._remember):
+        with self.recovery.guarding(self.session), cleaned_up_if_stopped(self.remember):
             while True:
                 if self.placement.is_minimised:  # time stands still, and nothing is drawn
                     self._wait()
@@ -344,13 +195,13 @@ class Viewer:
         messages, gui, state = self.messages, self.gui, self.panel_state
         with gui.frame(is_visible=is_visible):
             gui.set_theme(self.settings.theme, self.settings.zoom)
-            self._layout.draw(self.view)
+            self.layout.draw(self.view)
             messages.age(imgui.get_io().delta_time)
             draw_message(gui, messages, self.view)
             for draw in (
                 partial(draw_recovery, gui, self.recovery, self.session, self.question, self.view),
                 self.files.poll,
-                self._chooser.draw,
+                self.chooser.draw,
                 partial(draw_question, gui, self.question, self.session, self.scripts),
             ):
                 messages.attempt(draw)
@@ -360,39 +211,7 @@ class Viewer:
                 run_pressed(self.commands, messages)
                 self.mouse.follow()
 
-    # What is done to the window as a whole
-
     def drop(self, paths: Sequence[str]) -> None:
         """Open files that were dropped onto the window."""
         self._awake = FRAMES_AFTER_EVENT
         self.messages.attempt(partial(self.file_drop.open, paths))
-
-    def show_scene(self, scene: Scene) -> None:
-        """Take another scene with the same controls in place of this one."""
-        self.session.move_to(scene)
-        display = self.settings.display
-        display.remove_missing_overlays(scene)
-        refused = remove_refused_options(display, scene)
-        self.stage.set_scene(scene, display)
-        self.view.fit_scene()
-        self.mouse.forget()
-        self.physics.begin_anew()
-        self.painter.forget()
-        if refused:
-            self.messages.say(refused)
-
-    def select_muscle(self, name: str) -> None:
-        """Show a muscle's slider."""
-        self.panel_state.wanted_tab = "Face"
-        self.face_panel.select(name)
-        self.messages.say(name.replace("_", " "))
-
-    def ask_to_close(self) -> str | None:
-        """Close the window, unless work would be lost: then ask first."""
-        if self.is_leaving:
-            return self._close()
-        return self.question.before("Close", self._close)
-
-    def _close(self) -> str | None:
-        self.is_leaving = self.surface.should_close = True
-        return None

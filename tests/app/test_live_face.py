@@ -16,7 +16,7 @@ from risorius.app.errors import UserError
 from risorius.app.live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening, LiveFace, Receiver, State
 from risorius.app.live.frame import MOST_BYTES
 from risorius.app.live.live_face import CALIBRATING, EASING_IN, EASING_OUT, LOST_AFTER
-from risorius.app.live.receiver import MOST_WAITING
+from risorius.app.live.receiver import MOST_WAITING, STILL_THERE
 from risorius.app.viewer.panels.live import (
     advice_in_words,
     packets_in_words,
@@ -108,6 +108,28 @@ def test_the_newest_frame_counts(wire: Wire) -> None:
     wire.face.advance(0.0)
     assert wire.face.channels["jawOpen"] == pytest.approx(0.7)
     assert wire.face.rate == 8.0 and not wire.face.has_frame
+
+
+def test_who_waits_is_seldom_woken_for_the_same_again(wire: Wire) -> None:
+    """A picture that is sent for ever costs next to nothing; a change is taken at once."""
+    still, other = live_link({"JawOpen": 0.5}), live_link({"JawOpen": 0.6})
+    for _ in range(10):
+        wire.take(still)
+    assert wire.woken == 1 and wire.face.received == 10 and wire.face.rate == 10.0
+    wire.take(other)
+    assert wire.woken == 2 and wire.face.channels["jawOpen"] == pytest.approx(0.6)
+    wire.pass_time(STILL_THERE)
+    wire.take(other, other)
+    assert wire.woken == 3 and wire.face.state is State.RECEIVING
+    wire.take(live_link(None))
+    assert wire.woken == 3 and wire.face.state is State.NO_FACE
+    wire.take(other)
+    assert wire.woken == 4 and wire.face.state is State.RECEIVING
+
+
+def test_the_same_again_is_waited_for_before_a_face_is_lost() -> None:
+    """Who is woken so seldom must not take a face that holds still for one that has gone."""
+    assert 2.0 * STILL_THERE <= LOST_AFTER
 
 
 def test_who_waits_is_not_woken_for_rubbish(wire: Wire) -> None:

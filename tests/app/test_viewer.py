@@ -148,7 +148,7 @@ def test_a_click_selects_the_muscle(viewer: Viewer) -> None:
     xdotool(viewer, "mousedown", 1)
     xdotool(viewer, "mouseup", 1)
     name = viewer.messages.text.replace(" ", "_")
-    assert name in viewer.session.limits
+    assert name in viewer.session.controls.limits
     whole = name.removesuffix("_left").removesuffix("_right")
     assert {name, name.replace("right", "left"), whole} & set(viewer.gui.places)
 

@@ -24,6 +24,6 @@ def test_the_cloth_falls_in_the_window(tmp_path: Path) -> None:
         assert until(viewer, lambda: bool(np.isclose(scene.bone_transforms()["ball"][0, 2], 1.0)))
         viewer.session.set("drop", 1.0)
         assert until(viewer, lambda: float(scene.positions[:, 1].min()) < -100.0)
-        assert viewer.session.limits["turn"] == (-2.0, 2.0)
+        assert viewer.session.controls.limits["turn"] == (-2.0, 2.0)
         frame = viewer.surface.read()
         assert frame.std() > 10.0

@@ -25,13 +25,14 @@ from risorius.app.script import (
 )
 from risorius.app.viewer import keyframes, picking
 from risorius.app.viewer.control_rows import mirrored, rows_of, search_rows
+from risorius.app.viewer.document import Document
 from risorius.app.viewer.history import MOST_GROWTH, History
 from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.overlays import OVERLAYS, overlays_of
 from risorius.app.viewer.physics import EARLIEST, MOST_STEPS, STEP, Clock
 from risorius.app.viewer.places import Places
 from risorius.app.viewer.recorder import Recorder
-from risorius.app.viewer.session import Document, Session, _new_keys
+from risorius.app.viewer.session import Session
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger
 
@@ -100,6 +101,35 @@ def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path
     while session.is_playing:
         session.advance(STEP)
     assert np.abs(session.scene.positions - wanted).max() < 0.01
+
+
+def test_a_recording_beside_a_sound_is_in_step_with_it(session: Session, tmp_path: Path) -> None:
+    """The script plays meanwhile, and what is heard at a time was recorded at that time."""
+    played = replace(session.script, sound=tmp_path / "sound.wav")
+    session.edit(played)
+    session.seek(0.5)
+    session.toggle_recording()
+    assert session.is_playing
+    run(session, 30)  # to 1 s
+    session.toggle_playing()
+    run(session, 30)  # paused
+    session.toggle_playing()
+    session.set("jaw_open", 0.8)
+    run(session, 30)  # to 1.5 s
+    at, session.is_looping = session.time, True
+    while session.time >= at:
+        session.advance(STEP)
+    session.set("jaw_open", 0.1)
+    run(session, 30)  # heard before
+    whole = session.script.duration
+    session.toggle_recording()
+    script = session.script
+    assert script.sound == tmp_path / "sound.wav"
+    assert script.duration == pytest.approx(whole, abs=0.02)
+    for time in (0.6, 0.97):
+        heard = {**dict.fromkeys(script.tracks, 0.0), **played.at(time)}
+        assert any(heard.values()) and script.at(time) == pytest.approx(heard, abs=0.05)
+    assert script.at(1.05)["jaw_open"] == script.at(whole)["jaw_open"] == 0.8
 
 
 def test_an_empty_recording_is_refused(session: Session) -> None:
@@ -186,7 +216,7 @@ def test_history_counts_what_is_not_shared(session: Session) -> None:
     after = keyframes.without(before, Places({"joy": times[:400]}))
     assert all(after.tracks[name] is tracks[name] for name in ("anger", "blink"))
     one, other = (Document(None, script, session.file) for script in (before, after))
-    assert _new_keys(one, other) == 600 and _new_keys(one, one) == 0
+    assert other.new_keys(one) == 600 and one.new_keys(one) == 0
 
 
 def test_mirror_and_links(session: Session) -> None:
@@ -348,7 +378,7 @@ def test_a_lead_wins_by_its_share_over_what_it_names(session: Session) -> None:
     session.live.take({"jaw_open": 7.0, "head_yaw": -0.5, "no_control": 1.0}, 1.0)
     assert session.current["jaw_open"] == 1.0 and session.current["head_yaw"] == -0.5
     assert session.current["zygomaticus_major_left"] == 0.4
-    assert session.current.keys() == session.limits.keys()
+    assert session.current.keys() == session.controls.limits.keys()
     run(session, 30)
     assert session.scene.values["jaw_open"] == 1.0
     session.live.take({"jaw_open": 1.0}, 0.25)

@@ -124,7 +124,7 @@ def test_a_long_script_is_written_in_steps(
     session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
 ) -> None:
     """One track is made into text at a time, then all is written; later only what has changed."""
-    names, times = list(session.limits)[:20], np.arange(1, 101) / 60.0
+    names, times = list(session.controls.limits)[:20], np.arange(1, 101) / 60.0
     tracks = {name: Channel(times, 0.0 * times) for name in names}
     session.edit(replace(session.script, tracks=tracks))
     recovery.watch(session)
@@ -148,9 +148,9 @@ def test_a_long_script_that_changes_all_the_time_is_written(
     session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
 ) -> None:
     """A drag of many dense tracks is never finished with; some seconds of it are lost at most."""
-    times = np.arange(1, 101) / 60.0
+    times, names = np.arange(1, 101) / 60.0, list(session.controls.limits)[:3]
     for step in range(round(3.0 * LONGEST / STEP)):
-        tracks = {name: Channel(times + step * STEP, times) for name in list(session.limits)[:3]}
+        tracks = {name: Channel(times + step * STEP, times) for name in names}
         session.edit(replace(session.script, tracks=tracks), is_done=False)
         recovery.watch(session)
         clock.now += STEP

@@ -290,7 +290,7 @@ def test_while_recording_keys_stay(viewer: Viewer) -> None:
 @pytest.fixture
 def take(viewer: Viewer, own: Path, tmp_path: Path) -> Script:
     """A script of half a million keys, opened, with a row for each of its 60 tracks."""
-    names = [name for name, (low, _) in viewer.session.limits.items() if low == 0.0][:60]
+    names = [name for name, (low, _) in viewer.session.controls.limits.items() if low == 0.0][:60]
     times = np.arange(9000) / 15.0
     chance = np.random.default_rng(5)
     tracks = {name: Channel(times, chance.uniform(0.0, 0.4, 9000).round(3)) for name in names}

@@ -39,7 +39,7 @@ class FacePanel:
         self._current = self._session.current
         self._draw_buttons()
         imgui.begin_child("controls", (0.0, 0.0))
-        for title, names in self._session.groups.items():
+        for title, names in self._session.controls.groups.items():
             self._draw_group(title, names)
         imgui.end_child()
         self._flash = max(self._flash - 1, 0)
@@ -118,7 +118,7 @@ class FacePanel:
             if index:
                 imgui.same_line()
             slid = self._sliders.draw(
-                name, self._current[name], session.limits[name], width=room / len(names)
+                name, self._current[name], session.controls.limits[name], width=room / len(names)
             )
             is_pointed = is_pointed or slid.is_hovered
             if slid.is_changed:
@@ -133,7 +133,7 @@ class FacePanel:
     def _title(self, row: Row) -> str:
         """The name, and where that is a code (an action unit's) what it does."""
         scene, name = self._session.scene, row.names[0]
-        is_code = name not in self._session.muscles and name not in scene.expressions
+        is_code = name not in self._session.controls.muscles and name not in scene.expressions
         return f"{row.label} {scene.actions.get(name, '')}".rstrip() if is_code else row.label
 
     def _explanation(self, row: Row) -> str:

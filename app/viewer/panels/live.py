@@ -157,11 +157,11 @@ class LivePanel:
 
     def _draw_channels(self, face: LiveFace) -> None:
         """A row for each channel, or for the two of both sides: a bar and a number."""
-        calibrated = face.calibration.apply(face.channels)
-        if not calibrated:
+        shown = shown_of(face)
+        if not shown:
             muted(self._gui, "nothing yet")
-        for label, names in rows_of(calibrated):
-            shares = [_share(name, calibrated[name]) for name in names]
+        for label, names in rows_of(shown):
+            shares = [_share(name, shown[name]) for name in names]
             is_seen = max(shares) >= LEAST_SEEN
             ink = self._gui.theme.accent if is_seen else self._gui.theme.muted
             imgui.text_colored(colour(ink), label)
@@ -171,7 +171,7 @@ class LivePanel:
             width = imgui.get_content_region_avail().x / len(names)
             for index, name in enumerate(names):  # before the bars, which would lower them
                 imgui.same_line(left + (index + 1) * width - em(2.3))
-                muted(self._gui, _in_words(name, calibrated[name]))
+                muted(self._gui, _in_words(name, shown[name]))
             for index, share in enumerate(shares):
                 imgui.same_line(left + index * width)
                 imgui.progress_bar(min(share, 1.0), (width - em(2.8), em(1.0)), "")
@@ -205,6 +205,12 @@ class LivePanel:
                 self._gui.remember(f"{label}: {choice}")
             imgui.end_combo()
         return chosen
+
+
+def shown_of(face: LiveFace) -> dict[str, float]:
+    """The channels that have come and where they are, calibrated; 0 while none comes."""
+    calibrated = face.calibration.apply(face.channels)
+    return calibrated if face.state is State.RECEIVING else dict.fromkeys(calibrated, 0.0)
 
 
 def rows_of(channels: Iterable[str]) -> list[tuple[str, tuple[str, ...]]]:

@@ -1,0 +1,23 @@
+"""What can be undone and saved: one state of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ..script import Script
+from .script_file import ScriptFile
+
+
+@dataclass(frozen=True)
+class Document:
+    """A pose, a script, and where that is kept."""
+
+    values: Mapping[str, float] | None  # set by hand, what is not 0; None: as the script has it
+    script: Script
+    file: ScriptFile  # in which the script is kept
+
+    def new_keys(self, before: Document) -> int:
+        """How many keys of tracks it has that the state before does not share with it."""
+        known = {id(track) for track in before.script.tracks.values()}
+        return sum(len(track) for track in self.script.tracks.values() if id(track) not in known)

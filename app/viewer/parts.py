@@ -1,0 +1,201 @@
+"""What the window is made of: the one place where all parts of the viewer meet."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+
+from risorius import render
+from risorius.assets.fitting import FittedHead
+
+from ..errors import UserError
+from ..scenes import Scene, build_scene
+from ..script import Script
+from . import menus
+from .command import Command
+from .export import Exporter
+from .file_drop import FileDrop
+from .files import Files
+from .frame_times import FrameTimes
+from .gui import Gui, wake_up
+from .idle_life import IdleLife
+from .key_selection import KeySelection
+from .live_commands import LiveCommands
+from .messages import Messages
+from .mouse import Mouse
+from .painter import Painter
+from .panel_cache import PanelCache
+from .panel_state import PanelState
+from .panels.chooser import FileChooser
+from .panels.dope_sheet import DopeSheet
+from .panels.face import FacePanel
+from .panels.layout import Layout
+from .panels.live import LivePanel
+from .panels.mechanism import MechanismPanel
+from .panels.menu_bar import MenuBar
+from .panels.timeline import Timeline
+from .panels.waveform import Waveform
+from .physics import Physics
+from .placement import Placement, first_size
+from .question import Question
+from .recovery import Recovery
+from .script_commands import ScriptCommands
+from .session import Session
+from .settings import (
+    Display,
+    Settings,
+    load_settings,
+    remove_refused_options,
+    rename_unusable,
+    save_settings,
+)
+from .soundtrack import Soundtrack
+from .stage import Stage
+from .time_axis import TimeAxis
+from .view import View
+
+
+class Parts:
+    """An open window and all its parts, each with the others that it needs; nothing moves yet."""
+
+    def __init__(
+        self,
+        script: Script,
+        size: tuple[int, int] | None = None,
+        display: Display | None = None,
+        *,
+        head: FittedHead | None = None,
+        settings_path: Path | None = None,
+    ) -> None:
+        """Open the window.
+
+        head: a user's own, None for the built-in one. size, display: None takes what is remembered.
+        settings_path: where that is kept, and beside it what is not saved; None for nowhere.
+        Raises UserError for a script that names what the scene has not.
+        """
+        self._settings_path = settings_path
+        self.settings, complaint = Settings(), ""
+        if settings_path is not None:
+            self.settings, complaint = load_settings(settings_path)
+        scene = build_scene(script.scene, head)
+        self.session = Session(scene, script)
+        self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
+        self.recovery.find(self.session)
+        self.soundtrack = Soundtrack(self.session)
+        if display is None:
+            refused = remove_refused_options(self.settings.display, scene)
+            if refused and settings_path is not None and not complaint:
+                refused = f"{settings_path}: {refused}; {rename_unusable(settings_path)}"
+            complaint = "; ".join(filter(None, (complaint, refused)))
+        else:
+            self.settings.display = display
+        self.settings.display.remove_missing_overlays(scene)
+        self.times = FrameTimes()
+        with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
+            title = f"Risorius: {self.session.name}"
+            self.surface = render.open_window(size or first_size(self.settings.size), title)
+            stack.callback(self.surface.close)
+            self.gui = Gui(self.surface.handle)
+            stack.callback(self.gui.close)
+            self.stage = Stage(self.surface, scene, self.settings.display, self.times)
+            self._resources = stack.pop_all()
+        self._join_commands()
+        self._join_panels()
+        self.is_leaving = False
+        if complaint:
+            self.messages.say(complaint, error=True)
+
+    def _join_commands(self) -> None:
+        """What can be done, each with what it needs for that."""
+        session, settings = self.session, self.settings
+        self.view = View(session, settings, self.surface)
+        self.placement = Placement(self.surface.handle)
+        self.messages, self.files, self.question = Messages(), Files(), Question(session)
+        self.panel_state, self.time_axis = PanelState(wanted_tab=settings.tab), TimeAxis()
+        self.selection = KeySelection(session, self.panel_state)
+        self.scripts = ScriptCommands(session, self.files, self.question)
+        self.exporter = Exporter(self.stage, self.view)
+        self.live = LiveCommands(session, self.panel_state, wake_up)
+        self.file_drop = FileDrop(self.files, self.scripts, self.show_scene)
+        self.commands: tuple[Command, ...] = (
+            *menus.file_menu(self.scripts, self.file_drop, self.exporter, self.ask_to_close),
+            *menus.edit_menu(session),
+            *menus.time_menu(session, self.scripts, self.time_axis),
+            *menus.keys_menu(self.selection),
+            *menus.view_menu(settings, self.view, self.placement, self.panel_state),
+            *menus.expression_menu(session),
+            *menus.live_menu(self.live),
+            *menus.help_menu(self.panel_state),
+        )
+        self.life = IdleLife(session, settings, self.view)
+        self.physics = Physics(session, self.times)
+        self.painter = Painter(self.stage, self.view, self.exporter, self.messages)
+        self.panel_cache = PanelCache()
+
+    def _join_panels(self) -> None:
+        """What is around the picture, and the mouse in it."""
+        gui, session, settings, messages = self.gui, self.session, self.settings, self.messages
+        view, commands, axis = self.view, self.commands, self.time_axis
+        bar = MenuBar(gui, session, messages, commands)
+        waveform = Waveform(gui, self.soundtrack, axis)
+        dope_sheet = DopeSheet(
+            gui, session, settings, messages, self.selection, axis, bar, waveform
+        )
+        self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
+        self.face_panel = FacePanel(gui, session, settings, view)
+        mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
+        record = next(each for each in commands if each.label == "Record")
+        live = LivePanel(gui, settings, self.live, messages, record)
+        tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
+        self.layout = Layout(gui, settings, self.panel_state, bar, tabs, self.timeline)
+        self.chooser = FileChooser(gui, self.files)
+        self.mouse = Mouse(self.view, self.stage, self.select_muscle)
+
+    def close(self) -> None:
+        """Remember the settings, and let go of everything."""
+        with contextlib.suppress(UserError):  # a disk that is full must not keep the window open
+            self.remember()
+        self.live.stop()
+        self.exporter.close()
+        self.soundtrack.close()
+        self.recovery.close()
+        self._resources.close()
+
+    def remember(self) -> None:
+        """Write the settings as they are now; UserError where that cannot be."""
+        if self._settings_path is not None:
+            self.settings.cameras[self.session.scene.name] = self.view.camera_place
+            self.settings.size = self.placement.size
+            save_settings(self._settings_path, self.settings)
+
+    # What is done to the window as a whole
+
+    def show_scene(self, scene: Scene) -> None:
+        """Take another scene with the same controls in place of this one."""
+        self.session.move_to(scene)
+        display = self.settings.display
+        display.remove_missing_overlays(scene)
+        refused = remove_refused_options(display, scene)
+        self.stage.set_scene(scene, display)
+        self.view.fit_scene()
+        self.mouse.forget()
+        self.physics.begin_anew()
+        self.painter.forget()
+        if refused:
+            self.messages.say(refused)
+
+    def select_muscle(self, name: str) -> None:
+        """Show a muscle's slider."""
+        self.panel_state.wanted_tab = "Face"
+        self.face_panel.select(name)
+        self.messages.say(name.replace("_", " "))
+
+    def ask_to_close(self) -> str | None:
+        """Close the window, unless work would be lost: then ask first."""
+        if self.is_leaving:
+            return self._close()
+        return self.question.before("Close", self._close)
+
+    def _close(self) -> str | None:
+        self.is_leaving = self.surface.should_close = True
+        return None
