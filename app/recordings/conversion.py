@@ -26,7 +26,7 @@ LEAST_STEP = 1e-3  # [s] between the first two keys
 CAMERA = "front"  # from where recorded faces were seen
 HELD = 1.0  # [s] that a take of a single frame lasts, as a pose does
 # How late eyes and head follow [s], where muscles and skin do by LEAD; all measured at 60 Hz.
-_LATE = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.125}
+_LATE = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.063}
 
 
 def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, Report]:
