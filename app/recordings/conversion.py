@@ -7,7 +7,7 @@ sound.
 
 from __future__ import annotations
 
-from collections.abc import Mapping as AnyMapping
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -49,7 +49,7 @@ def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, R
     return script, report
 
 
-def _script(take: Take, curves: AnyMapping[str, Array], lead: float) -> Script:
+def _script(take: Take, curves: Mapping[str, Array], lead: float) -> Script:
     """Tracks of what moves; of a single frame a pose."""
     title = Path(take.source).stem
     preface = f"# Made of {in_one_line(Path(take.source).name)}, {take.kind}.\n"
