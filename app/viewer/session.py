@@ -13,10 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
+from ..mirror import twin_of
 from ..scenes import Scene, clamped
 from ..script import Pose, Script, is_pose, pose_script, rounded, save_script
 from . import keyframes
-from .control_rows import highest_first, mirrored, twin_of
+from .control_rows import highest_first, mirrored
 from .history import History
 from .lead import Lead
 from .recorder import Recorder
