@@ -23,6 +23,7 @@ import math
 import numpy as np
 
 Values = dict[str, float]
+Place = tuple[float, float]  # to the left and up [degrees]
 
 # Blinks. Times between them are log-normal: never short, at times long.
 BLINK_MEDIAN, BLINK_SPREAD = 3.3, 0.55  # [s] between two, and of its logarithm
@@ -46,6 +47,7 @@ AWAY_MEDIAN, AWAY_DURATION_SPREAD = 0.7, 0.4
 # A saccade takes 21 ms and 2.2 ms more for each degree. The eye's own lag is the former.
 SECONDS_PER_DEGREE = 0.0022
 HEAD_SHARE = 0.2  # of a glance that the head takes part in
+HEAD_TURNS_IN = 0.4  # [s], long after the eyes are there
 
 # The head at rest: most that it strays [degrees], and what its controls stand for at 1.
 HEAD_STRAYS = {"head_yaw": 1.2, "head_pitch": 0.7, "head_roll": 0.6}
@@ -93,10 +95,11 @@ class Life:
     def parts(self, time: float) -> dict[str, Values]:
         """The same in parts, each of which is moved together: lids, eyes, head, breath, muscles."""
         across, along = self._glances.at(time)
+        turn, rise = self._glances.of_head(time)
         full, flow = breath(time / BREATH_PERIOD + BREATH_WANDERS * self._breath.at(time))
         head = {name: most * self._head[name].at(time) for name, most in HEAD_STRAYS.items()}
-        head["head_yaw"] += HEAD_SHARE * across
-        head["head_pitch"] += HEAD_SHARE * along + BREATH_PITCH * full
+        head["head_yaw"] += turn
+        head["head_pitch"] += rise + BREATH_PITCH * full
         return {
             "lids": _both(LID, self._blinks.at(time)),
             "eyes": {
@@ -161,19 +164,26 @@ class Glances:
         self.starts = [0.0, FIRST_LOOK]  # [s] in order, as far as drawn
         self.places = [(0.0, 0.0), self._on_face()]  # that is looked at from then on
 
-    def at(self, time: float) -> tuple[float, float]:
+    def at(self, time: float) -> Place:
         """Where they look at `time` [s]; a saccade leads from one place to the next."""
+        before, there, age, _ = self._move(time)
+        duration = SECONDS_PER_DEGREE * math.dist(before, there)
+        return _between(before, there, min(age / duration, 1.0) if duration else 1.0)
+
+    def of_head(self, time: float) -> Place:
+        """How far the head goes along with them: it sets out at once, turns softly and is late."""
+        before, there, age, stay = self._move(time)
+        share = min(age / min(HEAD_TURNS_IN, stay), 1.0)
+        across, along = _between(before, there, 0.5 - 0.5 * math.cos(math.pi * share))
+        return HEAD_SHARE * across, HEAD_SHARE * along
+
+    def _move(self, time: float) -> tuple[Place, Place, float, float]:
+        """From where they last moved to where, how long ago, how long they look there [s]."""
         while self.starts[-1] <= time:
             self._draw()
         last = max(bisect.bisect_right(self.starts, time) - 1, 0)
-        there = self.places[last]
-        before = self.places[max(last - 1, 0)]
-        duration = SECONDS_PER_DEGREE * math.dist(before, there)
-        share = min((time - self.starts[last]) / duration, 1.0) if duration else 1.0
-        return (
-            before[0] + share * (there[0] - before[0]),
-            before[1] + share * (there[1] - before[1]),
-        )
+        start, following = self.starts[last], self.starts[last + 1]
+        return self.places[max(last - 1, 0)], self.places[last], time - start, following - start
 
     def _draw(self) -> None:
         """How long the last place is looked at, and the next one."""
@@ -187,18 +197,26 @@ class Glances:
         leaves = not is_away and generator.random() < AWAY
         self.places.append(self._away() if leaves else self._on_face())
 
-    def _on_face(self) -> tuple[float, float]:
+    def _on_face(self) -> Place:
         """A place of the viewer's face: an eye, the other, the mouth."""
         across, along = self._generator.normal(0.0, FACE_SPREAD)
         shrink = min(FACE_LARGEST / max(math.hypot(across, along), 1e-9), 1.0)
         return float(across * shrink), float(along * shrink)
 
-    def _away(self) -> tuple[float, float]:
+    def _away(self) -> Place:
         """A place beside the viewer."""
         size = AWAY_LEAST + float(self._generator.exponential(AWAY_MEAN - AWAY_LEAST))
         size = min(size, AWAY_MOST)
         angle = float(self._generator.uniform(0.0, 2.0 * math.pi))
         return size * math.cos(angle), AWAY_FLATNESS * size * math.sin(angle)
+
+
+def _between(before: Place, there: Place, share: float) -> Place:
+    """So far on the way from one place to another."""
+    return (
+        before[0] + share * (there[0] - before[0]),
+        before[1] + share * (there[1] - before[1]),
+    )
 
 
 class Drift:

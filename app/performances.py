@@ -17,9 +17,8 @@ from .recordings.conversion import script_of
 from .recordings.report import Report
 from .recordings.text import read_beginning
 from .scenes import SCENES
-from .script import Limits, Pose, Script, load_script
+from .script import POSE_SECONDS, Limits, Pose, Script, load_script
 
-HELD = 1.0  # [s] that a pose of --set lasts
 TABLES = (".csv", ".tsv", ".json")  # how recordings are called that are not there
 SCRIPT = re.compile(
     r"(\s|#[^\n]*\n)*(\[\[?[ \t]*[a-z]+[ \t]*[.\]]|[a-z]+[ \t]*=)"
@@ -116,4 +115,4 @@ def held_pose(settings: Sequence[str]) -> Script:
             raise UserError(f"--set {setting}: '{text}' is no number; write NAME=VALUE")
         values[name] = value
     title = ", ".join(settings)
-    return Script(title, duration=HELD, source="--set", poses=(Pose(0.0, values),))
+    return Script(title, duration=POSE_SECONDS, source="--set", poses=(Pose(0.0, values),))

@@ -22,7 +22,7 @@ import numpy as np
 
 from risorius.app.errors import UserError
 from risorius.app.files import Image
-from risorius.app.recordings.names import ARKIT, mirror_of
+from risorius.app.mirror import twin_of
 
 Scores = dict[str, float]
 
@@ -77,7 +77,7 @@ class FaceTracker:
 
 def in_mirror(scores: Scores) -> Scores:
     """Scores of a mirrored picture as those of the face itself: left and right change places."""
-    return {mirror_of(name)[0] if name in ARKIT else name: score for name, score in scores.items()}
+    return {twin_of(name): score for name, score in scores.items()}
 
 
 def mean_of(scores: Sequence[Scores]) -> Scores:

@@ -8,21 +8,16 @@ itself, where a frame begins with a packet unless the one before it is still bei
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
-from multiprocessing.connection import Connection
 
 import numpy as np
 
 from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace
-from risorius.app.live.sender import Sender
 from risorius.app.performances import script_for
-from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import build_scene
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.frame_times import FrameTimes
@@ -30,14 +25,11 @@ from risorius.app.viewer.physics import STEP, Life, Physics
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.settings import Display
 
+from .live_sender import DEGREES, RATE, SETTLING, sending
 from .report import processor, table, verdict
 
-RATE = 60.0  # frames a second of the sender
 PROMISED = 8.0  # [ms] median on a quiet machine
 ROUNDS = 3  # of all protocols in turn
-DEGREES = 0.01  # of head yaw that count as one frame
-SETTLING = 0.5  # [s] at the start of a round that are not counted
-STARTING = 60.0  # [s] that the other process may take to begin
 SIZE = (1280, 720)
 
 
@@ -128,7 +120,7 @@ def _time_chain(case: _Case, session: Session, seconds: float) -> None:
     chain = Chain(case.kind, session)
     done: dict[int, tuple[float, ...]] = {}
     try:
-        with _sending(case.kind, chain.face.port, seconds) as sent:
+        with sending(case.kind, chain.face.port, seconds) as sent:
             while not sent.is_over:
                 followed = chain.turn()
                 if followed is not None:
@@ -164,7 +156,7 @@ def _time_window(case: _Case, viewer: Viewer, seconds: float) -> list[float]:
     assert face is not None
     viewer.physics = noting = _NotingPhysics(viewer.session, viewer.times, face)
     taken = []
-    with _sending(case.kind, face.port, seconds) as sent:
+    with sending(case.kind, face.port, seconds) as sent:
         while not sent.is_over:
             begin = time.perf_counter()
             viewer.frame()
@@ -201,54 +193,3 @@ def _total(case: _Case, percentile: float = 50.0) -> float:
 def _number(face: LiveFace) -> int:
     """The number that the sender gave to the newest frame."""
     return round(face.channels.get("head_yaw", 0.0) / DEGREES)
-
-
-# The other process
-
-
-class _Sent:
-    """What the sending process tells: whether it has ended, and then when it sent which frame."""
-
-    def __init__(self, connection: Connection) -> None:
-        self._connection = connection
-        self.times: dict[int, float] = {}
-
-    @property
-    def is_over(self) -> bool:
-        """Whether it has ended."""
-        if not self.times and self._connection.poll():
-            self.times = self._connection.recv()
-        return bool(self.times)
-
-
-@contextmanager
-def _sending(kind: str, port: int, seconds: float) -> Iterator[_Sent]:
-    """A process that sends for so long."""
-    context = multiprocessing.get_context("spawn")
-    ours, others = context.Pipe()
-    process = context.Process(target=send_numbered, args=(kind, port, seconds, others), daemon=True)
-    process.start()
-    try:
-        if not ours.poll(STARTING):
-            raise RuntimeError("the process that sends did not begin")
-        ours.recv()
-        yield _Sent(ours)
-    finally:
-        process.terminate()
-        process.join()
-
-
-def send_numbered(kind: str, port: int, seconds: float, connection: Connection) -> None:
-    """Send moving faces with numbers, then tell when each was sent."""
-    sent: dict[int, float] = {}
-    with Sender(kind, LOOPBACK, port, "bench") as sender:
-        connection.send("ready")
-        begin = time.perf_counter()
-        for number in range(1, round((seconds + SETTLING) * RATE)):
-            time.sleep(max(begin + number / RATE - time.perf_counter(), 0.0))
-            wave = 0.5 - 0.5 * np.cos(0.1 * number + np.arange(len(ARKIT)))
-            channels = {name: float(value) for name, value in zip(ARKIT, wave, strict=True)}
-            channels["head_yaw"] = DEGREES * number
-            sent[number] = sender.send(channels)
-    time.sleep(0.2)  # the last frames are on their way
-    connection.send(sent)

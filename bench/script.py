@@ -1,41 +1,27 @@
 """What `risorius bench script` prints: what a script costs that is a recorded take of ten minutes.
 
-The take is made up: controls that glide from value to value, as a face does, with the noise of a
-tracker on top, 60 times a second. In the window it is timed beside a script of a few keys, in turn:
-on a shared machine only times of one run can be compared.
+The take is that of `risorius bench take`. In the window it is timed beside a script of a few keys,
+in turn: on a shared machine only times of one run can be compared.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from risorius.app.performances import script_for
-from risorius.app.scenes import FaceScene
-from risorius.app.script import (
-    Floats,
-    Script,
-    load_script,
-    save_script,
-    script_text,
-    thinned,
-)
+from risorius.app.performances import read_performance, script_for
+from risorius.app.script import Script, load_script, save_script, script_text
 
 from .report import processor, table
+from .takes import RATE, made_up
 
 SEED = 2003
-RATE = 60.0  # samples a second
 MINUTES = 10.0
-CHANNELS = 60
-TURNS = 0.8  # [s] from one value of a control to the next, on the average
-NOISE = (
-    1.3e-3  # of a value, standard deviation; a fifth of the samples become keys, as of a phone's
-)
 LOADING, FRAME, EDIT = 3000.0, 0.2, 50.0  # [ms] promised: to read it, for a frame, for an edit
 ROUNDS = 5
 FRAMES = 20  # of the window in each round
@@ -51,28 +37,6 @@ class Row:
     promised: float | None = None  # [ms]
 
 
-def recorded(
-    names: Iterable[str], minutes: float = MINUTES, seed: int = SEED
-) -> tuple[Floats, dict[str, Floats]]:
-    """Times [s], shape (T,), and the values of each channel, from 0 to 1, shape (T,)."""
-    chance = np.random.default_rng(seed)
-    times = np.arange(round(60.0 * minutes * RATE)) / RATE
-    channels = {}
-    for name in names:
-        count = round(float(times[-1]) / TURNS) + 2
-        turns = np.sort(chance.uniform(0.0, times[-1], count))
-        values = chance.uniform(0.0, 1.0, count) ** 3  # mostly near to rest
-        noise = chance.normal(0.0, NOISE, len(times))
-        channels[name] = np.clip(np.interp(times, turns, values) + noise, 0.0, 1.0)
-    return times, channels
-
-
-def take_script(times: Floats, channels: Mapping[str, Floats]) -> Script:
-    """The script of a recording, with thinned tracks. times: [s], shape (T,); channels, too."""
-    tracks = {name: thinned(times, values) for name, values in channels.items()}
-    return Script("A take", float(times[-1]), "take", tracks=tracks)
-
-
 def milliseconds(call: Callable[[], object], rounds: int = ROUNDS) -> float:
     """How long a call takes [ms], median over some rounds."""
     taken = []
@@ -85,19 +49,19 @@ def milliseconds(call: Callable[[], object], rounds: int = ROUNDS) -> float:
 
 def report(size: tuple[int, int], minutes: float = MINUTES, *, has_screen: bool) -> str:
     """Time everything; the text to print. size: of the window [pixels]."""
-    names = [name for name, (low, _) in FaceScene().limits.items() if low == 0.0][:CHANNELS]
-    times, channels = recorded(names, minutes)
-    script = take_script(times, channels)  # and compile what that needs
-    keys = sum(map(len, script.tracks.values()))
     with TemporaryDirectory() as folder:
-        path = Path(folder) / "take.toml"
-        rows = list(_file_rows(times, channels, path))
+        recording, path = Path(folder) / "take.csv", Path(folder) / "take.toml"
+        recording.write_text(made_up(minutes), encoding="utf-8")
+        script, _ = read_performance(recording)
+        keys = sum(map(len, script.tracks.values()))
+        samples = round(60.0 * minutes * RATE) * len(script.tracks)
+        rows = list(_file_rows(script, path))
         megabytes = path.stat().st_size / 1e6
         if has_screen:
             rows += _window_rows(path, size)
     lines = [
-        f"A take of {minutes:g} minutes, {len(channels)} channels at {RATE:g} Hz: {keys} keys "
-        f"({keys / (len(times) * len(channels)):.0%} of the samples), {megabytes:.1f} MB,",
+        f"A take of {minutes:g} minutes, {len(script.tracks)} tracks at {RATE:g} Hz: {keys} keys "
+        f"({keys / samples:.0%} of the samples), {megabytes:.1f} MB,",
         f"on {processor()}; medians in ms.",
         "",
         *table(
@@ -110,10 +74,9 @@ def report(size: tuple[int, int], minutes: float = MINUTES, *, has_screen: bool)
     return "\n".join(lines)
 
 
-def _file_rows(times: Floats, channels: Mapping[str, Floats], path: Path) -> Iterator[Row]:
-    """From samples to a file and back, and the values of a frame."""
-    yield Row("thin all samples", milliseconds(lambda: take_script(times, channels)))
-    save_script(path, take_script(times, channels))
+def _file_rows(script: Script, path: Path) -> Iterator[Row]:
+    """To a file and back, and the values of a frame."""
+    save_script(path, script)
     yield Row("read the file", milliseconds(lambda: load_script(path)), promised=LOADING)
     read = load_script(path)
     yield Row("its text, when new", milliseconds(lambda: script_text(read), 1))

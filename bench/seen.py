@@ -27,7 +27,8 @@ from risorius.app.cameras import camera_for
 from risorius.app.capture.recording import SETTLING, Capture, CaptureOptions
 from risorius.app.errors import UserError
 from risorius.app.files import save_png
-from risorius.app.recordings.names import ARKIT, mirror_of
+from risorius.app.mirror import parted, twin_of
+from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import FaceScene, Scene
 from risorius.assets.fitting import FittedHead
 
@@ -123,12 +124,11 @@ class Sitting:
 def bases() -> Iterator[tuple[str, tuple[str, ...]]]:
     """Every shape of ARKit: its name without side, and its names with them."""
     for name in ARKIT:
-        mirrored, _ = mirror_of(name)
-        if mirrored == name:
+        stem, side = parted(name)
+        if not side:
             yield name, (name,)
-        elif name.endswith("Left"):
-            stem = name.removesuffix("Left")
-            yield stem if stem not in ("jaw", "mouth") else f"{name}, Right", (name, mirrored)
+        elif side == "Left":
+            yield stem if stem not in ("jaw", "mouth") else f"{name}, Right", (name, twin_of(name))
 
 
 def compared(
@@ -139,7 +139,7 @@ def compared(
     posed: shapes that are there besides, and no mistake. Sides count by their mean, beside a side
     that was posed alone by the greater one.
     """
-    is_sided = len(own) == 1 and mirror_of(own[0])[0] != own[0]
+    is_sided = len(own) == 1 and twin_of(own[0]) != own[0]
     over = {name: scores[name] - neutral[name] for name in scores if name in ARKIT}
     others: dict[str, float] = {}
     for base, sides in bases():

@@ -27,7 +27,9 @@ from .report import table
 RATE = 60  # frames a second
 ROUNDS = 3
 FRAMES_TIMED = 3000
-TREMOR = 0.004  # of a value from frame to frame, as a phone has it
+TREMOR = (
+    1.3e-3  # of a value, standard deviation; a quarter of the samples become keys, as a phone's
+)
 ANGLES = ("HeadYaw", "HeadPitch", "HeadRoll", "LeftEyeYaw", "LeftEyePitch", "LeftEyeRoll",
           "RightEyeYaw", "RightEyePitch", "RightEyeRoll")  # fmt: skip
 

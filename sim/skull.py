@@ -29,7 +29,7 @@ EYE_SETBACK = 5.5  # mm from the line of the eye corners back to the centre (fit
 NECK_BELOW_CHIN = 30.0  # mm below the chin landmark the skin no longer belongs to the mandible
 BEHIND_EARS = 20.0  # mm behind the ear landmarks likewise
 HEAD_CONTROLS = ("head_pitch", "head_yaw", "head_roll")
-HEAD_RATE = 12.0  # rad/s: a nod takes some third of a second
+HEAD_RATE = 30.0  # rad/s: chosen so that nods of 2 Hz keep 85 % of their size, 63 ms late
 LATERAL, UP, FORWARD = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 SEED_HOLD = 3.0  # seeds are advice, not nails: a soft hold gives a smooth border
 

@@ -13,15 +13,15 @@ from __future__ import annotations
 
 import fnmatch
 import math
-from collections.abc import Iterable, Sequence
-from collections.abc import Mapping as AnyMapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
 import numpy as np
 
 from ..errors import UserError
-from .names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES, mirror_of
+from ..mirror import TURNED, twin_of
+from .names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
 from .spelling import angle_of, shape_of
 from .take import Array, Take
 
@@ -49,21 +49,19 @@ class Calibration:
     mirror: whether left and right change places.
     """
 
-    neutral: AnyMapping[str, float] = field(default_factory=dict)
-    gains: AnyMapping[str, float] = field(default_factory=dict)
+    neutral: Mapping[str, float] = field(default_factory=dict)
+    gains: Mapping[str, float] = field(default_factory=dict)
     default_gain: float = 1.0
     mirror: bool = False
 
-    def apply(self, channels: AnyMapping[str, Value]) -> dict[str, Value]:
+    def apply(self, channels: Mapping[str, Value]) -> dict[str, Value]:
         """The calibrated channels: arrays of shape (T,) or numbers, as they were given."""
         calibrated = {name: self._value(name, value) for name, value in channels.items()}
         if not self.mirror:
             return calibrated
-        mirrored = {}
-        for name, value in calibrated.items():
-            other, sign = mirror_of(name)
-            mirrored[other] = value * sign if sign < 0.0 else value
-        return mirrored
+        return {
+            twin_of(name): -value if name in TURNED else value for name, value in calibrated.items()
+        }
 
     def _value(self, name: str, value: Value) -> Value:
         """One channel without its neutral value, times its gain."""
@@ -122,7 +120,7 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
     return neutral
 
 
-def neutral_now(channels: AnyMapping[str, float]) -> dict[str, float]:
+def neutral_now(channels: Mapping[str, float]) -> dict[str, float]:
     """The neutral face of somebody who holds it in this frame."""
     return {name: value for name, value in channels.items() if name not in VISEMES}
 
@@ -154,7 +152,7 @@ def usual_gains(kind: str) -> dict[str, float]:
 def gains_of(
     settings: Iterable[str],
     channels: Iterable[str],
-    usual: AnyMapping[str, float] | None = None,
+    usual: Mapping[str, float] | None = None,
 ) -> tuple[dict[str, float], float]:
     """What `--gain NAME=x ...` makes of channels: the gain of each named one, and of all others.
 
@@ -194,7 +192,7 @@ def _gain_in(setting: str) -> tuple[str, float]:
     return name, value
 
 
-def _spread(by_pattern: AnyMapping[str, float], names: Sequence[str]) -> dict[str, float]:
+def _spread(by_pattern: Mapping[str, float], names: Sequence[str]) -> dict[str, float]:
     """Gains by pattern as gains of channels."""
     return {
         name: gain

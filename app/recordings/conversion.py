@@ -7,7 +7,7 @@ sound.
 
 from __future__ import annotations
 
-from collections.abc import Mapping as AnyMapping
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import in_one_line
 from ..playback import LEAD, Playback
-from ..script import TOLERANCE, Channel, Limits, Pose, Script, rounded, thinned
+from ..script import POSE_SECONDS, TOLERANCE, Channel, Limits, Pose, Script, rounded, thinned
 from .calibration import calibration_for
 from .mapping import load_mapping
 from .report import Report, report_of
@@ -24,9 +24,8 @@ from .take import Array, Take
 
 LEAST_STEP = 1e-3  # [s] between the first two keys
 CAMERA = "front"  # from where recorded faces were seen
-HELD = 1.0  # [s] that a take of a single frame lasts, as a pose does
 # How late eyes and head follow [s], where muscles and skin do by LEAD; all measured at 60 Hz.
-_LATE = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.125}
+_LATE = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.063}
 
 
 def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, Report]:
@@ -49,7 +48,7 @@ def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, R
     return script, report
 
 
-def _script(take: Take, curves: AnyMapping[str, Array], lead: float) -> Script:
+def _script(take: Take, curves: Mapping[str, Array], lead: float) -> Script:
     """Tracks of what moves; of a single frame a pose."""
     title = Path(take.source).stem
     preface = f"# Made of {in_one_line(Path(take.source).name)}, {take.kind}.\n"
@@ -65,7 +64,7 @@ def _script(take: Take, curves: AnyMapping[str, Array], lead: float) -> Script:
     )
     if len(take.times) == 1:
         pose = Pose(0.0, {name: rounded(values[0]) for name, values in moved.items()})
-        return replace(script, duration=HELD, poses=(pose,))
+        return replace(script, duration=POSE_SECONDS, poses=(pose,))
     tracks = {
         name: _track(take.times, values, lead_of(name, lead)) for name, values in moved.items()
     }

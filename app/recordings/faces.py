@@ -23,7 +23,8 @@ def one_face(table: Table, request: Request) -> Table:
 
     UserError for a face that is not there. Faces are called as the file calls them.
     """
-    column = next((found for name in COLUMNS if (found := table.column(name)) is not None), None)
+    places = table.places
+    column = next((places[name] for name in COLUMNS if name in places), None)
     if column is None:
         only_one(table.source, request)
         return table

@@ -10,8 +10,7 @@ from __future__ import annotations
 import math
 import re
 import tomllib
-from collections.abc import Container, Iterable
-from collections.abc import Mapping as AnyMapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -48,13 +47,13 @@ _LOOKS_OF_ANGLE = {
 
 
 @dataclass(frozen=True)
-class Mapping:
+class MappingTable:
     """Channel -> {control: share}; what has no row moves the control of its own name."""
 
-    rows: AnyMapping[str, AnyMapping[str, float]]
+    rows: Mapping[str, Mapping[str, float]]
     source: str = ""  # the file, for error texts
 
-    def controls(self, channels: AnyMapping[str, Value]) -> dict[str, Value]:
+    def controls(self, channels: Mapping[str, Value]) -> dict[str, Value]:
         """The values of the controls that the channels move: arrays or numbers, as given.
 
         Nothing is cut off, and `app.scenes.clamped` does that.
@@ -67,7 +66,7 @@ class Mapping:
                 controls[control] = controls[control] + part if control in controls else part
         return controls
 
-    def row(self, channel: str) -> AnyMapping[str, float]:
+    def row(self, channel: str) -> Mapping[str, float]:
         """What the channel moves: {control: share}."""
         return self.rows.get(channel, {channel: 1.0})
 
@@ -82,7 +81,7 @@ class Mapping:
                     )
 
 
-def chosen(channels: AnyMapping[str, Any]) -> tuple[str, ...]:
+def chosen(channels: Mapping[str, Any]) -> tuple[str, ...]:
     """The channels that move the face, where some tell the same thing twice.
 
     Eyes by their angles: these have a sign and know no limit, and eyeLook shapes are made of them.
@@ -103,7 +102,7 @@ def chosen(channels: AnyMapping[str, Any]) -> tuple[str, ...]:
 
 
 @cache
-def usual_mapping() -> Mapping:
+def usual_mapping() -> MappingTable:
     """The mapping that comes along."""
     return parse_mapping(mapping_text(), source="mapping.toml")
 
@@ -113,7 +112,7 @@ def mapping_text() -> str:
     return (files(__package__) / "mapping.toml").read_text("utf-8")
 
 
-def load_mapping(path: Path | None) -> Mapping:
+def load_mapping(path: Path | None) -> MappingTable:
     """The mapping in a file, over the usual one. Raises UserError with file and row."""
     if path is None:
         return usual_mapping()
@@ -124,11 +123,11 @@ def load_mapping(path: Path | None) -> Mapping:
             f"{path}: no such mapping; `risorius convert --mapping-table > {path.name}` writes one"
         ) from None
     own = parse_mapping(text, source=str(path))
-    return Mapping({**usual_mapping().rows, **own.rows}, own.source)
+    return MappingTable({**usual_mapping().rows, **own.rows}, own.source)
 
 
-def parse_mapping(text: str, *, source: str) -> Mapping:
-    """Turn the TOML text of a table into a Mapping; `source` names it in error texts."""
+def parse_mapping(text: str, *, source: str) -> MappingTable:
+    """Turn the TOML text of a table into a MappingTable; `source` names it in error texts."""
     try:
         table = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
@@ -148,7 +147,7 @@ def parse_mapping(text: str, *, source: str) -> Mapping:
                     f"{where}: '{control}' was {share!r}, must be a number from "
                     f"{-GREATEST_SHARE:g} to {GREATEST_SHARE:g}"
                 )
-    return Mapping(table, source)
+    return MappingTable(table, source)
 
 
 def is_channel(name: str) -> bool:

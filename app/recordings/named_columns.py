@@ -75,13 +75,11 @@ def recognises(names: tuple[str, ...]) -> bool:
 def read(table: Table, request: Request, kind: str = NAMED) -> Take:
     """The take in the table."""
     table = one_face(table, request)
-    notes = list(table.notes)
+    notes: list[str] = []
     columns = Columns.of(table.names)
     times, used = times_of(table, request.rate, notes)
     wanted = columns.shapes | columns.units | columns.visemes | columns.angles
-    before = len(table.notes)
-    numbers = dict(zip(wanted, table.numbers(list(wanted.values())).T, strict=True))
-    notes += table.notes[before:]
+    numbers = table.numbers_of(wanted)
     shapes = shares({name: numbers[name] for name in columns.shapes}, notes)
     channels = shapes | intensities({name: numbers[name] for name in columns.units}, notes)
     channels |= {name: np.clip(numbers[name], 0.0, 1.0) for name in columns.visemes}
@@ -94,7 +92,7 @@ def read(table: Table, request: Request, kind: str = NAMED) -> Take:
         table.source,
         times,
         channels,
-        notes=notes,
+        notes=[*table.notes, *notes],
         unknown=[name for name in unknown if name.casefold() not in {*used, *FACE_COLUMNS}],
         is_calibrated=is_calibrated(shapes, notes),
     )

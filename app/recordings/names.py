@@ -34,15 +34,3 @@ EYE_ANGLES = ("eye_yaw_left", "eye_pitch_left", "eye_yaw_right", "eye_pitch_righ
 VISEMES = tuple(
     f"viseme_{sound}" for sound in "sil PP FF TH DD kk CH SS nn RR aa E ih oh ou".split()
 )
-_OTHER_SIDE = {"Left": "Right", "Right": "Left", "_left": "_right", "_right": "_left"}
-
-
-def mirror_of(channel: str) -> tuple[str, float]:
-    """The channel that a mirror makes of this one, and the sign that it gives the value."""
-    if channel in ("head_yaw", "head_roll"):
-        return channel, -1.0
-    for side, other in _OTHER_SIDE.items():
-        if channel.endswith(side):
-            sign = -1.0 if channel.startswith("eye_yaw") else 1.0
-            return channel.removesuffix(side) + other, sign
-    return channel, 1.0

@@ -49,7 +49,7 @@ def read(table: Table, request: Request) -> Take:
     table = one_face(table, request)
     notes: list[str] = []
     times, used = times_of(table, request.rate, notes)
-    places = {name.casefold(): number for number, name in reversed([*enumerate(table.names)])}
+    places = table.places
     intensities = {
         f"AU{int(m[1])}": n for name, n in places.items() if (m := INTENSITY.match(name))
     }
@@ -57,7 +57,7 @@ def read(table: Table, request: Request) -> Take:
     only_present = {name: n for name, n in presences.items() if name not in intensities}
     others = [n for n in ("success", "confidence", *POSE, *GAZE, *VECTORS) if n in places]
     wanted = intensities | only_present | {name: places[name] for name in others}
-    numbers = dict(zip(wanted, table.numbers(list(wanted.values())).T, strict=True))
+    numbers = table.numbers_of(wanted)
 
     channels = _units({name: numbers[name] for name in intensities}, notes)
     channels |= {name: np.clip(numbers[name], 0.0, 1.0) for name in only_present}

@@ -51,7 +51,7 @@ def read(table: Table, request: Request) -> Take:
     table = one_face(table, request)
     notes: list[str] = []
     times, used = times_of(table, request.rate, notes)
-    places = {name.casefold(): number for number, name in reversed([*enumerate(table.names)])}
+    places = table.places
     units = {f"AU{int(m[1])}": n for name, n in places.items() if (m := UNIT.match(name))}
     shapes = {shape: n for name, n in places.items() if (shape := shape_of(name))}
     if len(shapes) > len(NEVER_SEEN):
@@ -63,7 +63,7 @@ def read(table: Table, request: Request) -> Take:
         )
     others = {name: places[name] for name in ("facescore", *POSE, *GAZE) if name in places}
     wanted = units | shapes | others
-    numbers = dict(zip(wanted, table.numbers(list(wanted.values())).T, strict=True))
+    numbers = table.numbers_of(wanted)
     channels = {name: np.clip(numbers[name], 0.0, 1.0) for name in units}
     channels |= shares({name: numbers[name] for name in shapes}, notes)
     channels |= _head(numbers, bool(shapes), notes)

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..errors import UserError
-from . import live_link, mediapipe_json, named_columns, openface, pyfeat, viseme_tracks
+from . import live_link, mediapipe_json, named_columns, openface, pyfeat, rhubarb, viseme_tracks
 from .request import Request
 from .table import Table, header_of, table_in
 from .take import Take
@@ -35,15 +35,15 @@ class DocumentFormat(NamedTuple):
 
 
 TABLES = (
-    TableFormat(viseme_tracks.recognises_rows, viseme_tracks.read_rows),
+    TableFormat(rhubarb.recognises_rows, rhubarb.read_rows),
     TableFormat(live_link.recognises, live_link.read),
     TableFormat(pyfeat.recognises, pyfeat.read),
     TableFormat(openface.recognises, openface.read),
     TableFormat(named_columns.recognises, named_columns.read),
 )
 DOCUMENTS = (
-    DocumentFormat(viseme_tracks.recognises_tracks, viseme_tracks.read_tracks),
-    DocumentFormat(viseme_tracks.recognises_mouths, viseme_tracks.read_mouths),
+    DocumentFormat(viseme_tracks.recognises, viseme_tracks.read),
+    DocumentFormat(rhubarb.recognises, rhubarb.read),
     DocumentFormat(mediapipe_json.recognises, mediapipe_json.read),
 )
 KNOWN = (

@@ -6,8 +6,7 @@ A line that says what it is, and under it a few short ones, aligned; one screen 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable
-from collections.abc import Mapping as AnyMapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +15,7 @@ import numpy as np
 from ..errors import counted, in_one_line
 from ..script import Limits
 from .calibration import Calibration
-from .mapping import Mapping, chosen
+from .mapping import MappingTable, chosen
 from .names import ARKIT
 from .take import Array, Take
 
@@ -69,8 +68,8 @@ class Report:
 def report_of(
     take: Take,
     calibration: Calibration,
-    mapping: Mapping,
-    controls: AnyMapping[str, Array],
+    mapping: MappingTable,
+    controls: Mapping[str, Array],
     limits: Limits,
 ) -> Report:
     """What there is to say of a take; controls: what it makes of each, not yet cut off."""
@@ -147,7 +146,7 @@ def _gains(calibration: Calibration, used: set[str]) -> str:
     return "; ".join([*told, *others])
 
 
-def _beyond(controls: AnyMapping[str, Array], limits: Limits) -> list[str]:
+def _beyond(controls: Mapping[str, Array], limits: Limits) -> list[str]:
     """The controls that are asked for more than there is in many frames."""
     beyond = []
     for name in controls.keys() & limits.keys():

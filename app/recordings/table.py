@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -44,14 +44,18 @@ class Table:
     delimiter: str
     notes: list[str] = field(default_factory=list)
 
-    def column(self, name: str) -> int | None:
-        """Where the first column of this name is; capitals and blanks do not count."""
-        folded = [each.casefold() for each in self.names]
-        return folded.index(name.casefold()) if name.casefold() in folded else None
+    @property
+    def places(self) -> dict[str, int]:
+        """Name without capitals -> number of the first column that is called so."""
+        return {name.casefold(): number for number, name in reversed([*enumerate(self.names)])}
 
     def cells(self, column: int) -> list[str]:
         """The text in one column."""
         return [line.split(self.delimiter, column + 1)[column].strip() for line in self.lines]
+
+    def numbers_of(self, places: Mapping[str, int]) -> dict[str, Array]:
+        """Name -> the numbers in its column, shape (rows,); NaN where there is none."""
+        return dict(zip(places, self.numbers([*places.values()]).T, strict=True))
 
     def numbers(self, columns: Sequence[int]) -> Array:
         """The numbers in some columns, shape (rows, columns); NaN where there is none."""

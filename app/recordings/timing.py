@@ -38,11 +38,11 @@ def times_of(table: Table, rate: float | None, notes: list[str]) -> tuple[Array,
 
     rate: frames a second, where the user knows better than the file.
     """
-    stamp = next((name for name in STAMPS if table.column(name) is not None), None)
-    frame = next((name for name in FRAMES if table.column(name) is not None), None)
-    used = {name for name in (*STAMPS, *FRAMES) if table.column(name) is not None}
+    places = table.places
+    column = next((places[name] for name in STAMPS if name in places), None)
+    frame = next((places[name] for name in FRAMES if name in places), None)
+    used = {name for name in (*STAMPS, *FRAMES) if name in places}
     used.add("approx_time")  # of py-feat: minutes and whole seconds, of no use
-    column = table.column(stamp) if stamp else None
     if column is not None:
         cells = table.cells(column)
         if sum(":" in cell for cell in cells[:100]) * 2 > len(cells[:100]):
@@ -51,8 +51,7 @@ def times_of(table: Table, rate: float | None, notes: list[str]) -> tuple[Array,
             times = stamp_times(table.numbers([column])[:, 0], notes)
             if times is not None:
                 return times, used
-    column = table.column(frame) if frame else None
-    numbers = None if column is None else table.numbers([column])[:, 0]
+    numbers = None if frame is None else table.numbers([frame])[:, 0]
     return frame_times(numbers, len(table.lines), rate, notes), used
 
 

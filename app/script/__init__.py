@@ -37,13 +37,14 @@ from .bounds import LONGEST_FILE
 from .model import DECIMALS, EASING_NAMES, Channel, Floats, Key, Limits, Pose, Script, rounded
 from .reader import LARGEST, load_script, parse_script, preface_of
 from .thinning import TOLERANCE, thinned
-from .writer import is_pose, pose_script, prepare_text, save_script, script_text
+from .writer import POSE_SECONDS, is_pose, pose_script, prepare_text, save_script, script_text
 
 __all__ = [
     "DECIMALS",
     "EASING_NAMES",
     "LARGEST",
     "LONGEST_FILE",
+    "POSE_SECONDS",
     "TOLERANCE",
     "Channel",
     "Floats",

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..playback import LEAD
 from ..script import Script, rounded, thinned
 from .speech import Phone
 
@@ -54,7 +55,6 @@ ONSET, OFFSET = 0.09, 0.08  # [s] from which before a sound, and to which after 
 SHORT_ONSET, SHORT_OFFSET = 0.07, 0.02  # [s] the same for what is dominant: vowels need their time
 HELD = 0.6  # of a dominant sound; then its burst is on the way to what follows
 REACHED = 0.01  # [s] before a sound, when it is formed
-LEAD = 0.047  # [s] by which muscles follow late
 
 
 class Gesture(NamedTuple):

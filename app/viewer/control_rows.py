@@ -5,16 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-SIDES = (("_left", "_right"), ("Left", "Right"))  # how names end: ours, ARKit's
-TURNED = (  # values that a mirror turns round
-    "jaw_sideways", "gaze_horizontal", "gaze_horizontal_left", "gaze_horizontal_right",
-    "head_yaw", "head_roll",
-)  # fmt: skip
-# Action units that are each other's mirror image without saying so (eyes turn left, right ...), and
-# names that are sides of a motion, not of the face: both at once stand still.
-TWINS = {
-    "AU61": "AU62", "AU62": "AU61", "AU51": "AU52", "AU52": "AU51", "AU55": "AU56", "AU56": "AU55",
-}  # fmt: skip
+from ..mirror import TURNED, parted, twin_of
+
+# Sides of a motion, not of the face: both at once stand still.
 OPPOSITE = ("AU30", "lips_sideways", "jaw", "mouth")
 
 
@@ -24,23 +17,6 @@ class Row:
 
     label: str
     names: tuple[str, ...]
-
-
-def parted(name: str) -> tuple[str, str]:
-    """A control's name without its side, and the side as it is spelled; "" for the middle."""
-    for side in (side for pair in SIDES for side in pair):
-        if name.endswith(side):
-            return name.removesuffix(side), side
-    return name, ""
-
-
-def twin_of(name: str) -> str:
-    """The control of the other side; itself for one of the middle."""
-    base, side = parted(name)
-    for left, right in SIDES:
-        if side in (left, right):
-            return base + (right if side == left else left)
-    return TWINS.get(name, name)
 
 
 def readable(name: str) -> str:

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ..mirror import twin_of
 from ..scenes import Scene, clamped
-from .control_rows import highest_first, twin_of
+from .control_rows import highest_first
 
 RANDOM_SHARE = 0.25  # of the muscles that a random pose moves
 RANDOM_STRENGTH = 0.8  # most of their range

@@ -12,10 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
+from ..mirror import twin_of
 from ..scenes import Scene
 from ..script import Pose, Script, is_pose, pose_script, rounded, save_script
 from . import keyframes
-from .control_rows import mirrored, twin_of
+from .control_rows import mirrored
 from .controls import Controls
 from .document import Document
 from .history import History

@@ -19,6 +19,11 @@ ANGLES = (
 )  # fmt: skip
 
 
+def told(notes: tuple[str, ...], words: str) -> bool:
+    """Whether a note has these words."""
+    return any(words in note for note in notes)
+
+
 def table(columns: Columns, delimiter: str = ",", comma: bool = False) -> str:
     """A table in text; comma: of decimals."""
     rows = zip(*columns.values(), strict=True)

@@ -47,10 +47,13 @@ def test_two_mirrors_show_the_face_itself(frame: Frame) -> None:
 
 
 def test_a_mirror_swaps_sides_and_turns_the_head() -> None:
-    frame = {"mouthSmileLeft": 0.5, "head_yaw": 10.0, "head_pitch": 5.0, "eye_yaw_left": 3.0}
+    frame = {
+        "mouthSmileLeft": 0.5, "head_yaw": 10.0, "head_pitch": 5.0, "eye_yaw_left": 3.0, "AU61": 0.2
+    }  # fmt: skip
     mirrored = Calibration(mirror=True).apply(frame)
     assert mirrored == {
-        "mouthSmileRight": 0.5, "head_yaw": -10.0, "head_pitch": 5.0, "eye_yaw_right": -3.0
+        "mouthSmileRight": 0.5, "head_yaw": -10.0, "head_pitch": 5.0, "eye_yaw_right": -3.0,
+        "AU62": 0.2,
     }  # fmt: skip
 
 

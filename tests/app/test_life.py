@@ -13,7 +13,7 @@ from risorius.app.cameras import camera_for
 from risorius.app.capture.recording import Capture, CaptureOptions
 from risorius.app.idle import EYES_MOST, Idle, looking_at
 from risorius.app.life import EYE_RANGE, HEAD_RANGES, LID, Blinks, Glances, Life, breath
-from risorius.app.performances import script_for
+from risorius.app.performances import face_limits, script_for
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import Channel, Key, Script
 from risorius.app.viewer.frame_times import FrameTimes
@@ -93,7 +93,7 @@ def test_seeds_differ() -> None:
 @given(st.integers(0, 1000), st.floats(0.0, 3600.0))
 def test_values_stay_within_reach(seed: int, time: float) -> None:
     """All are controls of the face within their limits; but for lids and eyes all are small."""
-    limits = _limits()
+    limits = face_limits()
     for name, value in Life(seed).values(time).items():
         low, high = limits[name]
         assert low <= value <= high, name
@@ -101,11 +101,12 @@ def test_values_stay_within_reach(seed: int, time: float) -> None:
             assert abs(value) < 0.2, name
 
 
-def _limits(found: dict[str, tuple[float, float]] = {}) -> dict[str, tuple[float, float]]:  # noqa: B006
-    """The limits of the face, asked for once."""
-    if not found:
-        found.update(FaceScene().limits)
-    return found
+def test_the_head_goes_along_softly() -> None:
+    """It turns no faster than 15 degrees a second, however far and quickly the eyes go."""
+    life = Life(3)
+    turns = [life.parts(frame / 60.0)["head"]["head_yaw"] for frame in range(60 * 300)]
+    speeds = 60.0 * HEAD_RANGES["head_yaw"] * np.abs(np.diff(turns))
+    assert 5.0 < speeds.max() < 15.0
 
 
 def test_breath_goes_in_and_out() -> None:

@@ -96,6 +96,25 @@ def test_the_usual_lead_is_what_the_skin_is_late(face: FaceScene) -> None:
     assert abs(late[LEAD]) <= 1
 
 
+@pytest.mark.parametrize(("a_second", "share"), [(1.0, 0.9), (2.0, 0.8)])
+def test_recorded_nods_come_through(face: FaceScene, a_second: float, share: float) -> None:
+    """They keep most of their size, and come when they were recorded, within a frame."""
+    times = np.arange(3 * RATE + 1) / RATE
+    nods = 9.0 * np.sin(2.0 * np.pi * a_second * times)  # [degrees], up
+    script, _ = script_of(take_of(head_pitch=nods), Playback(neutral="none"), face.limits)
+    face.reset()
+    seen = []
+    for moment in times:
+        face.pose(script.at(float(moment)))
+        face.step(1.0 / RATE)
+        seen.append(np.degrees(np.arcsin(face.bone_transforms()["cranium"][1, 2])))
+    shown = np.array(seen)[RATE:-RATE]  # without start and end
+    shifts = range(-8, 9)
+    fits = [np.corrcoef(np.roll(nods, shift)[RATE:-RATE], shown)[0, 1] for shift in shifts]
+    assert abs(shifts[int(np.argmax(fits))]) <= 1
+    assert share < np.ptp(shown) / np.ptp(nods) < 1.0
+
+
 def test_a_script_follows_the_recording_with_fewer_keys() -> None:
     take = take_of(jawOpen=wave())
     script, _ = script_of(take, Playback(neutral="none", lead=0.0), face_limits())

@@ -13,12 +13,9 @@ from risorius.app.errors import UserError
 from risorius.app.recordings import is_recording, read_take
 from risorius.app.recordings.names import ARKIT
 
+from .recording_files import told
+
 NAMES = [name for name in sorted(ARKIT) if name != "tongueOut"]
-
-
-def told(notes: tuple[str, ...], words: str) -> bool:
-    """Whether a note has these words."""
-    return any(words in note for note in notes)
 
 
 def written(path: Path, document: Any) -> Path:

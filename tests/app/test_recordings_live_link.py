@@ -11,12 +11,7 @@ import pytest
 from risorius.app.recordings import is_recording, read_take
 from risorius.app.recordings.names import ARKIT
 
-from .recording_files import ANGLES, live_link, timecodes, written
-
-
-def told(notes: tuple[str, ...], words: str) -> bool:
-    """Whether a note has these words."""
-    return any(words in note for note in notes)
+from .recording_files import ANGLES, live_link, timecodes, told, written
 
 
 def test_a_raw_take(tmp_path: Path) -> None:

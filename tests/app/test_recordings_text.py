@@ -15,14 +15,9 @@ from risorius.app.errors import UserError
 from risorius.app.recordings import is_recording, read_take
 from risorius.app.recordings.table import table_in
 
-from .recording_files import live_link, table, written
+from .recording_files import live_link, table, told, written
 
 COLUMNS = {"time": np.arange(6) / 30.0, "jawOpen": np.arange(6) / 10.0, "AU4": np.full(6, 0.25)}
-
-
-def told(notes: tuple[str, ...], words: str) -> bool:
-    """Whether a note has these words."""
-    return any(words in note for note in notes)
 
 
 def check(path: Path) -> tuple[str, ...]:

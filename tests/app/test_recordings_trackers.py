@@ -11,13 +11,7 @@ from risorius.app.errors import UserError
 from risorius.app.recordings import read_take
 from risorius.app.recordings.names import ARKIT
 
-from .recording_files import live_link, openface, pyfeat, pyfeat_2, table, written
-
-
-def told(notes: tuple[str, ...], words: str) -> bool:
-    """Whether a note has these words."""
-    return any(words in note for note in notes)
-
+from .recording_files import live_link, openface, pyfeat, pyfeat_2, table, told, written
 
 # OpenFace
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import random
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from risorius.app.performances import script_for
 from risorius.app.scenes import SCENES, FaceScene, Scene
 from risorius.app.script import Script, parse_script, script_text
 
+from .damage import SEED, changed
 from .sandbox import bounded, check_line
 from .script_inputs import ACCEPTED, REFUSED
 
@@ -22,7 +22,6 @@ pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[2]
 GOOD = [path.read_bytes() for path in sorted((ROOT / "assets" / "scripts").glob("*.toml"))]
 GOOD.append(b"[tracks]\njoy = '''\n" + b"".join(b"%d 0.5 hold\n" % n for n in range(99)) + b"'''\n")
-SEED = int(os.environ.get("FUZZ_SEED", "20030214"))  # another one, other damages
 ROUNDS = 400
 TOKENS = (
     b"nan", b"inf", b"-1", b"1e400", b"9" * 400, b"true", b"''", b'"\\n"', b"[]", b"{}", b"[",
@@ -80,19 +79,7 @@ def damaged(chance: random.Random) -> bytes:
     content = bytearray(chance.choice(GOOD))
     start = chance.randrange(len(content))
     content = content[start if chance.random() < 0.2 else 0 :][: chance.choice((200, 2000, 20000))]
-    for _ in range(chance.randint(1, 6)):
-        place = chance.randrange(len(content) + 1)
-        end = min(len(content), place + chance.choice((0, 1, 1, 3, 20)))
-        kind = chance.random()
-        if kind < 0.5:
-            content[place:end] = chance.choice(TOKENS)
-        elif kind < 0.7:
-            content[place:end] = bytes([chance.randrange(256)])
-        elif kind < 0.85:
-            content[place:end] = b""
-        else:
-            content[place:place] = content[place : place + chance.randrange(60)]
-    return bytes(content)
+    return changed(content, chance, TOKENS)
 
 
 @pytest.mark.parametrize("number", range(ROUNDS))

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from imgui_bundle import imgui
 
 from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, LiveFace, State
+from ...mirror import parted
 from ...recordings.calibration import ANGLES, BLINK_GAIN, HIGHEST_GAIN
-from ...recordings.names import mirror_of
 from ..command import Command
 from ..gui import Gui, colour, em
 from ..live_commands import LiveCommands
@@ -215,12 +214,9 @@ def shown_of(face: LiveFace) -> dict[str, float]:
 
 def rows_of(channels: Iterable[str]) -> list[tuple[str, tuple[str, ...]]]:
     """Label and channels of each row: both sides of a channel together, the right one first."""
-    rows: dict[str, tuple[str, ...]] = {}
+    rows: dict[str, list[str]] = {}
     for name in channels:
-        twin, _ = mirror_of(name)
-        stem = name.rpartition("_")[0] if "_" in twin else re.sub("(Left|Right)$", "", name)
-        stem = stem if twin != name else name
-        rows[stem] = (*rows.get(stem, ()), name)
+        rows.setdefault(parted(name)[0], []).append(name)
     return [(stem, tuple(sorted(names, reverse=True))) for stem, names in rows.items()]
 
 

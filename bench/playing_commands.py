@@ -1,0 +1,60 @@
+"""Commands of `risorius bench` that time what is played: `take`, `script`, `window`, `live`."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import click
+
+from risorius.app.cli.parameters import FiniteRange, Size
+
+
+@click.command("take")
+@click.option(
+    "--minutes", type=FiniteRange(0.05, 120), default=10.0, show_default=True, help="Recorded."
+)
+def bench_take(minutes: float) -> None:
+    """Time a long recording of a face: reading it, making a script of it, playing that."""
+    from . import takes
+
+    click.echo(takes.report(minutes))
+
+
+@click.command("script")
+@click.option("--size", type=Size(), default=(1280, 720), show_default="1280x720")
+def bench_script(size: tuple[int, int]) -> None:
+    """Time a script that is a take of ten minutes; with a screen, in the window, too."""
+    from . import script
+
+    has_screen = sys.platform in ("win32", "darwin") or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
+    click.echo(script.report(size, has_screen=has_screen))
+
+
+@click.command("window")
+@click.option("--size", type=Size(), default=(1280, 720), show_default="1280x720")
+@click.option(
+    "--seconds", type=FiniteRange(0.3, 600.0), default=5.0, show_default=True, help="Of each case."
+)
+def bench_window(size: tuple[int, int], seconds: float) -> None:
+    """Time the window while a smile plays, and while nothing happens; needs a screen."""
+    from . import window
+
+    click.echo(window.report(seconds, size))
+
+
+@click.command("live")
+@click.option(
+    "--seconds", type=FiniteRange(1.0, 600.0), default=12.0, show_default=True, help="Of each."
+)
+@click.option("--window", is_flag=True, help="Also in the window; needs a screen.")
+def bench_live(seconds: float, window: bool) -> None:
+    """Time a live face from its packet to the skin, for each protocol."""
+    from . import live
+
+    click.echo(live.report(seconds, with_window=window))
+
+
+COMMANDS = (bench_take, bench_script, bench_window, bench_live)

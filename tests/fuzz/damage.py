@@ -1,0 +1,35 @@
+"""Files that chance has damaged."""
+
+from __future__ import annotations
+
+import os
+import random
+from collections.abc import Sequence
+
+SEED = int(os.environ.get("FUZZ_SEED", "20030214"))  # another one, other damages
+MOST = 6  # places that are damaged
+
+
+def changed(
+    content: bytearray,
+    chance: random.Random,
+    tokens: Sequence[bytes],
+    reaches: Sequence[int] = (2**30,),
+) -> bytes:
+    """The content with a few places overwritten, cut out or doubled.
+
+    tokens: what may stand there. reaches: within how many bytes from the beginning, by chance.
+    """
+    for _ in range(chance.randint(1, MOST)):
+        place = chance.randrange(min(len(content), chance.choice(reaches)) + 1)
+        end = min(len(content), place + chance.choice((0, 1, 1, 3, 20)))
+        kind = chance.random()
+        if kind < 0.5:
+            content[place:end] = chance.choice(tokens)
+        elif kind < 0.7:
+            content[place:end] = bytes([chance.randrange(256)])
+        elif kind < 0.85:
+            content[place:end] = b""
+        else:
+            content[place:place] = content[place : place + chance.randrange(60)]
+    return bytes(content)
