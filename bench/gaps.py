@@ -3,8 +3,8 @@
 Every action unit at full strength, the left, the right and both sides where it has sides, and the
 expressions in which the mouth or an eye is shut, settled on the built-in head. Of each are told
 the widest slit between the lips, where nothing opens them, from the front and from four oblique
-views; the widest opening between the lids of each eye that it shuts; and how deep any skin sits in
-an eyeball. All of the mesh and of what refinement makes of it, with round outlines as the window
+views; the greatest height at which one sees each eyeball that it shuts; and how deep any skin sits
+in an eyeball. All of the mesh and of what refinement makes of it, with round outlines as the window
 shows it, whichever is worse (lines_of_sight.py).
 """
 
@@ -16,7 +16,7 @@ from dataclasses import astuple, dataclass
 from risorius import assets, refine, sim
 from risorius.app.looks import FIRST_LOOK, LOOKS
 
-from .lines_of_sight import lid_gaps, meshes_of, sunk_in_eyeballs, widest_slit
+from .lines_of_sight import eyeballs_of, lid_gaps, meshes_of, sunk_in_eyeballs, widest_slit
 from .report import table
 from .subjects import settled_positions
 
@@ -37,7 +37,7 @@ class PoseGaps:
 
     name: str
     lips: float | None  # mm, widest slit
-    lids: float | None  # mm, widest opening of an eye that is shut
+    lids: float | None  # mm, greatest height at which an eye that is shut is seen
     sunk: float  # mm that skin is deeper in an eyeball than at rest
 
 
@@ -56,7 +56,7 @@ def measure() -> list[PoseGaps]:
             if is_shut:
                 lips.append(widest_slit(positions, triangles, landmarks))
             if shut:
-                gaps = lid_gaps(positions, triangles, landmarks)
+                gaps = lid_gaps(positions, triangles, landmarks, eyeballs_of(head, simulation))
                 lids += [gaps[side] for side in shut]
         sunk = sunk_in_eyeballs(
             simulation.positions, simulation.rest_positions, simulation.faces, head.eyes
@@ -94,7 +94,7 @@ def report(poses: Sequence[PoseGaps]) -> str:
         [
             f"{len(poses)} poses of the built-in head, as simulated and as refined, the worse:",
             "lips  widest slit between lips that nothing opens, from five sides [mm]",
-            "lids  widest opening of an eye that is shut, from the front [mm]",
+            "lids  greatest height at which an eye that is shut is seen, from the front [mm]",
             "sunk  how deep skin lies in an eyeball, deeper than at rest [mm]",
             "",
             *table("pose:<14|lips:6.2f|lids:6.2f|sunk:6.2f", map(astuple, poses), empty="-"),

@@ -7,6 +7,7 @@ what refinement makes of it, because smoothing thins a folded lip a little.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,8 @@ SLIT_END = 1.0  # mm beside a mouth corner that are not looked at: lips are join
 SLIT_WINDOW = 12.0  # mm above and below the mouth's middle in which an opening is the mouth
 MOUTH = 45.0  # mm around the mouth's middle in which skin may cover it
 EYE_CORNERS = {"right": (36, 39), "left": (42, 45)}  # landmarks
-LID_COLUMNS, LID_END = 23, 3.0  # planes across an eye; mm beside its corners not looked at
+LID_COLUMNS, LID_END = 23, 1.5  # planes across an eye; mm beside its corners not looked at
+LID_STEP = 0.05  # mm between lines of sight in a plane
 LID_WINDOW = 9.0  # mm above and below the eye's middle
 EYE = 25.0  # mm around the eye's middle in which skin may cover it
 FRONT = 60.0  # mm: skin further back is the back of the head
@@ -75,18 +77,22 @@ def _widest_opening(triangles: Array, x: float, middle: float, window: float) ->
     It begins within `window` of the height `middle`; triangles: corners, shape (n, 3, 3).
     """
     is_crossed = (triangles[:, :, 0].min(axis=1) < x) & (triangles[:, :, 0].max(axis=1) > x)
-    start = triangles[is_crossed]
-    end = np.roll(start, -1, axis=1)
-    run = end[:, :, 0] - start[:, :, 0]
-    share = (x - start[:, :, 0]) / np.where(run == 0.0, np.inf, run)
-    height = start[:, :, 1] + share * (end[:, :, 1] - start[:, :, 1])
-    meets = (share >= 0.0) & (share <= 1.0) & (run != 0.0)
-    low = np.where(meets, height, np.inf).min(axis=1)
-    high = np.where(meets, height, -np.inf).max(axis=1)
+    cut, meets = _cut(triangles[is_crossed], x)
+    low = np.where(meets, cut[:, :, 1], np.inf).min(axis=1)
+    high = np.where(meets, cut[:, :, 1], -np.inf).max(axis=1)
     order = np.argsort(low)
     reached = np.maximum.accumulate(high[order])[:-1]
     open_above = low[order][1:] - reached
     return float(open_above[np.abs(reached - middle) < window].max(initial=0.0))
+
+
+def _cut(triangles: Array, x: float) -> tuple[Array, npt.NDArray[np.bool_]]:
+    """Where the plane at x meets the sides of triangles (n, 3, 3): points (n, 3, 3), whether."""
+    end = np.roll(triangles, -1, axis=1)
+    run = end[:, :, 0] - triangles[:, :, 0]
+    share = (x - triangles[:, :, 0]) / np.where(run == 0.0, np.inf, run)
+    points = triangles + share[:, :, None] * (end - triangles)
+    return points, (share >= 0.0) & (share <= 1.0) & (run != 0.0)
 
 
 def _turned_by(yaw: float, pitch: float) -> Array:
@@ -97,10 +103,25 @@ def _turned_by(yaw: float, pitch: float) -> Array:
     return np.array(about_x) @ np.array(about_y)
 
 
-def lid_gaps(positions: Array, triangles: Triangles, landmarks: Array) -> dict[str, float]:
-    """Greatest height [mm] of the opening through which each eyeball is seen from the front.
+def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Array]:
+    """Triangles (n, 3, 3) of the eyeballs that the head brings, turned as they are now, by side."""
+    bones, found = simulation.bone_transforms(), {}
+    for part in head.parts:
+        if part.name.startswith("eyeball_"):
+            turn = np.asarray(bones[part.bone], dtype=np.float64)
+            x = part.vertices @ turn[:3, :3].T + turn[:3, 3]
+            found[part.bone.removeprefix("eye_")] = x[part.faces]
+    return found
 
-    `landmarks`: where the 68 are now (68, 3). The result is by the eye's side.
+
+def lid_gaps(
+    positions: Array, triangles: Triangles, landmarks: Array, eyeballs: Mapping[str, Array]
+) -> dict[str, float]:
+    """Greatest height [mm] at which each eyeball is seen from the front.
+
+    Seen is what has no skin in front of it, be it between the lids or through them: the cornea
+    stands out of the ball and may pierce a lid. `landmarks`: where the 68 are now (68, 3);
+    `eyeballs`: see `eyeballs_of`. The result is by the eye's side.
     """
     corners = positions[triangles]
     gaps = {}
@@ -111,8 +132,29 @@ def lid_gaps(positions: Array, triangles: Triangles, landmarks: Array) -> dict[s
         near = near[np.abs(near[:, :, 1].mean(axis=1) - middle) < EYE]
         near = near[near[:, :, 2].max(axis=1) > FRONT]
         columns = np.linspace(ends[0] + LID_END, ends[1] - LID_END, LID_COLUMNS)
-        gaps[side] = max(_widest_opening(near, x, middle, LID_WINDOW) for x in columns)
+        heights = np.arange(middle - LID_WINDOW, middle + LID_WINDOW, LID_STEP)
+        gaps[side] = LID_STEP * max(
+            int((_front(eyeballs[side], x, heights) > _front(near, x, heights)).sum())
+            for x in columns
+        )
     return gaps
+
+
+def _front(triangles: Array, x: float, heights: Array) -> Array:
+    """How far to the front triangles (n, 3, 3) reach in the plane at x, shape (len(heights),).
+
+    -inf where there is none at that height.
+    """
+    is_crossed = (triangles[:, :, 0].min(axis=1) < x) & (triangles[:, :, 0].max(axis=1) > x)
+    cut, meets = _cut(triangles[is_crossed], x)
+    y = np.where(meets, cut[:, :, 1], np.inf)
+    ends = np.take_along_axis(cut, np.argsort(y, axis=1)[:, :2, None], axis=1)  # lower, upper
+    low, high = ends[:, 0, 1:, None], ends[:, 1, 1:, None]
+    share = (heights - low[:, 0]) / np.maximum(high[:, 0] - low[:, 0], 1e-9)
+    depth = low[:, 1] + share * (high[:, 1] - low[:, 1])
+    inside = (share >= 0.0) & (share <= 1.0)
+    reach: Array = np.where(inside, depth, -np.inf).max(axis=0, initial=-np.inf)
+    return reach
 
 
 def sunk_in_eyeballs(positions: Array, rest: Array, triangles: Triangles, eyes: Any) -> float:

@@ -4,9 +4,11 @@ Each lid vertex keeps its distance to the centre of the eyeball and turns about 
 it that runs from corner to corner of the eye. Angles are measured per column of the eye opening
 (between its corners): with the opening's height alpha at a column, the upper lid turns by
 
-    (1 - close) (raise + gaze) + close (lower lid's angle - alpha)
+    (1 - close) (raise + gaze) + close (lower lid's angle - alpha) - close^3 overlap
 
-so that at close = 1 the margins meet on every eye, however wide, and wherever the lower lid is.
+so that at close = 1 the lids meet on every eye, however wide, and wherever the lower lid is. They
+overlap as far as their margins are thick: lids that meet with their inner rims alone leave a groove
+between the front ones, out of which the cornea looks.
 A closing lid also slides towards the nose, as the ring of fibres in it is fixed there.
 The lids of each eye follow the gaze of that eye alone.
 The turn fades from the margin to the edge of the lid. It moves the tissue springs' far ends, not
@@ -34,8 +36,10 @@ COLUMNS = 41  # places along the opening where its height is known
 SMOOTH_COLUMNS = 13  # a third of the opening's width
 COLUMN_REACH = 0.045  # of the opening's width: a column of lid vertices
 MARGIN_REACH = 3.5  # mm around the lid landmarks in which the lid's edge is looked for
-OVERLAP = 0.09  # rad (1.1 mm): the upper margin comes to lie in front of the lower one, refined too
+LEAST_OVERLAP = 0.09  # rad (1.1 mm): the upper margin comes to lie in front of the lower one
+GREATEST_OVERLAP = 0.21  # rad (2.6 mm): as thick as a margin is
 LEAST_OPENING = 0.05  # rad: at the corners lids do not overlap
+WIDE_OPENING = 0.3  # rad: from here on they do in full
 SLIDE_REACH = 1.9  # x the reach of the turn: skin around the lid slides along with it
 LEAST_TURN = 1e-3  # lid vertices that move less are not lid
 
@@ -48,6 +52,7 @@ class LidVertices(NamedTuple):
     upper: npt.NDArray[np.bool_]  # (L,) upper or lower lid
     weight: Array  # (L,) share of the margin's turn
     opening: Array  # (L,) rad, height of the opening at the vertex's column
+    overlap: Array  # (L,) rad by which closed lids overlap there
     centres: Array  # (eyes, 3)
     up: Array  # (eyes, 3) unit, across the lid axis
     forward: Array  # (eyes, 3) unit
@@ -95,6 +100,7 @@ def place_lids(
         upper=np.concatenate([p[1] for p in parts]),
         weight=weight,
         opening=np.concatenate([p[3] for p in parts]),
+        overlap=np.concatenate([p[5] for p in parts]),
         centres=np.array([ball.centre for ball in eyeballs]),
         up=np.array([up for up, _ in axes]),
         forward=np.array([forward for _, forward in axes]),
@@ -123,8 +129,8 @@ def _lid_axes(landmarks: Array, ball: Eyeball) -> tuple[Array, Array]:
 
 def _one_eye(
     eyes: Eyes, surface: Surface, landmarks: Array, ball: Eyeball, up: Array, forward: Array
-) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_], Array, Array, Array]:
-    """Vertices, upper/lower, weight, opening angle and share of the slide of one eye's lids."""
+) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_], Array, Array, Array, Array]:
+    """Vertices, upper/lower, weight, opening, share of the slide, overlap of one eye's lids."""
     outer, upper_outer, upper_inner, inner, lower_outer, lower_inner = EYE_LANDMARKS[ball.side]
     side = lid_side(surface, landmarks, ball.side)
     x = surface.positions
@@ -144,7 +150,9 @@ def _one_eye(
         True: landmarks[[outer, upper_outer, upper_inner, inner]],
         False: landmarks[[outer, lower_outer, lower_inner, inner]],
     }
-    edges, weight, slide = {}, np.zeros(surface.vertex_count), np.zeros(surface.vertex_count)
+    where = np.linspace(0.0, 1.0, COLUMNS)
+    edges, fronts = {}, {}
+    weight, slide = np.zeros(surface.vertex_count), np.zeros(surface.vertex_count)
     for upper, line in rows.items():
         on_lid = side > 0.0 if upper else side < 0.0
         distance = polyline_distance(x, _margin(column_of(line), line))
@@ -154,13 +162,14 @@ def _one_eye(
         near = on_lid & (distance < MARGIN_REACH) & (column > -0.02) & (column < 1.02)
         arch = np.polynomial.Polynomial.fit(column_of(line), angle_of(line), 3)
         edges[upper] = _edge(arch, column[near], angle[near], lowest=upper)
+        fronts[upper] = arch(where)
+    thick = fronts[True] - fronts[False] - (edges[True] - edges[False])
     height = np.maximum(edges[True] - edges[False], 0.0)
     height = np.convolve(np.pad(height, 1, mode="edge"), np.ones(3) / 3.0, "valid")
     height[[0, -1]] = 0.0  # lids are joined at the corners
     # At the corners the opening ends abruptly; skin away from the margin must not crease there.
     wide = np.convolve(np.pad(height, SMOOTH_COLUMNS), np.ones(SMOOTH_COLUMNS) / SMOOTH_COLUMNS)
     start = SMOOTH_COLUMNS + SMOOTH_COLUMNS // 2
-    where = np.linspace(0.0, 1.0, COLUMNS)
     exact = np.interp(column, where, height)
     broad = np.interp(column, where, wide[start : start + COLUMNS])
     opening = weight * exact + (1.0 - weight) * np.minimum(broad, height.max())
@@ -169,7 +178,10 @@ def _one_eye(
         height.max(), LEAST_OPENING
     )
     lid = np.flatnonzero((weight > LEAST_TURN) | (slide > LEAST_TURN))
-    return lid, side[lid] > 0.0, weight[lid], opening[lid], slide[lid]
+    overlap = np.clip(thick.max(), LEAST_OVERLAP, GREATEST_OVERLAP) * smoothstep(
+        (opening - LEAST_OPENING) / (WIDE_OPENING - LEAST_OPENING)
+    )
+    return lid, side[lid] > 0.0, weight[lid], opening[lid], slide[lid], overlap[lid]
 
 
 def _margin(column: Array, line: Array) -> Array:
@@ -225,8 +237,8 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
         angle = lower
         if lids.upper[row]:
             raised = max(alpha * drive[e, 2] + lids.upper_follows * gaze[e], lower - alpha)
-            overlap = OVERLAP if alpha > LEAST_OPENING else 0.0
-            angle = (1.0 - close) * raised + close * (lower - alpha - overlap)
+            angle = (1.0 - close) * raised + close * (lower - alpha)
+            angle -= close**3 * lids.overlap[row]  # late: half a blink is half closed
         inward = close * lids.along[row] * lids.slide[0 if lids.upper[row] else 1]
         angle *= lids.weight[row]
         c, s = np.cos(angle) - 1.0, np.sin(angle)

@@ -15,7 +15,7 @@ from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead, fit, fit_head
 from risorius.assets.fitting.warp import Similarity, Warp, nearest_on
 from risorius.assets.meshes import Mesh
-from risorius.bench.lines_of_sight import lid_gaps
+from risorius.bench.lines_of_sight import eyeballs_of, lid_gaps
 from risorius.sim.landmarks import MIRRORED
 from tests.heads import Stranger, closed, stranger
 from tests.sim.poses import inverted_triangles, lip_gap, moved_landmarks, settled_displacement
@@ -108,7 +108,8 @@ def test_a_fitted_head_makes_faces(fitted: FittedHead, simulation: sim.Simulatio
     assert lip_gap(simulation, fitted) < 0.8
     settled_displacement(simulation, {"AU43": 1.0})
     landmarks = simulation.positions[fitted.landmarks]
-    gaps = lid_gaps(simulation.positions, simulation.faces, landmarks)
+    eyeballs = eyeballs_of(fitted, simulation)
+    gaps = lid_gaps(simulation.positions, simulation.faces, landmarks, eyeballs)
     assert max(gaps.values()) < 0.8
     settled_displacement(simulation, {"AU27": 1.0})
     assert lip_gap(simulation, fitted) > 20.0

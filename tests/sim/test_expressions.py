@@ -7,7 +7,7 @@ import pytest
 
 from risorius import refine, sim
 from risorius.assets.model import Head
-from risorius.bench.lines_of_sight import lid_gaps, meshes_of
+from risorius.bench.lines_of_sight import eyeballs_of, lid_gaps, meshes_of
 from risorius.sim.contact import PRESSED_OVERLAP
 from tests.sim.poses import (
     FRAME,
@@ -168,24 +168,47 @@ def test_lips_do_not_cross(
     assert (above - y[lips.lower] - lips.least_gap).min() > -PRESSED_OVERLAP - 0.1
 
 
-@pytest.mark.parametrize("other", [0.0, 1.0])
-def test_blink_closes_the_eyes(simulation: sim.Simulation, head: Head, other: float) -> None:
-    """At full closure no straight look reaches an eye, lower lids tight or not, refined or not."""
-    values = {
-        "orbicularis_oculi_palpebral_upper": 1.0,
-        "orbicularis_oculi_palpebral_lower": other,
-    }
-    settled_displacement(simulation, both_sides(simulation, values))
+@pytest.mark.parametrize(
+    "other",
+    [
+        {},
+        {"orbicularis_oculi_palpebral_lower": 1.0},
+        {"AU1": 1.0, "AU2": 1.0},
+        {"gaze_vertical": -0.5},
+        {"gaze_vertical": 0.5, "gaze_horizontal": -0.5},
+        {"gaze_vertical": -0.5, "gaze_horizontal": 0.5},
+    ],
+    ids=str,
+)
+def test_blink_closes_the_eyes(
+    simulation: sim.Simulation, head: Head, other: dict[str, float]
+) -> None:
+    """No straight look reaches an eye that is closed, wherever it looks, refined or not."""
+    settled_displacement(simulation, {"AU45": 1.0, **other})
     refiner = refine.create("kahler", head.faces, head.vertices)
     landmarks = simulation.positions[head.landmarks]
+    eyeballs = eyeballs_of(head, simulation)
     for name, mesh in meshes_of(simulation, refiner).items():
-        assert max(lid_gaps(*mesh, landmarks).values()) < 0.3, name
+        assert max(lid_gaps(*mesh, landmarks, eyeballs).values()) < 0.1, name
+
+
+def test_a_cornea_that_pierces_a_lid_is_seen(simulation: sim.Simulation, head: Head) -> None:
+    """The measure used for a blink looks at what is in front, not at holes alone."""
+    settled_displacement(simulation, {"AU45": 1.0})
+    landmarks = simulation.positions[head.landmarks]
+    pushed = {
+        side: x + np.array([0.0, 0.0, 4.0]) for side, x in eyeballs_of(head, simulation).items()
+    }
+    gaps = lid_gaps(simulation.positions, head.faces, landmarks, pushed)
+    assert min(gaps.values()) > 2.0
 
 
 def test_eyes_are_open_at_rest(simulation: sim.Simulation, head: Head) -> None:
     """The measure used for a blink sees an open eye."""
     landmarks = simulation.positions[head.landmarks]
-    assert min(lid_gaps(simulation.positions, head.faces, landmarks).values()) > 7.0
+    eyeballs = eyeballs_of(head, simulation)
+    gaps = lid_gaps(simulation.positions, head.faces, landmarks, eyeballs)
+    assert min(gaps.values()) > 7.0
 
 
 @pytest.mark.parametrize("gaze", [-1.0, 0.0, 1.0])
