@@ -67,7 +67,7 @@ def _screen_of(dots_per_inch: int) -> Iterator[None]:
 
 def _findings(viewer: Viewer) -> dict[str, object]:
     left, top, right, bottom = viewer.gui.places["Neutral"]
-    show_controls(viewer, "jaw open")
+    show_controls(viewer, "jaw_open")
     drag(viewer, middle(viewer, "jaw_open"), (40, 0))
     xdotool(viewer, "mouseup", 1)
     slid = viewer.session.values["jaw_open"]
