@@ -24,10 +24,11 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius.app.cameras import camera_for
-from risorius.app.capture.recording import SETTLING, Capture, CaptureOptions
+from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.errors import UserError
 from risorius.app.files import save_png
 from risorius.app.mirror import parted, twin_of
+from risorius.app.motion import SETTLING
 from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import FaceScene, Scene
 from risorius.assets.fitting import FittedHead

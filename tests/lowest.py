@@ -32,7 +32,8 @@ def main() -> None:
     """Print the versions of the program and of all its extras."""
     project = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"].values()
-    requirements = [*project["dependencies"], *(each for extra in extras for each in extra)]
+    named = [*project["dependencies"], *(each for extra in extras for each in extra)]
+    requirements = [each for each in named if not each.startswith(f"{project['name']}[")]
     try:
         print("\n".join(lowest(requirements)))
     except ValueError as error:

@@ -1,5 +1,5 @@
 """Offscreen capture: a script becomes a film, a folder of frames, a picture or a contact sheet."""
 
-from .recording import SETTLING, Capture, CaptureOptions, capture
+from .recording import Capture, CaptureOptions, capture
 
-__all__ = ["SETTLING", "Capture", "CaptureOptions", "capture"]
+__all__ = ["Capture", "CaptureOptions", "capture"]

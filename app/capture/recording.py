@@ -7,26 +7,21 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tqdm import tqdm
-
 from risorius import render
 from risorius.assets.fitting import FittedHead
 
 from ..cameras import camera_for
 from ..errors import UserError
 from ..files import Image, check_file, check_png, save_png
-from ..idle import Idle
 from ..looks import Refinement
+from ..motion import play, scene_of
 from ..pipeline import Pipeline, side_by_side
-from ..scenes import Scene, build_scene
+from ..scenes import Scene
 from ..script import Script
 from ..sound import load_sound
-from ..stopping import cleaned_up_if_stopped
 from . import outputs
 from .captions import captioned, contact_sheet
 from .ffmpeg import Soundtrack
-
-SETTLING = 1.0  # [s] after which the face rests in a pose
 
 
 @dataclass(frozen=True)
@@ -83,32 +78,17 @@ class Capture:
     def play(
         self, script: Script, *, until: float | None = None, progress: bool = True
     ) -> Iterator[float]:
-        """Play a script and yield the time [s] of each frame, the scene moved to it.
-
-        It begins in the script's first pose, as if that had been held for a while.
-        """
-        idle = Idle(self.scene) if self.options.is_alive else None
-        named = (*script.posed_names, *script.tracks)
-        moved = frozenset[str]().union(*map(self.scene.moved_by, named))
-
-        def pose(time: float) -> None:
-            """Ask for what the script and the life beneath it have at this time."""
-            beneath = {} if idle is None else idle.beneath(moved, self.camera.eye, time)
-            self.scene.pose({**script.at(time), **beneath})
-
-        self.scene.reset()
-        pose(0.0)
-        if any(self.scene.values.values()):
-            self.pipeline.step(SETTLING)
-        rate = self.options.frames_per_second
-        last = round((script.duration if until is None else until) * rate)
-        bar = tqdm(range(last + 1), unit="frame", disable=not progress or None, leave=False)
-        with cleaned_up_if_stopped(bar.close):
-            for index in bar:
-                pose(index / rate)
-                if index:
-                    self.pipeline.step(1.0 / rate)
-                yield index / rate
+        """Play a script and yield the time [s] of each frame, the scene moved to it."""
+        options = self.options
+        viewer = self.camera.eye if options.is_alive else None
+        return play(
+            self.scene,
+            script,
+            options.frames_per_second,
+            until=until,
+            viewer=viewer,
+            progress=progress,
+        )
 
 
 def capture(
@@ -181,13 +161,6 @@ def _check(script: Script, output: Path | None, sheet: Path | None, time: float 
 def soundtrack_of(script: Script) -> Soundtrack | None:
     """What is heard in a film of a script: its sound, as far as the script goes."""
     return None if script.sound is None else Soundtrack(script.sound, script.duration)
-
-
-def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
-    """The scene that a script is written for; UserError if it asks for what that has not."""
-    scene = build_scene(script.scene, head)
-    script.check(scene.limits)
-    return scene
 
 
 def _sink_for(

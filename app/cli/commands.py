@@ -16,6 +16,7 @@ from ..errors import UserError, counted, in_one_line
 from ..live import LOOPBACK, PROTOCOLS
 from ..looks import STATIC, Refinement
 from ..playback import Playback
+from .export import export
 from .options import (
     PATH,
     QUIET,
@@ -26,6 +27,7 @@ from .options import (
     Live,
     mapping_table,
     port_option,
+    told,
     with_drawing,
     with_filming,
     with_live,
@@ -35,7 +37,6 @@ from .parameters import Size
 
 if TYPE_CHECKING:
     from ..live import Listening
-    from ..recordings.report import Report
     from ..script import Script
 
 
@@ -77,7 +78,7 @@ def capture(
     if sound is not None and (output is None or output.suffix.lower() not in FILM_SUFFIXES):
         allowed = ", ".join(FILM_SUFFIXES)
         raise UserError(f"--sound {sound}: only a film is heard; give -o a name in {allowed}")
-    tell = None if filming.quiet else _tell
+    tell = None if filming.quiet else told
     performance = script_for(script, scene, settings, playback=playback, tell=tell)
     performance = with_sound(performance, sound)
     refinement = drawing.refinement()
@@ -136,7 +137,7 @@ def view(
     listening = live.listening(playback)
     if listening is not None:
         playback = replace(playback, mapping=None, gains=(), mirror=False)  # the live face has them
-    tell = None if quiet else _tell
+    tell = None if quiet else told
     performance = script_for(script, scene, playback=playback, tell=tell)
     open_window(with_sound(performance, sound), size, drawing, listening=listening)
 
@@ -188,7 +189,7 @@ def replay(
     from ..performances import script_for
     from ..sound import with_sound
 
-    tell = None if quiet else _tell
+    tell = None if quiet else told
     performance = with_sound(script_for(script, None, playback=playback, tell=tell), sound)
     open_window(performance, size, drawing, playing=True, once=once)
 
@@ -206,7 +207,7 @@ def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> N
     from ..script import save_script
 
     check_apart((output,), (recording, playback.mapping))
-    script = script_for(recording, None, playback=playback, tell=None if quiet else _tell)
+    script = script_for(recording, None, playback=playback, tell=None if quiet else told)
     if not script.is_converted:
         raise UserError(f"{recording}: is a script already")
     save_script(output, script)
@@ -215,12 +216,6 @@ def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> N
         tracks = counted(len(script.tracks), "track")
         what = f"{tracks} with {counted(keys, 'key')}" if keys else "a pose"
         click.echo(f"{in_one_line(output)}: {what}")
-
-
-def _tell(report: Report) -> None:
-    """Say on the error stream what a recording was taken for."""
-    for line in report.lines:
-        click.echo(line, err=True)
 
 
 def open_window(
@@ -326,4 +321,4 @@ def warm(quiet: bool) -> None:
     compile_all(quiet)
 
 
-ALL = (capture, view, replay, convert, speak, send, demo, controls, doctor, warm)
+ALL = (capture, export, view, replay, convert, speak, send, demo, controls, doctor, warm)

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from risorius import render
     from risorius.assets.fitting import FittedHead
 
+    from ..recordings.report import Report
+
 Command = Callable[..., Any]
 PATH = click.Path(path_type=Path)
 SCENE_NAMES = click.Choice(["face", "plane", "cloth"])
@@ -293,6 +295,12 @@ with_playback = packed(
     click.option("--rate", type=FiniteRange(1, 1000), help="Frames a second, for wrong times."),
 )
 QUIET = click.option("--quiet", is_flag=True, help="Say nothing of a recording.")
+
+
+def told(report: Report) -> None:
+    """Say on the error stream what a recording was taken for."""
+    for line in report.lines:
+        click.echo(line, err=True)
 
 
 def _write_mapping_table(context: click.Context, _: click.Parameter, asked: bool) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..errors import UserError
 from ..mirror import twin_of
+from ..motion import SETTLING
 from ..scenes import Scene
 from ..script import Pose, Script, is_pose, pose_script, rounded, save_script
 from . import keyframes
@@ -27,7 +28,6 @@ from .unsaved import Work
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0)
 NEW_SECONDS = 4.0  # that a script begun from nothing lasts
-REPLAY_SETTLING = 1.0  # [s] for which the first pose of a replay was held, as in a film
 
 
 class Session:
@@ -172,7 +172,7 @@ class Session:
         self.scene.reset()
         self.scene.pose(self.current)
         if any(self.current.values()):
-            self.scene.step(REPLAY_SETTLING)
+            self.scene.step(SETTLING)  # as in a film
 
     def seek(self, time: float) -> None:
         """Go to a time of the script and take its pose."""

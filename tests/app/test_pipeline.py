@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from risorius import refine, render
-from risorius.app.capture import SETTLING, Capture, CaptureOptions
+from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.looks import Refinement
+from risorius.app.motion import SETTLING
 from risorius.app.pipeline import Pipeline, side_by_side, splits_of_source
 from risorius.app.refining import refiner_for
 from risorius.app.scenes import FaceScene, PlaneScene

@@ -1,0 +1,1 @@
+"""Many commands, done one beside the other."""

@@ -1,0 +1,71 @@
+"""`risorius export`: the motion of a script for other programs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+
+from ..errors import counted, in_one_line
+from ..export.formats import Request, check_request, format_for, names, write
+from ..playback import Playback
+from .options import PATH, SCENE_NAMES, Drawing, packed, told, with_drawing, with_playback
+from .parameters import FiniteRange
+
+
+@dataclass(frozen=True)
+class Exporting:
+    """What export alone is told."""
+
+    name: str | None
+    fps: float
+    refined: bool
+    rig: bool
+    quiet: bool
+
+
+with_exporting = packed(
+    "exporting",
+    Exporting,
+    click.option("--as", "name", type=click.Choice(names()), help="Where a suffix does not tell."),
+    click.option("--fps", type=FiniteRange(1, 240), default=30.0, show_default=True),
+    click.option("--refined", is_flag=True, help="The refined skin, whose triangles change."),
+    click.option("--rig", is_flag=True, help="Targets to pose by name, as avatars have them."),
+    click.option("--quiet", is_flag=True, help="No progress bar."),
+)
+
+
+@click.command()
+@click.argument("script", type=PATH, required=False)
+@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="Instead of a SCRIPT.")
+@click.option("-o", "--output", type=PATH, required=True, help="A file, or a folder with --as.")
+@click.option("--scene", type=SCENE_NAMES, help="What is animated.")
+@with_exporting
+@with_playback
+@with_drawing
+def export(
+    script: Path | None,
+    settings: tuple[str, ...],
+    output: Path,
+    scene: str | None,
+    exporting: Exporting,
+    playback: Playback,
+    drawing: Drawing,
+) -> None:
+    """Write the motion of SCRIPT, or of a recording, for other programs."""
+    from ..export.clip import record
+    from ..files import check_apart
+    from ..motion import scene_of
+    from ..performances import script_for
+
+    check_apart((output,), (script, drawing.head, drawing.landmarks, playback.mapping))
+    chosen = format_for(output, exporting.name)
+    request = Request(drawing.refinement() if exporting.refined else None, exporting.rig)
+    check_request(output, chosen, request)
+    tell = None if exporting.quiet else told
+    performance = script_for(script, scene, settings, playback=playback, tell=tell)
+    played = scene_of(performance, drawing.fitted_head())
+    clip = record(performance, played, exporting.fps, progress=not exporting.quiet)
+    write(clip, output, chosen, request)
+    click.echo(f"{in_one_line(output)}: {chosen.title}, {counted(clip.frame_count, 'frame')}")

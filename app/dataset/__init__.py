@@ -1,0 +1,1 @@
+"""Labelled pictures of faces, each from its seed alone."""

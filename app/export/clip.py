@@ -1,0 +1,184 @@
+"""A clip: all that a scene did in all frames of a script, for whoever writes it to a file.
+
+Lengths are millimetres, axes those of the scene (x toward the subject's left, y up, z forward).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import refine
+
+from ..errors import UserError
+from ..looks import Refinement
+from ..motion import play, scene_of
+from ..refining import refiner_for
+from ..scenes import FaceScene, Scene
+from ..script import Script
+
+Floats = npt.NDArray[np.float64]
+Singles = npt.NDArray[np.float32]
+Indices = npt.NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Surface:
+    """One triangle mesh of a clip over all of its N frames; vertices and triangles never change.
+
+    name: unique within the clip: "skin", or that of the part.
+    rest: vertices where nothing moves, shape (V, 3), float64.
+    faces: counter-clockwise from the visible side, shape (F, 3), int32.
+    shapes: vertices in each frame, before `matrices`, shape (N, V, 3), float32; None: as at rest.
+    matrices: what moves the whole of it in each frame, shape (N, 4, 4), float64; None: nothing.
+    uv, face_uv: texture coordinates, shape (U, 2), and which of them each corner has, shape (F, 3).
+    colours: sRGB 0..1 of the vertices, shape (V, 3), float32; None where a texture tells.
+    shine: 0 dull, 1 wet.
+    """
+
+    name: str
+    rest: Floats
+    faces: Indices
+    shapes: Singles | None = None
+    matrices: Floats | None = None
+    uv: Singles | None = None
+    face_uv: Indices | None = None
+    colours: Singles | None = None
+    shine: float = 0.0
+
+    def at(self, frame: int) -> Floats:
+        """Where the vertices are in a frame, shape (V, 3)."""
+        points = self.rest if self.shapes is None else self.shapes[frame].astype(np.float64)
+        if self.matrices is None:
+            return points
+        matrix = self.matrices[frame]
+        moved: Floats = points @ matrix[:3, :3].T + matrix[:3, 3]
+        return moved
+
+
+@dataclass(frozen=True)
+class Clip:
+    """A scene in N frames.
+
+    surfaces: the skin (or the scene's one mesh) first.
+    bones: the matrices of each bone, shape (N, 4, 4): "cranium", "mandible", "eye_left", ...
+    controls: what each control was set to, shape (N,).
+    activations: what that came to for each muscle, jaw, gaze, ..., shape (N,); {} without muscles.
+    """
+
+    scene: Scene
+    script: Script
+    frames_per_second: float
+    surfaces: tuple[Surface, ...]
+    bones: Mapping[str, Floats]
+    controls: Mapping[str, Floats]
+    activations: Mapping[str, Floats]
+
+    @property
+    def skin(self) -> Surface:
+        """The mesh that is simulated."""
+        return self.surfaces[0]
+
+    @property
+    def frame_count(self) -> int:
+        """N."""
+        assert self.skin.shapes is not None
+        return len(self.skin.shapes)
+
+    @cached_property
+    def times(self) -> Floats:
+        """Of the frames [s], shape (N,)."""
+        return np.arange(self.frame_count) / self.frames_per_second
+
+    def refined(self, refinement: Refinement) -> Iterator[refine.RefinedMesh]:
+        """The skin of each frame, in order, as a refiner has it; read it before the next one.
+
+        Raises UserError for a refiner that has to know where somebody looks from.
+        """
+        refiner = refiner_for(self.scene, refinement)
+        for frame in range(self.frame_count):
+            try:
+                mesh = refiner.refine(self.skin.at(frame))
+            except ValueError as error:
+                raise UserError(f"refiner {refinement.on(self.scene.name)[0]}: {error}") from None
+            yield mesh
+
+
+def record(
+    script: Script,
+    scene: Scene | None = None,
+    frames_per_second: float = 30.0,
+    *,
+    progress: bool = True,
+) -> Clip:
+    """Play a script on its scene (built unless given) and keep all frames.
+
+    Raises UserError where the scene has not what the script asks for.
+    """
+    scene = scene_of(script) if scene is None else scene
+    positions: list[Singles] = []
+    bones: list[Mapping[str, Floats]] = []
+    shapes: dict[str, list[Singles]] = {part.name: [] for part in scene.parts}
+    controls, activations = _Curves(), _Curves()
+    for _ in play(scene, script, frames_per_second, progress=progress):
+        positions.append(scene.positions.astype(np.float32))
+        bones.append({name: np.array(each) for name, each in scene.bone_transforms().items()})
+        for part in scene.parts:
+            shapes[part.name].append(part.vertices)
+        controls.add(scene.values)
+        activations.add(scene.simulation.sums if isinstance(scene, FaceScene) else {})
+    matrices = {name: np.stack([each[name] for each in bones]) for name in bones[0]}
+    skin = Surface(
+        "skin" if isinstance(scene, FaceScene) else scene.name,
+        scene.rest_positions,
+        scene.faces,
+        np.stack(positions),
+        uv=scene.uv,
+        face_uv=scene.face_uv,
+    )
+    parts = [
+        Surface(
+            part.name,
+            shapes[part.name][0].astype(np.float64),
+            part.faces,
+            _bent(shapes[part.name]),
+            matrices[part.bone],
+            colours=part.colours,
+            shine=part.shine,
+        )
+        for part in scene.parts
+    ]
+    return Clip(
+        scene,
+        script,
+        frames_per_second,
+        (skin, *parts),
+        matrices,
+        controls.arrays(),
+        activations.arrays(),
+    )
+
+
+class _Curves:
+    """Values by name that are added frame by frame."""
+
+    def __init__(self) -> None:
+        self._frames: list[Mapping[str, float]] = []
+
+    def add(self, values: Mapping[str, float]) -> None:
+        """The values of the next frame."""
+        self._frames.append(dict(values))
+
+    def arrays(self) -> dict[str, Floats]:
+        """Each name's values in all frames, 0 where it was not there."""
+        names = dict.fromkeys(name for frame in self._frames for name in frame)
+        return {name: np.array([each.get(name, 0.0) for each in self._frames]) for name in names}
+
+
+def _bent(shapes: list[Singles]) -> Singles | None:
+    """The shapes of a part in all frames; None for one that is rigid."""
+    return None if all(each is shapes[0] for each in shapes) else np.stack(shapes)

@@ -1,0 +1,1 @@
+"""What a picture shows, as numbers: depth, normals, classes, landmarks, the camera."""
