@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -32,6 +32,7 @@ def play(
     *,
     until: float | None = None,
     viewer: npt.NDArray[np.float64] | None = None,
+    step: Callable[[float], None] | None = None,
     progress: bool = True,
 ) -> Iterator[float]:
     """Play a script and yield the time [s] of each frame, the scene moved to it.
@@ -40,8 +41,9 @@ def play(
 
     until: the last frame's time [s]; the script's end unless told. viewer: where somebody stands
     [mm], shape (3,), at whom the face looks while what the script leaves alone lives; None: nothing
-    moves by itself.
+    moves by itself. step: lets so many seconds pass; that of the scene unless told.
     """
+    step = scene.step if step is None else step
     idle = None if viewer is None else Idle(scene)
     named = (*script.posed_names, *script.tracks)
     moved = frozenset[str]().union(*map(scene.moved_by, named))
@@ -54,12 +56,12 @@ def play(
     scene.reset()
     pose(0.0)
     if any(scene.values.values()):
-        scene.step(SETTLING)
+        step(SETTLING)
     last = round((script.duration if until is None else until) * frames_per_second)
     bar = tqdm(range(last + 1), unit="frame", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):
         for index in bar:
             pose(index / frames_per_second)
             if index:
-                scene.step(1.0 / frames_per_second)
+                step(1.0 / frames_per_second)
             yield index / frames_per_second

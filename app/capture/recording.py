@@ -87,6 +87,7 @@ class Capture:
             options.frames_per_second,
             until=until,
             viewer=viewer,
+            step=self.pipeline.step,
             progress=progress,
         )
 
