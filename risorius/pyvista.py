@@ -87,7 +87,7 @@ class PolyDataRefiner:
             refined.point_data.active_texture_coordinates_name = texture
         field, active = given.active_scalars_info
         if active in refined.array_names:
-            refined.set_active_scalars(active, preference=field.name.lower())
+            refined.set_active_scalars(active, preference=field)  # type: ignore[arg-type]
         return refined
 
     def refine_all(
