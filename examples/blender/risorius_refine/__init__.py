@@ -132,6 +132,17 @@ def changed(settings, context):
         update(settings.id_data, context.evaluated_depsgraph_get())
 
 
+def source_changed(settings, context):
+    """Follow another source, and have it evaluated even where it is hidden."""
+    copy = settings.id_data
+    copy.parent = settings.source
+    # A hidden mesh moves in renders only if a modifier asks for it; this one transfers nothing.
+    follow = copy.modifiers.get("Follow Source")
+    follow = follow or copy.modifiers.new("Follow Source", "DATA_TRANSFER")
+    follow.object = settings.source
+    changed(settings, context)
+
+
 class RisoriusSettings(bpy.types.PropertyGroup):
     """What is kept with each refined copy, in the file."""
 
@@ -140,7 +151,7 @@ class RisoriusSettings(bpy.types.PropertyGroup):
         description="Mesh that this object is a refined copy of",
         type=bpy.types.Object,
         poll=lambda self, thing: thing.type == "MESH" and thing != self.id_data,
-        update=changed,
+        update=source_changed,
     )
     rest: bpy.props.PointerProperty(
         name="At Rest",
@@ -209,7 +220,6 @@ class OBJECT_OT_risorius_refine(bpy.types.Operator):  # noqa: N801 (Blender asks
             copy.data.materials.append(slot.material)
         for collection in source.users_collection:
             collection.objects.link(copy)
-        copy.parent = source  # so that the source is evaluated even where it is hidden
         copy.risorius.rest = rest
         copy.risorius.source = source  # refines
         if copy.risorius.problem:
