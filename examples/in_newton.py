@@ -19,6 +19,9 @@ import warp as wp
 from risorius import refine
 
 FRAME, SUBSTEPS = 1 / 60, 10  # [s]
+PLACE = {"pos": wp.vec3(0.0, 0.0, 3.0), "rot": wp.quat_identity(), "vel": wp.vec3()}
+GRID = {"dim_x": 12, "dim_y": 12, "cell_x": 0.15, "cell_y": 0.15, "particle_radius": 0.05}
+STUFF = {"mass": 0.1, "edge_ke": 1.0e1, "spring_ke": 1.0e3, "spring_kd": 1.0}
 
 
 class Example:
@@ -29,21 +32,7 @@ class Example:
         self.viewer = viewer
         self.time = 0.0
         builder = newton.ModelBuilder()
-        builder.add_cloth_grid(
-            pos=wp.vec3(0.0, 0.0, 3.0),
-            rot=wp.quat_identity(),
-            vel=wp.vec3(0.0, 0.0, 0.0),
-            dim_x=12,
-            dim_y=12,
-            cell_x=0.15,
-            cell_y=0.15,
-            mass=0.1,
-            add_springs=True,
-            spring_ke=1.0e3,
-            spring_kd=1.0,
-            edge_ke=1.0e1,
-            particle_radius=0.05,
-        )
+        builder.add_cloth_grid(**PLACE, **GRID, **STUFF, add_springs=True)
         for corner in (0, 12):
             builder.particle_mass[corner] = 0.0  # held
         self.model = builder.finalize()
@@ -51,12 +40,9 @@ class Example:
         self.state, self.next_state = self.model.state(), self.model.state()
         self.control = self.model.control()
         faces = self.model.tri_indices.numpy().reshape(-1, 3)
+        rest = self.state.particle_q.numpy()
         self.refiner = refine.create(
-            "kahler",
-            faces,
-            self.state.particle_q.numpy(),
-            scheme="cubic",
-            criterion="bulge+border",
+            "kahler", faces, rest, scheme="cubic", criterion="bulge+border"
         )
         self.triangle_counts: list[int] = []
         viewer.set_model(self.model)

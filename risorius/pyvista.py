@@ -52,14 +52,9 @@ class PolyDataRefiner:
         Returns
         -------
         pyvista.PolyData
-            Triangles without cracks, with point normals and all data of points, cells and fields.
-            Point data are linear along edges and keep their types; what is no float is rounded.
-            `vtkOriginalCellIds` says for each triangle which cell of the mesh it is part of.
-
-        Raises
-        ------
-        ValueError
-            If the frame has another number of points or cells, or points that are not finite.
+            Triangles with point normals and all data. Those of points are linear along edges and
+            keep their types; what is no float is rounded. `vtkOriginalCellIds` has the cell of
+            each triangle. Raises ValueError for another number of points or cells.
         """
         given = frame if isinstance(frame, pyvista.PolyData) else self._rest
         points = frame.points if isinstance(frame, pyvista.PolyData) else frame
@@ -93,19 +88,14 @@ class PolyDataRefiner:
     def refine_all(
         self, frames: Iterable[pyvista.PolyData | npt.ArrayLike], *, progress_bar: bool = False
     ) -> Iterator[pyvista.PolyData]:
-        """Refine many frames, one after the other, as they are asked for.
+        """Refine many frames as they are asked for, each as `refine` does.
 
         Parameters
         ----------
         frames : iterable of pyvista.PolyData or array_like
-            What `refine` takes.
+            Meshes or points.
         progress_bar : bool, default: False
             Display a progress bar to indicate progress.
-
-        Yields
-        ------
-        pyvista.PolyData
-            The refined mesh of each frame.
         """
         for frame in tqdm(frames, desc="Refining", disable=not progress_bar):
             yield self.refine(frame)
@@ -128,17 +118,9 @@ class RisoriusAccessor:
         ----------
         rest : pyvista.PolyData, optional
             The same mesh before it was deformed. Without, this mesh counts as undeformed, and is
-            refined where it is coarse; the criterion `normal`, which is about what bends, then has
-            nothing to do.
-        weld : bool, default: True
-            As for `refiner`.
-        **options
-            As for `refiner`. `blend` is False here, unless it is given.
-
-        Returns
-        -------
-        pyvista.PolyData
-            As from `PolyDataRefiner.refine`.
+            refined where it is coarse.
+        weld, **options
+            As for `refiner`, but that `blend` is False unless it is given.
 
         Examples
         --------
@@ -168,18 +150,6 @@ class RisoriusAccessor:
             all data go along by themselves. Unless told otherwise, `scheme="cubic"` and
             `criterion="bulge+rest"`, which round what is coarse at rest and what bends;
             `scheme="loop", criterion="normal"` is the paper's rule.
-
-        Returns
-        -------
-        PolyDataRefiner
-            Its method `refine` takes the points, or the mesh, of each frame.
-
-        Raises
-        ------
-        pyvista.MissingDataError
-            If the mesh has no faces.
-        ValueError
-            If an option is unknown, or points are not finite.
 
         Examples
         --------

@@ -143,22 +143,25 @@ def source_changed(settings, context):
     changed(settings, context)
 
 
+def is_source(settings, thing):
+    """Whether a copy of this object can be made."""
+    return thing.type == "MESH" and thing != settings.id_data
+
+
+def threshold(name, default):
+    """A setting of the paper's rule."""
+    return bpy.props.FloatProperty(
+        name=name, default=default, min=0.0001, max=2.0, precision=4, update=changed
+    )
+
+
 class RisoriusSettings(bpy.types.PropertyGroup):
     """What is kept with each refined copy, in the file."""
 
     source: bpy.props.PointerProperty(
-        name="Source",
-        description="Mesh that this object is a refined copy of",
-        type=bpy.types.Object,
-        poll=lambda self, thing: thing.type == "MESH" and thing != self.id_data,
-        update=source_changed,
+        name="Source", type=bpy.types.Object, poll=is_source, update=source_changed
     )
-    rest: bpy.props.PointerProperty(
-        name="At Rest",
-        description="The source as it is when nothing bends it",
-        type=bpy.types.Mesh,
-        update=changed,
-    )
+    rest: bpy.props.PointerProperty(name="At Rest", type=bpy.types.Mesh, update=changed)
     look: bpy.props.EnumProperty(
         name="Look",
         items=[
@@ -168,29 +171,10 @@ class RisoriusSettings(bpy.types.PropertyGroup):
         update=changed,
     )
     blend: bpy.props.BoolProperty(
-        name="Blend",
-        description="Let new points grow out of their edges, so that nothing pops",
-        default=True,
-        update=changed,
+        name="Blend", description="Nothing pops", default=True, update=changed
     )
-    threshold_once: bpy.props.FloatProperty(
-        name="Split Once",
-        description="Drop of the dot product of two normals above which their edge is split",
-        default=0.02,
-        min=0.0001,
-        max=1.0,
-        precision=4,
-        update=changed,
-    )
-    threshold_twice: bpy.props.FloatProperty(
-        name="Split Twice",
-        description="Drop above which it is split once more",
-        default=0.08,
-        min=0.0001,
-        max=2.0,
-        precision=4,
-        update=changed,
-    )
+    threshold_once: threshold("Split Once", 0.02)
+    threshold_twice: threshold("Split Twice", 0.08)
     problem: bpy.props.StringProperty(options={"SKIP_SAVE", "HIDDEN"})
 
 
@@ -267,12 +251,10 @@ def show_in_menu(menu, _context):
 
 
 CLASSES = (RisoriusSettings, OBJECT_OT_risorius_refine, VIEW3D_PT_risorius)
-HANDLERS = {
-    "frame_change_post": refine_frame,
-    "load_post": forget,
-    "undo_post": forget,
-    "redo_post": forget,
-}
+HANDLERS = (
+    ("frame_change_post", refine_frame),
+    *((name, forget) for name in ("load_post", "undo_post", "redo_post")),
+)
 
 
 def register():
@@ -281,13 +263,13 @@ def register():
         bpy.utils.register_class(one)
     bpy.types.Object.risorius = bpy.props.PointerProperty(type=RisoriusSettings)
     bpy.types.VIEW3D_MT_object.append(show_in_menu)
-    for name, handler in HANDLERS.items():
+    for name, handler in HANDLERS:
         getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister():
     """Blender calls it when the add-on is switched off; refined copies stay as they are."""
-    for name, handler in HANDLERS.items():
+    for name, handler in HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)
     bpy.types.VIEW3D_MT_object.remove(show_in_menu)
     del bpy.types.Object.risorius
