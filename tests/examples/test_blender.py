@@ -1,4 +1,4 @@
-"""The add-on in Blender itself; set RISORIUS_BLENDER_PYTHON to a Python that has bpy and numba."""
+"""The add-on in Blender itself: where bpy is, or RISORIUS_BLENDER_PYTHON names a Python with it."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tomllib
 import zipfile
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -18,14 +19,15 @@ import pytest
 from tests.as_installed import lay
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "blender"
-BLENDER = os.environ.get("RISORIUS_BLENDER_PYTHON", "")
+HERE = sys.executable if find_spec("bpy") else ""
+BLENDER = os.environ.get("RISORIUS_BLENDER_PYTHON", HERE)
 
 
 @pytest.fixture(scope="module")
 def seen(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """What the program in in_blender.py saw."""
     if not BLENDER:
-        pytest.skip("RISORIUS_BLENDER_PYTHON names no Python of Blender")
+        pytest.skip("no bpy; RISORIUS_BLENDER_PYTHON may name a Python that has it")
     folder = tmp_path_factory.mktemp("blender")
     lay(folder / "lib")
     program = Path(__file__).with_name("in_blender.py")

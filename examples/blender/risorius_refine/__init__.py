@@ -6,6 +6,8 @@ writes triangles into the copy, in the window and in renders alike. Python keeps
 Blender's data between frames: what is bound is made anew after undo and after a file is opened.
 """
 
+from typing import Any
+
 import bpy
 import numpy as np
 from bpy.app.handlers import persistent
@@ -14,17 +16,17 @@ LOOKS = {
     "SMOOTH": {"scheme": "cubic", "criterion": "bulge+rest"},
     "PAPER": {"scheme": "loop", "criterion": "normal", "normals": "linear"},
 }
-_bound = {}  # of each refined copy, by its number in this session
+_bound: dict[int, "Bound"] = {}  # of each refined copy, by its number in this session
 
 
-def numbers(collection, name, width, kind):
+def numbers(collection: Any, name: str, width: int, kind: type) -> np.ndarray:
     """An attribute of all items of one of Blender's collections, shape (n, width)."""
     table = np.empty((len(collection), width), dtype=kind)
     collection.foreach_get(name, table.ravel())
     return table
 
 
-def points_of(mesh):
+def points_of(mesh: bpy.types.Mesh) -> np.ndarray:
     """The positions of a mesh, shape (V, 3), as single floats: what Blender keeps."""
     return numbers(mesh.attributes["position"].data, "vector", 3, np.float32)
 
@@ -32,7 +34,7 @@ def points_of(mesh):
 class Bound:
     """The refiner of one copy, and what it shows of its source beside the shape."""
 
-    def __init__(self, settings):
+    def __init__(self, settings: "RisoriusSettings") -> None:
         """Learn the mesh at rest; the first time on a machine, code is compiled for seconds."""
         from risorius import refine  # at its first use, so that Blender starts as fast as before
 
@@ -60,7 +62,7 @@ class Bound:
             **options,
         )
 
-    def refine(self, source, mesh):
+    def refine(self, source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
         """Refine the evaluated `source` into `mesh`; raises ValueError if it is another mesh."""
         if (len(source.vertices), len(source.polygons)) != self.counts:
             raise ValueError("The source has other vertices or faces than at rest")
@@ -74,7 +76,7 @@ class Bound:
             write(mesh, name, "FLOAT2", "CORNER", values[frame.triangles.ravel()])
         mesh.update()
 
-    def make(self, mesh, frame, corners):
+    def make(self, mesh: bpy.types.Mesh, frame: Any, corners: np.ndarray) -> None:
         """Put other triangles into the copy."""
         mesh.clear_geometry()
         mesh.vertices.add(len(frame.positions))
@@ -90,14 +92,14 @@ class Bound:
         self.corners = corners
 
 
-def write(mesh, name, kind, domain, values):
+def write(mesh: bpy.types.Mesh, name: str, kind: str, domain: str, values: np.ndarray) -> None:
     """Set an attribute of a mesh, which it is given if it has none of this name."""
     attribute = mesh.attributes.get(name) or mesh.attributes.new(name, kind, domain)
     field = "value" if kind == "INT" else "vector"
     attribute.data.foreach_set(field, np.ascontiguousarray(values).ravel())
 
 
-def update(copy, depsgraph):
+def update(copy: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     """Bring one copy up to date; what is wrong is shown in its panel."""
     settings = copy.risorius
     if copy.mode == "EDIT" or settings.rest is None:
@@ -112,7 +114,7 @@ def update(copy, depsgraph):
 
 
 @persistent
-def refine_frame(scene, depsgraph):
+def refine_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """After every change of the frame, also in renders: refine all copies of the scene."""
     for copy in scene.objects:
         if copy.risorius.source is not None:
@@ -120,19 +122,19 @@ def refine_frame(scene, depsgraph):
 
 
 @persistent
-def forget(*_):
+def forget(*_: Any) -> None:
     """After undo, redo, or another file: meshes are no longer what they were."""
     _bound.clear()
 
 
-def changed(settings, context):
+def changed(settings: "RisoriusSettings", context: bpy.types.Context) -> None:
     """Bind anew with other settings, and show it."""
     _bound.pop(settings.id_data.session_uid, None)
     if settings.source is not None:
         update(settings.id_data, context.evaluated_depsgraph_get())
 
 
-def source_changed(settings, context):
+def source_changed(settings: "RisoriusSettings", context: bpy.types.Context) -> None:
     """Follow another source, and have it evaluated even where it is hidden."""
     copy = settings.id_data
     copy.parent = settings.source
@@ -143,12 +145,12 @@ def source_changed(settings, context):
     changed(settings, context)
 
 
-def is_source(settings, thing):
+def is_source(settings: "RisoriusSettings", thing: bpy.types.Object) -> bool:
     """Whether a copy of this object can be made."""
     return thing.type == "MESH" and thing != settings.id_data
 
 
-def threshold(name, default):
+def threshold(name: str, default: float) -> Any:
     """A setting of the paper's rule."""
     return bpy.props.FloatProperty(
         name=name, default=default, min=0.0001, max=2.0, precision=4, update=changed
@@ -171,7 +173,7 @@ class RisoriusSettings(bpy.types.PropertyGroup):
         update=changed,
     )
     blend: bpy.props.BoolProperty(
-        name="Blend", description="Nothing pops", default=True, update=changed
+        name="Blend", description="New points grow, so nothing pops", default=True, update=changed
     )
     threshold_once: threshold("Split Once", 0.02)
     threshold_twice: threshold("Split Twice", 0.08)
@@ -186,13 +188,13 @@ class OBJECT_OT_risorius_refine(bpy.types.Operator):  # noqa: N801 (Blender asks
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         """Say whether the active object is a mesh, and no refined copy itself."""
         active = context.active_object
         is_mesh = active is not None and active.type == "MESH" and active.mode == "OBJECT"
         return is_mesh and active.risorius.source is None
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         """Add the copy beside its source, which is hidden, and moves it."""
         source = context.active_object
         depsgraph = context.evaluated_depsgraph_get()
@@ -224,7 +226,7 @@ class VIEW3D_PT_risorius(bpy.types.Panel):  # noqa: N801
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         """Show what there is to set."""
         layout = self.layout
         layout.use_property_split = True
@@ -245,7 +247,7 @@ class VIEW3D_PT_risorius(bpy.types.Panel):  # noqa: N801
             layout.label(text=f"{len(active.data.polygons)} triangles")
 
 
-def show_in_menu(menu, _context):
+def show_in_menu(menu: bpy.types.Menu, _: bpy.types.Context) -> None:
     """A row of the menu Object."""
     menu.layout.operator(OBJECT_OT_risorius_refine.bl_idname)
 
@@ -257,7 +259,7 @@ HANDLERS = (
 )
 
 
-def register():
+def register() -> None:
     """Blender calls it when the add-on is switched on."""
     for one in CLASSES:
         bpy.utils.register_class(one)
@@ -267,7 +269,7 @@ def register():
         getattr(bpy.app.handlers, name).append(handler)
 
 
-def unregister():
+def unregister() -> None:
     """Blender calls it when the add-on is switched off; refined copies stay as they are."""
     for name, handler in HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)
