@@ -148,16 +148,21 @@ def main():
     bpy.context.scene.frame_set(12)
     seen["after_loading"] = len(copy.data.polygons)
 
-    bpy.ops.ed.undo_push(message="before")
     copy.risorius.source.modifiers.new("more", "SUBSURF")
     bpy.context.scene.frame_set(13)
     seen["other_mesh"] = copy.risorius.problem
     copy.risorius.source.modifiers.remove(copy.risorius.source.modifiers["more"])
     bpy.context.scene.frame_set(12)
     seen["mended"] = [copy.risorius.problem, len(copy.data.polygons)]
-    addon.forget()  # as after undo
-    bpy.context.scene.frame_set(12)
-    seen["after_undo"] = len(copy.data.polygons)
+    bpy.ops.ed.undo_push(message="smooth")
+    copy.risorius.look = "PAPER"
+    bpy.ops.ed.undo_push(message="paper")
+    seen["steps"] = []
+    for step in (bpy.ops.ed.undo, bpy.ops.ed.redo):
+        step()
+        copy = bpy.data.objects["sheet refined"]
+        bpy.context.scene.frame_set(12)
+        seen["steps"].append([copy.risorius.look, len(copy.data.polygons)])
     addon.unregister()
     seen["registered"] = hasattr(bpy.types.Object, "risorius")
     addon.register()
