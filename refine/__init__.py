@@ -26,6 +26,7 @@ One room for each subject; each may import from those above it, and jit.py, whic
     beyond/     other criteria and schemes, and blending
     others/     refiners to compare with
     strain/     how far the skin is stretched
+    hosts/      meshes as other programs keep them
 
 Read border/plugin.py first, then kahler/. docs/refinement.md tells it all with pictures.
 """
@@ -45,6 +46,8 @@ from .border.corner_values import Values
 from .border.plugin import Origins, RefinedMesh, Refiner, Stream, View
 from .border.registry import Registry, available, create, parameters, refiners, register
 from .border.stream import StreamArrays
+from .hosts.trimesh import TrimeshRefiner, from_trimesh
+from .hosts.welded import WeldedRefiner
 from .kahler.coherence import Coherent
 from .kahler.criterion import (
     THRESHOLD_ONCE,
@@ -99,14 +102,17 @@ __all__ = [
     "StreamArrays",
     "Tension",
     "TensionMap",
+    "TrimeshRefiner",
     "Values",
     "View",
+    "WeldedRefiner",
     "available",
     "check",
     "connect",
     "create",
     "create_kahler",
     "criteria",
+    "from_trimesh",
     "parameters",
     "refiners",
     "register",

@@ -33,7 +33,7 @@ def test_import_rules(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("package", "banned"),
     [
-        ("refine", {"moderngl", "glfw", "trimesh"}),
+        ("refine", {"moderngl", "glfw", "pyvista", "trimesh"}),
         ("sim", {"moderngl", "glfw"}),
         ("assets", {"moderngl", "glfw", "numba"}),
         ("render", {"numba"}),
@@ -54,7 +54,7 @@ def test_fresh_import(package: str, banned: set[str]) -> None:
 @pytest.mark.parametrize(
     ("folder", "allowed"),
     [
-        ("risorius", {"click", "numba"}),
+        ("risorius", {"click", "numba", "numpy", "pyvista", "tqdm"}),
         ("refine", {"numpy"}),
         ("sim", {"numpy", "scipy"}),
         ("render", {"glfw", "moderngl", "numpy", "pyrr"}),

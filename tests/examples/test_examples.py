@@ -28,7 +28,10 @@ def example(name: str) -> ModuleType:
 def test_every_example_is_tested() -> None:
     """A new program in the folder needs a test here."""
     found = {path.stem for path in FOLDER.glob("*.py")}
-    assert found == {"plain_script", "in_trimesh", "in_pyvista", "own_refiner", "own_recording"}
+    assert found == {
+        *("plain_script", "in_trimesh", "in_pyvista", "in_newton"),
+        *("own_refiner", "own_recording"),
+    }
 
 
 def test_plain_script(tmp_path: Path) -> None:
@@ -63,8 +66,15 @@ def test_in_pyvista(tmp_path: Path) -> None:
     image = tmp_path / "plane.png"
     counts = example("in_pyvista").main(image)
     assert len(counts) == 12
-    assert min(counts) > 154
+    assert min(counts) > 2 * 154
     assert image.stat().st_size > 5_000
+
+
+def test_in_newton() -> None:
+    """As Newton's users start it: 40 frames without a window, then the checks at its end."""
+    pytest.importorskip("newton", reason="needs Newton: pip install newton")
+    program = [sys.executable, str(FOLDER / "in_newton.py")]
+    subprocess.run([*program, "--viewer", "null", "--num-frames", "40", "--test"], check=True)
 
 
 def test_own_refiner(monkeypatch: pytest.MonkeyPatch) -> None:

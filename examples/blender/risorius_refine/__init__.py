@@ -1,0 +1,280 @@
+"""Add-on for Blender: a copy of an animated mesh that is refined in every frame, where it bends.
+
+Object > Refined Copy, or the tab Risorius of the 3D viewport's sidebar. Whatever moves the source
+(shape keys, armatures, caches, physics), a handler of frame changes reads the evaluated mesh and
+writes triangles into the copy, in the window and in renders alike. Python keeps no reference to
+Blender's data between frames: what is bound is made anew after undo and after a file is opened.
+"""
+
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy.app.handlers import persistent
+
+LOOKS = {
+    "SMOOTH": {"scheme": "cubic", "criterion": "bulge+rest"},
+    "PAPER": {"scheme": "loop", "criterion": "normal", "normals": "linear"},
+}
+_bound: dict[int, "Bound"] = {}  # of each refined copy, by its number in this session
+
+
+def numbers(collection: Any, name: str, width: int, kind: type) -> np.ndarray:
+    """An attribute of all items of one of Blender's collections, shape (n, width)."""
+    table = np.empty((len(collection), width), dtype=kind)
+    collection.foreach_get(name, table.ravel())
+    return table
+
+
+def points_of(mesh: bpy.types.Mesh) -> np.ndarray:
+    """The positions of a mesh, shape (V, 3), as single floats: what Blender keeps."""
+    return numbers(mesh.attributes["position"].data, "vector", 3, np.float32)
+
+
+class Bound:
+    """The refiner of one copy, and what it shows of its source beside the shape."""
+
+    def __init__(self, settings: "RisoriusSettings") -> None:
+        """Learn the mesh at rest; the first time on a machine, code is compiled for seconds."""
+        from risorius import refine  # at its first use, so that Blender starts as fast as before
+
+        rest = settings.rest
+        rest.calc_loop_triangles()
+        triangles = rest.loop_triangles
+        loops = numbers(triangles, "loops", 3, np.int32)
+        polygons = numbers(triangles, "polygon_index", 1, np.int32).ravel()
+        self.materials = numbers(rest.polygons, "material_index", 1, np.int32).ravel()[polygons]
+        self.counts = len(rest.vertices), len(rest.polygons)
+        self.corners = None  # of the triangles that are in the copy
+        self.uv_shown = rest.uv_layers.active and rest.uv_layers.active.name
+        options = dict(LOOKS[settings.look], blend=settings.blend)
+        if settings.look == "PAPER":
+            options["threshold_once"] = settings.threshold_once
+            options["threshold_twice"] = max(settings.threshold_once, settings.threshold_twice)
+        self.refiner = refine.create(
+            "kahler",
+            numbers(triangles, "vertices", 3, np.int32),
+            points_of(rest),
+            attributes={
+                layer.name: (numbers(layer.uv, "vector", 2, np.float32), loops)
+                for layer in rest.uv_layers
+            },
+            **options,
+        )
+
+    def refine(self, source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
+        """Refine the evaluated `source` into `mesh`; raises ValueError if it is another mesh."""
+        if (len(source.vertices), len(source.polygons)) != self.counts:
+            raise ValueError("The source has other vertices or faces than at rest")
+        frame = self.refiner.refine(points_of(source))
+        corners = frame.triangles.astype(np.int32).ravel()
+        if self.corners is None or not np.array_equal(corners, self.corners):
+            self.make(mesh, frame, corners)
+        write(mesh, "position", "FLOAT_VECTOR", "POINT", frame.positions)
+        write(mesh, "custom_normal", "FLOAT_VECTOR", "POINT", frame.normals)
+        for name, values in frame.attributes.items():
+            write(mesh, name, "FLOAT2", "CORNER", values[frame.triangles.ravel()])
+        mesh.update()
+
+    def make(self, mesh: bpy.types.Mesh, frame: Any, corners: np.ndarray) -> None:
+        """Put other triangles into the copy."""
+        mesh.clear_geometry()
+        mesh.vertices.add(len(frame.positions))
+        mesh.loops.add(len(corners))
+        mesh.polygons.add(len(frame.triangles))
+        mesh.polygons.foreach_set("loop_start", np.arange(0, len(corners), 3, dtype=np.int32))
+        write(mesh, ".corner_vert", "INT", "CORNER", corners)
+        write(mesh, "material_index", "INT", "FACE", self.materials[frame.source])
+        for name in frame.attributes:
+            layer = mesh.uv_layers.get(name) or mesh.uv_layers.new(name=name, do_init=False)
+            layer.active = layer.active_render = name == self.uv_shown
+        mesh.update(calc_edges=True)
+        self.corners = corners
+
+
+def write(mesh: bpy.types.Mesh, name: str, kind: str, domain: str, values: np.ndarray) -> None:
+    """Set an attribute of a mesh, which it is given if it has none of this name."""
+    attribute = mesh.attributes.get(name) or mesh.attributes.new(name, kind, domain)
+    field = "value" if kind == "INT" else "vector"
+    attribute.data.foreach_set(field, np.ascontiguousarray(values).ravel())
+
+
+def update(copy: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
+    """Bring one copy up to date; what is wrong is shown in its panel."""
+    settings = copy.risorius
+    if copy.mode == "EDIT" or settings.rest is None:
+        return
+    try:
+        if copy.session_uid not in _bound:
+            _bound[copy.session_uid] = Bound(settings)
+        _bound[copy.session_uid].refine(settings.source.evaluated_get(depsgraph).data, copy.data)
+        settings.problem = ""
+    except (ImportError, ValueError) as error:
+        settings.problem = str(error)
+
+
+@persistent
+def refine_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """After every change of the frame, also in renders: refine all copies of the scene."""
+    for copy in scene.objects:
+        if copy.risorius.source is not None:
+            update(copy, depsgraph)
+
+
+@persistent
+def forget(*_: Any) -> None:
+    """After undo, redo, or another file: meshes are no longer what they were."""
+    _bound.clear()
+
+
+def changed(settings: "RisoriusSettings", context: bpy.types.Context) -> None:
+    """Bind anew with other settings, and show it."""
+    _bound.pop(settings.id_data.session_uid, None)
+    if settings.source is not None:
+        update(settings.id_data, context.evaluated_depsgraph_get())
+
+
+def source_changed(settings: "RisoriusSettings", context: bpy.types.Context) -> None:
+    """Follow another source, and have it evaluated even where it is hidden."""
+    copy = settings.id_data
+    copy.parent = settings.source
+    # A hidden mesh moves in renders only if a modifier asks for it; this one transfers nothing.
+    follow = copy.modifiers.get("Follow Source")
+    follow = follow or copy.modifiers.new("Follow Source", "DATA_TRANSFER")
+    follow.object = settings.source
+    changed(settings, context)
+
+
+def is_source(settings: "RisoriusSettings", thing: bpy.types.Object) -> bool:
+    """Whether a copy of this object can be made."""
+    return thing.type == "MESH" and thing != settings.id_data
+
+
+def threshold(name: str, default: float) -> Any:
+    """A setting of the paper's rule."""
+    return bpy.props.FloatProperty(
+        name=name, default=default, min=0.0001, max=2.0, precision=4, update=changed
+    )
+
+
+class RisoriusSettings(bpy.types.PropertyGroup):
+    """What is kept with each refined copy, in the file."""
+
+    source: bpy.props.PointerProperty(
+        name="Source", type=bpy.types.Object, poll=is_source, update=source_changed
+    )
+    rest: bpy.props.PointerProperty(name="At Rest", type=bpy.types.Mesh, update=changed)
+    look: bpy.props.EnumProperty(
+        name="Look",
+        items=[
+            ("SMOOTH", "Smooth", "Curves through the vertices, at rest and where it bends"),
+            ("PAPER", "Paper", "Loop's rules where it bends more than at rest, as published"),
+        ],
+        update=changed,
+    )
+    blend: bpy.props.BoolProperty(
+        name="Blend", description="New points grow, so nothing pops", default=True, update=changed
+    )
+    threshold_once: threshold("Split Once", 0.02)
+    threshold_twice: threshold("Split Twice", 0.08)
+    problem: bpy.props.StringProperty(options={"SKIP_SAVE", "HIDDEN"})
+
+
+class OBJECT_OT_risorius_refine(bpy.types.Operator):  # noqa: N801 (Blender asks for such names)
+    """Add a copy that is refined where the mesh bends; call it in a frame in which it is at rest"""
+
+    bl_idname = "object.risorius_refine"
+    bl_label = "Refined Copy"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Say whether the active object is a mesh, and no refined copy itself."""
+        active = context.active_object
+        is_mesh = active is not None and active.type == "MESH" and active.mode == "OBJECT"
+        return is_mesh and active.risorius.source is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Add the copy beside its source, which is hidden, and moves it."""
+        source = context.active_object
+        depsgraph = context.evaluated_depsgraph_get()
+        rest = bpy.data.meshes.new_from_object(source.evaluated_get(depsgraph))
+        rest.name = f"{source.name} at rest"
+        name = f"{source.name} refined"
+        copy = bpy.data.objects.new(name, bpy.data.meshes.new(name))
+        for slot in source.material_slots:
+            copy.data.materials.append(slot.material)
+        for collection in source.users_collection:
+            collection.objects.link(copy)
+        copy.risorius.rest = rest
+        copy.risorius.source = source  # refines
+        if copy.risorius.problem:
+            self.report({"WARNING"}, copy.risorius.problem)
+        source.hide_render = True
+        source.hide_set(True)
+        context.view_layer.objects.active = copy
+        copy.select_set(True)
+        context.scene.render.use_lock_interface = True  # a render changes what the window draws
+        return {"FINISHED"}
+
+
+class VIEW3D_PT_risorius(bpy.types.Panel):  # noqa: N801
+    """The settings of the active object, if it is a refined copy."""
+
+    bl_label = "Refinement"
+    bl_category = "Risorius"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Show what there is to set."""
+        layout = self.layout
+        layout.use_property_split = True
+        active = context.active_object
+        settings = active and active.risorius
+        if not settings or settings.source is None:
+            layout.operator(OBJECT_OT_risorius_refine.bl_idname, icon="MOD_SUBSURF")
+            return
+        for name in ("source", "rest", "look"):
+            layout.prop(settings, name)
+        if settings.look == "PAPER":
+            layout.prop(settings, "threshold_once")
+            layout.prop(settings, "threshold_twice")
+        layout.prop(settings, "blend")
+        if settings.problem:
+            layout.label(text=settings.problem, icon="ERROR")
+        else:
+            layout.label(text=f"{len(active.data.polygons)} triangles")
+
+
+def show_in_menu(menu: bpy.types.Menu, _: bpy.types.Context) -> None:
+    """A row of the menu Object."""
+    menu.layout.operator(OBJECT_OT_risorius_refine.bl_idname)
+
+
+CLASSES = (RisoriusSettings, OBJECT_OT_risorius_refine, VIEW3D_PT_risorius)
+HANDLERS = (
+    ("frame_change_post", refine_frame),
+    *((name, forget) for name in ("load_post", "undo_post", "redo_post")),
+)
+
+
+def register() -> None:
+    """Blender calls it when the add-on is switched on."""
+    for one in CLASSES:
+        bpy.utils.register_class(one)
+    bpy.types.Object.risorius = bpy.props.PointerProperty(type=RisoriusSettings)
+    bpy.types.VIEW3D_MT_object.append(show_in_menu)
+    for name, handler in HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
+
+
+def unregister() -> None:
+    """Blender calls it when the add-on is switched off; refined copies stay as they are."""
+    for name, handler in HANDLERS:
+        getattr(bpy.app.handlers, name).remove(handler)
+    bpy.types.VIEW3D_MT_object.remove(show_in_menu)
+    del bpy.types.Object.risorius
+    for one in reversed(CLASSES):
+        bpy.utils.unregister_class(one)
+    forget()

@@ -1,0 +1,119 @@
+"""A refiner of a mesh whose vertices were doubled along seams, and what its vertices carry."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..border.plugin import RefinedMesh, View
+from ..border.registry import create
+from ..mesh.arrays import Doubles, Wide
+from ..mesh.seams import weld as weld_vertices
+from ..mesh.validation import checked_indices, checked_positions
+
+SMOOTH = {"scheme": "cubic", "criterion": "bulge+rest"}
+"""Rounds what is coarse at rest, and what bends: the look of the application's window."""
+
+
+class WeldedRefiner:
+    """The refiner `kahler` for a mesh as VTK, trimesh, glTF and OBJ have it.
+
+        refiner = WeldedRefiner(points, triangles)
+        mesh = refiner.refine(moved)      # every frame
+        heat = refiner.carry(heat)        # from points of the input to those of the frame
+
+    Such a mesh has a vertex twice where two sides of it look different. These are welded for
+    refinement, so that no crack opens between them, and part again in what comes out. Unless told
+    otherwise it refines as the window does, `scheme="cubic", criterion="bulge+rest"`, so that a
+    mesh that did not move gets smoother, too.
+    """
+
+    def __init__(
+        self,
+        points: npt.ArrayLike,
+        triangles: npt.ArrayLike,
+        *,
+        weld: bool = True,
+        seams: bool = True,
+        **options: Any,
+    ) -> None:
+        """Bind to `points` at rest, shape (V, 3), and `triangles`, shape (F, 3).
+
+        `weld`: whether vertices at equal places are one; False for surfaces that touch at rest and
+        part later, as lips do. `seams`: whether welded vertices part again in the output, which
+        they need only if they carry data. `options`: those of `create_kahler`, but for texture
+        coordinates and attributes: `carry` does that. Raises ValueError as `create` does.
+        """
+        rest = checked_positions(points, "points")
+        self.triangles = checked_indices("triangles", triangles, len(rest), "points")
+        self.point_count = len(rest)
+        self._faces, self._kept = self.triangles, np.arange(len(rest))
+        if weld:
+            kept, faces = weld_vertices(rest, self.triangles)
+            self._kept, self._faces = kept.astype(np.int64), faces.astype(np.int64)
+        self._is_proper = (self._faces != np.roll(self._faces, 1, axis=1)).all(axis=1)
+        self._parts = seams and len(self._kept) < len(rest)
+        # The number of a doubled vertex stands for what it looks like.
+        numbers = {"uv": np.zeros((len(rest), 2)), "face_uv": self.triangles}
+        self._refiner = create(
+            "kahler",
+            self._faces,
+            rest[self._kept],
+            **(numbers if self._parts else {}),
+            **{**SMOOTH, **options},
+        )
+        self._mesh: RefinedMesh | None = None
+        self._origins: tuple[Wide, Doubles] | None = None
+
+    def refine(self, points: npt.ArrayLike, view: View | None = None) -> RefinedMesh:
+        """Turn a frame of all points, shape (V, 3), into triangles, as `Refiner.refine` does.
+
+        Raises ValueError for another number of points, or points that are not finite.
+        """
+        frame = np.asarray(points)
+        if frame.shape != (self.point_count, 3):
+            raise ValueError(
+                f"a frame must have the {self.point_count} points of the mesh that was bound, "
+                f"shape ({self.point_count}, 3), got shape {frame.shape}"
+            )
+        frame = frame if frame.dtype.kind == "f" else frame.astype(np.float64)
+        self._mesh = self._refiner.refine(frame[self._kept], view=view)
+        self._origins = None
+        return self._mesh
+
+    def carry(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
+        """Values of the input's points, shape (V, ...), at those of the last frame, (N, ...).
+
+        They are linear along edges, and each side of a seam has its own. Types stay: what is no
+        float is rounded to the nearest, and what is no number comes from the nearest point.
+        """
+        table = np.asarray(values)
+        if len(table) != self.point_count:
+            raise ValueError(f"{len(table)} values for a mesh of {self.point_count} points")
+        if self._origins is None:
+            self._origins = self._find_origins()
+        rows, weights = self._origins
+        if table.dtype.kind not in "fciub":
+            return np.asarray(table[rows[np.arange(len(rows)), weights.argmax(axis=1)]])
+        wide = table if table.dtype.kind in "fc" else table.astype(np.float64)
+        mixed = np.einsum("nc,nc...->n...", weights, wide[rows])
+        carried = mixed if table.dtype.kind in "fc" else np.rint(mixed)
+        return np.asarray(carried, dtype=table.dtype)
+
+    def _find_origins(self) -> tuple[Wide, Doubles]:
+        """The input's points that each point of the frame lies between, (N, 3), and its weights."""
+        if self._mesh is None:
+            raise ValueError("nothing is refined yet; call refine(points) before carry(values)")
+        vertices, weights = self._refiner.origins()
+        rows = self._kept[vertices]
+        if self._parts:  # of the doubled vertices the one that the triangle at this point has
+            triangle = np.zeros(len(rows), dtype=np.int64)
+            triangles, source = self._mesh.triangles, self._mesh.source
+            triangle[triangles] = source[:, None]
+            proper = self._is_proper[source]  # where others name a vertex twice, these count
+            triangle[triangles[proper]] = source[proper, None]
+            is_corner = self._faces[triangle][:, None, :] == vertices[:, :, None]
+            own = self.triangles[triangle[:, None], is_corner.argmax(axis=2)]
+            rows = np.where(is_corner.any(axis=2), own, rows)
+        wide = weights.astype(np.float64)
+        return rows, wide / wide.sum(axis=1, keepdims=True)  # as single they add up to 1.00000003

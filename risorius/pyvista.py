@@ -1,0 +1,168 @@
+"""The accessor `risorius` of PyVista's meshes: `mesh.risorius.refine()`.
+
+PyVista (0.48 or newer) finds it by the entry point `pyvista.accessors`, and imports it when
+`mesh.risorius` is first used; a program that uses it imports pyvista alone.
+"""
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pyvista
+from tqdm import tqdm
+
+from .refine import View, WeldedRefiner
+
+NORMALS = "Normals"  # what PyVista's own filters call them
+SOURCE = "vtkOriginalCellIds"  # what PyVista's own filters call the cell that a cell was made of
+
+
+class PolyDataRefiner:
+    """Refines one `pyvista.PolyData` in motion; `mesh.risorius.refiner()` makes it."""
+
+    def __init__(self, mesh: pyvista.PolyData, *, weld: bool = True, **options: Any) -> None:
+        """Bind to a mesh at rest; see `RisoriusAccessor.refiner`."""
+        self._rest = mesh.copy()
+        triangles = pyvista.PolyData()
+        triangles.copy_structure(mesh)
+        triangles.cell_data[SOURCE] = np.arange(mesh.n_cells)
+        triangles = triangles.triangulate()  # lines and lone points drop out
+        if triangles.n_cells == 0:
+            raise pyvista.MissingDataError("mesh has no faces, so there is nothing to refine")
+        self._cells = np.asarray(triangles.cell_data[SOURCE])
+        seams = any(name != NORMALS for name in mesh.point_data)
+        self._refiner = WeldedRefiner(
+            mesh.points, triangles.regular_faces, weld=weld, seams=seams, **options
+        )
+
+    def refine(
+        self, frame: pyvista.PolyData | npt.ArrayLike, *, view: View | None = None
+    ) -> pyvista.PolyData:
+        """Refine one frame into a mesh of its own.
+
+        Parameters
+        ----------
+        frame : pyvista.PolyData | array_like
+            The mesh of the frame, with the cells of the mesh at rest, whose data go along; or its
+            points alone, shape `(n_points, 3)`, which carry the data of the mesh at rest.
+        view : risorius.refine.View, optional
+            Where it is looked at from, for the criteria `silhouette` and `screen`.
+
+        Returns
+        -------
+        pyvista.PolyData
+            Triangles with point normals and all data. Those of points are linear along edges and
+            keep their types; what is no float is rounded. `vtkOriginalCellIds` has the cell of
+            each triangle. Raises ValueError for another number of points or cells.
+        """
+        given = frame if isinstance(frame, pyvista.PolyData) else self._rest
+        points = frame.points if isinstance(frame, pyvista.PolyData) else frame
+        if given.n_cells != self._rest.n_cells:
+            raise ValueError(
+                f"the frame has {given.n_cells} cells, but the mesh at rest {self._rest.n_cells}; "
+                "its topology must stay as it was bound"
+            )
+        mesh = self._refiner.refine(points, view=view)
+        shown: Any = mesh.positions.copy(), mesh.triangles.astype(np.int64)  # buffers are reused
+        refined: pyvista.PolyData = pyvista.PolyData.from_regular_faces(*shown)
+        for name, values in given.point_data.items():
+            if name != NORMALS:
+                refined.point_data[name] = self._refiner.carry(values)
+        cells = self._cells[mesh.source]
+        for name, values in given.cell_data.items():
+            refined.cell_data[name] = np.asarray(values)[cells]
+        for name, values in given.field_data.items():
+            refined.field_data[name] = values
+        refined.cell_data[SOURCE] = cells
+        refined.point_data[NORMALS] = mesh.normals.copy()
+        refined.point_data.active_normals_name = NORMALS
+        texture = given.point_data.active_texture_coordinates_name
+        if texture is not None:
+            refined.point_data.active_texture_coordinates_name = texture
+        field, active = given.active_scalars_info
+        if active in refined.array_names:
+            refined.set_active_scalars(active, preference=field)  # type: ignore[arg-type]
+        return refined
+
+    def refine_all(
+        self, frames: Iterable[pyvista.PolyData | npt.ArrayLike], *, progress_bar: bool = False
+    ) -> Iterator[pyvista.PolyData]:
+        """Refine many frames as they are asked for, each as `refine` does.
+
+        Parameters
+        ----------
+        frames : iterable of pyvista.PolyData or array_like
+            Meshes or points.
+        progress_bar : bool, default: False
+            Display a progress bar to indicate progress.
+        """
+        for frame in tqdm(frames, desc="Refining", disable=not progress_bar):
+            yield self.refine(frame)
+
+
+@pyvista.register_dataset_accessor("risorius", pyvista.PolyData)
+class RisoriusAccessor:
+    """Crack-free refinement of surfaces where they bend; `mesh.risorius` of any `PolyData`."""
+
+    def __init__(self, mesh: pyvista.PolyData) -> None:
+        """PyVista makes it when it is first used."""
+        self._mesh = mesh
+
+    def refine(
+        self, *, rest: pyvista.PolyData | None = None, weld: bool = True, **options: Any
+    ) -> pyvista.PolyData:
+        """Refine this mesh once.
+
+        Parameters
+        ----------
+        rest : pyvista.PolyData, optional
+            The same mesh before it was deformed. Without, this mesh counts as undeformed, and is
+            refined where it is coarse.
+        weld, **options
+            As for `refiner`, but that `blend` is False unless it is given.
+
+        Examples
+        --------
+        Round a coarse sphere, and look at it.
+
+        >>> import pyvista as pv
+        >>> sphere = pv.Sphere(theta_resolution=12, phi_resolution=12)
+        >>> refined = sphere.risorius.refine()
+        >>> refined.is_manifold
+        True
+        >>> refined.plot(show_edges=True)
+        """
+        source = self._mesh if rest is None else rest
+        return PolyDataRefiner(source, weld=weld, **{"blend": False, **options}).refine(self._mesh)
+
+    def refiner(self, *, weld: bool = True, **options: Any) -> PolyDataRefiner:
+        """Bind a refiner to this mesh, which is at rest, for all frames of an animation.
+
+        Parameters
+        ----------
+        weld : bool, default: True
+            Whether points at equal places are one, so that no crack opens between them. False for
+            surfaces that touch at rest and part later. Where points carry data, they part again in
+            the output.
+        **options
+            What `risorius.refine.create_kahler` takes, but for texture coordinates and attributes:
+            all data go along by themselves. Unless told otherwise, `scheme="cubic"` and
+            `criterion="bulge+rest"`, which round what is coarse at rest and what bends;
+            `scheme="loop", criterion="normal"` is the paper's rule.
+
+        Examples
+        --------
+        Bend a plate, and refine each frame of it.
+
+        >>> import numpy as np
+        >>> import pyvista as pv
+        >>> plate = pv.Plane(i_resolution=8, j_resolution=8)
+        >>> refiner = plate.risorius.refiner()
+        >>> points = plate.points.copy()
+        >>> points[:, 2] = 0.1 * np.sin(9.0 * points[:, 0])
+        >>> bent = refiner.refine(points)
+        >>> bent.n_cells > 2 * plate.n_cells
+        True
+        """
+        return PolyDataRefiner(self._mesh, weld=weld, **options)

@@ -1,0 +1,173 @@
+"""Run by Blender's Python: the add-on on a sheet under a wave; prints what it saw as JSON."""
+
+import json
+import sys
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples" / "blender"))
+import risorius_refine as addon
+
+FRAMES = 50
+FOLDER = Path(sys.argv[1])
+
+
+def sheet():
+    """A grid with two materials, texture coordinates with a seam, and a wave that moves it."""
+    mesh = bpy.data.meshes.new("sheet")
+    side = 14
+    x, y = np.meshgrid(np.linspace(-1, 1, side), np.linspace(-1, 1, side))
+    numbers = np.arange(side * side).reshape(side, side)
+    quads = [numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, 1:], numbers[1:, :-1]]
+    points = np.stack([x.ravel(), y.ravel(), np.zeros(side * side)], axis=1)
+    faces = np.stack(quads, axis=2).reshape(-1, 4)
+    mesh.from_pydata(points.tolist(), [], faces.tolist())
+    for name in ("skin", "cloth"):
+        mesh.materials.append(bpy.data.materials.new(name))
+    left = points[faces].mean(axis=1)[:, 0] < 0.0
+    mesh.polygons.foreach_set("material_index", left.astype(np.int32))
+    corners = points[faces][..., :2].copy()
+    corners[left] += [3.0, 0.0]
+    mesh.uv_layers.new(name="First")
+    layer = mesh.uv_layers.new(name="Second")
+    layer.uv.foreach_set("vector", corners.astype(np.float32).ravel())
+    layer.active = layer.active_render = True
+    thing = bpy.data.objects.new("sheet", mesh)
+    thing.location = (1.0, 2.0, 3.0)
+    bpy.context.scene.collection.objects.link(thing)
+    wave = thing.modifiers.new("wave", "WAVE")
+    wave.height, wave.width, wave.narrowness, wave.start_position_x = 0.3, 0.5, 3.0, -1.0
+    return thing
+
+
+def column(collection, name, width, kind=np.float32):
+    """An attribute of all items of a collection."""
+    return addon.numbers(collection, name, width, kind)
+
+
+def open_sides(mesh):
+    """Sides that one triangle has alone, by places in space."""
+    corners = column(mesh.loops, "vertex_index", 1, np.int32).reshape(-1, 3)
+    _, place = np.unique(addon.points_of(mesh), axis=0, return_inverse=True)
+    sides = np.sort(place.reshape(-1)[corners[:, [0, 1, 1, 2, 2, 0]]].reshape(-1, 2), axis=1)
+    sides, counts = np.unique(sides, axis=0, return_counts=True)
+    return [sorted(side) for side in sides[counts == 1].tolist()], place, counts
+
+
+def cracks(mesh):
+    """Sides that one triangle has alone, inside the sheet."""
+    sides, place, _ = open_sides(mesh)
+    points = addon.points_of(mesh)
+    first = np.zeros(place.max() + 1, dtype=int)
+    first[place.reshape(-1)] = np.arange(len(points))
+    middles = [points[first[side]].mean(axis=0) for side in sides]
+    return sum(bool(np.abs(middle[:2]).max() < 0.999) for middle in middles)
+
+
+def watch(copy, source):
+    """Step through all frames; compare each with the refiner itself."""
+    seen = {"triangles": [], "cracks": 0, "off": 0.0, "invalid": 0, "uv_off": 0.0}
+    for frame in range(1, FRAMES + 1):
+        bpy.context.scene.frame_set(frame)
+        mesh = copy.data
+        seen["triangles"].append(len(mesh.polygons))
+        evaluated = source.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+        bound = addon._bound[copy.session_uid]
+        direct = bound.refiner.refine(addon.points_of(evaluated))
+        off = np.abs(addon.points_of(mesh) - direct.positions).max()
+        seen["off"] = max(seen["off"], float(off))
+        seen["cracks"] += cracks(mesh)
+        seen["invalid"] += mesh.validate(verbose=True)
+        uv = column(mesh.uv_layers["Second"].uv, "vector", 2)
+        corners = column(mesh.loops, "vertex_index", 1, np.int32).ravel()
+        side = column(mesh.polygons, "material_index", 1, np.int32).repeat(3)
+        places = addon.points_of(mesh)[corners, :2] + np.stack([3.0 * side, 0.0 * side], axis=1)
+        seen["uv_off"] = max(seen["uv_off"], float(np.abs(uv - places).max()))
+    final = copy.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    normals = column(final.corner_normals, "vector", 3)
+    shown = np.abs(normals - direct.normals[corners]).max()
+    return {**seen, "normals_off": float(shown)}
+
+
+def render(frames):
+    """Render frames in one go, as for a film; the copy's triangles in each."""
+    scene = bpy.context.scene
+    camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    camera.location = (1.0, 2.0, 8.0)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    scene.render.engine, scene.cycles.samples = "CYCLES", 1
+    scene.render.resolution_x = scene.render.resolution_y = 32
+    scene.frame_start, scene.frame_end = frames[0], frames[-1]
+    scene.render.filepath = str(FOLDER / "frame_")
+    counts = []
+    bpy.app.handlers.render_post.append(
+        lambda *_: counts.append(len(bpy.data.objects["sheet refined"].data.polygons))
+    )
+    bpy.ops.render.render(animation=True)
+    return counts
+
+
+def main():
+    """All that the tests look at."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    addon.register()
+    source = sheet()
+    bpy.context.scene.frame_set(0)
+    bpy.context.view_layer.objects.active = source
+    seen = {"finished": list(bpy.ops.object.risorius_refine())}
+    copy = bpy.data.objects["sheet refined"]
+    seen["problem"] = copy.risorius.problem
+    seen["hidden"] = source.hide_render
+    seen["again"] = bpy.ops.object.risorius_refine.poll()
+    seen["materials"] = [material.name for material in copy.data.materials]
+    seen["uv_shown"] = copy.data.uv_layers.active.name
+    seen["world"] = [list(copy.matrix_world.translation), list(source.matrix_world.translation)]
+    seen.update(watch(copy, source))
+
+    copy.risorius.blend = False
+    seen["unblended"] = len(copy.data.polygons)
+    copy.risorius.look = "PAPER"
+    seen["paper"] = len(copy.data.polygons)
+    copy.risorius.threshold_once = copy.risorius.threshold_twice = 1.0
+    seen["no_splits"] = len(copy.data.polygons)
+    copy.risorius.look = "SMOOTH"
+
+    seen["rendered"] = render([10, 14])
+    seen["triangles_there"] = []
+    for frame in range(10, 15):
+        bpy.context.scene.frame_set(frame)
+        seen["triangles_there"].append(len(copy.data.polygons))
+
+    file = FOLDER / "saved.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(file))
+    bpy.ops.wm.open_mainfile(filepath=str(file))
+    copy = bpy.data.objects["sheet refined"]
+    bpy.context.scene.frame_set(12)
+    seen["after_loading"] = len(copy.data.polygons)
+
+    copy.risorius.source.modifiers.new("more", "SUBSURF")
+    bpy.context.scene.frame_set(13)
+    seen["other_mesh"] = copy.risorius.problem
+    copy.risorius.source.modifiers.remove(copy.risorius.source.modifiers["more"])
+    bpy.context.scene.frame_set(12)
+    seen["mended"] = [copy.risorius.problem, len(copy.data.polygons)]
+    bpy.ops.ed.undo_push(message="smooth")
+    copy.risorius.look = "PAPER"
+    bpy.ops.ed.undo_push(message="paper")
+    seen["steps"] = []
+    for step in (bpy.ops.ed.undo, bpy.ops.ed.redo):
+        step()
+        copy = bpy.data.objects["sheet refined"]
+        bpy.context.scene.frame_set(12)
+        seen["steps"].append([copy.risorius.look, len(copy.data.polygons)])
+    addon.unregister()
+    seen["registered"] = hasattr(bpy.types.Object, "risorius")
+    addon.register()
+    addon.unregister()
+    print("SEEN " + json.dumps(seen))
+
+
+main()

@@ -1,0 +1,154 @@
+"""The add-on in Blender itself: where bpy is, or RISORIUS_BLENDER_PYTHON names a Python with it."""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import subprocess
+import sys
+import tomllib
+import zipfile
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.as_installed import lay
+
+EXAMPLES = Path(__file__).parents[2] / "examples" / "blender"
+HERE = sys.executable if find_spec("bpy") else ""
+BLENDER = os.environ.get("RISORIUS_BLENDER_PYTHON", HERE)
+
+
+@pytest.fixture(scope="module")
+def seen(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """What the program in in_blender.py saw."""
+    if not BLENDER:
+        pytest.skip("no bpy; RISORIUS_BLENDER_PYTHON may name a Python that has it")
+    folder = tmp_path_factory.mktemp("blender")
+    lay(folder / "lib")
+    program = Path(__file__).with_name("in_blender.py")
+    environment = {**os.environ, "PYTHONPATH": str(folder / "lib")}
+    environment["BLENDER_USER_RESOURCES"] = str(folder / "blender")
+    ended = subprocess.run(
+        [BLENDER, str(program), str(folder)],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    lines = [line for line in ended.stdout.splitlines() if line.startswith("SEEN ")]
+    assert ended.returncode == 0 and lines, ended.stdout + ended.stderr
+    assert "Traceback" not in ended.stderr
+    answer: dict[str, Any] = json.loads(lines[0].removeprefix("SEEN "))
+    return answer
+
+
+@pytest.mark.blender
+def test_it_follows_the_source(seen: dict[str, Any]) -> None:
+    """50 frames: triangles come and go, as the refiner says to the last bit, without a crack."""
+    assert len(set(seen["triangles"])) > 5
+    assert min(seen["triangles"]) > 338
+    assert seen["cracks"] == seen["invalid"] == 0
+    assert seen["off"] == 0.0
+    assert seen["normals_off"] < 1e-5
+    assert not seen["problem"]
+
+
+@pytest.mark.blender
+def test_the_copy_looks_like_its_source(seen: dict[str, Any]) -> None:
+    """Same place, materials by face, the UV map that is shown; the source hides, once."""
+    assert seen["finished"] == ["FINISHED"]
+    assert seen["hidden"] and not seen["again"]
+    assert seen["materials"] == ["skin", "cloth"]
+    assert seen["uv_shown"] == "Second"
+    assert seen["uv_off"] < 0.02  # cubic curves move points along the sheet, too
+    np.testing.assert_array_equal(*seen["world"])
+
+
+@pytest.mark.blender
+def test_settings(seen: dict[str, Any]) -> None:
+    """They count at once: other looks split otherwise, high thresholds nothing."""
+    assert seen["no_splits"] == 338
+    assert seen["paper"] > seen["unblended"] > seen["no_splits"]
+
+
+@pytest.mark.blender
+def test_renders_files_and_undo(seen: dict[str, Any]) -> None:
+    """A film has the triangles of each of its frames, and so has the file opened again."""
+    assert seen["rendered"] == seen["triangles_there"]
+    assert len(set(seen["rendered"])) > 2
+    assert seen["after_loading"] == seen["triangles_there"][2]
+    assert seen["other_mesh"] == "The source has other vertices or faces than at rest"
+    assert seen["mended"] == ["", seen["triangles_there"][2]]
+    undone, redone = seen["steps"]
+    assert undone == ["SMOOTH", seen["triangles_there"][2]]
+    assert redone == ["PAPER", 338]  # thresholds are high
+    assert not seen["registered"]
+
+
+@pytest.mark.slow
+def test_the_zip_has_all_that_it_needs(tmp_path: Path) -> None:
+    """Built for Linux: the manifest names each wheel that is in it, and Blender accepts it."""
+    build = [sys.executable, str(EXAMPLES / "build.py"), "linux-x64", str(tmp_path)]
+    subprocess.run(build, check=True, capture_output=True)
+    (file,) = tmp_path.iterdir()
+    with zipfile.ZipFile(file) as archive:
+        manifest = tomllib.loads(archive.read("blender_manifest.toml").decode())
+        names = set(archive.namelist())
+    wheels = {f"./{name}" for name in names if name.startswith("wheels/")}
+    assert set(manifest["wheels"]) == wheels
+    assert {Path(wheel).name.partition("-")[0] for wheel in wheels} == {
+        *("risorius", "numba", "llvmlite")
+    }
+    assert manifest["platforms"] == ["linux-x64"]
+    assert names - {wheel.removeprefix("./") for wheel in wheels} == {
+        *("__init__.py", "blender_manifest.toml")
+    }
+    if BLENDER:
+        find = "import bpy; print(bpy.utils.resource_path('LOCAL'))"
+        told = subprocess.run([BLENDER, "-c", find], capture_output=True, text=True, check=True)
+        (judge,) = Path(told.stdout.strip()).rglob("blender_ext.py")
+        subprocess.run([BLENDER, judge, "validate", file], check=True, capture_output=True)
+
+
+def test_an_unknown_platform_is_told() -> None:
+    """In one line that names the others."""
+    build = [sys.executable, str(EXAMPLES / "build.py"), "amiga"]
+    ended = subprocess.run(build, capture_output=True, text=True, check=False)
+    assert ended.returncode == 1
+    assert ended.stderr == (
+        "unknown platform 'amiga'; there are linux-x64, windows-x64, macos-arm64\n"
+    )
+
+
+def test_the_manifest_keeps_the_rules() -> None:
+    """Those of extensions: version as the package's, a short tagline, no network."""
+    import risorius
+
+    manifest = tomllib.loads(
+        (EXAMPLES / "risorius_refine" / "blender_manifest.toml").read_text(encoding="utf-8")
+    )
+    assert manifest["schema_version"] == "1.0.0"
+    assert manifest["id"] == "risorius_refine"
+    assert manifest["version"] == risorius.__version__
+    assert len(manifest["tagline"]) <= 64 and not manifest["tagline"].endswith(".")
+    assert set(manifest["permissions"]) == {"files"}
+    assert manifest["license"] == ["SPDX:MIT"]
+
+
+def test_every_setting_of_the_looks_is_an_option() -> None:
+    """What the add-on hands to the refiner is known to it, without Blender."""
+    from risorius import refine
+
+    source = (EXAMPLES / "risorius_refine" / "__init__.py").read_text(encoding="utf-8")
+    (looks,) = [
+        node.value
+        for node in ast.parse(source).body
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "LOOKS"
+    ]
+    for options in ast.literal_eval(looks).values():
+        refine.create("kahler", [[0, 1, 2]], [[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], **options)

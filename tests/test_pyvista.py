@@ -1,0 +1,176 @@
+"""`mesh.risorius`, as PyVista's users find it: data go along, mistakes are told in its words."""
+
+from __future__ import annotations
+
+import doctest
+import subprocess
+import sys
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+pyvista = pytest.importorskip("pyvista", reason="needs the extra 'peers'")
+
+
+@pytest.fixture(autouse=True)
+def warnings_are_errors() -> Iterator[None]:
+    """What PyVista deprecates is not used."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", pyvista.PyVistaDeprecationWarning)
+        yield
+
+
+def wavy(mesh: Any, height: float = 0.3) -> Any:
+    """The points of a plane under a sine wave."""
+    points = mesh.points.copy()
+    points[:, 2] += height * np.sin(9.0 * points[:, 0] + 4.0 * points[:, 1])
+    return points
+
+
+def plane() -> Any:
+    """A plane of quads with data of every kind."""
+    mesh = pyvista.Plane(i_resolution=12, j_resolution=12)
+    x = mesh.points[:, 0]
+    mesh.point_data["colours"] = (255 * (mesh.points + 0.5)).astype(np.uint8)
+    mesh.point_data["right"] = x > 0.0
+    mesh.point_data["name"] = np.array([f"p{k}" for k in range(mesh.n_points)])
+    mesh.point_data["hole"] = np.where(x > 0.4, np.nan, x)
+    mesh.point_data["speed"] = mesh.points * 2.0
+    mesh.cell_data["number"] = np.arange(mesh.n_cells)
+    mesh.field_data["time"] = [0.25]
+    mesh.point_data["x"] = x.astype(np.float64)
+    mesh.set_active_scalars("x")
+    return mesh
+
+
+def test_it_is_found_by_itself() -> None:
+    """A program imports pyvista alone; importing the refiner brings no PyVista."""
+    code = (
+        "import sys, pyvista; assert 'risorius' not in sys.modules; mesh = pyvista.Sphere(); "
+        "assert 'risorius' in dir(mesh); print(mesh.risorius.refine().n_cells > mesh.n_cells)"
+    )
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "True"
+    code = "import sys, risorius.refine; assert 'pyvista' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_data_go_along() -> None:
+    """Point data by place and type, cell data by cell, fields, texture, normals, active scalars."""
+    mesh = plane()
+    refined = mesh.risorius.refiner(criterion="bulge", blend=False).refine(wavy(mesh))
+    assert refined.n_cells > 2 * mesh.n_cells
+    assert refined.is_all_triangles
+    assert refined.active_scalars_name == "x"
+    np.testing.assert_allclose(refined["x"], refined.points[:, 0], atol=0.02)
+    np.testing.assert_allclose(refined["speed"][:, 1], 2.0 * refined.points[:, 1], atol=0.04)
+    assert {name: refined[name].dtype for name in ("colours", "right", "x", "speed")} == {
+        name: mesh[name].dtype for name in ("colours", "right", "x", "speed")
+    }
+    assert set(refined["name"]) <= set(mesh["name"])
+    assert np.isnan(refined["hole"]).any() and np.isfinite(refined["hole"]).any()
+    np.testing.assert_allclose(
+        refined.active_texture_coordinates[:, 0] - 0.5, refined["x"], atol=1e-6
+    )
+    cells = refined.cell_data["vtkOriginalCellIds"]
+    np.testing.assert_array_equal(refined.cell_data["number"], cells)
+    bounds = mesh.extract_cells([int(cells[7])]).bounds
+    assert refined.extract_cells([7]).bounds.x_min >= bounds.x_min - 0.03
+    assert refined.field_data["time"][0] == 0.25
+    assert refined.point_data.active_normals_name == "Normals"
+    assert (refined.point_data.active_normals[:, 2] > 0.0).all()
+
+
+def test_a_frame_may_bring_its_own_data() -> None:
+    """A mesh carries its own data; points alone those of the mesh at rest."""
+    mesh = plane()
+    refiner = mesh.risorius.refiner()
+    frame = mesh.copy()
+    frame.points = wavy(mesh)
+    frame.point_data["heat"] = np.full(mesh.n_points, 3.0)
+    refined = refiner.refine(frame)
+    assert set(refined["heat"]) == {3.0}
+    assert "heat" not in refiner.refine(frame.points).array_names
+    np.testing.assert_array_equal(refiner.refine(frame.points).points, refined.points)
+    assert "Normals" in refined.array_names and mesh.n_points == plane().n_points
+
+
+def test_the_paper_asks_what_has_bent() -> None:
+    """By the paper's rule, a mesh is refined against its own form at rest."""
+    mesh = plane()
+    frame = mesh.copy()
+    frame.points = wavy(mesh)
+    paper = {"scheme": "loop", "criterion": "normal"}
+    assert frame.risorius.refine(**paper).n_cells == 2 * mesh.n_cells
+    assert frame.risorius.refine(rest=mesh, **paper).n_cells > 2 * mesh.n_cells
+
+
+def test_doubled_points_do_not_crack() -> None:
+    """A cylinder's caps have points of their own; its sharp edge stays closed, textures apart."""
+    mesh = pyvista.Cylinder(resolution=16)
+    assert mesh.n_open_edges > 0
+    refined = mesh.risorius.refine()
+    assert refined.n_cells > mesh.triangulate().n_cells
+    assert refined.clean().n_open_edges == 0
+    mesh.clear_data()
+    assert mesh.risorius.refine().n_open_edges == 0
+
+
+def test_polygons_strips_and_lines() -> None:
+    """Whatever has a surface is cut into triangles, whose cells are known; the rest drops out."""
+    mesh = pyvista.Disc(inner=0.0, c_res=5).merge(pyvista.Line())
+    mesh.cell_data["number"] = np.arange(mesh.n_cells)
+    refined = mesh.risorius.refine()
+    assert refined.is_all_triangles and refined.n_cells > 0
+    np.testing.assert_array_equal(refined["number"], refined["vtkOriginalCellIds"])
+    strips = pyvista.Sphere(theta_resolution=10, phi_resolution=10).strip()
+    assert strips.risorius.refine().is_manifold
+
+
+def test_many_frames(capsys: pytest.CaptureFixture[str]) -> None:
+    """Frames come one by one, as meshes of their own, with a bar if it is asked for."""
+    mesh = plane()
+    heights = (0.0, 0.1, 0.2)
+    refiner = mesh.risorius.refiner()
+    frames = list(refiner.refine_all([wavy(mesh, height) for height in heights], progress_bar=True))
+    assert "Refining" in capsys.readouterr().err
+    assert [round(float(np.ptp(frame.points[:, 2])), 1) for frame in frames] == [0.0, 0.2, 0.4]
+    assert not capsys.readouterr().err
+    assert len(list(refiner.refine_all(iter([mesh])))) == 1
+    assert not capsys.readouterr().err
+
+
+def test_mistakes_are_told() -> None:
+    """As PyVista does: its own errors for missing cells, ValueError with both sizes otherwise."""
+    mesh = plane()
+    with pytest.raises(pyvista.MissingDataError, match="mesh has no faces"):
+        pyvista.Line().risorius.refine()
+    with pytest.raises(pyvista.MissingDataError, match="mesh has no faces"):
+        pyvista.PolyData().risorius.refiner()
+    refiner = mesh.risorius.refiner()
+    with pytest.raises(ValueError, match="has 288 cells, but the mesh at rest 144"):
+        refiner.refine(mesh.triangulate())
+    with pytest.raises(ValueError, match=r"169 points .* got shape \(168, 3\)"):
+        refiner.refine(mesh.points[1:])
+    with pytest.raises(ValueError, match="unknown option 'tresholds'"):
+        mesh.risorius.refine(tresholds=1)
+    with pytest.raises(AttributeError):
+        pyvista.ImageData(dimensions=(2, 2, 2)).risorius  # noqa: B018
+
+
+def test_the_examples_of_the_docstrings() -> None:
+    """They run as they are printed; nothing is plotted."""
+    import risorius.pyvista
+
+    finder = doctest.DocTestFinder(exclude_empty=True)
+    runner = doctest.DocTestRunner()
+    count = 0
+    for found in finder.find(risorius.pyvista, "risorius.pyvista"):
+        found.examples = [each for each in found.examples if ".plot(" not in each.source]
+        count += len(found.examples)
+        runner.run(found)
+    assert count > 8
+    assert runner.summarize().failed == 0
