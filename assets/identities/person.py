@@ -68,7 +68,7 @@ def _template() -> tuple[Head, Shaper, dict[str | int, int]]:
 def make_person(identity: Identity) -> Person:
     """The head of an identity; the same numbers give the same head.
 
-    Where its measures contradict each other, as one in 700 does, all of it is brought nearer to the
+    Where its measures contradict each other, as one in some hundreds does, all of it is brought nearer to the
     mean, until they do not; the person's `identity` says what was made.
     """
     for share in NEARER[:-1]:
