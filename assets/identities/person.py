@@ -68,8 +68,8 @@ def _template() -> tuple[Head, Shaper, dict[str | int, int]]:
 def make_person(identity: Identity) -> Person:
     """The head of an identity; the same numbers give the same head.
 
-    Where its measures contradict each other, as one in some hundreds does, all of it is brought nearer to the
-    mean, until they do not; the person's `identity` says what was made.
+    Where its measures contradict each other, as in one of some hundreds, all of it is brought
+    nearer to the mean, until they do not; the person's `identity` says what was made.
     """
     for share in NEARER[:-1]:
         with contextlib.suppress(AssetError):
