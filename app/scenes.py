@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
+from risorius.assets.identities import Person, in_own_colours, make_person, sample_identity
 
 from .errors import UserError
 from .mouth import Tongue, shaded_mouth
@@ -122,6 +123,8 @@ class FaceScene(Scene):
     def openness(self) -> npt.NDArray[np.uint8] | None:
         """That of the built-in head's file, or baked now; see `Scene.openness`."""
         head, simulation = self.head, self.simulation
+        if isinstance(head, Person):  # same triangles, hardly another form
+            return head.openness
         if len(head.vertices) > MOST_BAKED:  # it wears the same texture, laid out alike
             return assets.load("head").openness
         if isinstance(head, assets.Head) and head.openness_file.exists():
@@ -307,15 +310,21 @@ def build_scene(name: str, head: FittedHead | None = None) -> Scene:
     if head is None:
         return SCENES[name]()
     if name != "face":
-        raise UserError(f"--head goes with the scene face, not with '{name}'")
+        raise UserError(f"--head and --person go with the scene face, not with '{name}'")
     try:
         return FaceScene(head)
     except ValueError as error:
         raise UserError(f"this head cannot be simulated: {error}") from None
 
 
-def head_for(head: Path | None, landmarks: Path | None) -> FittedHead | None:
-    """The user's own head, fitted; None for the built-in one."""
+def head_for(
+    head: Path | None, landmarks: Path | None, person: int | None = None
+) -> FittedHead | None:
+    """The user's own head, fitted, or that of a number's person; None for the built-in one."""
+    if person is not None:
+        if head is not None or landmarks is not None:
+            raise UserError("--person makes a head; it goes with neither --head nor --landmarks")
+        return in_own_colours(make_person(sample_identity(person)), person)
     if head is None and landmarks is None:
         return None
     if head is None or landmarks is None:

@@ -31,6 +31,7 @@ from .generator.oral import lower_cavity, tongue, upper_cavity
 from .generator.painting import SIZE, paint_skin
 from .generator.skin import SkinMesh, build_half, mirrored
 from .generator.solids import Solid
+from .generator.tints import paint_tints
 from .generator.unwrap import unwrap
 from .generator.wrinkling import paint_wrinkles
 from .loading import HEAD_FILE, load_head
@@ -170,6 +171,7 @@ def _write(file: Path, *, tone: Tone, size: int) -> None:
     _save(head.finer_file, build_finer(head))
     _save(head.wrinkles_file, build_wrinkles(head, size))
     write_image(head.albedo_file, paint_skin(head, tone=tone, size=size))
+    _save(head.tints_file, paint_tints(head, size, tone))
 
 
 def _save(path: Path, arrays: dict[str, npt.NDArray[np.generic]]) -> None:

@@ -20,6 +20,7 @@ Source: Kähler et al. 2003, Fig. 1, the rendering stage.
 from .camera import VIEWS, OrbitCamera
 from .compositor import Detail
 from .errors import GLError
+from .light import LIGHTS, Light, toward
 from .parts import Part
 from .probe import Finding, probe
 from .renderer import Renderer, Viewport
@@ -47,6 +48,7 @@ __all__ = [
     "CLAY",
     "DARK",
     "LIGHT",
+    "LIGHTS",
     "SKIN",
     "SKIN_DARK",
     "SKIN_LIGHT",
@@ -60,6 +62,7 @@ __all__ = [
     "Finding",
     "GLError",
     "Image",
+    "Light",
     "OffscreenSurface",
     "OrbitCamera",
     "Part",
@@ -76,4 +79,5 @@ __all__ = [
     "open_window",
     "probe",
     "size_on_screen",
+    "toward",
 ]

@@ -1,0 +1,119 @@
+"""A head of another person, made from the built-in one: same triangles, texture and muscles.
+
+    person = make_person(sample_identity(7))
+
+The shape is bent until the measures are the asked ones; then eyeballs are placed, and lids are laid
+on them.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ..errors import AssetError
+from ..files import Image
+from ..fitting.head import FittedHead
+from ..fitting.organs import EYE_LANDMARKS, FittedSkin, place_parts
+from ..fitting.warp import Similarity
+from ..loading import load
+from ..model import Eye, FloatArray, Head, IndexArray
+from ..topology import cross_products, vertex_normals
+from .shaping import Field, Shaper, lids_on_eyes, measures_of
+from .traits import SHAPES, Identity
+
+NEARER = (1.0, 0.85, 0.7, 0.5, 0.0)  # shares of the deviations, tried in turn
+LID_SHARES = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far rows around the eye are laid on it
+
+
+@dataclass(frozen=True)
+class Person(FittedHead):
+    """A head with the triangles of the built-in one; beside what a fitted head has:
+
+    mandible_weight, jaw_axis, anatomy, mirror: as of `Head`. `mirror` is that of the built-in head
+        where left and right differ, too.
+    openness: how open the skin is to light from all around, that of the built-in head.
+    identity: what it was made from.
+    """
+
+    mandible_weight: FloatArray
+    jaw_axis: FloatArray
+    anatomy: Mapping[str, int]
+    mirror: IndexArray
+    openness: Image
+    identity: Identity
+
+    @property
+    def measures(self) -> dict[str, float]:
+        """Its measures, code -> [mm]."""
+        return measures_of(self.vertices, self.anatomy)
+
+
+@lru_cache(maxsize=1)
+def _template() -> tuple[Head, Shaper, dict[str | int, int]]:
+    """The built-in head, its shaper, and the vertex of each point that a shape moves."""
+    head = load("head")
+    places = {
+        point: int(head.landmarks[point] if isinstance(point, int) else head.anatomy[point])
+        for pushes in SHAPES.values()
+        for point, _ in pushes
+    }
+    return head, Shaper(head, list(places.values())), places
+
+
+def make_person(identity: Identity) -> Person:
+    """The head of an identity; the same numbers give the same head.
+
+    Where its measures contradict each other, as in one of some hundreds, all of it is brought
+    nearer to the mean, until they do not; the person's `identity` says what was made.
+    """
+    for share in NEARER[:-1]:
+        with contextlib.suppress(AssetError):
+            return _made(identity if share == 1.0 else identity.scaled(share))
+    return _made(identity.scaled(NEARER[-1]))
+
+
+def _made(identity: Identity) -> Person:
+    """The head of an identity; AssetError where there is none, or its skin would be turned."""
+    known, shaper, _ = _template()
+    field = shaper.fit(identity.measures, _moves(identity.shapes), _moves(identity.unevenness))
+    bent = field.points(known.vertices)
+    eyes = tuple(_eye(known, eye, field, bent) for eye in known.eyes)
+    vertices = lids_on_eyes(known, bent, eyes, LID_SHARES)
+    turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
+    if (turned.sum(axis=1) <= 0.0).any():
+        raise AssetError("no head has these measures without turning a triangle")
+    vertices.flags.writeable = False
+    normals = vertex_normals(vertices, known.faces)
+    skin = FittedSkin(vertices, normals, vertices[known.landmarks], known.mandible_weight)
+    return Person(
+        vertices, known.faces, known.landmarks, field.scale * known.bone_depth, eyes,
+        place_parts(known, skin, field, eyes), known.uv, known.face_uv, known.albedo,
+        known.wrinkles, known.rig, known.layers, Similarity(1.0, np.eye(3), np.zeros(3)),
+        np.arange(len(vertices), dtype=np.int32), known.mandible_weight,
+        field.points(known.jaw_axis), known.anatomy, known.mirror, known.openness, identity,
+    )  # fmt: skip
+
+
+def _moves(shapes: Mapping[str, float]) -> dict[int, FloatArray]:
+    """How far vertices go [mm] for deviations of shapes."""
+    moves: dict[int, FloatArray] = {}
+    places = _template()[2]
+    for name, score in shapes.items():
+        for point, way in SHAPES[name]:
+            vertex = places[point]
+            moves[vertex] = moves.get(vertex, np.zeros(3)) + score * np.array(way)
+    return {vertex: way for vertex, way in moves.items() if np.linalg.norm(way) > 1e-9}
+
+
+def _eye(known: Head, eye: Eye, field: Field, vertices: FloatArray) -> Eye:
+    """An eyeball in its new place; eyeballs differ less than their openings."""
+    corners = known.landmarks[EYE_LANDMARKS[eye.name]][[0, 3]]
+    before, now = (np.linalg.norm(np.diff(x[corners], axis=0)) for x in (known.vertices, vertices))
+    scale = float(np.sqrt(now / before))
+    centre = field.points(eye.centre[None])[0]
+    return Eye(eye.name, centre, scale * eye.radius, scale * eye.iris_radius)
