@@ -22,16 +22,34 @@ class Exporting:
     fps: float
     refined: bool
     rig: bool
+    overwrite: bool
     quiet: bool
 
 
 with_exporting = packed(
     "exporting",
     Exporting,
-    click.option("--as", "name", type=click.Choice(names()), help="Where a suffix does not tell."),
-    click.option("--fps", type=FiniteRange(1, 240), default=30.0, show_default=True),
-    click.option("--refined", is_flag=True, help="The refined skin, whose triangles change."),
+    click.option(
+        "--as",
+        "name",
+        type=click.Choice(names()),
+        help="The format, where a suffix does not tell: obj and ply are folders of one file a "
+        "frame; of a .csv, arkit is meant unless told.",
+    ),
+    click.option(
+        "--fps",
+        type=FiniteRange(1, 240),
+        default=30.0,
+        show_default=True,
+        help="Frames a second.",
+    ),
+    click.option(
+        "--refined", is_flag=True, help="The refined skin, whose triangles change in each frame."
+    ),
     click.option("--rig", is_flag=True, help="Targets to pose by name, as avatars have them."),
+    click.option(
+        "--overwrite", is_flag=True, help="Replace frames in a folder, or files beside -o."
+    ),
     click.option("--quiet", is_flag=True, help="No progress bar."),
 )
 
@@ -59,9 +77,15 @@ def export(
     from ..motion import scene_of
     from ..performances import script_for
 
-    check_apart((output,), (script, drawing.head, drawing.landmarks, playback.mapping))
     chosen = format_for(output, exporting.name)
-    request = Request(drawing.refinement() if exporting.refined else None, exporting.rig)
+    inputs = (script, drawing.head, drawing.landmarks, playback.mapping)
+    check_apart(chosen.outputs(output), inputs)
+    request = Request(
+        drawing.refinement() if exporting.refined else None,
+        exporting.rig,
+        exporting.overwrite,
+        not exporting.quiet,
+    )
     check_request(output, chosen, request)
     tell = None if exporting.quiet else told
     performance = script_for(script, scene, settings, playback=playback, tell=tell)

@@ -1,0 +1,114 @@
+"""A folder of one mesh file a frame, OBJ or PLY: what every program reads, triangles as they come.
+
+Source: Wavefront, "Advanced Visualizer manual", appendix B1 (OBJ) and B2 (MTL); Turk 1994, "The PLY
+polygon file format".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import PIL.Image
+
+from .clip import Clip, Floats, Indices
+from .formats import FRAME, Request
+from .sheets import METRES, Sheet, joined, sheets, split_at_seams
+
+COLUMNS = "x y z nx ny nz s t".split()  # of a PLY's vertices, before their colours
+
+
+def write_obj(clip: Clip, folder: Path, request: Request) -> None:
+    """Write an OBJ of each frame, in metres, and the skin's texture beside them.
+
+    The mesh that is simulated keeps its V vertices, in their order.
+    """
+    material = write_material(clip, folder / "frame.mtl")
+    frames = request.counted(sheets(clip, request.refinement), clip.frame_count)
+    for number, frame in enumerate(frames):
+        path = folder / f"{FRAME.format(number)}.obj"
+        path.write_text(obj_text(frame, material))
+
+
+def write_material(clip: Clip, path: Path) -> str:
+    """Write an MTL and its picture, if the skin has one; the name of the MTL, or nothing."""
+    if clip.scene.albedo is None:
+        return ""
+    picture = path.with_name(f"{path.stem}_skin.png")
+    path.write_text(f"newmtl skin\nKd 1 1 1\nmap_Kd {picture.name}\nnewmtl parts\nKd 1 1 1\n")
+    PIL.Image.fromarray(clip.scene.albedo).save(picture)
+    return path.name
+
+
+def obj_text(frame: Sequence[Sheet], material: str) -> str:
+    """One OBJ of one object, a group for each surface; material: the MTL that the skin has.
+
+    Vertices have colours behind their coordinates, as MeshLab writes and Blender reads them.
+    """
+    texts = [f"mtllib {material}\n" if material else ""]
+    points = coordinates = 1
+    for sheet in frame:
+        texts.append(_rows("v", np.hstack([sheet.points * METRES, sheet.colours])))
+        texts.append(_rows("vn", sheet.normals))
+        corners = [sheet.faces + points] * 2
+        has_texture = sheet.uv is not None and sheet.face_uv is not None
+        if sheet.uv is not None and sheet.face_uv is not None:
+            texts.append(_rows("vt", sheet.uv))
+            corners.insert(1, sheet.face_uv + coordinates)
+            coordinates += len(sheet.uv)
+        texts.append(f"g {sheet.name}\n")
+        if material:
+            texts.append(f"usemtl {'skin' if has_texture else 'parts'}\n")
+        texts.append(_faces(corners))
+        points += len(sheet.points)
+    return "".join(texts)
+
+
+def _rows(name: str, rows: Floats | np.ndarray[tuple[int, ...], np.dtype[np.float32]]) -> str:
+    """A line of each row, its numbers after a name."""
+    line = name + " %.6g" * rows.shape[1] + "\n"
+    return (line * len(rows)) % tuple(rows.ravel().tolist())
+
+
+def _faces(corners: Sequence[Indices]) -> str:
+    """Lines of triangles, whose corners are vertex/coordinate/normal, or vertex//normal."""
+    corner = " %d/%d/%d" if len(corners) == 3 else " %d//%d"
+    line = "f" + corner * 3 + "\n"
+    numbers = np.stack(corners, axis=-1)
+    return (line * len(numbers)) % tuple(numbers.ravel().tolist())
+
+
+def write_ply(clip: Clip, folder: Path, request: Request) -> None:
+    """Write a binary PLY of each frame, in metres: all surfaces in one mesh, the skin first."""
+    frames = request.counted(sheets(clip, request.refinement), clip.frame_count)
+    for number, frame in enumerate(frames):
+        (folder / f"{FRAME.format(number)}.ply").write_bytes(ply_bytes(frame))
+
+
+def ply_bytes(frame: Sequence[Sheet]) -> bytes:
+    """One PLY; vertices on texture seams are there once for each side."""
+    blocks, faces = [], []
+    for sheet in frame:
+        rows, corners, uv = split_at_seams(sheet)
+        block = np.zeros(
+            len(rows),
+            [("point", "<f4", 3), ("normal", "<f4", 3), ("uv", "<f4", 2), ("colour", "u1", 3)],
+        )
+        block["point"] = sheet.points[rows] * METRES
+        block["normal"] = sheet.normals[rows]
+        block["uv"] = 0.0 if uv is None else uv
+        block["colour"] = np.round(255.0 * sheet.colours[rows])
+        blocks.append(block)
+        faces.append(corners)
+    triangles = joined(faces, [len(block) for block in blocks])
+    rows_of = np.empty(len(triangles), [("count", "u1"), ("corners", "<i4", 3)])
+    rows_of["count"], rows_of["corners"] = 3, triangles
+    floats = "".join(f"property float {name}\n" for name in COLUMNS)
+    colours = "".join(f"property uchar {name}\n" for name in ("red", "green", "blue"))
+    head = (
+        "ply\nformat binary_little_endian 1.0\ncomment Risorius, metres\n"
+        f"element vertex {sum(map(len, blocks))}\n{floats}{colours}"
+        f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    return head.encode() + b"".join(block.tobytes() for block in blocks) + rows_of.tobytes()
