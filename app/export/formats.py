@@ -91,7 +91,6 @@ MESH = (".obj", ".mtl", "_skin.png")  # a mesh file, its materials, and their pi
 FORMATS = (
     Format("usd", "USD", (".usdc", ".usda", ".usd"), "usd:write_usd", True, beside=("_skin.png",)),
     Format("usdz", "USD in one file", (".usdz",), "usd:write_usdz", True),
-    Format("alembic", "Alembic", (".abc",), "alembic:write_abc", True),
     Format("pc2", "PC2 point cache", (".pc2",), "point_caches:write_pc2", beside=MESH),
     Format("mdd", "MDD point cache", (".mdd",), "point_caches:write_mdd", beside=MESH),
     Format("obj", "OBJ sequence", (), "sequences:write_obj", True),

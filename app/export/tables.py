@@ -7,7 +7,7 @@ own time, so that what was asked of them is written so much later.
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,12 @@ from .clip import Clip, Floats
 from .formats import Request
 
 TIMECODE_RATE = 60  # Live Link Face counts so many frames a second, whatever the camera does
+OTHER_ORDER = {  # its columns are in ARKit's order but for these
+    "jawLeft": "jawRight",
+    "jawRight": "jawLeft",
+    "mouthLeft": "mouthRight",
+    "mouthRight": "mouthLeft",
+}
 # Full controls in radians, and ARKit counts to the subject's right and down, where ours grow to the
 # left and up. The head rolls to the right shoulder there.
 ANGLES = {
@@ -52,7 +58,8 @@ def write_arkit(clip: Clip, part: Path, _: Request) -> None:
     """Write the 52 shapes and the angles of head and eyes, in Live Link Face's columns."""
     shapes = _as_seen(clip, solved(clip.scene, ARKIT_SHAPES, clip.activations, clip.controls))
     lowest = _as_seen(clip, clip.activations)
-    columns = {_livelink(name): shapes.get(name, np.zeros(clip.frame_count)) for name in ARKIT}
+    names = [OTHER_ORDER.get(name, name) for name in ARKIT]
+    columns = {_livelink(name): shapes.get(name, np.zeros(clip.frame_count)) for name in names}
     for name, (control, radians) in ANGLES.items():
         columns[name] = radians * lowest.get(control, np.zeros(clip.frame_count))
     stamps = ([_timecode(time), len(columns)] for time in clip.times)
@@ -88,7 +95,7 @@ def _as_seen(clip: Clip, curves: Mapping[str, Floats]) -> dict[str, Floats]:
 
 
 def _write(
-    part: Path, names: list[str], stamps: Iterable[list[object]], columns: Mapping[str, Floats]
+    part: Path, names: list[str], stamps: Iterable[Sequence[object]], columns: Mapping[str, Floats]
 ) -> None:
     """Write a table: a row for each frame."""
     with part.open("w", newline="", encoding="utf-8") as file:

@@ -17,7 +17,6 @@ import PIL.Image
 
 from risorius.assets.topology import vertex_normals
 
-from ..errors import UserError
 from .clip import Clip, Surface
 from .formats import Request, needed
 
@@ -29,6 +28,7 @@ Usd, UsdGeom, UsdShade, UsdUtils, Vt = (
 
 MILLIMETRE = 0.001  # metres per unit
 DULL, WET = 0.6, 0.1  # roughness
+UNWRITTEN = "USD did not get to its end; the disk may be full"
 ALWAYS = Usd.TimeCode.Default()
 
 
@@ -42,8 +42,7 @@ def write_usd(clip: Clip, part: Path, request: Request) -> None:
         _fill(stage, clip, request, picture.name)
         stage.Save()
     except Tf.ErrorException as error:
-        why = str(error).strip().splitlines()[-1].strip()
-        raise UserError(f"{part.name}: cannot be written: {why}") from None
+        raise OSError(UNWRITTEN) from error
 
 
 def write_usdz(clip: Clip, part: Path, request: Request) -> None:
@@ -53,7 +52,7 @@ def write_usdz(clip: Clip, part: Path, request: Request) -> None:
         write_usd(clip, layer, request)
         is_made = UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(layer)), str(part))
     if not is_made:
-        raise UserError(f"{part.name}: cannot be written: the disk may be full")
+        raise OSError(UNWRITTEN)
 
 
 def _fill(stage: Any, clip: Clip, request: Request, picture: str) -> None:
