@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from ..errors import counted, in_one_line
-from ..export.formats import Request, check_request, format_for, names, write
+from ..export.formats import RIGS, Request, check_request, format_for, names, write
 from ..playback import Playback
 from .options import PATH, SCENE_NAMES, Drawing, packed, told, with_drawing, with_playback
 from .parameters import FiniteRange
@@ -21,7 +21,7 @@ class Exporting:
     name: str | None
     fps: float
     refined: bool
-    rig: bool
+    rig: str | None
     quiet: bool
 
 
@@ -31,7 +31,13 @@ with_exporting = packed(
     click.option("--as", "name", type=click.Choice(names()), help="Where a suffix does not tell."),
     click.option("--fps", type=FiniteRange(1, 240), default=30.0, show_default=True),
     click.option("--refined", is_flag=True, help="The refined skin, whose triangles change."),
-    click.option("--rig", is_flag=True, help="Targets to pose by name, as avatars have them."),
+    click.option(
+        "--rig",
+        type=click.Choice(list(RIGS)),
+        is_flag=False,
+        flag_value="arkit",
+        help="Targets to pose by name, as avatars have them; arkit unless told.",
+    ),
     click.option("--quiet", is_flag=True, help="No progress bar."),
 )
 
@@ -67,5 +73,7 @@ def export(
     performance = script_for(script, scene, settings, playback=playback, tell=tell)
     played = scene_of(performance, drawing.fitted_head())
     clip = record(performance, played, exporting.fps, progress=not exporting.quiet)
-    write(clip, output, chosen, request)
+    remark = write(clip, output, chosen, request)
     click.echo(f"{in_one_line(output)}: {chosen.title}, {counted(clip.frame_count, 'frame')}")
+    if remark is not None:
+        click.echo(f"{in_one_line(output)}: {remark}", err=True)

@@ -16,19 +16,24 @@ if TYPE_CHECKING:
     from .clip import Clip
 
 
+RIGS = {"arkit": "ARKit shapes", "units": "Action units"}  # titles of layers, by what --rig says
+
+
 @dataclass(frozen=True)
 class Request:
     """What is asked for beside the clip.
 
     refinement: the refined skin is to be written, and not the mesh that is simulated.
-    rig: targets by name that can be posed anew, and not the motion of the script alone.
+    rig: targets by name that can be posed anew, and not the motion of the script alone: one of
+        RIGS, or None.
     """
 
     refinement: Refinement | None = None
-    rig: bool = False
+    rig: str | None = None
 
 
-Writer = Callable[["Clip", Path, Request], None]  # writes the whole file, or raises UserError
+# Writes the whole file, or raises UserError; returns what there is to say of it, if anything.
+Writer = Callable[["Clip", Path, Request], str | None]
 
 
 @dataclass(frozen=True)
@@ -54,7 +59,10 @@ class Format:
         return writer
 
 
-FORMATS = (Format("npz", "numpy arrays", (".npz",), "arrays:write_npz"),)
+FORMATS = (
+    Format("gltf", "glTF", (".glb",), "gltf:write_gltf", rigs=True),
+    Format("npz", "numpy arrays", (".npz",), "arrays:write_npz"),
+)
 
 
 def format_for(output: Path, name: str | None) -> Format:
@@ -84,7 +92,7 @@ def check_request(output: Path, chosen: Format, request: Request) -> None:
     """UserError, before any work is done, where the output cannot be as it is asked for."""
     for asked, can, option in (
         (request.refinement is not None, [f for f in FORMATS if f.refines], "--refined"),
-        (request.rig, [f for f in FORMATS if f.rigs], "--rig"),
+        (request.rig is not None, [f for f in FORMATS if f.rigs], "--rig"),
     ):
         if asked and chosen not in can:
             names = ", ".join(each.name for each in can)
@@ -93,11 +101,11 @@ def check_request(output: Path, chosen: Format, request: Request) -> None:
         check_file(output)
 
 
-def write(clip: Clip, output: Path, chosen: Format, request: Request) -> None:
-    """Write a clip, whole or not at all."""
+def write(clip: Clip, output: Path, chosen: Format, request: Request) -> str | None:
+    """Write a clip, whole or not at all; return what there is to say of the file, if anything."""
     writer = chosen.load()
     with written_atomically(output) as part:
-        writer(clip, part, request)
+        return writer(clip, part, request)
 
 
 def names() -> Sequence[str]:
