@@ -74,8 +74,7 @@ def follow(weights: Floats, changes: Floats) -> Floats:
     3).
     """
     fitted = np.linalg.lstsq(weights, changes.reshape(len(changes), -1), rcond=1e-6)[0]
-    targets: Floats = fitted.reshape(-1, *changes.shape[1:])
-    return targets
+    return np.asarray(fitted.reshape(-1, *changes.shape[1:]), np.float64)
 
 
 def _distances(moved: Floats, curves: Floats, shapes: Floats) -> Floats:
