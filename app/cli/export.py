@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from ..errors import counted, in_one_line
-from ..export.formats import Request, check_request, format_for, names, write
+from ..export.formats import RIGS, Request, check_request, format_for, names, write
 from ..playback import Playback
 from .options import PATH, SCENE_NAMES, Drawing, packed, told, with_drawing, with_playback
 from .parameters import FiniteRange
@@ -21,7 +21,7 @@ class Exporting:
     name: str | None
     fps: float
     refined: bool
-    rig: bool
+    rig: str | None
     overwrite: bool
     quiet: bool
 
@@ -46,7 +46,13 @@ with_exporting = packed(
     click.option(
         "--refined", is_flag=True, help="The refined skin, whose triangles change in each frame."
     ),
-    click.option("--rig", is_flag=True, help="Targets to pose by name, as avatars have them."),
+    click.option(
+        "--rig",
+        type=click.Choice(list(RIGS)),
+        is_flag=False,
+        flag_value="arkit",
+        help="Targets to pose by name, as avatars have them; arkit unless told.",
+    ),
     click.option(
         "--overwrite", is_flag=True, help="Replace frames in a folder, or files beside -o."
     ),
@@ -91,5 +97,7 @@ def export(
     performance = script_for(script, scene, settings, playback=playback, tell=tell)
     played = scene_of(performance, drawing.fitted_head())
     clip = record(performance, played, exporting.fps, progress=not exporting.quiet)
-    write(clip, output, chosen, request)
+    remark = write(clip, output, chosen, request)
     click.echo(f"{in_one_line(output)}: {chosen.title}, {counted(clip.frame_count, 'frame')}")
+    if remark is not None:
+        click.echo(f"{in_one_line(output)}: {remark}", err=True)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from tqdm import tqdm
 
+from ..curves import ACTION_UNITS, ARKIT_SHAPES
 from ..errors import UserError
 from ..files import (
     cannot_be_written,
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from .clip import Clip
 
 
+RIGS = {"arkit": ARKIT_SHAPES, "units": ACTION_UNITS}  # titles of layers, by what --rig says
 Item = TypeVar("Item")
 
 FRAME = "frame_{:05d}"  # how files of a sequence are called, without their suffix
@@ -38,13 +40,14 @@ class Request:
     """What is asked for beside the clip.
 
     refinement: the refined skin is to be written, and not the mesh that is simulated.
-    rig: targets by name that can be posed anew, and not the motion of the script alone.
+    rig: targets by name that can be posed anew, and not the motion of the script alone: one of
+        RIGS, or None.
     overwrite: frames in a folder, and files beside the output, may be replaced.
     progress: a bar is shown.
     """
 
     refinement: Refinement | None = None
-    rig: bool = False
+    rig: str | None = None
     overwrite: bool = False
     progress: bool = True
 
@@ -56,7 +59,8 @@ class Request:
             yield from bar
 
 
-Writer = Callable[["Clip", Path, Request], None]  # writes the whole file, or raises UserError
+# Writes the whole file, or raises UserError; returns what there is to say of it, if anything.
+Writer = Callable[["Clip", Path, Request], str | None]
 
 
 @dataclass(frozen=True)
@@ -89,6 +93,7 @@ class Format:
 
 MESH = (".obj", ".mtl", "_skin.png")  # a mesh file, its materials, and their picture
 FORMATS = (
+    Format("gltf", "glTF", (".glb",), "gltf:write_gltf", rigs=True),
     Format("usd", "USD", (".usdc", ".usda", ".usd"), "usd:write_usd", True, beside=("_skin.png",)),
     Format("usdz", "USD in one file", (".usdz",), "usd:write_usdz", True),
     Format("pc2", "PC2 point cache", (".pc2",), "point_caches:write_pc2", beside=MESH),
@@ -133,7 +138,7 @@ def check_request(output: Path, chosen: Format, request: Request) -> None:
     """UserError, before any work is done, where the output cannot be as it is asked for."""
     for asked, can, option in (
         (request.refinement is not None, [f for f in FORMATS if f.refines], "--refined"),
-        (request.rig, [f for f in FORMATS if f.rigs], "--rig"),
+        (request.rig is not None, [f for f in FORMATS if f.rigs], "--rig"),
     ):
         if asked and chosen not in can:
             names = ", ".join(each.name for each in can)
@@ -152,8 +157,8 @@ def check_request(output: Path, chosen: Format, request: Request) -> None:
                 )
 
 
-def write(clip: Clip, output: Path, chosen: Format, request: Request) -> None:
-    """Write a clip, whole or not at all."""
+def write(clip: Clip, output: Path, chosen: Format, request: Request) -> str | None:
+    """Write a clip, whole or not at all; return what there is to say of the file, if anything."""
     writer = chosen.load()
     whole = (
         written_atomically(output)
@@ -161,7 +166,7 @@ def write(clip: Clip, output: Path, chosen: Format, request: Request) -> None:
         else folder_atomically(output, OWN, overwrite=request.overwrite)
     )
     with cannot_be_written(output), whole as part:
-        writer(clip, part, request)
+        return writer(clip, part, request)
 
 
 def needed(module: str, package: str) -> Any:
