@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from tqdm import tqdm
 
-from ..curves import ACTION_UNITS, ARKIT_SHAPES
 from ..errors import UserError
 from ..files import (
     cannot_be_written,
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
     from .clip import Clip
 
 
-RIGS = {"arkit": ARKIT_SHAPES, "units": ACTION_UNITS}  # titles of layers, by what --rig says
+RIGS = {"arkit": "ARKit shapes", "units": "Action units"}  # titles of layers, by what --rig says
 Item = TypeVar("Item")
 
 FRAME = "frame_{:05d}"  # how files of a sequence are called, without their suffix

@@ -51,16 +51,15 @@ def obj_text(frame: Sequence[Sheet], material: str) -> str:
     for sheet in frame:
         texts.append(_rows("v", np.hstack([sheet.points * METRES, sheet.colours])))
         texts.append(_rows("vn", sheet.normals))
-        corners = [sheet.faces + points] * 2
-        has_texture = sheet.uv is not None and sheet.face_uv is not None
-        if sheet.uv is not None and sheet.face_uv is not None:
-            texts.append(_rows("vt", sheet.uv))
-            corners.insert(1, sheet.face_uv + coordinates)
-            coordinates += len(sheet.uv)
+        uv, face_uv = sheet.uv, sheet.face_uv
+        if uv is None or face_uv is None:  # for readers that expect one at all corners
+            uv, face_uv = np.zeros((1, 2), np.float32), np.zeros_like(sheet.faces)
+        texts.append(_rows("vt", uv))
         texts.append(f"g {sheet.name}\n")
         if material:
-            texts.append(f"usemtl {'skin' if has_texture else 'parts'}\n")
-        texts.append(_faces(corners))
+            texts.append(f"usemtl {'parts' if sheet.uv is None else 'skin'}\n")
+        texts.append(_faces([sheet.faces + points, face_uv + coordinates, sheet.faces + points]))
+        coordinates += len(uv)
         points += len(sheet.points)
     return "".join(texts)
 
@@ -72,9 +71,8 @@ def _rows(name: str, rows: Floats | np.ndarray[tuple[int, ...], np.dtype[np.floa
 
 
 def _faces(corners: Sequence[Indices]) -> str:
-    """Lines of triangles, whose corners are vertex/coordinate/normal, or vertex//normal."""
-    corner = " %d/%d/%d" if len(corners) == 3 else " %d//%d"
-    line = "f" + corner * 3 + "\n"
+    """Lines of triangles, whose corners are vertex/coordinate/normal."""
+    line = "f" + " %d/%d/%d" * 3 + "\n"
     numbers = np.stack(corners, axis=-1)
     return (line * len(numbers)) % tuple(numbers.ravel().tolist())
 
