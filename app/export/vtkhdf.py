@@ -7,6 +7,7 @@ Source: Kitware, "VTKHDF format specification", version 2.0, PolyData with steps
 
 from __future__ import annotations
 
+import io
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
@@ -32,7 +33,8 @@ def write_vtkhdf(clip: Clip, part: Path, request: Request) -> None:
     triangle of the mesh that they are part of.
     """
     rest = np.concatenate([each.rest for each in clip.surfaces])
-    with h5py.File(part, "w") as file:
+    memory = io.BytesIO()  # HDF5 crashes where a disk is full
+    with h5py.File(memory, "w") as file:
         steps = _Steps(file.create_group("VTKHDF"))
         frames = request.counted(sheets(clip, request.refinement), clip.frame_count)
         for number, frame in enumerate(frames):
@@ -45,6 +47,7 @@ def write_vtkhdf(clip: Clip, part: Path, request: Request) -> None:
                 values["displacement"] = points - rest
             steps.add(clip.times[number], points, values)
         steps.finish([each.name for each in clip.surfaces])
+    part.write_bytes(memory.getbuffer())
 
 
 class _Steps:
