@@ -69,7 +69,8 @@ def fit(targets: Floats, moved: Floats) -> Floats:
     # The same problem with as few rows as there are targets.
     turned, reduced = np.linalg.qr(np.vstack([targets.T, restraint]))
     wanted = moved @ turned[: targets.shape[1]]
-    return np.array([lsq_linear(reduced, row, (0.0, 1.0), method="bvls").x for row in wanted])
+    found = [lsq_linear(reduced, row, (0.0, 1.0), method="bvls").x for row in wanted]
+    return np.clip(found, 0.0, 1.0)  # it may leave its bounds by a rounding error
 
 
 def _used(clip: Clip, names: Sequence[str]) -> list[int]:
@@ -84,8 +85,9 @@ def _used(clip: Clip, names: Sequence[str]) -> list[int]:
 
 
 def _only_turns_head(scene: FaceScene, name: str) -> bool:
-    """Whether a control moves bones of the neck and nothing else."""
-    return all(each.startswith("head_") for each in scene.moved_by(name))
+    """Whether a control moves the head as a whole and nothing else."""
+    moved = scene.moved_by(name)
+    return bool(moved) and all(each.startswith("head_") for each in moved)
 
 
 def _piece(
