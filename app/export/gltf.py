@@ -19,7 +19,7 @@ from ..scenes import FaceScene
 from .clip import Clip, Surface
 from .formats import Request
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Animation, Glb
-from .morphs import MOST_TARGETS, TOLERANCE, Floats
+from .morphs import TOLERANCE, Floats
 from .pieces import Piece, moving_pieces
 from .rig import rigged_pieces
 from .skeleton import METRES, Skeleton
@@ -34,7 +34,8 @@ def write_gltf(clip: Clip, part: Path, request: Request) -> str | None:
     if request.rig is None:
         pieces, error = moving_pieces(clip)
         if error > TOLERANCE:
-            remark = f"{MOST_TARGETS} morph targets do not suffice: up to {error:.2f} mm off"
+            count = max(len(piece.names) for piece in pieces)
+            remark = f"{count} morph targets do not suffice: up to {error:.2f} mm off"
     else:
         pieces, off = rigged_pieces(clip, request.rig)
         mean = float(np.sqrt(np.square(off).mean()))
@@ -90,7 +91,7 @@ def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats 
         texels = top_down[coordinates].astype(np.float32)
         attributes["TEXCOORD_0"] = glb.accessor(texels, ARRAY_BUFFER)
     if surface.colours is not None:
-        attributes["COLOR_0"] = of_vertices(linear(surface.colours))
+        attributes["COLOR_0"] = of_vertices(linear(_colours(clip, surface)))
     if share is not None:
         none = np.zeros_like(share)
         joints = np.column_stack([none, share > 0.0, none, none]).astype(np.uint8)
@@ -113,6 +114,16 @@ def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats 
         ]
         mesh["extras"] = {"targetNames": list(piece.names)}  # where all readers look for names
     return glb.add("meshes", mesh)
+
+
+def _colours(clip: Clip, surface: Surface) -> npt.NDArray[Any]:
+    """sRGB of the vertices, (V, 3), as other programs light them.
+
+    Ours darkens the depth of the mouth further, since nothing casts shadows there.
+    """
+    head = clip.scene.head if isinstance(clip.scene, FaceScene) else None
+    painted = {part.name: part.colours for part in head.parts} if head is not None else {}
+    return np.asarray(painted.get(surface.name, surface.colours))
 
 
 def _split_at_seams(

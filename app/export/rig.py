@@ -6,7 +6,7 @@ targets do, so the motion of a script is followed as near as bounded least squar
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ from .morphs import Floats
 from .pieces import HEAD, JAW, Piece, in_head, normals_of, rigid_piece, surfaces_with_parts
 
 LEAST_MOTION = 0.01  # [mm] of any vertex of a part; below it a target leaves the part alone
+IN_MOUTH = 0.05  # how much teeth and tongue count in a fit, against the skin's 1; chosen
 RESTRAINT = 0.01  # of weights that undo each other, against the strongest target; chosen
 
 Shapes = dict[str, Floats]  # of the surfaces that bend, as the head's bone finds them [mm]
@@ -37,20 +38,26 @@ def rigged_pieces(clip: Clip, rig: str) -> tuple[list[Piece], Floats]:
     if not isinstance(scene, FaceScene) or title not in scene.groups:
         raise UserError(f"--rig {rig}: the scene '{scene.name}' has no {title}; leave it away")
     names = target_names(scene, title)
-    base = _resting(scene, {})
-    targets = _measured(scene, names, title)
-    shapes = np.asarray(skin.shapes)
-    moved = in_head(scene, None, shapes, clip.bones) - base[skin.name]
+    base, targets = _resting(scene, {}), _measured(scene, names, title)
     used = _used(clip, names)
     weights = np.zeros((clip.frame_count, len(names)))
-    weights[:, used] = fit(_flat(targets[skin.name][used]), _flat(moved))
+    weights[:, used] = fit(
+        (
+            targets[surface.name][used],
+            _motion(clip, surface, part) - base[surface.name],
+            1.0 if part is None else IN_MOUTH,
+        )
+        for surface, part in surfaces_with_parts(clip)
+        if surface.name in base
+    )
     pieces = [
         _piece(surface, part, base[surface.name], names, targets[surface.name], weights)
         if surface.name in base
         else rigid_piece(surface, part)
         for surface, part in surfaces_with_parts(clip)
     ]
-    off = moved - np.tensordot(weights, targets[skin.name], axes=1)
+    off = _motion(clip, skin, None) - base[skin.name]
+    off -= np.tensordot(weights, targets[skin.name], axes=1)
     return pieces, np.linalg.norm(off, axis=2)
 
 
@@ -63,13 +70,24 @@ def target_names(scene: FaceScene, title: str) -> list[str]:
     ]
 
 
-def fit(targets: Floats, moved: Floats) -> Floats:
-    """Weights 0..1, shape (N, K), by which targets (K, n) come nearest to each row of (N, n)."""
-    restraint = RESTRAINT * np.linalg.norm(targets, axis=1).max(initial=0.0) * np.eye(len(targets))
-    # The same problem with as few rows as there are targets.
-    turned, reduced = np.linalg.qr(np.vstack([targets.T, restraint]))
-    wanted = moved @ turned[: targets.shape[1]]
-    return np.array([lsq_linear(reduced, row, (0.0, 1.0), method="bvls").x for row in wanted])
+def fit(surfaces: Iterable[tuple[Floats, Floats, float]]) -> Floats:
+    """Weights 0..1, shape (N, K), by which the targets of all surfaces come nearest to the motion.
+
+    surfaces: targets, shape (K, V, 3), how far the vertices are moved, shape (N, V, 3), and how
+    much each of these counts.
+    """
+    products, wanted = [], []
+    for targets, moved, weight in surfaces:
+        rows = targets.reshape(len(targets), -1)
+        products.append(weight * rows @ rows.T)
+        wanted.append(weight * moved.reshape(len(moved), -1) @ rows.T)
+    total = np.sum(products, axis=0)
+    restraint = RESTRAINT**2 * total.diagonal().max(initial=0.0) + np.finfo(float).tiny
+    # The same problem with as few rows as there are targets, by the square root of the products.
+    root = np.linalg.cholesky(total + restraint * np.eye(len(total)))
+    rows = np.linalg.solve(root, np.sum(wanted, axis=0).T).T
+    found = [lsq_linear(root.T, row, (0.0, 1.0), method="bvls").x for row in rows]
+    return np.asarray(np.clip(found, 0.0, 1.0))  # it may leave its bounds by a rounding error
 
 
 def _used(clip: Clip, names: Sequence[str]) -> list[int]:
@@ -84,8 +102,9 @@ def _used(clip: Clip, names: Sequence[str]) -> list[int]:
 
 
 def _only_turns_head(scene: FaceScene, name: str) -> bool:
-    """Whether a control moves bones of the neck and nothing else."""
-    return all(each.startswith("head_") for each in scene.moved_by(name))
+    """Whether a control moves the head as a whole and nothing else."""
+    moved = scene.moved_by(name)
+    return bool(moved) and all(each.startswith("head_") for each in moved)
 
 
 def _piece(
@@ -132,5 +151,7 @@ def _resting(scene: FaceScene, pose: Mapping[str, float]) -> Shapes:
     return {"skin": in_head(scene, None, scene.positions[None], bones)[0], **shapes}
 
 
-def _flat(shapes: Floats) -> Floats:
-    return shapes.reshape(len(shapes), -1)
+def _motion(clip: Clip, surface: Surface, part: Any) -> Floats:
+    """The skin, or what hangs on the jaw, in all frames, shape (N, V, 3)."""
+    shapes = surface.rest[None] if surface.shapes is None else surface.shapes
+    return in_head(clip.scene, None if part is None else part.bone, shapes, clip.bones)
