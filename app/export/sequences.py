@@ -14,9 +14,10 @@ import PIL.Image
 
 from .clip import Clip, Floats, Indices
 from .formats import FRAME, Request
-from .sheets import METRES, Sheet, joined, sheets, split_at_seams
+from .sheets import METRES, Sheet, joined, sheets
 
-COLUMNS = "x y z nx ny nz s t".split()  # of a PLY's vertices, before their colours
+VERTEX = np.dtype([("point", "<f4", 3), ("normal", "<f4", 3), ("colour", "u1", 3)])  # of a PLY
+TRIANGLE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
 
 
 def write_obj(clip: Clip, folder: Path, request: Request) -> None:
@@ -85,28 +86,20 @@ def write_ply(clip: Clip, folder: Path, request: Request) -> None:
 
 
 def ply_bytes(frame: Sequence[Sheet]) -> bytes:
-    """One PLY; vertices on texture seams are there once for each side."""
-    blocks, faces = [], []
-    for sheet in frame:
-        rows, corners, uv = split_at_seams(sheet)
-        block = np.zeros(
-            len(rows),
-            [("point", "<f4", 3), ("normal", "<f4", 3), ("uv", "<f4", 2), ("colour", "u1", 3)],
-        )
-        block["point"] = sheet.points[rows] * METRES
-        block["normal"] = sheet.normals[rows]
-        block["uv"] = 0.0 if uv is None else uv
-        block["colour"] = np.round(255.0 * sheet.colours[rows])
-        blocks.append(block)
-        faces.append(corners)
-    triangles = joined(faces, [len(block) for block in blocks])
-    rows_of = np.empty(len(triangles), [("count", "u1"), ("corners", "<i4", 3)])
-    rows_of["count"], rows_of["corners"] = 3, triangles
-    floats = "".join(f"property float {name}\n" for name in COLUMNS)
+    """One PLY: vertices with normals and colours, which hold what a texture has there."""
+    counts = [len(sheet.points) for sheet in frame]
+    vertices = np.empty(sum(counts), VERTEX)
+    vertices["point"] = METRES * np.concatenate([sheet.points for sheet in frame])
+    vertices["normal"] = np.concatenate([sheet.normals for sheet in frame])
+    vertices["colour"] = np.round(255.0 * np.concatenate([sheet.colours for sheet in frame]))
+    corners = joined([sheet.faces for sheet in frame], counts)
+    triangles = np.empty(len(corners), TRIANGLE)
+    triangles["count"], triangles["corners"] = 3, corners
+    floats = "".join(f"property float {name}\n" for name in "x y z nx ny nz".split())
     colours = "".join(f"property uchar {name}\n" for name in ("red", "green", "blue"))
     head = (
         "ply\nformat binary_little_endian 1.0\ncomment Risorius, metres\n"
-        f"element vertex {sum(map(len, blocks))}\n{floats}{colours}"
+        f"element vertex {len(vertices)}\n{floats}{colours}"
         f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
     )
-    return head.encode() + b"".join(block.tobytes() for block in blocks) + rows_of.tobytes()
+    return head.encode() + vertices.tobytes() + triangles.tobytes()

@@ -99,31 +99,6 @@ def _painted(clip: Clip, count: int, uv: Singles | None) -> Floats:
     return colours
 
 
-def split_at_seams(sheet: Sheet) -> tuple[Indices, Indices, Singles | None]:
-    """One row for each vertex and texture coordinate that go together, N in all.
-
-    The vertex of each row, shape (N,); the rows of each triangle, (F, 3); the coordinates, (N, 2).
-    The first rows are the vertices in their order.
-    """
-    everywhere = np.arange(len(sheet.points), dtype=np.int32)
-    if sheet.uv is None or sheet.face_uv is None or sheet.face_uv is sheet.faces:
-        return everywhere, sheet.faces, sheet.uv
-    vertices, corners = sheet.faces.ravel(), sheet.face_uv.ravel()
-    first = np.zeros(len(sheet.points), np.int32)
-    first[vertices] = corners
-    pairs, rows = np.unique(
-        np.stack([corners != first[vertices], vertices, corners]), axis=1, return_inverse=True
-    )
-    used = pairs[0] == 0  # a vertex without triangles has no pair, but keeps its row
-    number = np.where(used, pairs[1], len(sheet.points) + np.cumsum(~used) - 1)
-    extra = pairs[:, ~used]
-    return (
-        np.concatenate([everywhere, extra[1]]).astype(np.int32),
-        number[rows.ravel()].reshape(-1, 3).astype(np.int32),
-        sheet.uv[np.concatenate([first, extra[2]])],
-    )
-
-
 def joined(arrays: Sequence[Indices], counts: Sequence[int]) -> Indices:
     """Indices into several arrays of these lengths as indices into all, one after the other."""
     starts = np.cumsum([0, *counts[:-1]])

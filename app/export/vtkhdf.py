@@ -93,6 +93,7 @@ class _Steps:
         self._append("Points", points.astype(np.float32))
         for name, array in values.items():
             self._append(f"PointData/{name}", array.astype(np.float32))
+        self._root["PointData/Normals"].attrs["Attribute"] = np.bytes_("Normals")
 
     def finish(self, surfaces: list[str]) -> None:
         """Write what is known at the end."""

@@ -197,6 +197,8 @@ def test_vtkhdf_has_every_frame(clip: Clip, tmp_path: Path) -> None:
     for frame, (_, data) in enumerate(steps):
         points = vtk_to_numpy(data.GetPoints().GetData())
         assert is_near(points, whole(clip, frame))
+        lengths = np.linalg.norm(vtk_to_numpy(data.GetPointData().GetNormals()), axis=1)
+        assert np.allclose(lengths, 1.0, atol=1e-5)  # that is what VTK lights it by
         moved = vtk_to_numpy(data.GetPointData().GetArray("displacement"))
         assert np.abs(moved - (whole(clip, frame) - rest)).max() < NEAR
         corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
@@ -314,23 +316,21 @@ def test_an_obj_keeps_the_vertices_of_the_mesh(clip: Clip, tmp_path: Path) -> No
     assert (folder / "frame_skin.png").is_file()
 
 
-def test_a_ply_keeps_the_vertices_of_the_mesh_first(clip: Clip, tmp_path: Path) -> None:
-    """Vertices at texture seams come again behind the others, so that each has one coordinate."""
+def test_a_ply_keeps_the_vertices_of_the_mesh(clip: Clip, tmp_path: Path) -> None:
+    """V vertices in their order; colours of parts, and on the skin those of the texture."""
     folder = written(clip, tmp_path / "frames", "ply")
-    read = trimesh.load_mesh(folder / "frame_00000.ply", process=False, maintain_order=True)
-    count = len(clip.skin.rest)
-    assert is_near(read.vertices[:count], clip.skin.at(0), METRES)
-    skin = read.faces[: len(clip.skin.faces)]
-    assert clip.skin.uv is not None and clip.skin.face_uv is not None
-    data = read.metadata["_ply_raw"]["vertex"]["data"]
-    uv = np.column_stack([data["s"], data["t"]])
-    assert np.allclose(uv[skin], clip.skin.uv[clip.skin.face_uv])
-    eye = next(each for each in clip.surfaces if each.name == "eyeball_right")
-    assert eye.colours is not None
-    start = read.faces[len(clip.skin.faces)].min()  # the first surface after the skin
-    colours = np.column_stack([data[name] for name in ("red", "green", "blue")])
-    shown = colours[start : start + len(eye.rest)] / 255.0
-    assert np.abs(shown - eye.colours).max() < 1.0 / 255.0
+    read = trimesh.load_mesh(folder / "frame_00002.ply", process=False, maintain_order=True)
+    assert is_near(read.vertices, whole(clip, 2), METRES)
+    shown = read.visual.vertex_colors[:, :3] / 255.0
+    start = len(clip.skin.rest)
+    for surface in clip.surfaces[1:]:
+        assert surface.colours is not None
+        off = shown[start : start + len(surface.rest)] - surface.colours
+        assert np.abs(off).max() < 1.0 / 255.0
+        start += len(surface.rest)
+    assert clip.scene.albedo is not None and isinstance(clip.scene, FaceScene)
+    lip, cheek = shown[clip.scene.landmarks[62]], shown[clip.scene.landmarks[3]]
+    assert lip[0] / lip[1] > 1.1 * cheek[0] / cheek[1]  # lips are redder
 
 
 # ---------- Arrays, other scenes, Blender -------------------------------------------------------
