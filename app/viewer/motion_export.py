@@ -29,9 +29,10 @@ class MotionExport:
     def ask(self) -> None:
         """Ask for a file, whose suffix says the format."""
         suffixes = tuple(dict.fromkeys(suffix for each in FORMATS for suffix in each.suffixes))
+        usual = dict.fromkeys(each.suffixes[0] for each in FORMATS if each.suffixes)
         stem = Path(self._session.name).stem
         self._files.ask(
-            "Export motion",
+            f"Export motion as {' '.join(usual)}",
             self._announce,
             saving=True,
             proposed=f"{stem}{suffixes[0]}",

@@ -11,8 +11,9 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import PIL.Image
@@ -36,6 +37,7 @@ from risorius.app.files import Image
 from risorius.app.script import parse_script
 from risorius.bench import figures
 
+to_numpy: Callable[..., Any] = vtk_to_numpy  # which has no annotations
 RATE = 30  # frames a second
 MOMENTS = {15: "joy", 30: "surprise", 45: "kiss"}  # by frame
 SCRIPT = "duration = 2.0\n[[pose]]\ntime = 0.0\n" + "".join(
@@ -111,7 +113,7 @@ def in_paraview() -> Image:
             grabber = vtkWindowToImageFilter()
             grabber.SetInput(window)
             grabber.Update()
-            pixels = vtk_to_numpy(grabber.GetOutput().GetPointData().GetScalars())
+            pixels = to_numpy(grabber.GetOutput().GetPointData().GetScalars())
             cells.append((title, pixels.reshape(SIZE[1], SIZE[0], 3)[::-1].copy()))
     return contact_sheet(cells, columns=len(cells), cell_width=300)
 
