@@ -76,7 +76,12 @@ def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats 
     share: of each vertex, how far it goes with the head, shape (V,); None: there is no head.
     """
     surface = piece.surface
-    vertices, coordinates, faces = _split_at_seams(surface)
+    faces: npt.NDArray[Any] = surface.faces
+    vertices = coordinates = np.arange(len(piece.vertices))
+    if surface.face_uv is not None:  # where there are seams, vertices are split
+        corners = np.column_stack([faces.ravel(), surface.face_uv.ravel()]).astype(np.int64)
+        pairs, numbers = np.unique(corners, axis=0, return_inverse=True)
+        (vertices, coordinates), faces = pairs.T, numbers.reshape(-1, 3)
 
     def of_vertices(values: npt.NDArray[Any], *, is_bounded: bool = False) -> int:
         rows = values[vertices].astype(values.dtype if values.dtype == np.uint8 else np.float32)
@@ -106,10 +111,7 @@ def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats 
     mesh: dict[str, Any] = {"name": surface.name, "primitives": [primitive]}
     if piece.names:
         primitive["targets"] = [
-            {
-                "POSITION": of_vertices(METRES * moved, is_bounded=True),
-                "NORMAL": of_vertices(bent),
-            }
+            {"POSITION": of_vertices(METRES * moved, is_bounded=True), "NORMAL": of_vertices(bent)}
             for moved, bent in zip(piece.targets, piece.bends, strict=True)
         ]
         mesh["extras"] = {"targetNames": list(piece.names)}  # where all readers look for names
@@ -124,24 +126,6 @@ def _colours(clip: Clip, surface: Surface) -> npt.NDArray[Any]:
     head = clip.scene.head if isinstance(clip.scene, FaceScene) else None
     painted = {part.name: part.colours for part in head.parts} if head is not None else {}
     return np.asarray(painted.get(surface.name, surface.colours))
-
-
-def _split_at_seams(
-    surface: Surface,
-) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """Vertex and texture coordinate of each vertex of the file, shape (n,), and its faces (F, 3).
-
-    Where the texture has no seams, vertices keep their numbers.
-    """
-    every = np.arange(len(surface.rest))
-    if surface.face_uv is None:
-        return every, every, surface.faces.astype(np.int64)
-    loose = np.setdiff1d(every, surface.faces)  # in no face; kept, as others count by numbers
-    corners = np.column_stack([surface.faces.ravel(), surface.face_uv.ravel()])
-    corners = np.vstack([corners, np.column_stack([loose, np.zeros_like(loose)])])
-    pairs, numbers = np.unique(corners, axis=0, return_inverse=True)
-    faces = numbers.reshape(-1)[: surface.faces.size].reshape(-1, 3)
-    return pairs[:, 0].astype(np.int64), pairs[:, 1].astype(np.int64), faces
 
 
 def _add_material(glb: Glb, clip: Clip, surface: Surface) -> int:

@@ -42,13 +42,9 @@ def rigged_pieces(clip: Clip, rig: str) -> tuple[list[Piece], Floats]:
     used = _used(clip, names)
     weights = np.zeros((clip.frame_count, len(names)))
     weights[:, used] = fit(
-        (
-            targets[surface.name][used],
-            _motion(clip, surface, part) - base[surface.name],
-            1.0 if part is None else IN_MOUTH,
-        )
-        for surface, part in surfaces_with_parts(clip)
-        if surface.name in base
+        (targets[each.name][used], _motion(clip, each, part) - base[each.name], part is None)
+        for each, part in surfaces_with_parts(clip)
+        if each.name in base
     )
     pieces = [
         _piece(surface, part, base[surface.name], names, targets[surface.name], weights)
@@ -70,17 +66,18 @@ def target_names(scene: FaceScene, title: str) -> list[str]:
     ]
 
 
-def fit(surfaces: Iterable[tuple[Floats, Floats, float]]) -> Floats:
+def fit(surfaces: Iterable[tuple[Floats, Floats, bool]]) -> Floats:
     """Weights 0..1, shape (N, K), by which the targets of all surfaces come nearest to the motion.
 
-    surfaces: targets, shape (K, V, 3), how far the vertices are moved, shape (N, V, 3), and how
-    much each of these counts.
+    surfaces: targets, shape (K, V, 3), how far the vertices are moved, shape (N, V, 3), and whether
+    it is the skin, which counts more.
     """
     products, wanted = [], []
-    for targets, moved, weight in surfaces:
+    for targets, moved, is_skin in surfaces:
         rows = targets.reshape(len(targets), -1)
-        products.append(weight * rows @ rows.T)
-        wanted.append(weight * moved.reshape(len(moved), -1) @ rows.T)
+        weighted = rows.T * (1.0 if is_skin else IN_MOUTH)
+        products.append(rows @ weighted)
+        wanted.append(moved.reshape(len(moved), -1) @ weighted)
     total = np.sum(products, axis=0)
     restraint = RESTRAINT**2 * total.diagonal().max(initial=0.0) + np.finfo(float).tiny
     # The same problem with as few rows as there are targets, by the square root of the products.

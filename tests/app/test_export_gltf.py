@@ -328,9 +328,9 @@ def test_fitted_weights_are_those_that_made_the_motion(k: int, v: int, seed: int
     targets = flat.reshape(k, 2, v, 3)
     weights = generator.uniform(0.0, 1.0, (4, k))
     moved = np.tensordot(weights, targets, axes=1)
-    surfaces = [(targets[:, side], moved[:, side], 0.5 + side) for side in (0, 1)]
+    surfaces = [(targets[:, side], moved[:, side], True) for side in (0, 1)]
     assert np.abs(fit(surfaces) - weights).max() < 2e-3
-    assert np.abs(fit([(each, -there, weight) for each, there, weight in surfaces])).max() < 1e-9
+    assert np.abs(fit([(each, -there, is_skin) for each, there, is_skin in surfaces])).max() < 1e-9
 
 
 def settled(name: str) -> tuple[Any, Any]:
