@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import stat
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -17,10 +18,10 @@ import numpy as np
 import numpy.typing as npt
 import PIL.Image
 
-from risorius.assets.staging import StagingFolder
+from risorius.assets.staging import StagingFolder, is_staging_folder
 
 from .errors import UserError
-from .stopping import cleaned_up_if_stopped
+from .stopping import cleaned_up_if_stopped, done_whole
 
 Image = npt.NDArray[np.uint8]  # (H, W, 3), top row first
 
@@ -63,7 +64,8 @@ def read_bytes(path: Path, *, what: str, longest: int, first: int | None = None)
 def written_atomically(target: Path) -> Iterator[Path]:
     """Yield a path beside `target`, renamed to it if the block ends without an error.
 
-    A link stays one: what it points to is written. UserError where that cannot be.
+    Files that the block puts beside that one go along, and lie beside the target then. A link stays
+    one: what it points to is written. UserError where that cannot be.
     """
     whole = real_path(target)
     with cannot_be_written(target):
@@ -71,8 +73,50 @@ def written_atomically(target: Path) -> Iterator[Path]:
     with temporary_folder(target, whole.parent) as folder:
         part = folder / whole.name
         yield part
-        with cannot_be_written(target):
-            os.replace(part, whole)
+        with done_whole(), cannot_be_written(target):
+            for each in (*(item for item in folder.iterdir() if item != part), part):
+                os.replace(each, whole.parent / each.name)
+
+
+@contextlib.contextmanager
+def folder_atomically(target: Path, own: re.Pattern[str], *, overwrite: bool) -> Iterator[Path]:
+    """Yield a folder whose files come into the folder `target` all at once after the block.
+
+    own: names of files that such folders hold. overwrite: those of an earlier time give way;
+    whatever else is there stays. Else UserError if the target holds something already.
+    """
+    check_folder(target, overwrite=overwrite)
+    is_new = not target.exists()
+
+    def give_up() -> None:
+        with contextlib.suppress(OSError):  # it has its files
+            target.rmdir()
+
+    with contextlib.ExitStack() as stack:
+        if is_new:
+            stack.enter_context(cleaned_up_if_stopped(give_up))
+            stack.callback(give_up)
+            with cannot_be_written(target):
+                target.mkdir(parents=True)
+        temporary = stack.enter_context(temporary_folder(target, target))
+        yield temporary
+        with done_whole(), cannot_be_written(target):  # neither may be lost between the two
+            for old in target.iterdir():
+                if own.fullmatch(old.name):
+                    old.unlink()
+            for new in temporary.iterdir():
+                os.replace(new, target / new.name)
+
+
+def check_folder(target: Path, *, overwrite: bool) -> None:
+    """Raise UserError where a folder of many files cannot be written, or holds something."""
+    real_path(target)
+    with cannot_be_written(target):
+        is_empty = not target.exists() or all(map(is_staging_folder, target.iterdir()))
+    if not is_empty and not overwrite:
+        raise UserError(
+            f"{target}: is there and not empty; name another folder, or add --overwrite"
+        )
 
 
 @contextlib.contextmanager

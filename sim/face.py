@@ -34,6 +34,7 @@ from .controls import Controls
 from .coordinates import to_posed_head
 from .drive import MuscleDrive
 from .landmarks import Array
+from .layers import Layers
 from .lids import turn_lids
 from .skin_model import Tick
 from .skull import REST, RigidMotion
@@ -93,6 +94,11 @@ class Simulation:
         return self._controls.layers
 
     @property
+    def tables(self) -> Layers:
+        """What each control of the layers adds to the C lowest `controls`, in their order."""
+        return self._anatomy.layers
+
+    @property
     def limits(self) -> Mapping[str, tuple[float, float]]:
         """Least and greatest value of each control, those of the layers included."""
         return self._controls.limits
@@ -134,6 +140,11 @@ class Simulation:
     def mandible_weight(self) -> npt.NDArray[np.float64]:
         """How far each vertex goes with the mandible, 0 to 1, shape (V,); given or guessed."""
         return self._anatomy.skull.mandible_weight
+
+    @property
+    def head_weight(self) -> npt.NDArray[np.float64]:
+        """How far each vertex goes with the head's pose, 1, fading to 0 down the neck, (V,)."""
+        return self._anatomy.turns[:, 0]
 
     @property
     def faces(self) -> npt.NDArray[np.int32]:
@@ -290,6 +301,14 @@ class Simulation:
             motion = anatomy.skull.eye_motion(ball, *gaze)
             transforms[f"eye_{ball.side.value}"] = self._head.after(motion).matrix(anatomy.space)
         return transforms
+
+    def pivots(self) -> dict[str, npt.NDArray[np.float64]]:
+        """What each bone turns about at rest, name of `bone_transforms` -> (3,) [head units]."""
+        skull, space = self._anatomy.skull, self._anatomy.space
+        middle = skull.condyles.mean(axis=0)
+        points = {"cranium": middle + skull.head.joint, "mandible": middle}
+        points.update({f"eye_{ball.side.value}": ball.centre for ball in skull.eyeballs})
+        return {name: space.to_head(point) for name, point in points.items()}
 
     def tongue(self) -> npt.NDArray[np.float64] | None:
         """Vertices of the part "tongue" now, shape (T, 3); None for a head without one.

@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import PIL.Image
 
-from risorius.assets.staging import is_staging_folder
-
 from ..errors import UserError
 from ..files import (
     Image,
     cannot_be_written,
     check_file,
-    real_path,
-    temporary_folder,
+    folder_atomically,
     written_atomically,
 )
-from ..stopping import cleaned_up_if_stopped, done_whole
+from ..stopping import cleaned_up_if_stopped
 from .ffmpeg import Encoder, Soundtrack
 
 FILM_SUFFIXES = (".mp4", ".mov", ".mkv")
@@ -62,38 +58,8 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
 
     overwrite: frames of an earlier film give way to these; whatever else is there stays.
     """
-    real_path(target)
-    is_new = not target.exists()
-    with cannot_be_written(target):
-        is_empty = is_new or all(is_staging_folder(item) for item in target.iterdir())
-        if not is_empty and not overwrite:
-            raise UserError(
-                f"{target}: is there and not empty; name another folder, or add --overwrite"
-            )
-    if not is_new:
-        with _frames(target) as add:
-            yield add
-        return
-
-    def give_up() -> None:
-        with contextlib.suppress(OSError):  # it has its frames
-            target.rmdir()
-
-    with cleaned_up_if_stopped(give_up):
-        try:
-            with cannot_be_written(target):
-                target.mkdir(parents=True)
-            with _frames(target) as add:
-                yield add
-        finally:
-            give_up()
-
-
-@contextlib.contextmanager
-def _frames(target: Path) -> Iterator[FrameSink]:
-    """Numbered PNG files that come into the folder `target` all at once."""
     count = 0
-    with temporary_folder(target, target) as temporary:
+    with folder_atomically(target, FRAME_NAME, overwrite=overwrite) as temporary:
 
         def add(image: Image) -> None:
             """Write the next frame."""
@@ -105,9 +71,3 @@ def _frames(target: Path) -> Iterator[FrameSink]:
             count += 1
 
         yield add
-        with done_whole(), cannot_be_written(target):  # neither film may be lost between the two
-            for old in target.iterdir():
-                if FRAME_NAME.fullmatch(old.name):
-                    old.unlink()
-            for new in temporary.iterdir():
-                os.replace(new, target / new.name)

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from ..errors import counted, in_one_line
-from ..export.formats import Request, check_request, format_for, names, write
+from ..export.formats import RIGS, Request, check_request, format_for, names, write
 from ..playback import Playback
 from .options import PATH, SCENE_NAMES, Drawing, packed, told, with_drawing, with_playback
 from .parameters import FiniteRange
@@ -21,17 +21,41 @@ class Exporting:
     name: str | None
     fps: float
     refined: bool
-    rig: bool
+    rig: str | None
+    overwrite: bool
     quiet: bool
 
 
 with_exporting = packed(
     "exporting",
     Exporting,
-    click.option("--as", "name", type=click.Choice(names()), help="Where a suffix does not tell."),
-    click.option("--fps", type=FiniteRange(1, 240), default=30.0, show_default=True),
-    click.option("--refined", is_flag=True, help="The refined skin, whose triangles change."),
-    click.option("--rig", is_flag=True, help="Targets to pose by name, as avatars have them."),
+    click.option(
+        "--as",
+        "name",
+        type=click.Choice(names()),
+        help="The format, where a suffix does not tell: obj and ply are folders of one file a "
+        "frame; of a .csv, arkit is meant unless told.",
+    ),
+    click.option(
+        "--fps",
+        type=FiniteRange(1, 240),
+        default=30.0,
+        show_default=True,
+        help="Frames a second.",
+    ),
+    click.option(
+        "--refined", is_flag=True, help="The refined skin, whose triangles change in each frame."
+    ),
+    click.option(
+        "--rig",
+        type=click.Choice(list(RIGS)),
+        is_flag=False,
+        flag_value="arkit",
+        help="Targets to pose by name, as avatars have them; arkit unless told.",
+    ),
+    click.option(
+        "--overwrite", is_flag=True, help="Replace frames in a folder, or files beside -o."
+    ),
     click.option("--quiet", is_flag=True, help="No progress bar."),
 )
 
@@ -59,13 +83,21 @@ def export(
     from ..motion import scene_of
     from ..performances import script_for
 
-    check_apart((output,), (script, drawing.head, drawing.landmarks, playback.mapping))
     chosen = format_for(output, exporting.name)
-    request = Request(drawing.refinement() if exporting.refined else None, exporting.rig)
+    inputs = (script, drawing.head, drawing.landmarks, playback.mapping)
+    check_apart(chosen.outputs(output), inputs)
+    request = Request(
+        drawing.refinement() if exporting.refined else None,
+        exporting.rig,
+        exporting.overwrite,
+        not exporting.quiet,
+    )
     check_request(output, chosen, request)
     tell = None if exporting.quiet else told
     performance = script_for(script, scene, settings, playback=playback, tell=tell)
     played = scene_of(performance, drawing.fitted_head())
     clip = record(performance, played, exporting.fps, progress=not exporting.quiet)
-    write(clip, output, chosen, request)
+    remark = write(clip, output, chosen, request)
     click.echo(f"{in_one_line(output)}: {chosen.title}, {counted(clip.frame_count, 'frame')}")
+    if remark is not None:
+        click.echo(f"{in_one_line(output)}: {remark}", err=True)

@@ -7,25 +7,39 @@ from typing import Any
 
 import numpy as np
 
-from ..files import cannot_be_written
-from .clip import Clip
+from .clip import Clip, Surface
 from .formats import Request
 
 
 def write_npz(clip: Clip, part: Path, _: Request) -> None:
-    """Write positions (N, V, 3), faces (F, 3), times (N,), bones and curves; see docs/export.md."""
-    skin = clip.skin
+    """Write what a clip holds; docs/export.md lists the names."""
     arrays: dict[str, Any] = {
-        "positions": skin.shapes,
-        "rest_positions": skin.rest,
-        "faces": skin.faces,
+        "positions": clip.skin.shapes,
+        "rest_positions": clip.skin.rest,
+        "faces": clip.skin.faces,
         "times": clip.times,
         "frames_per_second": clip.frames_per_second,
+        **{name: array for name, array in _rest_of(clip.skin).items() if name.endswith("uv")},
     }
-    if skin.uv is not None:
-        arrays.update(uv=skin.uv, face_uv=skin.face_uv)
+    for surface in clip.surfaces[1:]:
+        arrays[f"parts/{surface.name}/rest_positions"] = surface.rest
+        arrays[f"parts/{surface.name}/faces"] = surface.faces
+        for name, array in _rest_of(surface).items():
+            arrays[f"parts/{surface.name}/{name}"] = array
     for kind in ("bones", "controls", "activations"):
         for name, values in getattr(clip, kind).items():
             arrays[f"{kind}/{name}"] = values
-    with cannot_be_written(part), part.open("wb") as file:
+    with part.open("wb") as file:
         np.savez_compressed(file, **arrays)
+
+
+def _rest_of(surface: Surface) -> dict[str, Any]:
+    """What not every surface has, by name."""
+    own = {
+        "shapes": surface.shapes,
+        "matrices": surface.matrices,
+        "colours": surface.colours,
+        "uv": surface.uv,
+        "face_uv": surface.face_uv,
+    }
+    return {name: array for name, array in own.items() if array is not None}

@@ -2,18 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import os
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from tqdm import tqdm
 
 from ..errors import UserError
-from ..files import check_file, written_atomically
+from ..files import (
+    cannot_be_written,
+    check_file,
+    check_folder,
+    folder_atomically,
+    written_atomically,
+)
+from ..stopping import cleaned_up_if_stopped
 
 if TYPE_CHECKING:
     from ..looks import Refinement
     from .clip import Clip
+
+
+RIGS = {"arkit": "ARKit shapes", "units": "Action units"}  # titles of layers, by what --rig says
+Item = TypeVar("Item")
+
+FRAME = "frame_{:05d}"  # how files of a sequence are called, without their suffix
+OWN = re.compile(r"frame_\d{5,}\.(obj|ply)|frame\.mtl|frame_skin\.png")  # what such a folder holds
 
 
 @dataclass(frozen=True)
@@ -21,14 +39,27 @@ class Request:
     """What is asked for beside the clip.
 
     refinement: the refined skin is to be written, and not the mesh that is simulated.
-    rig: targets by name that can be posed anew, and not the motion of the script alone.
+    rig: targets by name that can be posed anew, and not the motion of the script alone: one of
+        RIGS, or None.
+    overwrite: frames in a folder, and files beside the output, may be replaced.
+    progress: a bar is shown.
     """
 
     refinement: Refinement | None = None
-    rig: bool = False
+    rig: str | None = None
+    overwrite: bool = False
+    progress: bool = True
+
+    def counted(self, frames: Iterable[Item], count: int) -> Iterator[Item]:
+        """The frames that are being written, under a progress bar."""
+        hidden = not self.progress or None
+        bar = tqdm(frames, "Writing", count, unit="frame", disable=hidden, leave=False)
+        with cleaned_up_if_stopped(bar.close):
+            yield from bar
 
 
-Writer = Callable[["Clip", Path, Request], None]  # writes the whole file, or raises UserError
+# Writes the whole file, or raises UserError; returns what there is to say of it, if anything.
+Writer = Callable[["Clip", Path, Request], str | None]
 
 
 @dataclass(frozen=True)
@@ -37,7 +68,7 @@ class Format:
 
     name: what `--as` calls it. suffixes: of its files; () for a folder of one file a frame.
     writer: "module:function" in this room, imported when it is used. refines, rigs: whether it can
-    carry what `Request` asks for.
+    carry what `Request` asks for. beside: how files end that lie beside the one that is named.
     """
 
     name: str
@@ -46,6 +77,11 @@ class Format:
     writer: str
     refines: bool = False
     rigs: bool = False
+    beside: tuple[str, ...] = ()
+
+    def outputs(self, output: Path) -> tuple[Path, ...]:
+        """All files that are written, that of this name first."""
+        return (output, *(output.with_name(output.stem + end) for end in self.beside))
 
     def load(self) -> Writer:
         """The function that writes it."""
@@ -54,7 +90,21 @@ class Format:
         return writer
 
 
-FORMATS = (Format("npz", "numpy arrays", (".npz",), "arrays:write_npz"),)
+MESH = (".obj", ".mtl", "_skin.png")  # a mesh file, its materials, and their picture
+FORMATS = (
+    Format("gltf", "glTF", (".glb",), "gltf:write_gltf", rigs=True),
+    Format("usd", "USD", (".usdc", ".usda", ".usd"), "usd:write_usd", True, beside=("_skin.png",)),
+    Format("usdz", "USD in one file", (".usdz",), "usd:write_usdz", True),
+    Format("pc2", "PC2 point cache", (".pc2",), "point_caches:write_pc2", beside=MESH),
+    Format("mdd", "MDD point cache", (".mdd",), "point_caches:write_mdd", beside=MESH),
+    Format("obj", "OBJ sequence", (), "sequences:write_obj", True),
+    Format("ply", "PLY sequence", (), "sequences:write_ply", True),
+    Format("vtkhdf", "VTKHDF", (".vtkhdf", ".hdf"), "vtkhdf:write_vtkhdf", True),
+    Format("npz", "numpy arrays", (".npz",), "arrays:write_npz"),
+    Format("arkit", "ARKit shapes over time", (".csv",), "tables:write_arkit"),
+    Format("units", "action units over time", (".csv",), "tables:write_units"),
+    Format("muscles", "muscles over time", (".csv",), "tables:write_muscles"),
+)
 
 
 def format_for(output: Path, name: str | None) -> Format:
@@ -67,8 +117,11 @@ def format_for(output: Path, name: str | None) -> Format:
         if each.name == name or (name is None and suffix in each.suffixes and suffix):
             _check_suffix(output, each)
             return each
-    allowed = ", ".join(suffix for each in FORMATS for suffix in each.suffixes)
-    raise UserError(f"{output}: what is '{suffix}'? Allowed are {allowed}")
+    allowed = ", ".join(dict.fromkeys(suffix for each in FORMATS for suffix in each.suffixes))
+    folders = " or ".join(f"--as {each.name}" for each in FORMATS if not each.suffixes)
+    raise UserError(
+        f"{output}: what is '{suffix}'? Allowed are {allowed}, and folders with {folders}"
+    )
 
 
 def _check_suffix(output: Path, chosen: Format) -> None:
@@ -84,20 +137,43 @@ def check_request(output: Path, chosen: Format, request: Request) -> None:
     """UserError, before any work is done, where the output cannot be as it is asked for."""
     for asked, can, option in (
         (request.refinement is not None, [f for f in FORMATS if f.refines], "--refined"),
-        (request.rig, [f for f in FORMATS if f.rigs], "--rig"),
+        (request.rig is not None, [f for f in FORMATS if f.rigs], "--rig"),
     ):
         if asked and chosen not in can:
             names = ", ".join(each.name for each in can)
             raise UserError(f"{option} does not go with {chosen.title}; it goes with {names}")
-    if chosen.suffixes:
-        check_file(output)
+    chosen.load()
+    if not chosen.suffixes:
+        check_folder(output, overwrite=request.overwrite)
+        return
+    check_file(output)
+    if not output.exists() and not request.overwrite:  # else all are from an earlier time
+        for other in chosen.outputs(output)[1:]:
+            if os.path.lexists(other):
+                raise UserError(
+                    f"{other}: is there, and {output.name} would come with such a file; "
+                    "choose another name, or add --overwrite"
+                )
 
 
-def write(clip: Clip, output: Path, chosen: Format, request: Request) -> None:
-    """Write a clip, whole or not at all."""
+def write(clip: Clip, output: Path, chosen: Format, request: Request) -> str | None:
+    """Write a clip, whole or not at all; return what there is to say of the file, if anything."""
     writer = chosen.load()
-    with written_atomically(output) as part:
-        writer(clip, part, request)
+    whole = (
+        written_atomically(output)
+        if chosen.suffixes
+        else folder_atomically(output, OWN, overwrite=request.overwrite)
+    )
+    with cannot_be_written(output), whole as part:
+        return writer(clip, part, request)
+
+
+def needed(module: str, package: str) -> Any:
+    """A library that only this room uses; UserError where it is not installed."""
+    try:
+        return import_module(module)
+    except ImportError:
+        raise UserError(f"this needs {package}: pip install 'risorius[export]'") from None
 
 
 def names() -> Sequence[str]:

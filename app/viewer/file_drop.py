@@ -93,7 +93,7 @@ class FileDrop:
         self._announced = dropped
         return "fitting the muscles to this head ..."
 
-    def open_announced(self) -> Message:
+    def do_announced(self) -> Message:
         """Fit the head that was announced; all that was done stays."""
         dropped, self._announced = self._announced, None
         return None if dropped is None else self._open(dropped)

@@ -81,7 +81,7 @@ class Files:
             return None
         target = Path(path)
         if path and request.is_saving and not target.suffix:
-            target = target.with_suffix(SUFFIX)
+            target = target.with_suffix(request.suffixes[0])
             if target.exists():  # the dialog has asked about the name without its end
                 request.proposed, request.dialog = target, None
                 return None

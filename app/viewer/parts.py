@@ -22,6 +22,7 @@ from .idle_life import IdleLife
 from .key_selection import KeySelection
 from .live_commands import LiveCommands
 from .messages import Messages
+from .motion_export import MotionExport
 from .mouse import Mouse
 from .painter import Painter
 from .panel_cache import PanelCache
@@ -115,10 +116,13 @@ class Parts:
         self.selection = KeySelection(session, self.panel_state)
         self.scripts = ScriptCommands(session, self.files, self.question)
         self.exporter = Exporter(self.stage, self.view)
+        self.motion_export = MotionExport(session, self.files)
         self.live = LiveCommands(session, self.panel_state, wake_up)
         self.file_drop = FileDrop(self.files, self.scripts, self.show_scene)
         self.commands: tuple[Command, ...] = (
-            *menus.file_menu(self.scripts, self.file_drop, self.exporter, self.ask_to_close),
+            *menus.file_menu(
+                self.scripts, self.file_drop, self.motion_export, self.exporter, self.ask_to_close
+            ),
             *menus.edit_menu(session),
             *menus.time_menu(session, self.scripts, self.time_axis),
             *menus.keys_menu(self.selection),

@@ -83,6 +83,8 @@ class Viewer(Parts):
         if self.gui.has_events:
             self._awake = FRAMES_AFTER_EVENT
             self.life.note_input()
+        slow = (self.file_drop, self.motion_export)
+        announced = [each.do_announced for each in slow if each.has_announced]
         now = time.perf_counter()
         elapsed, self._last = now - self._last, now
         self.times.note_frame(elapsed)
@@ -107,9 +109,9 @@ class Viewer(Parts):
             return  # what is shown stays as it is; of a line of text the cursor blinks
         self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
-        if self.file_drop.has_announced:
+        for task in announced:
             self.messages.text = ""
-            self.messages.attempt(self.file_drop.open_announced)
+            self.messages.attempt(task)
             self._last = time.perf_counter()
         if is_moving and not self.is_left_alone:
             self.painter.level_of_detail.note(time.perf_counter() - now)

@@ -1,7 +1,7 @@
 """Draw the pictures of docs/in_other_programs.md: `python docs/figures/hosts.py [FOLDER]`.
 
 `hosts_pyvista` is what the page's own program draws. `hosts_blender`, the face in joy by Cycles,
-is drawn by in_blender.py in the Python of Blender that RISORIUS_BLENDER_PYTHON names.
+is drawn by refined_in_blender.py in the Python of Blender that RISORIUS_BLENDER_PYTHON names.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def blender() -> Image:
         file, picture = Path(folder) / "face.npz", Path(folder) / "face.png"
         np.savez(file, **data)
         subprocess.run(
-            [python, Path(__file__).with_name("in_blender.py"), file, picture],
+            [python, Path(__file__).with_name("refined_in_blender.py"), file, picture],
             env={**os.environ, "PYTHONPATH": str(AS_INSTALLED)},
             stdout=sys.stderr,
             check=True,

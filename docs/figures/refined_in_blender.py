@@ -1,4 +1,4 @@
-"""Run by Blender's Python for hosts.py: a face as it is, and refined: `in_blender.py NPZ PNG`."""
+"""Run by Blender's Python for hosts.py: a face as it is, and refined: `refined_in_blender.py NPZ PNG`."""
 
 from __future__ import annotations
 

@@ -1,0 +1,115 @@
+"""A binary glTF file (.glb): one chunk of JSON, one of numbers, and how numbers are named in it.
+
+Source: Khronos Group, "glTF 2.0 Specification", sections 3.6 (buffers, accessors) and 4 (GLB).
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import struct
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+
+import risorius
+
+ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963  # what a buffer view is for: vertices, corners
+COMPONENT_TYPES = {"uint8": 5121, "uint16": 5123, "uint32": 5125, "float32": 5126}
+TYPES: dict[tuple[int, ...], str] = {
+    (): "SCALAR", (2,): "VEC2", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4",
+}  # fmt: skip
+ALIGNMENT = 4  # [bytes] of chunks, and of what is in them
+JPEG_QUALITY = 92  # chosen by eye: no blocks in skin, a sixth of the PNG
+
+
+class Glb:
+    """What goes into one file, in the order in which it is added."""
+
+    def __init__(self) -> None:
+        self._parts: dict[str, Any] = {
+            "asset": {"version": "2.0", "generator": f"Risorius {risorius.__version__}"},
+            "scene": 0,
+        }
+        self._numbers = bytearray()
+
+    def add(self, kind: str, item: dict[str, Any]) -> int:
+        """Add a node, mesh, material, ... to the list called `kind`; return its number there."""
+        items = self._parts.setdefault(kind, [])
+        items.append(item)
+        return len(items) - 1
+
+    def accessor(
+        self, values: npt.NDArray[Any], target: int | None = None, *, is_bounded: bool = False
+    ) -> int:
+        """Add an array whose rows are numbers, vectors or matrices (their columns first).
+
+        is_bounded: say what the least and greatest are, as positions and times must.
+        """
+        accessor: dict[str, Any] = {
+            "bufferView": self._view(np.ascontiguousarray(values).tobytes(), target),
+            "componentType": COMPONENT_TYPES[values.dtype.name],
+            "count": len(values),
+            "type": TYPES[values.shape[1:]],
+        }
+        if is_bounded:
+            accessor["min"] = np.atleast_1d(values.min(axis=0)).tolist()
+            accessor["max"] = np.atleast_1d(values.max(axis=0)).tolist()
+        return self.add("accessors", accessor)
+
+    def texture(self, image: npt.NDArray[np.uint8]) -> int:
+        """Add a picture (H, W) or (H, W, 3), top row first, as a texture."""
+        file = io.BytesIO()
+        PIL.Image.fromarray(image).save(file, "JPEG", quality=JPEG_QUALITY, subsampling=0)
+        view = self._view(file.getvalue(), None)
+        source = self.add("images", {"bufferView": view, "mimeType": "image/jpeg"})
+        return self.add("textures", {"source": source})
+
+    def to_bytes(self) -> bytes:
+        """The whole file."""
+        numbers = _padded(bytes(self._numbers), b"\0")
+        parts = {**self._parts, "buffers": [{"byteLength": len(numbers)}]}
+        text = json.dumps(parts, separators=(",", ":"), allow_nan=False).encode()
+        chunks = ((b"JSON", _padded(text, b" ")), (b"BIN\0", numbers))
+        body = b"".join(struct.pack("<I4s", len(data), kind) + data for kind, data in chunks)
+        return struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
+
+    def _view(self, data: bytes, target: int | None) -> int:
+        """Add bytes, aligned."""
+        self._numbers += b"\0" * (-len(self._numbers) % ALIGNMENT)
+        view = {"buffer": 0, "byteOffset": len(self._numbers), "byteLength": len(data)}
+        self._numbers += data
+        return self.add("bufferViews", view if target is None else {**view, "target": target})
+
+
+def _padded(data: bytes, filler: bytes) -> bytes:
+    return data + filler * (-len(data) % ALIGNMENT)
+
+
+class Animation:
+    """Tracks over the same times, each of one property of one node."""
+
+    def __init__(self, glb: Glb, times: npt.NDArray[np.float64]) -> None:
+        """Times of the keyframes [s], shape (N,); between them values change evenly."""
+        self._glb = glb
+        self._times = times
+        self._input: int | None = None
+        self._tracks: dict[str, list[dict[str, Any]]] = {"channels": [], "samplers": []}
+
+    def add(self, node: int, path: str, values: npt.NDArray[np.float64]) -> None:
+        """Add the "translation", "rotation" or "weights" of a node at each time, first axis N."""
+        if self._input is None:
+            self._input = self._glb.accessor(self._times.astype(np.float32), is_bounded=True)
+        rows = values.ravel() if path == "weights" else values
+        sampler = {"input": self._input, "output": self._glb.accessor(rows.astype(np.float32))}
+        target = {"node": node, "path": path}
+        channel = {"sampler": len(self._tracks["samplers"]), "target": target}
+        self._tracks["samplers"].append(sampler)
+        self._tracks["channels"].append(channel)
+
+    def finish(self, name: str) -> None:
+        """Put it into the file, unless nothing moves."""
+        if self._tracks["channels"]:
+            self._glb.add("animations", {"name": name, **self._tracks})

@@ -1,0 +1,147 @@
+"""A clip as binary glTF (.glb), which Blender, browsers and game engines read: metres, y up.
+
+Bones are animated nodes; all other motion is weights of morph targets. Every frame of the clip is a
+keyframe. docs/export.md says what is in a file, and what other programs make of it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import render
+from risorius.render.style import linear
+
+from ..scenes import FaceScene
+from .clip import Clip, Surface
+from .formats import Request
+from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Animation, Glb
+from .morphs import TOLERANCE, Floats
+from .pieces import Piece, moving_pieces
+from .rig import rigged_pieces
+from .skeleton import METRES, Skeleton
+
+LONGEST_SHORT = 65535  # vertices that 16 bits can number
+SKIN_ROUGHNESS, DULL, WET = 0.55, 0.75, 0.12  # chosen by eye; parts from dull to wet by their shine
+
+
+def write_gltf(clip: Clip, part: Path, request: Request) -> str | None:
+    """Write the file; return what there is to say of how near it comes to the clip."""
+    remark = None
+    if request.rig is None:
+        pieces, error = moving_pieces(clip)
+        if error > TOLERANCE:
+            count = max(len(piece.names) for piece in pieces)
+            remark = f"{count} morph targets do not suffice: up to {error:.2f} mm off"
+    else:
+        pieces, off = rigged_pieces(clip, request.rig)
+        mean = float(np.sqrt(np.square(off).mean()))
+        remark = f"the targets follow the motion to {mean:.2f} mm (rms), {off.max():.1f} mm at most"
+    content = _packed(clip, pieces)
+    part.write_bytes(content)
+    return remark
+
+
+def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
+    """The whole file."""
+    glb = Glb()
+    animation = Animation(glb, clip.times)
+    bones = {piece.bone for piece in pieces if piece.bone is not None}
+    skeleton = Skeleton(clip, bones, glb, animation)
+    roots = list(skeleton.roots)
+    for piece in pieces:
+        node: dict[str, Any] = {"name": piece.surface.name}
+        share = None
+        if piece.bone is None and isinstance(clip.scene, FaceScene):
+            node["skin"], share = skeleton.skin, clip.scene.simulation.head_weight
+        node["mesh"] = _add_mesh(glb, clip, piece, skeleton.pivot(piece.bone), share)
+        number = glb.add("nodes", node)
+        if piece.bone is None:
+            roots.append(number)
+        else:
+            skeleton.hang(number, piece.bone)
+        if piece.names:
+            animation.add(number, "weights", piece.weights)
+    animation.finish(clip.script.title or "motion")
+    glb.add("scenes", {"nodes": roots})
+    return glb.to_bytes()
+
+
+def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats | None) -> int:
+    """Add a mesh whose vertices are told from `origin`; return its number.
+
+    share: of each vertex, how far it goes with the head, shape (V,); None: there is no head.
+    """
+    surface = piece.surface
+    faces: npt.NDArray[Any] = surface.faces
+    vertices = coordinates = np.arange(len(piece.vertices))
+    if surface.face_uv is not None:  # where there are seams, vertices are split
+        corners = np.column_stack([faces.ravel(), surface.face_uv.ravel()]).astype(np.int64)
+        pairs, numbers = np.unique(corners, axis=0, return_inverse=True)
+        (vertices, coordinates), faces = pairs.T, numbers.reshape(-1, 3)
+
+    def of_vertices(values: npt.NDArray[Any], *, is_bounded: bool = False) -> int:
+        rows = values[vertices].astype(values.dtype if values.dtype == np.uint8 else np.float32)
+        return glb.accessor(rows, ARRAY_BUFFER, is_bounded=is_bounded)
+
+    attributes = {
+        "POSITION": of_vertices(METRES * (piece.vertices - origin), is_bounded=True),
+        "NORMAL": of_vertices(piece.normals),
+    }
+    if surface.uv is not None:
+        top_down = np.column_stack([surface.uv[:, 0], 1.0 - surface.uv[:, 1]])
+        texels = top_down[coordinates].astype(np.float32)
+        attributes["TEXCOORD_0"] = glb.accessor(texels, ARRAY_BUFFER)
+    if surface.colours is not None:
+        attributes["COLOR_0"] = of_vertices(linear(_colours(clip, surface)))
+    if share is not None:
+        none = np.zeros_like(share)
+        joints = np.column_stack([none, share > 0.0, none, none]).astype(np.uint8)
+        attributes["JOINTS_0"] = of_vertices(joints)
+        attributes["WEIGHTS_0"] = of_vertices(np.column_stack([1.0 - share, share, none, none]))
+    short = np.uint16 if len(vertices) <= LONGEST_SHORT else np.uint32
+    primitive: dict[str, Any] = {
+        "attributes": attributes,
+        "indices": glb.accessor(faces.astype(short).ravel(), ELEMENT_ARRAY_BUFFER),
+        "material": _add_material(glb, clip, surface),
+    }
+    mesh: dict[str, Any] = {"name": surface.name, "primitives": [primitive]}
+    if piece.names:
+        primitive["targets"] = [
+            {"POSITION": of_vertices(METRES * moved, is_bounded=True), "NORMAL": of_vertices(bent)}
+            for moved, bent in zip(piece.targets, piece.bends, strict=True)
+        ]
+        mesh["extras"] = {"targetNames": list(piece.names)}  # where all readers look for names
+    return glb.add("meshes", mesh)
+
+
+def _colours(clip: Clip, surface: Surface) -> npt.NDArray[Any]:
+    """sRGB of the vertices, (V, 3), as other programs light them.
+
+    Ours darkens the depth of the mouth further, since nothing casts shadows there.
+    """
+    head = clip.scene.head if isinstance(clip.scene, FaceScene) else None
+    painted = {part.name: part.colours for part in head.parts} if head is not None else {}
+    return np.asarray(painted.get(surface.name, surface.colours))
+
+
+def _add_material(glb: Glb, clip: Clip, surface: Surface) -> int:
+    """Add what a surface looks like; return its number."""
+    rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": SKIN_ROUGHNESS}
+    material: dict[str, Any] = {"name": surface.name, "pbrMetallicRoughness": rough}
+    if surface.colours is not None:
+        rough["roughnessFactor"] = DULL + surface.shine * (WET - DULL)
+        return glb.add("materials", material)
+    material["doubleSided"] = True
+    scene = clip.scene
+    if scene.albedo is None or surface.uv is None:
+        rough["baseColorFactor"] = [*linear(render.CLAY), 1.0]
+        return glb.add("materials", material)
+    rough["baseColorTexture"] = {"index": glb.texture(scene.albedo)}
+    openness = scene.openness()
+    if openness is not None:
+        material["occlusionTexture"] = {"index": glb.texture(openness)}
+    return glb.add("materials", material)

@@ -1,0 +1,105 @@
+"""A folder of one mesh file a frame, OBJ or PLY: what every program reads, triangles as they come.
+
+Source: Wavefront, "Advanced Visualizer manual", appendix B1 (OBJ) and B2 (MTL); Turk 1994, "The PLY
+polygon file format".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import PIL.Image
+
+from .clip import Clip, Floats, Indices
+from .formats import FRAME, Request
+from .sheets import METRES, Sheet, joined, sheets
+
+VERTEX = np.dtype([("point", "<f4", 3), ("normal", "<f4", 3), ("colour", "u1", 3)])  # of a PLY
+TRIANGLE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
+
+
+def write_obj(clip: Clip, folder: Path, request: Request) -> None:
+    """Write an OBJ of each frame, in metres, and the skin's texture beside them.
+
+    The mesh that is simulated keeps its V vertices, in their order.
+    """
+    material = write_material(clip, folder / "frame.mtl")
+    frames = request.counted(sheets(clip, request.refinement), clip.frame_count)
+    for number, frame in enumerate(frames):
+        path = folder / f"{FRAME.format(number)}.obj"
+        path.write_text(obj_text(frame, material))
+
+
+def write_material(clip: Clip, path: Path) -> str:
+    """Write an MTL and its picture, if the skin has one; the name of the MTL, or nothing."""
+    if clip.scene.albedo is None:
+        return ""
+    picture = path.with_name(f"{path.stem}_skin.png")
+    path.write_text(f"newmtl skin\nKd 1 1 1\nmap_Kd {picture.name}\nnewmtl parts\nKd 1 1 1\n")
+    PIL.Image.fromarray(clip.scene.albedo).save(picture)
+    return path.name
+
+
+def obj_text(frame: Sequence[Sheet], material: str) -> str:
+    """One OBJ of one object, a group for each surface; material: the MTL that the skin has.
+
+    Vertices have colours behind their coordinates, as MeshLab writes and Blender reads them.
+    """
+    texts = [f"mtllib {material}\n" if material else ""]
+    points = coordinates = 1
+    for sheet in frame:
+        texts.append(_rows("v", np.hstack([sheet.points * METRES, sheet.colours])))
+        texts.append(_rows("vn", sheet.normals))
+        uv, face_uv = sheet.uv, sheet.face_uv
+        if uv is None or face_uv is None:  # for readers that expect one at all corners
+            uv, face_uv = np.zeros((1, 2), np.float32), np.zeros_like(sheet.faces)
+        texts.append(_rows("vt", uv))
+        texts.append(f"g {sheet.name}\n")
+        if material:
+            texts.append(f"usemtl {'parts' if sheet.uv is None else 'skin'}\n")
+        texts.append(_faces([sheet.faces + points, face_uv + coordinates, sheet.faces + points]))
+        coordinates += len(uv)
+        points += len(sheet.points)
+    return "".join(texts)
+
+
+def _rows(name: str, rows: Floats | np.ndarray[tuple[int, ...], np.dtype[np.float32]]) -> str:
+    """A line of each row, its numbers after a name."""
+    line = name + " %.6g" * rows.shape[1] + "\n"
+    return (line * len(rows)) % tuple(rows.ravel().tolist())
+
+
+def _faces(corners: Sequence[Indices]) -> str:
+    """Lines of triangles, whose corners are vertex/coordinate/normal."""
+    line = "f" + " %d/%d/%d" * 3 + "\n"
+    numbers = np.stack(corners, axis=-1)
+    return (line * len(numbers)) % tuple(numbers.ravel().tolist())
+
+
+def write_ply(clip: Clip, folder: Path, request: Request) -> None:
+    """Write a binary PLY of each frame, in metres: all surfaces in one mesh, the skin first."""
+    frames = request.counted(sheets(clip, request.refinement), clip.frame_count)
+    for number, frame in enumerate(frames):
+        (folder / f"{FRAME.format(number)}.ply").write_bytes(ply_bytes(frame))
+
+
+def ply_bytes(frame: Sequence[Sheet]) -> bytes:
+    """One PLY: vertices with normals and colours, which hold what a texture has there."""
+    counts = [len(sheet.points) for sheet in frame]
+    vertices = np.empty(sum(counts), VERTEX)
+    vertices["point"] = METRES * np.concatenate([sheet.points for sheet in frame])
+    vertices["normal"] = np.concatenate([sheet.normals for sheet in frame])
+    vertices["colour"] = np.round(255.0 * np.concatenate([sheet.colours for sheet in frame]))
+    corners = joined([sheet.faces for sheet in frame], counts)
+    triangles = np.empty(len(corners), TRIANGLE)
+    triangles["count"], triangles["corners"] = 3, corners
+    floats = "".join(f"property float {name}\n" for name in "x y z nx ny nz".split())
+    colours = "".join(f"property uchar {name}\n" for name in ("red", "green", "blue"))
+    head = (
+        "ply\nformat binary_little_endian 1.0\ncomment Risorius, metres\n"
+        f"element vertex {len(vertices)}\n{floats}{colours}"
+        f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    return head.encode() + vertices.tobytes() + triangles.tobytes()

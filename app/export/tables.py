@@ -1,0 +1,105 @@
+"""Curves as CSV: muscles, action units, or the shapes of ARKit as Live Link Face writes them.
+
+They tell the face that is seen. Muscles, eyes and head follow late what they are asked, each in its
+own time, so that what was asked of them is written so much later.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ..curves import ACTION_UNITS, ARKIT_SHAPES, solved
+from ..errors import UserError
+from ..playback import LEAD
+from ..recordings.conversion import lead_of
+from ..recordings.names import ARKIT
+from .clip import Clip, Floats
+from .formats import Request
+
+TIMECODE_RATE = 60  # Live Link Face counts so many frames a second, whatever the camera does
+OTHER_ORDER = {  # its columns are in ARKit's order but for these
+    "jawLeft": "jawRight",
+    "jawRight": "jawLeft",
+    "mouthLeft": "mouthRight",
+    "mouthRight": "mouthLeft",
+}
+# Full controls in radians, and ARKit counts to the subject's right and down, where ours grow to the
+# left and up. The head rolls to the right shoulder there.
+ANGLES = {
+    "HeadYaw": ("head_yaw", -np.radians(45.0)),
+    "HeadPitch": ("head_pitch", -np.radians(30.0)),
+    "HeadRoll": ("head_roll", -np.radians(30.0)),
+    "LeftEyeYaw": ("gaze_horizontal_left", -np.radians(30.0)),
+    "LeftEyePitch": ("gaze_vertical_left", -np.radians(30.0)),
+    "LeftEyeRoll": ("", 0.0),
+    "RightEyeYaw": ("gaze_horizontal_right", -np.radians(30.0)),
+    "RightEyePitch": ("gaze_vertical_right", -np.radians(30.0)),
+    "RightEyeRoll": ("", 0.0),
+}
+
+
+def write_muscles(clip: Clip, part: Path, _: Request) -> None:
+    """Write how far each muscle, the jaw, the eyes and the head are activated."""
+    if not clip.activations:
+        raise UserError(f"the scene '{clip.scene.name}' has no muscles; take the scene face")
+    _write_seconds(clip, part, clip.activations)
+
+
+def write_units(clip: Clip, part: Path, _: Request) -> None:
+    """Write the action units, 0 to 1, by side."""
+    _write_seconds(clip, part, solved(clip.scene, ACTION_UNITS, clip.activations, clip.controls))
+
+
+def write_arkit(clip: Clip, part: Path, _: Request) -> None:
+    """Write the 52 shapes and the angles of head and eyes, in Live Link Face's columns."""
+    shapes = _as_seen(clip, solved(clip.scene, ARKIT_SHAPES, clip.activations, clip.controls))
+    lowest = _as_seen(clip, clip.activations)
+    names = [OTHER_ORDER.get(name, name) for name in ARKIT]
+    columns = {_livelink(name): shapes.get(name, np.zeros(clip.frame_count)) for name in names}
+    for name, (control, radians) in ANGLES.items():
+        columns[name] = radians * lowest.get(control, np.zeros(clip.frame_count))
+    stamps = ([_timecode(time), len(columns)] for time in clip.times)
+    _write(part, ["Timecode", "BlendShapeCount"], stamps, columns)
+
+
+def _livelink(shape: str) -> str:
+    """JawOpen, as the app spells jawOpen."""
+    return shape[0].upper() + shape[1:]
+
+
+def _timecode(time: float) -> str:
+    """A time [s] as HH:MM:SS:FF.fff, the frames of TIMECODE_RATE with their fraction."""
+    thousandths = round(time * TIMECODE_RATE * 1000.0)
+    frames, fraction = divmod(thousandths, 1000)
+    seconds, frame = divmod(frames, TIMECODE_RATE)
+    minutes, second = divmod(seconds, 60)
+    return f"{minutes // 60:02}:{minutes % 60:02}:{second:02}:{frame:02}.{fraction:03}"
+
+
+def _write_seconds(clip: Clip, part: Path, curves: Mapping[str, Floats]) -> None:
+    """Write curves behind a column of seconds."""
+    stamps = ([f"{time:.6f}"] for time in clip.times)
+    _write(part, ["time"], stamps, _as_seen(clip, curves))
+
+
+def _as_seen(clip: Clip, curves: Mapping[str, Floats]) -> dict[str, Floats]:
+    """What was asked of the face, as late as it is seen there."""
+    return {
+        name: np.interp(clip.times - lead_of(name, LEAD), clip.times, values)
+        for name, values in curves.items()
+    }
+
+
+def _write(
+    part: Path, names: list[str], stamps: Iterable[Sequence[object]], columns: Mapping[str, Floats]
+) -> None:
+    """Write a table: a row for each frame."""
+    with part.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([*names, *columns])
+        for stamp, *values in zip(stamps, *columns.values(), strict=True):
+            writer.writerow([*stamp, *(f"{value + 0.0:.6f}" for value in values)])

@@ -1,0 +1,175 @@
+"""USD: every surface as a mesh under one root, with time samples of what moves. Millimetres.
+
+The texture is a picture beside the file; a package (.usdz) holds both in one.
+
+Source: Pixar, OpenUSD's schemas UsdGeomMesh (points, normals, primvars) and UsdPreviewSurface.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+
+from risorius.assets.topology import vertex_normals
+
+from .clip import Clip, Surface
+from .formats import Request, needed
+
+PACKAGE = "usd-core"
+Gf, Sdf, Tf = (needed(f"pxr.{name}", PACKAGE) for name in ("Gf", "Sdf", "Tf"))
+Usd, UsdGeom, UsdShade, UsdUtils, Vt = (
+    needed(f"pxr.{name}", PACKAGE) for name in ("Usd", "UsdGeom", "UsdShade", "UsdUtils", "Vt")
+)
+
+MILLIMETRE = 0.001  # metres per unit
+DULL, WET = 0.6, 0.1  # roughness
+UNWRITTEN = "USD did not get to its end; the disk may be full"
+ALWAYS = Usd.TimeCode.Default()
+
+
+def write_usd(clip: Clip, part: Path, request: Request) -> None:
+    """Write a stage of one file, .usdc, .usda or .usd, and the picture of the skin beside it."""
+    picture = part.with_name(f"{part.stem}_skin.png")
+    if clip.scene.albedo is not None:
+        PIL.Image.fromarray(clip.scene.albedo).save(picture)
+    try:
+        stage = Usd.Stage.CreateNew(str(part))
+        _fill(stage, clip, request, picture.name)
+        stage.Save()
+    except Tf.ErrorException as error:
+        raise OSError(UNWRITTEN) from error
+
+
+def write_usdz(clip: Clip, part: Path, request: Request) -> None:
+    """Write the same as a package."""
+    with tempfile.TemporaryDirectory(dir=part.parent) as folder:
+        layer = Path(folder) / f"{part.stem}.usdc"
+        write_usd(clip, layer, request)
+        is_made = UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(layer)), str(part))
+    if not is_made:
+        raise OSError(UNWRITTEN)
+
+
+def _fill(stage: Any, clip: Clip, request: Request, picture: str) -> None:
+    """Put the clip on the stage: a time code for each frame."""
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
+    UsdGeom.SetStageMetersPerUnit(stage, MILLIMETRE)
+    stage.SetTimeCodesPerSecond(clip.frames_per_second)
+    stage.SetFramesPerSecond(clip.frames_per_second)
+    stage.SetStartTimeCode(0)
+    stage.SetEndTimeCode(clip.frame_count - 1)
+    root = UsdGeom.Xform.Define(stage, f"/{clip.scene.name}")
+    stage.SetDefaultPrim(root.GetPrim())
+    for surface in clip.surfaces:
+        name = Tf.MakeValidIdentifier(surface.name)
+        mesh = UsdGeom.Mesh.Define(stage, root.GetPath().AppendChild(name))
+        mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+        if surface is clip.skin and request.refinement is not None:
+            _add_refined(mesh, clip, request)
+        else:
+            _add_surface(mesh, surface, request)
+        has_picture = surface.uv is not None and clip.scene.albedo is not None
+        _add_material(stage, mesh, surface, picture if has_picture else None)
+
+
+def _add_surface(mesh: Any, surface: Surface, request: Request) -> None:
+    """A mesh whose triangles stay: its points move, or all of it does."""
+    _set_faces(mesh, surface.faces, ALWAYS)
+    if surface.shapes is None:
+        _set_points(mesh, surface.rest, vertex_normals(surface.rest, surface.faces), ALWAYS)
+    else:
+        frames = request.counted(surface.shapes.astype(np.float64), len(surface.shapes))
+        for frame, points in enumerate(frames):
+            _set_points(mesh, points, vertex_normals(points, surface.faces), frame)
+    if surface.matrices is not None:
+        moves = np.ptp(surface.matrices, axis=0).any()
+        operation = mesh.AddTransformOp()
+        for frame, matrix in enumerate(surface.matrices if moves else surface.matrices[:1]):
+            operation.Set(Gf.Matrix4d(matrix.T), frame if moves else ALWAYS)  # vectors are rows
+    if surface.uv is not None and surface.face_uv is not None:
+        st = _primvar(mesh, "st", Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.faceVarying)
+        st.Set(Vt.Vec2fArray.FromNumpy(surface.uv))
+        st.SetIndices(Vt.IntArray.FromNumpy(surface.face_uv.ravel()))
+    if surface.colours is not None:
+        kind = Sdf.ValueTypeNames.Color3fArray
+        colours = _primvar(mesh, "displayColor", kind, UsdGeom.Tokens.vertex)
+        colours.Set(Vt.Vec3fArray.FromNumpy(_linear(surface.colours)))
+
+
+def _add_refined(mesh: Any, clip: Clip, request: Request) -> None:
+    """The refined skin, which has other triangles in each frame."""
+    assert request.refinement is not None
+    kind = Sdf.ValueTypeNames.TexCoord2fArray
+    st = None if clip.skin.uv is None else _primvar(mesh, "st", kind, UsdGeom.Tokens.vertex)
+    frames = request.counted(clip.refined(request.refinement), clip.frame_count)
+    for frame, refined in enumerate(frames):
+        _set_faces(mesh, refined.triangles, frame)
+        _set_points(mesh, refined.positions, refined.normals, frame)
+        if st is not None and refined.uv is not None:
+            st.Set(Vt.Vec2fArray.FromNumpy(refined.uv.copy()), frame)
+
+
+def _set_faces(mesh: Any, faces: npt.NDArray[Any], when: Any) -> None:
+    """Triangles, from a time on or always."""
+    counts, corners = np.full(len(faces), 3, np.int32), faces.astype(np.int32).ravel()
+    mesh.CreateFaceVertexCountsAttr().Set(Vt.IntArray.FromNumpy(counts), when)
+    mesh.CreateFaceVertexIndicesAttr().Set(Vt.IntArray.FromNumpy(corners), when)
+
+
+def _set_points(mesh: Any, points: npt.NDArray[Any], normals: npt.NDArray[Any], when: Any) -> None:
+    """Where vertices are, how they are lit, and the box around them."""
+    extent = np.stack([points.min(axis=0), points.max(axis=0)])
+    for attribute, rows in (
+        (mesh.CreatePointsAttr(), points),
+        (mesh.CreateNormalsAttr(), normals),
+        (mesh.CreateExtentAttr(), extent),
+    ):
+        attribute.Set(Vt.Vec3fArray.FromNumpy(rows.astype(np.float32)), when)
+    mesh.SetNormalsInterpolation(UsdGeom.Tokens.vertex)
+
+
+def _primvar(mesh: Any, name: str, kind: Any, interpolation: Any) -> Any:
+    """A value that rides along with vertices or corners."""
+    return UsdGeom.PrimvarsAPI(mesh).CreatePrimvar(name, kind, interpolation)
+
+
+def _linear(colours: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
+    """Colours of a screen (sRGB) as light, which displayColor is."""
+    light = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+    return light.astype(np.float32)
+
+
+def _add_material(stage: Any, mesh: Any, surface: Surface, picture: str | None) -> None:
+    """What the surface looks like: the picture, or the colours of its vertices."""
+    path = mesh.GetPath().GetParentPath().AppendChild(f"{mesh.GetPrim().GetName()}_material")
+    material = UsdShade.Material.Define(stage, path)
+    shader = UsdShade.Shader.Define(stage, path.AppendChild("surface"))
+    shader.CreateIdAttr("UsdPreviewSurface")
+    roughness = DULL + surface.shine * (WET - DULL)
+    shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(roughness)
+    reader = UsdShade.Shader.Define(stage, path.AppendChild("reader"))
+    name = reader.CreateInput("varname", Sdf.ValueTypeNames.String)
+    diffuse = shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f)
+    if picture is None:
+        reader.CreateIdAttr("UsdPrimvarReader_float3")
+        name.Set("displayColor")
+        colours = reader.CreateOutput("result", Sdf.ValueTypeNames.Float3)
+    else:
+        reader.CreateIdAttr("UsdPrimvarReader_float2")
+        name.Set("st")
+        texture = UsdShade.Shader.Define(stage, path.AppendChild("texture"))
+        texture.CreateIdAttr("UsdUVTexture")
+        texture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set(f"./{picture}")
+        texture.CreateInput("sourceColorSpace", Sdf.ValueTypeNames.Token).Set("sRGB")
+        st = reader.CreateOutput("result", Sdf.ValueTypeNames.Float2)
+        texture.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(st)
+        colours = texture.CreateOutput("rgb", Sdf.ValueTypeNames.Float3)
+    diffuse.ConnectToSource(colours)
+    output = material.CreateSurfaceOutput()
+    output.ConnectToSource(shader.CreateOutput("surface", Sdf.ValueTypeNames.Token))
+    UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(material)

@@ -1,0 +1,128 @@
+"""VTKHDF, for ParaView and VTK: all frames in one HDF5 file, the triangles once if they stay.
+
+Each frame is a step, which says where its rows begin in arrays that hold all frames. Millimetres.
+
+Source: Kitware, "VTKHDF format specification", version 2.0, PolyData with steps.
+"""
+
+from __future__ import annotations
+
+import io
+from collections import defaultdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .clip import Clip
+from .formats import Request, needed
+from .sheets import Sheet, joined, sheets
+
+h5py = needed("h5py", "h5py")
+
+VERSION = (2, 0)
+TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
+OURS = np.array([0, 0, 1, 0])  # of these four, polygons alone have cells
+
+
+def write_vtkhdf(clip: Clip, part: Path, request: Request) -> None:
+    """Write all surfaces as one PolyData, the skin's triangles first.
+
+    Vertices have `Normals`, and `displacement` from rest where the mesh stays. Triangles have
+    `surface`, the number of theirs among the names in the attribute `surfaces`, and `source`, the
+    triangle of the mesh that they are part of.
+    """
+    rest = np.concatenate([each.rest for each in clip.surfaces])
+    memory = io.BytesIO()  # HDF5 crashes where a disk is full
+    with h5py.File(memory, "w") as file:
+        steps = _Steps(file.create_group("VTKHDF"))
+        frames = request.counted(sheets(clip, request.refinement), clip.frame_count)
+        for number, frame in enumerate(frames):
+            if number == 0 or request.refinement is not None:
+                steps.begin_mesh(frame)
+            points = np.concatenate([sheet.points for sheet in frame])
+            normals = np.concatenate([sheet.normals for sheet in frame])
+            values = {"Normals": normals}
+            if request.refinement is None:
+                values["displacement"] = points - rest
+            steps.add(clip.times[number], points, values)
+        steps.finish([each.name for each in clip.surfaces])
+    part.write_bytes(memory.getbuffer())
+
+
+class _Steps:
+    """The arrays of a file, which grow frame by frame, and where each frame begins in them."""
+
+    def __init__(self, root: Any) -> None:
+        self._root = root
+        self._steps: dict[str, list[Any]] = defaultdict(list)
+        self._meshes: dict[str, list[int]] = defaultdict(list)
+        self._begins: dict[str, Any] = {}  # of the mesh that is shown now
+        root.attrs["Version"] = VERSION
+        root.attrs["Type"] = np.bytes_("PolyData")
+
+    def begin_mesh(self, frame: list[Sheet]) -> None:
+        """Add the triangles that this frame has, and those after it until another call."""
+        points = [len(sheet.points) for sheet in frame]
+        triangles = joined([sheet.faces for sheet in frame], points)
+        surfaces = np.repeat(np.arange(len(frame)), [len(sheet.faces) for sheet in frame])
+        counts = {"NumberOfCells": len(triangles), "NumberOfConnectivityIds": triangles.size}
+        self._begins = {
+            "PartOffsets": len(self._meshes["NumberOfPoints"]),
+            "CellOffsets": OURS * self._length("CellData/surface"),
+            "ConnectivityIdOffsets": OURS * self._length("Polygons/Connectivity"),
+            "CellDataOffsets/surface": self._length("CellData/surface"),
+            "CellDataOffsets/source": self._length("CellData/surface"),
+        }
+        self._append("Polygons/Connectivity", triangles.ravel().astype(np.int64))
+        self._append("Polygons/Offsets", np.arange(0, triangles.size + 1, 3, dtype=np.int64))
+        self._append("CellData/surface", surfaces.astype(np.int32))
+        self._append("CellData/source", np.concatenate([sheet.source for sheet in frame]))
+        self._meshes["NumberOfPoints"].append(sum(points))
+        for topology, is_ours in zip(TOPOLOGIES, OURS, strict=True):
+            for name, count in counts.items():
+                self._meshes[f"{topology}/{name}"].append(count if is_ours else 0)
+
+    def add(self, time: float, points: Any, values: dict[str, Any]) -> None:
+        """Add where the vertices of a frame are, and what they have."""
+        begin = self._length("Points")
+        places = {f"PointDataOffsets/{name}": begin for name in values}
+        row = {"Values": time, "NumberOfParts": 1, "PointOffsets": begin, **places, **self._begins}
+        for name, value in row.items():
+            self._steps[name].append(value)
+        self._append("Points", points.astype(np.float32))
+        for name, array in values.items():
+            self._append(f"PointData/{name}", array.astype(np.float32))
+        self._root["PointData/Normals"].attrs["Attribute"] = np.bytes_("Normals")
+
+    def finish(self, surfaces: list[str]) -> None:
+        """Write what is known at the end."""
+        for name, numbers in self._meshes.items():
+            self._root.create_dataset(name, data=numbers, dtype=np.int64)
+        for topology in ("Vertices", "Lines", "Strips"):
+            empty = np.zeros(0, np.int64)
+            self._root.create_dataset(f"{topology}/Connectivity", data=empty)
+            begins = np.zeros(len(self._meshes["NumberOfPoints"]), np.int64)
+            self._root.create_dataset(f"{topology}/Offsets", data=begins)
+        steps = self._root.create_group("Steps")
+        steps.attrs["NSteps"] = len(self._steps["Values"])
+        for name, numbers in self._steps.items():
+            steps.create_dataset(name, data=np.array(numbers))
+        self._root.attrs["surfaces"] = surfaces
+
+    def _append(self, name: str, rows: Any) -> None:
+        """Put rows at the end of an array."""
+        if name not in self._root:
+            limits = (None, *rows.shape[1:])
+            self._root.create_dataset(
+                name, data=rows, maxshape=limits, chunks=rows.shape, compression=1, shuffle=True
+            )
+            return
+        array = self._root[name]
+        begin = len(array)
+        array.resize(begin + len(rows), axis=0)
+        array[begin:] = rows
+
+    def _length(self, name: str) -> int:
+        """How many rows an array has."""
+        return len(self._root[name]) if name in self._root else 0

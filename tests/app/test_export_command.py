@@ -1,0 +1,165 @@
+"""`risorius export`: files whole or not at all, and one line for what cannot be."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from risorius.__main__ import command
+from risorius.app.export.formats import FORMATS
+
+SCRIPT = 'scene = "cloth"\nduration = 0.2\n[[pose]]\ntime = 0.0\ndrop = 1.0\n'
+FACE = "duration = 0.1\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
+OUTPUTS = {
+    each.name: f"out{each.suffixes[0]}" if each.suffixes else "out"
+    for each in FORMATS
+    if each.name not in ("arkit", "units", "muscles")
+}
+FULL = """
+import resource, sys
+from pathlib import Path
+from risorius.app.errors import told_in_one_line
+from risorius.app.export.clip import record
+from risorius.app.export.formats import Request, format_for, write
+from risorius.app.script import load_script
+
+output = Path(sys.argv[1])
+clip = record(load_script(Path("cloth.toml")), None, 240.0, progress=False)
+chosen = format_for(output, sys.argv[2])
+chosen.load()
+resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))  # [bytes] of any file
+with told_in_one_line():
+    write(clip, output, chosen, Request(progress=False))
+"""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a script, in which the command runs."""
+    monkeypatch.chdir(tmp_path)
+    Path("cloth.toml").write_text(SCRIPT)
+    Path("face.toml").write_text(FACE)
+    return tmp_path
+
+
+def risorius(*arguments: str) -> Result:
+    """Run the command in this process."""
+    return CliRunner().invoke(command(), [*arguments, "--quiet"])
+
+
+def told(result: Result) -> str:
+    """The one line that a refusal is."""
+    assert result.exit_code == 2, result.output
+    lines = [line for line in result.output.splitlines() if not line.startswith("Compiling, ")]
+    assert len(lines) == 1 and lines[0].startswith("risorius: "), result.output
+    return lines[0]
+
+
+@pytest.mark.parametrize("name", OUTPUTS)
+def test_every_format_is_written_and_leaves_nothing_else(name: str, folder: Path) -> None:
+    """What the table of formats says lies beside the script, and may be written again."""
+    for _ in range(2):
+        arguments = ("export", "cloth.toml", "--as", name, "-o", OUTPUTS[name], "--overwrite")
+        result = risorius(*arguments)
+        assert result.exit_code == 0, result.output
+        assert "7 frames" in result.output
+    chosen = next(each for each in FORMATS if each.name == name)
+    allowed = {path.name for path in chosen.outputs(Path(OUTPUTS[name]))}
+    found = {item.name for item in folder.iterdir()} - {"cloth.toml", "face.toml"}
+    assert OUTPUTS[name] in found and found <= allowed
+    if not chosen.suffixes:
+        assert len(list((folder / "out").glob(f"frame_*.{name}"))) == 7
+
+
+@pytest.mark.parametrize("name", ["arkit", "units", "muscles"])
+def test_curves_need_muscles(name: str, folder: Path) -> None:
+    """A face has them; a cloth is told in one line, and leaves no file."""
+    assert "take the scene face" in told(
+        risorius("export", "cloth.toml", "--as", name, "-o", "x.csv")
+    )
+    assert not Path("x.csv").exists()
+    result = risorius("export", "face.toml", "--as", name, "-o", "x.csv")
+    assert result.exit_code == 0 and Path("x.csv").stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("-o", "x.pc2", "--refined"), "it goes with usd, usdz, obj, ply, vtkhdf"),
+        (("-o", "x.usdc", "--rig"), "--rig does not go with USD; it goes with gltf"),
+        (("-o", "x.obj"), "and folders with --as obj or --as ply"),
+        (("-o", "x"), "what is ''? Allowed are .glb"),
+        (("-o", "x.usdc", "--as", "npz"), "numpy arrays is written as .npz"),
+        (("-o", "cloth.toml", "--as", "obj"), "cloth.toml: is read and would be written"),
+        (("-o", "deep/none", "--as", "ply", "--fps", "0"), None),
+    ],
+)
+def test_what_cannot_be_is_one_line(
+    arguments: tuple[str, ...], words: str | None, folder: Path
+) -> None:
+    """It names what is allowed, and nothing is written."""
+    result = risorius("export", "cloth.toml", *arguments)
+    if words is None:
+        assert result.exit_code == 2
+    else:
+        assert words in told(result)
+    assert {item.name for item in folder.iterdir()} == {"cloth.toml", "face.toml"}
+
+
+def test_files_of_somebody_else_stay(folder: Path) -> None:
+    """What would lie beside the output, a head of the user's, and what is in a folder."""
+    Path("x.obj").write_text("mine")
+    line = told(risorius("export", "cloth.toml", "-o", "x.pc2"))
+    assert "x.obj: is there, and x.pc2 would come with such a file" in line
+    Path("frames").mkdir()
+    Path("frames/notes.txt").write_text("mine")
+    line = told(risorius("export", "cloth.toml", "--as", "ply", "-o", "frames"))
+    assert (
+        line == "risorius: frames: is there and not empty; name another folder, or add --overwrite"
+    )
+    Path("frames/frame_00099.ply").write_text("of an earlier time")
+    result = risorius("export", "cloth.toml", "--as", "ply", "-o", "frames", "--overwrite")
+    assert result.exit_code == 0, result.output
+    assert Path("frames/notes.txt").read_text() == Path("x.obj").read_text() == "mine"
+    assert not Path("frames/frame_00099.ply").exists()
+    Path("head.json").write_text("{}")
+    head = ("--head", "head.obj", "--landmarks", "head.json")
+    line = told(risorius("export", "face.toml", "-o", "head.mdd", *head))
+    assert "head.obj: is read and would be written" in line
+
+
+@pytest.mark.parametrize(
+    ("output", "module", "package"),
+    [("x.usdc", "pxr.Gf", "usd-core"), ("x.vtkhdf", "h5py", "h5py")],
+)
+def test_a_missing_library_is_named(
+    output: str, module: str, package: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before any work is done, with the words that install it."""
+    monkeypatch.setitem(sys.modules, module, None)
+    writer = next(each for each in FORMATS if output[1:] in each.suffixes)
+    name = f"risorius.app.export.{writer.writer.partition(':')[0]}"
+    monkeypatch.delitem(sys.modules, name, raising=False)
+    line = told(risorius("export", "cloth.toml", "-o", output))
+    assert line == f"risorius: this needs {package}: pip install 'risorius[export]'"
+
+
+@pytest.mark.parametrize("name", OUTPUTS)
+def test_a_full_disk_is_one_line(name: str, folder: Path) -> None:
+    """The system writes no more than so many bytes: one line, and the old file stays."""
+    output = Path(OUTPUTS[name])
+    if output.suffix:
+        output.write_text("mine")
+    words = [sys.executable, "-c", FULL, str(output), name]
+    result = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert result.returncode == 2, result.stderr
+    (line,) = result.stderr.splitlines()
+    assert line.startswith(f"risorius: {output}: cannot be written: ")
+    assert ".risorius-" not in line
+    left = {item.name for item in folder.iterdir()} - {"cloth.toml", "face.toml"}
+    assert left == ({output.name} if output.suffix else set())
+    assert not output.suffix or output.read_text() == "mine"

@@ -1,0 +1,468 @@
+"""glTF files hold what the clip holds: every vertex at every frame, read back by other readers."""
+
+from __future__ import annotations
+
+import functools
+import io
+import json
+import os
+import struct
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import PIL.Image
+import pytest
+import trimesh
+from click.testing import CliRunner
+from hypothesis import given
+from hypothesis import strategies as st
+
+from risorius import assets, sim
+from risorius.__main__ import command as risorius
+from risorius.app.export import pieces
+from risorius.app.export.clip import Clip, record
+from risorius.app.export.formats import Request, format_for, write
+from risorius.app.export.morphs import decompose
+from risorius.app.export.rig import fit
+from risorius.app.script import parse_script
+from risorius.assets.topology import vertex_normals
+
+from .glb_player import Player
+
+NEAR = 0.1e-3  # [m] what is promised
+SCRIPT = """
+title = "All that moves"
+[[pose]]
+time = 0.0
+tongue_out = 0.3
+[[pose]]
+time = 0.3
+joy = 1.0
+head_yaw = 1.0
+head_pitch = -0.5
+gaze_horizontal = 0.8
+[[pose]]
+time = 0.7
+yawn = 1.0
+tongue_out = 1.0
+jaw_sideways = 0.5
+head_yaw = -1.0
+head_roll = 0.6
+gaze_vertical = -0.7
+"""
+SHAPES = """
+[[pose]]
+time = 0.0
+[[pose]]
+time = 0.3
+jawOpen = 0.8
+mouthSmileLeft = 0.6
+head_yaw = 0.5
+[[pose]]
+time = 0.6
+mouthSmileLeft = 1.0
+"""
+IN_BLENDER = Path(__file__).with_name("positions_in_blender.py")
+
+
+@pytest.fixture(scope="module")
+def clip() -> Clip:
+    """A face that moves all it has."""
+    return record(parse_script(SCRIPT, source="test"), None, 24.0, progress=False)
+
+
+@pytest.fixture(scope="module")
+def rigged_clip() -> Clip:
+    """A face that is moved by ARKit's shapes alone."""
+    return record(parse_script(SHAPES, source="test"), None, 20.0, progress=False)
+
+
+def written(clip: Clip, path: Path, rig: str | None = None) -> str | None:
+    """Write the clip; what there is to say of it."""
+    return write(clip, path, format_for(path, None), Request(rig=rig))
+
+
+@pytest.fixture(scope="module")
+def glb(clip: Clip, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Its file."""
+    path = tmp_path_factory.mktemp("glb") / "face.glb"
+    assert written(clip, path) is None
+    return path
+
+
+@pytest.fixture(scope="module")
+def rigged(
+    rigged_clip: Clip, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Player, str | None]:
+    """The rig of ARKit's shapes, and what there was to say of it."""
+    path = tmp_path_factory.mktemp("glb") / "rig.glb"
+    remark = written(rigged_clip, path, "arkit")
+    return Player(path), remark
+
+
+def farthest(player: Player, clip: Clip, name: str) -> float:
+    """How far any vertex of a surface is off in any frame [m]."""
+    surface = next(each for each in clip.surfaces if each.name == name)
+    return max(
+        float(
+            np.linalg.norm(player.positions(name, frame) - surface.at(frame) / 1000.0, axis=1).max()
+        )
+        for frame in range(clip.frame_count)
+    )
+
+
+def test_every_vertex_is_where_the_clip_has_it(clip: Clip, glb: Path) -> None:
+    """Skin, eyes, teeth and tongue, with the head turned, at every frame, in order."""
+    player = Player(glb)
+    assert {surface.name for surface in clip.surfaces} <= set(player.numbers)
+    moved = np.ptp(np.stack([clip.skin.at(k) for k in range(clip.frame_count)]), axis=0)
+    assert moved.max() > 50.0  # mm: the check below would see a face that stands still
+    for surface in clip.surfaces:
+        assert farthest(player, clip, surface.name) < NEAR, surface.name
+        assert np.array_equal(
+            player.values(player.primitive(surface.name).indices).reshape(-1, 3), surface.faces
+        )
+
+
+def test_times_are_those_of_the_frames(clip: Clip, glb: Path) -> None:
+    """Frame k is at k / fps, as exactly as a float32 may be."""
+    times = Player(glb).times
+    assert times.dtype == np.float32
+    assert np.array_equal(times, (np.arange(clip.frame_count) / 24.0).astype(np.float32))
+
+
+def test_weights_are_such_as_every_reader_takes(glb: Path) -> None:
+    """None is negative, none above 1, and the targets are not too many."""
+    player = Player(glb)
+    for name in ("skin", "tongue"):
+        weights = player.weights(name)
+        assert (
+            weights.shape[1]
+            == len(player.target_names(name))
+            == len(player.primitive(name).targets)
+        )
+        assert 1 <= weights.shape[1] <= 250
+        assert weights.min() >= 0.0 and weights.max() <= 1.0
+
+
+def test_normals_follow_the_motion(clip: Clip, glb: Path) -> None:
+    """Engines add up normals: nearly everywhere they are those of the moved mesh."""
+    player = Player(glb)
+    for frame in range(0, clip.frame_count, 4):
+        shape = player.shape("skin", frame)
+        normals = player.shape("skin", frame, "NORMAL")
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        expected = vertex_normals(shape, clip.skin.faces)
+        angles = np.degrees(np.arccos(np.clip((normals * expected).sum(axis=1), -1.0, 1.0)))
+        assert np.percentile(angles, 99) < 3.0
+
+
+def test_the_mesh_at_rest_is_read_by_trimesh(clip: Clip, glb: Path) -> None:
+    """A reader without morph targets shows the neutral face, in metres, and whose parts fit."""
+    scene = trimesh.load_scene(glb, process=False)
+    assert len(scene.geometry) == len(clip.surfaces)
+    skin = scene.geometry["skin"]
+    assert np.abs(skin.vertices - clip.skin.rest / 1000.0).max() < 1e-6
+    assert np.array_equal(skin.faces, clip.skin.faces)
+    eye = next(surface for surface in clip.surfaces if surface.name == "eyeball_left")
+    transform, geometry = scene.graph["eyeball_left"]
+    placed = trimesh.transform_points(scene.geometry[geometry].vertices, transform)
+    assert np.abs(placed - eye.rest / 1000.0).max() < 1e-6
+
+
+def test_the_file_is_as_validators_want_it(glb: Path) -> None:
+    """Chunks, alignment, bounds and counts; unit normals and shares that add up to 1."""
+    data = glb.read_bytes()
+    magic, version, length = struct.unpack_from("<4sII", data)
+    assert (magic, version, length) == (b"glTF", 2, len(data))
+    text_length, kind = struct.unpack_from("<I4s", data, 12)
+    assert kind == b"JSON" and text_length % 4 == 0
+    parts = json.loads(data[20 : 20 + text_length])
+    blob_length, kind = struct.unpack_from("<I4s", data, 20 + text_length)
+    assert kind == b"BIN\0" and blob_length % 4 == 0 and len(data) == 28 + text_length + blob_length
+    assert parts["buffers"] == [{"byteLength": blob_length}]
+    ends = 0
+    for view in parts["bufferViews"]:
+        assert view["byteOffset"] % 4 == 0 and ends <= view["byteOffset"] < ends + 4
+        ends = view["byteOffset"] + view["byteLength"]
+    assert blob_length - ends < 4
+    player = Player(glb)
+    positions = set()
+    for mesh in parts["meshes"]:
+        for primitive in mesh["primitives"]:
+            attributes, added = primitive["attributes"], primitive.get("targets", [])
+            positions |= {attributes["POSITION"], *(each["POSITION"] for each in added)}
+            counts = {parts["accessors"][n]["count"] for n in attributes.values()}
+            counts |= {parts["accessors"][n]["count"] for each in added for n in each.values()}
+            assert len(counts) == 1
+            indices = player.values(primitive["indices"])
+            assert indices.max() == counts.pop() - 1 < 65535
+            normals = player.values(attributes["NORMAL"])
+            assert np.abs(np.linalg.norm(normals, axis=1) - 1.0).max() < 5e-4
+            if "WEIGHTS_0" in attributes:
+                shares, joints = (player.values(attributes[n]) for n in ("WEIGHTS_0", "JOINTS_0"))
+                assert np.abs(shares.sum(axis=1) - 1.0).max() < 1e-6 and shares.min() >= 0.0
+                assert joints.max() < 2 and not joints[shares == 0.0].any()
+    for number in positions | {each["input"] for each in parts["animations"][0]["samplers"]}:
+        accessor, values = parts["accessors"][number], player.values(number)
+        assert np.array_equal(np.float32(accessor["min"]), np.atleast_1d(values.min(axis=0)))
+        assert np.array_equal(np.float32(accessor["max"]), np.atleast_1d(values.max(axis=0)))
+    for accessor in parts["accessors"]:
+        assert accessor["count"] > 0 and np.isfinite(accessor.get("max", [0.0])).all()
+
+
+def test_the_texture_is_the_right_way_up(clip: Clip, glb: Path) -> None:
+    """Each vertex finds the colour that it has in the scene: v runs down in glTF."""
+    player, skin, albedo = Player(glb), clip.skin, clip.scene.albedo
+    assert albedo is not None and skin.uv is not None and skin.face_uv is not None
+    material = player.file.materials[player.primitive("skin").material]
+    assert material.doubleSided and material.pbrMetallicRoughness.metallicFactor == 0.0
+    picture = player.file.textures[material.pbrMetallicRoughness.baseColorTexture.index].source
+    view = player.file.bufferViews[player.file.images[picture].bufferView]
+    data = player.blob[view.byteOffset : view.byteOffset + view.byteLength]
+    image = np.asarray(PIL.Image.open(io.BytesIO(data)), np.float64)
+    assert image.shape == albedo.shape
+    size = np.array(albedo.shape[:2][::-1])
+    here = (player.attribute("skin", "TEXCOORD_0") * size).astype(int).clip(0, size - 1)
+    uv = np.zeros((len(skin.rest), 2))
+    uv[skin.faces] = skin.uv[skin.face_uv]
+    there = (np.column_stack([uv[:, 0], 1.0 - uv[:, 1]]) * size).astype(int).clip(0, size - 1)
+    expected = albedo[there[:, 1], there[:, 0]].astype(np.float64)
+    assert np.abs(image[here[:, 1], here[:, 0]] - expected).mean() < 4.0
+    assert expected.std(axis=0).min() > 8.0  # or any coordinate would do
+
+
+def test_vertex_colours_are_linear_light(clip: Clip, glb: Path) -> None:
+    """glTF has linear colours: shown again as sRGB, they are as the eyes were painted."""
+    painted = next(s.colours for s in clip.surfaces if s.name == "eyeball_left")
+    assert painted is not None
+    light = Player(glb).attribute("eyeball_left", "COLOR_0").astype(np.float64)
+    shown = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    assert np.abs(shown - painted).max() < 1e-4 and np.ptp(painted) > 0.3
+
+
+def test_vertices_are_split_at_seams_of_the_texture(clip: Clip, tmp_path: Path) -> None:
+    """A vertex with two texture coordinates becomes two; corners keep their places."""
+    skin = clip.skin
+    assert skin.uv is not None and skin.face_uv is not None
+    seam = skin.face_uv.copy()
+    seam[::3] += len(skin.uv)  # every third triangle lies elsewhere on the texture
+    cut = replace(skin, uv=np.vstack([skin.uv, skin.uv * 0.5]), face_uv=seam)
+    written(replace(clip, surfaces=(cut, *clip.surfaces[1:])), tmp_path / "cut.glb")
+    player = Player(tmp_path / "cut.glb")
+    corners = player.values(player.primitive("skin").indices).reshape(-1, 3)
+    assert len(player.attribute("skin", "POSITION")) > len(skin.rest)
+    uv = player.attribute("skin", "TEXCOORD_0")[corners]
+    assert np.abs(uv - (cut.uv[seam] * [1, -1] + [0, 1])).max() < 1e-6
+    for frame in (0, clip.frame_count - 1):
+        found, expected = player.positions("skin", frame), skin.at(frame) / 1000.0
+        assert np.linalg.norm(found[corners] - expected[skin.faces], axis=2).max() < NEAR
+
+
+@pytest.mark.parametrize("name", ["plane", "cloth"])
+def test_scenes_without_a_face_are_written_too(name: str, tmp_path: Path) -> None:
+    """A sheet by its targets, and the ball beneath it by its bone."""
+    control = "amplitude" if name == "plane" else "drop = 1.0\nturn"
+    text = f'scene = "{name}"\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.6\n{control} = 0.4\n'
+    clip = record(parse_script(text, source="test"), None, 20.0, progress=False)
+    assert written(clip, tmp_path / "sheet.glb") is None
+    player = Player(tmp_path / "sheet.glb")
+    for surface in clip.surfaces:
+        assert farthest(player, clip, surface.name) < NEAR
+
+
+def test_a_scene_that_rests_has_no_animation(tmp_path: Path) -> None:
+    """Nothing moves: a file of meshes alone, at their places."""
+    text = "duration = 0.1\n[[pose]]\ntime = 0.0\n"
+    clip = record(parse_script(text, source="test"), None, 20.0, progress=False)
+    assert written(clip, tmp_path / "rest.glb") is None
+    player = Player(tmp_path / "rest.glb")
+    assert player.animation is None and not player.primitive("skin").targets
+    assert farthest(player, clip, "teeth_lower") < 1e-6
+
+
+def test_what_targets_cannot_follow_is_told(
+    clip: Clip, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A clip that needs more targets than may be is written, and the error that remains is said."""
+    monkeypatch.setattr(pieces, "decompose", functools.partial(decompose, most=4))
+    remark = written(clip, tmp_path / "rough.glb")
+    player = Player(tmp_path / "rough.glb")
+    error = 1000.0 * max(farthest(player, clip, name) for name in ("skin", "tongue"))
+    assert remark is not None and f"{error:.2f} mm" in remark and error > 1.0
+
+
+@given(
+    st.integers(1, 12), st.integers(1, 9), st.integers(0, 4), st.integers(0, 2**32 - 1),
+    st.sampled_from([1e-3, 0.1, 2.0]), st.integers(2, 40),
+)  # fmt: skip
+def test_targets_come_as_near_as_they_say(
+    frames: int, vertices: int, rank: int, seed: int, tolerance: float, most: int
+) -> None:
+    """Weights of 0 to 1, no more targets than may be, and the error that is said; within tolerance
+    where there may be as many as frames."""
+    generator = np.random.default_rng(seed)
+    moved = np.zeros((frames, vertices, 3))
+    for _ in range(rank):
+        curve, shape = generator.normal(size=frames), generator.normal(0.0, 9.0, (vertices, 3))
+        moved += curve[:, None, None] * shape
+    morphs = decompose(moved, tolerance, most)
+    assert morphs.weights.shape == (frames, len(morphs.targets))
+    assert len(morphs.targets) <= min(most, rank + 1)
+    assert (morphs.weights >= 0.0).all() and (morphs.weights <= 1.0).all()
+    off = np.linalg.norm(moved - np.tensordot(morphs.weights, morphs.targets, axes=1), axis=2)
+    assert abs(off.max() - morphs.error) < 1e-6
+    if most > rank:
+        assert morphs.error <= tolerance + 1e-6
+
+
+@given(st.integers(1, 5), st.integers(3, 9), st.integers(0, 2**32 - 1))
+def test_fitted_weights_are_those_that_made_the_motion(k: int, v: int, seed: int) -> None:
+    """Where the targets of two surfaces can make the motion, it is found how, nearly."""
+    generator = np.random.default_rng(seed)
+    flat = np.linalg.qr(generator.normal(size=(6 * v, k)))[0].T * generator.uniform(1, 3, (k, 1))
+    targets = flat.reshape(k, 2, v, 3)
+    weights = generator.uniform(0.0, 1.0, (4, k))
+    moved = np.tensordot(weights, targets, axes=1)
+    surfaces = [(targets[:, side], moved[:, side], True) for side in (0, 1)]
+    assert np.abs(fit(surfaces) - weights).max() < 2e-3
+    assert np.abs(fit([(each, -there, is_skin) for each, there, is_skin in surfaces])).max() < 1e-9
+
+
+def settled(name: str) -> tuple[Any, Any]:
+    """The skin and the jaw's matrix with one control at 1, by a simulation of its own."""
+    simulation = sim.create(assets.load("head"))
+    simulation.set(name, 1.0)
+    for _ in range(60):
+        simulation.step(1 / 60)
+    return simulation.positions.copy(), simulation.bone_transforms()["mandible"]
+
+
+def test_a_rig_has_each_shape_by_its_name(
+    rigged: tuple[Player, str | None], rigged_clip: Clip
+) -> None:
+    """All 52 of ARKit on the skin, each as the face rests with it alone; the jaw's parts along."""
+    player, _ = rigged
+    names = player.target_names("skin")
+    assert sorted(names) == sorted(rigged_clip.scene.groups["ARKit shapes"]) and len(names) == 52
+    rest = rigged_clip.skin.rest
+    for name in ("jawOpen", "mouthSmileLeft", "eyeBlinkRight"):
+        positions, jaw = settled(name)
+        added = player.target("skin", names.index(name))
+        assert np.abs(added - (positions - rest) / 1000.0).max() < 1e-5
+        assert np.linalg.norm(added, axis=1).max() > 2e-3
+    teeth = next(part for part in assets.load("head").parts if part.name == "teeth_lower")
+    _, jaw = settled("jawOpen")
+    moved = teeth.vertices @ jaw[:3, :3].T + jaw[:3, 3] - teeth.vertices
+    index = player.target_names("teeth_lower").index("jawOpen")
+    assert np.abs(player.target("teeth_lower", index) - moved / 1000.0).max() < 1e-5
+    assert "tongueOut" in player.target_names("tongue")
+    assert not player.target_names("teeth_upper")
+
+
+def test_lips_of_a_rig_close_over_an_open_jaw(rigged: tuple[Player, str | None]) -> None:
+    """mouthClose says how much of jawOpen the lips make good, so both together shut the mouth."""
+    player, _ = rigged
+    names, marks = player.target_names("skin"), assets.load("head").landmarks
+    rest = player.attribute("skin", "POSITION").astype(np.float64)
+    opened = rest + player.target("skin", names.index("jawOpen"))
+    closed = opened + player.target("skin", names.index("mouthClose"))
+    gaps = [np.linalg.norm(shape[marks[62]] - shape[marks[66]]) for shape in (rest, opened, closed)]
+    assert gaps[1] > gaps[0] + 0.015 and gaps[2] < gaps[0] + 0.003
+
+
+def test_eyes_of_a_rig_turn_about_their_centres(rigged: tuple[Player, str | None]) -> None:
+    """The node of an eye stands in its centre, so that an engine may turn it."""
+    player, _ = rigged
+    for eye in assets.load("head").eyes:
+        node = player.numbers[f"eye_{eye.name}"]
+        assert np.abs(player.matrix(node, 0)[:3, 3] * 1000.0 - eye.centre).max() < 1e-3
+
+
+def test_a_script_of_shapes_moves_these_alone(
+    rigged: tuple[Player, str | None], rigged_clip: Clip
+) -> None:
+    """Weights follow what the script sets, as late as the face does, and what remains is said."""
+    player, remark = rigged
+    names, weights = player.target_names("skin"), player.weights("skin")
+    assert {names[k] for k in np.flatnonzero(weights.any(axis=0))} == {"jawOpen", "mouthSmileLeft"}
+    assert 0.6 < weights[6, names.index("jawOpen")] < 0.85
+    assert weights[-1, names.index("mouthSmileLeft")] > 0.7
+    off = np.array([
+        np.linalg.norm(player.positions("skin", k) - rigged_clip.skin.at(k) / 1000.0, axis=1)
+        for k in range(rigged_clip.frame_count)
+    ])  # fmt: skip
+    assert remark is not None
+    assert f"{1000 * np.sqrt((off**2).mean()):.2f} mm" in remark
+    assert f"{1000 * off.max():.1f} mm" in remark
+
+
+def test_other_controls_are_followed_by_action_units(clip: Clip, tmp_path: Path) -> None:
+    """An expression moves the targets of units, each side by its own name."""
+    remark = written(clip, tmp_path / "units.glb", "units")
+    player = Player(tmp_path / "units.glb")
+    names = player.target_names("skin")
+    assert {"AU12_left", "AU12_right", "AU26", "AU17"} <= set(names)
+    assert "AU12" not in names and "AU51" not in names  # AU51 turns the head: its bone does
+    weights = player.weights("skin")
+    assert weights.min() >= 0.0 and weights.max() <= 1.0
+    assert weights[7, names.index("AU12_left")] > 0.3 and remark is not None
+    assert 1000.0 * farthest(player, clip, "skin") < 8.0
+
+
+def test_a_rig_keeps_the_tongue_in_the_mouth(tmp_path: Path) -> None:
+    """tongueOut opens the jaw as well; a yawn must not be made of it."""
+    yawn = parse_script(
+        "[[pose]]\ntime = 0.0\nyawn = 1.0\n[[pose]]\ntime = 0.1\nyawn = 1.0\n", source="test"
+    )
+    clip = record(yawn, None, 20.0, progress=False)
+    written(clip, tmp_path / "yawn.glb", "arkit")
+    player = Player(tmp_path / "yawn.glb")
+    weights = player.weights("skin")[0]
+    assert weights[player.target_names("skin").index("tongueOut")] < 0.05
+    assert 1000.0 * farthest(player, clip, "tongue") < 4.0
+
+
+def test_the_command_writes_it(tmp_path: Path) -> None:
+    """By its suffix; --rig alone is ARKit's; what is told of the rig goes to the error stream."""
+    script, output = tmp_path / "shapes.toml", tmp_path / "out.glb"
+    script.write_text(SHAPES)
+    arguments = ["export", str(script), "-o", str(output), "--fps", "15", "--quiet"]
+    result = CliRunner().invoke(risorius(), [*arguments, "--rig"])
+    assert result.exit_code == 0 and "glTF, 10 frames" in result.stdout
+    assert "follow the motion to" in result.stderr and result.stderr.count("\n") == 1
+    assert "jawOpen" in Player(output).target_names("skin")
+    result = CliRunner().invoke(risorius(), arguments)
+    assert result.exit_code == 0 and not result.stderr
+    assert np.allclose(Player(output).times, np.arange(10) / 15.0)
+
+
+def test_a_scene_without_shapes_has_no_rig(tmp_path: Path) -> None:
+    """One line, exit code 2, and no file."""
+    output = tmp_path / "plane.glb"
+    result = CliRunner().invoke(
+        risorius(), ["export", "--scene", "plane", "-o", str(output), "--rig", "units", "--quiet"]
+    )
+    assert result.exit_code == 2 and "Action units" in result.stderr
+    assert result.stderr.count("\n") == 1 and not output.exists()
+
+
+@pytest.mark.blender
+def test_blender_sees_the_same(clip: Clip, glb: Path, tmp_path: Path) -> None:
+    """Imported and stepped through in Blender, each vertex is where the clip has it."""
+    python = os.environ.get("RISORIUS_BLENDER_PYTHON", sys.executable)
+    if subprocess.run([python, "-c", "import bpy"], capture_output=True, check=False).returncode:
+        pytest.skip("no bpy; RISORIUS_BLENDER_PYTHON may name a Python that has it")
+    found = tmp_path / "found.npz"
+    told = [python, str(IN_BLENDER), str(glb), str(found), "24", str(clip.frame_count)]
+    subprocess.run(told, check=True, capture_output=True)
+    with np.load(found) as positions:
+        assert set(positions) >= {surface.name for surface in clip.surfaces}
+        for surface in clip.surfaces:
+            expected = np.stack([surface.at(k) for k in range(clip.frame_count)]) / 1000.0
+            off = np.linalg.norm(positions[surface.name] - expected, axis=2)
+            assert off.max() < NEAR, surface.name

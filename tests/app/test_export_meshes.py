@@ -1,0 +1,393 @@
+"""Exported meshes, read back by readers that are not ours, and compared in millimetres."""
+
+from __future__ import annotations
+
+import os
+import struct
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+import pytest
+import trimesh
+from pxr import Usd, UsdGeom, UsdShade
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkIOHDF import vtkHDFReader
+
+from risorius.app.export.clip import Clip, record
+from risorius.app.export.formats import Request, format_for, write
+from risorius.app.looks import Refinement
+from risorius.app.scenes import FaceScene, build_scene
+from risorius.app.script import parse_script
+
+Points = npt.NDArray[np.float64]
+
+RATE = 24.0  # frames a second
+FRAMES = 8
+NEAR = 1e-3  # [mm] that single precision may be off in a head's size
+METRES = 0.001
+SCRIPT = """
+duration = 0.3
+[[pose]]
+time = 0.0
+[[pose]]
+time = 0.3
+joy = 1.0
+jaw_open = 0.5
+tongue_out = 0.6
+gaze_horizontal = 0.5
+head_yaw = 0.4
+"""
+REFINED = Refinement()
+IN_BLENDER = Path(__file__).with_name("positions_in_blender.py")
+
+
+@pytest.fixture(scope="module")
+def clip() -> Clip:
+    """A face that moves all it has."""
+    return record(parse_script(SCRIPT, source="test"), FaceScene(), RATE, progress=False)
+
+
+def written(
+    clip: Clip, path: Path, name: str | None = None, refinement: Refinement | None = None
+) -> Path:
+    """The file that a clip was written to."""
+    write(clip, path, format_for(path, name), Request(refinement, progress=False))
+    return path
+
+
+def whole(clip: Clip, frame: int) -> Points:
+    """All vertices of a frame [mm], the skin's first."""
+    return np.concatenate([each.at(frame) for each in clip.surfaces])
+
+
+def refined_skins(clip: Clip) -> list[tuple[Points, npt.NDArray[Any]]]:
+    """Points and triangles of the refined skin in each frame."""
+    meshes = clip.refined(REFINED)
+    return [(mesh.positions.astype(float), mesh.triangles.copy()) for mesh in meshes]
+
+
+def is_near(found: npt.ArrayLike, wanted: Points, unit: float = 1.0) -> bool:
+    """Whether points in a unit of so many metres a ... are where they should be, in order."""
+    points = np.asarray(found, np.float64)
+    return points.shape == wanted.shape and float(np.abs(points / unit - wanted).max()) < NEAR
+
+
+def test_the_clip_moves(clip: Clip) -> None:
+    """What is compared below is no still."""
+    assert clip.frame_count == FRAMES
+    for surface in clip.surfaces:
+        if surface.name != "eye_corners":
+            assert np.abs(surface.at(FRAMES - 1) - surface.at(0)).max() > 1.0, surface.name
+
+
+# ---------- USD ---------------------------------------------------------------------------------
+
+
+def usd_points(stage: Any, name: str, frame: int) -> Points:
+    """Where USD has a mesh's points [mm]."""
+    prim = stage.GetPrimAtPath(f"/face/{name}")
+    points = np.array(UsdGeom.Mesh(prim).GetPointsAttr().Get(frame), np.float64)
+    matrix = np.array(UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(frame))
+    return points @ matrix[:3, :3] + matrix[3, :3]
+
+
+@pytest.mark.parametrize("name", ["face.usdc", "face.usda", "face.usd", "face.usdz"])
+def test_usd_has_every_surface_in_every_frame(clip: Clip, tmp_path: Path, name: str) -> None:
+    """Rate, unit, axis and frames of the stage; points to a thousandth of a millimetre."""
+    stage = Usd.Stage.Open(str(written(clip, tmp_path / name)))
+    assert stage.GetTimeCodesPerSecond() == stage.GetFramesPerSecond() == RATE
+    assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (0, FRAMES - 1)
+    assert UsdGeom.GetStageMetersPerUnit(stage) == METRES
+    assert UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.y
+    for surface in clip.surfaces:
+        mesh = UsdGeom.Mesh(stage.GetPrimAtPath(f"/face/{surface.name}"))
+        assert mesh.GetSubdivisionSchemeAttr().Get() == UsdGeom.Tokens.none
+        indices = np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3)
+        assert np.array_equal(indices, surface.faces)
+        for frame in range(FRAMES):
+            assert is_near(usd_points(stage, surface.name, frame), surface.at(frame))
+            low, high = np.array(mesh.GetExtentAttr().Get(frame))
+            points = np.array(mesh.GetPointsAttr().Get(frame))
+            assert np.array_equal([low, high], [points.min(axis=0), points.max(axis=0)])
+
+
+def test_usd_has_the_texture_and_colours(clip: Clip, tmp_path: Path) -> None:
+    """Coordinates of each corner, a picture that is found, and colours of light on parts."""
+    path = written(clip, tmp_path / "face.usdc")
+    stage = Usd.Stage.Open(str(path))
+    skin = stage.GetPrimAtPath("/face/skin")
+    st = UsdGeom.PrimvarsAPI(skin).GetPrimvar("st")
+    assert clip.skin.uv is not None and clip.skin.face_uv is not None
+    assert np.array_equal(np.array(st.ComputeFlattened()), clip.skin.uv[clip.skin.face_uv.ravel()])
+    material, _ = UsdShade.MaterialBindingAPI(skin).ComputeBoundMaterial()
+    texture = UsdShade.Shader(stage.GetPrimAtPath(f"{material.GetPath()}/texture"))
+    picture = Path(texture.GetInput("file").Get().resolvedPath)
+    assert picture == tmp_path / "face_skin.png"
+    assert np.array_equal(np.asarray(PIL.Image.open(picture)), clip.scene.albedo)
+    colours = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/face/eyeball_left")).GetPrimvar(
+        "displayColor"
+    )
+    eye = next(each for each in clip.surfaces if each.name == "eyeball_left")
+    assert eye.colours is not None
+    light = np.array(colours.Get())
+    screen = np.where(light < 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    assert np.abs(screen - eye.colours).max() < 1e-4
+
+
+def test_usd_is_sound(clip: Clip, tmp_path: Path) -> None:
+    """Pixar's own validators, all of them, have nothing to say of the package."""
+    validation = pytest.importorskip("pxr.UsdValidation")
+    validators = validation.ValidationRegistry().GetOrLoadAllValidators()
+    stage = Usd.Stage.Open(str(written(clip, tmp_path / "face.usdz")))
+    errors = validation.ValidationContext(validators).Validate(stage)
+    assert len(validators) > 10 and not [error.GetMessage() for error in errors]
+
+
+def test_usd_has_the_refined_skin(clip: Clip, tmp_path: Path) -> None:
+    """Triangles of each frame's own, with normals and coordinates for every point."""
+    path = written(clip, tmp_path / "fine.usdc", refinement=REFINED)
+    stage = Usd.Stage.Open(str(path))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/face/skin"))
+    counts = set()
+    for frame, (points, triangles) in enumerate(refined_skins(clip)):
+        indices = np.array(mesh.GetFaceVertexIndicesAttr().Get(frame)).reshape(-1, 3)
+        assert np.array_equal(indices, triangles)
+        assert len(mesh.GetFaceVertexCountsAttr().Get(frame)) == len(triangles)
+        assert is_near(usd_points(stage, "skin", frame), points)
+        lengths = np.linalg.norm(np.array(mesh.GetNormalsAttr().Get(frame)), axis=1)
+        assert lengths.shape == points.shape[:1] and np.allclose(lengths, 1.0, atol=1e-4)
+        st = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st").Get(frame)
+        assert len(st) == len(points)
+        counts.add(len(points))
+    assert len(counts) > 1 and min(counts) > len(clip.skin.rest)
+
+
+# ---------- VTKHDF ------------------------------------------------------------------------------
+
+
+def vtk_steps(path: Path) -> list[tuple[float, Any]]:
+    """Time and PolyData of each step, as VTK reads them."""
+    reader, steps = vtkHDFReader(), []
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    times = vtkStreamingDemandDrivenPipeline.TIME_STEPS()
+    information = reader.GetOutputInformation(0)
+    for step in range(information.Length(times)):
+        time = information.Get(times, step)
+        reader.UpdateTimeStep(time)
+        copy = reader.GetOutputDataObject(0).NewInstance()
+        copy.DeepCopy(reader.GetOutputDataObject(0))
+        steps.append((time, copy))
+    return steps
+
+
+def test_vtkhdf_has_every_frame(clip: Clip, tmp_path: Path) -> None:
+    """VTK finds times, points, triangles and what rides along; the triangles are stored once."""
+    path = written(clip, tmp_path / "face.vtkhdf")
+    steps = vtk_steps(path)
+    assert np.allclose([time for time, _ in steps], np.arange(FRAMES) / RATE)
+    rest = np.concatenate([each.rest for each in clip.surfaces])
+    for frame, (_, data) in enumerate(steps):
+        points = vtk_to_numpy(data.GetPoints().GetData())
+        assert is_near(points, whole(clip, frame))
+        lengths = np.linalg.norm(vtk_to_numpy(data.GetPointData().GetNormals()), axis=1)
+        assert np.allclose(lengths, 1.0, atol=1e-5)  # that is what VTK lights it by
+        moved = vtk_to_numpy(data.GetPointData().GetArray("displacement"))
+        assert np.abs(moved - (whole(clip, frame) - rest)).max() < NEAR
+        corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        surface = vtk_to_numpy(data.GetCellData().GetArray("surface"))
+        start = 0
+        for number, each in enumerate(clip.surfaces):
+            assert np.array_equal(corners[surface == number] - start, each.faces)
+            start += len(each.rest)
+    with h5py.File(path) as file:
+        triangles = sum(len(each.faces) for each in clip.surfaces)
+        assert len(file["VTKHDF/Polygons/Connectivity"]) == 3 * triangles
+        assert list(file["VTKHDF"].attrs["surfaces"]) == [each.name for each in clip.surfaces]
+
+
+def test_vtkhdf_has_the_refined_skin(clip: Clip, tmp_path: Path) -> None:
+    """Triangles of each frame's own, and which triangle of the mesh each is part of."""
+    steps = vtk_steps(written(clip, tmp_path / "fine.vtkhdf", refinement=REFINED))
+    assert len(steps) == FRAMES
+    for (_, data), (points, triangles) in zip(steps, refined_skins(clip), strict=True):
+        found = vtk_to_numpy(data.GetPoints().GetData())
+        assert is_near(found[: len(points)], points)
+        corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        assert np.array_equal(corners[: len(triangles)], triangles)
+        assert corners.max() == len(found) - 1
+        source = vtk_to_numpy(data.GetCellData().GetArray("source"))[: len(triangles)]
+        assert set(source) == set(range(len(clip.skin.faces)))
+
+
+# ---------- Point caches ------------------------------------------------------------------------
+
+
+def obj_rows(path: Path, name: str) -> Points:
+    """The numbers of all lines of a kind in an OBJ."""
+    lines = path.read_text().splitlines()
+    return np.array([line.split()[1:] for line in lines if line.startswith(f"{name} ")], float)
+
+
+def test_pc2_moves_the_mesh_beside_it(clip: Clip, tmp_path: Path) -> None:
+    """By its published layout: a head of 32 bytes, then little-endian floats, metres."""
+    data = written(clip, tmp_path / "face.pc2").read_bytes()
+    head = struct.unpack("<12siiffi", data[:32])
+    vertices = len(whole(clip, 0))
+    assert head == (b"POINTCACHE2\0", 1, vertices, 0.0, 1.0, FRAMES)
+    points = np.frombuffer(data[32:], "<f4").reshape(FRAMES, vertices, 3)
+    for frame in range(FRAMES):
+        assert is_near(points[frame], whole(clip, frame), METRES)
+    assert is_near(obj_rows(tmp_path / "face.obj", "v")[:, :3], whole(clip, 0), METRES)
+    assert sorted(each.name for each in tmp_path.iterdir()) == [
+        *("face.mtl", "face.obj", "face.pc2", "face_skin.png"),
+    ]
+
+
+def test_mdd_moves_the_mesh_beside_it(clip: Clip, tmp_path: Path) -> None:
+    """By its published layout: counts, seconds and metres, all big-endian."""
+    data = written(clip, tmp_path / "face.mdd").read_bytes()
+    vertices = len(whole(clip, 0))
+    assert struct.unpack(">2i", data[:8]) == (FRAMES, vertices)
+    assert np.allclose(np.frombuffer(data, ">f4", FRAMES, 8), np.arange(FRAMES) / RATE)
+    points = np.frombuffer(data, ">f4", offset=8 + 4 * FRAMES).reshape(FRAMES, vertices, 3)
+    for frame in range(FRAMES):
+        assert is_near(points[frame], whole(clip, frame), METRES)
+
+
+# ---------- Sequences ---------------------------------------------------------------------------
+
+
+def triangles_in(path: Path) -> tuple[Points, Points]:
+    """Corners and normals of all triangles in an OBJ or PLY, shape (F, 3, 3), in their order."""
+    if path.suffix == ".ply":
+        read = trimesh.load_mesh(path, process=False, maintain_order=True)
+        return read.triangles, read.vertex_normals[read.faces]
+    lines = [line.split()[1:] for line in path.read_text().splitlines() if line.startswith("f ")]
+    corners = np.array([[corner.split("/") for corner in line] for line in lines], int) - 1
+    return obj_rows(path, "v")[corners[..., 0], :3], obj_rows(path, "vn")[corners[..., 2]]
+
+
+@pytest.mark.parametrize("refinement", [None, REFINED], ids=["mesh", "refined"])
+@pytest.mark.parametrize("kind", ["obj", "ply"])
+def test_sequences_have_every_frame(
+    clip: Clip, tmp_path: Path, kind: str, refinement: Refinement | None
+) -> None:
+    """Frames are numbered in order; triangles are those of the clip, and lit from outside."""
+    folder = written(clip, tmp_path / "frames", kind, refinement)
+    meshes = sorted(folder.glob(f"*.{kind}"))
+    assert [each.stem for each in meshes] == [f"frame_{n:05d}" for n in range(FRAMES)]
+    skins = None if refinement is None else refined_skins(clip)
+    for frame, path in enumerate(meshes):
+        wanted = [each.at(frame)[each.faces] for each in clip.surfaces]
+        if skins is not None:
+            points, triangles = skins[frame]
+            wanted[0] = points[triangles]
+        corners, normals = triangles_in(path)
+        assert is_near(corners, np.concatenate(wanted), METRES)
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        assert np.mean((normals.mean(axis=1) * across).sum(axis=1) >= 0.0) > 0.99
+    assert np.allclose(
+        trimesh.load_mesh(meshes[-1]).bounds, [corners.min(axis=(0, 1)), corners.max(axis=(0, 1))]
+    )
+
+
+def test_an_obj_keeps_the_vertices_of_the_mesh(clip: Clip, tmp_path: Path) -> None:
+    """V vertices in their order, coordinates apart, colours behind them, a group for each part."""
+    folder = written(clip, tmp_path / "frames", "obj")
+    path = folder / f"frame_{FRAMES - 1:05d}.obj"
+    rows = obj_rows(path, "v")
+    assert is_near(rows[:, :3], whole(clip, FRAMES - 1), METRES)
+    assert rows.shape[1] == 6 and rows[:, 3:].min() >= 0.0 and rows[:, 3:].max() <= 1.0
+    assert clip.skin.uv is not None
+    assert np.allclose(obj_rows(path, "vt")[: len(clip.skin.uv)], clip.skin.uv, atol=1e-5)
+    text = path.read_text()
+    assert [line[2:] for line in text.splitlines() if line.startswith("g ")] == [
+        each.name for each in clip.surfaces
+    ]
+    assert "mtllib frame.mtl" in text and "frame_skin.png" in (folder / "frame.mtl").read_text()
+    assert (folder / "frame_skin.png").is_file()
+
+
+def test_a_ply_keeps_the_vertices_of_the_mesh(clip: Clip, tmp_path: Path) -> None:
+    """V vertices in their order; colours of parts, and on the skin those of the texture."""
+    folder = written(clip, tmp_path / "frames", "ply")
+    read = trimesh.load_mesh(folder / "frame_00002.ply", process=False, maintain_order=True)
+    assert is_near(read.vertices, whole(clip, 2), METRES)
+    shown = read.visual.vertex_colors[:, :3] / 255.0
+    start = len(clip.skin.rest)
+    for surface in clip.surfaces[1:]:
+        assert surface.colours is not None
+        off = shown[start : start + len(surface.rest)] - surface.colours
+        assert np.abs(off).max() < 1.0 / 255.0
+        start += len(surface.rest)
+    assert clip.scene.albedo is not None and isinstance(clip.scene, FaceScene)
+    lip, cheek = shown[clip.scene.landmarks[62]], shown[clip.scene.landmarks[3]]
+    assert lip[0] / lip[1] > 1.1 * cheek[0] / cheek[1]  # lips are redder
+
+
+# ---------- Arrays, other scenes, Blender -------------------------------------------------------
+
+
+def test_npz_has_all_of_a_clip(clip: Clip, tmp_path: Path) -> None:
+    """Every surface can be put together from the arrays alone."""
+    with np.load(written(clip, tmp_path / "face.npz")) as arrays:
+        assert np.array_equal(arrays["positions"], clip.skin.shapes)
+        assert np.array_equal(arrays["times"], clip.times)
+        assert float(arrays["frames_per_second"]) == RATE
+        for surface in clip.surfaces[1:]:
+            part = f"parts/{surface.name}"
+            rest = arrays[f"{part}/rest_positions"]
+            shapes = arrays[f"{part}/shapes"] if f"{part}/shapes" in arrays else [rest] * FRAMES
+            for frame, matrix in enumerate(arrays[f"{part}/matrices"]):
+                points = shapes[frame] @ matrix[:3, :3].T + matrix[:3, 3]
+                assert is_near(points, surface.at(frame))
+            assert np.array_equal(arrays[f"{part}/faces"], surface.faces)
+        assert set(arrays) >= {"uv", "face_uv", "bones/mandible", "controls/joy"}
+        assert np.array_equal(arrays["activations/jaw_open"], clip.activations["jaw_open"])
+
+
+@pytest.mark.parametrize("name", ["cloth", "plane"])
+def test_scenes_without_a_face(name: str, tmp_path: Path) -> None:
+    """A mesh without texture, eyes or muscles is exported all the same."""
+    key = "drop" if name == "cloth" else "amplitude"
+    text = f'scene = "{name}"\nduration = 0.2\n[[pose]]\ntime = 0\n{key} = 1.0\n'
+    clip = record(parse_script(text, source="test"), build_scene(name), RATE, progress=False)
+    stage = Usd.Stage.Open(str(written(clip, tmp_path / "a.usdz")))
+    points = UsdGeom.Mesh(stage.GetPrimAtPath(f"/{name}/{clip.skin.name}")).GetPointsAttr()
+    assert is_near(points.Get(2), clip.skin.at(2))
+    written(clip, tmp_path / "a.pc2")
+    assert is_near(obj_rows(tmp_path / "a.obj", "v")[:, :3], whole(clip, 0), METRES)
+    frames = written(clip, tmp_path / "frames", "ply", REFINED)
+    assert len(trimesh.load_mesh(frames / "frame_00003.ply").faces) > len(clip.skin.faces)
+    assert len(vtk_steps(written(clip, tmp_path / "a.vtkhdf"))) == clip.frame_count
+
+
+@pytest.mark.blender
+@pytest.mark.parametrize("name", ["face.usdc", "face.usdz", "fine.usdc", "face.pc2", "face.mdd"])
+def test_blender_sees_the_same(clip: Clip, tmp_path: Path, name: str) -> None:
+    """Imported and stepped through in Blender, each vertex is where the clip has it."""
+    python = os.environ.get("RISORIUS_BLENDER_PYTHON", sys.executable)
+    if subprocess.run([python, "-c", "import bpy"], capture_output=True, check=False).returncode:
+        pytest.skip("no bpy; RISORIUS_BLENDER_PYTHON may name a Python that has it")
+    is_fine = name.startswith("fine")
+    path = written(clip, tmp_path / name, refinement=REFINED if is_fine else None)
+    found = tmp_path / "found.npz"
+    told = [python, str(IN_BLENDER), str(path), str(found), f"{RATE:g}", str(FRAMES)]
+    subprocess.run(told, check=True, capture_output=True)
+    with np.load(found) as positions:
+        for frame in range(FRAMES):
+            if name.endswith(("pc2", "mdd")):
+                assert is_near(positions["face"][frame], whole(clip, frame), METRES)
+                continue
+            for surface in clip.surfaces[is_fine:]:
+                assert is_near(positions[surface.name][frame], surface.at(frame), METRES)
+            if is_fine:
+                assert is_near(positions[f"skin/{frame}"], refined_skins(clip)[frame][0], METRES)

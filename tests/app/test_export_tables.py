@@ -1,0 +1,178 @@
+"""Exported curves: read by our own readers of recordings, they play the same face again."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from risorius.app.export.clip import Clip, record
+from risorius.app.export.formats import Request, format_for, write
+from risorius.app.performances import read_performance
+from risorius.app.playback import LEAD, Playback
+from risorius.app.recordings import read_take
+from risorius.app.scenes import FaceScene
+from risorius.app.script import Script, parse_script
+
+Columns = dict[str, npt.NDArray[np.float64]]
+
+RATE = 60.0  # frames a second
+SHAPES = """
+duration = 1.4
+[[pose]]
+time = 0.0
+[[pose]]
+time = 0.4
+jawOpen = 0.4
+mouthClose = 0.1
+mouthSmileLeft = 0.8
+gaze_horizontal = 0.5
+[[pose]]
+time = 0.8
+mouthPucker = 0.6
+eyeBlinkRight = 0.7
+head_yaw = 0.5
+head_pitch = -0.4
+head_roll = 0.3
+[[pose]]
+time = 1.2
+browInnerUp = 0.5
+"""
+UNITS = """
+duration = 1.0
+[[pose]]
+time = 0.0
+[[pose]]
+time = 0.4
+AU12 = 0.7
+AU26 = 0.5
+AU1_left = 0.4
+[[pose]]
+time = 0.8
+AU4 = 0.6
+AU61 = 0.5
+"""
+AS_IT_IS = Playback(neutral="none", gains=("eyeBlink*=1",))  # a face that needs no calibration
+
+
+@pytest.fixture(scope="module")
+def scene() -> FaceScene:
+    """The built-in head."""
+    return FaceScene()
+
+
+def script_of(text: str) -> Script:
+    """A script."""
+    return parse_script(text, source="test")
+
+
+def table(clip: Clip, path: Path, name: str | None = None) -> Columns:
+    """The columns of the CSV that a clip was written to; a timecode as seconds."""
+    write(clip, path, format_for(path, name), Request(progress=False))
+    with path.open(newline="") as file:
+        names, *rows = csv.reader(file)
+    found = {}
+    for number, column in enumerate(names):
+        cells = [row[number] for row in rows]
+        if column == "Timecode":
+            parts = np.array([cell.split(":") for cell in cells], float)
+            found[column] = parts @ [3600.0, 60.0, 1.0, 1.0 / 60.0]
+        else:
+            found[column] = np.array(cells, float)
+    return found
+
+
+def replayed(path: Path, scene: FaceScene, playback: Playback) -> Clip:
+    """The clip that a recording makes."""
+    script, _ = read_performance(path, playback, scene.limits)
+    return record(script, scene, RATE, progress=False)
+
+
+def apart(first: Clip, second: Clip) -> tuple[float, float]:
+    """How far two clips are apart: at most, and root mean square [mm]."""
+    count = min(first.frame_count, second.frame_count)
+    assert first.skin.shapes is not None and second.skin.shapes is not None
+    off = np.linalg.norm(first.skin.shapes[:count] - second.skin.shapes[:count], axis=2)
+    return float(off.max()), float(np.sqrt((off**2).mean()))
+
+
+def test_arkit_plays_the_same_again(scene: FaceScene, tmp_path: Path) -> None:
+    """A script of ARKit's shapes, eyes and head: the replay is nowhere half a millimetre off."""
+    clip = record(script_of(SHAPES), scene, RATE, progress=False)
+    path = tmp_path / "take.csv"
+    table(clip, path)
+    take = read_take(path)
+    assert take.kind == "Live Link Face" and len(take.times) == clip.frame_count
+    assert np.allclose(take.times, clip.times, atol=1e-4)
+    again = replayed(path, scene, AS_IT_IS)
+    furthest, usual = apart(clip, again)
+    assert furthest < 0.5 and usual < 0.1
+    for bone in ("eye_left", "cranium", "mandible"):
+        off = np.abs(clip.bones[bone] - again.bones[bone])
+        assert off[:, :3, :3].max() < 0.01, bone
+    still = replayed(path, scene, Playback(neutral="none", gains=("all=0",)))
+    assert apart(clip, still)[0] > 5.0
+
+
+def test_arkit_tells_what_was_set_when_it_is_seen(scene: FaceScene, tmp_path: Path) -> None:
+    """Values of the script itself, as much later as the muscles are; header of Live Link Face."""
+    clip = record(script_of(SHAPES), scene, RATE, progress=False)
+    columns = table(clip, tmp_path / "take.csv")
+    names = list(columns)
+    assert names[:2] == ["Timecode", "BlendShapeCount"] and len(names) == 63
+    assert names[16:20] == ["JawForward", "JawRight", "JawLeft", "JawOpen"]
+    assert np.allclose(columns["Timecode"], clip.times, atol=1e-4)
+    assert set(columns["BlendShapeCount"]) == {61.0}
+    for name in ("jawOpen", "mouthClose", "mouthSmileLeft", "mouthPucker", "browInnerUp"):
+        asked = [clip.script.at(max(time - LEAD, 0.0))[name] for time in clip.times]
+        assert np.allclose(columns[name[0].upper() + name[1:]], asked, atol=0.01), name
+    assert columns["MouthSmileRight"].max() == 0.0
+    assert columns["HeadYaw"].min() == pytest.approx(np.radians(-22.5), abs=0.02)
+    assert columns["LeftEyeYaw"].min() == pytest.approx(np.radians(-15.0), abs=0.02)
+
+
+def test_expressions_become_shapes(scene: FaceScene, tmp_path: Path) -> None:
+    """What the script does not say in shapes is solved for, and looks alike."""
+    text = "duration = 0.6\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.6\njoy = 1.0\n"
+    clip = record(script_of(text), scene, RATE, progress=False)
+    path = tmp_path / "take.csv"
+    columns = table(clip, path)
+    assert columns["MouthSmileLeft"][-1] > 0.4
+    assert np.allclose(columns["MouthSmileLeft"], columns["MouthSmileRight"], atol=1e-3)
+    furthest, usual = apart(clip, replayed(path, scene, AS_IT_IS))
+    assert furthest < 4.0 and usual < 0.6
+
+
+def test_units_play_the_same_again(scene: FaceScene, tmp_path: Path) -> None:
+    """By side, 0 to 1, in a table that is read without being told what it is."""
+    clip = record(script_of(UNITS), scene, RATE, progress=False)
+    path = tmp_path / "take.csv"
+    columns = table(clip, path, "units")
+    assert "AU12" not in columns and columns["AU12_left"].max() == pytest.approx(0.7, abs=0.01)
+    assert np.array_equal(columns["AU12_left"], columns["AU12_right"])
+    assert columns["AU1_right"].max() == 0.0
+    furthest, usual = apart(clip, replayed(path, scene, Playback(neutral="none")))
+    assert furthest < 0.4 and usual < 0.1
+
+
+def test_muscles_are_all_there(scene: FaceScene, tmp_path: Path) -> None:
+    """A column of seconds and one for each muscle, jaw, gaze, ..., with what it comes to."""
+    clip = record(script_of(UNITS), scene, RATE, progress=False)
+    columns = table(clip, tmp_path / "take.csv", "muscles")
+    assert list(columns) == ["time", *scene.simulation.controls]
+    assert np.allclose(columns["time"], clip.times, atol=1e-5)
+    late = np.interp(clip.times - LEAD, clip.times, clip.activations["zygomaticus_major_left"])
+    assert np.allclose(columns["zygomaticus_major_left"], late, atol=1e-5)
+
+
+@pytest.mark.parametrize("rate", [12.0, 24.0, 29.97, 120.0])
+def test_times_come_back_at_any_rate(scene: FaceScene, tmp_path: Path, rate: float) -> None:
+    """The timecode counts sixtieths with a fraction, whatever the frame rate is."""
+    text = "duration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njawOpen = 1.0\n"
+    clip = record(script_of(text), scene, rate, progress=False)
+    path = tmp_path / "take.csv"
+    table(clip, path)
+    assert np.allclose(read_take(path).times, clip.times, atol=1e-3)
