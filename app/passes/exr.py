@@ -50,5 +50,5 @@ def write_exr(path: Path, passes: Mapping[str, npt.NDArray[Any]]) -> None:
     try:
         with module.File(header, channels) as file:
             file.write(str(path))
-    except RuntimeError as error:  # 'Failed to write ... image file "...". No space left on device.'
+    except RuntimeError as error:  # ... image file "...". No space left on device.
         raise OSError(str(error).rpartition('". ')[2].rstrip(".")) from None
