@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 
@@ -18,8 +19,9 @@ LEAST_CAPTION = 28  # [pixels] below a cell of a contact sheet: text of 15 pixel
 LANCZOS = PIL.Image.Resampling.LANCZOS
 
 
+@functools.cache
 def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
-    """Pillow's own typeface at a size [pixels]."""
+    """Pillow's own typeface at a size [pixels]; read once, for that takes longer than writing."""
     return ImageFont.load_default(size=size)
 
 
