@@ -26,7 +26,10 @@ def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
 
 
 def captioned(image: Image, texts: Sequence[str], viewports: Sequence[Viewport]) -> Image:
-    """Write one line at the lower left of each viewport and draw a line between viewports."""
+    """Write one line at the lower left of each viewport and draw a line between viewports.
+
+    image: with 3 channels, or 4 and premultiplied.
+    """
     page = PIL.Image.fromarray(image)
     draw = ImageDraw.Draw(page)
     height = image.shape[0]
@@ -56,7 +59,7 @@ def contact_sheet(
         left = index % columns * cell_width
         top = index // columns * (cell_height + caption_height)
         small = PIL.Image.fromarray(image).resize((cell_width, cell_height), LANCZOS)
-        sheet.paste(small, (left, top))
+        sheet.paste(small, (left, top), small if small.mode == "RGBA" else None)
         middle = (left + cell_width / 2, top + cell_height + caption_height / 2)
         draw.text(middle, name, font=font(caption_height * 0.55), fill=INK, anchor="mm")
     return np.asarray(sheet)

@@ -18,6 +18,7 @@ from ..pipeline import Pipeline, side_by_side
 from ..scenes import Scene
 from ..script import Script
 from .captions import captioned
+from .transparency import straight
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,11 @@ class CaptureOptions:
     head: FittedHead | None = None  # None: the built-in one
     is_alive: bool = False  # what the script leaves alone moves by itself
     passes: tuple[str, ...] = ()  # what is written beside pictures, by name
+
+    @property
+    def is_transparent(self) -> bool:
+        """Whether pictures have an alpha channel."""
+        return self.style.background is None
 
 
 @dataclass(frozen=True)
@@ -67,16 +73,16 @@ class Capture:
         self.surface.close()
 
     def draw_image(self) -> Image:
-        """Draw the scene as it is now, and read the picture back."""
+        """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""
         self.surface.begin()
         self.pipeline.draw(self.camera, self.options.style, self.viewports)
         self.surface.end()
-        image = self.surface.read()
+        image = self.surface.read_scene(4 if self.options.is_transparent else 3)
         if self.options.beside and self.options.captions:
             meshes = self.pipeline.meshes
             texts = [f"{drawn.label} · {drawn.triangle_count} triangles" for drawn in meshes]
             image = captioned(image, texts, self.viewports)
-        return image
+        return straight(image) if self.options.is_transparent else image
 
     def draw_frame(self) -> Frame:
         """Draw the scene as it is now, and say what is known of the picture."""

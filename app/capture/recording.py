@@ -16,6 +16,7 @@ from . import outputs, processes
 from .captions import contact_sheet
 from .drawing import Capture, CaptureOptions, Frame
 from .ffmpeg import Soundtrack
+from .formats import FORMATS, HEARD, check_format, format_of
 
 
 def capture(
@@ -33,7 +34,7 @@ def capture(
     time: of a picture [s]; else it is of the first pose that has a name, or of the end.
     Returns the largest number of triangles of a frame. Raises UserError on what cannot be.
     """
-    _check(script, output, sheet, time)
+    _check(script, options, output, sheet, time)
     _check_passes(script, output, options)
     wanted = list(script.key_poses) if sheet else []
     still = output if _is_image(output) else None
@@ -86,7 +87,13 @@ def _is_image(output: Path | None) -> bool:
     return output is not None and output.suffix.lower() == ".png"
 
 
-def _check(script: Script, output: Path | None, sheet: Path | None, time: float | None) -> None:
+def _check(
+    script: Script,
+    options: CaptureOptions,
+    output: Path | None,
+    sheet: Path | None,
+    time: float | None,
+) -> None:
     """Raise UserError, before any work is done, where one of the outputs cannot be."""
     if time is not None and not _is_image(output):
         raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
@@ -98,9 +105,10 @@ def _check(script: Script, output: Path | None, sheet: Path | None, time: float 
         check_png(sheet)
     if output is not None and _is_image(output):
         check_png(output)
-    elif output is not None and output.suffix.lower() in outputs.FILM_SUFFIXES:
+    elif output is not None and format_of(output):
+        check_format(output, options.frames_per_second, is_transparent=options.is_transparent)
         check_file(output)
-        if script.sound is not None:
+        if script.sound is not None and output.suffix.lower() in HEARD:
             load_sound(script.sound)
 
 
@@ -109,7 +117,7 @@ def _check_passes(script: Script, output: Path | None, options: CaptureOptions) 
     if not options.passes:
         return
     check_wanted(options.passes, script.scene)
-    if output is None or output.suffix.lower() in outputs.FILM_SUFFIXES:
+    if output is None or format_of(output):
         raise UserError(
             "--passes are files beside each picture: give -o a folder, or one picture.png"
         )
@@ -127,11 +135,17 @@ def _sink_for(
 ) -> contextlib.AbstractContextManager[outputs.FrameSink]:
     """A film or a folder of frames, by what the output is called."""
     suffix = output.suffix.lower()
-    if suffix in outputs.FILM_SUFFIXES:
-        return outputs.film(output, options.size, options.frames_per_second, soundtrack)
+    if format_of(output):
+        return outputs.film(
+            output,
+            options.size,
+            options.frames_per_second,
+            soundtrack,
+            is_transparent=options.is_transparent,
+        )
     if suffix == "" or output.is_dir():
         return outputs.folder(output, overwrite=overwrite)
     raise UserError(
-        f"{output}: what is '{suffix}'? Allowed are {', '.join(outputs.FILM_SUFFIXES)} (a film), "
+        f"{output}: what is '{suffix}'? Allowed are {', '.join(FORMATS)} (a film), "
         ".png (one picture) and a name without suffix (a folder of frames)"
     )
