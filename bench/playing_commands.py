@@ -1,4 +1,4 @@
-"""Commands of `risorius bench` that time what is played: `capture`, `take`, ...."""
+"""Commands of `risorius bench` that time what is played: `capture`, `take` and others."""
 
 from __future__ import annotations
 

@@ -21,6 +21,7 @@ from .camera import OrbitCamera
 from .camera_view import CameraView, box_corners
 from .geometry import checked_values, line_segments, value_texture
 from .geometry_buffer import Geometry, GeometryBuffer
+from .hidden import Occluder
 from .materials import COLOUR_DEFINES, TO_KEY, set_palette, set_part, set_skin
 from .outline import draw_fringes, fringes
 from .parts import Part, PartStore
@@ -57,6 +58,7 @@ class Renderer:
         self._backdrop = Backdrop(self._gl)
         self._shadow: ShadowMap | None = None
         self._geometry_buffer: GeometryBuffer | None = None
+        self._occluder: Occluder | None = None
 
     def release(self) -> None:
         """Let go of all that was compiled and uploaded here; nothing can be drawn any more.
@@ -145,7 +147,7 @@ class Renderer:
                 return
             self._set_surface(program, view, style, texture, share_wrinkles)
             drawn.append((program, share))
-        self._draw_sides(stream, drawn)
+        self._draw_sides(stream, drawn, None if is_coloured else view)
 
     def draw_outline(
         self,
@@ -177,20 +179,40 @@ class Renderer:
             with self._blending():
                 draw_fringes(self._gl, program, rows)
 
-    def _draw_sides(self, stream: Stream, shares: Sequence[tuple[moderngl.Program, Share]]) -> None:
+    def _draw_sides(
+        self,
+        stream: Stream,
+        shares: Sequence[tuple[moderngl.Program, Share]],
+        view: CameraView | None,
+    ) -> None:
         """Draw shares of the mesh; where software draws, what turns to the eye goes first.
 
-        What turns away is mostly hidden: drawn last, it is not shaded at all there.
+        What turns away is mostly hidden: drawn last, it is not shaded at all there, if nothing is
+        multisampled. Else it is left out where that is certain, which needs the view.
         """
         if not self.surface.is_software:
             for program, share in shares:
                 stream.draw(program, share)
             return
         self._gl.enable(moderngl.CULL_FACE)
-        for culled in ("back", "front"):
-            self._gl.cull_face = culled
-            for program, share in shares:
-                stream.draw(program, share)
+        self._gl.cull_face = "back"
+        for program, share in shares:
+            stream.draw(program, share)
+        target = self.surface.target
+        is_chosen = view is not None and target.samples > 0
+        if is_chosen and view is not None:
+            if self._occluder is None or self._occluder.target is not target:
+                self._occluder = Occluder(self._gl, target)
+            covered = view.covered_pixels(stream.corners)
+            self._occluder.look(view, covered)
+            positions = stream.vertices[: stream.vertex_count, :3]
+            triangles = stream.triangles[: stream.triangle_count]
+            stream.choose(self._occluder.may_be_seen(positions, triangles))
+            target.use_layer(view.viewport, covered)
+            self._gl.enable(moderngl.CULL_FACE)
+        self._gl.cull_face = "front"
+        for program, share in shares:
+            stream.draw(program, share, chosen=is_chosen)
         self._gl.cull_face = "back"
         self._gl.disable(moderngl.CULL_FACE)
 
@@ -261,10 +283,14 @@ class Renderer:
         program = self._program("surface.glsl", "PIXEL", "COLOURED", *(["SHADOWS"] * bool(shadow)))
         if shadow is not None:
             shadow.set_uniforms(program, view, _SHADOW_UNIT)
-        for buffers, transform in self._parts.placed(parts, transforms):
+        placed = self._parts.placed(parts, transforms)
+        is_chosen = self._occluder is not None and self._occluder.is_of(view, self.surface.target)
+        if is_chosen and self._occluder is not None:
+            self._occluder.choose_parts(placed)
+        for buffers, transform in placed:
             if self._set_view(program, view, buffers.corners, transform):
                 set_part(program, buffers.part.shine)
-                buffers.draw(program)
+                buffers.draw(program, chosen=is_chosen)
 
     def draw_geometry(
         self,

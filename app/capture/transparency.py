@@ -26,9 +26,9 @@ def with_colours_around(image: Image) -> Image:
     What codes blocks of pixels, or colours at half the size, mixes edges with what is around them;
     black there would be seen as a dark fringe.
     """
-    weight: npt.NDArray[np.float32] = (image[..., 3:] > 0).astype(np.float32)
+    weight: npt.NDArray[np.float32] = np.greater(image[..., 3:], 0).astype(np.float32)
     filled = image.copy()
-    seen: npt.NDArray[np.float32] = image[..., :3].astype(np.float32) * weight
+    seen: npt.NDArray[np.float32] = (image[..., :3] * weight).astype(np.float32)
     around = _filled(seen, weight, AROUND)
     filled[..., :3] = np.where(weight > 0.0, image[..., :3], around + 0.5)
     return filled
@@ -51,7 +51,8 @@ def _filled(
         return summed
 
     count = halved(weight)
-    means = halved(colours) / np.maximum(count, 1.0)
-    coarse = _filled(means, np.minimum(count, 1.0), halvings - 1)
+    means = np.divide(halved(colours), np.maximum(count, 1.0), dtype=np.float32)
+    some: npt.NDArray[np.float32] = np.minimum(count, np.float32(1.0))
+    coarse = _filled(means, some, halvings - 1)
     fine = coarse.repeat(2, axis=0).repeat(2, axis=1)[:height, :width]
     return np.where(weight > 0.0, colours, fine)
