@@ -21,7 +21,7 @@ from .camera import OrbitCamera
 from .camera_view import CameraView, box_corners
 from .geometry import checked_values, line_segments, value_texture
 from .geometry_buffer import Geometry, GeometryBuffer
-from .hidden import Occluder
+from .hidden import Occluder, draw_sides
 from .materials import COLOUR_DEFINES, TO_KEY, set_palette, set_part, set_skin
 from .outline import draw_fringes, fringes
 from .parts import Part, PartStore
@@ -147,7 +147,14 @@ class Renderer:
                 return
             self._set_surface(program, view, style, texture, share_wrinkles)
             drawn.append((program, share))
-        self._draw_sides(stream, drawn, None if is_coloured else view)
+        if not self.surface.is_software:
+            for each, share in drawn:
+                stream.draw(each, share)
+            return
+        target = self.surface.target
+        if target.samples and (self._occluder is None or self._occluder.target is not target):
+            self._occluder = Occluder(self._gl, target)
+        draw_sides(self._gl, stream, drawn, None if is_coloured else view, self._occluder)
 
     def draw_outline(
         self,
@@ -178,43 +185,6 @@ class Renderer:
             self._set_surface(program, view, style, texture, None)
             with self._blending():
                 draw_fringes(self._gl, program, rows)
-
-    def _draw_sides(
-        self,
-        stream: Stream,
-        shares: Sequence[tuple[moderngl.Program, Share]],
-        view: CameraView | None,
-    ) -> None:
-        """Draw shares of the mesh; where software draws, what turns to the eye goes first.
-
-        What turns away is mostly hidden: drawn last, it is not shaded at all there, if nothing is
-        multisampled. Else it is left out where that is certain, which needs the view.
-        """
-        if not self.surface.is_software:
-            for program, share in shares:
-                stream.draw(program, share)
-            return
-        self._gl.enable(moderngl.CULL_FACE)
-        self._gl.cull_face = "back"
-        for program, share in shares:
-            stream.draw(program, share)
-        target = self.surface.target
-        is_chosen = view is not None and target.samples > 0
-        if is_chosen and view is not None:
-            if self._occluder is None or self._occluder.target is not target:
-                self._occluder = Occluder(self._gl, target)
-            covered = view.covered_pixels(stream.corners)
-            self._occluder.look(view, covered)
-            positions = stream.vertices[: stream.vertex_count, :3]
-            triangles = stream.triangles[: stream.triangle_count]
-            stream.choose(self._occluder.may_be_seen(positions, triangles))
-            target.use_layer(view.viewport, covered)
-            self._gl.enable(moderngl.CULL_FACE)
-        self._gl.cull_face = "front"
-        for program, share in shares:
-            stream.draw(program, share, chosen=is_chosen)
-        self._gl.cull_face = "back"
-        self._gl.disable(moderngl.CULL_FACE)
 
     def _surface_program(
         self, style: Style, texture: Texture | None, wrinkles: WrinkleMap | None, *more: str

@@ -28,6 +28,7 @@ from .options import (
     mapping_table,
     port_option,
     told,
+    told_size,
     with_drawing,
     with_filming,
     with_live,
@@ -70,7 +71,7 @@ def capture(
     """
     from ..capture import CaptureOptions
     from ..capture import capture as film_of
-    from ..capture.formats import HEARD, size_of_film
+    from ..capture.formats import HEARD
     from ..files import check_apart
     from ..passes.files import beside
     from ..performances import script_for
@@ -110,14 +111,8 @@ def capture(
     )
     made = in_one_line(" and ".join(str(path) for path in (output, sheet) if path))
     click.echo(f"{made}: {most} triangles at most")
-    whole = options.size
-    if output is not None:
-        whole = size_of_film(output, whole, is_transparent=options.is_transparent)
-    if whole != options.size and not filming.quiet:
-        click.echo(
-            f"The film has {whole[0]}x{whole[1]} pixels, the last row or column twice: films of "
-            "this kind have even sizes."
-        )
+    if output is not None and not filming.quiet:
+        told_size(output, options)
 
 
 @click.command()

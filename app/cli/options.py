@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from risorius import render
     from risorius.assets.fitting import FittedHead
 
+    from ..capture import CaptureOptions
     from ..recordings.report import Report
 
 Command = Callable[..., Any]
@@ -317,6 +318,18 @@ def told(report: Report) -> None:
     """Say on the error stream what a recording was taken for."""
     for line in report.lines:
         click.echo(line, err=True)
+
+
+def told_size(output: Path, options: CaptureOptions) -> None:
+    """Say where a film is larger than was asked for."""
+    from ..capture.formats import size_of_film
+
+    width, height = size_of_film(output, options.size, is_transparent=options.is_transparent)
+    if (width, height) != options.size:
+        click.echo(
+            f"The film has {width}x{height} pixels, the last row or column twice: films of this "
+            "kind have even sizes."
+        )
 
 
 def _write_mapping_table(context: click.Context, _: click.Parameter, asked: bool) -> None:
