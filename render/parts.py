@@ -53,7 +53,9 @@ class PartBuffers:
         self._uploaded: npt.NDArray[np.float32] | None = None
         self.upload()
         self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
-        self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
+        self._chosen = gl.buffer(reserve=self._indices.size, dynamic=True)
+        self._chosen_count = 0
+        self._arrays: dict[tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray] = {}
 
     def upload(self) -> None:
         """Upload the part's vertices, unless they are those that were uploaded last."""
@@ -65,17 +67,33 @@ class PartBuffers:
         self._vertices.write(rows.tobytes())
         self._uploaded = vertices
 
-    def draw(self, program: moderngl.Program) -> None:
-        """Draw it with a program that has in_position, in_normal and in_colour."""
-        if program not in self._arrays:
-            self._arrays[program] = self._gl.vertex_array(
+    def choose(self, is_chosen: npt.NDArray[np.bool_]) -> None:
+        """Choose among its faces, (m,), for `draw` of the chosen."""
+        chosen = np.ascontiguousarray(np.asarray(self.part.faces)[is_chosen], np.uint32)
+        self._chosen_count = len(chosen)
+        self._chosen.orphan()
+        if len(chosen):
+            self._chosen.write(chosen)
+
+    def draw(self, program: moderngl.Program, *, chosen: bool = False) -> None:
+        """Draw it; the program has in_position, and in_normal and in_colour if it wants them.
+
+        chosen: only the faces that were chosen last.
+        """
+        if chosen and not self._chosen_count:
+            return
+        indices = self._chosen if chosen else self._indices
+        if (program, indices) not in self._arrays:
+            self._arrays[program, indices] = self._gl.vertex_array(
                 program,
                 [(self._vertices, "3f 3f 3f", "in_position", "in_normal", "in_colour")],
-                index_buffer=self._indices,
+                index_buffer=indices,
                 index_element_size=4,
+                skip_errors=True,  # not every program has a use for colours
             )
+        count = self._chosen_count if chosen else len(self.part.faces)
         self._gl.enable(moderngl.CULL_FACE)
-        self._arrays[program].render(moderngl.TRIANGLES)
+        self._arrays[program, indices].render(moderngl.TRIANGLES, vertices=3 * count)
         self._gl.disable(moderngl.CULL_FACE)
 
 

@@ -32,19 +32,20 @@ class RenderTarget:
         self.samples = samples
         self._gl = gl
         self.frame_number = 0  # counts the frames since the target was made
+        self.layer_number = 0  # counts how often the layer was averaged, and so begun anew
         self.is_empty = False  # nothing was drawn since `start`
         self._drawn_on: list[Rectangle] = []  # apart from each other
         self._is_stale = False
         self.colour = gl.texture(size, 4)
         self.colour.repeat_x = self.colour.repeat_y = False
-        depth = gl.depth_renderbuffer(size, samples=samples)
         if not samples:
-            self.frame = gl.framebuffer([self.colour], depth)
+            self.frame = gl.framebuffer([self.colour], gl.depth_renderbuffer(size))
             self._layer = self.frame
             return
         self.frame = gl.framebuffer([self.colour])
         self._layer_colour = gl.texture(size, 4, samples=samples)
-        self._layer = gl.framebuffer([self._layer_colour], depth)
+        self.layer_depth = gl.depth_texture(size, samples=samples)
+        self._layer = gl.framebuffer([self._layer_colour], self.layer_depth)
         self._layer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
         self._average_program = compile_program(gl, "average.glsl", f"SAMPLES {samples}")
         self._average_program["layer"] = _UNIT
@@ -90,6 +91,7 @@ class RenderTarget:
         gl.enable_only(moderngl.DEPTH_TEST)
         gl.scissor = None
         self._is_stale = True
+        self.layer_number += 1
 
     def _clear_layer(self) -> None:
         """Empty the layer, if all that is on it was averaged onto the frame."""
@@ -101,10 +103,10 @@ class RenderTarget:
         self._layer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
         self._is_stale = False
 
-    def read(self) -> bytes:
-        """The frame, bottom row first, three bytes per pixel."""
+    def read(self, components: int = 3) -> bytes:
+        """The frame, bottom row first, three bytes per pixel, or four."""
         self.flush()
-        return bytes(self.frame.read(components=3, alignment=1))
+        return bytes(self.frame.read(components=components, alignment=1))
 
 
 def overlap(first: Rectangle, second: Rectangle) -> bool:

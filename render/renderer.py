@@ -20,6 +20,8 @@ from .backdrop import Backdrop
 from .camera import OrbitCamera
 from .camera_view import CameraView, box_corners
 from .geometry import checked_values, line_segments, value_texture
+from .geometry_buffer import Geometry, GeometryBuffer
+from .hidden import Occluder, draw_sides
 from .materials import COLOUR_DEFINES, set_palette, set_part, set_skin
 from .outline import draw_fringes, fringes
 from .parts import Part, PartStore
@@ -55,6 +57,8 @@ class Renderer:
         self._values: moderngl.Texture | None = None
         self._backdrop = Backdrop(self._gl)
         self._shadow: ShadowMap | None = None
+        self._geometry_buffer: GeometryBuffer | None = None
+        self._occluder: Occluder | None = None
 
     def release(self) -> None:
         """Let go of all that was compiled and uploaded here; nothing can be drawn any more.
@@ -143,7 +147,14 @@ class Renderer:
                 return
             self._set_surface(program, view, style, texture, share_wrinkles)
             drawn.append((program, share))
-        self._draw_sides(stream, drawn)
+        if not self.surface.is_software:
+            for each, share in drawn:
+                stream.draw(each, share)
+            return
+        target = self.surface.target
+        if target.samples and (self._occluder is None or self._occluder.target is not target):
+            self._occluder = Occluder(self._gl, target)
+        draw_sides(self._gl, stream, drawn, None if is_coloured else view, self._occluder)
 
     def draw_outline(
         self,
@@ -174,23 +185,6 @@ class Renderer:
             self._set_surface(program, view, style, texture, None)
             with self._blending():
                 draw_fringes(self._gl, program, rows)
-
-    def _draw_sides(self, stream: Stream, shares: Sequence[tuple[moderngl.Program, Share]]) -> None:
-        """Draw shares of the mesh; where software draws, what turns to the eye goes first.
-
-        What turns away is mostly hidden: drawn last, it is not shaded at all there.
-        """
-        if not self.surface.is_software:
-            for program, share in shares:
-                stream.draw(program, share)
-            return
-        self._gl.enable(moderngl.CULL_FACE)
-        for culled in ("back", "front"):
-            self._gl.cull_face = culled
-            for program, share in shares:
-                stream.draw(program, share)
-        self._gl.cull_face = "back"
-        self._gl.disable(moderngl.CULL_FACE)
 
     def _surface_program(
         self, style: Style, texture: Texture | None, wrinkles: WrinkleMap | None, *more: str
@@ -259,10 +253,36 @@ class Renderer:
         program = self._program("surface.glsl", "PIXEL", "COLOURED", *(["SHADOWS"] * bool(shadow)))
         if shadow is not None:
             shadow.set_uniforms(program, view, _SHADOW_UNIT)
-        for buffers, transform in self._parts.placed(parts, transforms):
+        placed = self._parts.placed(parts, transforms)
+        is_chosen = self._occluder is not None and self._occluder.is_of(view, self.surface.target)
+        if is_chosen and self._occluder is not None:
+            self._occluder.choose_parts(placed)
+        for buffers, transform in placed:
             if self._set_view(program, view, buffers.corners, transform):
                 set_part(program, buffers.part.shine, style.light)
-                buffers.draw(program)
+                buffers.draw(program, chosen=is_chosen)
+
+    def draw_geometry(
+        self,
+        stream: Stream,
+        parts: Iterable[Part],
+        transforms: Mapping[str, npt.NDArray[np.float64]],
+        camera: OrbitCamera,
+        *,
+        values: npt.NDArray[np.float32] | None = None,
+    ) -> Geometry:
+        """Numbers of what is seen, for each pixel of the surface; nothing on it changes.
+
+        values: two numbers for each vertex that `stream` last uploaded, (vertex_count, 2), to be
+            interpolated; None: zeros. Raises ValueError for another shape, or a bone without
+            transform.
+        """
+        view = self._camera_view(camera, None, None)
+        size = self.surface.target.size
+        if self._geometry_buffer is None or self._geometry_buffer.size != size:
+            self._geometry_buffer = GeometryBuffer(self._gl, size)
+        placed = self._parts.placed(parts, transforms)
+        return self._geometry_buffer.draw(stream, placed, view, values)
 
     def draw_lines(
         self,

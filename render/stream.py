@@ -23,6 +23,9 @@ class Share(Enum):
     SMOOTH = "smooth"  # all others
 
 
+_Ranges = dict[Share, tuple[int, int]]  # first triangle and how many, in a buffer of indices
+
+
 class Stream:
     """One mesh of at most so many vertices and triangles, rewritten every frame.
 
@@ -57,9 +60,15 @@ class Stream:
         self._vertex_buffer = gl.buffer(reserve=self.vertices.nbytes, dynamic=True)
         self.has_wrinkles = False
         self._wrinkle_buffers: tuple[moderngl.Buffer, moderngl.Buffer] | None = None
-        self._wrinkled_count = 0  # triangles; they come first in the second of these buffers
+        self._is_wrinkled: npt.NDArray[np.bool_] | None = None  # triangle by triangle
+        self._value_buffer: moderngl.Buffer | None = None
         self._index_buffer = gl.buffer(reserve=self.triangles.nbytes, dynamic=True)
-        self._vertex_arrays: dict[tuple[moderngl.Program, bool], moderngl.VertexArray] = {}
+        self._chosen_buffer: moderngl.Buffer | None = None
+        self._ranges: _Ranges = {}
+        self._chosen_ranges: _Ranges = {}
+        self._vertex_arrays: dict[
+            tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray
+        ] = {}
 
     def upload(
         self,
@@ -86,6 +95,8 @@ class Stream:
             )
         self.vertex_count, self.triangle_count = vertex_count, triangle_count
         self.has_wrinkles = wrinkling is not None
+        self._is_wrinkled = None
+        self._ranges = {Share.ALL: (0, triangle_count)}
         if vertex_count == 0 or triangle_count == 0:
             return
         self.corners = box_corners(self.vertices[:vertex_count, :3])
@@ -106,27 +117,71 @@ class Stream:
                 self._gl.buffer(reserve=self.triangles.nbytes, dynamic=True),
             )
         triangles = self.triangles[: self.triangle_count]
-        is_wrinkled = (wrinkling.max(axis=1) > 0.0)[triangles].any(axis=1)
-        self._wrinkled_count = int(np.count_nonzero(is_wrinkled))
-        parted = np.concatenate([triangles[is_wrinkled], triangles[~is_wrinkled]])
+        self._is_wrinkled = (wrinkling.max(axis=1) > 0.0)[triangles].any(axis=1)
+        parted, ranges = self._parted(np.ones(len(triangles), bool))
+        self._ranges.update(ranges)
         for buffer, array in zip(self._wrinkle_buffers, (wrinkling, parted), strict=True):
             buffer.orphan()
             buffer.write(np.ascontiguousarray(array))
 
-    def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
+    def upload_values(self, values: npt.NDArray[np.float32] | None) -> None:
+        """Hand two numbers for each uploaded vertex to OpenGL, (vertex_count, 2); None: zeros.
+
+        ValueError for another shape. Programs that are first drawn with after that have in_values.
+        """
+        if values is None:
+            values = np.zeros((self.vertex_count, 2), np.float32)
+        if values.shape != (self.vertex_count, 2):
+            raise ValueError(
+                f"values has shape {values.shape}; it must be ({self.vertex_count}, 2), two "
+                "numbers for each uploaded vertex"
+            )
+        if self._value_buffer is None:
+            room = 2 * self.vertices.itemsize * len(self.vertices)
+            self._value_buffer = self._gl.buffer(reserve=room, dynamic=True)
+        self._value_buffer.orphan()
+        self._value_buffer.write(np.ascontiguousarray(values, np.float32))
+
+    def _parted(self, is_chosen: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.uint32], _Ranges]:
+        """Some triangles, those that wrinkle first where amounts were uploaded, and the ranges."""
+        triangles = self.triangles[: self.triangle_count]
+        if self._is_wrinkled is None:
+            return triangles[is_chosen], {Share.ALL: (0, int(is_chosen.sum()))}
+        wrinkled = triangles[self._is_wrinkled & is_chosen]
+        smooth = triangles[~self._is_wrinkled & is_chosen]
+        return np.concatenate([wrinkled, smooth]), {
+            Share.WRINKLED: (0, len(wrinkled)),
+            Share.SMOOTH: (len(wrinkled), len(smooth)),
+        }
+
+    def choose(self, is_chosen: npt.NDArray[np.bool_]) -> None:
+        """Choose among the uploaded triangles, (triangle_count,), for `draw` of the chosen."""
+        if self._chosen_buffer is None:
+            self._chosen_buffer = self._gl.buffer(reserve=self.triangles.nbytes, dynamic=True)
+        chosen, self._chosen_ranges = self._parted(is_chosen)
+        self._chosen_buffer.orphan()
+        if len(chosen):
+            self._chosen_buffer.write(np.ascontiguousarray(chosen))
+
+    def draw(
+        self, program: moderngl.Program, share: Share = Share.ALL, *, chosen: bool = False
+    ) -> None:
         """Draw uploaded triangles; attributes in_position, in_normal, in_uv, as needed.
 
         `share`: WRINKLED and SMOOTH need amounts of wrinkling, and give the program in_wrinkling.
+        `chosen`: only of those that were chosen since the upload.
         """
-        first, count = {
-            Share.ALL: (0, self.triangle_count),
-            Share.WRINKLED: (0, self._wrinkled_count),
-            Share.SMOOTH: (self._wrinkled_count, self.triangle_count - self._wrinkled_count),
-        }[share]
+        first, count = (self._chosen_ranges if chosen else self._ranges).get(share, (0, 0))
         if self.vertex_count == 0 or count == 0:
             return
-        is_parted = share is not Share.ALL
-        array = self._vertex_arrays.get((program, is_parted))
+        indices = self._index_buffer
+        if chosen:
+            assert self._chosen_buffer is not None
+            indices = self._chosen_buffer
+        elif share is not Share.ALL:
+            assert self._wrinkle_buffers is not None
+            indices = self._wrinkle_buffers[1]
+        array = self._vertex_arrays.get((program, indices))
         if array is None:
             names = ["in_position", "in_normal", "in_uv"]
             layout = "3f 3f 2f"
@@ -134,10 +189,10 @@ class Stream:
                 names.pop()
                 layout = "3f 3f"
             content: list[Any] = [(self._vertex_buffer, layout, *names)]
-            indices = self._index_buffer
             if self._wrinkle_buffers is not None:
                 content.append((self._wrinkle_buffers[0], "2f", "in_wrinkling"))
-                indices = self._wrinkle_buffers[1] if is_parted else indices
+            if self._value_buffer is not None:
+                content.append((self._value_buffer, "2f", "in_values"))
             array = self._gl.vertex_array(
                 program,
                 content,
@@ -145,7 +200,7 @@ class Stream:
                 index_element_size=4,
                 skip_errors=True,  # flat shading has no use for normals, plain skin none for uv
             )
-            self._vertex_arrays[program, is_parted] = array
+            self._vertex_arrays[program, indices] = array
         array.render(moderngl.TRIANGLES, vertices=3 * count, first=3 * first)
 
     def release(self) -> None:
@@ -155,6 +210,11 @@ class Stream:
         self._vertex_arrays.clear()
         self._vertex_buffer.release()
         self._index_buffer.release()
-        for buffer in self._wrinkle_buffers or ():
-            buffer.release()
+        for buffer in (
+            *(self._wrinkle_buffers or ()),
+            self._value_buffer,
+            self._chosen_buffer,
+        ):
+            if buffer is not None:
+                buffer.release()
         self.vertex_count = self.triangle_count = 0

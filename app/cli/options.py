@@ -15,12 +15,13 @@ from ..errors import UserError
 from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from ..playback import LEAD, Playback
-from .parameters import FiniteRange, Looks, Refiner, Size
+from .parameters import BackgroundName, FiniteRange, Looks, Passes, Refiner, Size
 
 if TYPE_CHECKING:
     from risorius import render
     from risorius.assets.fitting import FittedHead
 
+    from ..capture import CaptureOptions
     from ..recordings.report import Report
 
 Command = Callable[..., Any]
@@ -239,6 +240,8 @@ class Filming:
     compare: str | None
     captions: bool
     camera: str | None
+    background: render.Background | None
+    passes: tuple[str, ...]
     alive: bool
     still_time: float | None
     samples: int
@@ -261,6 +264,20 @@ with_filming = packed(
     ),
     click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
     click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
+    click.option(
+        "--background",
+        type=BackgroundName(),
+        default="light",
+        help="light, dark, white, black, a colour as #00b140, or transparent.",
+    ),
+    click.option(
+        "--passes",
+        type=Passes(),
+        default=(),
+        metavar="NAME,...",
+        help="Beside each picture: depth, normal, triangle, splits, tension, segmentation, "
+        "landmarks.",
+    ),
     click.option(
         "--alive",
         is_flag=True,
@@ -318,6 +335,18 @@ def told(report: Report) -> None:
     """Say on the error stream what a recording was taken for."""
     for line in report.lines:
         click.echo(line, err=True)
+
+
+def told_size(output: Path, options: CaptureOptions) -> None:
+    """Say where a film is larger than was asked for."""
+    from ..capture.formats import size_of_film
+
+    width, height = size_of_film(output, options.size, is_transparent=options.is_transparent)
+    if (width, height) != options.size:
+        click.echo(
+            f"The film has {width}x{height} pixels, the last row or column twice: films of this "
+            "kind have even sizes."
+        )
 
 
 def _write_mapping_table(context: click.Context, _: click.Parameter, asked: bool) -> None:
