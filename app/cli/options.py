@@ -15,7 +15,7 @@ from ..errors import UserError
 from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from ..playback import LEAD, Playback
-from .parameters import FiniteRange, Looks, Passes, Refiner, Size
+from .parameters import FiniteRange, Looks, Refiner, Size
 
 if TYPE_CHECKING:
     from risorius import render
@@ -222,7 +222,7 @@ class Filming:
     compare: str | None
     captions: bool
     camera: str | None
-    passes: tuple[str, ...]
+    passes: str | None
     alive: bool
     still_time: float | None
     samples: int
@@ -247,8 +247,6 @@ with_filming = packed(
     click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
     click.option(
         "--passes",
-        type=Passes(),
-        default=(),
         metavar="NAME,...",
         help="Beside each picture: depth, normal, triangle, splits, tension, segmentation, "
         "landmarks.",
