@@ -142,9 +142,10 @@ def capture(
             if film is not None:
                 film(image, known)
             if still and now == still_at:
-                if known is not None:
-                    save_labelled(still, known)
-                save_png(still, image)
+                if known is None:
+                    save_png(still, image)
+                else:
+                    save_labelled(still, image, known)
             while wanted and wanted[0].time <= now + 0.5 / rate:
                 named.append((wanted.pop(0).name or "", image))
         if sheet is not None:
