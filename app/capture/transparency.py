@@ -1,4 +1,4 @@
-"""Pictures with an alpha channel: from premultiplied to straight colours, and colours around them."""
+"""Pictures with an alpha channel: straight colours, and colours around what is seen."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def with_colours_around(image: Image) -> Image:
     """
     weight = (image[..., 3:] > 0).astype(np.float32)
     filled = image.copy()
-    around = _filled(image[..., :3] * weight, weight, AROUND)
+    around = _filled(np.float32(image[..., :3]) * weight, weight, AROUND)
     filled[..., :3] = np.where(weight > 0.0, image[..., :3], around + 0.5)
     return filled
 

@@ -110,6 +110,14 @@ def capture(
     )
     made = in_one_line(" and ".join(str(path) for path in (output, sheet) if path))
     click.echo(f"{made}: {most} triangles at most")
+    whole = options.size
+    if output is not None:
+        whole = size_of_film(output, whole, is_transparent=options.is_transparent)
+    if whole != options.size and not filming.quiet:
+        click.echo(
+            f"The film has {whole[0]}x{whole[1]} pixels, the last row or column twice: films of "
+            "this kind have even sizes."
+        )
 
 
 @click.command()
