@@ -9,7 +9,7 @@ from pathlib import Path
 from ..errors import UserError
 from ..files import Image, check_file, check_png, save_png
 from ..motion import scene_of
-from ..passes.files import check_wanted, save_labelled
+from ..passes.files import beside, check_wanted, save_labelled
 from ..script import Script
 from ..sound import load_sound
 from . import outputs, processes
@@ -60,9 +60,10 @@ def capture(
             if film is not None:
                 film(frame.image, frame.known)
             if still and now == still_at:
-                if frame.known is not None:
-                    save_labelled(still, frame.known)
-                save_png(still, frame.image)
+                if frame.known is None:
+                    save_png(still, frame.image)
+                else:
+                    save_labelled(still, frame.image, frame.known)
             while wanted and wanted[0].time <= now + 0.5 / rate:
                 named.append((wanted.pop(0).name or "", frame.image))
         if sheet is not None:
@@ -123,6 +124,9 @@ def _check_passes(script: Script, output: Path | None, options: CaptureOptions) 
         )
     if options.beside:
         raise UserError("--passes are those of one mesh: leave --compare out")
+    if _is_image(output):
+        for path in beside(output):
+            check_file(path)
 
 
 def soundtrack_of(script: Script) -> Soundtrack | None:

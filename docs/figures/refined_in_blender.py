@@ -1,4 +1,4 @@
-"""Run by Blender's Python for hosts.py: a face as it is, and refined: `refined_in_blender.py NPZ PNG`."""
+"""A face as it is, and refined: `refined_in_blender.py NPZ PNG`, in Blender's Python."""
 
 from __future__ import annotations
 
