@@ -20,11 +20,13 @@ Source: Kähler et al. 2003, Fig. 1, the rendering stage.
 from .camera import VIEWS, OrbitCamera
 from .compositor import Detail
 from .errors import GLError
+from .geometry_buffer import Geometry
 from .parts import Part
 from .probe import Finding, probe
 from .renderer import Renderer, Viewport
 from .stream import Stream
 from .style import (
+    BLACK,
     CLAY,
     DARK,
     LIGHT,
@@ -44,6 +46,7 @@ from .texture import Texture, WrinkleMap
 from .window import WindowSurface, open_window, size_on_screen
 
 __all__ = [
+    "BLACK",
     "CLAY",
     "DARK",
     "LIGHT",
@@ -59,6 +62,7 @@ __all__ = [
     "Detail",
     "Finding",
     "GLError",
+    "Geometry",
     "Image",
     "OffscreenSurface",
     "OrbitCamera",

@@ -120,6 +120,7 @@ def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
         "capture broken.toml -o d.mp4\n"
         "capture joy.toml -o joy.toml\n"
         "capture joy.toml -o e.mp4 --colour\n"
+        "capture joy.toml -o f.mp4 --sheet joy.toml\n"
     )
     before = contents(".")
     ended = batch()
@@ -136,7 +137,8 @@ def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
         (9, "writes nothing"),
         (11, "not empty"),
         (12, "broken.toml"),
-        (13, "is read and would be written"),
+        (13, "is written by line 10 already"),
+        (15, "is read and would be written"),
         (14, "--colour"),
     )
     assert ended.exit_code == 2 and ended.stdout == ""
