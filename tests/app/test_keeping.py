@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -41,15 +42,21 @@ def kept() -> Iterator[None]:
 
 def test_things_are_made_once_and_the_oldest_goes(kept: None) -> None:
     """As many as memory is meant for; one that is used again is young again."""
-    made = []
+    made: list[int] = []
+    closed: list[str] = []
 
-    def get(key: int) -> str:
-        """The thing of this number."""
-        return keeping.kept("thing", key, lambda: made.append(key) or f"thing {key}")
+    def make(key: int) -> str:
+        """A new thing of this number."""
+        made.append(key)
+        return f"thing {key}"
 
     for key in (*range(keeping.MOST), 0, keeping.MOST, 0, 1):
-        assert get(key) == f"thing {key}"
+        assert keeping.kept("thing", key, partial(make, key), closed.append) == f"thing {key}"
     assert made == [*range(keeping.MOST), keeping.MOST, 1]
+    assert len(closed) == 2 and closed[0] == "thing 1"
+    keeping.let_go()
+    assert sorted(closed) == sorted(f"thing {key}" for key in made)
+    assert keeping.kept("thing", 0, lambda: "new") == "new"
 
 
 def test_nothing_is_kept_unless_asked_for() -> None:
