@@ -330,7 +330,8 @@ def test_killed_at_random_moments() -> None:
         wait_until(lambda: not any(map(is_running, victims)))  # noqa: B023
         for path in Path("made").glob("*.mp4"):
             assert path.read_bytes() == undisturbed[str(path)], path
-        assert batch("--resume", "--jobs", "2").exit_code == 0
+        resumed = batch("--resume", "--jobs", "2")
+        assert resumed.exit_code == 0, resumed.output
         assert contents(*Path("made").glob("*.mp4")) == undisturbed
         assert len(rows()) == 3
 
