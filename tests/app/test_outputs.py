@@ -36,15 +36,6 @@ def test_a_film_has_its_frames_and_size(tmp_path: Path) -> None:
     assert [item.name for item in path.parent.iterdir()] == ["film.mp4"]
 
 
-def test_an_odd_size_is_told(tmp_path: Path) -> None:
-    """4:2:0 films have even sides; the text says which size to take."""
-    with (
-        pytest.raises(UserError, match=r"97x63; take 98x64"),
-        outputs.film(tmp_path / "film.mp4", (97, 63), 25.0),
-    ):
-        pass
-
-
 def test_a_broken_film_leaves_the_old_one(tmp_path: Path) -> None:
     """If the program fails in the middle, the user's earlier file is untouched."""
     path = tmp_path / "film.mp4"
