@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,15 @@ from .scenes import Scene, build_scene
 from .script import Script
 from .stopping import cleaned_up_if_stopped
 
+
+@dataclass
+class Tally:
+    """What this process has played."""
+
+    frames: int = 0
+
+
+tally = Tally()
 SETTLING = 1.0  # [s] after which the face rests in a pose
 
 
@@ -70,4 +80,6 @@ def counted_frames(until: float, frames_per_second: float, *, progress: bool) ->
     frames = range(round(until * frames_per_second) + 1)
     bar = tqdm(frames, unit="frame", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):
-        yield from bar
+        for index in bar:
+            tally.frames += 1
+            yield index

@@ -16,6 +16,7 @@ from ..errors import UserError, counted, in_one_line
 from ..live import LOOPBACK, PROTOCOLS
 from ..looks import STATIC, Refinement
 from ..playback import Playback
+from .batch import batch
 from .export import export
 from .options import (
     PATH,
@@ -329,4 +330,6 @@ def warm(quiet: bool) -> None:
     compile_all(quiet)
 
 
-ALL = (capture, export, view, replay, convert, speak, send, demo, controls, doctor, warm)
+ALL = (
+    capture, export, batch, view, replay, convert, speak, send, demo, controls, doctor, warm,
+)  # fmt: skip

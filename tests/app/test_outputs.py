@@ -17,6 +17,7 @@ from risorius.app import files
 from risorius.app.capture import ffmpeg, outputs
 from risorius.app.cli import main
 from risorius.app.errors import UserError
+from risorius.assets import staging
 
 GREY = np.full((64, 96, 3), 128, np.uint8)
 
@@ -101,6 +102,7 @@ def test_a_run_after_one_that_was_killed(tmp_path: Path) -> None:
     assert sorted(target.iterdir()) == [left, target / "frame_00000.png"]
     for path in (*left.iterdir(), left):
         os.utime(path, (0.0, 0.0))
+    staging._swept.clear()  # as in another process
     files.save_png(target / "x.png", GREY)
     assert {path.name for path in target.iterdir()} == {"frame_00000.png", "x.png"}
 

@@ -1,0 +1,70 @@
+"""What a process keeps for the next piece of work; a process that does one thing keeps nothing."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Callable, Hashable
+from pathlib import Path
+from typing import TypeVar, cast
+
+Thing = TypeVar("Thing")
+MOST = 2  # things of one kind; those that were used last
+
+_kept: dict[str, dict[Hashable, tuple[object, Callable[[], object]]]] | None = None
+
+
+def keep() -> None:
+    """From here on keep what `kept` is asked for."""
+    global _kept
+    _kept = {}
+
+
+def let_go() -> None:
+    """Close what is kept, and begin anew: after an error nobody knows in what state it is."""
+    for things in (_kept or {}).values():
+        for _, close in things.values():
+            with contextlib.suppress(Exception):  # what is broken cannot be closed
+                close()
+        things.clear()
+
+
+def is_keeping() -> bool:
+    """Whether this process keeps things."""
+    return _kept is not None
+
+
+def kept(
+    kind: str,
+    key: Hashable,
+    make: Callable[[], Thing],
+    close: Callable[[Thing], object] = lambda _: None,
+) -> Thing:
+    """What was made for this key before, or else what `make` makes now.
+
+    Whoever takes it brings it into the state that a new one has. close: is called with what gives
+    way to others; what is not kept at all is the caller's to close.
+    """
+    if _kept is None:
+        return make()
+    things = _kept.setdefault(kind, {})
+    if key not in things:
+        while len(things) >= MOST:  # first, so that there is room for the new one
+            _, close_it = things.pop(next(iter(things)))
+            close_it()
+        thing = make()
+        things[key] = thing, lambda: close(thing)
+    things[key] = things.pop(key)  # as the last one
+    return cast(Thing, things[key][0])
+
+
+def state_of(path: Path) -> tuple[str, int, int]:
+    """What tells one content of a file from another: its place, size and time.
+
+    The size is -1 where there is none.
+    """
+    try:
+        found = path.stat()
+    except OSError:
+        return str(path), -1, 0
+    return os.path.realpath(path), found.st_size, found.st_mtime_ns
