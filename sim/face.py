@@ -34,6 +34,7 @@ from .controls import Controls
 from .coordinates import to_posed_head
 from .drive import MuscleDrive
 from .landmarks import Array
+from .layers import Layers
 from .lids import turn_lids
 from .skin_model import Tick
 from .skull import REST, RigidMotion
@@ -91,6 +92,11 @@ class Simulation:
     def layers(self) -> Mapping[str, tuple[str, ...]]:
         """Names of the controls above, by the title of their layer, from the bottom up."""
         return self._controls.layers
+
+    @property
+    def tables(self) -> Layers:
+        """What each control of the layers adds to the C lowest `controls`, in their order."""
+        return self._anatomy.layers
 
     @property
     def limits(self) -> Mapping[str, tuple[float, float]]:
