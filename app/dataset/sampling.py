@@ -206,5 +206,7 @@ def _two_sided(
 
 
 def _bounded_normal(random: np.random.Generator) -> float:
-    """Of mean 0 and deviation 1, and within 2."""
-    return float(np.clip(random.standard_normal(), -2.0, 2.0))
+    """Of mean 0 and a deviation of about 1, and within 2."""
+    while abs(value := float(random.standard_normal())) > 2.0:
+        pass
+    return value

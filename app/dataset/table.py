@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Callable, Container, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -57,7 +57,7 @@ class SampleTable:
     eyes: Shares
     head: Shares
     camera: Mapping[str, Range]
-    text: str  # of the sections that are not as in aus.toml
+    sections: Mapping[str, Any]  # all of it, as TOML has it
 
     def goes_with(self, unit: str, others: Container[str] | Mapping[str, float]) -> bool:
         """Whether a unit may be there beside those that are."""
@@ -81,7 +81,6 @@ def load_table(path: Path | None, units: Container[str], visemes: Container[str]
     UserError with file, section and row.
     """
     sections = _parsed(table_text(), "aus.toml")
-    text = ""
     if path is not None:
         try:
             text = read_text(path, what="table of samples", longest=LONGEST_FILE)
@@ -95,7 +94,7 @@ def load_table(path: Path | None, units: Container[str], visemes: Container[str]
                 f"{path}: there is no section [{min(unknown)}]; allowed are {', '.join(sections)}"
             )
         sections.update(own)
-    return _Reader(str(path or "aus.toml"), units, visemes).table(sections, text)
+    return _Reader(str(path or "aus.toml"), units, visemes).table(sections)
 
 
 def _parsed(text: str, source: str) -> dict[str, Any]:
@@ -113,7 +112,7 @@ class _Reader:
         self._units = units
         self._visemes = visemes
 
-    def table(self, given: Mapping[str, Any], text: str) -> SampleTable:
+    def table(self, given: Mapping[str, Any]) -> SampleTable:
         """All sections."""
         for name, section in given.items():
             if not isinstance(section, dict):
@@ -139,7 +138,7 @@ class _Reader:
             camera={
                 name: self.range(name, given["camera"].get(name)) for name in CAMERA
             },
-            text=text,
+            sections=given,
         )
         self._check_all(table, given)
         return table
@@ -242,8 +241,8 @@ class _Reader:
         return UserError(f"{self._source}: {where}: was {given!r}, {allowed}")
 
 
-def camera_of(text: str, table: SampleTable) -> dict[str, Range]:
-    """The table's camera with what `--camera yaw[,pitch[,zoom]]` says: each LOW:HIGH or a number.
+def with_camera(table: SampleTable, text: str) -> SampleTable:
+    """A table whose camera is `--camera yaw[,pitch[,zoom]]`: each a number, or LOW:HIGH.
 
     Raises UserError.
     """
@@ -259,4 +258,5 @@ def camera_of(text: str, table: SampleTable) -> dict[str, Range]:
         except ValueError:
             raise UserError(how) from None
         camera[name] = reader.range(name, numbers * 2 if len(numbers) == 1 else numbers)
-    return camera
+    plain = {name: list(limits) for name, limits in camera.items()}
+    return replace(table, camera=camera, sections={**table.sections, "camera": plain})
