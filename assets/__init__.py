@@ -13,7 +13,7 @@ The programs that generate them are in this package, too: `python -m risorius.as
 from .errors import AssetError
 from .loading import available, load
 from .meshes import Mesh, read_mesh
-from .model import Cloth, Eye, Head, Layer, Part, Plane, Tone, Wrinkles
+from .model import Cloth, Eye, Head, Layer, Part, Plane, Segment, Tone, Wrinkles
 from .painting import paint
 
 __all__ = [
@@ -25,6 +25,7 @@ __all__ = [
     "Mesh",
     "Part",
     "Plane",
+    "Segment",
     "Tone",
     "Wrinkles",
     "available",

@@ -29,6 +29,7 @@ from .generator.form import EYE_CENTRE, EYE_RADIUS
 from .generator.landmarks import anatomy, landmark_vertices
 from .generator.oral import lower_cavity, tongue, upper_cavity
 from .generator.painting import SIZE, paint_skin
+from .generator.segments import paint_segments
 from .generator.skin import SkinMesh, build_half, mirrored
 from .generator.solids import Solid
 from .generator.unwrap import unwrap
@@ -169,6 +170,7 @@ def _write(file: Path, *, tone: Tone, size: int) -> None:
     head = load_head(file)
     _save(head.finer_file, build_finer(head))
     _save(head.wrinkles_file, build_wrinkles(head, size))
+    write_image(head.segments_file, paint_segments(head, size))
     write_image(head.albedo_file, paint_skin(head, tone=tone, size=size))
 
 

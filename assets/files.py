@@ -74,13 +74,16 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise AssetError(f"{path} is not readable as TOML: {error}") from error
 
 
-def read_image(path: Path) -> Image:
-    """Read an image, shape (H, W, 3), uint8, read-only; AssetError if it cannot be read."""
+def read_image(path: Path, *, mode: str = "RGB") -> Image:
+    """Read an image, shape (H, W, 3), in mode "L" (H, W), uint8, read-only.
+
+    Raises AssetError if it cannot be read.
+    """
     import PIL.Image  # which to load a head takes no time for
 
     try:
         with PIL.Image.open(path) as file:
-            image: Image = np.array(file.convert("RGB"), dtype=np.uint8)
+            image: Image = np.array(file.convert(mode), dtype=np.uint8)
     except FileNotFoundError as error:
         raise AssetError(
             f"the picture {path} is missing; paint it with 'python -m risorius.{PROGRAM}'"

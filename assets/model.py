@@ -13,7 +13,7 @@ landmark numbering after Sagonas et al. 2013, "300 Faces in-the-Wild Challenge" 
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import Enum
+from enum import Enum, IntEnum
 from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar
@@ -37,6 +37,29 @@ class Tone(Enum):
     MEDIUM_LIGHT = "medium-light"  # the image that is shipped
     MEDIUM = "medium"
     DARK = "dark"
+
+
+class Segment(IntEnum):
+    """What a pixel of a face shows, by the numbers of FaceSynthetics (Wood et al. 2021).
+
+    Left and right are the subject's. HAIR is for heads that have any; shaved skin is SKIN.
+    """
+
+    BACKGROUND = 0
+    SKIN = 1
+    NOSE = 2
+    RIGHT_EYE = 3
+    LEFT_EYE = 4
+    RIGHT_BROW = 5
+    LEFT_BROW = 6
+    RIGHT_EAR = 7
+    LEFT_EAR = 8
+    MOUTH_INTERIOR = 9
+    TOP_LIP = 10
+    BOTTOM_LIP = 11
+    NECK = 12
+    HAIR = 13
+    IGNORE = 255
 
 
 @dataclass(frozen=True)
@@ -166,6 +189,7 @@ class Head:
         same numbers as `faces`.
     albedo_file: the image of the skin.
     wrinkles_file: the map of its wrinkles.
+    segments_file: the map of what is nose, lip, neck, ...
     openness_file: how open it is to light from all around; app/ambient.py makes it.
     finer_file: what the finer meshes of the same form need; read by `finer`.
     rig: the parsed rig file, {} where there is none.
@@ -188,6 +212,7 @@ class Head:
     face_uv: IndexArray
     albedo_file: Path
     wrinkles_file: Path
+    segments_file: Path
     openness_file: Path
     finer_file: Path
     rig: dict[str, Any]
@@ -224,6 +249,14 @@ class Head:
         names = ("map", "steepest", "across")
         arrays = read_arrays_of(self.fingerprint, self.wrinkles_file, names)
         return Wrinkles(arrays["map"], float(arrays["steepest"]), arrays["across"])
+
+    @cached_property
+    def segments(self) -> Image:
+        """What each texel belongs to, numbers of `Segment`, shape (H, W), uint8; row 0 is v = 1.
+
+        Raises AssetError when the file is missing or no picture.
+        """
+        return read_image(self.segments_file, mode="L")
 
     @cached_property
     def openness(self) -> Image:

@@ -20,6 +20,7 @@ Source: Kähler et al. 2003, Fig. 1, the rendering stage.
 from .camera import VIEWS, OrbitCamera
 from .compositor import Detail
 from .errors import GLError
+from .geometry_buffer import Geometry
 from .parts import Part
 from .probe import Finding, probe
 from .renderer import Renderer, Viewport
@@ -59,6 +60,7 @@ __all__ = [
     "Detail",
     "Finding",
     "GLError",
+    "Geometry",
     "Image",
     "OffscreenSurface",
     "OrbitCamera",

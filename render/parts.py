@@ -66,13 +66,14 @@ class PartBuffers:
         self._uploaded = vertices
 
     def draw(self, program: moderngl.Program) -> None:
-        """Draw it with a program that has in_position, in_normal and in_colour."""
+        """Draw it; the program has in_position, and in_normal and in_colour if it wants them."""
         if program not in self._arrays:
             self._arrays[program] = self._gl.vertex_array(
                 program,
                 [(self._vertices, "3f 3f 3f", "in_position", "in_normal", "in_colour")],
                 index_buffer=self._indices,
                 index_element_size=4,
+                skip_errors=True,  # not every program has a use for colours
             )
         self._gl.enable(moderngl.CULL_FACE)
         self._arrays[program].render(moderngl.TRIANGLES)

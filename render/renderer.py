@@ -20,6 +20,7 @@ from .backdrop import Backdrop
 from .camera import OrbitCamera
 from .camera_view import CameraView, box_corners
 from .geometry import checked_values, line_segments, value_texture
+from .geometry_buffer import Geometry, GeometryBuffer
 from .materials import COLOUR_DEFINES, TO_KEY, set_palette, set_part, set_skin
 from .outline import draw_fringes, fringes
 from .parts import Part, PartStore
@@ -55,6 +56,7 @@ class Renderer:
         self._values: moderngl.Texture | None = None
         self._backdrop = Backdrop(self._gl)
         self._shadow: ShadowMap | None = None
+        self._geometry_buffer: GeometryBuffer | None = None
 
     def release(self) -> None:
         """Let go of all that was compiled and uploaded here; nothing can be drawn any more.
@@ -263,6 +265,28 @@ class Renderer:
             if self._set_view(program, view, buffers.corners, transform):
                 set_part(program, buffers.part.shine)
                 buffers.draw(program)
+
+    def draw_geometry(
+        self,
+        stream: Stream,
+        parts: Iterable[Part],
+        transforms: Mapping[str, npt.NDArray[np.float64]],
+        camera: OrbitCamera,
+        *,
+        values: npt.NDArray[np.float32] | None = None,
+    ) -> Geometry:
+        """Numbers of what is seen, for each pixel of the surface; nothing on it changes.
+
+        values: two numbers for each vertex that `stream` last uploaded, (vertex_count, 2), to be
+            interpolated; None: zeros. Raises ValueError for another shape, or a bone without
+            transform.
+        """
+        view = self._camera_view(camera, None, None)
+        size = self.surface.target.size
+        if self._geometry_buffer is None or self._geometry_buffer.size != size:
+            self._geometry_buffer = GeometryBuffer(self._gl, size)
+        placed = self._parts.placed(parts, transforms)
+        return self._geometry_buffer.draw(stream, placed, view, values)
 
     def draw_lines(
         self,

@@ -58,6 +58,7 @@ class Stream:
         self.has_wrinkles = False
         self._wrinkle_buffers: tuple[moderngl.Buffer, moderngl.Buffer] | None = None
         self._wrinkled_count = 0  # triangles; they come first in the second of these buffers
+        self._value_buffer: moderngl.Buffer | None = None
         self._index_buffer = gl.buffer(reserve=self.triangles.nbytes, dynamic=True)
         self._vertex_arrays: dict[tuple[moderngl.Program, bool], moderngl.VertexArray] = {}
 
@@ -113,6 +114,24 @@ class Stream:
             buffer.orphan()
             buffer.write(np.ascontiguousarray(array))
 
+    def upload_values(self, values: npt.NDArray[np.float32] | None) -> None:
+        """Hand two numbers for each uploaded vertex to OpenGL, (vertex_count, 2); None: zeros.
+
+        ValueError for another shape. Programs that are first drawn with after that have in_values.
+        """
+        if values is None:
+            values = np.zeros((self.vertex_count, 2), np.float32)
+        if values.shape != (self.vertex_count, 2):
+            raise ValueError(
+                f"values has shape {values.shape}; it must be ({self.vertex_count}, 2), two "
+                "numbers for each uploaded vertex"
+            )
+        if self._value_buffer is None:
+            room = 2 * self.vertices.itemsize * len(self.vertices)
+            self._value_buffer = self._gl.buffer(reserve=room, dynamic=True)
+        self._value_buffer.orphan()
+        self._value_buffer.write(np.ascontiguousarray(values, np.float32))
+
     def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
         """Draw uploaded triangles; attributes in_position, in_normal, in_uv, as needed.
 
@@ -138,6 +157,8 @@ class Stream:
             if self._wrinkle_buffers is not None:
                 content.append((self._wrinkle_buffers[0], "2f", "in_wrinkling"))
                 indices = self._wrinkle_buffers[1] if is_parted else indices
+            if self._value_buffer is not None:
+                content.append((self._value_buffer, "2f", "in_values"))
             array = self._gl.vertex_array(
                 program,
                 content,
@@ -155,6 +176,7 @@ class Stream:
         self._vertex_arrays.clear()
         self._vertex_buffer.release()
         self._index_buffer.release()
-        for buffer in self._wrinkle_buffers or ():
-            buffer.release()
+        for buffer in (*(self._wrinkle_buffers or ()), self._value_buffer):
+            if buffer is not None:
+                buffer.release()
         self.vertex_count = self.triangle_count = 0

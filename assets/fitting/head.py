@@ -72,6 +72,7 @@ class FittedHead:
     face_uv: IndexArray
     albedo: Image
     wrinkles: Wrinkles
+    segments: Image
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
     to_millimetres: Similarity
@@ -133,6 +134,7 @@ def fit(
         wrinkles=replace(
             known.wrinkles, across=nearest.interpolate(known.wrinkles.across).astype(np.float32)
         ),
+        segments=known.segments,
         rig=known.rig,
         layers=known.layers,
         to_millimetres=similarity,

@@ -106,7 +106,7 @@ def brow_cover(points: Points, grain: float) -> tuple[Values, Values, Values]:
     points: of texels [mm], shape (n, 3). grain: size of a texel [mm].
     """
     strokes = hairs()
-    cover, lightness, tint = np.zeros((3, len(points)))
+    cover, lightness, shade = np.zeros((3, len(points)))
     roots = np.array([hair.line[0] for hair in strokes])
     near = np.flatnonzero(cKDTree(roots).query(points, distance_upper_bound=REACH)[0] < REACH)
     surface = project(distance, points[near], rounds=2)
@@ -118,12 +118,12 @@ def brow_cover(points: Points, grain: float) -> tuple[Values, Values, Values]:
         target = near[beside]
         lightness[target] += share * (hair.lightness - lightness[target])
         cover[target] = 1.0 - (1.0 - cover[target]) * (1.0 - 0.80 * share)
-    tint[near] = _tint(surface)
-    return cover, lightness, tint
+    shade[near] = tint(surface)
+    return cover, lightness, shade
 
 
-def _tint(points: Points) -> Values:
-    """Fine hairs that are not drawn one by one darken the skin a little."""
+def tint(points: Points) -> Values:
+    """How far fine hairs that are not drawn one by one darken the skin, 0 to 1, shape (n,)."""
     dense = np.linspace(0.0, 1.0, 200)
     line = _spine()(dense)
     index = cKDTree(line).query(points[:, :2])[1]

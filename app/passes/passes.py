@@ -1,0 +1,104 @@
+"""The passes of a picture: arrays that say of each pixel what it shows.
+
+    depth         how far away along the camera's axis [mm], 0 = nothing        (H, W) float32
+    normal        unit normal, x right, y down, z away from the camera          (H, W, 3) float32
+    triangle      of the simulated mesh, -1 = nothing or an eye, a tooth, ...   (H, W) int32
+    splits        how many splits the edges of that triangle have               (H, W) uint8
+    tension       stretch and compression of the skin there, 0.2 = a fifth      (H, W, 2) float32
+    segmentation  what it is, by the numbers of FaceSynthetics (assets.Segment) (H, W) uint8
+
+The top row comes first. Where nothing is drawn all are 0, but `triangle` is -1.
+Source of the numbers: Wood et al. 2021, "Fake it till you make it".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import refine, render
+from risorius.assets import Segment
+
+from ..pipeline import Pipeline, splits_of_source
+from ..scenes import FaceScene
+from ..wrinkling import on_rows
+
+IMAGES = ("depth", "normal", "triangle", "splits", "tension", "segmentation")
+OF_FACES = ("segmentation", "landmarks")  # what other scenes have not
+NAMES = (*IMAGES, "landmarks")
+Bytes = npt.NDArray[np.uint8]
+
+
+class Passes:
+    """Draws the passes of what a pipeline drew last."""
+
+    def __init__(self, pipeline: Pipeline) -> None:
+        scene = pipeline.scene
+        self._pipeline = pipeline
+        self._tension = refine.Tension(scene.faces, scene.rest_positions)
+        self._part_classes = np.concatenate([np.zeros(0, np.uint8), *map(_classes, scene.parts)])
+
+    def draw(
+        self, camera: render.OrbitCamera, wanted: Collection[str] = IMAGES
+    ) -> dict[str, npt.NDArray[Any]]:
+        """The passes of these names, for the mesh that `Pipeline.draw` drew last, on the right.
+
+        The camera and the scene must be as they were then. Raises ValueError before the first
+        picture, and for the segmentation of a scene that has none.
+        """
+        pipeline, drawn = self._pipeline, self._pipeline.meshes[-1]
+        scene = pipeline.scene
+        if drawn.mesh is None:
+            raise ValueError("nothing was drawn yet; call Pipeline.draw first")
+        values = None
+        if "tension" in wanted:
+            stretch, compression, _ = self._tension.measure(scene.positions)
+            values = on_rows(np.stack([stretch, compression], axis=1), drawn.refiner)
+        geometry = pipeline.renderer.draw_geometry(
+            drawn.stream, scene.parts, scene.bone_transforms(), camera, values=values
+        )
+        # Entry -1, the last one, is that of pixels where nothing is drawn.
+        parts = len(self._part_classes)
+        found: dict[str, npt.NDArray[Any]] = {
+            "depth": geometry.depth,
+            "normal": geometry.normal,
+            "tension": geometry.values,
+        }
+        if "triangle" in wanted:
+            table = np.concatenate([drawn.mesh.source, np.full(parts + 1, -1, np.int32)])
+            found["triangle"] = table[geometry.triangle]
+        if "splits" in wanted:
+            splits = splits_of_source(drawn.refiner, drawn.mesh)
+            found["splits"] = np.append(splits, np.zeros(parts + 1, np.uint8))[geometry.triangle]
+        if "segmentation" in wanted:
+            found["segmentation"] = self._segmentation(geometry, drawn.triangle_count)
+        return {name: found[name] for name in IMAGES if name in wanted}
+
+    def _segmentation(self, geometry: render.Geometry, skin_count: int) -> Bytes:
+        """Classes of parts by their triangles, of skin by the map over its texture."""
+        scene = self._pipeline.scene
+        if not isinstance(scene, FaceScene):
+            raise ValueError(f"the scene {scene.name} has no segmentation; a face has one")
+        table = np.concatenate([np.zeros(skin_count, np.uint8), self._part_classes, [0]])
+        classes: Bytes = table.astype(np.uint8)[geometry.triangle]
+        is_skin = (geometry.triangle >= 0) & (geometry.triangle < skin_count)
+        map_ = scene.head.segments
+        size = len(map_)
+        columns, rows = (geometry.uv[is_skin] * [size, -size] + [0.0, size]).T.astype(np.int64)
+        classes[is_skin] = map_[np.clip(rows, 0, size - 1), np.clip(columns, 0, size - 1)]
+        classes[is_skin & geometry.is_inside] = Segment.IGNORE  # into the head, through the neck
+        return classes
+
+
+def _classes(part: Any) -> Bytes:
+    """The class of each triangle of a part."""
+    by_side = {"eye_right": Segment.RIGHT_EYE, "eye_left": Segment.LEFT_EYE}
+    if part.bone in by_side:
+        return np.full(len(part.faces), by_side[part.bone], np.uint8)
+    if part.name == "eye_corners":
+        is_right = part.vertices[part.faces[:, 0], 0] < 0.0
+        return np.where(is_right, Segment.RIGHT_EYE, Segment.LEFT_EYE).astype(np.uint8)
+    return np.full(len(part.faces), Segment.MOUTH_INTERIOR, np.uint8)

@@ -1,0 +1,89 @@
+"""What each pixel of a picture shows, as numbers: how far away, turned where, which triangle.
+
+Drawn by the same matrices from the same buffers as the colours are, but with one sample in the
+middle of each pixel, so that no number is a mean of two things.
+Source: Saito and Takahashi 1990, "Comprehensible rendering of 3-D shapes" (the G-buffer).
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from .camera_view import CameraView
+from .parts import PlacedPart
+from .programs import compile_program, write_uniform
+from .stream import Stream
+
+Floats = npt.NDArray[np.float32]
+
+
+class Geometry(NamedTuple):
+    """One picture, top row first; where nothing is drawn all numbers are 0, but `triangle` is -1.
+
+    Axes are those of pictures: x right, y down, z away from the camera.
+    """
+
+    depth: Floats
+    """How far away along the camera's axis, not along the ray [unit of the scene], (H, W)."""
+    normal: Floats
+    """Interpolated unit normals of the side that is seen, shape (H, W, 3)."""
+    triangle: npt.NDArray[np.int32]
+    """Number among the triangles of the stream, and after them those of each part, (H, W)."""
+    is_inside: npt.NDArray[np.bool_]
+    """Whether a triangle of the stream is seen from its back, shape (H, W)."""
+    uv: Floats
+    """Texture coordinates; 0 on parts and in streams without, shape (H, W, 2)."""
+    values: Floats
+    """What was given for the vertices of the stream, shape (H, W, 2)."""
+
+
+class GeometryBuffer:
+    """Float textures of one size, drawn on whenever somebody asks."""
+
+    def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
+        self.size = size
+        self._gl = gl
+        self._program = compile_program(gl, "geometry.glsl")
+        self._textures = [gl.texture(size, components, dtype="f4") for components in (4, 4, 2)]
+        self._target = gl.framebuffer(self._textures, gl.depth_renderbuffer(size))
+
+    def draw(
+        self, stream: Stream, parts: Sequence[PlacedPart], view: CameraView, values: Floats | None
+    ) -> Geometry:
+        """Draw what `stream` last uploaded, and parts; see `Renderer.draw_geometry`."""
+        gl, program = self._gl, self._program
+        self._target.use()
+        gl.viewport, gl.scissor = (0, 0, *self.size), None
+        gl.enable_only(moderngl.DEPTH_TEST)
+        self._target.clear()
+        stream.upload_values(values)
+        write_uniform(program, "projection", view.projection)
+        write_uniform(program, "model_view", view.world_to_view)
+        program["first"] = 1.0
+        stream.draw(program)
+        first = 1 + stream.triangle_count
+        for buffers, transform in parts:
+            write_uniform(program, "model_view", transform.T @ view.world_to_view)
+            program["first"] = float(first)
+            buffers.draw(program)
+            first += len(buffers.part.faces)
+        return self._read()
+
+    def _read(self) -> Geometry:
+        """Fetch the textures, top row first."""
+        width, height = self.size
+        normal_depth, number_side_uv, values = (
+            np.frombuffer(texture.read(), np.float32).reshape(height, width, -1)[::-1]
+            for texture in self._textures
+        )
+        return Geometry(
+            depth=np.ascontiguousarray(normal_depth[..., 3]),
+            normal=np.ascontiguousarray(normal_depth[..., :3]),
+            triangle=number_side_uv[..., 0].astype(np.int32) - 1,  # exact up to 2^24 triangles
+            is_inside=number_side_uv[..., 1] < 0.0,
+            uv=number_side_uv[..., 2:],
+            values=values,
+        )

@@ -1,0 +1,39 @@
+// What each pixel shows, as numbers: no light, no blending, one sample.
+
+#if defined(VERTEX_STAGE)
+
+in vec3 in_position;
+in vec3 in_normal;
+in vec2 in_uv;      // of the skin; parts have none
+in vec2 in_values;
+uniform mat4 model_view;
+uniform mat4 projection;
+out Surface { vec3 normal; float depth; vec2 uv; vec2 values; } surface;
+
+void main() {
+    vec4 position = model_view * vec4(in_position, 1.0);
+    surface.normal = mat3(model_view) * in_normal;
+    surface.depth = -position.z;
+    surface.uv = in_uv;
+    surface.values = in_values;
+    gl_Position = projection * position;
+}
+
+#elif defined(FRAGMENT_STAGE)
+
+in Surface { vec3 normal; float depth; vec2 uv; vec2 values; } surface;
+uniform float first;  // number of the first triangle of this drawing call, counted from 1
+layout(location = 0) out vec4 normal_and_depth;
+layout(location = 1) out vec4 number_side_uv;
+layout(location = 2) out vec2 values;
+
+void main() {
+    float side = gl_FrontFacing ? 1.0 : -1.0;
+    // From OpenGL's axes of the camera to those of pictures: x right, y down, z away from the eye.
+    vec3 normal = surface.normal * vec3(side, -side, -side) / max(length(surface.normal), 1e-20);
+    normal_and_depth = vec4(normal, surface.depth);
+    number_side_uv = vec4(first + float(gl_PrimitiveID), side, surface.uv);
+    values = surface.values;
+}
+
+#endif
