@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
+from risorius.assets.identities import Person
 
 from .errors import UserError
 from .mouth import Tongue, shaded_mouth
@@ -122,6 +123,8 @@ class FaceScene(Scene):
     def openness(self) -> npt.NDArray[np.uint8] | None:
         """That of the built-in head's file, or baked now; see `Scene.openness`."""
         head, simulation = self.head, self.simulation
+        if isinstance(head, Person):  # same triangles, hardly another form
+            return head.openness
         if len(head.vertices) > MOST_BAKED:  # it wears the same texture, laid out alike
             return assets.load("head").openness
         if isinstance(head, assets.Head) and head.openness_file.exists():

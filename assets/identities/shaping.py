@@ -1,0 +1,208 @@
+"""Bend the built-in head into one of other measures, as smoothly as can be.
+
+How faces differ is taken for a random field of displacements: smooth, larger over long ways than
+over short ones, the same on both sides. Of all fields under which the measures are the wanted ones,
+the likeliest is chosen. The field is defined in space, so that eyes and teeth go with the skin.
+Sources: Lüthi, Gerig, Jud, Vetter 2018, "Gaussian process morphable models" (a face's shape as a
+Gaussian process with such kernels, conditioned on what is known); Blanz, Vetter 1999.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ..model import Eye, FloatArray, Head
+from ..norms import NORMS
+from ..report import DISTANCES
+
+# How far points move together [mm], and how far they move over such ways.
+KERNEL = ((75.0, 7.0), (30.0, 3.5), (15.0, 1.6), (8.0, 1.0))
+MIRROR = np.array([-1.0, 1.0, 1.0])
+STAGES, NEWTON_STEPS = 6, 12  # on the way, so that no step leads astray; then to the end
+NEAR = 1e-4  # [mm]
+JITTER = 1e-7  # of the largest eigenvalue, so that points that nearly coincide do no harm
+
+PAIRS = {title.rpartition(", ")[2]: (first, second) for title, first, second in DISTANCES}
+"""Code of a measure -> the names of the anatomical points between which it is taken."""
+# An eye's length is hardly more than en-en and ex-ex make it in front view. What they leave of it,
+# up and back, is looked for in its place: Newton's method would divide by almost nothing.
+EYE = "en-ex"
+UP_AND_BACK = np.array([0.0, 1.0, 1.0])
+
+
+@dataclass(frozen=True)
+class Field:
+    """x -> where it comes to lie: scaled about the origin, then displaced.
+
+    centres: of the kernels, shape (n, 3); weights: of each, shape (n, 3).
+    """
+
+    scale: float
+    centres: FloatArray
+    weights: FloatArray
+
+    def points(self, points: npt.ArrayLike) -> FloatArray:
+        """Points moved, shape (m, 3)."""
+        x = np.asarray(points, dtype=np.float64)
+        moved: FloatArray = self.scale * x + kernel(x, self.centres) @ self.weights
+        return moved
+
+
+def kernel(a: FloatArray, b: FloatArray) -> FloatArray:
+    """How alike points (n, 3) and (m, 3) move, shape (n, m)."""
+    squares = (a * a).sum(axis=1)[:, None] + (b * b).sum(axis=1) - 2.0 * a @ b.T
+    squares = np.maximum(squares, 0.0)
+    return np.asarray(sum(far**2 * np.exp(-squares / (2.0 * way**2)) for way, far in KERNEL))
+
+
+class Shaper:
+    """Finds fields for one head, whose points are always the same."""
+
+    def __init__(self, head: Head, more: Sequence[int]) -> None:
+        """more: numbers of vertices that are pushed, beside those that are measured."""
+        ends = [head.anatomy[name] for pair in PAIRS.values() for name in pair]
+        numbers = np.unique([*ends, *more])
+        numbers = np.unique(np.concatenate([numbers, head.mirror[numbers]]))
+        self._place = {int(number): i for i, number in enumerate(numbers)}
+        self._rest: FloatArray = head.vertices[numbers]
+        self._opposite = np.array([self._place[int(head.mirror[n])] for n in numbers])
+        self._ends = np.array(
+            [[self._place[head.anatomy[name]] for name in PAIRS[code]] for code in NORMS]
+        )
+        alike = kernel(self._rest, self._rest)
+        self._alike = alike + JITTER * alike.max() * len(alike) * np.eye(len(alike))
+
+    def fit(
+        self,
+        measures: Mapping[str, float],
+        pushes: Sequence[tuple[int, FloatArray]],
+        uneven: Sequence[tuple[int, FloatArray]] = (),
+    ) -> Field:
+        """The likeliest field under which distances are these [mm].
+
+        pushes: how much farther than measures alone would have it vertices go [mm], with their
+            mirror images. uneven: how far vertices go, and their mirror images the other way; it
+            changes measures by hundredths, but for those of one side, whose mean stays.
+        """
+        wanted = self._sought(measures)
+        scale = float(np.exp(np.log(wanted / self._lengths(self._rest)[1]).mean()))
+        weights = self._solve(scale, wanted, np.zeros_like(self._rest))
+        rows = np.array([self._push_row(number, way) for number, way in pushes])
+        if len(rows):
+            lengths = np.array([np.linalg.norm(way) for _, way in pushes])
+            values = (rows * (self._alike @ weights)).sum(axis=(1, 2))
+            weights = self._solve(scale, wanted, weights, rows, values, lengths)
+        return Field(scale, self._rest, weights + self._askew(uneven))
+
+    def _solve(
+        self,
+        scale: float,
+        wanted: FloatArray,
+        weights: FloatArray,
+        rows: FloatArray | None = None,
+        values: FloatArray | None = None,
+        farther: FloatArray | None = None,
+    ) -> FloatArray:
+        """Weights of the kernels: Newton's method on the lengths, each step the likeliest field.
+
+        weights: those to begin with. rows (k, n, 3): what else of the field is told; values (k,):
+        what that is at first; farther (k,): by how much it has to change.
+        """
+        base = scale * self._rest
+        at_first = self._lengths(base + self._alike @ weights)[1]
+        for step in range(STAGES + NEWTON_STEPS):
+            share = min((step + 1) / STAGES, 1.0)
+            field = self._alike @ weights
+            known, lengths = self._lengths(base + field)
+            if step > STAGES and np.abs(wanted - lengths).max() < NEAR:
+                break
+            left = at_first + share * (wanted - at_first) - lengths
+            right = left + (known * field).sum(axis=(1, 2))
+            if rows is not None and values is not None and farther is not None:
+                known = np.concatenate([known, rows])
+                right = np.concatenate([right, values + share * farther])
+            even = self._even(known)
+            system = np.einsum("anc,nm,bmc->ab", even, self._alike, even, optimize=True)
+            system += 1e-9 * np.trace(system) * np.eye(len(system))
+            weights = np.einsum("k,knc->nc", np.linalg.solve(system, right), even)
+        return weights
+
+    def _sought(self, measures: Mapping[str, float]) -> FloatArray:
+        """The lengths that are looked for, in the order of `_ends` [mm]."""
+        eye = np.sqrt(max(measures[EYE] ** 2 - (0.5 * (measures["ex-ex"] - measures["en-en"])) ** 2, 1.0))
+        return np.array([eye if code == EYE else measures[code] for code in NORMS])
+
+    def _lengths(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """How lengths change with the points, shape (k, n, 3), and what they are, shape (k,)."""
+        ways = points[self._ends[:, 0]] - points[self._ends[:, 1]]
+        ways[list(NORMS).index(EYE)] *= UP_AND_BACK
+        lengths = np.linalg.norm(ways, axis=1)
+        gradients = np.zeros((len(ways), *points.shape))
+        which = np.arange(len(ways))
+        gradients[which, self._ends[:, 0]] = ways / lengths[:, None]
+        gradients[which, self._ends[:, 1]] = -ways / lengths[:, None]
+        return gradients, lengths
+
+    def _even(self, rows: FloatArray) -> FloatArray:
+        """The part of vectors (..., n, 3) at the points that is its own mirror image."""
+        evened: FloatArray = 0.5 * (rows + rows[..., self._opposite, :] * MIRROR)
+        return evened
+
+    def _push_row(self, number: int, way: FloatArray) -> FloatArray:
+        row = np.zeros_like(self._rest)
+        row[self._place[number]] = way / np.linalg.norm(way)
+        return row
+
+    def _askew(self, uneven: Sequence[tuple[int, FloatArray]]) -> FloatArray:
+        """Weights of a wide field that goes one way on one side, the other way on the other."""
+        weights = np.zeros_like(self._rest)
+        if not uneven:
+            return weights
+        numbers = [self._place[number] for number, _ in uneven]
+        moved = np.array([way for _, way in uneven])
+        opposite = self._opposite[numbers]
+        places, at = np.unique([*numbers, *opposite], return_index=True)
+        wanted = np.concatenate([moved, -moved * MIRROR])[at]
+        is_middle = self._opposite[places] == places
+        wanted[is_middle] *= [1.0, 0.0, 0.0]  # what lies in the middle may go aside only
+        weights[places] = np.linalg.solve(self._alike[np.ix_(places, places)], wanted)
+        return weights
+
+
+def measures_of(vertices: FloatArray, anatomy: Mapping[str, int]) -> dict[str, float]:
+    """All distances of the report between vertices (V, 3), code -> [mm].
+
+    What is taken on one side is the mean of both.
+    """
+    found = {}
+    for code, names in PAIRS.items():
+        sides = [names, [name.replace("_left", "_right") for name in names]]
+        if "_right" in names[0]:
+            sides = [names]
+        ways = [vertices[anatomy[a]] - vertices[anatomy[b]] for a, b in sides]
+        found[code] = float(np.mean([np.linalg.norm(way) for way in ways]))
+    return found
+
+
+def lids_on_eyes(
+    known: Head, vertices: FloatArray, eyes: Sequence[Eye], shares: Sequence[float]
+) -> FloatArray:
+    """Vertices moved so that lids lie as far from eyes as the built-in head's.
+
+    eyes: in the order of `known.eyes`. shares: for each row of vertices around the eye, from its
+    edge out, how much of the way it goes. The corners of the eye, which rest on flesh, stay.
+    """
+    placed = vertices.copy()
+    for old, new in zip(known.eyes, eyes, strict=True):
+        for row, share in enumerate(shares):
+            ring = known.rings[f"eye_{row}_{old.name}"]
+            ring = np.delete(ring, [0, len(ring) // 2])
+            above = np.linalg.norm(known.vertices[ring] - old.centre, axis=1) / old.radius
+            away = vertices[ring] - new.centre
+            nearer = new.radius * above / np.linalg.norm(away, axis=1) - 1.0
+            placed[ring] += share * nearer[:, None] * away
+    return placed
