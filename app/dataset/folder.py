@@ -24,7 +24,6 @@ from ..files import cannot_be_written, real_path, written_atomically
 BEGUN = "dataset.json"  # how the set was begun
 UNFINISHED = ".unfinished"
 _SAMPLE = re.compile(r"(\d{6})\.json")
-Writer = Callable[[Path], object]  # writes one file
 
 
 def name_of(index: int) -> str:
@@ -92,17 +91,24 @@ class SetFolder:
             found = (_SAMPLE.fullmatch(item.name) for item in items)
             return {int(match[1]) for match in found if match}
 
-    def write_sample(self, index: int, writers: Mapping[str, Writer]) -> int:
-        """Write the files of a sample by the ends of their names, .json last; all their bytes."""
+    def has(self, index: int) -> bool:
+        """Whether a sample is whole."""
+        return (self.path / f"{name_of(index)}.json").exists()
+
+    def write_sample(self, index: int, write: Callable[[Path], object]) -> int:
+        """Put the files of a sample in place, .json last; how many bytes they have.
+
+        write: writes a picture of the name that it is given, and what lies beside it.
+        """
         name = name_of(index)
         with cannot_be_written(self.path / name):
             part = Path(tempfile.mkdtemp(prefix=name, dir=self.path / UNFINISHED))
             try:
-                for end, write in writers.items():
-                    write(part / f"{name}{end}")
-                size = sum(each.stat().st_size for each in part.iterdir())
-                for end in sorted(writers, key=lambda end: end == ".json"):
-                    os.replace(part / f"{name}{end}", self.path / f"{name}{end}")
+                write(part / f"{name}.png")
+                made = sorted(part.iterdir(), key=lambda path: (path.suffix == ".json", path))
+                size = sum(path.stat().st_size for path in made)
+                for path in made:
+                    os.replace(path, self.path / path.name)
             finally:
                 shutil.rmtree(part, ignore_errors=True)
         return size

@@ -11,7 +11,7 @@ OpenFace and DISFA number them 1 to 5; FACS makes C and D wider than the others.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,15 +56,15 @@ class Sample:
     look: np.random.Generator
 
 
-def draw(table: SampleTable, paired: Sequence[str], seed: int, index: int) -> Sample:
-    """Sample number `index`; `paired` names the units that have two sides."""
+def draw(table: SampleTable, seed: int, index: int) -> Sample:
+    """Sample number `index` of a seed."""
     streams = np.random.SeedSequence([seed, index]).spawn(5)
     faces, sides, heads, cameras, looks = map(np.random.default_rng, streams)
     kind = chosen(faces, table.kinds)
     face = _Face(table, faces)
     name = face.fill(kind)
     controls = face.controls | _blink(table, heads, face.controls)
-    controls = _two_sided(table, sides, controls, frozenset(paired), face.one_sided)
+    controls = _two_sided(table, sides, controls, face.one_sided)
     for angle in ("yaw", "pitch", "roll"):
         degrees = table.head[angle] * _bounded_normal(heads)
         controls[f"head_{angle}"] = degrees / HEAD_RANGES[f"head_{angle}"]
@@ -184,7 +184,6 @@ def _two_sided(
     table: SampleTable,
     random: np.random.Generator,
     controls: Mapping[str, float],
-    paired: frozenset[str],
     one_sided: float,
 ) -> dict[str, float]:
     """Units by side where the face is not symmetric; a lean face leans with all of them."""
@@ -193,7 +192,7 @@ def _two_sided(
     result: dict[str, float] = {}
     for name, value in controls.items():
         weaker = 1.0 - min(abs(table.sides["difference"] * _bounded_normal(random)), 1.0)
-        if name not in paired or name == "AU45":
+        if name not in table.paired or name == "AU45":
             result[name] = value
         elif random.random() < one_sided:
             result[name + SIDES[side]] = value

@@ -13,9 +13,12 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from risorius import assets
+
 from ..errors import UserError
 from ..files import read_text
 
+OF_EYES_AND_HEAD = {"AU45", *(f"AU{number}" for number in range(51, 65))}  # their own sections
 LONGEST_FILE = 2**18  # [bytes]
 KINDS = ("neutral", "expression", "mixture", "speech", "unit")
 LETTERS = ("A", "B", "C", "D", "E")
@@ -57,6 +60,7 @@ class SampleTable:
     eyes: Shares
     head: Shares
     camera: Mapping[str, Range]
+    paired: frozenset[str]  # action units that have two sides
     sections: Mapping[str, Any]  # all of it, as TOML has it
 
     def goes_with(self, unit: str, others: Container[str] | Mapping[str, float]) -> bool:
@@ -74,11 +78,10 @@ def table_text() -> str:
     return (files(__package__) / "aus.toml").read_text("utf-8")
 
 
-def load_table(path: Path | None, units: Container[str], visemes: Container[str]) -> SampleTable:
+def load_table(path: Path | None) -> SampleTable:
     """The table in a file over the one that comes along; None: that alone.
 
-    units, visemes: the action units without those of a side, and the visemes that there are. Raises
-    UserError with file, section and row.
+    Raises UserError with file, section and row.
     """
     sections = _parsed(table_text(), "aus.toml")
     if path is not None:
@@ -94,7 +97,7 @@ def load_table(path: Path | None, units: Container[str], visemes: Container[str]
                 f"{path}: there is no section [{min(unknown)}]; allowed are {', '.join(sections)}"
             )
         sections.update(own)
-    return _Reader(str(path or "aus.toml"), units, visemes).table(sections)
+    return _Reader(str(path or "aus.toml")).table(sections)
 
 
 def _parsed(text: str, source: str) -> dict[str, Any]:
@@ -107,10 +110,9 @@ def _parsed(text: str, source: str) -> dict[str, Any]:
 class _Reader:
     """Checks sections; every error names the file, the section and the row."""
 
-    def __init__(self, source: str, units: Container[str], visemes: Container[str]) -> None:
+    def __init__(self, source: str) -> None:
         self._source = source
-        self._units = units
-        self._visemes = visemes
+        self._rows = {layer.title: layer.rows for layer in assets.load("head").layers}
 
     def table(self, given: Mapping[str, Any]) -> SampleTable:
         """All sections."""
@@ -138,6 +140,9 @@ class _Reader:
             camera={
                 name: self.range(name, given["camera"].get(name)) for name in CAMERA
             },
+            paired=frozenset(
+                name for name, row in self._rows["Action units"].items() if row.get("pair")
+            ),
             sections=given,
         )
         self._check_all(table, given)
@@ -223,13 +228,13 @@ class _Reader:
         return low, high
 
     def _is_unit(self, where: str, name: Any) -> None:
-        if not isinstance(name, str) or name not in self._units:
-            allowed = "action units of the face and the lids, AU1 to AU46; both sides unless "
-            raise self._error(where, f"allowed are {allowed}the unit itself is of a side", name)
+        units = [unit for unit in self._rows["Action units"] if unit not in OF_EYES_AND_HEAD]
+        if name not in units:
+            raise self._error(where, f"allowed are {', '.join(units)}", name)
 
     def _is_viseme(self, where: str, name: Any) -> None:
-        if not isinstance(name, str) or name not in self._visemes:
-            raise self._error(where, "allowed are visemes, as `risorius controls` lists them", name)
+        if name not in self._rows["Visemes"]:
+            raise self._error(where, f"allowed are {', '.join(self._rows['Visemes'])}", name)
 
     def _number(self, where: str, value: Any, least: float, most: float) -> float:
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
@@ -251,7 +256,7 @@ def with_camera(table: SampleTable, text: str) -> SampleTable:
     how = f"--camera {text}: write yaw[,pitch[,zoom]], each a number or LOW:HIGH, as in -30:30,0:10"
     if len(parts) > 3:
         raise UserError(how)
-    reader = _Reader(f"--camera {text}", (), ())
+    reader = _Reader(f"--camera {text}")
     for name, part in zip(("yaw", "pitch", "zoom"), parts, strict=False):
         try:
             numbers = [float(each) for each in part.split(":")]

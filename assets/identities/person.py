@@ -109,6 +109,7 @@ def _assembled(
         uv=known.uv,
         face_uv=known.face_uv,
         albedo=known.albedo,
+        segments=known.segments,
         wrinkles=known.wrinkles,
         rig=known.rig,
         layers=known.layers,
