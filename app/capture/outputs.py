@@ -5,8 +5,9 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Protocol
 
 import PIL.Image
 
@@ -21,12 +22,18 @@ from ..files import (
     temporary_folder,
     written_atomically,
 )
+from ..passes.files import ENDS, Labelled
 from ..stopping import cleaned_up_if_stopped, done_whole
 from .ffmpeg import Encoder, Soundtrack
 
 FILM_SUFFIXES = (".mp4", ".mov", ".mkv")
-FRAME_NAME = re.compile(r"frame_\d{5,}\.png")
-FrameSink = Callable[[Image], None]  # takes the frames of a film one after the other
+FRAME_NAME = re.compile(rf"frame_\d{{5,}}(\.png|{'|'.join(map(re.escape, ENDS))})")
+
+
+class FrameSink(Protocol):
+    """Takes the frames of a film one after the other, with what is to lie beside each."""
+
+    def __call__(self, image: Image, beside: Labelled | None = None) -> None: ...
 
 
 @contextlib.contextmanager
@@ -50,7 +57,7 @@ def film(
         encoder = Encoder(target, part, size, frames_per_second, soundtrack)
         with cleaned_up_if_stopped(encoder.stop):
             try:
-                yield encoder.add
+                yield lambda image, beside=None: encoder.add(image)  # nothing lies beside a film
                 encoder.finish()
             finally:
                 encoder.stop()
@@ -95,13 +102,14 @@ def _frames(target: Path) -> Iterator[FrameSink]:
     count = 0
     with temporary_folder(target, target) as temporary:
 
-        def add(image: Image) -> None:
+        def add(image: Image, beside: Labelled | None = None) -> None:
             """Write the next frame."""
             nonlocal count
+            picture = temporary / f"frame_{count:05d}.png"
             with cannot_be_written(target):
-                PIL.Image.fromarray(image).save(
-                    temporary / f"frame_{count:05d}.png", compress_level=3
-                )
+                PIL.Image.fromarray(image).save(picture, compress_level=3)
+                if beside is not None:
+                    beside.save(picture)
             count += 1
 
         yield add

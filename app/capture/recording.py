@@ -15,6 +15,8 @@ from ..errors import UserError
 from ..files import Image, check_file, check_png, save_png
 from ..looks import Refinement
 from ..motion import play, scene_of
+from ..passes.files import Labelled, check_wanted, labelled, save_labelled
+from ..passes.passes import Passes
 from ..pipeline import Pipeline, side_by_side
 from ..scenes import Scene
 from ..script import Script
@@ -38,6 +40,7 @@ class CaptureOptions:
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in one
     is_alive: bool = False  # what the script leaves alone moves by itself
+    passes: tuple[str, ...] = ()  # what is written beside pictures, by name
 
 
 class Capture:
@@ -50,6 +53,7 @@ class Capture:
         refinements = (*options.beside, options.refinement)
         renderer = render.Renderer(self.surface)
         self.pipeline = Pipeline(scene, renderer, refinements)
+        self._passes = Passes(self.pipeline) if options.passes else None
         self.viewports = side_by_side(self.surface.size, len(refinements))
         self.camera = camera_for(scene, options.camera)
         self.most_triangles = 0
@@ -74,6 +78,12 @@ class Capture:
             texts = [f"{drawn.label} · {drawn.triangle_count} triangles" for drawn in meshes]
             image = captioned(image, texts, self.viewports)
         return image
+
+    def label(self) -> Labelled | None:
+        """What is known of the image that was drawn last; None where nobody wants to know."""
+        if self._passes is None:
+            return None
+        return labelled(self._passes, self.camera, self.options.passes)
 
     def play(
         self, script: Script, *, until: float | None = None, progress: bool = True
@@ -108,6 +118,7 @@ def capture(
     Returns the largest number of triangles of a frame. Raises UserError on what cannot be.
     """
     _check(script, output, sheet, time)
+    _check_passes(script, output, options)
     wanted = list(script.key_poses) if sheet else []
     still = output if _is_image(output) else None
     if time is None:
@@ -125,10 +136,14 @@ def capture(
             is_wanted = bool(wanted) and wanted[0].time <= now + 0.5 / rate
             if film is None and not is_wanted and now != still_at:
                 continue
-            image = recording.draw_image()
+            image, beside = recording.draw_image(), None
+            if film is not None or now == still_at:
+                beside = recording.label()
             if film is not None:
-                film(image)
+                film(image, beside)
             if still and now == still_at:
+                if beside is not None:
+                    save_labelled(still, beside)
                 save_png(still, image)
             while wanted and wanted[0].time <= now + 0.5 / rate:
                 named.append((wanted.pop(0).name or "", image))
@@ -157,6 +172,19 @@ def _check(script: Script, output: Path | None, sheet: Path | None, time: float 
         check_file(output)
         if script.sound is not None:
             load_sound(script.sound)
+
+
+def _check_passes(script: Script, output: Path | None, options: CaptureOptions) -> None:
+    """Raise UserError, before any work is done, where the passes cannot be had or written."""
+    if not options.passes:
+        return
+    check_wanted(options.passes, script.scene)
+    if output is None or output.suffix.lower() in outputs.FILM_SUFFIXES:
+        raise UserError(
+            "--passes are files beside each picture: give -o a folder, or one picture.png"
+        )
+    if options.beside:
+        raise UserError("--passes are those of one mesh: leave --compare out")
 
 
 def soundtrack_of(script: Script) -> Soundtrack | None:

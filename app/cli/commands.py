@@ -70,11 +70,13 @@ def capture(
     from ..capture import capture as film_of
     from ..capture.outputs import FILM_SUFFIXES
     from ..files import check_apart
+    from ..passes.files import beside
     from ..performances import script_for
     from ..refining import parse_comparison
     from ..sound import with_sound
 
-    check_apart((output, sheet), (script, sound, drawing.head, drawing.landmarks, playback.mapping))
+    written = [output, sheet, *(beside(output) if output and filming.passes else ())]
+    check_apart(written, (script, sound, drawing.head, drawing.landmarks, playback.mapping))
     if sound is not None and (output is None or output.suffix.lower() not in FILM_SUFFIXES):
         allowed = ", ".join(FILM_SUFFIXES)
         raise UserError(f"--sound {sound}: only a film is heard; give -o a name in {allowed}")
@@ -93,6 +95,7 @@ def capture(
         samples=filming.samples,
         head=drawing.fitted_head(),
         is_alive=filming.alive,
+        passes=filming.passes,
     )
     most = film_of(
         performance,
@@ -103,8 +106,8 @@ def capture(
         overwrite=filming.overwrite,
         progress=not filming.quiet,
     )
-    written = in_one_line(" and ".join(str(path) for path in (output, sheet) if path))
-    click.echo(f"{written}: {most} triangles at most")
+    made = in_one_line(" and ".join(str(path) for path in (output, sheet) if path))
+    click.echo(f"{made}: {most} triangles at most")
 
 
 @click.command()

@@ -15,7 +15,7 @@ from ..errors import UserError
 from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from ..playback import LEAD, Playback
-from .parameters import FiniteRange, Looks, Refiner, Size
+from .parameters import FiniteRange, Looks, Passes, Refiner, Size
 
 if TYPE_CHECKING:
     from risorius import render
@@ -222,6 +222,7 @@ class Filming:
     compare: str | None
     captions: bool
     camera: str | None
+    passes: tuple[str, ...]
     alive: bool
     still_time: float | None
     samples: int
@@ -244,6 +245,14 @@ with_filming = packed(
     ),
     click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
     click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
+    click.option(
+        "--passes",
+        type=Passes(),
+        default=(),
+        metavar="NAME,...",
+        help="Beside each picture: depth, normal, triangle, splits, tension, segmentation, "
+        "landmarks.",
+    ),
     click.option(
         "--alive",
         is_flag=True,

@@ -36,10 +36,15 @@ class Passes:
     """Draws the passes of what a pipeline drew last."""
 
     def __init__(self, pipeline: Pipeline) -> None:
-        scene = pipeline.scene
+        self.scene = scene = pipeline.scene
         self._pipeline = pipeline
         self._tension = refine.Tension(scene.faces, scene.rest_positions)
         self._part_classes = np.concatenate([np.zeros(0, np.uint8), *map(_classes, scene.parts)])
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the passes: those of the surface [pixels]."""
+        return self._pipeline.renderer.surface.size
 
     def draw(
         self, camera: render.OrbitCamera, wanted: Collection[str] = IMAGES
@@ -49,8 +54,7 @@ class Passes:
         The camera and the scene must be as they were then. Raises ValueError before the first
         picture, and for the segmentation of a scene that has none.
         """
-        pipeline, drawn = self._pipeline, self._pipeline.meshes[-1]
-        scene = pipeline.scene
+        scene, pipeline, drawn = self.scene, self._pipeline, self._pipeline.meshes[-1]
         if drawn.mesh is None:
             raise ValueError("nothing was drawn yet; call Pipeline.draw first")
         values = None
@@ -79,13 +83,12 @@ class Passes:
 
     def _segmentation(self, geometry: render.Geometry, skin_count: int) -> Bytes:
         """Classes of parts by their triangles, of skin by the map over its texture."""
-        scene = self._pipeline.scene
-        if not isinstance(scene, FaceScene):
-            raise ValueError(f"the scene {scene.name} has no segmentation; a face has one")
+        if not isinstance(self.scene, FaceScene):
+            raise ValueError(f"the scene {self.scene.name} has no segmentation; a face has one")
         table = np.concatenate([np.zeros(skin_count, np.uint8), self._part_classes, [0]])
         classes: Bytes = table.astype(np.uint8)[geometry.triangle]
         is_skin = (geometry.triangle >= 0) & (geometry.triangle < skin_count)
-        map_ = scene.head.segments
+        map_ = self.scene.head.segments
         size = len(map_)
         columns, rows = (geometry.uv[is_skin] * [size, -size] + [0.0, size]).T.astype(np.int64)
         classes[is_skin] = map_[np.clip(rows, 0, size - 1), np.clip(columns, 0, size - 1)]

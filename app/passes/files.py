@@ -1,0 +1,95 @@
+"""The files that lie beside a picture: what is known of it, pass by pass.
+
+frame_00000.exr         depth, normal, triangle, splits, tension         exr.py
+frame_00000_seg.png     segmentation: 8 bits, one class number a pixel
+frame_00000_ldmks.txt   landmarks: x and y of each in a row [pixels]
+frame_00000.json        camera, head, gaze, landmarks, controls          labels.py
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+
+from risorius import render
+
+from ..errors import UserError
+from ..files import cannot_be_written, real_path, temporary_folder
+from ..stopping import done_whole
+from .exr import CHANNELS, openexr, write_exr
+from .labels import labels_of
+from .passes import NAMES, OF_FACES, Passes
+
+ENDS = (".exr", "_seg.png", "_ldmks.txt", ".json")
+
+
+def beside(picture: Path) -> list[Path]:
+    """The files that may come to lie beside a picture, in the order of ENDS."""
+    return [picture.with_name(picture.stem + end) for end in ENDS]
+
+
+@dataclass(frozen=True)
+class Labelled:
+    """All that is known of one picture.
+
+    images: passes by their names (passes.py). labels: what its JSON file holds (labels.py).
+    """
+
+    images: dict[str, npt.NDArray[Any]]
+    labels: dict[str, Any]
+
+    def save(self, picture: Path) -> None:
+        """Write the files that belong beside `picture`; OSError where one cannot be written."""
+
+        exr, classes, landmarks, labels = beside(picture)
+        floats = {name: image for name, image in self.images.items() if name in CHANNELS}
+        if floats:
+            write_exr(exr, floats)
+        if "segmentation" in self.images:
+            PIL.Image.fromarray(self.images["segmentation"]).save(classes)
+        if "landmarks" in self.labels:
+            rows = self.labels["landmarks"]["pixels"]
+            np.savetxt(landmarks, rows, fmt="%.3f", newline="\n")
+        text = json.dumps(self.labels, separators=(",", ":"), allow_nan=False)
+        labels.write_text(text + "\n", encoding="utf-8")
+
+
+def save_labelled(picture: Path, known: Labelled) -> None:
+    """Write the files beside `picture`, all or none; UserError where one cannot be written."""
+    with temporary_folder(picture, real_path(picture).parent) as folder:
+        with cannot_be_written(picture):
+            known.save(folder / picture.name)
+        with done_whole(), cannot_be_written(picture):
+            for made in folder.iterdir():
+                os.replace(made, picture.with_name(made.name))
+
+
+def check_wanted(wanted: Sequence[str], scene: str) -> None:
+    """UserError for passes that are none, that this scene has not, or that cannot be written."""
+    for name in wanted:
+        if name not in NAMES:
+            raise UserError(f"--passes: '{name}' is no pass; allowed are {', '.join(NAMES)}")
+        if name in OF_FACES and scene != "face":
+            raise UserError(
+                f"--passes {name}: the scene {scene} has no face; allowed are "
+                f"{', '.join(each for each in NAMES if each not in OF_FACES)}"
+            )
+    if any(name in CHANNELS for name in wanted):
+        openexr()
+
+
+def labelled(passes: Passes, camera: render.OrbitCamera, wanted: Sequence[str]) -> Labelled:
+    """What is known of the picture that the pipeline of `passes` drew last, by `camera`."""
+    has_landmarks = "landmarks" in wanted
+    images = passes.draw(camera, {*wanted, "depth"} if has_landmarks else wanted)
+    depth = images["depth"] if has_landmarks else None
+    labels = labels_of(passes.scene, camera, passes.size, depth)
+    return Labelled({name: images[name] for name in images if name in wanted}, labels)
