@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from risorius.assets.meshes import FORMATS
+
+from ..errors import UserError
 from ..passes.exr import CHANNELS
-from .table import SampleTable
+from ..passes.files import check_wanted
+from .backgrounds import Backgrounds, backgrounds_of, digest, files_in
+from .table import SampleTable, load_table, with_camera
+
+HEADS = tuple(f".{name}" for name in FORMATS)
 
 
 @dataclass(frozen=True)
@@ -16,7 +23,8 @@ class Request:
     """A data set that is asked for; fit to be pickled.
 
     output: the folder of the set. size: of the pictures [pixels]. passes: some of those of
-    `risorius capture --passes`, see app/passes/passes.py.
+    `risorius capture --passes`, see app/passes/passes.py. heads: files of heads, beside each of
+    which its landmarks lie; none: persons are made.
     """
 
     output: Path
@@ -24,6 +32,8 @@ class Request:
     size: tuple[int, int]
     passes: tuple[str, ...]
     table: SampleTable
+    backgrounds: Backgrounds = Backgrounds()  # noqa: RUF009 - frozen
+    heads: tuple[Path, ...] = ()
     version: str = version("risorius")
 
     def options(self) -> dict[str, Any]:
@@ -33,6 +43,8 @@ class Request:
             "seed": self.seed,
             "size": list(self.size),
             "passes": list(self.passes),
+            "background": self.backgrounds.options,
+            "heads": digest(self.heads) if self.heads else None,
             "table": dict(self.table.sections),
         }
 
@@ -44,6 +56,42 @@ class Request:
             rows.append(["ID.exr", f"{floats}: 32 bits for each pixel (OpenEXR)"])
         if "segmentation" in self.passes:
             rows.append(["ID_seg.png", "what each pixel shows, by the numbers of FaceSynthetics"])
-        if "landmarks" in self.passes:
-            rows.append(["ID_ldmks.txt", "x and y of 68 landmarks and both pupils [pixels]"])
+        rows.append(["ID_ldmks.txt", "x and y of 68 landmarks and both pupils [pixels]"])
         return [*rows, ["ID.json", "all labels"]]
+
+
+def request_of(
+    output: Path,
+    *,
+    seed: int,
+    size: tuple[int, int],
+    passes: tuple[str, ...],
+    table: Path | None = None,
+    camera: str | None = None,
+    background: str | None = None,
+    heads: Path | None = None,
+) -> Request:
+    """What the command line asks for; UserError for what cannot be."""
+    check_wanted(passes, "face")
+    samples = load_table(table)
+    if camera is not None:
+        samples = with_camera(samples, camera)
+    found = () if heads is None else _heads_in(heads)
+    if found:
+        samples = replace(samples, persons=len(found))
+    return Request(
+        output.absolute(), seed, size, passes, samples, backgrounds_of(background), found
+    )
+
+
+def _heads_in(folder: Path) -> tuple[Path, ...]:
+    """The heads of a folder; UserError unless there are some, each with its landmarks."""
+    if not folder.is_dir():
+        raise UserError(f"--heads {folder}: no such folder")
+    heads = files_in(folder, HEADS)
+    if not heads:
+        raise UserError(f"--heads {folder}: no head in it, {', '.join(HEADS)}")
+    for head in heads:
+        if not head.with_suffix(".json").is_file():
+            raise UserError(f"{head}: its landmarks are missing, {head.with_suffix('.json').name}")
+    return tuple(head.absolute() for head in heads)

@@ -43,7 +43,7 @@ class Sample:
     kind, name: what sort of face, and which: "expression", "happiness".
     controls: all that the face is asked for but its gaze.
     gaze: where it looks within the head, to its left and up [degrees]; None: into the camera.
-    look: random numbers 0..1 for what the face and the picture look like, by name.
+    person: number of the one whose head it is.
     """
 
     seed: int
@@ -53,7 +53,7 @@ class Sample:
     controls: Mapping[str, float]
     gaze: tuple[float, float] | None
     view: View
-    look: np.random.Generator
+    person: int
 
 
 def draw(table: SampleTable, seed: int, index: int) -> Sample:
@@ -81,7 +81,7 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
         {key: round(float(value), 4) for key, value in controls.items()},
         None if is_at_camera else (aside[0], aside[1]),
         View(yaw, pitch, zoom, field_of_view, (across, along)),
-        looks,
+        int(looks.integers(table.persons)),
     )
 
 

@@ -7,25 +7,25 @@ process, in any order.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import PIL.Image
 
 from risorius import render
+from risorius.assets.identities import make_person, sample_identity
 
 from ..files import Image
 from ..idle import looking_at
 from ..looks import Refinement
 from ..motion import SETTLING
+from ..passes.files import Labelled
 from ..passes.passes import Passes
 from ..pipeline import Pipeline
 from ..scenes import FaceScene
 from .cameras import camera_of
-from .folder import Writer, name_of
+from .folder import name_of
 from .labels import labels_of_face
 from .request import Request
 from .sampling import Sample, draw, gaze_controls
@@ -36,48 +36,80 @@ MOST_PERSONS = 4  # that are kept, those that came last
 
 @dataclass(frozen=True)
 class Shot:
-    """A sample as it was taken: what goes into its files."""
+    """A sample as it was taken."""
 
     image: Image
-    passes: Mapping[str, Any]
-    labels: dict[str, Any]
+    known: Labelled
+
+    def save(self, picture: Path) -> None:
+        """Write the picture, and the files that lie beside it; OSError where that fails."""
+        PIL.Image.fromarray(self.image).save(picture)
+        self.known.save(picture)
 
 
 class Studio:
     """A frame without a window, and the heads of some persons before it."""
 
     def __init__(self, request: Request) -> None:
-        self.request = request
-        self.surface = render.open_offscreen(request.size, samples=SAMPLES)
-        self._renderer = render.Renderer(self.surface)
-        self._persons: dict[int, Pipeline] = {}
+        self._request = request
+        self._surface = render.open_offscreen(request.size, samples=SAMPLES)
+        self._renderer = render.Renderer(self._surface)
+        self._persons: dict[int, tuple[Pipeline, Passes]] = {}
 
     def shoot(self, index: int) -> Shot:
         """Take sample number `index` of the request's seed."""
-        request = self.request
+        request = self._request
         sample = draw(request.table, request.seed, index)
-        pipeline = self._person(sample.person)
+        pipeline, passes = self._person(sample.person)
         scene = pipeline.scene
         assert isinstance(scene, FaceScene)
-        camera = self._posed(scene, sample)
-        self.surface.begin()
-        pipeline.draw(camera, sample_style, [(0, 0, *request.size)])
-        self.surface.end()
-        image = self.surface.read()
-        passes = Passes(pipeline).draw(camera, {"depth", *request.passes} - {"landmarks"})
-        labels = labels_of_face(scene, camera, request.size, passes["depth"])
-        return Shot(image, passes, {**_head(sample), **labels})
+        camera = _posed(scene, sample)
+        self._surface.begin()
+        pipeline.draw(camera, render.Style(), [(0, 0, *request.size)])
+        self._surface.end()
+        image = self._surface.read()
+        images = passes.draw(camera, {"depth", *request.passes} - {"landmarks"})
+        labels = {
+            "id": name_of(index),
+            "index": index,
+            "seed": sample.seed,
+            "risorius": request.version,
+            "kind": sample.kind,
+            "name": sample.name,
+            "person": sample.person,
+            **labels_of_face(scene, camera, request.size, images["depth"]),
+        }
+        wanted = {name: images[name] for name in images if name in request.passes}
+        return Shot(image, Labelled(wanted, labels))
 
-    def _posed(self, scene: FaceScene, sample: Sample) -> render.OrbitCamera:
-        """Let the face come to rest in its pose; the camera before it."""
-        scene.reset()
-        scene.pose(sample.controls)
-        scene.step(SETTLING)
-        camera = camera_of(scene, sample.view)
-        if sample.gaze is not None:
-            eyes = gaze_controls(sample.gaze)
-        else:
-            eyes = looking_at(scene, camera.eye)["eyes"]
-        scene.pose({**sample.controls, **eyes})
-        scene.step(SETTLING)
-        return camera
+    def _person(self, number: int) -> tuple[Pipeline, Passes]:
+        """A person of the set before the frame."""
+        person = self._persons.pop(number, None)
+        if person is None:
+            identity = sample_identity(person_seed(self._request.seed, number))
+            pipeline = Pipeline(FaceScene(make_person(identity)), self._renderer, [Refinement()])
+            person = pipeline, Passes(pipeline)
+        self._persons[number] = person
+        if len(self._persons) > MOST_PERSONS:
+            del self._persons[next(iter(self._persons))]
+        return person
+
+
+def _posed(scene: FaceScene, sample: Sample) -> render.OrbitCamera:
+    """Let a face come to rest in its pose, and its eyes then; the camera before it."""
+    scene.reset()
+    scene.pose(sample.controls)
+    scene.step(SETTLING)
+    camera = camera_of(scene, sample.view)
+    if sample.gaze is None:
+        eyes = looking_at(scene, camera.eye)["eyes"]
+    else:
+        eyes = gaze_controls(sample.gaze)
+    scene.pose({**sample.controls, **eyes})
+    scene.step(SETTLING)
+    return camera
+
+
+def person_seed(seed: int, number: int) -> int:
+    """What the person of that number is drawn from, in a set of this seed."""
+    return int(np.random.SeedSequence([seed, number, 1]).generate_state(1)[0])

@@ -60,6 +60,7 @@ class SampleTable:
     eyes: Shares
     head: Shares
     camera: Mapping[str, Range]
+    persons: int
     paired: frozenset[str]  # action units that have two sides
     sections: Mapping[str, Any]  # all of it, as TOML has it
 
@@ -140,6 +141,7 @@ class _Reader:
             camera={
                 name: self.range(name, given["camera"].get(name)) for name in CAMERA
             },
+            persons=int(self._number("persons, 'count'", given["persons"].get("count"), 1, 1e6)),
             paired=frozenset(
                 name for name, row in self._rows["Action units"].items() if row.get("pair")
             ),
