@@ -32,6 +32,7 @@ from .generator.painting import SIZE, paint_skin
 from .generator.segments import paint_segments
 from .generator.skin import SkinMesh, build_half, mirrored
 from .generator.solids import Solid
+from .generator.tints import paint_tints
 from .generator.unwrap import unwrap
 from .generator.wrinkling import paint_wrinkles
 from .loading import HEAD_FILE, load_head
@@ -172,6 +173,7 @@ def _write(file: Path, *, tone: Tone, size: int) -> None:
     _save(head.wrinkles_file, build_wrinkles(head, size))
     write_image(head.segments_file, paint_segments(head, size))
     write_image(head.albedo_file, paint_skin(head, tone=tone, size=size))
+    _save(head.tints_file, paint_tints(head, size, tone))
 
 
 def _save(path: Path, arrays: dict[str, npt.NDArray[np.generic]]) -> None:

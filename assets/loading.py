@@ -68,9 +68,9 @@ def load_head(
     """Read a head from its data file, its rig file and the files of its layers of controls.
 
     The image of the skin lies beside the data file, as a PNG file of the same name; so do the files
-    of its wrinkles (`_wrinkles.npz`), of its classes (`_segments.png`), of the light on it
-    (`_openness.npz`) and of the finer meshes (`_finer.npz`). All five are read only when they are
-    asked for.
+    of its tones (`_tints.npz`), of its wrinkles (`_wrinkles.npz`), of its classes
+    (`_segments.png`), of the light on it (`_openness.npz`) and of the finer meshes
+    (`_finer.npz`). All six are read only when they are asked for.
 
     Raises AssetError when the data file is missing or incomplete, or a text file is not TOML.
     """
@@ -119,6 +119,7 @@ def _assemble(
         uv=arrays["uv"],
         face_uv=arrays["faces"],  # one piece without seams: a corner is a vertex
         albedo_file=head_file.with_suffix(".png"),
+        tints_file=head_file.with_name(f"{head_file.stem}_tints.npz"),
         wrinkles_file=head_file.with_name(f"{head_file.stem}_wrinkles.npz"),
         segments_file=head_file.with_name(f"{head_file.stem}_segments.png"),
         openness_file=head_file.with_name(f"{head_file.stem}_openness.npz"),

@@ -188,6 +188,7 @@ class Head:
     face_uv: numbers of the texture coordinates of each face's corners, shape (F, 3), int32; the
         same numbers as `faces`.
     albedo_file: the image of the skin.
+    tints_file: maps with which that image takes on another tone.
     wrinkles_file: the map of its wrinkles.
     segments_file: the map of what is nose, lip, neck, ...
     openness_file: how open it is to light from all around; app/ambient.py makes it.
@@ -211,6 +212,7 @@ class Head:
     uv: SingleArray
     face_uv: IndexArray
     albedo_file: Path
+    tints_file: Path
     wrinkles_file: Path
     segments_file: Path
     openness_file: Path

@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from ..model import Eye, FloatArray, Head, Part
-from .warp import Similarity, Warp
+from .warp import Deformation, Similarity
 
 EYE_LANDMARKS = {"right": slice(36, 42), "left": slice(42, 48)}
 STIFF = ("gums", "teeth", "tongue")  # how the names of stiff parts begin
@@ -90,7 +90,7 @@ def _way_forward(centre: FloatArray, radius: float, skin: FloatArray) -> float:
 
 
 def place_parts(
-    known: Head, fitted: FittedSkin, warp: Warp, eyes: tuple[Eye, ...]
+    known: Head, fitted: FittedSkin, warp: Deformation, eyes: tuple[Eye, ...]
 ) -> tuple[Part, ...]:
     """The rigid parts of the built-in head, in another one."""
     mouth = _mouth_of(known, fitted, warp)
@@ -111,7 +111,7 @@ def place_parts(
     return tuple(parts)
 
 
-def _mouth_of(known: Head, fitted: FittedSkin, warp: Warp) -> Similarity:
+def _mouth_of(known: Head, fitted: FittedSkin, warp: Deformation) -> Similarity:
     """Where the stiff parts of the mouth come to lie: behind the skin, as one."""
     found = [
         part.vertices.astype(np.float64) for part in known.parts if part.name.startswith(STIFF)
@@ -138,7 +138,7 @@ def _moved(part: Part, similarity: Similarity) -> Part:
     )
 
 
-def _bent(part: Part, warp: Warp) -> Part:
+def _bent(part: Part, warp: Deformation) -> Part:
     """A part that takes the shape of its new place."""
     vertices = warp.points(part.vertices)
     ahead = warp.points(part.vertices + part.normals) - vertices
@@ -155,7 +155,7 @@ def _lengthened(walls: FloatArray, lips: FloatArray) -> FloatArray:
     return longer
 
 
-def _opening(known: Head, fitted: FittedSkin, warp: Warp) -> FloatArray:
+def _opening(known: Head, fitted: FittedSkin, warp: Deformation) -> FloatArray:
     """Points of the skin that faces forward while the jaw opens [mm], shape (n, 3).
 
     As coarse as need be: each vertex turns about the condyles by its share of the jaw's angle.

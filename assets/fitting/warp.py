@@ -12,6 +12,7 @@ to another head by scattered data interpolation, here the biharmonic kernel r); 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -56,6 +57,14 @@ class Similarity:
     def vectors(self, vectors: npt.ArrayLike) -> FloatArray:
         """Displacements turned and scaled, shape (..., 3)."""
         return self.scale * (np.asarray(vectors, dtype=np.float64) @ self.rotation.T)
+
+
+class Deformation(Protocol):
+    """Anything that says where the points of space come to lie."""
+
+    def points(self, points: npt.ArrayLike) -> FloatArray:
+        """Where points (n, 3) come to lie."""
+        ...
 
 
 class Warp:

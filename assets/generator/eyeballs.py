@@ -6,6 +6,8 @@ The pole lies at the pupil, so that pupil and iris are round at any resolution. 
 on the cornea: one opaque surface that glints is enough at the size of a face on a screen.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 
@@ -23,9 +25,6 @@ LAST_ANGLE_DEG, COARSE_RINGS = 112.0, 8  # the rest is never seen
 SCLERA = (0.895, 0.87, 0.845)
 LID_SHADOW = 0.30  # of the light, lost on the sclera below the upper lid
 CANTHUS = (0.80, 0.55, 0.51)
-LIMBUS = (0.19, 0.23, 0.26)
-IRIS_OUTER = (0.36, 0.47, 0.50)
-IRIS_INNER = (0.56, 0.48, 0.33)
 PUPIL = (0.015, 0.013, 0.013)
 CONJUNCTIVA = (0.79, 0.56, 0.51)
 
@@ -37,6 +36,27 @@ CORNERS = (
 )
 
 
+@dataclass(frozen=True)
+class Iris:
+    """Colours (sRGB 0..1) of an iris: around the pupil, farther out, and its dark edge."""
+
+    inner: tuple[float, float, float]
+    outer: tuple[float, float, float]
+    limbus: tuple[float, float, float]
+
+
+IRIS = Iris((0.56, 0.48, 0.33), (0.36, 0.47, 0.50), (0.19, 0.23, 0.26))  # of the shipped eyes
+# Chosen by eye: melanin makes an iris brown; without it, it scatters blue light, and green or hazel
+# lies between.
+IRISES = {
+    "brown": Iris((0.36, 0.20, 0.10), (0.235, 0.125, 0.065), (0.095, 0.055, 0.04)),
+    "hazel": Iris((0.55, 0.36, 0.15), (0.40, 0.36, 0.19), (0.17, 0.15, 0.10)),
+    "green": Iris((0.56, 0.50, 0.25), (0.37, 0.47, 0.33), (0.16, 0.21, 0.17)),
+    "blue": Iris((0.52, 0.61, 0.68), (0.29, 0.46, 0.65), (0.12, 0.19, 0.30)),
+    "grey": Iris((0.58, 0.60, 0.59), (0.44, 0.49, 0.52), (0.20, 0.23, 0.26)),
+}
+
+
 def _radii(angles: Values) -> Values:
     """Distance of the surface from the eye's centre: a ball with a bulge in front [mm]."""
     beside = np.minimum(EYE_RADIUS * np.sin(np.minimum(angles, np.pi / 2)), CORNEA_RADIUS)
@@ -44,7 +64,7 @@ def _radii(angles: Values) -> Values:
     return EYE_RADIUS + np.where(angles < np.pi / 2, bulge, 0.0)
 
 
-def _iris(beside: Values, around: Values) -> npt.NDArray[np.float64]:
+def _iris(beside: Values, around: Values, iris: Iris) -> npt.NDArray[np.float64]:
     """Fibres run outward; a warmer, ragged ring surrounds the pupil."""
     fibres = (
         0.50 * np.sin(13 * around + 0.6)
@@ -52,37 +72,37 @@ def _iris(beside: Values, around: Values) -> npt.NDArray[np.float64]:
         + 0.25 * np.sin(29 * around + 4.0)
     )
     collar = 1.0 - smooth_step(3.0, 4.4, beside + 0.35 * fibres)
-    colour = mix(IRIS_OUTER, IRIS_INNER, 0.75 * collar)
+    colour = mix(iris.outer, iris.inner, 0.75 * collar)
     middle = smooth_step(1.9, 2.8, beside) * (1.0 - smooth_step(4.8, 5.8, beside))
     return colour * (1.0 + 0.22 * fibres * middle)[:, None]
 
 
-def _colours(beside: Values, around: Values, ahead: Points) -> npt.NDArray[np.float64]:
+def _colours(beside: Values, around: Values, ahead: Points, iris: Iris) -> npt.NDArray[np.float64]:
     toward_corners = smooth_step(0.60, 0.93, np.abs(ahead[:, 0]))
     colour = mix(SCLERA, CANTHUS, 0.75 * toward_corners)
     in_iris = 1.0 - smooth_step(5.75, 6.35, beside)
-    colour = colour * (1.0 - in_iris[:, None]) + _iris(beside, around) * in_iris[:, None]
+    colour = colour * (1.0 - in_iris[:, None]) + _iris(beside, around, iris) * in_iris[:, None]
     ring = smooth_step(4.9, 5.7, beside) * (1.0 - smooth_step(5.9, 6.5, beside))
-    colour = mix(colour, LIMBUS, 0.75 * ring)
+    colour = mix(colour, iris.limbus, 0.75 * ring)
     colour = mix(colour, PUPIL, 1.0 - smooth_step(PUPIL_RADIUS - 0.2, PUPIL_RADIUS + 0.2, beside))
     return colour * (1.0 - LID_SHADOW * smooth_step(0.05, 0.42, ahead[:, 1]))[:, None]
 
 
-def _ball(angles: Values, segments: int) -> Solid:
+def _ball(angles: Values, segments: int, iris: Iris) -> Solid:
     """Rings at angles from the optical axis [rad], around the origin."""
     ahead, faces, around = ball(angles, segments)
     away = np.repeat(angles, segments)
     beside = np.where(
         away < np.pi / 2, EYE_RADIUS * np.sin(np.minimum(away, np.pi / 2)), EYE_RADIUS
     )
-    return Solid(ahead * _radii(away)[:, None], faces, _colours(beside, around, ahead))
+    return Solid(ahead * _radii(away)[:, None], faces, _colours(beside, around, ahead, iris))
 
 
-def eyeball() -> Solid:
+def eyeball(iris: Iris = IRIS) -> Solid:
     """Return the left eyeball around the origin, looking along +z."""
     front = np.arcsin(np.array(RING_DISTANCES) / EYE_RADIUS)
     back = np.linspace(front[-1], np.radians(LAST_ANGLE_DEG), COARSE_RINGS + 1)
-    fine, coarse = _ball(front, FINE_SEGMENTS), _ball(back[1:], COARSE_SEGMENTS)
+    fine, coarse = _ball(front, FINE_SEGMENTS, iris), _ball(back[1:], COARSE_SEGMENTS, iris)
     start = (len(front) - 1) * FINE_SEGMENTS
     end = len(fine.vertices)
     seam = []

@@ -38,8 +38,8 @@ def paint_skin(head: Head, *, tone: Tone, size: int = SIZE) -> Image:
     """Paint the skin of a head, shape (size, size, 3), uint8, sRGB; row 0 is v = 1."""
     texels = left_texels(head, size)
     complexion = COMPLEXIONS[tone]
-    melanin, redness, shadow = _pigments(texels, complexion)
-    covers = _covers(texels, complexion, _grain(texels))
+    melanin, redness, shadow = pigments(texels, complexion)
+    lying = covers(texels, complexion, texel_size(texels))
     image = np.zeros((size, size, 3))
     is_painted = np.zeros((size, size), dtype=bool)
     for side in (1, -1):
@@ -47,13 +47,18 @@ def paint_skin(head: Head, *, tone: Tone, size: int = SIZE) -> Image:
         fine = _pores(points) + _freckles(texels, points, complexion, FRECKLE_SEED + side)
         grain = 0.12 + 0.10 * smooth_step(-25.0, 45.0, points[:, 2])
         stubble = shadow * (1.0 + grain * speckle(points, 0.6, seed=31))
-        colours = reflectance(melanin + fine, redness, stubble)
-        for colour, cover in covers:
-            colours += cover[:, None] * (colour - colours)
+        colours = laid_over(reflectance(melanin + fine, redness, stubble), lying)
         columns = texels.columns if side > 0 else size - 1 - texels.columns
         image[texels.rows, columns] = to_screen(colours)
         is_painted[texels.rows, columns] = True
     return np.asarray(np.rint(255.0 * _padded(image, is_painted)), dtype=np.uint8)
+
+
+def laid_over(colours: Points, covers: list[Cover]) -> Points:
+    """Colours of the skin with all that lies on it, shape (n, 3)."""
+    for colour, cover in covers:
+        colours = colours + cover[:, None] * (colour - colours)
+    return colours
 
 
 def _padded(image: Points, is_painted: npt.NDArray[np.bool_]) -> Points:
@@ -64,14 +69,14 @@ def _padded(image: Points, is_painted: npt.NDArray[np.bool_]) -> Points:
     return np.asarray(around + (image[nearest[0], nearest[1]] - around) * share)
 
 
-def _grain(texels: Texels) -> float:
+def texel_size(texels: Texels) -> float:
     """Size of a texel in the middle of the face [mm]."""
     is_next = (np.diff(texels.columns) == 1) & (np.diff(texels.rows) == 0)
     length = np.linalg.norm(np.diff(texels.points, axis=0), axis=1)
     return float(np.median(length[is_next & (texels.points[1:, 2] > 80.0)]))
 
 
-def _pigments(texels: Texels, complexion: Complexion) -> tuple[Values, Values, Values]:
+def pigments(texels: Texels, complexion: Complexion) -> tuple[Values, Values, Values]:
     """Melanin, blood and the shadow of shaved hair."""
     points = texels.points
     lip = red(texels)
@@ -140,7 +145,7 @@ def _freckles(texels: Texels, points: Points, complexion: Complexion, seed: int)
     return total
 
 
-def _covers(texels: Texels, complexion: Complexion, grain: float) -> list[Cover]:
+def covers(texels: Texels, complexion: Complexion, grain: float) -> list[Cover]:
     """What lies on the skin or is no skin, from below to above."""
     hair = to_linear(complexion.hair)
     wet = to_linear(WATERLINE) * np.exp(-0.45 * complexion.melanin * MELANIN)

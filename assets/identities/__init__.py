@@ -1,6 +1,25 @@
-"""Other persons than the built-in head."""
+"""Other persons than the built-in head: of other shape, other skin, other eyes.
 
+    person = make_person(sample_identity(7))        # the shape of a number's person
+    person = coloured(person, angle=-20.0, irises="brown")
+
+Any of them goes where the built-in head goes: `sim.create(person)`, `FaceScene(person)`.
+"""
+
+from .complexion import DARKEST, LIGHTEST, coloured, own_angle, recoloured, typology_angle
 from .person import Person, make_person
 from .traits import Identity, Sex, sample_identity
 
-__all__ = ["Identity", "Person", "Sex", "make_person", "sample_identity"]
+__all__ = [
+    "DARKEST",
+    "LIGHTEST",
+    "Identity",
+    "Person",
+    "Sex",
+    "coloured",
+    "make_person",
+    "own_angle",
+    "recoloured",
+    "sample_identity",
+    "typology_angle",
+]

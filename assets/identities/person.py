@@ -9,7 +9,7 @@ on them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -86,7 +86,9 @@ def _with_eyes(known: Head, field: Field) -> tuple[FloatArray, tuple[Eye, ...]]:
     eyes = []
     for eye, centre in zip(known.eyes, centres, strict=True):
         corners = known.landmarks[EYE_LANDMARKS[eye.name]][[0, 3]]
-        before, now = (np.linalg.norm(np.diff(x[corners], axis=0)) for x in (known.vertices, vertices))
+        before, now = (
+            np.linalg.norm(np.diff(x[corners], axis=0)) for x in (known.vertices, vertices)
+        )
         scale = float(np.sqrt(now / before))  # eyeballs differ less than their openings
         eyes.append(Eye(eye.name, centre, scale * eye.radius, scale * eye.iris_radius))
     return lids_on_eyes(known, vertices, eyes, LID_SHARES), tuple(eyes)

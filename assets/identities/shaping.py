@@ -133,7 +133,9 @@ class Shaper:
 
     def _sought(self, measures: Mapping[str, float]) -> FloatArray:
         """The lengths that are looked for, in the order of `_ends` [mm]."""
-        eye = np.sqrt(max(measures[EYE] ** 2 - (0.5 * (measures["ex-ex"] - measures["en-en"])) ** 2, 1.0))
+        eye = np.sqrt(
+            max(measures[EYE] ** 2 - (0.5 * (measures["ex-ex"] - measures["en-en"])) ** 2, 1.0)
+        )
         return np.array([eye if code == EYE else measures[code] for code in NORMS])
 
     def _lengths(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -5,12 +5,12 @@ long faces have long noses. Two were left out of the draw, because others make t
 an eye is what lies between inner and outer corners, the height of the upper lip is that of its skin
 and its red.
 
-How measures go together: the first thing in which faces differ is size, the second whether they are
-long and narrow or short and wide (Zhuang, Slice, Benson, Lynch, Viscusi 2010, "Shape analysis of 3D
-head scan data for U.S. respirator users", doi 10.1155/2010/248954, of 947 persons). Both are factors
-here, and one more binds what neighbours share. How strong they are is chosen, but for two pairs
-whose correlation follows from the published deviations: ex-ex = en-en + 2 en-ex (nearly) gives
-0.3 to 0.45 for ex-ex with en-en, sn-sto = sn-ls + ls-sto gives -0.2 for sn-ls with ls-sto.
+How measures go together: the first thing in which faces differ is size, the second whether they
+are long and narrow or short and wide (Zhuang, Slice, Benson, Lynch, Viscusi 2010, "Shape analysis
+of 3D head scan data for U.S. respirator users", doi 10.1155/2010/248954, of 947 persons). Both are
+factors here, and one more binds what neighbours share. How strong they are is chosen, but for two
+pairs whose correlation follows from the published deviations: ex-ex = en-en + 2 en-ex (nearly)
+gives 0.3 to 0.45 for ex-ex with en-en, sn-sto = sn-ls + ls-sto gives -0.2 for sn-ls with ls-sto.
 
 The shapes beyond measures, and how far they go, are chosen by eye: no norm was found.
 """
@@ -27,8 +27,9 @@ import numpy as np
 from ..norms import NORMS, Sample
 
 MOST = 2.5  # deviations from the mean
-# Mean and deviation, by the norms' means, of how far the outer corner of an eye lies behind the inner
-# one [mm], and of the straight way from nose to mouth, as a share of that over the border of the red.
+# Mean and deviation, by the norms' means, of how far the outer corner of an eye lies behind and
+# above the inner one [mm], and of the straight way from nose to mouth, as a share of that over the
+# border of the red.
 EYE_DEPTH = 6.2, 0.8
 LIP_BEND = 0.955, 0.008
 
@@ -94,7 +95,9 @@ SHAPES: Mapping[str, Shape] = MappingProxyType(
         "forehead": Shape((("metopion", (0, 0, 1.2)), ("trichion", (0, 0, 3.0)))),
         "brow height": Shape(((22, (0, 1.3, 0)), (24, (0, 1.3, 0)), (26, (0, 1.0, 0)))),
         "brow tilt": Shape(((22, (0, -0.8, 0)), (26, (0, 1.2, 0)))),
-        "eye slant": Shape((("endocanthion_left", (0, -0.4, 0)), ("exocanthion_left", (0, 0.8, 0)))),
+        "eye slant": Shape(
+            (("endocanthion_left", (0, -0.4, 0)), ("exocanthion_left", (0, 0.8, 0)))
+        ),
         "eye opening": Shape(
             (("palpebrale_superius_left", (0, 0.5, 0)), ("palpebrale_inferius_left", (0, -0.2, 0)))
         ),
@@ -136,8 +139,10 @@ class Identity:
     @property
     def measures(self) -> dict[str, float]:
         """The measures that are asked for, code -> [mm]."""
-        return {code: sample.mean + self.scores[code] * sample.deviation
-                for code, sample in norms_of(self.sex).items()}
+        return {
+            code: sample.mean + self.scores[code] * sample.deviation
+            for code, sample in norms_of(self.sex).items()
+        }
 
 
 def norms_of(sex: Sex) -> dict[str, Sample]:
@@ -148,7 +153,8 @@ def norms_of(sex: Sex) -> dict[str, Sample]:
 def sample_identity(seed: int, *, is_even: bool = False, spread: float = 1.0) -> Identity:
     """The person of a number: the same one every time, of either sex.
 
-    is_even: left and right are alike. spread: 0 gives the mean of a sex, 1 the published deviations.
+    is_even: left and right are alike. spread: 0 gives the mean of a sex, 1 the published
+    deviations.
     """
     random = np.random.default_rng([seed, 17])
     sex = Sex.WOMAN if random.random() < 0.5 else Sex.MAN
@@ -164,7 +170,9 @@ def sample_identity(seed: int, *, is_even: bool = False, spread: float = 1.0) ->
     scores = {code: float(np.clip(score, -MOST, MOST)) for code, score in scores.items()}
     deeper, bend = np.clip(random.normal(size=2), -MOST, MOST)
     norms = norms_of(sex)
-    value = {code: norms[code].mean + score * norms[code].deviation for code, score in scores.items()}
+    value = {
+        code: norms[code].mean + score * norms[code].deviation for code, score in scores.items()
+    }
     depth = EYE_DEPTH[0] + EYE_DEPTH[1] * spread * deeper
     eye = float(np.hypot(0.5 * (value["ex-ex"] - value["en-en"]), depth))
     lip = (value["sn-ls"] + value["ls-sto"]) * (LIP_BEND[0] + LIP_BEND[1] * spread * bend)

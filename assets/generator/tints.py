@@ -1,0 +1,79 @@
+"""Where skin takes on another tone, and how much: maps with which its picture is recoloured.
+
+The light that skin throws back falls off exponentially with its pigments (pigments.py), so another
+tone is the shipped picture times exp(- pigments times weight), with other hair laid on it. Weights
+are read off the painter itself: a step of melanin, a step of blood, hair of black and of white.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ..model import Head, Tone
+from .painting import covers, laid_over, pigments, texel_size
+from .pigments import BLOOD, COMPLEXIONS, MELANIN, Complexion, reflectance
+from .texels import Texels, left_texels
+
+MOST = 2.55  # of a weight; a byte holds hundredths
+COARSER = 4  # texels of the picture in one of the maps of melanin and blood, which are soft
+FACE = 60.0  # [mm] z in front of which a texel belongs to the face
+
+
+def paint_tints(head: Head, size: int, tone: Tone) -> dict[str, npt.NDArray[np.generic]]:
+    """Maps over a picture of `size` x `size`, in hundredths, uint8; row 0 is v = 1.
+
+    melanin, blood: weight of a step of each, shape (size / 4, size / 4). hair: how much of its
+    colour lies on each texel, linear light, shape (size, size). skin: linear light 0..1 of the bare
+    skin of the face, and its two weights, shape (5,). tone: that of the picture.
+    """
+    texels = left_texels(head, size)
+    own = replace(COMPLEXIONS[tone], hair=(0.0, 0.0, 0.0))
+    fine = texel_size(texels)
+    base = _light(texels, own, fine)
+    darker = _light(texels, replace(own, melanin=own.melanin + 1.0), fine)
+    redder = _light(texels, replace(own, blood=own.blood + 0.2), fine)
+    hair = (_light(texels, replace(own, hair=(1.0, 1.0, 1.0)), fine) - base).mean(axis=1)
+    base, darker, redder = (np.maximum(light, 1e-4) for light in (base, darker, redder))
+    melanin = (np.log(base / darker) / MELANIN).mean(axis=1)
+    # Red light hardly meets blood: its share would be noise.
+    blood = (np.log(base / redder) / (0.2 * BLOOD))[:, 1:].mean(axis=1)
+    is_skin = (texels.points[:, 2] > FACE) & (hair < 0.01) & (melanin > 0.9)
+    skin = [
+        *np.median(base[is_skin], axis=0),
+        np.median(melanin[is_skin]),
+        np.median(blood[is_skin]),
+    ]
+    return {
+        "melanin": _coarse(_image(texels, melanin, size)),
+        "blood": _coarse(_image(texels, blood, size)),
+        "hair": _bytes(np.nan_to_num(_image(texels, hair, size))),
+        "skin": np.array(skin),
+        "tone": np.array(tone.value),
+        "made_from": np.array(head.fingerprint, dtype=np.uint32),
+    }
+
+
+def _light(texels: Texels, complexion: Complexion, fine: float) -> npt.NDArray[np.float64]:
+    """What the painter paints, without pores and freckles; linear light, shape (n, 3)."""
+    return laid_over(reflectance(*pigments(texels, complexion)), covers(texels, complexion, fine))
+
+
+def _image(texels: Texels, values: npt.NDArray[np.float64], size: int) -> npt.NDArray[np.float64]:
+    """Values on both halves of a picture; NaN beside the skin."""
+    image = np.full((size, size), np.nan)
+    for columns in (texels.columns, size - 1 - texels.columns):
+        image[texels.rows, columns] = values
+    return image
+
+
+def _coarse(image: npt.NDArray[np.float64]) -> npt.NDArray[np.uint8]:
+    """Means of blocks; the median where there is no skin, which the picture's edge goes over to."""
+    filled = np.where(np.isnan(image), np.nanmedian(image), image)
+    count = len(image) // COARSER
+    blocks = filled[: count * COARSER, : count * COARSER]
+    return _bytes(blocks.reshape(count, COARSER, count, COARSER).mean(axis=(1, 3)))
+
+
+def _bytes(values: npt.NDArray[np.float64]) -> npt.NDArray[np.uint8]:
+    return np.asarray(np.rint(100.0 * np.clip(values, 0.0, MOST)), dtype=np.uint8)
