@@ -1,0 +1,287 @@
+"""Passes of a face: triangles, splits, tension and classes, and landmarks against the depth map."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from risorius import refine, render
+from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.looks import Refinement
+from risorius.app.passes.camera_labels import CameraLabels
+from risorius.app.passes.landmarks import landmarks_in, points_of
+from risorius.app.passes.passes import IMAGES, Passes
+from risorius.app.scenes import ClothScene, FaceScene
+from risorius.assets import Segment
+from risorius.assets.fitting.head import fit
+from tests.heads import stranger
+
+SIZE = (400, 400)
+EXPRESSIONS: dict[str, dict[str, float]] = {
+    "rest": {},
+    "smile": {"AU6": 0.6, "AU12": 0.9},
+    "open mouth": {"jaw_open": 0.9, "AU1": 1.0, "AU2": 1.0},
+    "anger, turned": {"AU4": 1.0, "AU23": 0.8, "head_yaw": 0.4},
+    "disgust, nodding": {"AU9": 1.0, "AU15": 0.6, "head_pitch": -0.4},
+    "pucker, tilted": {"AU18": 1.0, "head_roll": 0.5},
+}
+Array = npt.NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def face() -> FaceScene:
+    """The built-in face."""
+    return FaceScene()
+
+
+def posed(studio: Capture, controls: dict[str, float]) -> FaceScene:
+    """The face of a studio, resting in a pose."""
+    face = studio.scene
+    assert isinstance(face, FaceScene)
+    face.reset()
+    face.pose(controls)
+    face.step(0.5)
+    return face
+
+
+@pytest.fixture(scope="module")
+def studio(face: FaceScene) -> Iterator[Capture]:
+    """A square picture of the face as it is usually refined."""
+    with Capture(face, CaptureOptions(size=SIZE, camera="front")) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def plain(face: FaceScene) -> Iterator[Capture]:
+    """A square picture of the face without refinement."""
+    options = CaptureOptions(size=SIZE, camera="front", refinement=Refinement(refiner="none"))
+    with Capture(face, options) as opened:
+        yield opened
+
+
+def seen_from(studio: Capture, yaw: float = 0.0, pitch: float = 0.0) -> CameraLabels:
+    """Draw the face from somewhere, as it is now."""
+    studio.camera = render.OrbitCamera.framing(studio.scene.extent)
+    studio.camera.orbit(yaw, pitch)
+    studio.draw_image()
+    return CameraLabels.of(studio.camera, SIZE)
+
+
+def first_hits(points: Array, faces: npt.NDArray[np.int32], eye: Array, ways: Array) -> Array:
+    """By casting a ray at every triangle: number of the first one hit and how far, (n, 2).
+
+    Source: Möller and Trumbore 1997; -1 and infinity for no triangle.
+    """
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    first, second = b - a, c - a
+    found = np.full((len(ways), 2), [-1.0, np.inf])
+    for row, way in enumerate(ways):
+        p = np.cross(way, second)
+        determinant = (first * p).sum(1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            u = ((eye - a) * p).sum(1) / determinant
+            q = np.cross(eye - a, first)
+            v = (q @ way) / determinant
+            far = (second * q).sum(1) / determinant
+            is_hit = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (far > 0.0)
+        if is_hit.any():
+            nearest = np.where(is_hit, far, np.inf).argmin()
+            found[row] = nearest, far[nearest]
+    return found
+
+
+@pytest.mark.parametrize("yaw", [0.0, 70.0])
+def test_triangles_and_depth_are_those_that_rays_hit(plain: Capture, yaw: float) -> None:
+    """At 400 places of the mesh as it is: more than 99 in 100 hit the same triangle."""
+    scene = posed(plain, EXPRESSIONS["smile"])
+    camera = seen_from(plain, yaw, 5.0)
+    found = Passes(plain.pipeline).draw(plain.camera, ["depth", "triangle"])
+    skin = np.argwhere(found["triangle"] >= 0)
+    places = skin[np.random.default_rng(4).choice(len(skin), 400, replace=False)]
+    pixels = np.column_stack([places[:, ::-1] + 0.5, np.ones(len(places))])
+    ways = pixels @ np.linalg.inv(camera.intrinsics).T @ camera.rotation  # 1 mm along the axis
+    eye = -camera.rotation.T @ camera.translation
+    hits = first_hits(scene.positions, scene.faces, eye, ways)
+    is_same = hits[:, 0] == found["triangle"][*places.T]
+    assert is_same.mean() > 0.99
+    assert np.abs(hits[is_same, 1] - found["depth"][*places.T][is_same]).max() < 0.01
+
+
+def test_nothing_parts_and_skin_are_told_apart(studio: Capture) -> None:
+    """One background in all passes; no triangle of the mesh on teeth and eyes."""
+    posed(studio, EXPRESSIONS["open mouth"])
+    seen_from(studio)
+    found = Passes(studio.pipeline).draw(studio.camera)
+    assert tuple(found) == IMAGES
+    nothing = found["depth"] == 0.0
+    assert 0.3 < nothing.mean() < 0.9
+    for name in ("normal", "splits", "tension", "segmentation"):
+        assert not found[name][nothing].any()
+    assert (found["segmentation"][~nothing] > 0).all()
+    assert (found["triangle"][nothing] == -1).all()
+    is_part = ~nothing & (found["triangle"] < 0)
+    inside = (Segment.RIGHT_EYE, Segment.LEFT_EYE, Segment.MOUTH_INTERIOR)
+    assert np.isin(found["segmentation"][is_part], inside).all() and is_part.sum() > 1000
+    assert not found["splits"][is_part].any() and not found["tension"][is_part].any()
+    assert found["triangle"].max() < len(studio.scene.faces)
+
+
+def test_splits_are_those_of_the_triangle_that_is_seen(studio: Capture) -> None:
+    """As the refiner tells them."""
+    posed(studio, EXPRESSIONS["smile"])
+    seen_from(studio)
+    found = Passes(studio.pipeline).draw(studio.camera, ["triangle", "splits"])
+    refiner = studio.pipeline.meshes[0].refiner
+    is_skin = found["triangle"] >= 0
+    edges = refiner.triangle_edges[found["triangle"][is_skin]]
+    assert np.array_equal(found["splits"][is_skin], refiner.splits[edges].sum(axis=1))
+    assert found["splits"].max() > 0
+
+
+def test_tension_is_that_of_the_vertices_around(studio: Capture) -> None:
+    """Between the least and the greatest of the triangle's corners, and none at rest."""
+    scene, passes = studio.scene, Passes(studio.pipeline)
+    posed(studio, EXPRESSIONS["smile"])
+    seen_from(studio)
+    found = passes.draw(studio.camera, ["tension", "triangle"])
+    measured = refine.Tension(scene.faces, scene.rest_positions).measure(scene.positions)
+    rows, columns = np.nonzero(found["triangle"] >= 0)
+    corners = scene.faces[found["triangle"][rows, columns]]
+    for k, amounts in enumerate(measured[:2]):
+        there = found["tension"][rows, columns, k]
+        assert (there > amounts[corners].min(axis=1) - 1e-4).all()
+        assert (there < amounts[corners].max(axis=1) + 1e-4).all()
+    assert found["tension"].max() > 0.1
+    posed(studio, {})
+    seen_from(studio)
+    assert np.abs(passes.draw(studio.camera, ["tension"])["tension"]).max() < 1e-3
+
+
+def test_classes_are_the_subjects_own_sides_and_mirror(studio: Capture) -> None:
+    """From the front, right of the subject is left in the picture; a picture of rest is even."""
+    posed(studio, {})
+    seen_from(studio)
+    classes = Passes(studio.pipeline).draw(studio.camera, ["segmentation"])["segmentation"]
+    mirrored = classes[:, ::-1].copy()
+    for right, left in ((3, 4), (5, 6), (7, 8)):
+        columns = [np.nonzero(classes == side)[1] for side in (right, left)]
+        assert len(columns[0]) > 30 and columns[0].max() < SIZE[0] / 2 < columns[1].min()
+        is_left = mirrored == left
+        mirrored[mirrored == right] = left
+        mirrored[is_left] = right
+    assert (mirrored != classes).mean() < 0.003
+    rows = {k: np.nonzero(classes == k)[0].mean() for k in (6, 4, 2, 10, 11, 12)}
+    assert list(rows.values()) == sorted(rows.values())  # brow, eye, nose, lips, neck
+
+
+def test_an_open_mouth_has_an_inside(studio: Capture) -> None:
+    """Between the lips, and none of it where they are closed; closed lids hide the eyes."""
+    found = {}
+    for name, controls in (("open", {"jaw_open": 0.9}), ("shut", {"AU43": 1.0})):
+        posed(studio, controls)
+        seen_from(studio)
+        classes = Passes(studio.pipeline).draw(studio.camera, ["segmentation"])["segmentation"]
+        found[name] = np.bincount(classes.ravel(), minlength=256)
+    assert found["open"][Segment.MOUTH_INTERIOR] > 400 > 50 > found["shut"][Segment.MOUTH_INTERIOR]
+    assert found["shut"][Segment.RIGHT_EYE] < 0.2 * found["open"][Segment.RIGHT_EYE]
+    assert found["open"][Segment.IGNORE] < 10
+
+
+@pytest.mark.parametrize("expression", list(EXPRESSIONS))
+@pytest.mark.parametrize("view", [(0.0, 0.0), (-40.0, 10.0), (65.0, -15.0)])
+def test_landmarks_lie_on_the_depth_map(
+    studio: Capture, expression: str, view: tuple[float, float]
+) -> None:
+    """Of all that are visible, in the median to less than half a millimetre."""
+    scene = posed(studio, EXPRESSIONS[expression])
+    camera = seen_from(studio, *view)
+    depth = Passes(studio.pipeline).draw(studio.camera, ["depth"])["depth"]
+    found = landmarks_in(scene, camera, depth)
+    assert found.visible.sum() > 35
+    columns, rows = np.floor(found.pixels[found.visible]).astype(int).T
+    off = np.abs(depth[rows, columns] - found.depths[found.visible])
+    assert np.median(off) < 0.5
+
+
+def test_the_refined_surface_goes_through_the_landmarks(studio: Capture) -> None:
+    """They are vertices of the simulated mesh, which the usual look does not move."""
+    for controls in EXPRESSIONS.values():
+        scene = posed(studio, controls)
+        seen_from(studio)
+        mesh = studio.pipeline.meshes[0].mesh
+        assert mesh is not None
+        landmarks = scene.landmarks
+        points = points_of(scene)[:68]
+        assert np.abs(mesh.positions[landmarks] - points).max() < 1e-3
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    side=st.sampled_from([-1.0, 1.0]), yaw=st.floats(82.0, 105.0), expression=st.sampled_from(
+        list(EXPRESSIONS)
+    )
+)  # fmt: skip
+def test_a_profile_hides_the_far_side(
+    studio: Capture, side: float, yaw: float, expression: str
+) -> None:
+    """Of eyes, brows and the jaw-line what is beyond the nose is hidden, what is before it seen."""
+    controls = {k: v for k, v in EXPRESSIONS[expression].items() if not k.startswith("head")}
+    scene = posed(studio, controls)
+    camera = seen_from(studio, side * yaw)
+    depth = Passes(studio.pipeline).draw(studio.camera, ["depth"])["depth"]
+    visible = landmarks_in(scene, camera, depth).visible
+    right = [*range(0, 6), *range(17, 20), 36, 37, 40, 41, 68]
+    left = [*range(11, 17), *range(24, 27), 44, 45, 46, 47, 69]
+    near, far = (left, right) if side > 0.0 else (right, left)
+    assert visible[near].mean() > 0.7 and not visible[far].any()
+
+
+def test_pupils_are_hidden_by_lids_and_everything_by_the_frame(studio: Capture) -> None:
+    """A closed eye has no pupil to be seen; what is beside the picture is not visible."""
+    for controls, is_seen in (({}, True), ({"AU43": 1.0}, False)):
+        scene = posed(studio, controls)
+        camera = seen_from(studio)
+        depth = Passes(studio.pipeline).draw(studio.camera, ["depth"])["depth"]
+        found = landmarks_in(scene, camera, depth)
+        assert (found.visible[68:] == is_seen).all()
+        assert found.visible[17:36].all()
+    cut = landmarks_in(scene, camera, depth[:, :200])
+    assert not cut.visible[cut.pixels[:, 0] > 200.0].any()
+
+
+def test_another_head_has_the_same_classes() -> None:
+    """A head of one's own wears the same texture coordinates, so the same map."""
+    other = stranger()
+    scene = FaceScene(fit(other.mesh, other.landmarks))
+    with Capture(scene, CaptureOptions(size=SIZE, camera="front")) as studio:
+        camera = seen_from(studio)
+        found = Passes(studio.pipeline).draw(studio.camera, ["segmentation", "depth"])
+        landmarks = landmarks_in(scene, camera, found["depth"])
+    classes = found["segmentation"]
+    columns, rows = np.floor(landmarks.pixels).astype(int).T
+    at = classes[rows, columns]
+    assert at[68:].tolist() == [Segment.RIGHT_EYE, Segment.LEFT_EYE]
+    assert (at[28:31] == Segment.NOSE).all()
+    assert {Segment.RIGHT_BROW, Segment.TOP_LIP, Segment.NECK} <= set(np.unique(classes))
+
+
+def test_other_scenes_have_what_makes_sense() -> None:
+    """A cloth has depth, triangles and tension, but no classes; the ball under it is a part."""
+    scene = ClothScene()
+    scene.pose({"drop": 1.0})
+    for _ in range(30):
+        scene.step(1.0 / 60.0)
+    with Capture(scene, CaptureOptions(size=SIZE, camera="front")) as studio:
+        passes = Passes(studio.pipeline)
+        with pytest.raises(ValueError, match="nothing was drawn yet"):
+            passes.draw(studio.camera)
+        studio.draw_image()
+        found = passes.draw(studio.camera, ["depth", "triangle", "tension"])
+        assert found["tension"].max() > 0.01 and found["triangle"].max() < len(scene.faces)
+        with pytest.raises(ValueError, match="the scene cloth has no segmentation"):
+            passes.draw(studio.camera)

@@ -1,0 +1,162 @@
+"""Numbers of what each pixel shows: against spheres and planes that are known exactly."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from risorius import render
+
+from .scenes import STILL, Ball, Shape, facing, joined, lent, sphere, square
+
+CHORD = 0.2  # [unit of the scene] a sphere of 8192 triangles lies this far within its ball, at most
+
+
+def rays(camera: render.OrbitCamera, size: tuple[int, int]) -> npt.NDArray[np.float64]:
+    """Through the middle of each pixel, one unit along the camera's axis long, (H, W, 3)."""
+    width, height = size
+    focal = camera.focal(width / height, height)
+    x, y = np.meshgrid(np.arange(width) + 0.5 - width / 2, np.arange(height) + 0.5 - height / 2)
+    right, up, back = camera.axes()
+    return np.asarray(x[..., None] / focal * right - y[..., None] / focal * up - back)
+
+
+def drawn(
+    surface: render.Surface,
+    shape: Shape,
+    camera: render.OrbitCamera,
+    *,
+    parts: tuple[Ball, ...] = (),
+    values: npt.NDArray[np.float32] | None = None,
+) -> render.Geometry:
+    """The numbers of one shape and parts."""
+    renderer = render.Renderer(surface)
+    stream = lent(renderer, shape)
+    return renderer.draw_geometry(stream, parts, STILL, camera, values=values)
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    yaw=st.floats(-180.0, 180.0),
+    pitch=st.floats(-80.0, 80.0),
+    size=st.tuples(st.integers(33, 120), st.integers(33, 120)),
+)
+def test_a_sphere_is_as_far_away_as_it_should_be(
+    yaw: float, pitch: float, size: tuple[int, int]
+) -> None:
+    """From everywhere, in any format: depth along the axis, and normals in the camera's axes."""
+    camera = facing(60.0)
+    camera.orbit(yaw, pitch)
+    shape = sphere(5)
+    with render.open_offscreen(size) as surface:
+        found = drawn(surface, shape, camera)
+    ways, eye = rays(camera, size), camera.eye
+    # |eye + s way| = 50, the nearer one
+    a, b = (ways**2).sum(-1), ways @ eye
+    under_root = b * b - a * (eye @ eye - 2500.0)
+    is_hit = under_root > 0.0
+    expected = (-b - np.sqrt(np.maximum(under_root, 0.0))) / a
+    assert found.depth.shape == is_hit.shape
+    inner = is_hit & (under_root > 0.05 * under_root.max())  # an outline of chords is narrower
+    assert inner.sum() > 50 and (found.depth[inner] > 0.0).all()
+    assert not found.depth[~is_hit].any()
+    steepness = np.sqrt(under_root[inner]) / 50.0
+    assert (np.abs(found.depth[inner] - expected[inner]) < CHORD / steepness).all()
+
+    points = eye + expected[..., None] * ways
+    right, up, back = camera.axes()
+    normals = points @ np.stack([right, -up, -back]).T / 50.0
+    assert np.abs(found.normal[inner] - normals[inner]).max() < 0.1
+    lengths = np.linalg.norm(found.normal[found.depth > 0.0], axis=1)
+    assert np.abs(lengths - 1.0).max() < 1e-5
+    assert (found.normal[inner][:, 2] < 0.0).all()  # toward the camera
+
+
+def test_a_plane_is_as_far_away_everywhere(surface: render.Surface) -> None:
+    """Depth is that along the camera's axis, not along the ray, to single precision."""
+    camera = facing()
+    found = drawn(surface, square(200.0, z=10.0), camera)
+    assert np.abs(found.depth - (camera.distance - 10.0)).max() < 1e-3
+    assert np.abs(found.normal - [0.0, 0.0, -1.0]).max() < 1e-6
+
+
+def test_the_top_row_comes_first_and_axes_are_those_of_pictures(surface: render.Surface) -> None:
+    """A square above and to the right of the middle is drawn there."""
+    shape = square(20.0)
+    moved = Shape(shape.positions + np.float32([25.0, 25.0, 0.0]), shape.normals, shape.triangles)
+    rows, columns = np.nonzero(drawn(surface, moved, facing()).depth)
+    assert rows.max() < 48 <= columns.min()
+    up = Shape(shape.positions, np.tile(np.float32([0, 1, 0]), (4, 1)), shape.triangles)
+    normals = drawn(surface, up, facing()).normal
+    assert np.allclose(normals[48, 48], [0.0, -1.0, 0.0])
+
+
+def test_what_is_nearer_hides_what_is_behind(surface: render.Surface) -> None:
+    """Of two squares and a ball the nearest counts, whichever is drawn first."""
+    far, near = square(50.0, z=-30.0), square(10.0, z=40.0)
+    for shape in (joined(far, near), joined(near, far)):
+        found = drawn(surface, shape, facing(), parts=(Ball(),))
+        middle, beside, corner = (48, 48), (48, 62), (10, 10)
+        is_near = shape.positions[shape.triangles[:, 0], 2] > 0.0
+        assert is_near[found.triangle[middle]]
+        assert found.triangle[beside] >= len(shape.triangles)  # of the ball
+        assert not is_near[found.triangle[corner]]
+        assert found.depth[middle] < found.depth[beside] < found.depth[corner]
+
+
+def test_triangles_are_numbered_through_all_parts(surface: render.Surface) -> None:
+    """Those of the mesh first, then of each part in turn; nothing is -1."""
+    shape, ball = square(10.0, z=45.0), Ball()
+    found = drawn(surface, shape, facing(70.0), parts=(ball,))
+    assert found.triangle[0, 0] == -1 and found.depth[0, 0] == 0.0
+    assert set(found.triangle[(found.triangle >= 0) & (found.triangle < 2)]) == {0, 1}
+    seen = np.unique(found.triangle[found.triangle >= 2]) - 2
+    front = ball.shape.positions[ball.shape.triangles].mean(axis=1)[:, 2] > 0.0
+    assert front[seen].all() and len(seen) > 0.4 * front.sum()
+    twice = drawn(surface, shape, facing(70.0), parts=(Ball(), Ball()))
+    assert twice.triangle.max() < 2 + 2 * len(ball.faces)
+
+
+def test_values_are_interpolated(surface: render.Surface) -> None:
+    """Two numbers that grow along x and y do so in the picture, and stop at nothing else."""
+    shape = square(40.0)
+    values = (shape.positions[:, :2] / 40.0).astype(np.float32)
+    found = drawn(surface, shape, facing(), values=values)
+    scale = facing().focal(1.0, 96) / facing().distance
+    rows, columns = np.nonzero(found.depth)
+    expected = np.stack([columns + 0.5 - 48, 48 - 0.5 - rows], axis=1) / scale / 40.0
+    assert np.abs(found.values[rows, columns] - expected).max() < 1e-3
+    assert not found.values[found.depth == 0.0].any()
+    assert not drawn(surface, shape, facing()).values.any()
+    with pytest.raises(ValueError, match=r"values has shape \(3, 2\); it must be \(4, 2\)"):
+        drawn(surface, shape, facing(), values=values[:3])
+
+
+def test_the_back_of_the_mesh_is_told_from_its_front(surface: render.Surface) -> None:
+    """Normals point to the camera on either side."""
+    camera = facing()
+    assert not drawn(surface, square(), camera).is_inside.any()
+    camera.orbit(180.0)
+    found = drawn(surface, square(), camera)
+    assert found.is_inside[48, 48] and found.normal[48, 48, 2] < -0.99
+
+
+def test_a_picture_is_the_same_before_and_after(surface: render.Surface) -> None:
+    """Drawing numbers leaves the colours of a frame alone, and those of the next."""
+    renderer, style, camera = render.Renderer(surface), render.Style(), facing()
+    stream, ball = lent(renderer, sphere()), Ball(shape=sphere(3, 60.0))
+    pictures = []
+    for is_between in (False, True, False):
+        surface.begin()
+        renderer.draw_background(style)
+        renderer.draw_mesh(stream, camera, style)
+        if is_between:
+            renderer.draw_geometry(stream, [ball], STILL, camera)
+        renderer.draw_parts([ball], STILL, camera, style)
+        surface.end()
+        renderer.draw_geometry(stream, [ball], STILL, camera)
+        pictures.append(surface.read())
+    assert np.array_equal(pictures[0], pictures[1]) and np.array_equal(pictures[0], pictures[2])
