@@ -41,8 +41,9 @@ class Counts:
                     self.letters["ABCDE"[min(int(5.0 * value), 4)]] += 1
         for name in POSE:
             self.poses[name].append(sample["head"][name])
-        for name in ("kind", "person"):
-            self.others.setdefault(name, Counter())[sample[name]] += 1
+        self.kinds[sample["kind"]] += 1
+        self.persons[sample["person"]["number"]] += 1
+        self.tones[(sample["person"]["number"], sample["person"]["tone"])] += 1
 
 
 def write_index(path: Path, samples: Iterable[dict[str, Any]]) -> Counts:

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-import numpy as np
 import PIL.Image
 
 from risorius import render
-from risorius.assets.identities import make_person, sample_identity
 
 from ..files import Image
 from ..idle import looking_at
@@ -27,6 +26,7 @@ from ..scenes import FaceScene
 from .cameras import camera_of
 from .folder import name_of
 from .labels import labels_of_face
+from .persons import person_of
 from .request import Request
 from .sampling import Sample, draw, gaze_controls
 
@@ -47,6 +47,15 @@ class Shot:
         self.known.save(picture)
 
 
+@dataclass(frozen=True)
+class _Model:
+    """A person before the frame."""
+
+    pipeline: Pipeline
+    passes: Passes
+    labels: dict[str, Any]
+
+
 class Studio:
     """A frame without a window, and the heads of some persons before it."""
 
@@ -54,21 +63,21 @@ class Studio:
         self._request = request
         self._surface = render.open_offscreen(request.size, samples=SAMPLES)
         self._renderer = render.Renderer(self._surface)
-        self._persons: dict[int, tuple[Pipeline, Passes]] = {}
+        self._persons: dict[int, _Model] = {}
 
     def shoot(self, index: int) -> Shot:
         """Take sample number `index` of the request's seed."""
         request = self._request
         sample = draw(request.table, request.seed, index)
-        pipeline, passes = self._person(sample.person)
-        scene = pipeline.scene
+        model = self._person(sample.person)
+        pipeline, scene = model.pipeline, model.pipeline.scene
         assert isinstance(scene, FaceScene)
         camera = _posed(scene, sample)
         self._surface.begin()
         pipeline.draw(camera, render.Style(), [(0, 0, *request.size)])
         self._surface.end()
         image = self._surface.read()
-        images = passes.draw(camera, {"depth", *request.passes} - {"landmarks"})
+        images = model.passes.draw(camera, {"depth", *request.passes} - {"landmarks"})
         labels = {
             "id": name_of(index),
             "index": index,
@@ -76,19 +85,19 @@ class Studio:
             "risorius": request.version,
             "kind": sample.kind,
             "name": sample.name,
-            "person": sample.person,
+            "person": model.labels,
             **labels_of_face(scene, camera, request.size, images["depth"]),
         }
         wanted = {name: images[name] for name in images if name in request.passes}
         return Shot(image, Labelled(wanted, labels))
 
-    def _person(self, number: int) -> tuple[Pipeline, Passes]:
+    def _person(self, number: int) -> _Model:
         """A person of the set before the frame."""
         person = self._persons.pop(number, None)
         if person is None:
-            identity = sample_identity(person_seed(self._request.seed, number))
-            pipeline = Pipeline(FaceScene(make_person(identity)), self._renderer, [Refinement()])
-            person = pipeline, Passes(pipeline)
+            somebody = person_of(self._request, number)
+            pipeline = Pipeline(FaceScene(somebody.head), self._renderer, [Refinement()])
+            person = _Model(pipeline, Passes(pipeline), somebody.labels)
         self._persons[number] = person
         if len(self._persons) > MOST_PERSONS:
             del self._persons[next(iter(self._persons))]
@@ -109,7 +118,3 @@ def _posed(scene: FaceScene, sample: Sample) -> render.OrbitCamera:
     scene.step(SETTLING)
     return camera
 
-
-def person_seed(seed: int, number: int) -> int:
-    """What the person of that number is drawn from, in a set of this seed."""
-    return int(np.random.SeedSequence([seed, number, 1]).generate_state(1)[0])

@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from risorius import assets
+from risorius.assets.generator.eyeballs import IRISES
+from risorius.assets.identities import DARKEST, LIGHTEST
 
 from ..errors import UserError
 from ..files import read_text
@@ -61,6 +63,8 @@ class SampleTable:
     head: Shares
     camera: Mapping[str, Range]
     persons: int
+    tone: Range
+    irises: Shares
     paired: frozenset[str]  # action units that have two sides
     sections: Mapping[str, Any]  # all of it, as TOML has it
 
@@ -139,9 +143,11 @@ class _Reader:
             eyes=self._named("eyes", given["eyes"], EYES),
             head=self._named("head", given["head"], HEAD),
             camera={
-                name: self.range(name, given["camera"].get(name)) for name in CAMERA
+                name: self.camera_range(name, given["camera"].get(name)) for name in CAMERA
             },
             persons=int(self._number("persons, 'count'", given["persons"].get("count"), 1, 1e6)),
+            tone=self._range("persons, 'tone'", given["persons"].get("tone"), DARKEST, LIGHTEST),
+            irises=self._named("irises", given["irises"], dict.fromkeys(IRISES, 1e6), some=True),
             paired=frozenset(
                 name for name, row in self._rows["Action units"].items() if row.get("pair")
             ),
@@ -218,10 +224,11 @@ class _Reader:
             raise self._error(where, "must have a share above 0", "0 throughout")
         return found
 
-    def range(self, name: str, given: Any) -> Range:
-        """A row of the camera: [low, high]."""
-        least, most = CAMERA[name]
-        where = f"camera, '{name}'"
+    def camera_range(self, name: str, given: Any) -> Range:
+        """A row of the camera."""
+        return self._range(f"camera, '{name}'", given, *CAMERA[name])
+
+    def _range(self, where: str, given: Any, least: float, most: float) -> Range:
         if not isinstance(given, list | tuple) or len(given) != 2:
             raise self._error(where, "must be [low, high]", given)
         low, high = (self._number(where, value, least, most) for value in given)
@@ -264,6 +271,6 @@ def with_camera(table: SampleTable, text: str) -> SampleTable:
             numbers = [float(each) for each in part.split(":")]
         except ValueError:
             raise UserError(how) from None
-        camera[name] = reader.range(name, numbers * 2 if len(numbers) == 1 else numbers)
+        camera[name] = reader.camera_range(name, numbers * 2 if len(numbers) == 1 else numbers)
     plain = {name: list(limits) for name, limits in camera.items()}
     return replace(table, camera=camera, sections={**table.sections, "camera": plain})
