@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -114,7 +112,6 @@ def dataset(
         jobs=jobs,
         resume=resume,
         coco=coco,
-        command=shlex.join(["risorius", *sys.argv[1:]]),
         progress=not quiet,
     )
     click.echo(

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from .index import THERE, Counts, histogram
+from .labels import by_number
 from .request import Request
 
 STEP = 15.0  # [degrees] of the histograms
@@ -18,7 +19,7 @@ CARD = """\
 Pictures of faces that Risorius {version} made: a simulated face whose muscles are told how far to
 contract, drawn without a camera. No person was photographed, and nobody's likeness is in it.
 
-    {command}
+    risorius dataset --count {count} {told} -o FOLDER
 
 Seed {seed}; the same command makes the same files on the same machine. `dataset.json` holds every
 option and the table that samples were drawn from.
@@ -44,6 +45,10 @@ An action unit counts as there from {there} of 1 on. Letters are fifths of the s
 {units}
 
 {letters}
+
+Tones of skin, as individual typology angles: above 55 very light, 28 intermediate, below -30 dark.
+
+{tones}
 
 How heads are turned to the camera:
 
@@ -71,46 +76,42 @@ anybody feels: names of expressions here are names of combinations of units.
 """
 
 
-def card_of(request: Request, counts: Counts, command: str) -> str:
+def card_of(request: Request, counts: Counts) -> str:
     """The text for a set that was made as requested, with what was counted in it."""
-    persons = len(counts.others["person"])
+    persons = len(counts.persons)
     units = [
         [name, f"{number / counts.samples:.1%}"]
-        for name, number in sorted(counts.units.items(), key=lambda item: _order(item[0]))
-        if "_" not in name
+        for name, number in sorted(counts.units.items(), key=lambda item: by_number(item[0]))
     ]
     return CARD.format(
         count=counts.samples,
         version=request.version,
-        command=command,
+        told=request.told,
         seed=request.seed,
         size=" x ".join(map(str, request.size)),
         files=_table(["file", "what"], request.files()),
         persons=persons,
         samples_each=counts.samples / persons,
-        visible=counts.visible / counts.points,
+        visible=counts.visible / (70 * counts.samples),
         there=THERE,
-        kinds=_table(["kind", "samples", ""], _bars(counts.others["kind"].items(), counts.samples)),
+        kinds=_table(["kind", "samples", ""], _bars(counts.kinds.most_common(), counts.samples)),
         units=_table(["action unit", "of the samples"], units),
         letters=_table(
             ["intensity", "units", ""],
             _bars(sorted(counts.letters.items()), counts.letters.total()),
         ),
-        poses="\n\n".join(_pose(name, angles) for name, angles in counts.poses.items()),
+        tones=_histogram("tone", list(counts.persons.values()), "persons"),
+        poses="\n\n".join(_histogram(*angles) for angles in counts.poses.items()),
     )
 
 
-def _order(unit: str) -> tuple[int, str]:
-    return int("".join(filter(str.isdigit, unit)) or 0), unit
-
-
-def _pose(name: str, angles: list[float]) -> str:
+def _histogram(name: str, angles: list[float], of: str = "samples") -> str:
     rows = [
         [f"{low:+.0f} to {low + STEP:+.0f}", f"{share:.1%}", "#" * round(BAR * share)]
         for low, share in histogram(angles, STEP)
     ]
     spread = f"{name}: mean {np.mean(angles):+.1f}, standard deviation {np.std(angles):.1f} degrees"
-    return f"{spread}\n\n" + _table(["degrees", "samples", ""], rows)
+    return f"{spread}\n\n" + _table(["degrees", of, ""], rows)
 
 
 def _bars(counted: Iterable[tuple[str, int]], total: int) -> list[list[str]]:

@@ -1,8 +1,8 @@
 """coco.json: the landmarks of a set in the format of COCO's keypoints.
 
 Source: the data format of COCO, keypoint detection: x, y, v for each keypoint, v = 0 not labelled
-(here: beside the picture), 1 labelled but hidden, 2 visible. COCO counts pixels as we do: the middle
-of the first one is (0.5, 0.5).
+(here: beside the picture), 1 labelled but hidden, 2 visible. The middle of the first pixel is
+(0.5, 0.5), as in all files of a set.
 """
 
 from __future__ import annotations
@@ -70,8 +70,9 @@ def _image(sample: dict[str, Any]) -> dict[str, Any]:
 
 def _annotation(sample: dict[str, Any]) -> dict[str, Any]:
     width, height = (sample["camera"][each] for each in ("width", "height"))
+    points = sample["landmarks"]
     keypoints: list[float] = []
-    for (x, y), is_visible in zip(*(sample["landmarks"][each] for each in ("pixels", "visible")), strict=True):
+    for (x, y), is_visible in zip(points["pixels"], points["visible"], strict=True):
         is_inside = 0.0 <= x < width and 0.0 <= y < height
         keypoints += [x, y, 1 + is_visible] if is_inside else [0.0, 0.0, 0]
     return {

@@ -11,7 +11,9 @@ from typing import Any
 
 import numpy as np
 
-THERE = 0.05  # from which value on a unit counts as there: a quarter of the letter A
+from .table import OF_EYES_AND_HEAD
+
+THERE = 0.05  # from which value on a unit counts as there: a quarter of A
 POSE = ("yaw", "pitch", "roll")
 
 
@@ -19,15 +21,18 @@ POSE = ("yaw", "pitch", "roll")
 class Counts:
     """How often what is in a set.
 
-    units: name -> in how many samples it is there. letters: of all units that are, A to E.
-    poses: name -> the angle in each sample [degrees]. others: name -> value -> how often.
+    units: name -> in how many samples it is there, without those of head and gaze. letters: of all
+    units that are, A to E.
+    kinds: of samples. poses: name -> the angle in each sample [degrees]. persons: number -> the
+    tone of each [degrees]. visible: landmarks of all.
     """
 
     samples: int = 0
     units: Counter[str] = field(default_factory=Counter)
     letters: Counter[str] = field(default_factory=Counter)
+    kinds: Counter[str] = field(default_factory=Counter)
     poses: dict[str, list[float]] = field(default_factory=lambda: {name: [] for name in POSE})
-    others: dict[str, Counter[Any]] = field(default_factory=dict)
+    persons: dict[int, float] = field(default_factory=dict)
     visible: int = 0
 
     def add(self, sample: dict[str, Any]) -> None:
@@ -35,15 +40,13 @@ class Counts:
         self.samples += 1
         self.visible += sum(sample["landmarks"]["visible"])
         for name, value in sample["action_units"].items():
-            if value >= THERE:
+            if value >= THERE and name not in OF_EYES_AND_HEAD:
                 self.units[name] += 1
-                if "_" not in name:
-                    self.letters["ABCDE"[min(int(5.0 * value), 4)]] += 1
+                self.letters["ABCDE"[min(int(5.0 * value), 4)]] += 1
         for name in POSE:
             self.poses[name].append(sample["head"][name])
         self.kinds[sample["kind"]] += 1
-        self.persons[sample["person"]["number"]] += 1
-        self.tones[(sample["person"]["number"], sample["person"]["tone"])] += 1
+        self.persons[sample["person"]["number"]] = sample["person"]["tone"]
 
 
 def write_index(path: Path, samples: Iterable[dict[str, Any]]) -> Counts:
@@ -61,13 +64,12 @@ def write_index(path: Path, samples: Iterable[dict[str, Any]]) -> Counts:
 
 
 def _row(sample: dict[str, Any]) -> dict[str, Any]:
-    look = {name: value for name, value in sample["look"].items() if not isinstance(value, dict)}
+    person = {name: value for name, value in sample["person"].items() if name != "measures"}
     return {
         "id": sample["id"],
         "kind": sample["kind"],
         "name": sample["name"],
-        "person": sample["person"],
-        **look,
+        **{f"person_{name}": value for name, value in person.items()},
         **{f"head_{name}": sample["head"][name] for name in POSE},
         **{f"aperture_{name}": value for name, value in sample["apertures"].items()},
         "visible": sum(sample["landmarks"]["visible"]),

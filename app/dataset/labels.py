@@ -28,7 +28,7 @@ APERTURES = {
 def labels_of_face(
     scene: FaceScene, camera: render.OrbitCamera, size: tuple[int, int], depth: Any
 ) -> dict[str, Any]:
-    """All that is known of a face as it is now, in the picture of which `depth` is the depth map."""
+    """All that is known of a face as it is now; `depth`: the depth map of its picture, (H, W)."""
     units = action_units(scene)
     arkit = solved(scene, ARKIT_SHAPES, _in_one_frame(scene.simulation.sums))
     labels = labels_of(scene, camera, size, depth)
@@ -54,10 +54,16 @@ def action_units(scene: FaceScene) -> dict[str, float]:
     sums = _in_one_frame(scene.simulation.sums)
     found = solved(scene, ACTION_UNITS, sums, _in_one_frame(scene.values))
     units = {}
-    for name in scene.simulation.layers[ACTION_UNITS]:
-        sides = [found[each][0] for each in (name, f"{name}_left", f"{name}_right") if each in found]
-        units[name] = round(float(max(sides)), DIGITS)
+    for name in sorted(scene.simulation.layers[ACTION_UNITS], key=by_number):
+        names = (name, f"{name}_left", f"{name}_right")
+        units[name] = round(max(float(found[each][0]) for each in names if each in found), DIGITS)
     return units
+
+
+def by_number(unit: str) -> tuple[int, str]:
+    """AU2 before AU12, and that before AU12_left."""
+    number, _, side = unit.removeprefix("AU").partition("_")
+    return int(number), side
 
 
 def apertures(points: Any) -> dict[str, float]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -49,13 +48,12 @@ def make_set(
     jobs: int,
     resume: bool = False,
     coco: bool = False,
-    command: str = "",
     progress: bool = True,
 ) -> Made:
     """Make the samples 0 to count - 1 of a set, as far as they are not there, and its card.
 
-    command: what was typed, for the card. Raises UserError where the set cannot be made, or was
-    begun otherwise; samples that were made until then stay.
+    Raises UserError where the set cannot be made, or was begun otherwise; samples that were made
+    until then stay.
     """
     folder = SetFolder(request.output)
     with folder.held(request.options(), resume=resume):
@@ -67,16 +65,15 @@ def make_set(
             )
         batches = _batches(request, [index for index in range(count) if index not in there])
         size = 0
-        bar = tqdm(
-            total=count, initial=len(there), unit="sample", disable=not progress or None, leave=False
-        )
+        is_silent = not progress or None
+        bar = tqdm(total=count, initial=len(there), unit="sample", disable=is_silent, leave=False)
         with cleaned_up_if_stopped(bar.close), bar:
             for outcome in run_all(make_samples, batches, jobs=jobs):
                 if outcome.error is not None:
                     raise UserError(f"{outcome.error} (with --resume the set goes on)")
                 size += outcome.result
                 bar.update(len(outcome.item.indices))
-        _finish(folder, request, count, coco=coco, command=command)
+        _finish(folder, request, count, coco=coco)
     return Made(count, count - len(there), size)
 
 
@@ -104,9 +101,7 @@ def _batches(request: Request, missing: Sequence[int]) -> list[Batch]:
     ]
 
 
-def _finish(
-    folder: SetFolder, request: Request, count: int, *, coco: bool, command: str
-) -> None:
+def _finish(folder: SetFolder, request: Request, count: int, *, coco: bool) -> None:
     """Write index, card and coco.json from the samples' files."""
 
     def samples() -> Iterator[dict[str, Any]]:
@@ -118,7 +113,7 @@ def _finish(
                 return how(part, *told)
 
     counts = write("index.csv", write_index, samples())
-    card = card_of(request, counts, command)
+    card = card_of(request, counts)
     write("README.md", lambda part: part.write_text(card, "utf-8"))
     if coco:
         write("coco.json", write_coco, samples, f"{count} faces made by Risorius")

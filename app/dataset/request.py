@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -24,7 +25,7 @@ class Request:
 
     output: the folder of the set. size: of the pictures [pixels]. passes: some of those of
     `risorius capture --passes`, see app/passes/passes.py. heads: files of heads, beside each of
-    which its landmarks lie; none: persons are made.
+    which its landmarks lie; none: persons are made. told: the options that say all this.
     """
 
     output: Path
@@ -34,6 +35,7 @@ class Request:
     table: SampleTable
     backgrounds: Backgrounds = Backgrounds()  # noqa: RUF009 - frozen
     heads: tuple[Path, ...] = ()
+    told: str = ""
     version: str = version("risorius")
 
     def options(self) -> dict[str, Any]:
@@ -79,8 +81,25 @@ def request_of(
     found = () if heads is None else _heads_in(heads)
     if found:
         samples = replace(samples, persons=len(found))
+    told = {
+        "sample": table,
+        "camera": camera,
+        "seed": seed,
+        "passes": ",".join(passes),
+        "size": "x".join(map(str, size)),
+        "background": background,
+        "heads": heads,
+    }
+    words = [(f"--{name}", str(value)) for name, value in told.items() if value is not None]
     return Request(
-        output.absolute(), seed, size, passes, samples, backgrounds_of(background), found
+        output.absolute(),
+        seed,
+        size,
+        passes,
+        samples,
+        backgrounds_of(background),
+        found,
+        shlex.join(word for pair in words for word in pair),
     )
 
 

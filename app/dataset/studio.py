@@ -117,4 +117,3 @@ def _posed(scene: FaceScene, sample: Sample) -> render.OrbitCamera:
     scene.pose({**sample.controls, **eyes})
     scene.step(SETTLING)
     return camera
-

@@ -20,7 +20,7 @@ from risorius.assets.identities import DARKEST, LIGHTEST
 from ..errors import UserError
 from ..files import read_text
 
-OF_EYES_AND_HEAD = {"AU45", *(f"AU{number}" for number in range(51, 65))}  # their own sections
+OF_EYES_AND_HEAD = {f"AU{number}" for number in range(51, 65)}  # these have their own sections
 LONGEST_FILE = 2**18  # [bytes]
 KINDS = ("neutral", "expression", "mixture", "speech", "unit")
 LETTERS = ("A", "B", "C", "D", "E")
@@ -71,10 +71,7 @@ class SampleTable:
     def goes_with(self, unit: str, others: Container[str] | Mapping[str, float]) -> bool:
         """Whether a unit may be there beside those that are."""
         return not any(
-            other in others
-            for pair in self.excluded
-            if unit in pair
-            for other in pair - {unit}
+            other in others for pair in self.excluded if unit in pair for other in pair - {unit}
         )
 
 
@@ -127,7 +124,9 @@ class _Reader:
         excluded = self._excluded(given["excluded"])
         table = SampleTable(
             kinds=self._named("kinds", given["kinds"], dict.fromkeys(KINDS, 1e6), some=True),
-            letters=self._named("letters", given["letters"], dict.fromkeys(LETTERS, 1e6), some=True),
+            letters=self._named(
+                "letters", given["letters"], dict.fromkeys(LETTERS, 1e6), some=True
+            ),
             expressions={
                 name: self._expression(f"expressions, row '{name}'", row)
                 for name, row in given["expressions"].items()
@@ -142,9 +141,7 @@ class _Reader:
             sides=self._named("sides", given["sides"], dict.fromkeys(SIDES, 1.0)),
             eyes=self._named("eyes", given["eyes"], EYES),
             head=self._named("head", given["head"], HEAD),
-            camera={
-                name: self.camera_range(name, given["camera"].get(name)) for name in CAMERA
-            },
+            camera={name: self.camera_range(name, given["camera"].get(name)) for name in CAMERA},
             persons=int(self._number("persons, 'count'", given["persons"].get("count"), 1, 1e6)),
             tone=self._range("persons, 'tone'", given["persons"].get("tone"), DARKEST, LIGHTEST),
             irises=self._named("irises", given["irises"], dict.fromkeys(IRISES, 1e6), some=True),
@@ -237,7 +234,9 @@ class _Reader:
         return low, high
 
     def _is_unit(self, where: str, name: Any) -> None:
-        units = [unit for unit in self._rows["Action units"] if unit not in OF_EYES_AND_HEAD]
+        units = [
+            unit for unit in self._rows["Action units"] if unit not in {"AU45", *OF_EYES_AND_HEAD}
+        ]
         if name not in units:
             raise self._error(where, f"allowed are {', '.join(units)}", name)
 

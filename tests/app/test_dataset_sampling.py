@@ -1,4 +1,4 @@
-"""What samples of a data set are, before anything is drawn: the table, and what is drawn from it."""
+"""What samples of a data set are, before anything is drawn: the table, and draws from it."""
 
 from __future__ import annotations
 
@@ -77,7 +77,9 @@ def many() -> list[Sample]:
 def test_kinds_and_units_come_as_often_as_the_table_says(many: list[Sample]) -> None:
     total = sum(TABLE.kinds.values())
     for kind, share in TABLE.kinds.items():
-        assert sum(s.kind == kind for s in many) / len(many) == pytest.approx(share / total, abs=0.05)
+        assert sum(s.kind == kind for s in many) / len(many) == pytest.approx(
+            share / total, abs=0.05
+        )
     for unit in TABLE.units:
         assert any(unit in units_of(sample) for sample in many), f"{unit} never comes"
 
