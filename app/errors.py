@@ -35,6 +35,17 @@ class UserError(Exception):
         super().__init__(in_one_line(text))
 
 
+def line_for(error: Exception) -> str | None:
+    """What the user is told of an error that can be mended; None for a defect."""
+    from risorius import assets, render  # slow, and not needed where all goes well
+
+    if isinstance(error, MemoryError):
+        return "there is not enough memory for this; take a smaller size"
+    if isinstance(error, UserError | render.GLError | assets.AssetError | OSError):
+        return in_one_line(error)
+    return None
+
+
 @contextlib.contextmanager
 def told_in_one_line() -> Iterator[None]:
     """Turn what the user can mend into one line on the error stream and exit code 2."""
@@ -42,13 +53,9 @@ def told_in_one_line() -> Iterator[None]:
         yield
     except (BrokenPipeError, click.ClickException):  # nobody reads on; click tells of its own
         raise
-    except MemoryError:
-        click.echo("risorius: there is not enough memory for this; take a smaller size", err=True)
-        sys.exit(2)
     except Exception as error:
-        from risorius import assets, render  # slow, and not needed where all goes well
-
-        if not isinstance(error, UserError | render.GLError | assets.AssetError | OSError):
+        line = line_for(error)
+        if line is None:
             raise
-        click.echo(f"risorius: {in_one_line(error)}", err=True)
+        click.echo(f"risorius: {line}", err=True)
         sys.exit(2)

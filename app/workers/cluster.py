@@ -1,0 +1,102 @@
+"""The same on the workers of a Dask cluster: each of them has processes of its own for the work.
+
+Threads of a Dask worker cannot draw, nor can one that crashed be told from one that was killed. So
+what is sent there asks a `Crew`, just as here.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import secrets
+import socket
+from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from ..errors import UserError, in_one_line
+from ..stopping import cleaned_up_if_stopped
+from .crew import Crew, Outcome
+
+PATIENCE = 10.0  # [s] for the scheduler to answer
+
+_crews: dict[str, Crew] = {}
+"""In a Dask worker: the processes of each run."""
+
+
+def run_on_cluster(
+    work: Callable[[Any], Any],
+    items: Sequence[Any],
+    *,
+    scheduler: str,
+    retries: int,
+    logs: Sequence[Path] | None,
+) -> Iterator[Outcome]:
+    """Yield what became of each item as it ends; UserError where no scheduler answers."""
+    try:
+        distributed: Any = import_module("distributed")  # half of it has no annotations
+    except ImportError:
+        raise UserError("--scheduler needs distributed: pip install 'risorius[cluster]'") from None
+    try:
+        # Asked first, for a client that finds nobody takes half a minute to give up.
+        host_and_port = distributed.comm.get_address_host_port(scheduler)
+        socket.create_connection(host_and_port, PATIENCE).close()
+        client = distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False)
+    except (OSError, TimeoutError, ValueError, OverflowError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise UserError(
+            f"--scheduler {scheduler}: no Dask scheduler answers there ({why}); "
+            "write what it says when it starts, as in tcp://host:8786"
+        ) from None
+    run = secrets.token_hex(8)
+
+    def end() -> None:
+        """End the run's processes on all workers, whatever they do."""
+        with contextlib.suppress(Exception):  # workers, or the scheduler, may be gone
+            client.run(_end, run, wait=True, on_error="ignore")
+
+    with client, cleaned_up_if_stopped(end):
+        try:
+            places = list(range(len(items)))
+            futures = client.map(
+                _do,
+                [run] * len(places),
+                [work] * len(places),
+                places,
+                items,
+                [retries] * len(places),
+                list(logs) if logs else [None] * len(places),
+                pure=False,
+                retries=retries,
+                key=[f"{run}-{place}" for place in places],
+            )
+            place_of = {future.key: place for place, future in enumerate(futures)}
+            for future, outcome in distributed.as_completed(
+                futures, loop=client.loop, with_results=True, raise_errors=False
+            ):
+                place = place_of[future.key]
+                if future.status != "finished":
+                    why = in_one_line(future.exception())
+                    outcome = Outcome(place, items[place], None, why, retries + 1, 0.0)
+                futures[place] = None  # the cluster may forget it
+                yield outcome
+        finally:
+            end()
+
+
+def _do(
+    run: str,
+    work: Callable[[Any], Any],
+    index: int,
+    item: Any,
+    retries: int,
+    log: Path | None,
+) -> Outcome:
+    """In a Dask worker: work on an item."""
+    crew = _crews.setdefault(run, Crew(threads=1))
+    return crew.do(work, index, item, retries=retries, log=log)
+
+
+def _end(run: str) -> None:
+    """In a Dask worker: the run is over."""
+    _crews.setdefault(run, Crew(threads=1)).stop()
