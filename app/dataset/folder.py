@@ -41,8 +41,8 @@ class SetFolder:
     def held(self, options: Mapping[str, Any], *, resume: bool) -> Iterator[None]:
         """Begin a set in an empty folder, or resume one, and keep others out meanwhile.
 
-        options: all that decides what samples are, for JSON. Raises UserError where the folder
-        holds something else, or a set that was begun with other options.
+        options: all that decides what samples are, as JSON has it. Raises UserError where the
+        folder holds something else, or a set that was begun with other options.
         """
         real_path(self.path)
         with cannot_be_written(self.path):

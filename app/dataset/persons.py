@@ -33,7 +33,7 @@ def person_of(request: Request, number: int) -> Somebody:
     table = request.table
     seeds = np.random.SeedSequence([request.seed, number, PERSONS])
     random = np.random.default_rng(seeds)
-    tone = round(float(random.uniform(*table.tone)), 2)
+    tone = round(float(random.uniform(*table.persons["tone"])), 2)
     irises = chosen(random, table.irises)
     if tone < ONLY_BROWN:
         irises = "brown"

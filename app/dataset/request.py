@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import shlex
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -39,16 +40,19 @@ class Request:
     version: str = version("risorius")
 
     def options(self) -> dict[str, Any]:
-        """What decides the samples, for JSON: resumed is what was begun with the same."""
-        return {
+        """What decides the samples, as JSON has it: resumed is what was begun with the same."""
+        table = asdict(self.table) | {"excluded": sorted(map(sorted, self.table.excluded))}
+        options = {
             "risorius": self.version,
             "seed": self.seed,
             "size": list(self.size),
             "passes": list(self.passes),
             "background": self.backgrounds.options,
             "heads": digest(self.heads) if self.heads else None,
-            "table": dict(self.table.sections),
+            **{f"[{name}]": section for name, section in table.items()},
         }
+        plain: dict[str, Any] = json.loads(json.dumps(options))
+        return plain
 
     def files(self) -> list[list[str]]:
         """What lies in the set for each sample: names, and what that is."""
@@ -80,7 +84,7 @@ def request_of(
         samples = with_camera(samples, camera)
     found = () if heads is None else _heads_in(heads)
     if found:
-        samples = replace(samples, persons=len(found))
+        samples = replace(samples, persons={**samples.persons, "count": len(found)})
     told = {
         "sample": table,
         "camera": camera,

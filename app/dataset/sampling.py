@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..life import EYE_RANGE, HEAD_RANGES
-from .table import LETTERS, SampleTable, Shares
+from .table import BLINK, LETTERS, SampleTable, Shares, paired_units
 
 MOST_UNITS = 7  # of a mixture
 SIDES = ("_left", "_right")
@@ -81,7 +81,7 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
         {key: round(float(value), 4) for key, value in controls.items()},
         None if is_at_camera else (aside[0], aside[1]),
         View(yaw, pitch, zoom, field_of_view, (across, along)),
-        int(looks.integers(table.persons)),
+        int(looks.integers(table.persons["count"])),
     )
 
 
@@ -112,13 +112,12 @@ class _Face:
         """Make a face of this kind; what it is called."""
         table, random = self._table, self._random
         if kind == "expression":
-            name = chosen(random, {name: row.share for name, row in table.expressions.items()})
-            row = table.expressions[name]
-            is_one_sided = random.random() < row.one_sided
-            self.one_sided = 1.0 if is_one_sided else 0.0
+            rows = table.expressions
+            name = chosen(random, {name: row.get("share", 0.0) for name, row in rows.items()})
+            self.one_sided = float(random.random() < rows[name].get("one_sided", 0.0))
             strength = self._intensity()
-            for unit, share in row.units.items():
-                if random.random() < share:
+            for unit, share in rows[name].items():
+                if unit not in ("share", "one_sided") and random.random() < share:
                     self._add(unit, strength * random.uniform(0.75, 1.1))
             return name
         if kind == "unit":
@@ -177,7 +176,7 @@ def _blink(
     is_blinking, closed = random.random() < table.eyes["blink"], random.uniform(0.25, 1.0)
     if not is_blinking or not {"AU5", "AU43", "AU46_left", "AU46_right"}.isdisjoint(controls):
         return {}
-    return {"AU45": float(closed)}
+    return {BLINK: float(closed)}
 
 
 def _two_sided(
@@ -192,7 +191,7 @@ def _two_sided(
     result: dict[str, float] = {}
     for name, value in controls.items():
         weaker = 1.0 - min(abs(table.sides["difference"] * _bounded_normal(random)), 1.0)
-        if name not in table.paired or name == "AU45":
+        if name not in paired_units() or name == BLINK:
             result[name] = value
         elif random.random() < one_sided:
             result[name + SIDES[side]] = value

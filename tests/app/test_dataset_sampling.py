@@ -12,7 +12,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from risorius.app.dataset.sampling import MOST_UNITS, Sample, draw
-from risorius.app.dataset.table import SampleTable, load_table, table_text, with_camera
+from risorius.app.dataset.table import (
+    SampleTable,
+    load_table,
+    paired_units,
+    table_text,
+    with_camera,
+)
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 
@@ -23,8 +29,8 @@ LIMITS = FaceScene().limits
 def units_of(sample: Sample) -> set[str]:
     """The action units of a sample, both sides as one."""
     names = {name for name in sample.controls if name.startswith("AU")}
-    known = {name for row in TABLE.paired for name in (row, f"{row}_left", f"{row}_right")}
-    return {name.rpartition("_")[0] if name in known - TABLE.paired else name for name in names}
+    known = {name for row in paired_units() for name in (row, f"{row}_left", f"{row}_right")}
+    return {name.rpartition("_")[0] if name in known - paired_units() else name for name in names}
 
 
 @given(seed=st.integers(0, 2**32 - 1), index=st.integers(0, 999_999))
@@ -43,7 +49,7 @@ def test_any_sample_is_a_face_that_can_be_made(seed: int, index: int) -> None:
     for name, (low, high) in TABLE.camera.items():
         if name != "shift":
             assert low <= getattr(sample.view, name) <= high
-    assert 0 <= sample.person < TABLE.persons
+    assert 0 <= sample.person < TABLE.persons["count"]
 
 
 @given(seed=st.integers(0, 2**32 - 1), index=st.integers(0, 999_999))
@@ -118,39 +124,43 @@ def read(tmp_path: Path, text: str) -> SampleTable:
 
 def test_a_table_of_ones_own_replaces_sections(tmp_path: Path) -> None:
     assert read(tmp_path, table_text()) == TABLE
-    own = read(tmp_path, "[units]\nAU12 = 1.0\n[kinds]\nneutral = 0\nexpression = 0\nmixture = 0\n"
-               "speech = 0\nunit = 1\n")  # fmt: skip
+    own = read(tmp_path, "[units]\nAU12 = 1.0\n[kinds]\nunit = 1\n[persons]\ncount = 3\n")
     assert {draw(own, 0, index).name for index in range(20)} == {"AU12"}
     assert own.expressions == TABLE.expressions
+    assert own.persons == {**TABLE.persons, "count": 3}
 
 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("[kind]\n", "there is no section [kind]"),
-        ("kinds = 3\n", "kinds: was 3"),
-        ("[kinds]\nneutral = 1\n", "kinds: was 'neutral', must have the rows neutral, expression"),
-        ("[letters]\nA = 0\nB = 0\nC = 0\nD = 0\nE = 0\n", "letters: "),
-        ("[units]\nAU3 = 1.0\n", "units: was 'AU3', allowed are AU1,"),
-        ("[units]\nAU12_left = 1.0\n", "units: was 'AU12_left'"),
-        ("[units]\nAU51 = 1.0\n", "units: was 'AU51'"),
-        ("[units]\nAU12 = -1\n", "units, 'AU12': was -1"),
-        ("[units]\nAU12 = nan\n", "units, 'AU12': was nan"),
-        ("[units]\n", "[kinds] wants mixture"),
-        ("[together]\nAU6 = 3\n", "together, row 'AU6': was 3"),
-        ("[together]\nAU6 = { AU12 = 1.5 }\n", "together, row 'AU6', 'AU12': was 1.5"),
-        ("[together]\nsmile = { AU12 = 1 }\n", "together: was 'smile'"),
-        ("[expressions]\njoy = 1\n", "expressions, row 'joy': was 1"),
-        ("[expressions]\njoy = { share = 1, AU26 = 1, AU27 = 1 }\n", "row 'joy': AU26 is excluded"),
-        ("[excluded]\npairs = [['AU1']]\n", "excluded: was ['AU1']"),
-        ("[excluded]\npairs = [['AU1', 'AU99']]\n", "excluded: was 'AU99'"),
-        ("[speech]\nviseme_x = 1\n", "speech: was 'viseme_x', allowed are viseme_sil"),
-        ("[camera]\nyaw = [3, 1]\n", "camera, 'yaw': was [3, 1]"),
-        ("[camera]\nyaw = 3\n", "camera, 'yaw': was 3"),
-        ("[persons]\ncount = 0\n", "persons, 'count': was 0"),
-        ("[kinds\n", "not valid TOML"),
+        ("[kind]", "'kind': is no name here; allowed are kinds, letters"),
+        ("kinds = 3", "'kinds': was 3"),
+        ("camera = 3", "'camera': was 3"),
+        ("[kinds]\nsmile = 1", "'kinds', 'smile': is no name here; allowed are neutral"),
+        ("[letters]\nA = 0", "'letters': all shares are 0"),
+        ("[units]\nAU3 = 1.0", "'units', 'AU3': is no name here; allowed are AU1,"),
+        ("[units]\nAU12_left = 1.0", "'units', 'AU12_left': is no name"),
+        ("[units]\nAU51 = 1.0", "'units', 'AU51': is no name"),
+        ("[units]\nAU12 = -1", "'units', 'AU12': was -1"),
+        ("[units]\nAU12 = nan", "'units', 'AU12': was nan"),
+        ("[units]\nAU12 = true", "'units', 'AU12': was True"),
+        ("[units]", "'units': all shares are 0"),
+        ("[together]\nAU6 = 3", "'together', 'AU6': was 3"),
+        ("[together]\nAU6 = { AU12 = 1.5 }", "'together', 'AU6', 'AU12': was 1.5"),
+        ("[together]\nsmile = { AU12 = 1 }", "'together', 'smile': is no name"),
+        ("[expressions]\njoy = 1", "'expressions', 'joy': was 1"),
+        ("[expressions]\njoy = { AU12 = 1 }", "'expressions': all shares are 0"),
+        ("[expressions]\njoy = { share = 1, AU12 = 2 }", "'expressions', 'joy', 'AU12': was 2"),
+        ("[excluded]\npairs = [['AU1']]", "'excluded': was ['AU1']"),
+        ("[excluded]\npairs = [['AU1', 'AU99']]", "'excluded': was ['AU1', 'AU99']"),
+        ("[excluded]\npairs = [['AU1', 'AU1']]", "'excluded': was ['AU1', 'AU1']"),
+        ("[speech]\nviseme_x = 1", "'speech', 'viseme_x': is no name here; allowed are viseme_sil"),
+        ("[camera]\nyaw = [3, 1]", "'camera', 'yaw': was [3, 1]"),
+        ("[camera]\nyaw = 3", "'camera', 'yaw': was 3"),
+        ("[persons]\ncount = 0", "'persons', 'count': was 0"),
+        ("[kinds", "not valid TOML"),
     ],
-)  # fmt: skip
+)
 def test_a_wrong_table_is_told_in_one_line(tmp_path: Path, text: str, told: str) -> None:
     """File, section and row, and what is allowed."""
     with pytest.raises(UserError) as raised:
