@@ -21,6 +21,7 @@ from .camera import VIEWS, OrbitCamera
 from .compositor import Detail
 from .errors import GLError
 from .geometry_buffer import Geometry
+from .light import LIGHTS, Light, toward
 from .parts import Part
 from .probe import Finding, probe
 from .renderer import Renderer, Viewport
@@ -48,6 +49,7 @@ __all__ = [
     "CLAY",
     "DARK",
     "LIGHT",
+    "LIGHTS",
     "SKIN",
     "SKIN_DARK",
     "SKIN_LIGHT",
@@ -62,6 +64,7 @@ __all__ = [
     "GLError",
     "Geometry",
     "Image",
+    "Light",
     "OffscreenSurface",
     "OrbitCamera",
     "Part",
@@ -78,4 +81,5 @@ __all__ = [
     "open_window",
     "probe",
     "size_on_screen",
+    "toward",
 ]

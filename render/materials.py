@@ -3,11 +3,11 @@
 import moderngl
 import numpy as np
 
+from .light import Light
 from .programs import write_uniform
 from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Style, linear
 
 SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
-TO_KEY = (-0.5300, 0.6300, 0.5677)  # unit vector in view space: over the viewer's left shoulder
 _PALETTE = np.array([linear(colour) for colour in SPLIT_PALETTE], np.float32)
 _RAMPS = {
     kind: np.array([(*linear(colour), cover) for colour, cover in ramp], np.float32)
@@ -24,7 +24,7 @@ COLOUR_DEFINES: dict[ColourBy, tuple[str, ...]] = {
 
 def set_skin(program: moderngl.Program, style: Style) -> None:
     """How skin of this style takes light."""
-    program["to_key"] = TO_KEY
+    set_light(program, style.light)
     if "albedo" in program:  # not where a texture takes its place
         program["albedo"] = linear(style.albedo)
     if "inner_albedo" in program:  # fringes along contours have no inner side
@@ -34,12 +34,19 @@ def set_skin(program: moderngl.Program, style: Style) -> None:
     program["sharpness"] = SKIN_SHARPNESS
 
 
-def set_part(program: moderngl.Program, shine: float) -> None:
+def set_part(program: moderngl.Program, shine: float, light: Light) -> None:
     """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights."""
-    program["to_key"] = TO_KEY
+    set_light(program, light)
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine
     program["sharpness"] = 20.0 * 40.0**shine
+
+
+def set_light(program: moderngl.Program, light: Light) -> None:
+    """Where light comes from."""
+    program["to_key"], program["to_fill"] = light.to_key, light.to_fill
+    program["key_light"], program["fill_light"] = light.key, light.fill
+    program["rim_light"], program["sky"], program["ground"] = light.rim, light.sky, light.ground
 
 
 def set_palette(program: moderngl.Program, kind: ColourBy) -> None:

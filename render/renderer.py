@@ -21,7 +21,7 @@ from .camera import OrbitCamera
 from .camera_view import CameraView, box_corners
 from .geometry import checked_values, line_segments, value_texture
 from .geometry_buffer import Geometry, GeometryBuffer
-from .materials import COLOUR_DEFINES, TO_KEY, set_palette, set_part, set_skin
+from .materials import COLOUR_DEFINES, set_palette, set_part, set_skin
 from .outline import draw_fringes, fringes
 from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
@@ -134,8 +134,8 @@ class Renderer:
             self._values = value_texture(self._gl, checked)
         if style.shadows:
             if self._shadow is None:
-                self._shadow = ShadowMap(self._gl, TO_KEY)
-            self._shadow.draw(stream, view, self.surface.target.frame_number)
+                self._shadow = ShadowMap(self._gl)
+            self._shadow.draw(stream, view, self.surface.target.frame_number, style.light.to_key)
         shares = [Share.ALL] if wrinkles is None or is_coloured else [Share.WRINKLED, Share.SMOOTH]
         drawn = []
         for share in shares:
@@ -263,7 +263,7 @@ class Renderer:
             shadow.set_uniforms(program, view, _SHADOW_UNIT)
         for buffers, transform in self._parts.placed(parts, transforms):
             if self._set_view(program, view, buffers.corners, transform):
-                set_part(program, buffers.part.shine)
+                set_part(program, buffers.part.shine, style.light)
                 buffers.draw(program)
 
     def draw_geometry(

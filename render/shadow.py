@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .camera_view import CameraView
+from .light import Vector
 from .programs import compile_program, write_uniform
 from .stream import Stream
 
@@ -20,6 +21,7 @@ RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade withi
 REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
 TEXEL = 2.0 * REACH / RESOLUTION  # of the scene's radius
 OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
+STEEP = 0.999  # of a light's height, from which on it has no direction sideways
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -30,9 +32,9 @@ _TO_TEXTURE = np.array([[0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 0.5, 0], [0.5, 0.
 class ShadowMap:
     """One depth texture, redrawn for every mesh; parts drawn after it use it too."""
 
-    def __init__(self, gl: moderngl.Context, to_key_light: tuple[float, float, float]) -> None:
+    def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
-        self._basis = _basis(np.array(to_key_light))
+        self._basis: FloatArray = np.eye(3)  # of the light that it was last drawn for
         self._program = compile_program(gl, "shadow.glsl")
         self._depth = gl.depth_texture((RESOLUTION, RESOLUTION))
         self._depth.compare_func = "<="
@@ -41,9 +43,13 @@ class ShadowMap:
         self._target = gl.framebuffer(depth_attachment=self._depth)
         self._drawn_for: tuple[int, bytes] = (0, b"")
 
-    def draw(self, stream: Stream, view: CameraView, frame_number: int) -> None:
-        """Take the depth map of what `stream` uploaded, in the frame of that number."""
+    def draw(self, stream: Stream, view: CameraView, frame_number: int, to_key: Vector) -> None:
+        """Take the depth map of what `stream` uploaded, in the frame of that number.
+
+        to_key: unit vector toward the key light, in view space.
+        """
         gl = self._gl
+        self._basis = _basis(np.array(to_key))
         write_uniform(self._program, "light_matrix", view.world_to_view @ self._view_to_light(view))
         self._target.use()
         gl.viewport, gl.scissor = (0, 0, RESOLUTION, RESOLUTION), None
@@ -77,6 +83,7 @@ class ShadowMap:
 def _basis(toward: FloatArray) -> FloatArray:
     """Rows: right, up, and away from the light, for a camera in the light."""
     toward = toward / np.linalg.norm(toward)
-    right = np.cross((0.0, 1.0, 0.0), toward)
+    above = (0.0, 0.0, 1.0) if abs(toward[1]) > STEEP else (0.0, 1.0, 0.0)
+    right = np.cross(above, toward)
     right /= np.linalg.norm(right)
     return np.stack([right, np.cross(toward, right), -toward])

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .light import LIGHTS, Light
+
 Colour = tuple[float, float, float]
 
 
@@ -98,6 +100,7 @@ class Style:
     shadows: bool = True  # of the key light
     occlusion: bool = True  # less light from all around in folds, where the texture says so
     wrinkles: float = 1.0  # how much of a map of wrinkles shows, where there is one; 0 = none
+    light: Light = LIGHTS["studio"]
     background: Background = LIGHT
     wire_colour: Colour = (0.07, 0.08, 0.12)
     wire_width: float = 1.0  # [pixels at scale 1]; a window on a dense screen draws it wider

@@ -29,7 +29,8 @@ SCENE_NAMES = click.Choice(["face", "plane", "cloth"])
 SOUND = click.option(
     "--sound", type=PATH, help="What is heard: a WAV, MP3, ..., or a film with sound."
 )
-STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "wrinkles")
+LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard")  # render.LIGHTS, not imported yet
+STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "wrinkles", "light")
 
 
 def packed(name: str, settings: type[Any], *options: Command) -> Callable[[Command], Command]:
@@ -58,6 +59,7 @@ class Drawing:
 
     head: Path | None
     landmarks: Path | None
+    light: str
     wrinkles: float
     skin: str
     splits: bool
@@ -103,6 +105,7 @@ class Drawing:
             textured=self.skin == "textured",
             albedo=render.CLAY if self.skin == "clay" else render.SKIN,
             wrinkles=self.wrinkles,
+            light=render.LIGHTS[self.light],
         )
 
 
@@ -111,6 +114,13 @@ with_drawing = packed(
     Drawing,
     click.option("--head", type=PATH, help="A head of your own: any triangle mesh."),
     click.option("--landmarks", type=PATH, help="The 68 iBug landmarks of --head, as JSON."),
+    click.option(
+        "--light",
+        type=click.Choice(LIGHT_NAMES),
+        default="studio",
+        show_default=True,
+        help="Where light comes from, how strong, and of what colour.",
+    ),
     click.option(
         "--wrinkles",
         type=FiniteRange(0, 1),

@@ -53,6 +53,7 @@ class Display:
     occlusion: Annotated[bool, rules.flag] = True  # less light in folds; of textured skin
     # How deep skin wrinkles where it is compressed.
     wrinkles: Annotated[float, rules.number(0.0, 1.0)] = 1.0
+    light: Annotated[str, rules.one_of(render.LIGHTS)] = "studio"
     overlays: Annotated[list[str], rules.several_of(OVERLAYS)] = field(default_factory=list)
 
     def choose_look(self, name: str) -> None:
@@ -135,9 +136,12 @@ def display_of(
     splits: bool,
     skin: str,
     wrinkles: float,
+    light: str,
 ) -> Display:
     """How the scene of this name is shown as the command line asks for."""
-    display = Display(shading=shading, wireframe=wireframe, skin=skin, wrinkles=wrinkles)
+    display = Display(
+        shading=shading, wireframe=wireframe, skin=skin, wrinkles=wrinkles, light=light
+    )
     display.look, display.colours = refinement.look, "splits" if splits else "none"
     if refinement.refiner == STATIC:
         display.is_refined = False

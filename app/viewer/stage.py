@@ -198,5 +198,6 @@ def style_of(display: Display, background: render.Background) -> render.Style:
         occlusion=display.occlusion,
         albedo=albedo,
         wrinkles=display.wrinkles,
+        light=render.LIGHTS[display.light],
         background=background,
     )

@@ -1,15 +1,15 @@
-// Studio light for a portrait, fixed to the camera: key from the viewer's upper left, a weak
-// fill from the right, a rim from behind the right shoulder, and a hemisphere of ambient light.
+// Light for a portrait, fixed to the camera: a key, a weak fill, a rim from behind the right
+// shoulder, and a hemisphere of ambient light; see light.py.
 // Everything is in view space (x right, y up, z to the viewer) and in linear light.
 
 uniform vec3 to_key;  // unit vector toward the key light; shadow.py looks from there
-const vec3 TO_FILL = vec3(0.7770, 0.0600, 0.6266);
+uniform vec3 to_fill;
+uniform vec3 key_light;
+uniform vec3 fill_light;
+uniform vec3 rim_light;
+uniform vec3 sky;
+uniform vec3 ground;
 const vec3 TO_RIM = vec3(0.6200, 0.3600, -0.6972);
-const vec3 KEY_LIGHT = vec3(1.16, 1.11, 1.05);
-const vec3 FILL_LIGHT = vec3(0.17, 0.158, 0.152);
-const vec3 RIM_LIGHT = vec3(0.66, 0.645, 0.65);
-const vec3 SKY = vec3(0.215, 0.215, 0.225);
-const vec3 GROUND = vec3(0.125, 0.095, 0.083);
 // How far each colour of light travels in skin: red past the terminator, blue hardly.
 const vec3 SCATTER = vec3(0.25, 0.155, 0.115);
 // The same within the edge of a cast shadow, and what comes back from lit skin nearby, of the key.
@@ -26,7 +26,7 @@ struct Lit {
 };
 
 vec3 hemisphere(vec3 normal) {
-    return mix(GROUND, SKY, 0.5 * normal.y + 0.5);
+    return mix(ground, sky, 0.5 * normal.y + 0.5);
 }
 
 Lit studio(vec3 normal, vec3 to_eye, float subsurface, float gloss, float sharpness) {
@@ -41,11 +41,11 @@ Lit studio(vec3 normal, vec3 to_eye, float subsurface, float gloss, float sharpn
     // What the key scatters past the terminator has no shadow, and what it shines straight fades
     // out toward the terminator: so the errors of a shadow map, largest there, are never seen.
     float facing = dot(normal, to_key);
-    lit.key = KEY_LIGHT / (1.0 + scatter) * max(facing, 0.0);
-    lit.rest = KEY_LIGHT * max((min(facing, 0.0) + scatter) / (1.0 + scatter), 0.0)
-        + FILL_LIGHT * max(0.8 * dot(normal, TO_FILL) + 0.2, 0.0)
-        + RIM_LIGHT * rim * rim + ambient * mix(vec3(1.0), WARMTH, subsurface);
-    lit.specular = gloss * (KEY_LIGHT * highlight + (0.9 * ambient + RIM_LIGHT * rim) * fresnel);
+    lit.key = key_light / (1.0 + scatter) * max(facing, 0.0);
+    lit.rest = key_light * max((min(facing, 0.0) + scatter) / (1.0 + scatter), 0.0)
+        + fill_light * max(0.8 * dot(normal, to_fill) + 0.2, 0.0)
+        + rim_light * rim * rim + ambient * mix(vec3(1.0), WARMTH, subsurface);
+    lit.specular = gloss * (key_light * highlight + (0.9 * ambient + rim_light * rim) * fresnel);
     return lit;
 }
 

@@ -1,0 +1,100 @@
+"""Light that comes from elsewhere: what it does to a picture, and what it leaves alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import nan
+
+import numpy as np
+import pytest
+
+from risorius import render
+from risorius.app.cli.options import LIGHT_NAMES
+
+from .scenes import PLAIN, STILL, Ball, SignedImage, draw_image, drawn, joined, lent, sphere, square
+
+SHADED = replace(PLAIN, shadows=True, albedo=render.CLAY)
+NO_RIM = replace(render.Light(), rim=(0.0, 0.0, 0.0))
+
+
+def swapped(light: render.Light) -> render.Light:
+    """The same light with left and right exchanged."""
+    (a, b, c), (d, e, f) = light.to_key, light.to_fill
+    return replace(light, to_key=(-a, b, c), to_fill=(-d, e, f))
+
+
+def scene(surface: render.Surface, light: render.Light) -> SignedImage:
+    """A ball before a wall, in a mesh of its own mirror image."""
+    shape = joined(square(70.0, z=-45.0), sphere(3, 30.0))
+    return draw_image(surface, shape, replace(SHADED, light=light))
+
+
+def test_light_of_the_other_side_makes_the_mirror_image(surface: render.Surface) -> None:
+    """Shading and the cast shadow follow the key, and nothing else in the picture has a side."""
+    for light in (NO_RIM, replace(render.LIGHTS["window"], rim=(0.0, 0.0, 0.0))):
+        here, there = scene(surface, light), scene(surface, swapped(light))
+        assert np.abs(here - here[:, ::-1]).max() > 60
+        off = np.abs(here - there[:, ::-1])
+        assert off.mean() < 0.3 and np.percentile(off, 99.0) <= 4
+
+
+def test_other_light_leaves_nothing_behind(surface: render.Surface) -> None:
+    """One renderer: the studio, each other light, the studio again, bit for bit; parts, too."""
+    renderer = render.Renderer(surface)
+    stream = lent(renderer, joined(square(70.0, z=-45.0), sphere(2, 30.0)))
+    camera = render.OrbitCamera.framing(stream.vertices[:, :3])
+
+    def picture(style: render.Style) -> render.Image:
+        """The mesh and a part in front of it."""
+        surface.begin()
+        renderer.draw_background(style)
+        renderer.draw_mesh(stream, camera, style)
+        renderer.draw_parts([Ball()], STILL, camera, style)
+        surface.end()
+        return surface.read()
+
+    studio = picture(SHADED)
+    for name, light in render.LIGHTS.items():
+        other = picture(replace(SHADED, light=light))
+        assert (other == studio).all() == (name == "studio")
+    assert (picture(SHADED) == studio).all()
+
+
+def test_key_from_above_is_steady(surface: render.Surface) -> None:
+    """Where the light has no side any more, its shadow map turns, and the picture stays."""
+    lower, upper = (
+        scene(surface, replace(NO_RIM, to_key=render.toward(20.0, angle))) for angle in (87.3, 87.6)
+    )
+    assert np.abs(upper - lower).mean() < 2.0
+
+
+@pytest.mark.parametrize("name", render.LIGHTS)
+def test_no_light_burns_or_blackens(surface: render.Surface, name: str) -> None:
+    """A ball of light skin and one of dark skin: all of what faces the viewer has a colour."""
+    for albedo, low, high in ((render.SKIN_LIGHT, 60, 254), (render.SKIN_DARK, 16, 235)):
+        style = replace(PLAIN, albedo=albedo, light=render.LIGHTS[name])
+        image = draw_image(surface, sphere(4, 50.0), style)
+        middle = drawn(image) & (np.hypot(*np.indices(image.shape[:2]) - 47.5) < 32)
+        shown = image[middle]
+        assert shown.max(axis=1).min() > low
+        assert (shown.min(axis=1) >= high).mean() < 0.01
+
+
+@pytest.mark.parametrize(
+    ("given", "part"),
+    [
+        ({"to_key": (1.0, 1.0, 0.0)}, "to_key has the length 1.41421"),
+        ({"to_fill": (0.0, nan, 1.0)}, "to_fill has the length nan"),
+        ({"fill": (0.1, -0.1, 0.1)}, "light must be 0 or more"),
+        ({"sky": (nan, 0.1, 0.1)}, "light must be 0 or more"),
+    ],
+)
+def test_impossible_light_is_told(given: dict[str, tuple[float, float, float]], part: str) -> None:
+    """One line that names what is wrong."""
+    with pytest.raises(ValueError, match=part):
+        render.Light(**given)
+
+
+def test_the_command_knows_all_lights() -> None:
+    """The names of `--light`, written out so that help needs no OpenGL, are those there are."""
+    assert tuple(LIGHT_NAMES) == tuple(render.LIGHTS)
