@@ -15,7 +15,7 @@ from ..errors import UserError
 from ..files import Image, check_file, check_png, save_png
 from ..looks import Refinement
 from ..motion import play, scene_of
-from ..passes.files import Labelled, check_wanted, labelled, save_labelled
+from ..passes.files import Labelled, beside, check_wanted, labelled, save_labelled
 from ..passes.passes import Passes
 from ..pipeline import Pipeline, side_by_side
 from ..scenes import Scene
@@ -136,14 +136,14 @@ def capture(
             is_wanted = bool(wanted) and wanted[0].time <= now + 0.5 / rate
             if film is None and not is_wanted and now != still_at:
                 continue
-            image, beside = recording.draw_image(), None
+            image, known = recording.draw_image(), None
             if film is not None or now == still_at:
-                beside = recording.label()
+                known = recording.label()
             if film is not None:
-                film(image, beside)
+                film(image, known)
             if still and now == still_at:
-                if beside is not None:
-                    save_labelled(still, beside)
+                if known is not None:
+                    save_labelled(still, known)
                 save_png(still, image)
             while wanted and wanted[0].time <= now + 0.5 / rate:
                 named.append((wanted.pop(0).name or "", image))
@@ -185,6 +185,9 @@ def _check_passes(script: Script, output: Path | None, options: CaptureOptions) 
         )
     if options.beside:
         raise UserError("--passes are those of one mesh: leave --compare out")
+    if _is_image(output):
+        for path in beside(output):
+            check_file(path)
 
 
 def soundtrack_of(script: Script) -> Soundtrack | None:

@@ -6,8 +6,9 @@ of the scene [mm] has the camera's coordinates c = R p + t and is seen at the pi
 
 A head's pose is told in its own axes, which the scene's are as long as it is at rest: x toward the
 subject's left, y up, z forward. Yaw, pitch and roll are 0, 0, 0 for a head that faces the camera,
-and the head is turned by roll first, then pitch, then yaw, as its controls turn it: yaw to the
-subject's left, pitch up, roll toward the left shoulder.
+and the head is turned by roll first, then pitch, then yaw: yaw to the subject's left, pitch up,
+roll toward the left shoulder. Its controls turn it so, too, but about axes that landmarks give,
+some 2 degrees off these.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ import PIL.Image
 from risorius import render
 
 from ..errors import UserError
-from ..files import cannot_be_written, real_path, temporary_folder
+from ..files import cannot_be_written, temporary_folder
 from ..stopping import done_whole
 from .exr import CHANNELS, openexr, write_exr
 from .labels import labels_of
@@ -64,7 +64,9 @@ class Labelled:
 
 def save_labelled(picture: Path, known: Labelled) -> None:
     """Write the files beside `picture`, all or none; UserError where one cannot be written."""
-    with temporary_folder(picture, real_path(picture).parent) as folder:
+    with cannot_be_written(picture):
+        picture.parent.mkdir(parents=True, exist_ok=True)
+    with temporary_folder(picture, picture.parent) as folder:
         with cannot_be_written(picture):
             known.save(folder / picture.name)
         with done_whole(), cannot_be_written(picture):

@@ -1,0 +1,230 @@
+"""What `capture --passes` writes: read back as other programs do, whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import OpenEXR
+import pytest
+from click.testing import CliRunner, Result
+from PIL import Image
+
+from risorius.__main__ import command
+from risorius.app.errors import UserError
+from risorius.app.passes.exr import NOTHING, write_exr
+from risorius.app.passes.files import Labelled, save_labelled
+from tests.heads import stranger
+
+ALL = "depth,normal,triangle,splits,tension,segmentation,landmarks"
+CAPTURE = ("capture", "--size", "160x120", "--quiet", "--fps", "10")
+SMILE = """
+title = "Smile"
+[[pose]]
+time = 0.0
+[[pose]]
+time = 0.2
+AU12 = 1.0
+"""
+
+
+def risorius(*arguments: object) -> Result:
+    """Run the command in this process."""
+    return CliRunner().invoke(command(), [str(argument) for argument in arguments])
+
+
+def channels_of(path: Path) -> dict[str, npt.NDArray[Any]]:
+    """All channels of an OpenEXR file, by its own library."""
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        return {name: np.array(channel.pixels) for name, channel in file.channels().items()}
+
+
+def names_in(folder: Path) -> list[str]:
+    """The names of all files of a folder."""
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_every_frame_has_its_passes_beside_it(tmp_path: Path) -> None:
+    """Five files a frame, of one picture; passes agree with one another and with the numbers."""
+    script, frames = tmp_path / "smile.toml", tmp_path / "frames"
+    script.write_text(SMILE)
+    result = risorius(*CAPTURE, script, "--passes", ALL, "-o", frames)
+    assert result.exit_code == 0, result.output
+    ends = (".exr", ".json", ".png", "_ldmks.txt", "_seg.png")
+    assert names_in(frames) == [f"frame_0000{k}{end}" for k in range(3) for end in ends]
+
+    stem = frames / "frame_00002"
+    channels = channels_of(Path(f"{stem}.exr"))
+    assert {name: each.dtype.name for name, each in channels.items()} == {
+        **dict.fromkeys(["depth.Z", "normal.X", "normal.Y", "normal.Z"], "float32"),
+        **dict.fromkeys(["tension.stretch", "tension.compression"], "float32"),
+        **dict.fromkeys(["triangle.ID", "splits"], "uint32"),
+    }
+    depth, triangle = channels["depth.Z"], channels["triangle.ID"].astype(np.int32)
+    assert depth.shape == (120, 160) and 400.0 < depth.max() < 1500.0
+    assert triangle.min() == -1 and 1500 < triangle.max() < 2030
+    assert (channels["normal.Z"][depth > 0.0] < 0.0).mean() > 0.99
+    classes = np.asarray(Image.open(f"{stem}_seg.png"))
+    assert classes.dtype == np.uint8 and np.array_equal(classes > 0, depth > 0.0)
+    colours = np.asarray(Image.open(f"{stem}.png")).astype(int)
+    redness = colours[..., 0] - colours[..., 1]
+    assert redness[np.isin(classes, (10, 11))].mean() > redness[classes == 1].mean() + 5.0
+
+    labels = json.loads(Path(f"{stem}.json").read_text())
+    pixels = np.loadtxt(f"{stem}_ldmks.txt")
+    assert pixels.shape == (70, 2)
+    assert np.abs(pixels - labels["landmarks"]["pixels"]).max() < 0.001
+    camera = {name: np.array(labels["camera"][name]) for name in ("K", "R", "t")}
+    seen = (np.array(labels["landmarks"]["points"]) @ camera["R"].T + camera["t"]) @ camera["K"].T
+    assert np.abs(seen[:, :2] / seen[:, 2:] - pixels).max() < 0.001
+    assert labels["controls"] == {"AU12": 1.0} and "head" in labels and "gaze" in labels
+
+
+def test_only_what_is_asked_for_is_written(tmp_path: Path) -> None:
+    """One picture with classes alone has no OpenEXR file, and no landmarks in its numbers."""
+    target = tmp_path / "deep" / "joy.png"
+    result = risorius(*CAPTURE, "--set", "joy", "--passes", "segmentation", "-o", target)
+    assert result.exit_code == 0, result.output
+    assert names_in(target.parent) == ["joy.json", "joy.png", "joy_seg.png"]
+    assert "landmarks" not in json.loads((target.parent / "joy.json").read_text())
+
+
+def test_the_colours_are_those_without_passes(tmp_path: Path) -> None:
+    """To the last byte, and so are the passes of two runs."""
+    for name, passes in (("a", ("--passes", ALL)), ("b", ("--passes", ALL)), ("c", ())):
+        assert (
+            risorius(*CAPTURE, "--set", "joy", *passes, "-o", tmp_path / f"{name}.png").exit_code
+            == 0
+        )
+    for end in (".png", ".exr", "_seg.png", ".json"):
+        assert (tmp_path / f"a{end}").read_bytes() == (tmp_path / f"b{end}").read_bytes()
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "c.png").read_bytes()
+
+
+def test_a_head_of_ones_own_and_no_refinement(tmp_path: Path) -> None:
+    """Triangles are those of the head that was brought; none is split."""
+    other = stranger()
+    mesh, landmarks = other.write(tmp_path)
+    target = tmp_path / "own.png"
+    head = ("--head", mesh, "--landmarks", landmarks, "--refiner", "none")
+    result = risorius(*CAPTURE, "--set", "joy", *head, "--passes", ALL, "-o", target)
+    assert result.exit_code == 0, result.output
+    channels = channels_of(tmp_path / "own.exr")
+    numbers = channels["triangle.ID"].astype(np.int32)
+    assert 4000 < numbers.max() < len(other.mesh.faces)
+    assert not channels["splits"].any()
+
+
+def test_a_cloth_has_no_landmarks_to_write(tmp_path: Path) -> None:
+    """Its other passes are there, and its camera."""
+    target = tmp_path / "cloth.png"
+    passes = ("--passes", "depth,triangle,tension")
+    result = risorius(*CAPTURE, "--scene", "cloth", "--time", "0.3", *passes, "-o", target)
+    assert result.exit_code == 0, result.output
+    assert set(json.loads((tmp_path / "cloth.json").read_text())) == {"camera", "controls"}
+    assert channels_of(tmp_path / "cloth.exr")["depth.Z"].max() > 0.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("--passes", "depth", "-o", "film.mp4"), "--passes are files beside each picture: give "
+         "-o a folder, or one picture.png"),
+        (("--passes", "depth", "--sheet", "sheet.png"), "--passes are files beside each picture"),
+        (("--passes", "depth,colour", "-o", "x.png"), "--passes: 'colour' is no pass; allowed are "
+         "depth, normal, triangle, splits, tension, segmentation, landmarks"),
+        (("--passes", "", "-o", "x.png"), "'' is no pass; allowed are depth"),
+        (("--passes", "depth", "--compare", "-o", "x.png"), "leave --compare out"),
+        (("--passes", "depth,landmarks", "--scene", "plane", "-o", "x.png"), "--passes landmarks: "
+         "the scene plane has no face; allowed are depth, normal, triangle, splits, tension"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_told_in_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], told: str
+) -> None:
+    """Before any work is done; nothing is written."""
+    monkeypatch.chdir(tmp_path)
+    script = () if "--scene" in arguments else ("--set", "joy")
+    if "--sheet" in arguments:
+        Path("poses.toml").write_text(SMILE.replace("AU12", 'name = "smile"\nAU12'))
+        script = ("poses.toml",)
+    result = risorius(*CAPTURE, *script, *arguments)
+    assert result.exit_code == 2 and result.output.count("\n") == 1
+    assert told in result.output
+    assert [path for path in tmp_path.iterdir() if path.suffix != ".toml"] == []
+
+
+def test_a_missing_library_is_told_with_its_cure(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Float passes need OpenEXR; classes and landmarks do not."""
+    monkeypatch.setitem(sys.modules, "OpenEXR", None)
+    picture = ("-o", tmp_path / "joy.png")
+    result = risorius(*CAPTURE, "--set", "joy", "--passes", "depth", *picture)
+    assert result.exit_code == 2
+    assert "--passes needs OpenEXR: pip install 'risorius[passes]'" in result.output
+    result = risorius(*CAPTURE, "--set", "joy", "--passes", "landmarks", *picture)
+    assert result.exit_code == 0, result.output
+
+
+def test_no_input_is_written_over(tmp_path: Path) -> None:
+    """A recording take.json and a picture take.png: the numbers would take its place."""
+    recording = tmp_path / "take.json"
+    recording.write_text("[]")
+    result = risorius(*CAPTURE, recording, "--passes", "depth", "-o", tmp_path / "take.png")
+    assert result.exit_code == 2 and "take.json: is read and would be written" in result.output
+    assert names_in(tmp_path) == ["take.json"] and recording.read_text() == "[]"
+
+
+def test_new_frames_take_the_place_of_old_ones_and_their_passes(tmp_path: Path) -> None:
+    """With --overwrite nothing of an earlier film is left, and what is not of one stays."""
+    frames = tmp_path / "frames"
+    for passes, count in ((("--passes", ALL), 5), ((), 1)):
+        arguments = ("--set", "joy", "--overwrite", "-o", frames)
+        assert risorius(*CAPTURE, *arguments, "--fps", "1", *passes).exit_code == 0
+        found = [name for name in names_in(frames) if name.startswith("frame_00000")]
+        assert len(found) == count
+        (frames / "frame_notes.json").write_text("mine")
+    assert all(name.endswith(".png") or "notes" in name for name in names_in(frames))
+
+
+def test_failed_files_leave_no_part(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A full disk in the last file of a picture: one line, and none of its files."""
+    known = Labelled({"depth": np.ones((4, 4), np.float32)}, {"camera": {}})
+    save_labelled(tmp_path / "good.png", known)
+
+    def fail(*_: object, **__: object) -> None:
+        """The disk is full."""
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", fail)
+    with pytest.raises(UserError, match=r"bad\.png: cannot be written: No space left on device"):
+        save_labelled(tmp_path / "bad.png", known)
+    assert names_in(tmp_path) == ["good.exr", "good.json"]
+
+
+def test_numbers_come_back_as_they_were(tmp_path: Path) -> None:
+    """Floats to the last bit, and -1 as the largest integer without sign."""
+    random = np.random.default_rng(5)
+    passes = {
+        "depth": random.normal(size=(3, 5)).astype(np.float32),
+        "normal": random.normal(size=(3, 5, 3)).astype(np.float32),
+        "triangle": random.integers(-1, 5000, (3, 5)).astype(np.int32),
+        "splits": random.integers(0, 7, (3, 5)).astype(np.uint8),
+        "tension": random.normal(size=(3, 5, 2)).astype(np.float32),
+    }
+    passes["triangle"][0, 0] = -1
+    write_exr(tmp_path / "x.exr", passes)
+    channels = channels_of(tmp_path / "x.exr")
+    assert np.array_equal(channels["depth.Z"], passes["depth"])
+    for k, axis in enumerate("XYZ"):
+        assert np.array_equal(channels[f"normal.{axis}"], passes["normal"][..., k])
+    assert channels["triangle.ID"][0, 0] == NOTHING
+    assert np.array_equal(channels["triangle.ID"].astype(np.int32), passes["triangle"])
+    assert np.array_equal(channels["tension.compression"], passes["tension"][..., 1])
+    with pytest.raises(OSError, match="No such file or directory"):
+        write_exr(tmp_path / "none" / "x.exr", passes)

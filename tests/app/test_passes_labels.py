@@ -1,0 +1,141 @@
+"""Cameras, poses and gazes as numbers: against OpenGL's matrices and what was asked of the face."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from risorius import render
+from risorius.app.passes.camera_labels import CameraLabels, gaze, head_pose
+from risorius.app.passes.labels import labels_of
+from risorius.app.scenes import FaceScene, PlaneScene
+
+SIZES = st.tuples(st.integers(16, 4000), st.integers(16, 4000))
+ANGLES = {"yaw": st.floats(-180.0, 180.0), "pitch": st.floats(-89.0, 89.0)}
+
+
+@pytest.fixture(scope="module")
+def face() -> FaceScene:
+    """The built-in face."""
+    return FaceScene()
+
+
+def camera_at(yaw: float, pitch: float) -> render.OrbitCamera:
+    """A camera on the head's level, off its middle."""
+    camera = render.OrbitCamera.framing(np.array([[-80.0, -160.0, -90.0], [80.0, 130.0, 120.0]]))
+    camera.orbit(yaw, pitch)
+    camera.pan(0.1, -0.05)
+    return camera
+
+
+@settings(max_examples=60, deadline=None)
+@given(size=SIZES, **ANGLES)
+def test_points_are_projected_where_opengl_draws_them(
+    size: tuple[int, int], yaw: float, pitch: float
+) -> None:
+    """K, R and t against the matrices that the shaders get, from the upper left corner."""
+    camera, (width, height) = camera_at(yaw, pitch), size
+    points = np.random.default_rng(1).uniform(-80.0, 80.0, (20, 3))
+    labels = CameraLabels.of(camera, size)
+    matrix = np.asarray(camera.view_matrix()) @ np.asarray(camera.projection_matrix(width / height))
+    clip = np.column_stack([points, np.ones(20)]) @ matrix
+    x, y = (clip[:, :2] / clip[:, 3:]).T
+    expected = np.column_stack([0.5 * (1.0 + x) * width, 0.5 * (1.0 - y) * height])
+    assert np.allclose(labels.project(points), expected, atol=1e-6 * max(size))
+    assert np.allclose(labels.to_camera(points)[:, 2], clip[:, 3])
+    assert np.allclose(labels.rotation @ labels.rotation.T, np.eye(3))
+    assert math.isclose(np.linalg.det(labels.rotation), 1.0)
+
+
+def test_the_axes_of_the_camera_are_opencvs() -> None:
+    """From the front: what is to the subject's left is right, what is higher has less y."""
+    labels = CameraLabels.of(camera_at(0.0, 0.0), (640, 480))
+    middle, left, above = labels.project(np.array([[0.0, 0, 0], [10.0, 0, 0], [0, 10.0, 0]]))
+    assert left[0] > middle[0] and above[1] < middle[1]
+    assert np.allclose(labels.project(camera_at(0.0, 0.0).target[None]), [[320.0, 240.0]])
+    depths = labels.to_camera(np.array([[0.0, 0, 0], [0, 0, 10.0]]))[:, 2]
+    assert depths[0] - depths[1] == pytest.approx(10.0)
+
+
+@settings(max_examples=25, deadline=None)
+@given(yaw=st.floats(-80.0, 80.0), pitch=st.floats(-60.0, 60.0))
+def test_a_head_at_rest_is_turned_as_the_camera_is_not(
+    face: FaceScene, yaw: float, pitch: float
+) -> None:
+    """A camera on the subject's left sees it turned to its right, one above sees it bowed."""
+    face.reset()
+    labels = CameraLabels.of(camera_at(yaw, pitch), (640, 480))
+    pose = head_pose(face, labels)
+    points = face.rest_positions
+    assert np.allclose(points @ pose.rotation.T + pose.translation, labels.to_camera(points))
+    towards_camera = camera_at(yaw, pitch).axes()[2]  # in the head's axes
+    assert math.copysign(1.0, pose.yaw) == -math.copysign(1.0, yaw) or abs(yaw) < 1e-6
+    sine = math.sin(math.radians(pose.pitch))
+    assert sine == pytest.approx(-math.sin(math.radians(pitch)) * math.cos(math.radians(yaw)))
+    facing = -pose.rotation[2, 2]
+    assert facing == pytest.approx(towards_camera[2])
+
+
+def test_angles_are_those_that_the_head_was_turned_by(face: FaceScene) -> None:
+    """Before a camera in front: left, up, to the left shoulder, alone and all at once.
+
+    The axes about which it turns are found by landmarks, 2 degrees off those of the scene.
+    """
+    names = ("yaw", "pitch", "roll")
+    labels = CameraLabels.of(camera_at(0.0, 0.0), (640, 480))
+
+    def turned(*values: float) -> list[float]:
+        """The angles of a head with these values of its controls."""
+        face.reset()
+        face.pose({f"head_{name}": value for name, value in zip(names, values, strict=True)})
+        face.step(1.0)
+        pose = head_pose(face, labels)
+        return [pose.yaw, pose.pitch, pose.roll]
+
+    alone = np.array([turned(*row) for row in np.eye(3)])
+    most = alone.diagonal()
+    assert (most > 10.0).all() and np.abs(alone - np.diag(most)).max() < 2.5
+    for values in ((0.7, -0.5, 0.4), (-1.0, 0.8, -0.6)):
+        assert np.abs(turned(*values) - most * values).max() < 4.0
+
+
+def test_eyes_look_where_they_were_told(face: FaceScene) -> None:
+    """Each in the scene: straight ahead at rest, to the subject's left is x, up is y."""
+    face.reset()
+    assert np.allclose(gaze(face, "right"), [0.0, 0.0, 1.0])
+    face.pose({"gaze_horizontal_left": 1.0, "gaze_vertical_right": 1.0})
+    face.step(2.0)
+    assert gaze(face, "left")[0] > 0.3 and abs(gaze(face, "left")[1]) < 0.01
+    assert gaze(face, "right")[1] > 0.3 and abs(gaze(face, "right")[0]) < 0.01
+
+
+def test_gaze_in_the_head_does_not_turn_with_it(face: FaceScene) -> None:
+    """In the camera's axes it does."""
+    found = []
+    for turn in (0.0, 1.0):
+        face.reset()
+        face.pose({"gaze_horizontal_left": 0.6, "head_yaw": turn})
+        face.step(2.0)
+        found.append(labels_of(face, camera_at(20.0, 5.0), (64, 64))["gaze"]["left"])
+    assert np.allclose(found[0]["head"], found[1]["head"], atol=1e-3)
+    assert not np.allclose(found[0]["camera"], found[1]["camera"], atol=0.2)
+
+
+def test_labels_hold_what_was_set_and_what_it_moves(face: FaceScene) -> None:
+    """Controls and activations that are not 0, and plain numbers that JSON keeps."""
+    face.reset()
+    face.pose({"AU12_left": 0.5})
+    face.step(0.5)
+    labels = labels_of(face, camera_at(0.0, 0.0), (64, 48))
+    assert labels["controls"] == {"AU12_left": 0.5}
+    assert labels["activations"] and all("left" in name for name in labels["activations"])
+    assert json.loads(json.dumps(labels, allow_nan=False)) == labels
+    assert "landmarks" not in labels
+    assert (labels["camera"]["width"], labels["camera"]["height"]) == (64, 48)
+    plane = labels_of(PlaneScene(), camera_at(0.0, 0.0), (64, 48))
+    assert set(plane) == {"camera", "controls"}

@@ -1,0 +1,101 @@
+"""The map of classes: every texel has one, sides mirror, and named places are what they are."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.ndimage import label
+
+from risorius import assets
+from risorius.assets import Segment
+
+MIRRORED = {
+    Segment.RIGHT_EYE: Segment.LEFT_EYE,
+    Segment.RIGHT_BROW: Segment.LEFT_BROW,
+    Segment.RIGHT_EAR: Segment.LEFT_EAR,
+}
+PLACES = {
+    "glabella": Segment.SKIN, "trichion": Segment.SKIN, "vertex": Segment.SKIN,
+    "cheek_left": Segment.SKIN, "pogonion": Segment.SKIN, "gnathion": Segment.SKIN,
+    "temple_right": Segment.SKIN, "zygion_left": Segment.SKIN, "sublabiale": Segment.SKIN,
+    "rhinion": Segment.NOSE, "pronasale": Segment.NOSE, "alare_left": Segment.NOSE,
+    "alare_right": Segment.NOSE, "nostril_roof_left": Segment.NOSE,
+    "cervicale": Segment.NECK,
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def head() -> assets.Head:
+    """The built-in head."""
+    return assets.load("head")
+
+
+def at(head: assets.Head, vertices: object) -> list[int]:
+    """The classes of vertices."""
+    size = len(head.segments)
+    columns, rows = (head.uv[np.atleast_1d(vertices)] * [size, -size] + [0.0, size]).astype(int).T
+    found: list[int] = head.segments[rows, columns].tolist()
+    return found
+
+
+def test_every_texel_has_a_class(head: assets.Head) -> None:
+    """Of those that skin has: no background, nothing to ignore, no hair on a shaved head."""
+    assert head.segments.shape == head.albedo.shape[:2]
+    assert set(np.unique(head.segments)) == set(Segment) - {
+        Segment.BACKGROUND, Segment.HAIR, Segment.IGNORE,
+    }  # fmt: skip
+
+
+def test_the_right_half_is_the_left_one_mirrored(head: assets.Head) -> None:
+    """With the classes of the subject's other side; left is where u is large."""
+    mirrored = head.segments[:, ::-1]
+    expected = head.segments.copy()
+    for right, left in MIRRORED.items():
+        expected[head.segments == right], expected[head.segments == left] = left, right
+        assert np.nonzero(head.segments == left)[1].min() >= head.segments.shape[1] // 2
+    assert np.array_equal(mirrored, expected)
+
+
+@pytest.mark.parametrize("place", list(PLACES))
+def test_named_places_are_what_they_are(head: assets.Head, place: str) -> None:
+    """Anatomical points that lie well within a region."""
+    assert at(head, head.anatomy[place]) == [PLACES[place]]
+
+
+def test_lips_ears_and_lids_follow_their_rows(head: assets.Head) -> None:
+    """The red is lip, above or below, what is behind it is mouth, the helix is ear."""
+    upper, lower = (
+        slice(1, 5),
+        slice(10, 14),
+    )  # without the middle, which is both sides', and corner
+    for row in (3, 4):
+        ring = head.rings[f"mouth_{row}_left"]
+        assert set(at(head, ring[upper])) == {Segment.TOP_LIP}
+        assert set(at(head, ring[lower])) == {Segment.BOTTOM_LIP}
+    assert set(at(head, head.rings["mouth_1_right"])) == {Segment.MOUTH_INTERIOR}
+    assert set(at(head, head.rings["mouth_7_right"])) == {Segment.SKIN}
+    assert set(at(head, head.rings["ear_2_right"][1:12])) == {Segment.RIGHT_EAR}
+    assert set(at(head, head.rings["eye_3_left"])) == {Segment.SKIN}
+    assert set(at(head, head.rings["rim_left"])) == {Segment.NECK}
+
+
+def test_brows_lie_over_the_eyes(head: assets.Head) -> None:
+    """Where the picture is painted darkest above them, along the brow's landmarks."""
+    is_brow = head.segments == Segment.LEFT_BROW
+    half = head.segments.shape[1] // 2
+    is_skin = (head.segments == Segment.SKIN) & (np.arange(2 * half) >= half)
+    rows, columns = np.nonzero(is_brow)
+    near = np.zeros_like(is_brow)
+    near[rows.min() - 15 : rows.max() + 15, columns.min() - 15 : columns.max() + 15] = True
+    light = head.albedo.mean(axis=2)
+    assert light[is_brow].mean() < light[is_skin & near].mean() - 25.0
+    lid = head.uv[head.rings["eye_3_left"], 1].max()
+    assert (1.0 - rows.max() / len(head.segments)) > lid
+
+
+def test_regions_hang_together(head: assets.Head) -> None:
+    """One piece each, or two: nothing is speckled."""
+    for segment in set(Segment) - {Segment.BACKGROUND, Segment.HAIR, Segment.IGNORE}:
+        pieces, count = label(head.segments == segment)
+        sizes = np.sort(np.bincount(pieces.ravel())[1:])[::-1]
+        assert count == 1 or sizes[2:].sum() < 0.01 * sizes.sum(), segment.name
