@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Hashable
 from pathlib import Path
 from typing import TypeVar
@@ -34,6 +35,12 @@ def kept(kind: str, key: Hashable, make: Callable[[], Thing]) -> Thing:
 
 
 def state_of(path: Path) -> tuple[str, int, int]:
-    """What a file's content is known by: its place, size and time. Raises OSError."""
-    found = path.stat()
-    return str(path.resolve()), found.st_size, found.st_mtime_ns
+    """What tells one content of a file from another: its place, size and time.
+
+    The size is -1 where there is none.
+    """
+    try:
+        found = path.stat()
+    except OSError:
+        return str(path), -1, 0
+    return os.path.realpath(path), found.st_size, found.st_mtime_ns

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,15 @@ from .scenes import Scene, build_scene
 from .script import Script
 from .stopping import cleaned_up_if_stopped
 
+
+@dataclass
+class Tally:
+    """What this process has played."""
+
+    frames: int = 0
+
+
+tally = Tally()
 SETTLING = 1.0  # [s] after which the face rests in a pose
 
 
@@ -62,6 +72,7 @@ def play(
     with cleaned_up_if_stopped(bar.close):
         for index in bar:
             pose(index / frames_per_second)
+            tally.frames += 1
             if index:
                 step(1.0 / frames_per_second)
             yield index / frames_per_second

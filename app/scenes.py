@@ -20,6 +20,7 @@ from risorius.assets.fitting import FittedHead, fit_head
 from risorius.assets.identities import Person
 
 from .errors import UserError
+from .keeping import kept, state_of
 from .mouth import Tongue, shaded_mouth
 
 MOST_BAKED = 3000  # vertices; a larger head would take seconds, and takes the built-in one's light
@@ -306,7 +307,16 @@ SCENES: dict[str, Callable[[], Scene]] = {
 
 
 def build_scene(name: str, head: FittedHead | None = None) -> Scene:
-    """The scene called `name`, with a head of the user's; UserError where it has none."""
+    """The scene called `name`, with a head of the user's; UserError where it has none.
+
+    It may have been played before; `play` begins with a reset.
+    """
+    # A scene that is kept holds its head, so that no other can have this identity.
+    key = (name, None if head is None else id(head))
+    return kept("scene", key, lambda: _new_scene(name, head))
+
+
+def _new_scene(name: str, head: FittedHead | None) -> Scene:
     if head is None:
         return SCENES[name]()
     if name != "face":
@@ -323,4 +333,4 @@ def head_for(head: Path | None, landmarks: Path | None) -> FittedHead | None:
         return None
     if head is None or landmarks is None:
         raise UserError("--head HEAD.obj and --landmarks LANDMARKS.json go together")
-    return fit_head(head, landmarks)
+    return kept("head", (state_of(head), state_of(landmarks)), lambda: fit_head(head, landmarks))

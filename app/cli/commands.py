@@ -16,6 +16,7 @@ from ..errors import UserError, counted, in_one_line
 from ..live import LOOPBACK, PROTOCOLS
 from ..looks import STATIC, Refinement
 from ..playback import Playback
+from .batch import batch
 from .dataset import dataset
 from .export import export
 from .options import (
@@ -325,4 +326,7 @@ def warm(quiet: bool) -> None:
     compile_all(quiet)
 
 
-ALL = (capture, export, dataset, view, replay, convert, speak, send, demo, controls, doctor, warm)
+ALL = (
+    capture, export, batch, dataset, view, replay, convert, speak, send, demo, controls, doctor,
+    warm,
+)  # fmt: skip

@@ -1,0 +1,70 @@
+"""The lines of a list, each a command, and what is wrong with them together."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import UserError
+from ..files import read_text
+
+LONGEST = 64 << 20  # [bytes] of a list
+
+
+@dataclass(frozen=True)
+class Job:
+    """A line that is to be done.
+
+    command: where its click command is, "module:name". folder: where its relative paths begin.
+    inputs, outputs: the files that it reads and writes.
+    """
+
+    number: int
+    text: str
+    command: str
+    arguments: tuple[str, ...]
+    folder: Path
+    inputs: tuple[Path, ...]
+    outputs: tuple[Path, ...]
+
+
+def lines_of(path: Path) -> Iterator[tuple[int, str]]:
+    """The numbers and texts of lines that hold a command; UserError for what cannot be read."""
+    try:
+        text = read_text(path, what="list", longest=LONGEST)
+    except FileNotFoundError:
+        raise UserError(f"{path}: there is no such list") from None
+    for number, line in enumerate(text.splitlines(), 1):
+        stripped = line.strip()
+        if stripped and not stripped.startswith("#"):
+            yield number, stripped
+
+
+def words_of(text: str) -> list[str]:
+    """A line as a shell would part it; UserError for a quotation without an end."""
+    try:
+        return shlex.split(text)
+    except ValueError as error:
+        raise UserError(f"a quotation mark without its partner ({error})") from None
+
+
+def clashes(jobs: Sequence[Job]) -> Iterator[tuple[int, str]]:
+    """Lines that cannot be done beside others: their numbers, and why."""
+    writer_of: dict[str, Job] = {}
+    for job in jobs:
+        for output in job.outputs:
+            other = writer_of.setdefault(os.path.realpath(output), job)
+            if other is not job:
+                yield job.number, f"{output}: is written by line {other.number} already"
+    for job in jobs:
+        for file in job.inputs:
+            other = writer_of.get(os.path.realpath(file), job)
+            if other is not job:
+                yield (
+                    job.number,
+                    f"{file}: is written by line {other.number}, and lines are done in no order; "
+                    "make two lists",
+                )

@@ -1,0 +1,108 @@
+"""The lines that are to be done, and what became of them."""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+
+import click
+
+from ..errors import UserError
+from ..motion import tally
+from ..workers import run_all
+from .journal import Journal
+from .listing import Job
+
+OK, FAILED, SKIPPED = "ok", "failed", "skipped"
+
+
+@dataclass(frozen=True)
+class Result:
+    """What became of a line; `error` says in one line why it failed, and is empty otherwise."""
+
+    job: Job
+    status: str
+    seconds: float
+    frames: int
+    attempts: int
+    error: str
+    log: Path
+
+    @property
+    def rate(self) -> float:
+        """Frames a second."""
+        return self.frames / self.seconds if self.seconds > 0.0 else 0.0
+
+
+def run_lines(
+    jobs: Sequence[Job],
+    journal: Journal,
+    logs: Path,
+    *,
+    processes: int,
+    scheduler: str | None,
+    retries: int,
+    resume: bool,
+) -> Iterator[Result]:
+    """Do the lines, and yield what became of each as it ends; with `resume` not those done.
+
+    logs: the folder of what the lines print, one file each.
+    """
+    waiting: list[Job] = []
+    for job in jobs:
+        made = journal.made(job) if resume else None
+        if made is None:
+            waiting.append(job)
+            continue
+        yield Result(job, SKIPPED, made["seconds"], made["frames"], 0, "", _log(logs, job))
+    journal.begin(waiting)
+    states = [journal.state(job) for job in waiting]
+    files = [_log(logs, job) for job in waiting]
+    for file in files:
+        file.unlink(missing_ok=True)
+    for outcome in run_all(
+        do, waiting, jobs=processes, scheduler=scheduler, retries=retries, logs=files
+    ):
+        job, frames = waiting[outcome.index], outcome.result or 0
+        if outcome.error is None:
+            journal.add(job, states[outcome.index], frames, outcome.seconds)
+        status = OK if outcome.error is None else FAILED
+        yield Result(
+            job,
+            status,
+            outcome.seconds,
+            frames,
+            outcome.attempts,
+            outcome.error or "",
+            files[outcome.index],
+        )
+
+
+def _log(folder: Path, job: Job) -> Path:
+    return folder / f"line_{job.number:04d}.log"
+
+
+def do(job: Job) -> int:
+    """In a process that works: do a line, and return how many frames were played for it."""
+    print(f"risorius {job.text}", flush=True)
+    try:
+        os.chdir(job.folder)
+    except OSError as error:
+        raise UserError(
+            f"{job.folder}: {error.strerror} on {socket.gethostname()}; whoever works on a list "
+            "needs the folders that it names"
+        ) from None
+    module, _, name = job.command.partition(":")
+    command: click.Command = getattr(import_module(module), name)
+    before = tally.frames
+    try:
+        command.main(list(job.arguments), prog_name=f"risorius {name}", standalone_mode=False)
+    except click.ClickException as error:
+        raise UserError(error.format_message()) from None
+    sys.stdout.flush()
+    return tally.frames - before

@@ -1,0 +1,180 @@
+"""`risorius batch`: many commands, side by side."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+from tqdm import tqdm
+
+from ..batch.journal import Journal
+from ..batch.listing import Job, clashes, lines_of, words_of
+from ..errors import UserError, counted, in_one_line
+from ..files import cannot_be_written, check_apart
+from ..stopping import cleaned_up_if_stopped
+from .options import PATH, packed
+
+LISTED = ("capture", "export", "convert", "speak")  # commands that a line may hold
+OUTPUTS = ("output", "sheet")  # how their parameters for what they write are called
+MOST_TOLD = 20  # lines that are wrong
+
+
+@dataclass(frozen=True)
+class Batching:
+    """What batch alone is told."""
+
+    jobs: int | None
+    scheduler: str | None
+    resume: bool
+    retries: int
+    logs: Path | None
+    quiet: bool
+
+
+with_batching = packed(
+    "batching",
+    Batching,
+    click.option("--jobs", type=click.IntRange(1, 1024), help="Lines at once: a core each."),
+    click.option(
+        "--scheduler", metavar="ADDRESS", help="Of a Dask cluster that does it: tcp://host:8786."
+    ),
+    click.option("--resume", is_flag=True, help="Leave alone what is whole and would be the same."),
+    click.option(
+        "--retries",
+        type=click.IntRange(0, 10),
+        default=2,
+        show_default=True,
+        help="Of a line whose process dies.",
+    ),
+    click.option("--logs", type=PATH, help="A folder; else LIST_logs beside LIST."),
+    click.option("--quiet", is_flag=True, help="No progress bar."),
+)
+
+
+@click.command()
+@click.argument("listing", metavar="LIST", type=PATH)
+@with_batching
+def batch(listing: Path, batching: Batching) -> None:
+    """Do the commands in LIST side by side: one a line, as typed after risorius.
+
+    Lines may hold capture, export, convert and speak; those that begin with # hold nothing.
+    Relative paths begin where you stand. All lines are checked before the first is begun.
+    """
+    from ..batch.running import FAILED, run_lines
+    from ..batch.summary import save_summary, table
+    from ..workers.running import cores
+
+    if batching.jobs is not None and batching.scheduler is not None:
+        raise UserError("--jobs is for this computer; with --scheduler the cluster has its workers")
+    start = time.monotonic()
+    logs = (batching.logs or listing.with_name(f"{listing.stem}_logs")).absolute()
+    journal = Journal(logs / "journal.jsonl")
+    jobs = jobs_in(listing, journal)
+    with cannot_be_written(logs):
+        logs.mkdir(parents=True, exist_ok=True)
+    results = []
+    lines = run_lines(
+        jobs,
+        journal,
+        logs,
+        processes=batching.jobs or cores(),
+        scheduler=batching.scheduler,
+        retries=batching.retries,
+        resume=batching.resume,
+    )
+    with tqdm(total=len(jobs), unit="line", disable=batching.quiet or None) as bar:
+        with cleaned_up_if_stopped(bar.close):
+            for result in lines:
+                results.append(result)
+                bar.update()
+                if result.status == FAILED:
+                    bar.write(
+                        f"risorius: {in_one_line(listing)}:{result.job.number}: {result.error}",
+                        file=sys.stderr,
+                    )
+    for row in table(results, time.monotonic() - start):
+        click.echo(in_one_line(row))
+    summary = logs / "summary.csv"
+    save_summary(summary, results)
+    click.echo(in_one_line(summary))
+    if any(result.status == FAILED for result in results):
+        sys.exit(1)
+
+
+def jobs_in(listing: Path, journal: Journal) -> list[Job]:
+    """What the lines of a list ask for; tells what is wrong with which, and ends the program."""
+    jobs, wrong = [], []
+    for number, text in lines_of(listing):
+        try:
+            jobs.append(_job(number, text, journal))
+        except (UserError, click.ClickException) as error:
+            message = error.format_message() if isinstance(error, click.ClickException) else error
+            wrong.append((number, " ".join(str(message).split()).rstrip(".")))
+    wrong += clashes(jobs)
+    for number, why in sorted(wrong)[:MOST_TOLD]:
+        click.echo(f"risorius: {in_one_line(f'{listing}:{number}: {why}')}", err=True)
+    if len(wrong) > MOST_TOLD:
+        more = counted(len(wrong) - MOST_TOLD, "more wrong line")
+        click.echo(f"risorius: {in_one_line(listing)}: {more}", err=True)
+    if wrong:
+        sys.exit(2)
+    if not jobs:
+        raise UserError(f"{listing}: there is no command in it")
+    return jobs
+
+
+def _job(number: int, text: str, journal: Journal) -> Job:
+    """What a line asks for. Raises UserError, or click's errors, for what cannot be done."""
+    name, *arguments = words_of(text)
+    if name not in LISTED:
+        raise UserError(f"'{name}' is no command of a list; allowed are {', '.join(LISTED)}")
+    parent = click.get_current_context().parent
+    assert parent is not None and isinstance(parent.command, click.Group)
+    command = parent.command.commands[name]
+    with contextlib.redirect_stdout(io.StringIO()):  # of --help
+        try:
+            given = command.make_context(f"risorius {name}", list(arguments)).params
+        except click.exceptions.Exit:
+            raise UserError("it writes nothing") from None
+    outputs = [given[key] for key in OUTPUTS if given.get(key) is not None]
+    if not outputs:
+        raise UserError("it writes nothing: give -o OUTPUT")
+    paths = [value for value in given.values() if isinstance(value, Path)]
+    inputs = [path for path in paths if path not in outputs]
+    for path in inputs:
+        if not path.exists():
+            raise UserError(f"{path}: there is no such file")
+    check_apart(outputs, inputs)
+    if "overwrite" in given and not given["overwrite"]:
+        for path in outputs:
+            if path.is_dir() and any(path.iterdir()) and not journal.began(path.absolute()):
+                raise UserError(
+                    f"{path}: is there and not empty; name another folder, or add --overwrite"
+                )
+        arguments.insert(0, "--overwrite")  # what is there then, an attempt before has left
+    assert command.callback is not None
+    return Job(
+        number,
+        text,
+        f"{command.callback.__module__}:{command.callback.__name__}",
+        tuple(arguments),
+        Path.cwd(),
+        tuple(path.absolute() for path in (*inputs, *_named_in(given.get("script")))),
+        tuple(path.absolute() for path in outputs),
+    )
+
+
+def _named_in(script: Path | None) -> Iterator[Path]:
+    """The files that a script names: its sound. UserError for a broken script."""
+    if script is not None and script.suffix.lower() == ".toml":
+        from ..script import load_script
+
+        sound = load_script(script).sound
+        if sound is not None:
+            yield sound
