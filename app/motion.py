@@ -67,12 +67,18 @@ def play(
     pose(0.0)
     if any(scene.values.values()):
         step(SETTLING)
-    last = round((script.duration if until is None else until) * frames_per_second)
-    bar = tqdm(range(last + 1), unit="frame", disable=not progress or None, leave=False)
+    until = script.duration if until is None else until
+    for index in counted_frames(until, frames_per_second, progress=progress):
+        pose(index / frames_per_second)
+        tally.frames += 1
+        if index:
+            step(1.0 / frames_per_second)
+        yield index / frames_per_second
+
+
+def counted_frames(until: float, frames_per_second: float, *, progress: bool) -> Iterator[int]:
+    """The numbers of the frames up to a time [s], with a bar that tells how far they are."""
+    frames = range(round(until * frames_per_second) + 1)
+    bar = tqdm(frames, unit="frame", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):
-        for index in bar:
-            pose(index / frames_per_second)
-            tally.frames += 1
-            if index:
-                step(1.0 / frames_per_second)
-            yield index / frames_per_second
+        yield from bar

@@ -93,6 +93,11 @@ class Pipeline:
         """The upper half of the figure: time passes, and the triangle mesh follows."""
         self.scene.step(seconds)
 
+    def refine(self, camera: render.OrbitCamera, viewports: Sequence[Viewport]) -> None:
+        """Refine a frame that nobody draws: a refiner may remember it in the next one."""
+        for drawn, viewport in zip(self.meshes, viewports, strict=True):
+            drawn.refine(self.scene.positions, camera, viewport)
+
     def draw(
         self, camera: render.OrbitCamera, style: render.Style, viewports: Sequence[Viewport]
     ) -> None:

@@ -27,6 +27,7 @@ from .probe import Finding, probe
 from .renderer import Renderer, Viewport
 from .stream import Stream
 from .style import (
+    BLACK,
     CLAY,
     DARK,
     LIGHT,
@@ -46,6 +47,7 @@ from .texture import Texture, WrinkleMap
 from .window import WindowSurface, open_window, size_on_screen
 
 __all__ = [
+    "BLACK",
     "CLAY",
     "DARK",
     "LIGHT",

@@ -21,8 +21,18 @@ class Backdrop:
         self._store: moderngl.Framebuffer | None = None
         self._stored: dict[Rectangle, Background] = {}
 
-    def paint(self, target: RenderTarget, viewport: Rectangle, background: Background) -> None:
-        """Paint the background over the viewport; what was drawn there is gone."""
+    def paint(
+        self, target: RenderTarget, viewport: Rectangle, background: Background | None
+    ) -> None:
+        """Paint the background over the viewport; what was drawn there is gone.
+
+        None: nothing is there, not even black.
+        """
+        if background is None:
+            target.use_frame(viewport)
+            target.frame.clear(0.0, 0.0, 0.0, 0.0, depth=1.0, viewport=viewport)
+            target.is_empty = False
+            return
         if self._store is None or self._store.size != target.size:
             self._stored.clear()
             self._store = self._gl.framebuffer([self._gl.renderbuffer(target.size, 4)])

@@ -101,10 +101,10 @@ class RenderTarget:
         self._layer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
         self._is_stale = False
 
-    def read(self) -> bytes:
-        """The frame, bottom row first, three bytes per pixel."""
+    def read(self, components: int = 3) -> bytes:
+        """The frame, bottom row first, three bytes per pixel, or four."""
         self.flush()
-        return bytes(self.frame.read(components=3, alignment=1))
+        return bytes(self.frame.read(components=components, alignment=1))
 
 
 def overlap(first: Rectangle, second: Rectangle) -> bool:

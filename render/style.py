@@ -82,6 +82,7 @@ class Background:
 
 LIGHT = Background(centre=(0.885, 0.89, 0.90), edge=(0.665, 0.68, 0.705))
 DARK = Background(centre=(0.27, 0.285, 0.305), edge=(0.085, 0.09, 0.10))
+BLACK = Background(centre=(0.0, 0.0, 0.0), edge=(0.0, 0.0, 0.0))
 WHITE = Background(centre=(1.0, 1.0, 1.0), edge=(1.0, 1.0, 1.0))
 
 
@@ -101,7 +102,7 @@ class Style:
     occlusion: bool = True  # less light from all around in folds, where the texture says so
     wrinkles: float = 1.0  # how much of a map of wrinkles shows, where there is one; 0 = none
     light: Light = LIGHTS["studio"]
-    background: Background = LIGHT
+    background: Background | None = LIGHT  # None: transparent
     wire_colour: Colour = (0.07, 0.08, 0.12)
     wire_width: float = 1.0  # [pixels at scale 1]; a window on a dense screen draws it wider
     wire_opacity: float = 0.5

@@ -81,10 +81,14 @@ class Surface:
         """Return the frame as it is seen, top row first, shape (H, W, 3), uint8, a new array."""
         return self.read_scene()
 
-    def read_scene(self) -> Image:
-        """Return the scene without panels, as finely as it was drawn: like `read`."""
+    def read_scene(self, components: int = 3) -> Image:
+        """Return the scene without panels, as finely as it was drawn: like `read`.
+
+        components: 4 for an alpha channel, with which colours are multiplied; it is below 255 where
+        the style has no background.
+        """
         self.make_current()
-        return image_of(self.target.read(), self.target.size)
+        return image_of(self.target.read(components), self.target.size, components)
 
     def make_current(self) -> None:
         """Direct this thread's OpenGL calls here; needed only where several surfaces are open."""
@@ -206,10 +210,10 @@ def _offscreen_context() -> tuple[moderngl.Context, bool]:
     raise diagnose("offscreen OpenGL (EGL)", egl_error) from None
 
 
-def image_of(pixels: bytes, size: tuple[int, int]) -> Image:
+def image_of(pixels: bytes, size: tuple[int, int], components: int = 3) -> Image:
     """OpenGL's bytes, bottom row first, as an image with the top row first, (H, W, 3) uint8."""
     width, height = size
-    return np.frombuffer(pixels, np.uint8).reshape(height, width, 3)[::-1].copy()
+    return np.frombuffer(pixels, np.uint8).reshape(height, width, components)[::-1].copy()
 
 
 def check_size(size: tuple[int, int]) -> None:

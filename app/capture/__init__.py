@@ -1,5 +1,6 @@
 """Offscreen capture: a script becomes a film, a folder of frames, a picture or a contact sheet."""
 
-from .recording import Capture, CaptureOptions, capture
+from .drawing import Capture, CaptureOptions
+from .recording import capture
 
 __all__ = ["Capture", "CaptureOptions", "capture"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 
@@ -18,13 +19,17 @@ LEAST_CAPTION = 28  # [pixels] below a cell of a contact sheet: text of 15 pixel
 LANCZOS = PIL.Image.Resampling.LANCZOS
 
 
+@functools.cache
 def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
-    """Pillow's own typeface at a size [pixels]."""
+    """Pillow's own typeface at a size [pixels]; read once, for that takes longer than writing."""
     return ImageFont.load_default(size=size)
 
 
 def captioned(image: Image, texts: Sequence[str], viewports: Sequence[Viewport]) -> Image:
-    """Write one line at the lower left of each viewport and draw a line between viewports."""
+    """Write one line at the lower left of each viewport and draw a line between viewports.
+
+    image: with 3 channels, or 4 and premultiplied.
+    """
     page = PIL.Image.fromarray(image)
     draw = ImageDraw.Draw(page)
     height = image.shape[0]
@@ -54,7 +59,7 @@ def contact_sheet(
         left = index % columns * cell_width
         top = index // columns * (cell_height + caption_height)
         small = PIL.Image.fromarray(image).resize((cell_width, cell_height), LANCZOS)
-        sheet.paste(small, (left, top))
+        sheet.paste(small, (left, top), small if small.mode == "RGBA" else None)
         middle = (left + cell_width / 2, top + cell_height + caption_height / 2)
         draw.text(middle, name, font=font(caption_height * 0.55), fill=INK, anchor="mm")
     return np.asarray(sheet)

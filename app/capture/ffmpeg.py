@@ -25,14 +25,11 @@ import numpy.typing as npt
 
 from ..errors import UserError
 from ..ffmpeg import program, sound_form, sound_input
+from .formats import FORMATS
 
-# AAC, as every player wants it, at a quality that nobody tells from the source.
-SOUND_CODING = "-map 0:v -map 1:a:0 -acodec aac -b:a 192k"
 PATIENCE = 60.0  # [s] without a sign of life, until ffmpeg is given up
 TICK = 0.01  # [s] between two looks at it
 DYING = 1.0  # [s] for the end of a killed process
-# H.264; 4:2:0 as every player wants it, at a quality without blocks.
-CODING = "-vcodec libx264 -pix_fmt yuv420p -crf 16 -preset veryfast -movflags +faststart"
 
 
 @dataclass(frozen=True)
@@ -42,11 +39,10 @@ class Soundtrack:
     file: Path
     seconds: float
 
-    @property
-    def options(self) -> list[str]:
+    def options(self, coding: str) -> list[str]:
         """Of ffmpeg, which has the frames as its first input."""
         source = sound_input(self.file, self.seconds)
-        return [*source, *SOUND_CODING.split(), *sound_form()]
+        return [*source, "-map", "0:v", "-map", "1:a:0", *coding.split(), *sound_form()]
 
 
 class Encoder:
@@ -59,17 +55,25 @@ class Encoder:
         size: tuple[int, int],
         frames_per_second: float,
         soundtrack: Soundtrack | None = None,
+        *,
+        is_transparent: bool = False,
     ) -> None:
         """Start it, for frames of `size` pixels; UserError where there is none."""
+        form = FORMATS[target.suffix.lower()]
+        coding = form.transparent if is_transparent else form.coding
+        assert coding is not None
         self._target, self._part = target, part
         rate = Fraction(frames_per_second).limit_denominator()
-        frames = f"-f rawvideo -pix_fmt rgb24 -s {size[0]}x{size[1]} -r {rate} -i -"
-        sound = ["-an"] if soundtrack is None else soundtrack.options
+        pixels = "rgba" if is_transparent else "rgb24"
+        frames = f"-f rawvideo -pix_fmt {pixels} -s {size[0]}x{size[1]} -r {rate} -i -"
+        sound = ["-an"]
+        if soundtrack is not None and form.sound is not None:
+            sound = soundtrack.options(form.sound)
         name = program()
         self._messages = tempfile.TemporaryFile()
         try:  # in a session of its own: Ctrl-C is for us alone
             self._process = subprocess.Popen(
-                [name, "-v", "error", *frames.split(), *sound, *CODING.split(), f"file:{part}"],
+                [name, "-v", "error", *frames.split(), *sound, *coding.split(), f"file:{part}"],
                 stdin=subprocess.PIPE,
                 stderr=self._messages,
                 bufsize=0,
@@ -83,7 +87,7 @@ class Encoder:
             os.set_blocking(self._frames.fileno(), False)
 
     def add(self, image: npt.NDArray[np.uint8]) -> None:
-        """Hand over a frame, (H, W, 3); UserError where ffmpeg has given up, or hangs."""
+        """Hand over a frame, (H, W, 3 or 4); UserError where ffmpeg has given up, or hangs."""
         left = np.ascontiguousarray(image).data.cast("B")
         try:
             while left:

@@ -5,10 +5,13 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+from collections import deque
 from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Protocol
 
+import numpy as np
 import PIL.Image
 
 from risorius.assets.staging import is_staging_folder
@@ -25,8 +28,9 @@ from ..files import (
 from ..passes.files import ENDS, Labelled
 from ..stopping import cleaned_up_if_stopped, done_whole
 from .ffmpeg import Encoder, Soundtrack
+from .formats import check_format, size_of_film
+from .transparency import with_colours_around
 
-FILM_SUFFIXES = (".mp4", ".mov", ".mkv")
 FRAME_NAME = re.compile(rf"frame_\d{{5,}}(\.png|{'|'.join(map(re.escape, ENDS))})")
 
 
@@ -42,22 +46,32 @@ def film(
     size: tuple[int, int],
     frames_per_second: float,
     soundtrack: Soundtrack | None = None,
+    *,
+    is_transparent: bool = False,
 ) -> Iterator[FrameSink]:
-    """An H.264 film through ffmpeg, with sound where there is some.
+    """A film through ffmpeg, as its name ends, with sound where there is some and it may be heard.
 
-    Raises UserError where a film of this size cannot be written.
+    size: of the frames. A kind that needs an even width and height has the last row or column
+    twice. Raises UserError where no such film can be written.
     """
-    if size[0] % 2 or size[1] % 2:
-        raise UserError(
-            f"a film needs an even width and height, and --size is {size[0]}x{size[1]}; "
-            f"take {size[0] + size[0] % 2}x{size[1] + size[1] % 2}, or write frames to a folder"
-        )
+    check_format(target, frames_per_second, is_transparent=is_transparent)
     check_file(target)
+    whole = size_of_film(target, size, is_transparent=is_transparent)
+    more = (0, whole[1] - size[1]), (0, whole[0] - size[0]), (0, 0)
     with written_atomically(target) as part:
-        encoder = Encoder(target, part, size, frames_per_second, soundtrack)
+        encoder = Encoder(
+            target, part, whole, frames_per_second, soundtrack, is_transparent=is_transparent
+        )
+
+        def add(image: Image, beside: Labelled | None = None) -> None:
+            """Hand a frame over; nothing lies beside a film."""
+            if is_transparent:
+                image = with_colours_around(image)
+            encoder.add(np.pad(image, more, mode="edge") if whole != size else image)
+
         with cleaned_up_if_stopped(encoder.stop):
             try:
-                yield lambda image, beside=None: encoder.add(image)  # nothing lies beside a film
+                yield add
                 encoder.finish()
             finally:
                 encoder.stop()
@@ -100,19 +114,33 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
 def _frames(target: Path) -> Iterator[FrameSink]:
     """Numbered PNG files that come into the folder `target` all at once."""
     count = 0
-    with temporary_folder(target, target) as temporary:
+    waiting: deque[Future[None]] = deque()
+    workers = os.cpu_count() or 1  # threads, for most of the time is spent in zlib
+
+    def write(picture: Path, image: Image, beside: Labelled | None) -> None:
+        """Write one frame, in a thread."""
+        with cannot_be_written(target):
+            PIL.Image.fromarray(image).save(picture, compress_level=3)
+            if beside is not None:
+                beside.save(picture)
+
+    with (
+        temporary_folder(target, target) as temporary,
+        ThreadPoolExecutor(workers) as threads,
+    ):
 
         def add(image: Image, beside: Labelled | None = None) -> None:
-            """Write the next frame."""
+            """Have the next frame written; raises what went wrong with earlier ones."""
             nonlocal count
             picture = temporary / f"frame_{count:05d}.png"
-            with cannot_be_written(target):
-                PIL.Image.fromarray(image).save(picture, compress_level=3)
-                if beside is not None:
-                    beside.save(picture)
+            waiting.append(threads.submit(write, picture, image, beside))
             count += 1
+            if len(waiting) > workers:
+                waiting.popleft().result()
 
         yield add
+        while waiting:
+            waiting.popleft().result()
         with done_whole(), cannot_be_written(target):  # neither film may be lost between the two
             for old in target.iterdir():
                 if FRAME_NAME.fullmatch(old.name):

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("script", type=PATH, required=False)
 @click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="Instead of a SCRIPT.")
-@click.option("-o", "--output", type=PATH, help="out.mp4, a folder, or .png")
+@click.option("-o", "--output", type=PATH, help="out.mp4, .mov, .webm, .gif, .webp, a folder, or .png")
 @click.option("--sheet", type=PATH, help="Contact sheet of the named poses.")
 @click.option("--scene", type=SCENE_NAMES, help="What is animated.")
 @SOUND
@@ -70,7 +70,7 @@ def capture(
     """
     from ..capture import CaptureOptions
     from ..capture import capture as film_of
-    from ..capture.outputs import FILM_SUFFIXES
+    from ..capture.formats import HEARD, size_of_film
     from ..files import check_apart
     from ..passes.files import beside
     from ..performances import script_for
@@ -79,8 +79,8 @@ def capture(
 
     written = [output, sheet, *(beside(output) if output and filming.passes else ())]
     check_apart(written, (script, sound, drawing.head, drawing.landmarks, playback.mapping))
-    if sound is not None and (output is None or output.suffix.lower() not in FILM_SUFFIXES):
-        allowed = ", ".join(FILM_SUFFIXES)
+    if sound is not None and (output is None or output.suffix.lower() not in HEARD):
+        allowed = ", ".join(HEARD)
         raise UserError(f"--sound {sound}: only a film is heard; give -o a name in {allowed}")
     tell = None if filming.quiet else told
     performance = script_for(script, scene, settings, playback=playback, tell=tell)
@@ -93,7 +93,7 @@ def capture(
         beside=parse_comparison(filming.compare, refinement),
         captions=filming.captions,
         camera=filming.camera or performance.camera,
-        style=drawing.style(),
+        style=replace(drawing.style(), background=filming.background),
         samples=filming.samples,
         head=drawing.fitted_head(),
         is_alive=filming.alive,

@@ -15,7 +15,7 @@ from ..errors import UserError
 from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from ..playback import LEAD, Playback
-from .parameters import FiniteRange, Looks, Passes, Refiner, Size
+from .parameters import BackgroundName, FiniteRange, Looks, Passes, Refiner, Size
 
 if TYPE_CHECKING:
     from risorius import render
@@ -232,6 +232,7 @@ class Filming:
     compare: str | None
     captions: bool
     camera: str | None
+    background: render.Background | None
     passes: tuple[str, ...]
     alive: bool
     still_time: float | None
@@ -255,6 +256,12 @@ with_filming = packed(
     ),
     click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
     click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
+    click.option(
+        "--background",
+        type=BackgroundName(),
+        default="light",
+        help="light, dark, white, black, a colour as #00b140, or transparent.",
+    ),
     click.option(
         "--passes",
         type=Passes(),

@@ -5,14 +5,18 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from click.shell_completion import CompletionItem
 
 from ..looks import LOOKS
 
+if TYPE_CHECKING:
+    from risorius import render
+
 LEAST, MOST = 16, 8192  # [pixels] of a side
+BACKGROUNDS = ("light", "dark", "white", "black")  # of `render`
 
 
 class Size(click.ParamType[tuple[int, int]]):
@@ -33,6 +37,32 @@ class Size(click.ParamType[tuple[int, int]]):
                 return size
         self.fail(
             f"'{value}' is no size; write width x height, each {LEAST} to {MOST}, as in 1280x720"
+        )
+
+
+class BackgroundName(click.ParamType["render.Background | None"]):
+    """What is behind the scene, by name or as a colour; None where nothing is."""
+
+    name = "COLOUR"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> render.Background | None:
+        """Look the name up, or fail with what is allowed."""
+        from risorius import render
+
+        word = str(value).lower()
+        if word == "transparent":
+            return None
+        if word in BACKGROUNDS:
+            named: render.Background = getattr(render, word.upper())
+            return named
+        if re.fullmatch("#[0-9a-f]{6}", word):
+            red, green, blue = (part / 255.0 for part in bytes.fromhex(word[1:]))
+            return render.Background((red, green, blue), (red, green, blue))
+        self.fail(
+            f"'{value}' is no background; take {', '.join(BACKGROUNDS)}, transparent, or a colour "
+            "as #00b140"
         )
 
 

@@ -6,8 +6,6 @@ import contextlib
 import time
 from pathlib import Path
 
-import numpy as np
-
 from ..capture import outputs
 from ..capture.outputs import FrameSink
 from ..errors import UserError
@@ -42,15 +40,15 @@ class Film:
         return self.frame_count / FRAMES_PER_SECOND
 
     def add(self, frame: Image) -> None:
-        """Add a frame, an odd row or column cut off; UserError where the size has changed."""
-        height, width = frame.shape[0] // 2 * 2, frame.shape[1] // 2 * 2
+        """Add a frame; UserError where the size has changed."""
+        size = frame.shape[1], frame.shape[0]
         if self._sink is None:
-            self._size = width, height
-            opened = outputs.film(self.target, self._size, FRAMES_PER_SECOND)
+            self._size = size
+            opened = outputs.film(self.target, size, FRAMES_PER_SECOND)
             self._sink = self._files.enter_context(opened)
-        if self._size != (width, height):
+        if self._size != size:
             raise UserError("the film ends here, because the picture has another size now")
-        self._sink(np.ascontiguousarray(frame[:height, :width]))
+        self._sink(frame)
         self.frame_count += 1
 
     def close(self) -> None:

@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 
 from risorius.app.capture import outputs
 from risorius.app.capture.ffmpeg import Soundtrack as Heard
+from risorius.app.capture.formats import HEARD
 from risorius.app.cli import main
 from risorius.app.errors import UserError
 from risorius.app.scenes import PlaneScene
@@ -128,7 +129,7 @@ def test_a_project_stays_together(tmp_path: Path) -> None:
 # Films
 
 
-@pytest.mark.parametrize("suffix", outputs.FILM_SUFFIXES)
+@pytest.mark.parametrize("suffix", HEARD)
 @pytest.mark.parametrize(("seconds", "rate"), [(2.0, 48_000), (0.6, 22_050)])
 def test_a_film_is_heard_in_step(tmp_path: Path, suffix: str, seconds: float, rate: int) -> None:
     """Its first frame is the first sample; a longer sound is cut, a shorter one cuts nothing."""

@@ -1,0 +1,195 @@
+"""Processes that draw a film together, each its share of the frames.
+
+Software OpenGL keeps only one core busy all the time. The simulation is cheap and gives the same
+bytes in every process, so each of them plays the whole script and draws every n-th frame. What they
+draw comes through pipes, in order, while they go on with the next frames.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import pickle
+import queue
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from risorius import render
+
+from ..errors import UserError
+from ..motion import counted_frames, scene_of
+from ..script import Script
+from ..stopping import cleaned_up_if_stopped
+from .drawing import Capture, CaptureOptions, Frame
+
+SAMPLES_EACH = 1e8  # a process that draws fewer is not worth its start of three seconds
+MOST = 8  # more of them than one encoder can follow
+AHEAD = 32e6  # [bytes] of pictures that a process draws ahead of the film, or two pictures
+COMPILER = "risorius.jit"  # the log that tells of code that is compiled
+
+
+@dataclass(frozen=True)
+class Share:
+    """What one process draws: of the frames up to a time [s] those number `first` and every n-th."""
+
+    script: Script
+    options: CaptureOptions
+    until: float
+    first: int
+    every: int
+
+
+def worthwhile(options: CaptureOptions, frame_count: int) -> int:
+    """How many processes should draw so many frames: 1 where a GPU does, or a core is all."""
+    width, height = options.size
+    samples = width * height * max(options.samples, 1) * frame_count
+    count = min(_cores(), MOST, int(samples / SAMPLES_EACH))
+    if count < 2:
+        return 1
+    with render.open_offscreen((1, 1), samples=0) as surface:
+        return count if surface.is_software else 1
+
+
+def _cores() -> int:
+    """How many this process may use; whoever limits the threads of software OpenGL limits that."""
+    told = os.environ.get("LP_NUM_THREADS", "")
+    if told.isdecimal():
+        return max(int(told), 1)
+    if sys.platform == "linux":
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+@contextlib.contextmanager
+def drawing(
+    script: Script, options: CaptureOptions, until: float, count: int, *, progress: bool
+) -> Iterator[Iterator[tuple[float, Callable[[], Frame]]]]:
+    """Let `count` processes play a script; yields the time [s] of each frame, and what hands it over.
+
+    Each frame has to be taken. What goes wrong in a process is raised where its frame is taken.
+    """
+    drawers: list[_Drawer] = []
+
+    def stop() -> None:
+        """End them all; they have nothing to clean up."""
+        for drawer in drawers:
+            drawer.process.kill()
+
+    def frames() -> Iterator[tuple[float, Callable[[], Frame]]]:
+        """All frames, from one process after the other."""
+        rate = options.frames_per_second
+        for index in counted_frames(until, rate, progress=progress):
+            yield index / rate, drawers[index % count].take
+
+    with cleaned_up_if_stopped(stop):
+        try:
+            for first in range(count):
+                drawers.append(_Drawer(Share(script, options, until, first, count)))
+            yield frames()
+        finally:
+            stop()
+            for drawer in drawers:
+                drawer.close()
+
+
+class _Drawer:
+    """A process that draws, as the one that asked for it sees it."""
+
+    def __init__(self, share: Share) -> None:
+        code = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve()"
+        self.process = subprocess.Popen(  # in a session of its own: Ctrl-C is for us alone
+            [sys.executable, "-c", code],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env={**os.environ, "LP_NUM_THREADS": "0"},  # no threads beside it
+            start_new_session=True,
+        )
+        assert self.process.stdin is not None and self.process.stdout is not None
+        self._frames = self.process.stdout
+        with contextlib.suppress(BrokenPipeError):  # it died: told where its first frame is taken
+            pickle.dump(share, self.process.stdin)
+            self.process.stdin.close()
+
+    def take(self) -> Frame:
+        """Its next frame; raises what it raised, UserError where it died."""
+        while True:
+            try:
+                found = pickle.load(self._frames)
+            except (EOFError, pickle.UnpicklingError):
+                code = self.process.wait()
+                why = signal.Signals(-code).name if code < 0 else f"exit code {code}"
+                raise UserError(
+                    f"a process that draws the film ended ({why}); try again, and where memory is "
+                    "short, take a smaller --size"
+                ) from None
+            if isinstance(found, Frame):
+                return found
+            if isinstance(found, Exception):
+                raise found
+            logging.getLogger(COMPILER).handle(found)
+
+    def close(self) -> None:
+        """Let go of what is left of it."""
+        self.process.wait()
+        self._frames.close()
+
+
+class _Teller(logging.Handler):
+    """Has the process that asked say what is compiled here."""
+
+    def __init__(self, tell: Callable[[object], None]) -> None:
+        super().__init__(logging.INFO)
+        self._tell = tell
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Hand a line over."""
+        self._tell(logging.makeLogRecord({"levelno": record.levelno, "msg": record.getMessage()}))
+
+
+def serve() -> None:
+    """Draw the share that the standard input tells, onto the standard output."""
+    share: Share = pickle.load(sys.stdin.buffer)
+    results = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what is printed is no frame
+    width, height = share.options.size
+    room = max(int(AHEAD / (4 * width * height)), 2)
+    drawn: queue.Queue[object] = queue.Queue(room)
+    log = logging.getLogger(COMPILER)
+    log.addHandler(_Teller(drawn.put))
+    log.setLevel(logging.INFO)
+    log.propagate = False
+
+    def hand_over() -> None:
+        """Write what is drawn while the next is; where nobody reads, the process is over."""
+        try:
+            while (item := drawn.get()) is not None:
+                pickle.dump(item, results, pickle.HIGHEST_PROTOCOL)
+                results.flush()
+        except BrokenPipeError:
+            os._exit(1)
+
+    writer = threading.Thread(target=hand_over)
+    writer.start()
+    try:
+        _draw(share, drawn.put)
+    except Exception as error:
+        drawn.put(error)
+    finally:
+        drawn.put(None)
+        writer.join()
+
+
+def _draw(share: Share, hand_over: Callable[[object], None]) -> None:
+    options = share.options
+    with Capture(scene_of(share.script, options.head), options) as capture:
+        playing = capture.play(share.script, until=share.until, progress=False)
+        for index, _ in enumerate(playing):
+            if index % share.every == share.first:
+                hand_over(capture.draw_frame())
+            else:
+                capture.pipeline.refine(capture.camera, capture.viewports)
