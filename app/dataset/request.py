@@ -14,7 +14,7 @@ from risorius.assets.meshes import FORMATS
 from ..errors import UserError
 from ..passes.exr import CHANNELS
 from ..passes.files import check_wanted
-from .backgrounds import Backgrounds, backgrounds_of, digest, files_in
+from .surroundings import Backgrounds, backgrounds_of, digest, files_in
 from .table import SampleTable, load_table, with_camera
 
 HEADS = tuple(f".{name}" for name in FORMATS)

@@ -43,7 +43,8 @@ class Sample:
     kind, name: what sort of face, and which: "expression", "happiness".
     controls: all that the face is asked for but its gaze.
     gaze: where it looks within the head, to its left and up [degrees]; None: into the camera.
-    person: number of the one whose head it is.
+    person: number of the one whose head it is. light: name of one of the renderer's.
+    surroundings: what light and background are drawn from.
     """
 
     seed: int
@@ -54,6 +55,8 @@ class Sample:
     gaze: tuple[float, float] | None
     view: View
     person: int
+    light: str
+    surroundings: int
 
 
 def draw(table: SampleTable, seed: int, index: int) -> Sample:
@@ -82,6 +85,8 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
         None if is_at_camera else (aside[0], aside[1]),
         View(yaw, pitch, zoom, field_of_view, (across, along)),
         int(looks.integers(table.persons["count"])),
+        chosen(looks, table.lights),
+        int(looks.integers(2**63)),
     )
 
 

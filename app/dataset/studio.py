@@ -7,10 +7,11 @@ process, in any order.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import PIL.Image
 
 from risorius import render
@@ -29,6 +30,7 @@ from .labels import labels_of_face
 from .persons import person_of
 from .request import Request
 from .sampling import Sample, draw, gaze_controls
+from .surroundings import laid_over, light_of
 
 SAMPLES = 8  # of each pixel
 MOST_PERSONS = 4  # that are kept, those that came last
@@ -72,11 +74,8 @@ class Studio:
         model = self._person(sample.person)
         pipeline, scene = model.pipeline, model.pipeline.scene
         assert isinstance(scene, FaceScene)
-        camera = _posed(scene, sample)
-        self._surface.begin()
-        pipeline.draw(camera, render.Style(), [(0, 0, *request.size)])
-        self._surface.end()
-        image = self._surface.read()
+        camera = _posed(scene, sample, request.size)
+        image, surroundings = self._taken(pipeline, camera, sample)
         images = model.passes.draw(camera, {"depth", *request.passes} - {"landmarks"})
         labels = {
             "id": name_of(index),
@@ -86,10 +85,34 @@ class Studio:
             "kind": sample.kind,
             "name": sample.name,
             "person": model.labels,
+            **surroundings,
             **labels_of_face(scene, camera, request.size, images["depth"]),
         }
         wanted = {name: images[name] for name in images if name in request.passes}
         return Shot(image, Labelled(wanted, labels))
+
+    def _taken(
+        self, pipeline: Pipeline, camera: render.OrbitCamera, sample: Sample
+    ) -> tuple[Image, dict[str, Any]]:
+        """The picture of a scene as it is now, and what is told of light and background."""
+        request = self._request
+        random = np.random.default_rng(sample.surroundings)
+        light = light_of(sample.light, random)
+        picture, colours, name = None, None, ""
+        if request.backgrounds.pictures:
+            name, picture = request.backgrounds.picture(random, request.size)
+        else:
+            colours = request.backgrounds.colours(random)
+        self._surface.begin()
+        style = render.Style(light=light, background=colours)
+        pipeline.draw(camera, style, [(0, 0, *request.size)])
+        self._surface.end()
+        if picture is None:
+            image = self._surface.read()
+        else:
+            image = laid_over(picture, self._surface.read_scene(4))
+        told = {"name": sample.light, **asdict(light)}
+        return image, {"light": told, "background": name if colours is None else asdict(colours)}
 
     def _person(self, number: int) -> _Model:
         """A person of the set before the frame."""
@@ -104,12 +127,12 @@ class Studio:
         return person
 
 
-def _posed(scene: FaceScene, sample: Sample) -> render.OrbitCamera:
+def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.OrbitCamera:
     """Let a face come to rest in its pose, and its eyes then; the camera before it."""
     scene.reset()
     scene.pose(sample.controls)
     scene.step(SETTLING)
-    camera = camera_of(scene, sample.view)
+    camera = camera_of(scene, sample.view, size)
     if sample.gaze is None:
         eyes = looking_at(scene, camera.eye)["eyes"]
     else:

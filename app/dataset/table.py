@@ -17,6 +17,7 @@ from typing import Any
 from risorius import assets
 from risorius.assets.generator.eyeballs import IRISES
 from risorius.assets.identities import DARKEST, LIGHTEST
+from risorius.render import LIGHTS
 
 from ..errors import UserError
 from ..files import read_text
@@ -49,6 +50,7 @@ class SampleTable:
     camera: Mapping[str, Range]
     persons: Mapping[str, Any]
     irises: Shares
+    lights: Shares
 
     def goes_with(self, unit: str, others: Container[str]) -> bool:
         """Whether a unit may be there beside those that are."""
@@ -136,6 +138,7 @@ def _sections() -> dict[str, Check]:
         "camera": _rows({name: _range(*ends) for name, ends in camera.items()}),
         "persons": _rows({"count": _count, "tone": _range(DARKEST, LIGHTEST)}),
         "irises": _weights(tuple(IRISES)),
+        "lights": _weights(tuple(LIGHTS)),
     }
 
 

@@ -1,11 +1,11 @@
-"""What is behind the face of a sample: soft colours, one colour, or a part of a picture."""
+"""What is around the face of a sample: light, and behind it colours or a part of a picture."""
 
 from __future__ import annotations
 
 import colorsys
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +14,13 @@ import PIL.Image
 import PIL.ImageColor
 import PIL.ImageOps
 
-from risorius.render import Background
+from risorius.render import LIGHTS, Background, Light
 
 from ..errors import UserError
 from ..files import Image
 
+TURN = 18.0  # [degrees] that the key light is moved, standard deviation
+BRIGHTNESS, WARMTH = (0.75, 1.15), 0.08  # of all light; of red over blue light, standard deviation
 SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
 SMALLEST = 0.6  # share of a picture's shorter side that is seen, at least
 
@@ -65,6 +67,29 @@ class Backgrounds:
             size, PIL.Image.Resampling.LANCZOS, (left, top, left + width, top + height)
         )
         return path.name, np.asarray(part)
+
+
+def light_of(name: str, random: np.random.Generator) -> Light:
+    """One of the renderer's lights: its key moved, all brighter or darker, warmer or cooler."""
+    light = LIGHTS[name]
+    to_key = np.array(light.to_key) + np.radians(TURN) * random.standard_normal(3)
+    to_key[2] = max(to_key[2], 0.1)  # not behind the head
+    warmth = WARMTH * np.clip(random.standard_normal(), -2.0, 2.0)
+    tint = random.uniform(*BRIGHTNESS) * np.array([1.0 + warmth, 1.0, 1.0 - warmth])
+    changed: dict[str, Any] = {
+        each: tuple((tint * getattr(light, each)).tolist())
+        for each in ("key", "fill", "rim", "sky", "ground")
+    }
+    return replace(light, to_key=tuple((to_key / np.linalg.norm(to_key)).tolist()), **changed)
+
+
+def laid_over(picture: Image, premultiplied: Image) -> Image:
+    """A picture (H, W, 3) behind another with alpha (H, W, 4), as OpenGL would blend them."""
+    through = 1.0 - premultiplied[..., 3:] / 255.0
+    blended: Image = (
+        np.rint(premultiplied[..., :3] + through * picture).clip(0, 255).astype(np.uint8)
+    )
+    return blended
 
 
 def backgrounds_of(text: str | None) -> Backgrounds:
