@@ -201,7 +201,7 @@ def _rows(checks: Mapping[str, Check]) -> Check:
 def _weights(names: Iterable[str]) -> Check:
     def check(where: str, given: Any) -> dict[str, float]:
         """Shares of these names, which are not all 0."""
-        found = _rows(dict.fromkeys(names, _number(0.0, 1e6)))(where, given)
+        found: dict[str, float] = _rows(dict.fromkeys(names, _number(0.0, 1e6)))(where, given)
         if not any(found.values()):
             raise UserError(f"{where}: all shares are 0; one at least must be above")
         return found
