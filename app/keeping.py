@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Callable, Hashable
 from pathlib import Path
-from typing import TypeVar
+from typing import TypeVar, cast
 
 Thing = TypeVar("Thing")
-MOST = 4  # things of one kind; those that were used last
+MOST = 2  # things of one kind; those that were used last
 
-_kept: dict[str, dict[Hashable, object]] | None = None
+_kept: dict[str, dict[Hashable, tuple[object, Callable[[], object]]]] | None = None
 
 
 def keep() -> None:
@@ -19,19 +20,42 @@ def keep() -> None:
     _kept = {}
 
 
-def kept(kind: str, key: Hashable, make: Callable[[], Thing]) -> Thing:
+def let_go() -> None:
+    """Close what is kept, and begin anew: after an error nobody knows in what state it is."""
+    for things in (_kept or {}).values():
+        for _, close in things.values():
+            with contextlib.suppress(Exception):  # what is broken cannot be closed
+                close()
+        things.clear()
+
+
+def is_keeping() -> bool:
+    """Whether this process keeps things."""
+    return _kept is not None
+
+
+def kept(
+    kind: str,
+    key: Hashable,
+    make: Callable[[], Thing],
+    close: Callable[[Thing], object] = lambda _: None,
+) -> Thing:
     """What was made for this key before, or else what `make` makes now.
 
-    Whoever takes it brings it into the state that a new one has.
+    Whoever takes it brings it into the state that a new one has. close: is called with what gives
+    way to others; what is not kept at all is the caller's to close.
     """
     if _kept is None:
         return make()
     things = _kept.setdefault(kind, {})
-    thing = things.pop(key) if key in things else make()
-    things[key] = thing  # as the last one
-    if len(things) > MOST:
-        del things[next(iter(things))]
-    return thing  # type: ignore[return-value]
+    if key not in things:
+        while len(things) >= MOST:  # first, so that there is room for the new one
+            _, close_it = things.pop(next(iter(things)))
+            close_it()
+        thing = make()
+        things[key] = thing, lambda: close(thing)
+    things[key] = things.pop(key)  # as the last one
+    return cast(Thing, things[key][0])
 
 
 def state_of(path: Path) -> tuple[str, int, int]:

@@ -70,7 +70,6 @@ def play(
     until = script.duration if until is None else until
     for index in counted_frames(until, frames_per_second, progress=progress):
         pose(index / frames_per_second)
-        tally.frames += 1
         if index:
             step(1.0 / frames_per_second)
         yield index / frames_per_second
@@ -81,4 +80,6 @@ def counted_frames(until: float, frames_per_second: float, *, progress: bool) ->
     frames = range(round(until * frames_per_second) + 1)
     bar = tqdm(frames, unit="frame", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):
-        yield from bar
+        for index in bar:
+            tally.frames += 1
+            yield index

@@ -87,7 +87,11 @@ class Pipeline:
         self.renderer = renderer
         self.texture = texture_of(scene, renderer)
         self.wrinkling = wrinkling_of(scene, renderer)
-        self.meshes = [DrawnMesh.of(scene, renderer, each) for each in refinements]
+        self.bind(refinements)
+
+    def bind(self, refinements: Sequence[Refinement]) -> None:
+        """Draw these from here on; refiners begin anew."""
+        self.meshes = [DrawnMesh.of(self.scene, self.renderer, each) for each in refinements]
 
     def step(self, seconds: float) -> None:
         """The upper half of the figure: time passes, and the triangle mesh follows."""

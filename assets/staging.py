@@ -24,6 +24,7 @@ MARK = "made-by-risorius"  # the file in it that says so, and is locked
 INSIDE = "new"  # the folder in it that holds what is made
 _NAME = re.compile(re.escape(PREFIX) + "[0-9a-f]{12}")
 _MARK_TEXT = b"Risorius makes files here, and takes this folder away when they are made.\n"
+_swept: set[Path] = set()  # where this process has looked for what others left
 
 
 class StagingFolder:
@@ -37,7 +38,9 @@ class StagingFolder:
         self._lock: IO[Any] | None = None
 
     def __enter__(self) -> Path:
-        sweep(self._folder.parent)
+        if self._folder.parent not in _swept:  # to look through 100 000 files takes a second
+            _swept.add(self._folder.parent)
+            sweep(self._folder.parent)
         try:
             self._folder.mkdir(mode=0o700)
             self._lock = locked(self._folder / MARK)

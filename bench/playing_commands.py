@@ -1,4 +1,4 @@
-"""Commands of `risorius bench` that time what is played: `take`, `script`, `window`, `live`."""
+"""Commands of `risorius bench` that time what is played: `capture`, `take`, ...."""
 
 from __future__ import annotations
 
@@ -57,4 +57,16 @@ def bench_live(seconds: float, window: bool) -> None:
     click.echo(live.report(seconds, with_window=window))
 
 
-COMMANDS = (bench_take, bench_script, bench_window, bench_live)
+@click.command("capture")
+@click.option("--size", type=Size(), default=(1280, 720), show_default="1280x720")
+@click.option(
+    "--seconds", type=FiniteRange(1.0, 60.0), default=4.0, show_default=True, help="Of the script."
+)
+def bench_capture(size: tuple[int, int], seconds: float) -> None:
+    """Time a film without a screen: frames a second, and where its time goes."""
+    from . import capture
+
+    click.echo(capture.report(size, seconds))
+
+
+COMMANDS = (bench_capture, bench_take, bench_script, bench_window, bench_live)

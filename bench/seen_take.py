@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from risorius.app.capture.recording import Capture, CaptureOptions
+from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.errors import UserError
 from risorius.app.files import save_png
 from risorius.app.playback import Playback

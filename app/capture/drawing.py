@@ -10,6 +10,7 @@ from risorius.assets.fitting import FittedHead
 
 from ..cameras import camera_for
 from ..files import Image
+from ..keeping import is_keeping, kept
 from ..looks import Refinement
 from ..motion import play
 from ..passes.files import Labelled, labelled
@@ -58,10 +59,18 @@ class Capture:
     def __init__(self, scene: Scene, options: CaptureOptions) -> None:
         self.scene = scene
         self.options = options
-        self.surface = render.open_offscreen(options.size, samples=options.samples)
         refinements = (*options.beside, options.refinement)
-        renderer = render.Renderer(self.surface)
-        self.pipeline = Pipeline(scene, renderer, refinements)
+
+        def opened() -> tuple[render.OffscreenSurface, Pipeline]:
+            """A surface, and the scene's textures on it."""
+            surface = render.open_offscreen(options.size, samples=options.samples)
+            return surface, Pipeline(scene, render.Renderer(surface), ())
+
+        # What is kept holds its scene, so that no other can have this identity.
+        key = (options.size, options.samples, id(scene))
+        self.surface, self.pipeline = kept("surface", key, opened, lambda made: made[0].close())
+        self.surface.make_current()
+        self.pipeline.bind(refinements)
         self._passes = Passes(self.pipeline) if options.passes else None
         self.viewports = side_by_side(self.surface.size, len(refinements))
         self.camera = camera_for(scene, options.camera)
@@ -70,7 +79,8 @@ class Capture:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.surface.close()
+        if not is_keeping():
+            self.surface.close()
 
     def draw_image(self) -> Image:
         """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""

@@ -10,8 +10,9 @@ from ..errors import UserError
 # AAC and Opus, as players want them, at a quality that nobody tells from the source.
 AAC = "-acodec aac -b:a 192k"
 OPUS = "-acodec libopus -b:a 160k"
-# H.264; 4:2:0 as every player wants it, at a quality without blocks.
-H264 = "-vcodec libx264 -pix_fmt yuv420p -crf 16 -preset veryfast -movflags +faststart"
+# H.264; 4:2:0 as every player wants it, at a quality without blocks. The number of threads decides
+# the bytes, and with it the memory: left to x264 it is that of the cores and a half, 1 GB on 64.
+H264 = "-vcodec libx264 -threads 3 -pix_fmt yuv420p -crf 16 -preset veryfast -movflags +faststart"
 PRORES = "-vcodec prores_ks -profile:v 4444 -pix_fmt yuva444p10le -alpha_bits 16"
 VP9 = "-vcodec libvpx-vp9 -crf 18 -b:v 0 -deadline good -cpu-used 5 -row-mt 1"
 # Each frame has colours of its own: nothing is kept until the end of a long film.

@@ -35,7 +35,7 @@ COMPILER = "risorius.jit"  # the log that tells of code that is compiled
 
 @dataclass(frozen=True)
 class Share:
-    """What one process draws: of the frames up to a time [s] those number `first` and every n-th."""
+    """What one process draws of the frames up to a time [s]: number `first`, and every n-th."""
 
     script: Script
     options: CaptureOptions
@@ -69,7 +69,7 @@ def _cores() -> int:
 def drawing(
     script: Script, options: CaptureOptions, until: float, count: int, *, progress: bool
 ) -> Iterator[Iterator[tuple[float, Callable[[], Frame]]]]:
-    """Let `count` processes play a script; yields the time [s] of each frame, and what hands it over.
+    """Let `count` processes play a script; yield each frame's time [s] and what hands it over.
 
     Each frame has to be taken. What goes wrong in a process is raised where its frame is taken.
     """

@@ -1,4 +1,4 @@
-"""Pictures with an alpha channel: from premultiplied to straight colours, and colours around them."""
+"""Pictures with an alpha channel: straight colours, and colours around what is seen."""
 
 from __future__ import annotations
 
@@ -26,9 +26,10 @@ def with_colours_around(image: Image) -> Image:
     What codes blocks of pixels, or colours at half the size, mixes edges with what is around them;
     black there would be seen as a dark fringe.
     """
-    weight = (image[..., 3:] > 0).astype(np.float32)
+    weight: npt.NDArray[np.float32] = (image[..., 3:] > 0).astype(np.float32)
     filled = image.copy()
-    around = _filled(image[..., :3] * weight, weight, AROUND)
+    seen: npt.NDArray[np.float32] = image[..., :3].astype(np.float32) * weight
+    around = _filled(seen, weight, AROUND)
     filled[..., :3] = np.where(weight > 0.0, image[..., :3], around + 0.5)
     return filled
 

@@ -145,8 +145,9 @@ def _job(number: int, text: str, journal: Journal) -> Job:
     outputs = [given[key] for key in OUTPUTS if given.get(key) is not None]
     if not outputs:
         raise UserError("it writes nothing: give -o OUTPUT")
-    paths = [value for value in given.values() if isinstance(value, Path)]
-    inputs = [path for path in paths if path not in outputs]
+    inputs = [
+        value for key, value in given.items() if isinstance(value, Path) and key not in OUTPUTS
+    ]
     for path in inputs:
         if not path.exists():
             raise UserError(f"{path}: there is no such file")

@@ -45,7 +45,9 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("script", type=PATH, required=False)
 @click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="Instead of a SCRIPT.")
-@click.option("-o", "--output", type=PATH, help="out.mp4, .mov, .webm, .gif, .webp, a folder, or .png")
+@click.option(
+    "-o", "--output", type=PATH, help="out.mp4, .mov, .webm, .gif, .webp, a folder, or .png"
+)
 @click.option("--sheet", type=PATH, help="Contact sheet of the named poses.")
 @click.option("--scene", type=SCENE_NAMES, help="What is animated.")
 @SOUND
@@ -110,6 +112,14 @@ def capture(
     )
     made = in_one_line(" and ".join(str(path) for path in (output, sheet) if path))
     click.echo(f"{made}: {most} triangles at most")
+    whole = options.size
+    if output is not None:
+        whole = size_of_film(output, whole, is_transparent=options.is_transparent)
+    if whole != options.size and not filming.quiet:
+        click.echo(
+            f"The film has {whole[0]}x{whole[1]} pixels, the last row or column twice: films of "
+            "this kind have even sizes."
+        )
 
 
 @click.command()

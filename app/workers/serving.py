@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from ..errors import in_one_line, line_for
-from ..keeping import keep
+from ..keeping import keep, let_go
 from ..stopping import handle_signals
 
 PATIENCE = 300.0  # [s] without work, after which the process ends
@@ -101,6 +101,7 @@ def _attempt(asked: bytes) -> tuple[Any, str | None]:
         done: Callable[[Any], Any] = work
         return done(item), None
     except Exception as error:
+        let_go()
         line = line_for(error)
         if line is None:  # a defect
             traceback.print_exc()

@@ -58,3 +58,41 @@ def test_nothing_is_left_to_compile_after_warm(tmp_path: Path) -> None:
     for k, command in enumerate(COMMANDS):
         run(f"{command} --quiet --size 64x64 -o {tmp_path}/{k}.png")
     assert sorted((tmp_path / "cache").rglob("*.code")) == compiled
+
+
+WRITER = """
+import sys
+from pathlib import Path
+from risorius import jit
+from risorius.__main__ import command
+write = jit._write
+def counted(file, content):
+    with open(sys.argv[1], "a") as tally:
+        tally.write(f"{file.name}\\n")
+    write(file, content)
+jit._write, jit.PATIENCE = counted, 600.0  # on however slow a machine
+command()(sys.argv[2:])
+"""
+
+
+@pytest.mark.slow
+def test_processes_that_start_together_compile_once(tmp_path: Path) -> None:
+    """Three of them with nothing compiled: every kernel is compiled by one, the others read it."""
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    tally = tmp_path / "tally"
+    processes = [
+        subprocess.Popen(
+            [
+                *(sys.executable, "-c", WRITER, str(tally), "capture", "--set", "joy", "--quiet"),
+                *("--size", "64x64", "-o", str(tmp_path / f"{number}.png")),
+            ],
+            env=environment,
+        )
+        for number in range(3)
+    ]
+    assert [process.wait(900) for process in processes] == [0, 0, 0]
+    written = tally.read_text().splitlines()
+    assert len(written) > 30
+    assert sorted(written) == sorted(set(written))
+    pictures = {(tmp_path / f"{number}.png").read_bytes() for number in range(3)}
+    assert len(pictures) == 1

@@ -1,0 +1,364 @@
+"""`risorius batch`: lists are checked whole, lines are done once, and killing loses nothing."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import random
+import resource
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from risorius.app.batch.journal import Journal
+from risorius.app.batch.listing import Job
+from risorius.app.cli import main
+
+from .test_workers import is_running, wait_until
+
+COMMAND = (sys.executable, "-m", "risorius")
+SCRIPT = "duration = {0}\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = {0}\n{1} = 1.0\n"
+POSES = ("joy", "sadness", "anger", "fear")
+SMALL = "--size 64x48 --samples 0 --fps 20"
+LIST = f"""
+# two films, frames and a clip
+capture joy.toml -o joy.mp4 {SMALL}
+  capture 'sadness.toml' -o "films/sadness it is.mp4" {SMALL}
+
+capture anger.toml -o anger {SMALL}
+export fear.toml -o fear.npz --fps 20
+"""
+MADE = ("joy.mp4", "films/sadness it is.mp4", "anger", "fear.npz")
+
+
+@pytest.fixture(autouse=True)
+def scripts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A folder of scripts and a list, in which the test stands."""
+    monkeypatch.chdir(tmp_path)
+    for pose in POSES:
+        Path(f"{pose}.toml").write_text(SCRIPT.format(0.5, pose))
+    Path("clips.txt").write_text(LIST)
+
+
+def batch(*arguments: str) -> Result:
+    """Run the command in this process."""
+    return CliRunner(catch_exceptions=False).invoke(main, ["batch", "clips.txt", *arguments])
+
+
+def rows() -> dict[int, dict[str, str]]:
+    """The rows of the summary, by line."""
+    with open("clips_logs/summary.csv", encoding="utf-8", newline="") as file:
+        return {int(row["line"]): row for row in csv.DictReader(file)}
+
+
+def statuses() -> list[str]:
+    """What became of the lines, in their order."""
+    return [row["status"] for row in rows().values()]
+
+
+def contents(*names: str) -> dict[str, bytes]:
+    """The bytes of these files, and of all files in these folders."""
+    files = [file for name in names for file in (Path(name), *Path(name).rglob("*"))]
+    return {str(file): file.read_bytes() for file in files if file.is_file()}
+
+
+def test_a_list_is_done_and_not_done_again() -> None:
+    """Every output is what the command alone makes; --resume makes what would differ, no more."""
+    ended = batch("--jobs", "2")
+    assert ended.exit_code == 0, ended.output
+    assert "4 lines: 4 ok, 0 failed, 0 skipped; 44 frames" in ended.stdout
+    assert statuses() == ["ok"] * 4 and list(rows()) == [3, 4, 6, 7]
+    assert all(row["frames"] == "11" and float(row["seconds"]) > 0 for row in rows().values())
+    made = contents(*MADE)
+    assert len(made) == 3 + 11
+    log = Path("clips_logs/line_0003.log").read_text()
+    assert log.startswith("risorius capture joy.toml") and "joy.mp4: " in log
+
+    alone = f"capture joy.toml -o alone.mp4 {SMALL} --quiet".split()
+    assert CliRunner().invoke(main, alone).exit_code == 0
+    assert Path("alone.mp4").read_bytes() == made["joy.mp4"]
+
+    assert batch("--resume").exit_code == 0
+    assert statuses() == ["skipped"] * 4
+    Path("joy.toml").write_text(SCRIPT.format(0.25, "joy"))
+    Path("fear.npz").unlink()
+    Path("anger/frame_00003.png").unlink()
+    Path("clips.txt").write_text(LIST.replace("sadness it is", "sadness it was"))
+    assert batch("--resume").exit_code == 0
+    assert statuses() == ["ok"] * 4
+    again = contents(*MADE)
+    assert {name for name in made if again.get(name) != made[name]} == {"joy.mp4"}
+    assert len(contents("films")) == 2
+    assert batch("--resume").exit_code == 0 and statuses() == ["skipped"] * 4
+
+
+def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
+    """One line for each, with its number; also where lines are in each other's way."""
+    Path("mine").mkdir()
+    Path("mine/notes.txt").write_text("mine")
+    Path("broken.toml").write_text("duration = [")
+    Path("clips.txt").write_text(
+        "capture joy.toml -o joy.mp4 --size 320x\n"
+        "capture joy.toml -o 'joy.mp4\n"
+        "capture joy.toml -o a.mp4\n"
+        "capture joy.toml -o ./a.mp4\n"
+        "dataset --count 3\n"
+        "risorius capture joy.toml -o b.mp4\n"
+        "capture nothere.toml -o c.mp4\n"
+        "capture joy.toml\n"
+        "capture joy.toml --help\n"
+        "convert fear.toml -o joy.toml\n"
+        "capture joy.toml -o mine\n"
+        "capture broken.toml -o d.mp4\n"
+        "capture joy.toml -o joy.toml\n"
+        "capture joy.toml -o e.mp4 --colour\n"
+        "capture joy.toml -o f.mp4 --sheet joy.toml\n"
+    )
+    before = contents(".")
+    ended = batch()
+    lines = ended.stderr.splitlines()
+    words = (
+        (1, "'320x' is no size"),
+        (2, "quotation mark"),
+        (3, "is written by line 10"),
+        (4, "a.mp4: is written by line 3"),
+        (5, "allowed are capture, export, convert, speak"),
+        (6, "'risorius' is no command"),
+        (7, "nothere.toml: there is no such file"),
+        (8, "writes nothing"),
+        (9, "writes nothing"),
+        (11, "not empty"),
+        (12, "broken.toml"),
+        (13, "is written by line 10 already"),
+        (15, "is read and would be written"),
+        (14, "--colour"),
+    )
+    assert ended.exit_code == 2 and ended.stdout == ""
+    for number, part in words:
+        told = [line for line in lines if line.startswith(f"risorius: clips.txt:{number}: ")]
+        assert any(part in line for line in told), (number, told)
+    assert all(line.startswith("risorius: clips.txt:") and line.isprintable() for line in lines)
+    assert contents(".") == before
+
+
+@pytest.mark.parametrize(
+    ("text", "told"), [(None, "there is no such list"), ("# nothing\n\n", "there is no command")]
+)
+def test_a_list_of_nothing(text: str | None, told: str) -> None:
+    """One line, exit code 2."""
+    Path("clips.txt").unlink()
+    if text is not None:
+        Path("clips.txt").write_text(text)
+    ended = batch()
+    assert ended.exit_code == 2 and ended.stderr.count("\n") == 1 and told in ended.stderr
+
+
+def test_thousands_of_wrong_lines_are_counted() -> None:
+    """The first are told, the others are counted."""
+    Path("clips.txt").write_text("nonsense\n" * 5000)
+    ended = batch()
+    assert ended.exit_code == 2
+    assert len(ended.stderr.splitlines()) == 21 and "4980 more wrong lines" in ended.stderr
+
+
+def test_jobs_and_scheduler_exclude_each_other() -> None:
+    """A cluster has the workers that it has; one that is not there is told in one line."""
+    assert "--jobs is for this computer" in batch("--jobs", "2", "--scheduler", "tcp://a:1").stderr
+    ended = batch("--scheduler", "tcp://127.0.0.1:9")
+    assert ended.exit_code == 2 and ended.stderr.count("\n") == 1
+    assert "no Dask scheduler answers there" in ended.stderr
+
+
+def test_what_fails_fails_alone() -> None:
+    """Exit code 1, the reason in one line and in the summary; it is tried again with --resume."""
+    Path("sadness.toml").write_text(SCRIPT.format(0.5, "no_such_control"))
+    ended = batch("--jobs", "1")
+    assert ended.exit_code == 1
+    assert statuses() == ["ok", "failed", "ok", "ok"]
+    assert "no_such_control" in rows()[4]["error"] and not Path("films").exists()
+    assert [line for line in ended.stderr.splitlines() if "clips.txt:4: " in line]
+    Path("sadness.toml").write_text(SCRIPT.format(0.5, "sadness"))
+    assert batch("--resume").exit_code == 0
+    assert statuses() == ["skipped", "ok", "skipped", "skipped"]
+
+
+def test_a_journal_that_was_cut_off_costs_its_last_line() -> None:
+    """Whatever is in it: what cannot be read is made once more, and added below."""
+    file = Path("journal.jsonl")
+    job = Job(1, "a", "b:c", (), Path.cwd(), (Path("joy.toml"),), (Path("fear.toml"),))
+    other = Job(2, "x", "b:c", (), Path.cwd(), (), (Path("joy.toml"),))
+    for each in (job, other):
+        Journal(file).add(each, Journal.state(each), 3, 1.5)
+    whole = file.read_text()
+    assert json.loads(whole.splitlines()[-1])["frames"] == 3
+    for cut in (*range(0, len(whole), 7), len(whole)):
+        file.write_text(whole[:cut])
+        assert Journal(file).made(other) is None or cut == len(whole)
+        Journal(file).add(other, Journal.state(other), 3, 1.5)
+        assert Journal(file).made(other)
+    file.write_text('[1]\n7\nnull\n{"line": 3}\n{"begun": 3}\n\x00' + whole)
+    assert Journal(file).made(job)
+
+
+def limited() -> None:
+    """No file may get longer than this."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX systems")
+def test_a_full_disk_is_told_in_a_line() -> None:
+    """Films get no place, small files do: every line has its outcome, and nothing is left."""
+    Path("clips.txt").write_text(
+        "capture joy.toml -o joy.mp4 --size 640x480 --fps 10\n"
+        "capture anger.toml -o anger.png --size 16x16\n"
+        "export fear.toml -o fear.npz\n"
+    )
+    ended = subprocess.run(
+        [*COMMAND, "batch", "clips.txt", "--jobs", "2"],
+        preexec_fn=limited,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ended.returncode == 1, ended.stderr
+    assert statuses() == ["failed", "ok", "failed"]
+    assert "Traceback" not in ended.stderr
+    assert all("cannot be written" in rows()[number]["error"] for number in (1, 3))
+    assert not Path("joy.mp4").exists() and not Path("fear.npz").exists()
+    assert not list(Path().glob(".risorius-*"))
+
+
+def films(count: int) -> list[str]:
+    """A list of so many films, and what they are called."""
+    for number in range(count):
+        script = SCRIPT.format(1 + number / 20, "amplitude")
+        Path(f"{number}.toml").write_text(f'scene = "plane"\n{script}')
+    lines = [f"capture {number}.toml -o made/{number}.mp4 {SMALL}" for number in range(count)]
+    Path("clips.txt").write_text("\n".join(lines))
+    return [f"{number}.mp4" for number in range(count)]
+
+
+def started(*arguments: str) -> subprocess.Popen[bytes]:
+    """The command as a process that hears signals, whoever runs the tests."""
+    return subprocess.Popen(
+        [*COMMAND, "batch", "clips.txt", *arguments],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+
+
+def workers_of(process: subprocess.Popen[bytes]) -> list[int]:
+    """The processes that it has work done in."""
+    found = []
+    for file in Path(f"/proc/{process.pid}/task").glob("*/children"):
+        with_any = file.read_text() if file.exists() else ""
+        found += [int(each) for each in with_any.split()]
+    return found
+
+
+linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+
+
+@linux
+def test_a_worker_is_killed_halfway() -> None:
+    """Every film is whole, as it would be without, and each is counted once."""
+    names = films(4)
+    process = started("--jobs", "2", "--quiet")
+    wait_until(lambda: bool(list(Path("made").glob(".risorius-*/new/*.mp4"))))
+    os.kill(workers_of(process)[0], signal.SIGKILL)
+    _, told = process.communicate(timeout=120)
+    assert process.returncode == 0, told
+    assert statuses() == ["ok"] * 4
+    assert sum(int(row["attempts"]) for row in rows().values()) in (4, 5)
+    assert sorted(path.name for path in Path("made").glob("*.mp4")) == names
+    disturbed = contents("made")
+    assert batch().exit_code == 0
+    undisturbed = contents(*Path("made").glob("*.mp4"))
+    assert {name: disturbed[name] for name in undisturbed} == undisturbed
+
+
+@linux
+@pytest.mark.parametrize(
+    "number",
+    [
+        signal.SIGINT,
+        pytest.param(signal.SIGTERM, marks=pytest.mark.slow),
+        pytest.param(signal.SIGHUP, marks=pytest.mark.slow),
+    ],
+)
+def test_stopped_halfway_and_resumed(number: signal.Signals) -> None:
+    """Nothing half-written is left, no process runs on, and what is missing is made afterwards."""
+    names = films(3)
+    process = started("--jobs", "2", "--quiet")
+    wait_until(lambda: bool(list(Path("made").glob(".risorius-*/new/*.mp4"))))
+    process.send_signal(number)
+    _, told = process.communicate(timeout=60)
+    assert process.returncode == -number
+    assert told == (b"risorius: stopped\n" if number == signal.SIGINT else b"")
+    left = {path.name for path in Path("made").iterdir()}
+    assert left < set(names)
+    assert batch("--resume").exit_code == 0
+    assert sorted(contents("made")) == [f"made/{name}" for name in names]
+
+
+@pytest.mark.slow
+@linux
+def test_killed_at_random_moments() -> None:
+    """A worker or the whole batch; --resume then makes the very bytes of an undisturbed run."""
+    names = films(3)
+    assert batch("--jobs", "2").exit_code == 0
+    undisturbed = contents("made")
+    assert sorted(undisturbed) == [f"made/{name}" for name in names]
+    chance = random.Random(20030214)
+    for _ in range(30):
+        for name in names:
+            Path("made", name).unlink()
+        process = started("--jobs", "2", "--quiet")
+        time.sleep(chance.uniform(0.2, 6.0))
+        victims = [process.pid, *workers_of(process)]
+        os.kill(chance.choice(victims), signal.SIGKILL)
+        process.communicate(timeout=120)
+        wait_until(lambda: not any(map(is_running, victims)))  # noqa: B023
+        for path in Path("made").glob("*.mp4"):
+            assert path.read_bytes() == undisturbed[str(path)], path
+        resumed = batch("--resume", "--jobs", "2")
+        assert resumed.exit_code == 0, resumed.output
+        assert contents(*Path("made").glob("*.mp4")) == undisturbed
+        assert len(rows()) == 3
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    """A Dask cluster of two workers in processes of their own."""
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as opened:
+        yield opened
+
+
+def test_a_cluster_loses_a_worker_halfway(cluster: Any) -> None:
+    """Every film is whole, none is made twice, and all are as they are here."""
+    names = films(4)
+    process = started("--scheduler", cluster.scheduler_address, "--quiet")
+    wait_until(lambda: bool(list(Path("made").glob(".risorius-*/new/*.mp4"))))
+    with sys.modules["distributed"].Client(cluster.scheduler_address) as client:
+        os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
+    _, told = process.communicate(timeout=200)
+    assert process.returncode == 0, told
+    assert statuses() == ["ok"] * 4
+    made = contents("made")
+    assert sorted(made) == [f"made/{name}" for name in names]
+    entries = Path("clips_logs/journal.jsonl").read_text().split("\n")
+    assert sum('"frames"' in entry for entry in entries) == 4
+    assert batch().exit_code == 0
+    assert contents("made") == made

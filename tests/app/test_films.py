@@ -1,0 +1,325 @@
+"""Films of every kind: their frames, in order and complete, at any size, transparent or not."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import imageio_ffmpeg
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+import pytest
+from click.testing import CliRunner
+from hypothesis import given
+from hypothesis import strategies as st
+
+from risorius import render
+from risorius.app.capture import Capture, CaptureOptions, capture, outputs, processes
+from risorius.app.capture.formats import FORMATS, TRANSPARENT, size_of_film
+from risorius.app.capture.transparency import straight, with_colours_around
+from risorius.app.cli import main
+from risorius.app.errors import UserError
+from risorius.app.performances import script_for
+from risorius.app.scenes import FaceScene, PlaneScene
+
+Image = npt.NDArray[np.uint8]
+WIDTH, HEIGHT, COUNT, RATE = 97, 63, 12, 25.0
+SMALL = CaptureOptions(size=(64, 48), samples=0)
+linux = pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
+
+
+def numbered_frames(*, is_transparent: bool = False) -> list[Image]:
+    """Pictures of a bar that moves to the right, a step with each; clear around it if asked."""
+    frames = []
+    for number in range(COUNT):
+        frame = np.full((HEIGHT, WIDTH, 4), (60, 60, 60, 0), np.uint8)
+        frame[:, 7 * number : 7 * number + 14] = 200, 150, 120, 255
+        frames.append(frame if is_transparent else np.ascontiguousarray(frame[..., :3]))
+    return frames
+
+
+def decoded(path: Path, size: tuple[int, int], *, is_transparent: bool = False) -> Image:
+    """All pictures of a film, (n, H, W, 3 or 4), read by another program where there is one."""
+    if path.suffix in (".gif", ".webp"):
+        with PIL.Image.open(path) as film:
+            assert film.size == size and film.info["loop"] == 0
+            pictures = []
+            for number in range(getattr(film, "n_frames", 1)):
+                film.seek(number)
+                pictures.append(np.asarray(film.convert("RGBA" if is_transparent else "RGB")))
+        return np.array(pictures)
+    decoder = ["-c:v", "libvpx-vp9"] if path.suffix == ".webm" else []  # the only one with alpha
+    form = "rgba" if is_transparent else "rgb24"
+    arguments = [*decoder, "-i", str(path), "-f", "rawvideo", "-pix_fmt", form, "-"]
+    program = [imageio_ffmpeg.get_ffmpeg_exe(), "-v", "error"]
+    raw = subprocess.run([*program, *arguments], stdout=subprocess.PIPE, check=True).stdout
+    return np.frombuffer(raw, np.uint8).reshape(-1, size[1], size[0], len(form.rstrip("24")))
+
+
+def seconds_of(path: Path) -> float:
+    """How long a film is."""
+    if path.suffix not in (".gif", ".webp"):
+        return float(imageio_ffmpeg.count_frames_and_secs(str(path))[1])
+    total = 0.0
+    with PIL.Image.open(path) as film:
+        for number in range(getattr(film, "n_frames", 1)):
+            film.seek(number)
+            film.load()  # only then is it told how long a WebP's picture stays
+            total += film.info["duration"] / 1000.0
+    return total
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_frames_are_in_order_and_complete(tmp_path: Path, suffix: str) -> None:
+    """Each kind of film, of an odd size, gives back every picture, at its time."""
+    path = tmp_path / f"film{suffix}"
+    frames = numbered_frames()
+    with outputs.film(path, (WIDTH, HEIGHT), RATE) as add:
+        for frame in frames:
+            add(frame)
+    size = size_of_film(path, (WIDTH, HEIGHT))
+    found = decoded(path, size)
+    assert len(found) == COUNT
+    for picture, frame in zip(found, frames, strict=True):
+        off = np.abs(picture[:HEIGHT, :WIDTH].astype(int) - frame)
+        assert off.mean() < 6.0  # the next frame is off by 20
+    assert seconds_of(path) == pytest.approx(COUNT / RATE, abs=0.02)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("suffix", [".mp4", ".mov", ".mkv"])
+def test_odd_sizes_become_even_by_a_row_and_a_column_more(tmp_path: Path, suffix: str) -> None:
+    """Nothing is cut off, and what is added goes on as the picture does."""
+    path = tmp_path / f"film{suffix}"
+    rows, columns = np.mgrid[0:HEIGHT, 0:WIDTH]
+    ramp = np.repeat((rows + columns)[..., None], 3, axis=2).astype(np.uint8)
+    with outputs.film(path, (WIDTH, HEIGHT), RATE) as add:
+        add(ramp)
+    picture = decoded(path, (WIDTH + 1, HEIGHT + 1))[0].astype(int)
+    assert np.abs(picture[:HEIGHT, :WIDTH] - ramp).max() < 8
+    assert np.abs(picture[-1, :WIDTH] - ramp[-1]).max() < 8
+    assert np.abs(picture[:HEIGHT, -1] - ramp[:, -1]).max() < 8
+
+
+def test_an_odd_size_is_told_in_one_line(tmp_path: Path) -> None:
+    """A film that has other sides than asked for says so; nobody else says anything of it."""
+    common = ["capture", "--scene", "plane", "--fps", "1", "--samples", "0", "--size", "97x63"]
+    for name, is_told in (("a.mp4", True), ("a.webm", False), ("a.gif", False), ("a", False)):
+        result = CliRunner().invoke(main, [*common, "-o", str(tmp_path / name)])
+        assert result.exit_code == 0, result.output
+        assert ("98x64 pixels, the last row or column twice" in result.output) == is_told
+
+
+@pytest.mark.parametrize("suffix", TRANSPARENT)
+def test_transparent_films(tmp_path: Path, suffix: str) -> None:
+    """Alpha comes back, and the colour at edges is that of the picture, not of what is around."""
+    path = tmp_path / f"film{suffix}"
+    frames = numbered_frames(is_transparent=True)
+    with outputs.film(path, (WIDTH, HEIGHT), RATE, is_transparent=True) as add:
+        for frame in frames:
+            add(frame)
+    found = decoded(path, (WIDTH, HEIGHT), is_transparent=True)
+    assert len(found) == COUNT
+    for picture, frame in zip(found, frames, strict=True):
+        assert np.abs(picture[..., 3].astype(int) - frame[..., 3]).mean() < 3.0
+        edges = picture[:, (frame[0, :, 3] > 0)][:, [0, -1], :3].astype(int)
+        assert np.abs(edges - (200, 150, 120)).max() < 24
+
+
+@pytest.mark.parametrize("suffix", [".mp4", ".mkv"])
+def test_films_that_cannot_be_transparent_are_refused(tmp_path: Path, suffix: str) -> None:
+    """One line, which names those that can."""
+    path = tmp_path / f"film{suffix}"
+    arguments = ["capture", "--scene", "plane", "-o", str(path), "--background", "transparent"]
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 2 and len(result.output.splitlines()) == 1
+    assert "take one of .mov, .webm, .gif, .webp, a folder of pictures" in result.output
+    assert not path.exists()
+
+
+def test_a_gif_is_not_asked_for_frames_that_players_slow_down(tmp_path: Path) -> None:
+    """Two hundredths of a second a frame, or one line."""
+    with (
+        pytest.raises(UserError, match=r"film.gif: has at most 50 frames a second, and"),
+        outputs.film(tmp_path / "film.gif", (96, 64), 60.0),
+    ):
+        pass
+
+
+@given(st.integers(0, 255), st.lists(st.integers(0, 255), min_size=3, max_size=3))
+def test_straight_colours_are_those_that_were_multiplied(alpha: int, colour: list[int]) -> None:
+    """To the precision that is left: put over black, the picture is the premultiplied one."""
+    multiplied = [round(each * alpha / 255) for each in colour]
+    image = np.array([[[*multiplied, alpha]]], np.uint8)
+    red_green_blue = straight(image)[0, 0].astype(float)
+    assert np.abs(red_green_blue[:3] * alpha / 255.0 - multiplied).max() <= 0.51
+    assert red_green_blue[3] == alpha and (alpha > 0 or not red_green_blue.any())
+
+
+def test_colours_around_are_those_of_the_nearest_edge() -> None:
+    """What is seen stays as it is; what is not has colours, black nowhere near."""
+    image = np.zeros((60, 80, 4), np.uint8)
+    image[20:40, 10:30] = 250, 10, 10, 255
+    image[20:40, 50:70] = 10, 10, 250, 255
+    filled = with_colours_around(image)
+    seen = image[..., 3] > 0
+    assert np.array_equal(filled[seen], image[seen]) and not filled[~seen, 3].any()
+    assert filled[30, 8, 0] > 200 and filled[30, 72, 2] > 200
+    assert (filled[..., :3].max(axis=2) > 100).all()
+
+
+@pytest.mark.parametrize("samples", [0, 4])
+@pytest.mark.parametrize("colour", [(255, 255, 255), (0, 0, 0), (0, 177, 64)])
+def test_a_transparent_picture_lies_over_any_colour(
+    samples: int, colour: tuple[int, int, int]
+) -> None:
+    """Over white, black and green it is the picture that is drawn before that: no fringe."""
+    flat = tuple(part / 255.0 for part in colour)
+    background = render.Background(flat, flat)
+    pictures = []
+    for behind in (background, None):
+        style = render.Style(background=behind)
+        options = replace(SMALL, size=(160, 120), samples=samples, style=style)
+        with Capture(FaceScene(), options) as studio:
+            pictures.append(studio.draw_image())
+    opaque, clear = pictures
+    alpha = clear[..., 3:] / 255.0
+    over = clear[..., :3] * alpha + np.array(colour) * (1.0 - alpha)
+    assert np.abs(over - opaque).max() <= 2.0
+    assert (clear[0, 0] == 0).all() and 0.2 < alpha.mean() < 0.8
+    assert samples == 0 or ((alpha > 0.0) & (alpha < 1.0)).sum() > 50
+
+
+@pytest.mark.parametrize(
+    ("word", "corner"),
+    [("white", (255, 255, 255)), ("black", (0, 0, 0)), ("#00B140", (0, 177, 64))],
+)
+def test_backgrounds_by_name(tmp_path: Path, word: str, corner: tuple[int, int, int]) -> None:
+    """The corner of a picture has exactly the colour that was asked for."""
+    path = tmp_path / "picture.png"
+    arguments = ["capture", "--scene", "plane", "--size", "64x48", "--time", "0", "-o", str(path)]
+    result = CliRunner().invoke(main, [*arguments, "--background", word])
+    assert result.exit_code == 0, result.output
+    with PIL.Image.open(path) as picture:
+        assert picture.mode == "RGB" and picture.getpixel((0, 0)) == corner
+
+
+# Drawn by several processes
+
+
+def several(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let so many processes draw, however little there is to do."""
+    monkeypatch.setattr(processes, "worthwhile", lambda *_: count)
+
+
+def test_processes_draw_the_same_frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Bit for bit, in order, with the triangles of all; also where a refiner remembers frames."""
+    script = replace(script_for(None, "plane"), duration=0.5)
+    refinement = replace(SMALL.refinement, look="paper", options={"coherent": True})
+    options = replace(SMALL, size=(160, 90), refinement=refinement)
+    most = []
+    for count in (1, 3):
+        several(count, monkeypatch)
+        most.append(capture(script, options, output=tmp_path / str(count), progress=False))
+    names = sorted(path.name for path in (tmp_path / "1").iterdir())
+    assert len(names) == 16 and most[0] == most[1]
+    for name in names:
+        assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "3" / name).read_bytes()
+
+
+def test_what_fails_in_a_process_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if it had failed here, and nothing is left."""
+    several(2, monkeypatch)
+    options = replace(SMALL, camera="nowhere")
+    with pytest.raises(UserError, match="camera 'nowhere': allowed are"):
+        capture(script_for(None, "plane"), options, output=tmp_path / "film.mp4", progress=False)
+    assert list(tmp_path.iterdir()) == []
+
+
+def children(process: int) -> list[int]:
+    """The numbers of the processes that one began and that are still there."""
+    found = Path(f"/proc/{process}/task/{process}/children").read_text().split()
+    return [int(each) for each in found]
+
+
+@linux
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
+def test_a_film_whose_processes_end(tmp_path: Path, number: signal.Signals) -> None:
+    """One of those that draw is killed: one line. The command is stopped: none of them goes on."""
+    code = (
+        "from risorius.app.capture import processes\n"
+        "from risorius.__main__ import run\n"
+        "processes.worthwhile = lambda *_: 2\nrun()"
+    )
+    arguments = ["capture", "--scene", "face", "--size", "160x120", "--quiet"]
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, *arguments, "-o", str(tmp_path / "film.mp4")],
+        stderr=subprocess.PIPE,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    while process.poll() is None and not any(tmp_path.glob("**/film.mp4")):
+        time.sleep(0.01)
+    begun = children(process.pid)
+    assert len(begun) == 3  # and the encoder
+    drawing = [each for each in begun if "serve" in Path(f"/proc/{each}/cmdline").read_text()]
+    os.kill(drawing[1] if number == signal.SIGKILL else process.pid, number)
+    _, told = process.communicate(timeout=60)
+    [line] = [each for each in told.decode().splitlines() if not each.startswith("Compiling")]
+    if number == signal.SIGKILL:
+        assert process.returncode == 2
+        assert "a process that draws the film ended (SIGKILL)" in line
+    else:
+        assert (process.returncode, line) == (-number, "risorius: stopped")
+    end = time.monotonic() + 10.0
+    while any(Path(f"/proc/{each}/cmdline").exists() for each in begun) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert not any(Path(f"/proc/{each}/cmdline").exists() for each in begun)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_disk_that_fills_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frames are written in threads; what goes wrong there is one line, and nothing is left."""
+    save = PIL.Image.Image.save
+
+    def until_it_is_full(image: PIL.Image.Image, path: Any, **options: Any) -> None:
+        """Write the first few pictures."""
+        if "00003" in str(path):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        save(image, path, **options)
+
+    monkeypatch.setattr(PIL.Image.Image, "save", until_it_is_full)
+    target = tmp_path / "frames"
+    with (
+        pytest.raises(UserError, match="frames: cannot be written: No space left on device"),
+        outputs.folder(target, overwrite=False) as add,
+    ):
+        for frame in numbered_frames():
+            add(frame)
+    assert list(tmp_path.iterdir()) == []
+
+
+@linux
+def test_memory_stays_flat() -> None:
+    """Some hundred frames take no more memory than the first ones."""
+
+    def resident() -> int:
+        """Of this process [bytes]."""
+        return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    scene = PlaneScene()
+    with Capture(scene, SMALL) as studio:
+        sizes = []
+        for index in range(500):
+            scene.step(1.0 / 30.0)
+            studio.draw_frame()
+            if index in (100, 499):
+                sizes.append(resident())
+    assert sizes[1] - sizes[0] < 8e6  # half of the pictures that were read back: 2.3 MB

@@ -1,0 +1,106 @@
+"""What a process keeps for the next piece of work: it changes nothing of what is made."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from risorius.app import keeping
+from risorius.app.cli import main
+
+SCRIPT = """
+duration = 0.3
+[[pose]]
+time = 0.0
+{first} = 1.0
+[[pose]]
+time = 0.3
+{second} = 1.0
+"""
+COMMANDS = {
+    "joy": "capture joy.toml -o {0} --size 64x48 --fps 20",
+    "a_word": "capture word.toml -o {0} --size 48x64 --samples 0 --fps 20 --alive",
+    "a_drag": "capture joy.toml -o {0} --size 64x48 --fps 20 --option coherent=on --compare paper",
+    "a_cloth": "capture cloth.toml -o {0} --scene cloth --size 64x48 --fps 20",
+    "a_plane": "capture --set amplitude=1 --scene plane -o {0} --size 64x48 --fps 10",
+    "a_clip": "export word.toml -o {0}/clip.npz --fps 20 --quiet",
+}
+
+
+@pytest.fixture
+def kept() -> Iterator[None]:
+    """This process keeps what it makes, until the test ends."""
+    keeping.keep()
+    yield
+    keeping._kept = None
+
+
+def test_things_are_made_once_and_the_oldest_goes(kept: None) -> None:
+    """As many as memory is meant for; one that is used again is young again."""
+    made: list[int] = []
+    closed: list[str] = []
+
+    def make(key: int) -> str:
+        """A new thing of this number."""
+        made.append(key)
+        return f"thing {key}"
+
+    for key in (*range(keeping.MOST), 0, keeping.MOST, 0, 1):
+        assert keeping.kept("thing", key, partial(make, key), closed.append) == f"thing {key}"
+    assert made == [*range(keeping.MOST), keeping.MOST, 1]
+    assert len(closed) == 2 and closed[0] == "thing 1"
+    keeping.let_go()
+    assert sorted(closed) == sorted(f"thing {key}" for key in made)
+    assert keeping.kept("thing", 0, lambda: "new") == "new"
+
+
+def test_nothing_is_kept_unless_asked_for() -> None:
+    """A program that draws one thing pays no memory for the next."""
+    assert keeping.kept("thing", 1, list) is not keeping.kept("thing", 1, list)
+
+
+def test_the_content_of_a_file_is_known_by_its_state(tmp_path: Path) -> None:
+    """Another content, another place, or no file at all."""
+    file, other = tmp_path / "a", tmp_path / "b"
+    states = [keeping.state_of(file)]
+    for text in ("x", "xy"):
+        file.write_text(text)
+        states.append(keeping.state_of(file))
+    os.utime(file, ns=(1, 1))
+    other.write_text("xy")
+    os.utime(other, ns=(1, 1))
+    states += [keeping.state_of(file), keeping.state_of(other)]
+    assert len(set(states)) == len(states)
+
+
+def made(folder: Path, command: str) -> dict[str, bytes]:
+    """Every file that a command makes in a folder."""
+    ended = CliRunner().invoke(main, command.format(folder).split(), catch_exceptions=False)
+    assert ended.exit_code == 0, ended.output
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def test_work_before_changes_no_byte(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each command is done alone, and then after every other in one process that keeps."""
+    monkeypatch.chdir(tmp_path)
+    for name, first, second in (
+        ("joy", "joy", "anger"),
+        ("word", "tongue_out", "jaw_open"),
+        ("cloth", "drop", "turn"),
+    ):
+        Path(f"{name}.toml").write_text(SCRIPT.format(first=first, second=second))
+    alone = {name: made(Path("alone") / name, COMMANDS[name]) for name in COMMANDS}
+    assert all(alone.values())
+    keeping.keep()
+    try:
+        for turn, names in enumerate((list(COMMANDS), list(reversed(COMMANDS)))):
+            for name in names:
+                assert made(Path(str(turn)) / name, COMMANDS[name]) == alone[name], name
+        assert keeping._kept
+    finally:
+        keeping._kept = None
