@@ -79,7 +79,7 @@ def capture(
     from ..refining import parse_comparison
     from ..sound import with_sound
 
-    written = [output, sheet, *(beside(output) if output and filming.passes else ())]
+    written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
     check_apart(written, (script, sound, drawing.head, drawing.landmarks, playback.mapping))
     if sound is not None and (output is None or output.suffix.lower() not in HEARD):
         allowed = ", ".join(HEARD)
@@ -99,7 +99,7 @@ def capture(
         samples=filming.samples,
         head=drawing.fitted_head(),
         is_alive=filming.alive,
-        passes=filming.passes,
+        passes=() if filming.passes is None else tuple(filming.passes.split(",")),
     )
     most = film_of(
         performance,

@@ -15,7 +15,7 @@ from ..errors import UserError
 from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from ..playback import LEAD, Playback
-from .parameters import BackgroundName, FiniteRange, Looks, Passes, Refiner, Size
+from .parameters import BackgroundName, FiniteRange, Looks, Refiner, Size
 
 if TYPE_CHECKING:
     from risorius import render
@@ -233,7 +233,7 @@ class Filming:
     captions: bool
     camera: str | None
     background: render.Background | None
-    passes: tuple[str, ...]
+    passes: str | None
     alive: bool
     still_time: float | None
     samples: int
@@ -264,8 +264,6 @@ with_filming = packed(
     ),
     click.option(
         "--passes",
-        type=Passes(),
-        default=(),
         metavar="NAME,...",
         help="Beside each picture: depth, normal, triangle, splits, tension, segmentation, "
         "landmarks.",

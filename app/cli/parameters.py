@@ -113,19 +113,5 @@ class Looks(Refiner):
         return [CompletionItem(f"{before}{comma}{item.value}") for item in names]
 
 
-class Passes(click.ParamType[tuple[str, ...]]):
-    """Names of passes, with commas between them; which there are is checked with the scene."""
-
-    name = "NAMES"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[str, ...]:
-        """Split the text, each name once."""
-        if isinstance(value, tuple):
-            return value
-        return tuple(dict.fromkeys(name.strip() for name in str(value).split(",")))
-
-
 def _beginning(start: str, names: Iterable[str]) -> list[CompletionItem]:
     return [CompletionItem(name) for name in names if name.startswith(start)]

@@ -22,7 +22,7 @@ import PIL.Image
 from risorius import render
 
 from ..errors import UserError
-from ..files import cannot_be_written, temporary_folder
+from ..files import Image, cannot_be_written, temporary_folder
 from ..stopping import done_whole
 from .exr import CHANNELS, openexr, write_exr
 from .labels import labels_of
@@ -62,16 +62,17 @@ class Labelled:
         labels.write_text(text + "\n", encoding="utf-8")
 
 
-def save_labelled(picture: Path, known: Labelled) -> None:
-    """Write the files beside `picture`, all or none; UserError where one cannot be written."""
+def save_labelled(picture: Path, image: Image, known: Labelled) -> None:
+    """Write a picture and what is known of it, all or nothing; UserError where that cannot be."""
     with cannot_be_written(picture):
         picture.parent.mkdir(parents=True, exist_ok=True)
     with temporary_folder(picture, picture.parent) as folder:
         with cannot_be_written(picture):
+            PIL.Image.fromarray(image).save(folder / picture.name)
             known.save(folder / picture.name)
         with done_whole(), cannot_be_written(picture):
             for made in folder.iterdir():
-                os.replace(made, picture.with_name(made.name))
+                os.replace(made, os.path.realpath(picture.with_name(made.name)))  # links stay
 
 
 def check_wanted(wanted: Sequence[str], scene: str) -> None:

@@ -194,8 +194,9 @@ def test_new_frames_take_the_place_of_old_ones_and_their_passes(tmp_path: Path) 
 
 def test_failed_files_leave_no_part(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A full disk in the last file of a picture: one line, and none of its files."""
+    grey = np.full((4, 4, 3), 90, np.uint8)
     known = Labelled({"depth": np.ones((4, 4), np.float32)}, {"camera": {}})
-    save_labelled(tmp_path / "good.png", known)
+    save_labelled(tmp_path / "good.png", grey, known)
 
     def fail(*_: object, **__: object) -> None:
         """The disk is full."""
@@ -203,8 +204,8 @@ def test_failed_files_leave_no_part(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(Path, "write_text", fail)
     with pytest.raises(UserError, match=r"bad\.png: cannot be written: No space left on device"):
-        save_labelled(tmp_path / "bad.png", known)
-    assert names_in(tmp_path) == ["good.exr", "good.json"]
+        save_labelled(tmp_path / "bad.png", grey, known)
+    assert names_in(tmp_path) == ["good.exr", "good.json", "good.png"]
 
 
 def test_numbers_come_back_as_they_were(tmp_path: Path) -> None:

@@ -1,0 +1,116 @@
+"""Draw the picture of docs/passes.md: `python docs/figures/passes.py [FOLDER]`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+from PIL import ImageDraw
+
+from risorius import render
+from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture.captions import contact_sheet
+from risorius.app.files import Image
+from risorius.app.passes.files import labelled
+from risorius.app.passes.passes import NAMES, Passes
+from risorius.app.scenes import FaceScene
+from risorius.assets import Segment
+from risorius.bench import figures
+
+SIZE = (440, 500)
+POSE = {"AU12": 0.75, "AU6": 0.4, "AU1": 0.5, "jaw_open": 0.3, "head_yaw": -0.15}
+TURN = (-24.0, 4.0)  # [degrees] of the camera
+SETTLED = 1.0  # [s]
+MARGIN = 0.04  # of the picture, free on each side
+FULL = 0.3  # stretch or compression that has the full colour
+SEEN, HIDDEN = (40, 230, 60), (235, 60, 40)
+COLOURS = {
+    Segment.SKIN: (221, 176, 152), Segment.NOSE: (240, 145, 45), Segment.RIGHT_EYE: (40, 85, 225),
+    Segment.LEFT_EYE: (40, 195, 225), Segment.RIGHT_BROW: (10, 100, 40),
+    Segment.LEFT_BROW: (95, 175, 45), Segment.RIGHT_EAR: (205, 60, 205),
+    Segment.LEFT_EAR: (140, 60, 165), Segment.MOUTH_INTERIOR: (110, 10, 20),
+    Segment.TOP_LIP: (225, 55, 60), Segment.BOTTOM_LIP: (250, 135, 140),
+    Segment.NECK: (105, 105, 195),
+}  # fmt: skip
+
+
+def passes(size: tuple[int, int] = SIZE) -> Image:
+    """One smile, and all that is known of each of its pixels."""
+    scene = FaceScene()
+    with Capture(scene, CaptureOptions(size=size, camera="front")) as studio:
+        studio.camera.orbit(*TURN)
+        studio.camera.fit(scene.extent, MARGIN)
+        scene.pose(POSE)
+        scene.step(SETTLED)
+        picture = studio.draw_image()
+        known = labelled(Passes(studio.pipeline), studio.camera, NAMES)
+    images = known.images
+    on = images["depth"] > 0.0
+    cells = {
+        "colour": picture,
+        "segmentation": _looked_up(images["segmentation"], COLOURS),
+        "landmarks: hidden ones red": _dotted(picture, known.labels["landmarks"]),
+        "depth: near is light": _grey(images["depth"], on),
+        "normal: right red, up green, to the eye blue": _directions(images["normal"], on),
+        "triangle of the simulated mesh": _looked_up(images["triangle"], _scattered(scene.faces)),
+        "splits of its edges": _looked_up(images["splits"], _palette(), on),
+        "tension: stretch red, compression blue": _tinted(images["tension"], on),
+    }
+    named = [(name, np.asarray(image).astype(np.uint8)) for name, image in cells.items()]
+    return figures.without_noise(contact_sheet(named, columns=4, cell_width=size[0]))
+
+
+def _looked_up(numbers: npt.NDArray[Any], colours: Any, on: Any = None) -> npt.NDArray[Any]:
+    """The colour of each number; black for others, and where nothing is."""
+    image = np.zeros((*numbers.shape, 3))
+    for number, colour in dict(colours).items():
+        image[numbers == number] = colour
+    return image if on is None else image * on[..., None]
+
+
+def _scattered(faces: npt.NDArray[Any]) -> dict[int, Any]:
+    """A colour for each triangle, unlike those of its neighbours."""
+    return dict(enumerate(np.random.default_rng(2).integers(50, 235, (len(faces), 3))))
+
+
+def _palette() -> dict[int, Any]:
+    """The colours of splits in the window; none is grey."""
+    tints = (np.array(render.CLAY), *map(np.array, render.SPLIT_PALETTE))
+    return {count: 255.0 * tint for count, tint in enumerate(tints)}
+
+
+def _grey(depth: npt.NDArray[Any], on: npt.NDArray[np.bool_]) -> npt.NDArray[Any]:
+    near, far = depth[on].min(), depth[on].max()
+    return np.repeat(((60.0 + 195.0 * (far - depth) / (far - near)) * on)[..., None], 3, axis=2)
+
+
+def _directions(normal: npt.NDArray[Any], on: npt.NDArray[np.bool_]) -> npt.NDArray[Any]:
+    shown: npt.NDArray[Any] = 127.5 * (1.0 + normal * [1.0, -1.0, -1.0]) * on[..., None]
+    return shown
+
+
+def _tinted(tension: npt.NDArray[Any], on: npt.NDArray[np.bool_]) -> npt.NDArray[Any]:
+    share = np.clip(tension / FULL, 0.0, 1.0)
+    towards = np.array([[200.0, 20.0, 20.0], [20.0, 60.0, 210.0]]) - 225.0
+    return np.clip(225.0 + share @ towards, 0.0, 255.0) * on[..., None]
+
+
+def _dotted(picture: Image, landmarks: dict[str, Any]) -> Image:
+    page = PIL.Image.fromarray(picture)
+    draw = ImageDraw.Draw(page)
+    for (x, y), is_visible in zip(landmarks["pixels"], landmarks["visible"], strict=True):
+        draw.ellipse((x - 3, y - 3, x + 2, y + 2), fill=SEEN if is_visible else HIDDEN)
+    return np.asarray(page)
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Draw the picture into the folder given."""
+    given = figures.parse(arguments, __doc__)
+    figures.draw(given.folder, figures.chosen({"passes": passes}, given.only))
+
+
+if __name__ == "__main__":
+    figures.run(main)
