@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
-from risorius.assets.identities import Person
+from risorius.assets.identities import Person, in_own_colours, make_person, sample_identity
 
 from .errors import UserError
 from .keeping import kept, state_of
@@ -320,15 +320,21 @@ def _new_scene(name: str, head: FittedHead | None) -> Scene:
     if head is None:
         return SCENES[name]()
     if name != "face":
-        raise UserError(f"--head goes with the scene face, not with '{name}'")
+        raise UserError(f"--head and --person go with the scene face, not with '{name}'")
     try:
         return FaceScene(head)
     except ValueError as error:
         raise UserError(f"this head cannot be simulated: {error}") from None
 
 
-def head_for(head: Path | None, landmarks: Path | None) -> FittedHead | None:
-    """The user's own head, fitted; None for the built-in one."""
+def head_for(
+    head: Path | None, landmarks: Path | None, person: int | None = None
+) -> FittedHead | None:
+    """The user's own head, fitted, or that of a number's person; None for the built-in one."""
+    if person is not None:
+        if head is not None or landmarks is not None:
+            raise UserError("--person makes a head; it goes with neither --head nor --landmarks")
+        return in_own_colours(make_person(sample_identity(person)), person)
     if head is None and landmarks is None:
         return None
     if head is None or landmarks is None:

@@ -77,7 +77,7 @@ LIGHTS: Mapping[str, Light] = MappingProxyType(
         "hard": Light(
             to_key=toward(28.0, 46.0),
             to_fill=toward(-70.0, 0.0),
-            key=(1.42, 1.39, 1.34),
+            key=(1.34, 1.31, 1.26),
             fill=(0.05, 0.05, 0.055),
             rim=(0.25, 0.25, 0.26),
             sky=(0.12, 0.125, 0.14),

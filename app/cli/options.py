@@ -59,6 +59,7 @@ class Drawing:
 
     head: Path | None
     landmarks: Path | None
+    person: int | None
     light: str
     wrinkles: float
     skin: str
@@ -73,7 +74,7 @@ class Drawing:
         """The user's own head, fitted; None for the built-in one."""
         from ..scenes import head_for
 
-        return head_for(self.head, self.landmarks)
+        return head_for(self.head, self.landmarks, self.person)
 
     def refinement(self) -> Refinement:
         """How the mesh is refined; UserError where there is no such refiner."""
@@ -114,6 +115,12 @@ with_drawing = packed(
     Drawing,
     click.option("--head", type=PATH, help="A head of your own: any triangle mesh."),
     click.option("--landmarks", type=PATH, help="The 68 iBug landmarks of --head, as JSON."),
+    click.option(
+        "--person",
+        type=click.IntRange(0, 2**32 - 1),
+        metavar="NUMBER",
+        help="Another person than the built-in head: for each number one.",
+    ),
     click.option(
         "--light",
         type=click.Choice(LIGHT_NAMES),

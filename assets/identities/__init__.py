@@ -6,7 +6,15 @@
 Any of them goes where the built-in head goes: `sim.create(person)`, `FaceScene(person)`.
 """
 
-from .complexion import DARKEST, LIGHTEST, coloured, own_angle, recoloured, typology_angle
+from .complexion import (
+    DARKEST,
+    LIGHTEST,
+    coloured,
+    in_own_colours,
+    own_angle,
+    recoloured,
+    typology_angle,
+)
 from .person import Person, make_person
 from .traits import Identity, Sex, sample_identity
 
@@ -17,6 +25,7 @@ __all__ = [
     "Person",
     "Sex",
     "coloured",
+    "in_own_colours",
     "make_person",
     "own_angle",
     "recoloured",

@@ -109,6 +109,21 @@ def coloured(
     return replace(head, albedo=skin, parts=parts)
 
 
+def in_own_colours(head: AnyHead, seed: int) -> AnyHead:
+    """A head with the skin and the eyes of a number's person, the same ones every time.
+
+    Tones are as likely as each other; the darker the skin is, the likelier are brown eyes, and
+    beyond tanned skin there are no others.
+    """
+    random = np.random.default_rng([seed, 18])
+    angle = random.uniform(DARKEST, LIGHTEST)
+    blood = float(np.clip(random.normal(1.0, 0.1), 0.75, 1.25))
+    is_brown = random.random() < np.interp(angle, (10.0, LIGHTEST), (1.0, 0.2))
+    others = [name for name in IRISES if name != "brown"]
+    irises = "brown" if is_brown else others[random.integers(len(others))]
+    return coloured(head, angle=angle, blood=blood, irises=irises)
+
+
 def own_angle() -> float:
     """ITA [deg] of the picture that is shipped."""
     tints = _tints()

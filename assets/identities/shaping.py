@@ -24,6 +24,7 @@ KERNEL = ((75.0, 7.0), (30.0, 3.5), (15.0, 1.6), (8.0, 1.0))
 MIRROR = np.array([-1.0, 1.0, 1.0])
 STAGES, NEWTON_STEPS = 6, 12  # on the way, so that no step leads astray; then to the end
 NEAR = 1e-4  # [mm]
+TOLERANCE = 0.05  # [mm]: what is farther off is told
 JITTER = 1e-7  # of the largest eigenvalue, so that points that nearly coincide do no harm
 
 PAIRS = {title.rpartition(", ")[2]: (first, second) for title, first, second in DISTANCES}
@@ -86,7 +87,8 @@ class Shaper:
 
         pushes: how much farther than measures alone would have it vertices go [mm], with their
             mirror images. uneven: how far vertices go, and their mirror images the other way; it
-            changes measures by hundredths, but for those of one side, whose mean stays.
+            changes measures by hundredths, but for those of one side, whose mean stays. Raises
+            ValueError where measures contradict each other.
         """
         wanted = self._sought(measures)
         scale = float(np.exp(np.log(wanted / self._lengths(self._rest)[1]).mean()))
@@ -96,6 +98,10 @@ class Shaper:
             lengths = np.array([np.linalg.norm(way) for _, way in pushes])
             values = (rows * (self._alike @ weights)).sum(axis=(1, 2))
             weights = self._solve(scale, wanted, weights, rows, values, lengths)
+        off = np.abs(self._lengths(scale * self._rest + self._alike @ weights)[1] - wanted)
+        if not off.max() < TOLERANCE:
+            code = list(NORMS)[int(np.argmax(off))]
+            raise ValueError(f"no head has these measures: {code} of {measures[code]:.1f} mm fails")
         return Field(scale, self._rest, weights + self._askew(uneven))
 
     def _solve(

@@ -151,6 +151,22 @@ class Identity:
             for code, sample in norms_of(self.sex).items()
         }
 
+    def scaled(self, share: float) -> Identity:
+        """An identity with a share of the deviations."""
+        rows = self.unevenness
+        return (
+            self
+            if share == 1.0
+            else Identity(
+                self.sex,
+                {code: share * score for code, score in self.scores.items()},
+                {name: share * score for name, score in self.shapes.items()},
+                None
+                if rows is None
+                else tuple((share * x, share * y, share * z) for x, y, z in rows),
+            )
+        )
+
 
 def norms_of(sex: Sex) -> dict[str, Sample]:
     """The norms of a sex, code -> sample."""

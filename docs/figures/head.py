@@ -2,8 +2,9 @@
 
 Contact sheets, always from the same views and under the same light, so that two states of the head
 can be laid side by side: `head_views` (the head at rest, as painted skin, as clay, as flat
-triangles), `head_details` (the open jaw, the mesh, the finer meshes of the same form), and
-`wrinkles` (some poses from near, without and with the wrinkles that the simulation makes).
+triangles), `head_details` (the open jaw, the mesh, the finer meshes of the same form), `wrinkles`
+(some poses from near, without and with the wrinkles that the simulation makes), and `persons` (at
+rest, then in other light).
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from risorius import assets, refine, render, sim
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.captions import contact_sheet
 from risorius.app.files import Image
-from risorius.app.scenes import FaceScene
+from risorius.app.scenes import FaceScene, head_for
 from risorius.bench import figures
 from risorius.bench.canvas import Canvas, Drawing
 from risorius.bench.subjects import settled_positions
@@ -43,6 +44,14 @@ WRINKLES = (
     ("disgust", "-20,2,2.8", (-4.0, -6.0, 90.0)),
     ("AU17", "-20,2,2.8", (0.0, -78.0, 90.0)),
     ("kiss", "-12,2,4.5", (0.0, -64.0, 95.0)),
+)
+# Seeds of persons; and of some more, with what they do, in which light, from where.
+AT_EASE = (19, 40, 13, 43, 47, 27, 9, 10)
+IN_LIGHT = (
+    (30, "joy", "window", "-24,2,1.2"),
+    (5, "surprise", "overcast", "0,0,1.2"),
+    (18, "anger", "hard", "18,0,1.2"),
+    (12, "fear", "side", "-10,0,1.2"),
 )
 
 Points = npt.NDArray[np.float64]
@@ -129,6 +138,21 @@ def wrinkles() -> Image:
     return contact_sheet(cells, columns=4, cell_width=WRINKLED[0])
 
 
+def persons() -> Image:
+    """Other persons than the built-in head, at rest and in some expression and light."""
+    cells = []
+    front = ((seed, "", "studio", "0,0,1.2") for seed in AT_EASE)
+    for seed, pose, light, view in (*front, *IN_LIGHT):
+        scene = FaceScene(head_for(None, None, seed))
+        scene.pose({pose: 1.0} if pose else {})
+        scene.step(SETTLED)
+        style = render.Style(light=render.LIGHTS[light])
+        with Capture(scene, CaptureOptions(size=CELL, camera=view, style=style)) as capture:
+            name = f"person {seed}" if not pose else f"{seed}: {pose}, {light}"
+            cells.append((name, capture.draw_image()))
+    return contact_sheet(cells, columns=4, cell_width=CELL[0])
+
+
 def main(arguments: Sequence[str]) -> None:
     """Draw the contact sheets into the folder given."""
     given = figures.parse(arguments, __doc__, width=CELL[0])
@@ -137,6 +161,7 @@ def main(arguments: Sequence[str]) -> None:
         "head_views": partial(head_contact_sheet, size, views),
         "head_details": partial(head_contact_sheet, size, details),
         "wrinkles": wrinkles,
+        "persons": persons,
     }
     figures.draw(given.folder, figures.chosen(every, given.only))
 

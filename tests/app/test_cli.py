@@ -341,6 +341,10 @@ def test_a_pose_needs_no_script(tmp_path: Path) -> None:
         (("--set", "AU121=1"), "--set: unknown name 'AU121'; did you mean AU"),
         (("--head", "no.obj"), "--head HEAD.obj and --landmarks LANDMARKS.json go together"),
         (("--head", "no.obj", "--landmarks", "no.json"), "no.obj: no such mesh file"),
+        (("--head", "no.obj", "--person", "3"), "goes with neither --head nor --landmarks"),
+        (("--person", "3", "--scene", "plane"), "--head and --person go with the scene face"),
+        (("--person", "-1"), "'--person': -1 is not in the range 0<=x<=4294967295"),
+        (("--light", "moon"), "'moon' is not one of 'studio', 'side', 'overcast',"),
     ],
 )
 def test_mistakes_of_poses_and_heads(
@@ -374,7 +378,22 @@ def test_a_head_of_ones_own_is_filmed(tmp_path: Path) -> None:
     assert result.exit_code == 2
     assert len(result.stderr.strip().splitlines()) == 1
     result = risorius(*arguments[:5], "--scene", "plane", "-o", image, "--quiet")
-    assert "--head goes with the scene face" in result.stderr or result.exit_code == 2
+    assert "--head and --person go with the scene face" in result.stderr or result.exit_code == 2
+
+
+def test_persons_and_lights_are_filmed(tmp_path: Path) -> None:
+    """`--person` and `--light`: other pictures than without, the same ones every time."""
+    seen = set()
+    for words in ((), ("--person", "3"), ("--person", "4"), ("--light", "side")):
+        twice = []
+        for name in ("a.png", "b.png"):
+            asked = ("--set", "joy", *words, "-o", tmp_path / name, "--size", "96x96", "--quiet")
+            result = risorius("capture", *asked)
+            assert result.exit_code == 0, result.output
+            twice.append(np.asarray(Image.open(tmp_path / name)).tobytes())
+        assert twice[0] == twice[1]
+        seen.add(twice[0])
+    assert len(seen) == 4
 
 
 def test_doctor_reports_offscreen_opengl() -> None:

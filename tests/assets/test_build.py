@@ -95,6 +95,21 @@ def test_repainted_segments_are_the_shipped_ones(rebuilt: Path) -> None:
 
 
 @pytest.mark.slow
+def test_repainted_tints_are_the_shipped_ones(rebuilt: Path) -> None:
+    """The maps with which skin takes on another tone, to a hundredth or two of rounding."""
+    with (
+        np.load(load_head(rebuilt).tints_file) as fresh,
+        np.load(load("head").tints_file) as shipped,
+    ):
+        assert sorted(fresh.files) == sorted(shipped.files)
+        for name in ("melanin", "blood", "hair"):
+            difference = np.abs(fresh[name].astype(int) - shipped[name].astype(int))
+            assert difference.mean() < LEVELS and (difference > 4).mean() < 0.001, name
+        assert np.allclose(fresh["skin"], shipped["skin"], atol=1e-3)
+        assert fresh["tone"] == shipped["tone"]
+
+
+@pytest.mark.slow
 def test_tone_and_size_are_options(
     tmp_path: Path,
     shipped: Arrays,

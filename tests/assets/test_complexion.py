@@ -1,0 +1,168 @@
+"""Skin of any tone and eyes of any colour: as the painter would paint them, from one number."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from risorius import assets
+from risorius.assets.generator.eyeballs import IRISES
+from risorius.assets.generator.pigments import COMPLEXIONS, to_linear
+from risorius.assets.identities import (
+    DARKEST,
+    LIGHTEST,
+    coloured,
+    in_own_colours,
+    make_person,
+    own_angle,
+    recoloured,
+    sample_identity,
+    typology_angle,
+)
+from risorius.assets.model import Head, Tone
+
+TONES = (70.0, 55.0, 41.0, 28.0, 10.0, -10.0, -30.0, -55.0)
+ANGLES = st.floats(DARKEST, LIGHTEST)
+Light = npt.NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def head() -> Head:
+    """The built-in head."""
+    return assets.load("head")
+
+
+def light_at(head: Head, image: npt.NDArray[np.uint8], *names: str) -> Light:
+    """Linear light around anatomical points, the median, shape (3,)."""
+    height, width = image.shape[:2]
+    found = []
+    for name in names:
+        u, v = head.uv[head.anatomy[name]]
+        x, y = int(u * width), int((1.0 - v) * height)
+        found.append(image[y - 5 : y + 6, x - 5 : x + 6].reshape(-1, 3))
+    return np.median(to_linear(np.concatenate(found) / 255.0), axis=0)
+
+
+def skin_of(head: Head, image: npt.NDArray[np.uint8]) -> Light:
+    """The bare skin of the forehead and the temples."""
+    return light_at(head, image, "metopion", "temple_left", "temple_right")
+
+
+def test_own_tone_is_the_shipped_picture(head: Head) -> None:
+    """Byte by byte."""
+    assert (recoloured(own_angle()) == head.albedo).all()
+
+
+def test_tones_are_in_order(head: Head) -> None:
+    """The angle measured on bare skin is near the asked one, and darker tones are darker."""
+    pictures = {angle: recoloured(angle) for angle in TONES}
+    found = {angle: float(typology_angle(skin_of(head, x))) for angle, x in pictures.items()}
+    for angle, measured in found.items():
+        assert abs(measured - angle) < 9.0
+    for lighter, darker in pairwise(TONES):
+        assert found[lighter] > found[darker]
+        assert (skin_of(head, pictures[lighter]) > skin_of(head, pictures[darker])).all()
+        assert (pictures[lighter].astype(int) - pictures[darker]).min() >= -1
+
+
+@given(ANGLES)
+@settings(max_examples=12, deadline=None)
+def test_faces_keep_their_features(angle: float) -> None:
+    """Lips are redder than skin, brows and nostrils darker, skin never grey, in any tone."""
+    head = assets.load("head")
+    image = recoloured(angle)
+    skin = skin_of(head, image)
+    lips = light_at(head, image, "labiale_superius")  # on the border: half of it is red
+    mucosa = to_linear(image[_texel(head, image, head.rings["mouth_4_left"][0])] / 255.0)
+    assert mucosa[0] / mucosa[1] > 1.12 * skin[0] / skin[1]
+    assert lips[0] / lips[1] > skin[0] / skin[1]
+    brow = to_linear(image[_texel(head, image, head.landmarks[24])] / 255.0)
+    assert brow.sum() < skin.sum()
+    nostril = to_linear(image[_texel(head, image, head.anatomy["nostril_roof_left"])] / 255.0)
+    assert nostril.sum() < 0.8 * skin.sum()
+    assert skin[0] > 1.25 * skin[1] > 1.25 * skin[2]
+
+
+def _texel(head: Head, image: npt.NDArray[np.uint8], vertex: int) -> tuple[int, int]:
+    """Row and column of a vertex."""
+    u, v = head.uv[vertex]
+    return int((1.0 - v) * image.shape[0]), int(u * image.shape[1])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("tone", Tone)
+def test_tones_are_as_the_painter_paints_them(head: Head, tone: Tone) -> None:
+    """The picture of each complexion, but for freckles, which are those of the shipped one."""
+    painted = assets.paint(tone=tone).astype(int)
+    angles = np.linspace(DARKEST, LIGHTEST, 26)
+    wanted = typology_angle(skin_of(head, painted.astype(np.uint8)))
+    found = [typology_angle(skin_of(head, recoloured(float(angle)))) for angle in angles]
+    angle = float(np.interp(wanted, found, angles))
+    off = np.abs(recoloured(angle).astype(int) - painted)
+    assert off.mean() < 1.0 and np.percentile(off, 99.0) <= 5
+
+
+def test_blood_reddens(head: Head) -> None:
+    """More blood, redder skin; lips above all."""
+    pale, flushed = (recoloured(50.0, blood=share) for share in (0.7, 1.3))
+    for names in (("cheek_left",), ("metopion",)):
+        less, more = light_at(head, pale, *names), light_at(head, flushed, *names)
+        assert more[0] / more[1] > 1.03 * less[0] / less[1]
+
+
+@pytest.mark.parametrize("angle", [DARKEST - 1.0, LIGHTEST + 1.0, float("nan")])
+def test_no_other_tones(angle: float) -> None:
+    """One line with what is allowed."""
+    with pytest.raises(ValueError, match="it must be -55 "):
+        recoloured(angle)
+
+
+def test_eyes_have_their_colours(head: Head) -> None:
+    """Blue is bluest, brown reddest and darkest; white, pupil and all else stay as they were."""
+    person = make_person(sample_identity(1))
+    iris = {}
+    for name in IRISES:
+        eyed = coloured(person, irises=name)
+        assert eyed.albedo is person.albedo
+        for old, new in zip(person.parts, eyed.parts, strict=True):
+            changed = (old.colours != new.colours).any(axis=1)
+            assert changed.any() == old.name.startswith("eyeball")
+            if changed.any():
+                eye = next(each for each in person.eyes if old.bone == f"eye_{each.name}")
+                aside = np.linalg.norm((old.vertices - eye.centre)[:, :2], axis=1)
+                assert aside[changed].max() < 1.3 * eye.iris_radius
+                iris[name] = new.colours[(aside > 2.5) & (aside < 5.0) & changed].mean(axis=0)
+    redness = {name: colour[0] / colour[2] for name, colour in iris.items()}
+    assert min(redness, key=redness.__getitem__) == "blue"
+    assert max(redness, key=redness.__getitem__) == "brown"
+    assert min(iris, key=lambda name: iris[name].sum()) == "brown"
+    assert max(iris, key=lambda name: iris[name][1] / iris[name][[0, 2]].mean()) == "green"
+    with pytest.raises(ValueError, match="allowed are brown, hazel"):
+        coloured(person, irises="red")
+
+
+def test_colours_of_a_number(head: Head) -> None:
+    """The same ones every time; dark skin goes with brown eyes."""
+    person = make_person(sample_identity(0))
+    first, second = (in_own_colours(person, 5) for _ in range(2))
+    assert (first.albedo == second.albedo).all()
+    assert (first.parts[0].colours == second.parts[0].colours).all()
+    brown = coloured(person, irises="brown").parts[0].colours
+    tanned = 0
+    for seed in range(12):
+        one = in_own_colours(person, seed)
+        if typology_angle(skin_of(head, one.albedo)) < 0.0:
+            tanned += 1
+            assert (one.parts[0].colours == brown).all()
+    assert 2 <= tanned <= 10
+
+
+def test_painter_and_maps_agree_on_the_tone() -> None:
+    """The maps are of the complexion that is shipped."""
+    assert COMPLEXIONS[Tone.MEDIUM_LIGHT].melanin == pytest.approx(0.40)
+    assert 55.0 < own_angle() < LIGHTEST
