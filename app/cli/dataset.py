@@ -9,7 +9,7 @@ import click
 
 from ..errors import counted, in_one_line
 from .options import PATH, packed
-from .parameters import Passes, Size
+from .parameters import Size
 
 MOST = 1_000_000  # samples; their names have six digits
 
@@ -21,7 +21,7 @@ class Drawn:
     sample: Path | None
     camera: str | None
     seed: int
-    passes: tuple[str, ...]
+    passes: str
     size: tuple[int, int]
     background: str | None
     heads: Path | None
@@ -39,11 +39,11 @@ with_drawn = packed(
     click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True),
     click.option(
         "--passes",
-        type=Passes(),
-        default=("segmentation",),
+        default="segmentation",
         metavar="NAME,...",
-        help="Beside each picture: depth, normal, triangle, splits, tension, segmentation "
-        "(the last, unless told). Landmarks are always there.",
+        show_default=True,
+        help="Beside each picture: depth, normal, triangle, splits, tension, segmentation; "
+        "landmarks are always there.",
     ),
     click.option("--size", type=Size(), default=(512, 512), help="512x512 unless told."),
     click.option(
@@ -100,7 +100,7 @@ def dataset(
         output,
         seed=drawn.seed,
         size=drawn.size,
-        passes=drawn.passes,
+        passes=tuple(drawn.passes.split(",")),
         table=drawn.sample,
         camera=drawn.camera,
         background=drawn.background,

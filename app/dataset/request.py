@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -14,6 +15,7 @@ from risorius.assets.meshes import FORMATS
 from ..errors import UserError
 from ..passes.exr import CHANNELS
 from ..passes.files import check_wanted
+from ..passes.passes import IMAGES
 from .surroundings import Backgrounds, backgrounds_of, digest, files_in
 from .table import SampleTable, load_table, with_camera
 
@@ -24,8 +26,8 @@ HEADS = tuple(f".{name}" for name in FORMATS)
 class Request:
     """A data set that is asked for; fit to be pickled.
 
-    output: the folder of the set. size: of the pictures [pixels]. passes: some of those of
-    `risorius capture --passes`, see app/passes/passes.py. heads: files of heads, beside each of
+    output: the folder of the set. size: of the pictures [pixels]. passes: some of the images of
+    app/passes/passes.py. heads: files of heads, beside each of
     which its landmarks lie; none: persons are made. told: the options that say all this.
     """
 
@@ -71,7 +73,7 @@ def request_of(
     *,
     seed: int,
     size: tuple[int, int],
-    passes: tuple[str, ...],
+    passes: Sequence[str],
     table: Path | None = None,
     camera: str | None = None,
     background: str | None = None,
@@ -79,6 +81,7 @@ def request_of(
 ) -> Request:
     """What the command line asks for; UserError for what cannot be."""
     check_wanted(passes, "face")
+    passes = tuple(name for name in IMAGES if name in passes)
     samples = load_table(table)
     if camera is not None:
         samples = with_camera(samples, camera)

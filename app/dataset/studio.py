@@ -76,7 +76,7 @@ class Studio:
         assert isinstance(scene, FaceScene)
         camera = _posed(scene, sample, request.size)
         image, surroundings = self._taken(pipeline, camera, sample)
-        images = model.passes.draw(camera, {"depth", *request.passes} - {"landmarks"})
+        images = model.passes.draw(camera, {"depth", *request.passes})
         labels = {
             "id": name_of(index),
             "index": index,

@@ -25,7 +25,7 @@ SEEN, HIDDEN, EDGE = (40, 230, 60), (235, 60, 40), (255, 255, 255)
 
 def dataset(cell: int) -> Image:
     """Samples row by row, and below them some of these with landmarks and classes."""
-    request = request_of(Path(), seed=SEED, size=(cell, cell), passes=("segmentation", "landmarks"))
+    request = request_of(Path(), seed=SEED, size=(cell, cell), passes=("segmentation",))
     studio = Studio(request)
     shots = [studio.shoot(index) for index in range(COLUMNS * ROWS)]
     images = [shot.image for shot in shots] + [_labelled(shots[index]) for index in LABELLED]
