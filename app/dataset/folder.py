@@ -37,6 +37,11 @@ class SetFolder:
     def __init__(self, path: Path) -> None:
         self.path = path
 
+    @property
+    def log(self) -> Path:
+        """What processes print; it goes when the set is made."""
+        return self.path / UNFINISHED / "log"
+
     @contextlib.contextmanager
     def held(self, options: Mapping[str, Any], *, resume: bool) -> Iterator[None]:
         """Begin a set in an empty folder, or resume one, and keep others out meanwhile.

@@ -67,8 +67,9 @@ def make_set(
         size = 0
         is_silent = not progress or None
         bar = tqdm(total=count, initial=len(there), unit="sample", disable=is_silent, leave=False)
+        logs = [folder.log] * len(batches)
         with cleaned_up_if_stopped(bar.close), bar:
-            for outcome in run_all(make_samples, batches, jobs=jobs):
+            for outcome in run_all(make_samples, batches, jobs=jobs, logs=logs):
                 if outcome.error is not None:
                     raise UserError(f"{outcome.error} (with --resume the set goes on)")
                 size += outcome.result

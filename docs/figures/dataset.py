@@ -39,7 +39,9 @@ def _labelled(shot: Shot) -> Image:
     is_edge = np.zeros(classes.shape, bool)
     is_edge[1:] |= classes[1:] != classes[:-1]
     is_edge[:, 1:] |= classes[:, 1:] != classes[:, :-1]
-    picture = PIL.Image.fromarray(np.where(is_edge[..., None], np.uint8(EDGE), shot.image))
+    picture = PIL.Image.fromarray(
+        np.where(is_edge[..., None], np.array(EDGE, np.uint8), shot.image)
+    )
     pen = ImageDraw.Draw(picture)
     landmarks = shot.known.labels["landmarks"]
     for (x, y), is_visible in zip(landmarks["pixels"], landmarks["visible"], strict=True):
