@@ -69,9 +69,8 @@ def load_head(
 
     The image of the skin lies beside the data file, as a PNG file of the same name; so do the files
     of its tones (`_tints.npz`), of its wrinkles (`_wrinkles.npz`), of its classes
-    (`_segments.png`), of the light on it
-    (`_openness.npz`) and of the finer meshes (`_finer.npz`). All six are read only when they are
-    asked for.
+    (`_segments.png`), of the light on it (`_openness.npz`) and of the finer meshes
+    (`_finer.npz`). All six are read only when they are asked for.
 
     Raises AssetError when the data file is missing or incomplete, or a text file is not TOML.
     """

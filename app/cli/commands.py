@@ -17,6 +17,7 @@ from ..live import LOOPBACK, PROTOCOLS
 from ..looks import STATIC, Refinement
 from ..playback import Playback
 from .batch import batch
+from .dataset import dataset
 from .export import export
 from .options import (
     PATH,
@@ -331,5 +332,6 @@ def warm(quiet: bool) -> None:
 
 
 ALL = (
-    capture, export, batch, view, replay, convert, speak, send, demo, controls, doctor, warm,
+    capture, export, batch, dataset, view, replay, convert, speak, send, demo, controls, doctor,
+    warm,
 )  # fmt: skip

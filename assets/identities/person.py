@@ -91,12 +91,28 @@ def _made(identity: Identity) -> Person:
     normals = vertex_normals(vertices, known.faces)
     skin = FittedSkin(vertices, normals, vertices[known.landmarks], known.mandible_weight)
     return Person(
-        vertices, known.faces, known.landmarks, field.scale * known.bone_depth, eyes,
-        place_parts(known, skin, field, eyes), known.uv, known.face_uv, known.albedo,
-        known.wrinkles, known.rig, known.layers, Similarity(1.0, np.eye(3), np.zeros(3)),
-        np.arange(len(vertices), dtype=np.int32), known.mandible_weight,
-        field.points(known.jaw_axis), known.anatomy, known.mirror, known.openness, identity,
-    )  # fmt: skip
+        vertices=vertices,
+        faces=known.faces,
+        landmarks=known.landmarks,
+        bone_depth=field.scale * known.bone_depth,
+        eyes=eyes,
+        parts=place_parts(known, skin, field, eyes),
+        uv=known.uv,
+        face_uv=known.face_uv,
+        albedo=known.albedo,
+        segments=known.segments,
+        wrinkles=known.wrinkles,
+        rig=known.rig,
+        layers=known.layers,
+        to_millimetres=Similarity(1.0, np.eye(3), np.zeros(3)),
+        file_vertices=np.arange(len(vertices), dtype=np.int32),
+        mandible_weight=known.mandible_weight,
+        jaw_axis=field.points(known.jaw_axis),
+        anatomy=known.anatomy,
+        mirror=known.mirror,
+        openness=known.openness,
+        identity=identity,
+    )
 
 
 def _moves(shapes: Mapping[str, float]) -> dict[int, FloatArray]:

@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 from risorius import assets, refine
+from risorius.app.dataset.making import make_set
+from risorius.app.dataset.request import request_of
 
 FOLDER = Path(__file__).parents[2] / "examples"
 
@@ -30,7 +32,7 @@ def test_every_example_is_tested() -> None:
     found = {path.stem for path in FOLDER.glob("*.py")}
     assert found == {
         *("plain_script", "in_trimesh", "in_pyvista", "in_newton"),
-        *("own_refiner", "own_recording"),
+        *("own_refiner", "own_recording", "read_dataset"),
     }
 
 
@@ -123,3 +125,21 @@ def test_own_recording(tmp_path: Path) -> None:
     gaps = np.linalg.norm(lips[:, 0] - lips[:, 1], axis=1)
     assert gaps[90] > gaps[0] + 10.0
     assert abs(gaps[-1] - gaps[0]) < 0.5
+
+
+def test_read_dataset(tmp_path: Path) -> None:
+    """What was made is read, and nobody is both in training and in testing."""
+    request = request_of(tmp_path, seed=1, size=(48, 40), passes=("segmentation",))
+    make_set(request, 4, jobs=1, progress=False)
+    module = example("read_dataset")
+    faces = module.Faces(tmp_path)
+    assert len(faces) == 4
+    sample = faces[2]
+    assert sample["image"].shape == (3, 40, 48) and 0.0 <= sample["image"].min()
+    assert sample["units"].shape == (len(module.UNITS),)
+    assert sample["pixels"].shape == (70, 2) and sample["visible"].shape == (70,)
+    assert sample["classes"].shape == (40, 48)
+    training, testing = faces.split(0.5)
+    assert sorted(training + testing) == [0, 1, 2, 3]
+    persons = [{faces.rows[k]["person_number"] for k in part} for part in (training, testing)]
+    assert persons[0].isdisjoint(persons[1])

@@ -1,0 +1,120 @@
+"""`risorius dataset`: pictures of faces with exact labels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+
+from ..errors import counted, in_one_line
+from .options import PATH, packed
+from .parameters import Size
+
+MOST = 1_000_000  # samples; their names have six digits
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What decides the samples, beside their number."""
+
+    sample: Path | None
+    camera: str | None
+    seed: int
+    passes: str
+    size: tuple[int, int]
+    background: str | None
+    heads: Path | None
+
+
+with_drawn = packed(
+    "drawn",
+    Drawn,
+    click.option("--sample", type=PATH, help="Your table of faces, TOML."),
+    click.option(
+        "--camera",
+        metavar="YAW[,PITCH[,ZOOM]]",
+        help="Each a number or LOW:HIGH, as in -30:30,-10:10,0.9:1.2; else as the table has it.",
+    ),
+    click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True),
+    click.option(
+        "--passes",
+        default="segmentation",
+        metavar="NAME,...",
+        show_default=True,
+        help="Beside each picture: depth, normal, triangle, splits, tension, segmentation; "
+        "landmarks are always there.",
+    ),
+    click.option("--size", type=Size(), default=(512, 512), help="512x512 unless told."),
+    click.option(
+        "--background",
+        metavar="COLOUR|FOLDER",
+        help="A colour, as in '#8090a0' or grey, or a folder of pictures; else soft colours.",
+    ),
+    click.option("--heads", type=PATH, help="A folder of heads of your own: NAME.obj, NAME.json."),
+)
+
+
+def _write_sample_table(context: click.Context, _: click.Parameter, asked: bool) -> None:
+    """Print the table that comes along, and end."""
+    if asked:
+        from ..dataset.table import table_text
+
+        click.echo(table_text(), nl=False)
+        context.exit()
+
+
+@click.command()
+@click.option("--count", type=click.IntRange(1, MOST), required=True, help="Of samples.")
+@click.option("-o", "--output", type=PATH, required=True, help="A folder.")
+@with_drawn
+@click.option("--jobs", type=click.IntRange(1, 256), default=1, show_default=True)
+@click.option("--resume", is_flag=True, help="Go on with a set, or make it longer.")
+@click.option("--coco", is_flag=True, help="Landmarks as coco.json, too.")
+@click.option("--quiet", is_flag=True, help="No progress bar.")
+@click.option(
+    "--sample-table",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_write_sample_table,
+    help="Print the table that --sample replaces, to be copied and edited.",
+)
+def dataset(
+    count: int,
+    output: Path,
+    drawn: Drawn,
+    jobs: int,
+    resume: bool,
+    coco: bool,
+    quiet: bool,
+) -> None:
+    """Make a data set: faces with exact action units, landmarks, pose, gaze, depth, ...
+
+    Every sample follows from --seed and its number alone, whatever --jobs is.
+    """
+    from ..dataset.making import make_set
+    from ..dataset.request import request_of
+
+    request = request_of(
+        output,
+        seed=drawn.seed,
+        size=drawn.size,
+        passes=tuple(drawn.passes.split(",")),
+        table=drawn.sample,
+        camera=drawn.camera,
+        background=drawn.background,
+        heads=drawn.heads,
+    )
+    made = make_set(
+        request,
+        count,
+        jobs=jobs,
+        resume=resume,
+        coco=coco,
+        progress=not quiet,
+    )
+    click.echo(
+        f"{in_one_line(output)}: {counted(made.samples, 'sample')}, {made.new} of them new, "
+        f"{made.size / 1e6:.1f} MB"
+    )

@@ -1,0 +1,134 @@
+"""The folder of a data set: samples whole or not at all, and how it was begun.
+
+A sample is there if and only if its .json is: its files are written in `.unfinished` and renamed,
+that one last. Each of them is whole under its final name, whenever the process is killed.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from risorius.assets.staging import locked
+
+from ..errors import UserError
+from ..files import cannot_be_written, real_path, written_atomically
+
+BEGUN = "dataset.json"  # how the set was begun
+UNFINISHED = ".unfinished"
+_SAMPLE = re.compile(r"(\d{6})\.json")
+
+
+def name_of(index: int) -> str:
+    """What the files of a sample begin with."""
+    return f"{index:06d}"
+
+
+class SetFolder:
+    """A folder that holds one data set."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    @property
+    def log(self) -> Path:
+        """What processes print; it goes when the set is made."""
+        return self.path / UNFINISHED / "log"
+
+    @contextlib.contextmanager
+    def held(self, options: Mapping[str, Any], *, resume: bool) -> Iterator[None]:
+        """Begin a set in an empty folder, or resume one, and keep others out meanwhile.
+
+        options: all that decides what samples are, as JSON has it. Raises UserError where the
+        folder holds something else, or a set that was begun with other options.
+        """
+        real_path(self.path)
+        with cannot_be_written(self.path):
+            self.path.mkdir(parents=True, exist_ok=True)
+            self._check(options, resume=resume)
+            unfinished = self.path / UNFINISHED
+            unfinished.mkdir(exist_ok=True)
+            lock = locked(unfinished / "lock")
+        if lock is None:
+            raise UserError(f"{self.path}: another process is making this set; wait for its end")
+        with lock:
+            with cannot_be_written(self.path):
+                for left in unfinished.glob("[0-9]*"):
+                    shutil.rmtree(left)
+            if not (self.path / BEGUN).exists():
+                self.save_json(BEGUN, options)
+            yield
+        with cannot_be_written(self.path):
+            shutil.rmtree(unfinished)
+
+    def _check(self, options: Mapping[str, Any], *, resume: bool) -> None:
+        """UserError unless this is an empty folder, or the set that is to be resumed."""
+        begun = self.path / BEGUN
+        if not begun.exists():
+            if any(item.name != UNFINISHED for item in self.path.iterdir()):
+                raise UserError(f"{self.path}: is not empty and no data set; name another folder")
+            return
+        if not resume:
+            raise UserError(f"{self.path}: holds a data set; add --resume, or name another folder")
+        try:
+            was = json.loads(begun.read_text("utf-8"))
+            assert isinstance(was, dict)
+        except (ValueError, AssertionError):
+            raise UserError(f"{begun}: does not say how the set was begun; name another") from None
+        for name in dict.fromkeys((*was, *options)):
+            if was.get(name) != options.get(name):
+                raise UserError(
+                    f"{self.path}: was begun with {name} {_short(was.get(name))}, not "
+                    f"{_short(options.get(name))}; give the same to --resume, or name another "
+                    "folder"
+                )
+
+    def there(self) -> set[int]:
+        """The numbers of the samples that are whole."""
+        with os.scandir(self.path) as items:
+            found = (_SAMPLE.fullmatch(item.name) for item in items)
+            return {int(match[1]) for match in found if match}
+
+    def has(self, index: int) -> bool:
+        """Whether a sample is whole."""
+        return (self.path / f"{name_of(index)}.json").exists()
+
+    def write_sample(self, index: int, write: Callable[[Path], object]) -> int:
+        """Put the files of a sample in place, .json last; how many bytes they have.
+
+        write: writes a picture of the name that it is given, and what lies beside it.
+        """
+        name = name_of(index)
+        with cannot_be_written(self.path / name):
+            part = Path(tempfile.mkdtemp(prefix=name, dir=self.path / UNFINISHED))
+            try:
+                write(part / f"{name}.png")
+                made = sorted(part.iterdir(), key=lambda path: (path.suffix == ".json", path))
+                size = sum(path.stat().st_size for path in made)
+                for path in made:
+                    os.replace(path, self.path / path.name)
+            finally:
+                shutil.rmtree(part, ignore_errors=True)
+        return size
+
+    def sample(self, index: int) -> dict[str, Any]:
+        """What is in the .json of a sample."""
+        labels: dict[str, Any] = json.loads((self.path / f"{name_of(index)}.json").read_bytes())
+        return labels
+
+    def save_json(self, name: str, content: Mapping[str, Any]) -> None:
+        """Write a JSON file of the set, whole."""
+        with written_atomically(self.path / name) as part, cannot_be_written(self.path / name):
+            part.write_text(json.dumps(content, indent=1) + "\n", "utf-8")
+
+
+def _short(value: object) -> str:
+    text = json.dumps(value)
+    return text if len(text) < 60 else f"{text[:57]}..."

@@ -1,0 +1,78 @@
+"""What is known of the face of a sample, beside what `capture --passes` tells of any picture.
+
+Unit and convention of every field are in docs/dataset.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from risorius import render
+
+from ..curves import ACTION_UNITS, ARKIT_SHAPES, solved
+from ..passes.labels import labels_of
+from ..scenes import FaceScene
+
+DIGITS = 5
+# Pairs of landmarks, above and below, whose distance says how far something is open.
+APERTURES = {
+    "mouth": ((61, 67), (62, 66), (63, 65)),
+    "eye_right": ((37, 41), (38, 40)),
+    "eye_left": ((43, 47), (44, 46)),
+}
+
+
+def labels_of_face(
+    scene: FaceScene, camera: render.OrbitCamera, size: tuple[int, int], depth: Any
+) -> dict[str, Any]:
+    """All that is known of a face as it is now; `depth`: the depth map of its picture, (H, W)."""
+    units = action_units(scene)
+    arkit = solved(scene, ARKIT_SHAPES, _in_one_frame(scene.simulation.sums))
+    labels = labels_of(scene, camera, size, depth)
+    pixels = np.array(labels["landmarks"]["pixels"])[:68]
+    low, high = (np.clip(each, 0.0, size) for each in (pixels.min(axis=0), pixels.max(axis=0)))
+    return {
+        "action_units": units,
+        "action_units_0_to_5": {name: round(5.0 * value, DIGITS) for name, value in units.items()},
+        "arkit": {name: round(float(value[0]), DIGITS) for name, value in arkit.items()},
+        "apertures": apertures(np.array(labels["landmarks"]["points"])),
+        "face_box": np.concatenate([low, high - low]).round(3).tolist(),
+        **labels,
+    }
+
+
+def action_units(scene: FaceScene) -> dict[str, float]:
+    """All action units of FACS that the face has, 0..1: AU12_left, AU12_right, and AU12.
+
+    Units that were set count as they were set. Of what else moves muscles (visemes, head and gaze)
+    as much is counted as units can tell. A unit without side is the stronger of its sides, as FACS
+    scores it where sides are not told apart.
+    """
+    sums = _in_one_frame(scene.simulation.sums)
+    found = solved(scene, ACTION_UNITS, sums, _in_one_frame(scene.values))
+    units = {}
+    for name in sorted(scene.simulation.layers[ACTION_UNITS], key=by_number):
+        names = (name, f"{name}_left", f"{name}_right")
+        units[name] = round(max(float(found[each][0]) for each in names if each in found), DIGITS)
+    return units
+
+
+def by_number(unit: str) -> tuple[int, str]:
+    """AU2 before AU12, and that before AU12_left."""
+    number, _, side = unit.removeprefix("AU").partition("_")
+    return int(number), side
+
+
+def apertures(points: Any) -> dict[str, float]:
+    """How far mouth and eyes are open [mm], from landmarks (70, 3)."""
+    return {
+        name: round(float(np.mean([np.linalg.norm(points[a] - points[b]) for a, b in pairs])), 3)
+        for name, pairs in APERTURES.items()
+    }
+
+
+def _in_one_frame(values: Mapping[str, float]) -> dict[str, Any]:
+    return {name: np.array([value]) for name, value in values.items()}

@@ -1,0 +1,120 @@
+"""Making a set: samples in processes, one person after the other, then what is told of them all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from tqdm import tqdm
+
+from ..errors import UserError
+from ..files import cannot_be_written, written_atomically
+from ..keeping import kept
+from ..stopping import cleaned_up_if_stopped
+from ..workers import run_all
+from .card import card_of
+from .coco import write_coco
+from .folder import SetFolder
+from .index import write_index
+from .request import Request
+from .sampling import draw
+from .studio import Studio
+
+BATCH = 8  # samples that a process is given at once, all of one person
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Samples that a process is to make."""
+
+    request: Request
+    indices: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Made:
+    """What became of a set: how many samples it has, how many of them are new, and their bytes."""
+
+    samples: int
+    new: int
+    size: int
+
+
+def make_set(
+    request: Request,
+    count: int,
+    *,
+    jobs: int,
+    resume: bool = False,
+    coco: bool = False,
+    progress: bool = True,
+) -> Made:
+    """Make the samples 0 to count - 1 of a set, as far as they are not there, and its card.
+
+    Raises UserError where the set cannot be made, or was begun otherwise; samples that were made
+    until then stay.
+    """
+    folder = SetFolder(request.output)
+    with folder.held(request.options(), resume=resume):
+        there = folder.there()
+        if there and max(there) >= count:
+            raise UserError(
+                f"{request.output}: has sample {max(there)} already; give --count {max(there) + 1} "
+                "or more"
+            )
+        batches = _batches(request, [index for index in range(count) if index not in there])
+        size = 0
+        is_silent = not progress or None
+        bar = tqdm(total=count, initial=len(there), unit="sample", disable=is_silent, leave=False)
+        logs = [folder.log] * len(batches)
+        with cleaned_up_if_stopped(bar.close), bar:
+            for outcome in run_all(make_samples, batches, jobs=jobs, logs=logs):
+                if outcome.error is not None:
+                    raise UserError(f"{outcome.error} (with --resume the set goes on)")
+                size += outcome.result
+                bar.update(len(outcome.item.indices))
+        _finish(folder, request, count, coco=coco)
+    return Made(count, count - len(there), size)
+
+
+def make_samples(batch: Batch) -> int:
+    """Make the samples of a batch that are not there; how many bytes they have."""
+    request = batch.request
+    studio = kept("studio of a data set", request.output, lambda: Studio(request))
+    folder = SetFolder(request.output)
+    size = 0
+    for index in batch.indices:
+        if not folder.has(index):  # a process before may have died behind it
+            size += folder.write_sample(index, studio.shoot(index).save)
+    return size
+
+
+def _batches(request: Request, missing: Sequence[int]) -> list[Batch]:
+    """The samples of one person together, for a head takes seconds to build."""
+    by_person: dict[int, list[int]] = {}
+    for index in missing:
+        by_person.setdefault(draw(request.table, request.seed, index).person, []).append(index)
+    return [
+        Batch(request, tuple(indices[first : first + BATCH]))
+        for _, indices in sorted(by_person.items())
+        for first in range(0, len(indices), BATCH)
+    ]
+
+
+def _finish(folder: SetFolder, request: Request, count: int, *, coco: bool) -> None:
+    """Write index, card and coco.json from the samples' files."""
+
+    def samples() -> Iterator[dict[str, Any]]:
+        return map(folder.sample, range(count))
+
+    def write(name: str, how: Callable[..., Any], *told: Any) -> Any:
+        with written_atomically(folder.path / name) as part:
+            with cannot_be_written(folder.path / name):
+                return how(part, *told)
+
+    counts = write("index.csv", write_index, samples())
+    card = card_of(request, counts)
+    write("README.md", lambda part: part.write_text(card, "utf-8"))
+    if coco:
+        write("coco.json", write_coco, samples, f"{count} faces made by Risorius")

@@ -1,0 +1,51 @@
+"""The persons of a set: a head, a tone of skin, a colour of eyes, from the set's seed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from risorius.assets.fitting import FittedHead, fit_head
+from risorius.assets.identities import Person, coloured, make_person, sample_identity
+
+from .request import Request
+from .sampling import chosen
+
+ONLY_BROWN = 10.0  # [degrees] of the tone below which eyes are brown, as nearly all are there
+PERSONS = 1  # sets their seeds apart from those of samples
+
+
+@dataclass(frozen=True)
+class Somebody:
+    """A head with its colours, and what is told of it."""
+
+    head: FittedHead
+    labels: dict[str, Any]
+
+
+def person_of(request: Request, number: int) -> Somebody:
+    """Person `number` of a set; UserError for a head of the user's that cannot be fitted.
+
+    The tone is an individual typology angle: 55 and more very light, below -30 dark.
+    """
+    table = request.table
+    seeds = np.random.SeedSequence([request.seed, number, PERSONS])
+    random = np.random.default_rng(seeds)
+    tone = round(float(random.uniform(*table.persons["tone"])), 2)
+    irises = chosen(random, table.irises)
+    if tone < ONLY_BROWN:
+        irises = "brown"
+    labels: dict[str, Any] = {"number": number, "tone": tone, "irises": irises}
+    if request.heads:
+        file = request.heads[number]
+        head = fit_head(file, file.with_suffix(".json"))
+        labels["head"] = file.name
+    else:
+        made: Person = make_person(sample_identity(int(seeds.generate_state(1)[0])))
+        assert made.identity is not None
+        labels["sex"] = made.identity.sex.value
+        labels["measures"] = {code: round(value, 3) for code, value in made.measures.items()}
+        head = made
+    return Somebody(coloured(head, angle=tone, irises=irises), labels)

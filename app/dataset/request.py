@@ -1,0 +1,123 @@
+"""What a data set is to be: all that decides its samples, but their number."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from risorius.assets.meshes import FORMATS
+
+from ..errors import UserError
+from ..passes.exr import CHANNELS
+from ..passes.files import check_wanted
+from ..passes.passes import IMAGES
+from .surroundings import Backgrounds, backgrounds_of, digest, files_in
+from .table import SampleTable, load_table, with_camera
+
+HEADS = tuple(f".{name}" for name in FORMATS)
+
+
+@dataclass(frozen=True)
+class Request:
+    """A data set that is asked for; fit to be pickled.
+
+    output: the folder of the set. size: of the pictures [pixels]. passes: some of the images of
+    app/passes/passes.py. heads: files of heads, beside each of
+    which its landmarks lie; none: persons are made. told: the options that say all this.
+    """
+
+    output: Path
+    seed: int
+    size: tuple[int, int]
+    passes: tuple[str, ...]
+    table: SampleTable
+    backgrounds: Backgrounds = Backgrounds()  # noqa: RUF009 - frozen
+    heads: tuple[Path, ...] = ()
+    told: str = ""
+    version: str = version("risorius")
+
+    def options(self) -> dict[str, Any]:
+        """What decides the samples, as JSON has it: resumed is what was begun with the same."""
+        table = asdict(self.table) | {"excluded": sorted(map(sorted, self.table.excluded))}
+        options = {
+            "risorius": self.version,
+            "seed": self.seed,
+            "size": list(self.size),
+            "passes": list(self.passes),
+            "background": self.backgrounds.options,
+            "heads": digest(self.heads) if self.heads else None,
+            **{f"[{name}]": section for name, section in table.items()},
+        }
+        plain: dict[str, Any] = json.loads(json.dumps(options))
+        return plain
+
+    def files(self) -> list[list[str]]:
+        """What lies in the set for each sample: names, and what that is."""
+        floats = ", ".join(name for name in self.passes if name in CHANNELS)
+        rows = [["ID.png", "the picture, 8 bits sRGB"]]
+        if floats:
+            rows.append(["ID.exr", f"{floats}: 32 bits for each pixel (OpenEXR)"])
+        if "segmentation" in self.passes:
+            rows.append(["ID_seg.png", "what each pixel shows, by the numbers of FaceSynthetics"])
+        rows.append(["ID_ldmks.txt", "x and y of 68 landmarks and both pupils [pixels]"])
+        return [*rows, ["ID.json", "all labels"]]
+
+
+def request_of(
+    output: Path,
+    *,
+    seed: int,
+    size: tuple[int, int],
+    passes: Sequence[str],
+    table: Path | None = None,
+    camera: str | None = None,
+    background: str | None = None,
+    heads: Path | None = None,
+) -> Request:
+    """What the command line asks for; UserError for what cannot be."""
+    check_wanted(passes, "face")
+    passes = tuple(name for name in IMAGES if name in passes)
+    samples = load_table(table)
+    if camera is not None:
+        samples = with_camera(samples, camera)
+    found = () if heads is None else _heads_in(heads)
+    if found:
+        samples = replace(samples, persons={**samples.persons, "count": len(found)})
+    told = {
+        "sample": table,
+        "camera": camera,
+        "seed": seed,
+        "passes": ",".join(passes),
+        "size": "x".join(map(str, size)),
+        "background": background,
+        "heads": heads,
+    }
+    words = [(f"--{name}", str(value)) for name, value in told.items() if value is not None]
+    return Request(
+        output.absolute(),
+        seed,
+        size,
+        passes,
+        samples,
+        backgrounds_of(background),
+        found,
+        shlex.join(word for pair in words for word in pair),
+    )
+
+
+def _heads_in(folder: Path) -> tuple[Path, ...]:
+    """The heads of a folder; UserError unless there are some, each with its landmarks."""
+    if not folder.is_dir():
+        raise UserError(f"--heads {folder}: no such folder")
+    heads = files_in(folder, HEADS)
+    if not heads:
+        raise UserError(f"--heads {folder}: no head in it, {', '.join(HEADS)}")
+    for head in heads:
+        if not head.with_suffix(".json").is_file():
+            raise UserError(f"{head}: its landmarks are missing, {head.with_suffix('.json').name}")
+    return tuple(head.absolute() for head in heads)

@@ -1,0 +1,215 @@
+"""Sampling: what sample number n of a seed is, in plain numbers, before anything is built or drawn.
+
+    table, seed, n  ->  Sample: expression, head, eyes, camera, person, looks
+
+Everything of a sample comes from numpy's SeedSequence([seed, n]) alone, and each part of it from a
+stream of its own: another camera leaves the faces as they were.
+
+Sources: aus.toml names those of the table. Letters of intensity are equal fifths of 0..1 here, as
+OpenFace and DISFA number them 1 to 5; FACS makes C and D wider than the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..life import EYE_RANGE, HEAD_RANGES
+from .table import BLINK, LETTERS, SampleTable, Shares, paired_units
+
+MOST_UNITS = 7  # of a mixture
+SIDES = ("_left", "_right")
+BROWS_AND_EYES = ("AU1", "AU2", "AU4", "AU5", "AU6", "AU7")
+TRACE = 0.25  # of the lowest fifth: below it nothing can be seen
+
+
+@dataclass(frozen=True)
+class View:
+    """A camera round the head: degrees, at zoom 1 the head fits, shift in shares of the picture."""
+
+    yaw: float
+    pitch: float
+    zoom: float
+    field_of_view: float
+    shift: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One sample.
+
+    kind, name: what sort of face, and which: "expression", "happiness".
+    controls: all that the face is asked for but its gaze.
+    gaze: where it looks within the head, to its left and up [degrees]; None: into the camera.
+    person: number of the one whose head it is. light: name of one of the renderer's.
+    surroundings: what light and background are drawn from.
+    """
+
+    seed: int
+    index: int
+    kind: str
+    name: str
+    controls: Mapping[str, float]
+    gaze: tuple[float, float] | None
+    view: View
+    person: int
+    light: str
+    surroundings: int
+
+
+def draw(table: SampleTable, seed: int, index: int) -> Sample:
+    """Sample number `index` of a seed."""
+    streams = np.random.SeedSequence([seed, index]).spawn(5)
+    faces, sides, heads, cameras, looks = map(np.random.default_rng, streams)
+    kind = chosen(faces, table.kinds)
+    face = _Face(table, faces)
+    name = face.fill(kind)
+    controls = face.controls | _blink(table, heads, face.controls)
+    controls = _two_sided(table, sides, controls, face.one_sided)
+    for angle in ("yaw", "pitch", "roll"):
+        degrees = table.head[angle] * _bounded_normal(heads)
+        controls[f"head_{angle}"] = degrees / HEAD_RANGES[f"head_{angle}"]
+    aside = [table.eyes[way] * _bounded_normal(heads) for way in ("horizontal", "vertical")]
+    is_at_camera = heads.random() < table.eyes["at_camera"]
+    ranges = [table.camera[each] for each in ("yaw", "pitch", "zoom", "field_of_view")]
+    yaw, pitch, zoom, field_of_view = (float(cameras.uniform(*each)) for each in ranges)
+    across, along = (float(cameras.uniform(*table.camera["shift"])) for _ in range(2))
+    return Sample(
+        seed,
+        index,
+        kind,
+        name,
+        {key: round(float(value), 4) for key, value in controls.items()},
+        None if is_at_camera else (aside[0], aside[1]),
+        View(yaw, pitch, zoom, field_of_view, (across, along)),
+        int(looks.integers(table.persons["count"])),
+        chosen(looks, table.lights),
+        int(looks.integers(2**63)),
+    )
+
+
+def gaze_controls(gaze: tuple[float, float]) -> dict[str, float]:
+    """Both eyes turned within the head, to its left and up [degrees]."""
+    return {
+        "gaze_horizontal": round(gaze[0] / EYE_RANGE, 4),
+        "gaze_vertical": round(gaze[1] / EYE_RANGE, 4),
+    }
+
+
+def chosen(random: np.random.Generator, shares: Shares) -> str:
+    """One of the names, each as often as its share says."""
+    weights = np.array(list(shares.values()))
+    return list(shares)[int(random.choice(len(weights), p=weights / weights.sum()))]
+
+
+class _Face:
+    """A face that is put together unit by unit."""
+
+    def __init__(self, table: SampleTable, random: np.random.Generator) -> None:
+        self._table = table
+        self._random = random
+        self.controls: dict[str, float] = {}
+        self.one_sided = table.sides["one_sided"]  # the chance of each unit
+
+    def fill(self, kind: str) -> str:
+        """Make a face of this kind; what it is called."""
+        table, random = self._table, self._random
+        if kind == "expression":
+            rows = table.expressions
+            name = chosen(random, {name: row.get("share", 0.0) for name, row in rows.items()})
+            self.one_sided = float(random.random() < rows[name].get("one_sided", 0.0))
+            strength = self._intensity()
+            for unit, share in rows[name].items():
+                if unit not in ("share", "one_sided") and random.random() < share:
+                    self._add(unit, strength * random.uniform(0.75, 1.1))
+            return name
+        if kind == "unit":
+            self._add(unit := chosen(random, table.units), self._intensity())
+            return unit
+        if kind == "mixture":
+            self._mix(table.units)
+            return "+".join(self.controls)
+        return self._speak() if kind == "speech" else ""
+
+    def _mix(self, units: Shares) -> None:
+        """A unit, those that join it, those that join these; half of the time another beside."""
+        random = self._random
+        waiting = [chosen(random, units) for _ in range(1 + int(random.random() < 0.5))]
+        while waiting and len(self.controls) < MOST_UNITS:
+            unit = waiting.pop(0)
+            if unit in self.controls or not self._add(unit, self._intensity()):
+                continue
+            for other, share in self._table.together.get(unit, {}).items():
+                if random.random() < share:
+                    waiting.append(other)
+
+    def _speak(self) -> str:
+        """A viseme, or one on its way to another; half of the time with brows and eyes."""
+        random = self._random
+        names = [chosen(random, self._table.speech) for _ in range(2)]
+        share = random.uniform(0.2, 0.8) if random.random() < 0.5 else 1.0
+        strength = random.uniform(0.5, 1.0)
+        units = {name: self._table.units.get(name, 0.0) for name in BROWS_AND_EYES}
+        if random.random() < 0.5 and any(units.values()):
+            for name in dict.fromkeys(chosen(random, units) for _ in range(2)):
+                self._add(name, self._intensity())
+        for name, part in zip(names, (share, 1.0 - share), strict=True):
+            if part > 0.0:
+                self.controls[name] = self.controls.get(name, 0.0) + strength * part
+        return "+".join(dict.fromkeys(names[: 1 + (share < 1.0)]))
+
+    def _add(self, unit: str, value: float) -> bool:
+        """Add a unit unless what is there excludes it."""
+        is_possible = self._table.goes_with(unit, self.controls)
+        if is_possible:
+            self.controls[unit] = min(value, 1.0)
+        return is_possible
+
+    def _intensity(self) -> float:
+        """A value of a letter's fifth of 0..1."""
+        place = LETTERS.index(chosen(self._random, self._table.letters))
+        within = self._random.uniform(0.0 if place else TRACE, 1.0)
+        return float((place + within) / len(LETTERS))
+
+
+def _blink(
+    table: SampleTable, random: np.random.Generator, controls: Mapping[str, float]
+) -> dict[str, float]:
+    """Lids on their way or shut, where nothing else moves them."""
+    is_blinking, closed = random.random() < table.eyes["blink"], random.uniform(0.25, 1.0)
+    if not is_blinking or not {"AU5", "AU43", "AU46_left", "AU46_right"}.isdisjoint(controls):
+        return {}
+    return {BLINK: float(closed)}
+
+
+def _two_sided(
+    table: SampleTable,
+    random: np.random.Generator,
+    controls: Mapping[str, float],
+    one_sided: float,
+) -> dict[str, float]:
+    """Units by side where the face is not symmetric; a lean face leans with all of them."""
+    is_asymmetric = random.random() < table.sides["asymmetric"]
+    side = int(random.integers(2))  # the one that is stronger, or alone
+    result: dict[str, float] = {}
+    for name, value in controls.items():
+        weaker = 1.0 - min(abs(table.sides["difference"] * _bounded_normal(random)), 1.0)
+        if name not in paired_units() or name == BLINK:
+            result[name] = value
+        elif random.random() < one_sided:
+            result[name + SIDES[side]] = value
+        elif is_asymmetric:
+            result[name + SIDES[side]] = value
+            result[name + SIDES[1 - side]] = value * weaker
+        else:
+            result[name] = value
+    return result
+
+
+def _bounded_normal(random: np.random.Generator) -> float:
+    """Of mean 0 and a deviation of about 1, and within 2."""
+    while abs(value := float(random.standard_normal())) > 2.0:
+        pass
+    return value

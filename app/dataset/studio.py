@@ -1,0 +1,142 @@
+"""The studio: takes the picture and the labels of one sample after the other, in one process.
+
+Nothing of one sample is left for the next: the scene is reset, and what is kept (the context, the
+heads of some persons) is the same whoever came before. So a sample is the same bytes from any
+process, in any order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import PIL.Image
+
+from risorius import render
+
+from ..files import Image
+from ..idle import looking_at
+from ..looks import Refinement
+from ..motion import SETTLING
+from ..passes.files import Labelled
+from ..passes.passes import Passes
+from ..pipeline import Pipeline
+from ..scenes import FaceScene
+from .cameras import camera_of
+from .folder import name_of
+from .labels import labels_of_face
+from .persons import person_of
+from .request import Request
+from .sampling import Sample, draw, gaze_controls
+from .surroundings import laid_over, light_of
+
+SAMPLES = 8  # of each pixel
+MOST_PERSONS = 4  # that are kept, those that came last
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A sample as it was taken."""
+
+    image: Image
+    known: Labelled
+
+    def save(self, picture: Path) -> None:
+        """Write the picture, and the files that lie beside it; OSError where that fails."""
+        PIL.Image.fromarray(self.image).save(picture)
+        self.known.save(picture)
+
+
+@dataclass(frozen=True)
+class _Model:
+    """A person before the frame."""
+
+    pipeline: Pipeline
+    passes: Passes
+    labels: dict[str, Any]
+
+
+class Studio:
+    """A frame without a window, and the heads of some persons before it."""
+
+    def __init__(self, request: Request) -> None:
+        self._request = request
+        self._surface = render.open_offscreen(request.size, samples=SAMPLES)
+        self._renderer = render.Renderer(self._surface)
+        self._persons: dict[int, _Model] = {}
+
+    def shoot(self, index: int) -> Shot:
+        """Take sample number `index` of the request's seed."""
+        request = self._request
+        sample = draw(request.table, request.seed, index)
+        model = self._person(sample.person)
+        pipeline, scene = model.pipeline, model.pipeline.scene
+        assert isinstance(scene, FaceScene)
+        camera = _posed(scene, sample, request.size)
+        image, surroundings = self._taken(pipeline, camera, sample)
+        images = model.passes.draw(camera, {"depth", *request.passes})
+        labels = {
+            "id": name_of(index),
+            "index": index,
+            "seed": sample.seed,
+            "risorius": request.version,
+            "kind": sample.kind,
+            "name": sample.name,
+            "person": model.labels,
+            **surroundings,
+            **labels_of_face(scene, camera, request.size, images["depth"]),
+        }
+        wanted = {name: images[name] for name in images if name in request.passes}
+        return Shot(image, Labelled(wanted, labels))
+
+    def _taken(
+        self, pipeline: Pipeline, camera: render.OrbitCamera, sample: Sample
+    ) -> tuple[Image, dict[str, Any]]:
+        """The picture of a scene as it is now, and what is told of light and background."""
+        request = self._request
+        random = np.random.default_rng(sample.surroundings)
+        light = light_of(sample.light, random)
+        picture, colours, name = None, None, ""
+        if request.backgrounds.pictures:
+            name, picture = request.backgrounds.picture(random, request.size)
+        else:
+            colours = request.backgrounds.colours(random)
+        self._surface.begin()
+        style = render.Style(light=light, background=colours)
+        pipeline.draw(camera, style, [(0, 0, *request.size)])
+        self._surface.end()
+        if picture is None:
+            image = self._surface.read()
+        else:
+            image = laid_over(picture, self._surface.read_scene(4))
+        told = {"name": sample.light, **asdict(light)}
+        return image, {"light": told, "background": name if colours is None else asdict(colours)}
+
+    def _person(self, number: int) -> _Model:
+        """A person of the set before the frame."""
+        person = self._persons.pop(number, None)
+        if person is None:
+            somebody = person_of(self._request, number)
+            pipeline = Pipeline(FaceScene(somebody.head), self._renderer, [Refinement()])
+            person = _Model(pipeline, Passes(pipeline), somebody.labels)
+        self._persons[number] = person
+        if len(self._persons) > MOST_PERSONS:
+            del self._persons[next(iter(self._persons))]
+        return person
+
+
+def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.OrbitCamera:
+    """Let a face come to rest in its pose, and its eyes then; the camera before it."""
+    scene.reset()
+    scene.pose(sample.controls)
+    scene.step(SETTLING)
+    camera = camera_of(scene, sample.view, size)
+    if sample.gaze is None:
+        eyes = looking_at(scene, camera.eye)["eyes"]
+    else:
+        eyes = gaze_controls(sample.gaze)
+    scene.pose({**sample.controls, **eyes})
+    scene.step(SETTLING)
+    return camera

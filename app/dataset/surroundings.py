@@ -1,0 +1,122 @@
+"""What is around the face of a sample: light, and behind it colours or a part of a picture."""
+
+from __future__ import annotations
+
+import colorsys
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import PIL.Image
+import PIL.ImageColor
+import PIL.ImageOps
+
+from risorius.render import LIGHTS, Background, Light
+
+from ..errors import UserError
+from ..files import Image
+
+TURN = 18.0  # [degrees] that the key light is moved, standard deviation
+BRIGHTNESS, WARMTH = (0.75, 1.15), 0.08  # of all light; of red over blue light, standard deviation
+SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
+SMALLEST = 0.6  # share of a picture's shorter side that is seen, at least
+
+
+@dataclass(frozen=True)
+class Backgrounds:
+    """Colours (sRGB 0..1) of all samples, or pictures to choose from, or neither: soft colours."""
+
+    colour: tuple[float, float, float] | None = None
+    pictures: tuple[Path, ...] = ()
+
+    @property
+    def options(self) -> Any:
+        """What decides them, for JSON."""
+        if not self.pictures:
+            return self.colour if self.colour is None else list(self.colour)
+        return {"pictures": len(self.pictures), "content": digest(self.pictures)}
+
+    def colours(self, random: np.random.Generator) -> Background:
+        """The colours of one sample: not far from grey, the edge a little darker or lighter."""
+        if self.colour is not None:
+            return Background(self.colour, self.colour)
+        hue, saturation, value = random.uniform([0.0, 0.0, 0.15], [1.0, 0.35, 0.95])
+        change = random.uniform(0.7, 1.15)
+        centre = colorsys.hsv_to_rgb(hue, saturation, value)
+        return Background(centre, colorsys.hsv_to_rgb(hue, saturation, min(change * value, 1.0)))
+
+    def picture(self, random: np.random.Generator, size: tuple[int, int]) -> tuple[str, Image]:
+        """The name of one picture, and a part of it of `size`, sRGB, shape (H, W, 3).
+
+        Raises UserError for a file that is no picture.
+        """
+        path = self.pictures[int(random.integers(len(self.pictures)))]
+        share, across, along = random.uniform([SMALLEST, 0.0, 0.0], 1.0)
+        try:
+            with PIL.Image.open(path) as opened:
+                whole = PIL.ImageOps.exif_transpose(opened).convert("RGB")
+        except (OSError, ValueError, PIL.Image.DecompressionBombError) as error:
+            raise UserError(f"{path}: cannot be read as a picture: {error}") from None
+        scale = share * min(whole.width / size[0], whole.height / size[1])
+        width, height = scale * size[0], scale * size[1]
+        left, top = across * (whole.width - width), along * (whole.height - height)
+        part = whole.resize(
+            size, PIL.Image.Resampling.LANCZOS, (left, top, left + width, top + height)
+        )
+        return path.name, np.asarray(part)
+
+
+def light_of(name: str, random: np.random.Generator) -> Light:
+    """One of the renderer's lights: its key moved, all brighter or darker, warmer or cooler."""
+    light = LIGHTS[name]
+    to_key = np.array(light.to_key) + np.radians(TURN) * random.standard_normal(3)
+    to_key[2] = max(to_key[2], 0.1)  # not behind the head
+    warmth = WARMTH * np.clip(random.standard_normal(), -2.0, 2.0)
+    tint = random.uniform(*BRIGHTNESS) * np.array([1.0 + warmth, 1.0, 1.0 - warmth])
+    changed: dict[str, Any] = {
+        each: tuple((tint * getattr(light, each)).tolist())
+        for each in ("key", "fill", "rim", "sky", "ground")
+    }
+    return replace(light, to_key=tuple((to_key / np.linalg.norm(to_key)).tolist()), **changed)
+
+
+def laid_over(picture: Image, premultiplied: Image) -> Image:
+    """A picture (H, W, 3) behind another with alpha (H, W, 4), as OpenGL would blend them."""
+    through = 1.0 - premultiplied[..., 3:] / 255.0
+    blended: Image = (
+        np.rint(premultiplied[..., :3] + through * picture).clip(0, 255).astype(np.uint8)
+    )
+    return blended
+
+
+def backgrounds_of(text: str | None) -> Backgrounds:
+    """What `--background` says: a colour, a folder of pictures, or nothing; UserError else."""
+    if text is None:
+        return Backgrounds()
+    folder = Path(text)
+    if folder.is_dir():
+        pictures = files_in(folder, SUFFIXES)
+        if not pictures:
+            raise UserError(f"--background {text}: no picture in it, {', '.join(SUFFIXES)}")
+        return Backgrounds(pictures=pictures)
+    try:
+        red, green, blue = PIL.ImageColor.getrgb(text)[:3]
+    except ValueError:
+        raise UserError(
+            f"--background {text}: neither a folder nor a colour, as in '#8090a0' or grey"
+        ) from None
+    return Backgrounds((red / 255.0, green / 255.0, blue / 255.0))
+
+
+def files_in(folder: Path, suffixes: Sequence[str]) -> tuple[Path, ...]:
+    """The files of a folder that end so, by name."""
+    return tuple(sorted(path for path in folder.iterdir() if path.suffix.lower() in suffixes))
+
+
+def digest(paths: Sequence[Path]) -> str:
+    """Tells files from others, by their names and sizes."""
+    told = "".join(f"{path.name} {path.stat().st_size}\n" for path in paths)
+    return hashlib.sha256(told.encode()).hexdigest()[:16]

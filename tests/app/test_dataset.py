@@ -1,0 +1,348 @@
+"""`risorius dataset`: a set of samples, whole and the same however it was made."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import PIL.Image
+import pytest
+from click.testing import CliRunner, Result
+
+from risorius.app.cli import main
+from risorius.app.dataset.folder import UNFINISHED, SetFolder
+from risorius.app.dataset.labels import action_units
+from risorius.app.dataset.request import request_of
+from risorius.app.dataset.studio import Studio
+from risorius.app.dataset.table import load_table
+from risorius.app.scenes import FaceScene
+
+COUNT, SEED, SIZE, PASSES = 5, 11, (80, 64), ("depth", "normal", "segmentation")
+ENDS = ("_ldmks.txt", "_seg.png", ".exr", ".json", ".png")
+OPTIONS = (
+    "--seed", str(SEED), "--size", "x".join(map(str, SIZE)), "--passes", ",".join(PASSES),
+    "--coco", "--quiet",
+)  # fmt: skip
+
+
+def run(folder: Path, *options: str, count: int = COUNT) -> Result:
+    """The command, in this process but for its workers."""
+    return CliRunner().invoke(
+        main, ["dataset", "--count", str(count), "-o", str(folder), *OPTIONS, *options]
+    )
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    """All files of a folder."""
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A set, made by two processes."""
+    folder = tmp_path_factory.mktemp("set") / "made"
+    result = run(folder, "--jobs", "2")
+    assert result.exit_code == 0, result.output
+    assert result.output.startswith(f"{folder}: {COUNT} samples, {COUNT} of them new")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def samples(made: Path) -> list[dict[str, Any]]:
+    """The labels of all samples."""
+    return [json.loads((made / f"{k:06d}.json").read_text("utf-8")) for k in range(COUNT)]
+
+
+def test_a_set_has_these_files_and_nothing_else(made: Path) -> None:
+    told = {"README.md", "coco.json", "dataset.json", "index.csv"}
+    assert set(content(made)) == told | {f"{k:06d}{end}" for k in range(COUNT) for end in ENDS}
+
+
+def test_a_sample_is_the_same_alone_and_after_others(made: Path, tmp_path: Path) -> None:
+    """Byte for byte in another process, in another order, and when it is drawn once more."""
+    request = request_of(made, seed=SEED, size=SIZE, passes=PASSES)
+    studio = Studio(request)
+    for index in (3, 0, 4, 3, 1):
+        studio.shoot(index).save(tmp_path / f"{index:06d}.png")
+        for end in ENDS:
+            name = f"{index:06d}{end}"
+            assert (tmp_path / name).read_bytes() == (made / name).read_bytes(), name
+
+
+def test_samples_are_of_different_faces(made: Path, samples: list[dict[str, Any]]) -> None:
+    assert len({(made / f"{k:06d}.png").read_bytes() for k in range(COUNT)}) == COUNT
+    assert len({str(sample["controls"]) for sample in samples}) == COUNT
+
+
+def test_a_set_goes_on_where_it_was_left(made: Path, tmp_path: Path) -> None:
+    """Samples without .json, whatever of them is there, are made anew; then all is as at once."""
+    folder = tmp_path / "left"
+    shutil.copytree(made, folder)
+    (folder / "000001.json").unlink()
+    (folder / "000003.json").unlink()
+    (folder / "000003.png").write_bytes(b"half a picture")
+    (folder / UNFINISHED / "0000034711").mkdir(parents=True)
+    result = run(folder, "--resume")
+    assert "2 of them new" in result.output
+    assert content(folder) == content(made)
+
+
+def test_a_set_can_be_made_longer(made: Path, tmp_path: Path) -> None:
+    """To the set that would have been made at once; not shorter."""
+    folder = tmp_path / "short"
+    run(folder, count=2)
+    assert "3 of them new" in run(folder, "--resume").output
+    assert content(folder) == content(made)
+    result = run(folder, "--resume", count=4)
+    assert result.exit_code == 2
+    assert "has sample 4 already; give --count 5 or more" in result.stderr
+
+
+def test_what_is_no_such_set_is_left_alone(made: Path, tmp_path: Path) -> None:
+    """One line, and every file as it was."""
+    before = content(made)
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "mine.txt").write_text("mine", "utf-8")
+    for folder, options, told in (
+        (made, (), "holds a data set; add --resume"),
+        (made, ("--resume", "--seed", "12"), "was begun with seed 11, not 12"),
+        (made, ("--resume", "--camera", "0"), "was begun with [camera]"),
+        (made, ("--resume", "--background", "red"), "was begun with background null, not [1.0"),
+        (made, ("--resume", "--passes", "depth"), "was begun with passes"),
+        (other, ("--resume",), "is not empty and no data set"),
+    ):
+        result = run(folder, *options)
+        assert result.exit_code == 2
+        assert told in result.stderr
+        assert len(result.stderr.splitlines()) == 1
+    assert content(made) == before
+    assert [path.name for path in other.iterdir()] == ["mine.txt"]
+
+
+def test_two_cannot_make_one_set(made: Path) -> None:
+    request = request_of(made, seed=SEED, size=SIZE, passes=PASSES)
+    with SetFolder(made).held(request.options(), resume=True):
+        result = run(made, "--resume")
+    assert result.exit_code == 2
+    assert "another process is making this set" in result.stderr
+
+
+def test_labels_agree_with_each_other(made: Path, samples: list[dict[str, Any]]) -> None:
+    """Points in space, the camera, points in the picture, and the file of landmarks."""
+    for sample in samples:
+        camera, landmarks = sample["camera"], sample["landmarks"]
+        points = np.array(landmarks["points"])
+        seen = points @ np.array(camera["R"]).T + camera["t"]
+        pixels = seen @ np.array(camera["K"]).T
+        np.testing.assert_allclose(pixels[:, :2] / pixels[:, 2:], landmarks["pixels"], atol=1e-3)
+        rows = np.loadtxt(made / f"{sample['id']}_ldmks.txt")
+        assert rows.shape == (70, 2)
+        np.testing.assert_allclose(rows, landmarks["pixels"], atol=1e-3)
+        units = sample["action_units"]
+        for name, value in sample["controls"].items():
+            if name in units:
+                assert units[name] == pytest.approx(value, abs=1e-4)
+        assert {name: 5 * value for name, value in units.items()} == pytest.approx(
+            sample["action_units_0_to_5"], abs=1e-4
+        )
+        assert len(sample["arkit"]) == 52
+        x, y, width, height = sample["face_box"]
+        assert 0 <= x < x + width <= SIZE[0] and 0 <= y < y + height <= SIZE[1]
+
+
+def test_faces_are_in_their_pictures(made: Path, samples: list[dict[str, Any]]) -> None:
+    """All landmarks, and the classes of a face."""
+    for sample in samples:
+        pixels = np.array(sample["landmarks"]["pixels"])
+        assert (pixels > 0).all() and (pixels < SIZE).all()
+        with PIL.Image.open(made / f"{sample['id']}.png") as picture:
+            assert picture.size == SIZE and picture.mode == "RGB"
+        classes = np.asarray(PIL.Image.open(made / f"{sample['id']}_seg.png"))
+        assert {0, 1, 2} <= set(np.unique(classes))
+        assert 0.1 < (classes > 0).mean() < 0.8
+
+
+def test_the_index_has_a_row_for_each_sample(made: Path, samples: list[dict[str, Any]]) -> None:
+    with (made / "index.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["id"] for row in rows] == [sample["id"] for sample in samples]
+    for row, sample in zip(rows, samples, strict=True):
+        for name, value in sample["action_units"].items():
+            assert float(row[name]) == value
+        assert float(row["head_yaw"]) == sample["head"]["yaw"]
+
+
+def test_coco_has_every_keypoint(made: Path, samples: list[dict[str, Any]]) -> None:
+    coco = json.loads((made / "coco.json").read_text("utf-8"))
+    (category,) = coco["categories"]
+    assert len(set(category["keypoints"])) == 70
+    assert all(1 <= point <= 68 for line in category["skeleton"] for point in line)
+    assert [each["file_name"] for each in coco["images"]] == [f"{s['id']}.png" for s in samples]
+    for found, sample in zip(coco["annotations"], samples, strict=True):
+        keypoints = np.array(found["keypoints"]).reshape(70, 3)
+        np.testing.assert_allclose(keypoints[:, :2], sample["landmarks"]["pixels"])
+        assert (keypoints[:, 2] == 1 + np.array(sample["landmarks"]["visible"])).all()
+        assert found["num_keypoints"] == 70
+        assert found["image_id"] == sample["index"]
+
+
+def test_the_card_tells_what_is_in_the_set(made: Path, samples: list[dict[str, Any]]) -> None:
+    card = (made / "README.md").read_text("utf-8")
+    assert f"--count {COUNT} --seed {SEED}" in card
+    for unit in ("AU12", "AU25"):
+        share = sum(sample["action_units"][unit] >= 0.05 for sample in samples) / COUNT
+        assert (f"| {unit} | {share:.1%} |" in card) == (share > 0)
+    assert "{" not in card
+
+
+def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
+    """Of one colour they are that colour wherever no class is."""
+    pictures = tmp_path / "pictures"
+    pictures.mkdir()
+    PIL.Image.new("RGB", (100, 50), (10, 200, 30)).save(pictures / "green.png")
+    behind = {}
+    for name, background in (("colour", "#0ac81e"), ("picture", str(pictures))):
+        request = request_of(
+            tmp_path, seed=2, size=(96, 96), passes=("segmentation",), background=background
+        )
+        shot = Studio(request).shoot(0)
+        is_behind = shot.known.images["segmentation"] == 0
+        behind[name] = shot.image
+        inner = is_behind[1:-1, 1:-1] & is_behind[2:, 1:-1] & is_behind[:-2, 1:-1]
+        inner &= is_behind[1:-1, 2:] & is_behind[1:-1, :-2]
+        assert np.abs(shot.image[1:-1, 1:-1][inner].astype(int) - (10, 200, 30)).max() <= 1
+    assert np.abs(behind["colour"].astype(int) - behind["picture"]).max() <= 2
+
+
+def test_heads_of_a_folder_are_the_persons(tmp_path: Path) -> None:
+    """Each with its landmarks; a head without is told."""
+    heads = tmp_path / "heads"
+    heads.mkdir()
+    head = FaceScene().head
+    lines = [f"v {x} {y} {z}" for x, y, z in 1.1 * head.vertices]
+    lines += [f"f {a} {b} {c}" for a, b, c in head.faces + 1]
+    (heads / "one.obj").write_text("\n".join(lines), "utf-8")
+    result = run(tmp_path / "set", "--heads", str(heads))
+    assert result.exit_code == 2
+    assert "its landmarks are missing, one.json" in result.stderr
+    (heads / "one.json").write_text(json.dumps(head.landmarks.tolist()), "utf-8")
+    request = request_of(tmp_path, seed=2, size=(64, 64), passes=(), heads=heads)
+    shot = Studio(request).shoot(0)
+    assert shot.known.labels["person"]["head"] == "one.obj"
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--passes", "colour"), "'colour' is no pass"),
+        (("--camera", "x"), "--camera x: write yaw"),
+        (("--background", "no such"), "neither a folder nor a colour"),
+        (("--heads", "/nowhere"), "no such folder"),
+        (("--sample", "/nowhere.toml"), "no such table"),
+    ],
+)
+def test_what_cannot_be_is_told_before_work(
+    tmp_path: Path, options: tuple[str, ...], told: str
+) -> None:
+    result = run(tmp_path / "set", *options)
+    assert result.exit_code == 2
+    assert told in result.stderr
+    assert not (tmp_path / "set").exists()
+
+
+def test_the_table_is_printed() -> None:
+    result = CliRunner().invoke(main, ["dataset", "--sample-table"])
+    assert "[expressions]" in result.output
+
+
+@pytest.fixture(scope="module")
+def face() -> FaceScene:
+    """The built-in head."""
+    return FaceScene()
+
+
+@pytest.mark.parametrize("unit", load_table(None).units)
+def test_landmarks_move_further_the_more_of_a_unit(face: FaceScene, unit: str) -> None:
+    """What a label says is seen: the farthest landmark goes on with every step, by a tenth."""
+    rest = face.rest_positions[face.landmarks]
+    moved = []
+    for value in (0.25, 0.5, 0.75, 1.0):
+        face.reset()
+        face.pose({unit: value})
+        face.step(1.0)
+        assert action_units(face)[unit] == pytest.approx(value, abs=1e-4)
+        away = np.linalg.norm(face.positions[face.landmarks] - rest, axis=1)
+        moved.append(float(away.max()))
+    assert moved[0] > 0.05
+    assert (np.diff(moved) > 0.1 * moved[-1]).all()
+
+
+def test_speech_is_told_in_units(face: FaceScene) -> None:
+    """A viseme of units alone gives them back; a unit that was set counts as it was set."""
+    face.reset()
+    face.pose({"viseme_SS": 0.5, "AU1_left": 0.3})
+    units = {name: value for name, value in action_units(face).items() if value > 0.01}
+    assert units.pop("AU1") == units.pop("AU1_left") == pytest.approx(0.3, abs=1e-4)
+    shares = {"AU20": 0.35, "AU12": 0.15, "AU25": 1.0, "AU26": 0.06}
+    for name, share in shares.items():
+        assert units[name] == pytest.approx(0.5 * share, abs=1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
+def test_killed_at_any_moment_nothing_half_written_has_its_name(made: Path, tmp_path: Path) -> None:
+    """Thirty times, by SIGKILL or Ctrl-C, to the whole group or to the first process alone."""
+    chance = random.Random(7)
+    begun = time.monotonic()
+    assert run(tmp_path / "whole", "--jobs", "2").exit_code == 0
+    usual = time.monotonic() - begun
+    folder = tmp_path / "killed"
+    whole = content(made)
+    for attempt in range(30):
+        if attempt % 5 == 0:
+            shutil.rmtree(folder, ignore_errors=True)
+        process = subprocess.Popen(
+            [sys.executable, "-m", "risorius", "dataset", "--count", str(COUNT), "--jobs", "2",
+             "-o", str(folder), *OPTIONS, *(["--resume"] if folder.exists() else [])],
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        )  # fmt: skip
+        time.sleep(chance.uniform(0.2, 1.0) * usual)
+        number = chance.choice([signal.SIGKILL, signal.SIGINT])
+        os.kill(process.pid, number)
+        process.communicate(timeout=60)
+        for name, found in content_of_set(folder).items():
+            assert found == whole[name], f"{name} after {number!r}"
+    if not folder.exists():
+        folder.mkdir()
+    wait_for_workers(folder)
+    assert run(folder, "--resume").exit_code == 0
+    assert content(folder) == whole
+
+
+def content_of_set(folder: Path) -> dict[str, bytes]:
+    """The files that have their final names; a sample's others count where its .json is there."""
+    if not folder.exists():
+        return {}
+    found = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+    return {name: each for name, each in found.items() if not name.startswith(".")}
+
+
+def wait_for_workers(folder: Path) -> None:
+    """Until processes that lost their first one have ended: nothing new is written any more."""
+    before = None
+    while (now := sorted(path.name for path in folder.rglob("*"))) != before:
+        before = now
+        time.sleep(3.0)

@@ -1,0 +1,180 @@
+"""What samples of a data set are, before anything is drawn: the table, and draws from it."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from risorius.app.dataset.sampling import MOST_UNITS, Sample, draw
+from risorius.app.dataset.table import (
+    SampleTable,
+    load_table,
+    paired_units,
+    table_text,
+    with_camera,
+)
+from risorius.app.errors import UserError
+from risorius.app.scenes import FaceScene
+
+TABLE = load_table(None)
+LIMITS = FaceScene().limits
+
+
+def units_of(sample: Sample) -> set[str]:
+    """The action units of a sample, both sides as one."""
+    names = {name for name in sample.controls if name.startswith("AU")}
+    known = {name for row in paired_units() for name in (row, f"{row}_left", f"{row}_right")}
+    return {name.rpartition("_")[0] if name in known - paired_units() else name for name in names}
+
+
+@given(seed=st.integers(0, 2**32 - 1), index=st.integers(0, 999_999))
+def test_any_sample_is_a_face_that_can_be_made(seed: int, index: int) -> None:
+    """Controls within their limits, nothing that excludes another, the camera in its ranges."""
+    sample = draw(TABLE, seed, index)
+    for name, value in sample.controls.items():
+        low, high = LIMITS[name]
+        assert low <= value <= high
+    units = units_of(sample)
+    for pair in itertools.combinations(units, 2):
+        assert frozenset(pair) not in TABLE.excluded
+    assert len(units) <= MOST_UNITS + 2  # of an expression, and a blink
+    if sample.kind == "neutral":
+        assert units <= {"AU45"}
+    for name, (low, high) in TABLE.camera.items():
+        if name != "shift":
+            assert low <= getattr(sample.view, name) <= high
+    assert 0 <= sample.person < TABLE.persons["count"]
+
+
+@given(seed=st.integers(0, 2**32 - 1), index=st.integers(0, 999_999))
+def test_a_sample_follows_from_seed_and_number_alone(seed: int, index: int) -> None:
+    first = draw(TABLE, seed, index)
+    draw(TABLE, seed, index + 1)
+    assert draw(TABLE, seed, index) == first
+
+
+def test_samples_differ() -> None:
+    """By number and by seed; and neither leads to the samples of another."""
+    drawn = [str(draw(TABLE, seed, index)) for seed in range(20) for index in range(20)]
+    assert len(set(drawn)) == len(drawn)
+
+
+def test_another_camera_leaves_the_faces_as_they_are() -> None:
+    other = with_camera(TABLE, "0,5:10,1")
+    for index in range(50):
+        one, two = draw(TABLE, 4, index), draw(other, 4, index)
+        assert replace(two, view=one.view) == one
+        assert (two.view.yaw, two.view.zoom) == (0.0, 1.0)
+        assert 5.0 <= two.view.pitch <= 10.0
+
+
+@pytest.fixture(scope="module")
+def many() -> list[Sample]:
+    """Samples enough for shares: of a share of a third, the deviation is 0.01."""
+    return [draw(TABLE, 1, index) for index in range(2000)]
+
+
+def test_kinds_and_units_come_as_often_as_the_table_says(many: list[Sample]) -> None:
+    total = sum(TABLE.kinds.values())
+    for kind, share in TABLE.kinds.items():
+        assert sum(s.kind == kind for s in many) / len(many) == pytest.approx(
+            share / total, abs=0.05
+        )
+    for unit in TABLE.units:
+        assert any(unit in units_of(sample) for sample in many), f"{unit} never comes"
+
+
+def test_units_come_with_those_that_they_go_with(many: list[Sample]) -> None:
+    """6 with 12 and 1 with 2: far more often than they would by themselves."""
+    for unit, other in (("AU6", "AU12"), ("AU2", "AU1"), ("AU27", "AU25"), ("AU15", "AU17")):
+        units = [units_of(sample) for sample in many]
+        alone = sum(other in each for each in units) / len(units)
+        there = [other in each for each in units if unit in each]
+        assert sum(there) / len(there) > 1.8 * alone
+
+
+def test_sides_differ_in_some(many: list[Sample]) -> None:
+    """In as many as the table says; contempt is on one side alone."""
+    sided = [s for s in many if any(name.endswith(("_left", "_right")) for name in s.controls)]
+    assert 0.25 < len(sided) / len(many) < 0.5
+    for sample in many:
+        if sample.name == "contempt":
+            sides = {name.rpartition("_")[2] for name in sample.controls if name.startswith("AU1")}
+            assert len(sides) == 1 and sides <= {"left", "right"}
+
+
+def test_all_letters_of_intensity_come(many: list[Sample]) -> None:
+    values = [value for s in many for name, value in s.controls.items() if name.startswith("AU")]
+    shares = np.histogram(values, bins=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0])[0] / len(values)
+    assert (shares > 0.08).all()
+
+
+def read(tmp_path: Path, text: str) -> SampleTable:
+    """A table with this text."""
+    file = tmp_path / "my.toml"
+    file.write_text(text, encoding="utf-8")
+    return load_table(file)
+
+
+def test_a_table_of_ones_own_replaces_sections(tmp_path: Path) -> None:
+    assert read(tmp_path, table_text()) == TABLE
+    own = read(tmp_path, "[units]\nAU12 = 1.0\n[kinds]\nunit = 1\n[persons]\ncount = 3\n")
+    assert {draw(own, 0, index).name for index in range(20)} == {"AU12"}
+    assert own.expressions == TABLE.expressions
+    assert own.persons == {**TABLE.persons, "count": 3}
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("[kind]", "'kind': is no name here; allowed are kinds, letters"),
+        ("kinds = 3", "'kinds': was 3"),
+        ("camera = 3", "'camera': was 3"),
+        ("[kinds]\nsmile = 1", "'kinds', 'smile': is no name here; allowed are neutral"),
+        ("[letters]\nA = 0", "'letters': all shares are 0"),
+        ("[units]\nAU3 = 1.0", "'units', 'AU3': is no name here; allowed are AU1,"),
+        ("[units]\nAU12_left = 1.0", "'units', 'AU12_left': is no name"),
+        ("[units]\nAU51 = 1.0", "'units', 'AU51': is no name"),
+        ("[units]\nAU12 = -1", "'units', 'AU12': was -1"),
+        ("[units]\nAU12 = nan", "'units', 'AU12': was nan"),
+        ("[units]\nAU12 = true", "'units', 'AU12': was True"),
+        ("[units]", "'units': all shares are 0"),
+        ("[together]\nAU6 = 3", "'together', 'AU6': was 3"),
+        ("[together]\nAU6 = { AU12 = 1.5 }", "'together', 'AU6', 'AU12': was 1.5"),
+        ("[together]\nsmile = { AU12 = 1 }", "'together', 'smile': is no name"),
+        ("[expressions]\njoy = 1", "'expressions', 'joy': was 1"),
+        ("[expressions]\njoy = { AU12 = 1 }", "'expressions': all shares are 0"),
+        ("[expressions]\njoy = { share = 1, AU12 = 2 }", "'expressions', 'joy', 'AU12': was 2"),
+        ("[excluded]\npairs = [['AU1']]", "'excluded': was ['AU1']"),
+        ("[excluded]\npairs = [['AU1', 'AU99']]", "'excluded': was ['AU1', 'AU99']"),
+        ("[excluded]\npairs = [['AU1', 'AU1']]", "'excluded': was ['AU1', 'AU1']"),
+        ("[speech]\nviseme_x = 1", "'speech', 'viseme_x': is no name here; allowed are viseme_sil"),
+        ("[camera]\nyaw = [3, 1]", "'camera', 'yaw': was [3, 1]"),
+        ("[camera]\nyaw = 3", "'camera', 'yaw': was 3"),
+        ("[persons]\ncount = 0", "'persons', 'count': was 0"),
+        ("[kinds", "not valid TOML"),
+    ],
+)
+def test_a_wrong_table_is_told_in_one_line(tmp_path: Path, text: str, told: str) -> None:
+    """File, section and row, and what is allowed."""
+    with pytest.raises(UserError) as raised:
+        read(tmp_path, text)
+    assert str(raised.value).startswith(str(tmp_path / "my.toml"))
+    assert told in str(raised.value)
+
+
+def test_a_missing_table_is_told(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="--sample-table"):
+        load_table(tmp_path / "none.toml")
+
+
+@pytest.mark.parametrize("text", ["a", "1,2,3,4", "10:5", "95", "0,0,0", "1:2:3", "nan", ""])
+def test_a_wrong_camera_is_told(text: str) -> None:
+    with pytest.raises(UserError, match=f"--camera {text}"):
+        with_camera(TABLE, text)
