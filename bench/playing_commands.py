@@ -60,7 +60,7 @@ def bench_live(seconds: float, window: bool) -> None:
 @click.command("capture")
 @click.option("--size", type=Size(), default=(1280, 720), show_default="1280x720")
 @click.option(
-    "--seconds", type=FiniteRange(1.0, 60.0), default=4.0, show_default=True, help="Of the script."
+    "--seconds", type=FiniteRange(1.0, 60.0), default=8.0, show_default=True, help="Of the script."
 )
 def bench_capture(size: tuple[int, int], seconds: float) -> None:
     """Time a film without a screen: frames a second, and where its time goes."""
