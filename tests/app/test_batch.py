@@ -137,7 +137,7 @@ def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
         (9, "writes nothing"),
         (11, "not empty"),
         (12, "broken.toml"),
-        (13, "is written by line 10 already"),
+        (13, "is read and would be written"),
         (15, "is read and would be written"),
         (14, "--colour"),
     )
@@ -183,7 +183,7 @@ def test_what_fails_fails_alone() -> None:
     ended = batch("--jobs", "1")
     assert ended.exit_code == 1
     assert statuses() == ["ok", "failed", "ok", "ok"]
-    assert "no_such_control" in rows()[4]["error"] and not Path("films").exists()
+    assert "no_such_control" in rows()[4]["error"] and not contents("films")
     assert [line for line in ended.stderr.splitlines() if "clips.txt:4: " in line]
     Path("sadness.toml").write_text(SCRIPT.format(0.5, "sadness"))
     assert batch("--resume").exit_code == 0
@@ -362,3 +362,18 @@ def test_a_cluster_loses_a_worker_halfway(cluster: Any) -> None:
     assert sum('"frames"' in entry for entry in entries) == 4
     assert batch().exit_code == 0
     assert contents("made") == made
+
+
+@linux
+def test_ctrl_c_reaches_the_cluster(cluster: Any) -> None:
+    """What workers have half written goes, and what was not begun is not begun."""
+    films(6)
+    process = started("--scheduler", cluster.scheduler_address, "--quiet")
+    wait_until(lambda: bool(list(Path("made").glob(".risorius-*/new/*.mp4"))))
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
+    assert process.returncode == -signal.SIGINT
+    wait_until(lambda: not list(Path("made").glob(".risorius-*")))
+    made = contents("made")
+    time.sleep(1.0)
+    assert contents("made") == made and len(made) < 6
