@@ -26,7 +26,7 @@ from ..errors import AssetError
 from ..files import Image, read_arrays_of
 from ..fitting.head import FittedHead
 from ..generator.eyeballs import IRISES, eyeball
-from ..generator.pigments import BLOOD, COMPLEXIONS, MELANIN, to_linear
+from ..generator.pigments import BLOOD, COMPLEXIONS, MELANIN, to_linear, to_screen
 from ..loading import load
 from ..model import FloatArray, Part, SingleArray, Tone
 
@@ -177,6 +177,4 @@ def _tints() -> _Tints:
 @lru_cache(maxsize=1)
 def _screen_bytes() -> Image:
     """Bytes (sRGB) of the squares of LEVELS steps from 0 to 1."""
-    light = np.linspace(0.0, 1.0, LEVELS) ** 2
-    screen = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1.0 / 2.4) - 0.055)
-    return np.rint(255.0 * screen).astype(np.uint8)
+    return np.rint(255.0 * to_screen(np.linspace(0.0, 1.0, LEVELS) ** 2)).astype(np.uint8)

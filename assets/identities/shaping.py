@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..errors import AssetError
 from ..model import Eye, FloatArray, Head
 from ..norms import NORMS
 from ..report import DISTANCES
@@ -32,7 +33,6 @@ PAIRS = {title.rpartition(", ")[2]: (first, second) for title, first, second in 
 # An eye's length is hardly more than en-en and ex-ex make it in front view. What they leave of it,
 # up and back, is looked for in its place: Newton's method would divide by almost nothing.
 EYE = "en-ex"
-UP_AND_BACK = np.array([0.0, 1.0, 1.0])
 
 
 @dataclass(frozen=True)
@@ -80,79 +80,78 @@ class Shaper:
     def fit(
         self,
         measures: Mapping[str, float],
-        pushes: Sequence[tuple[int, FloatArray]],
-        uneven: Sequence[tuple[int, FloatArray]] = (),
+        pushes: Mapping[int, FloatArray],
+        uneven: Mapping[int, FloatArray],
     ) -> Field:
         """The likeliest field under which distances are these [mm].
 
         pushes: how much farther than measures alone would have it vertices go [mm], with their
-            mirror images. uneven: how far vertices go, and their mirror images the other way; it
-            changes measures by hundredths, but for those of one side, whose mean stays. Raises
-            ValueError where measures contradict each other.
+            mirror images. uneven: how far they go while their mirror images go the other way; it
+            changes measures by tenths, but for those of one side, whose mean stays.
+        Raises AssetError where measures contradict each other.
         """
-        wanted = self._sought(measures)
+        sides = (measures["ex-ex"] - measures["en-en"]) / 2.0
+        up_and_back = np.sqrt(max(measures[EYE] ** 2 - sides**2, 1.0))
+        wanted = np.array([up_and_back if code == EYE else measures[code] for code in NORMS])
         scale = float(np.exp(np.log(wanted / self._lengths(self._rest)[1]).mean()))
-        weights = self._solve(scale, wanted, np.zeros_like(self._rest))
-        rows = np.array([self._push_row(number, way) for number, way in pushes])
-        if len(rows):
-            lengths = np.array([np.linalg.norm(way) for _, way in pushes])
-            values = (rows * (self._alike @ weights)).sum(axis=(1, 2))
-            weights = self._solve(scale, wanted, weights, rows, values, lengths)
+        rows = np.zeros((len(pushes), *self._rest.shape))
+        for row, (number, way) in zip(rows, pushes.items(), strict=True):
+            row[self._place[number]] = way / np.linalg.norm(way)
+        none = np.zeros_like(self._rest)
+        weights = self._solve(scale, wanted, none, rows[:0], np.zeros(0))
+        farther = np.array([np.linalg.norm(way) for way in pushes.values()])
+        weights = self._solve(scale, wanted, weights, rows, farther)
         off = np.abs(self._lengths(scale * self._rest + self._alike @ weights)[1] - wanted)
         if not off.max() < TOLERANCE:
             code = list(NORMS)[int(np.argmax(off))]
-            raise ValueError(f"no head has these measures: {code} of {measures[code]:.1f} mm fails")
-        return Field(scale, self._rest, weights + self._askew(uneven))
+            raise AssetError(f"no head has these measures: {code} of {measures[code]:.1f} mm fails")
+        askew = none.copy()
+        for number, way in uneven.items():
+            place = self._place[number]
+            askew[place] += way / self._alike[place, place]
+            askew[self._opposite[place]] -= MIRROR * way / self._alike[place, place]
+        return Field(scale, self._rest, weights + askew)
 
     def _solve(
         self,
         scale: float,
         wanted: FloatArray,
         weights: FloatArray,
-        rows: FloatArray | None = None,
-        values: FloatArray | None = None,
-        farther: FloatArray | None = None,
+        rows: FloatArray,
+        farther: FloatArray,
     ) -> FloatArray:
         """Weights of the kernels: Newton's method on the lengths, each step the likeliest field.
 
-        weights: those to begin with. rows (k, n, 3): what else of the field is told; values (k,):
-        what that is at first; farther (k,): by how much it has to change.
+        weights: those to begin with. rows (k, n, 3): what else of the field is told; farther (k,):
+        by how much that has to change.
         """
-        base = scale * self._rest
-        at_first = self._lengths(base + self._alike @ weights)[1]
+        base, field = scale * self._rest, self._alike @ weights
+        at_first = self._lengths(base + field)[1]
+        values = (rows * field).sum(axis=(1, 2))
         for step in range(STAGES + NEWTON_STEPS):
             share = min((step + 1) / STAGES, 1.0)
             field = self._alike @ weights
-            known, lengths = self._lengths(base + field)
+            gradients, lengths = self._lengths(base + field)
             if step > STAGES and np.abs(wanted - lengths).max() < NEAR:
                 break
             left = at_first + share * (wanted - at_first) - lengths
-            right = left + (known * field).sum(axis=(1, 2))
-            if rows is not None and values is not None and farther is not None:
-                known = np.concatenate([known, rows])
-                right = np.concatenate([right, values + share * farther])
-            even = self._even(known)
+            right = [left + (gradients * field).sum(axis=(1, 2)), values + share * farther]
+            even = self._even(np.concatenate([gradients, rows]))
             system = np.einsum("anc,nm,bmc->ab", even, self._alike, even, optimize=True)
             system += 1e-9 * np.trace(system) * np.eye(len(system))
-            weights = np.einsum("k,knc->nc", np.linalg.solve(system, right), even)
+            weights = np.einsum("k,knc->nc", np.linalg.solve(system, np.concatenate(right)), even)
         return weights
-
-    def _sought(self, measures: Mapping[str, float]) -> FloatArray:
-        """The lengths that are looked for, in the order of `_ends` [mm]."""
-        eye = np.sqrt(
-            max(measures[EYE] ** 2 - (0.5 * (measures["ex-ex"] - measures["en-en"])) ** 2, 1.0)
-        )
-        return np.array([eye if code == EYE else measures[code] for code in NORMS])
 
     def _lengths(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """How lengths change with the points, shape (k, n, 3), and what they are, shape (k,)."""
         ways = points[self._ends[:, 0]] - points[self._ends[:, 1]]
-        ways[list(NORMS).index(EYE)] *= UP_AND_BACK
+        ways[list(NORMS).index(EYE), 0] = 0.0
         lengths = np.linalg.norm(ways, axis=1)
         gradients = np.zeros((len(ways), *points.shape))
-        which = np.arange(len(ways))
-        gradients[which, self._ends[:, 0]] = ways / lengths[:, None]
-        gradients[which, self._ends[:, 1]] = -ways / lengths[:, None]
+        for gradient, (a, b), way in zip(
+            gradients, self._ends, ways / lengths[:, None], strict=True
+        ):
+            gradient[a], gradient[b] = way, -way
         return gradients, lengths
 
     def _even(self, rows: FloatArray) -> FloatArray:
@@ -160,40 +159,24 @@ class Shaper:
         evened: FloatArray = 0.5 * (rows + rows[..., self._opposite, :] * MIRROR)
         return evened
 
-    def _push_row(self, number: int, way: FloatArray) -> FloatArray:
-        row = np.zeros_like(self._rest)
-        row[self._place[number]] = way / np.linalg.norm(way)
-        return row
-
-    def _askew(self, uneven: Sequence[tuple[int, FloatArray]]) -> FloatArray:
-        """Weights of a wide field that goes one way on one side, the other way on the other."""
-        weights = np.zeros_like(self._rest)
-        if not uneven:
-            return weights
-        numbers = [self._place[number] for number, _ in uneven]
-        moved = np.array([way for _, way in uneven])
-        opposite = self._opposite[numbers]
-        places, at = np.unique([*numbers, *opposite], return_index=True)
-        wanted = np.concatenate([moved, -moved * MIRROR])[at]
-        is_middle = self._opposite[places] == places
-        wanted[is_middle] *= [1.0, 0.0, 0.0]  # what lies in the middle may go aside only
-        weights[places] = np.linalg.solve(self._alike[np.ix_(places, places)], wanted)
-        return weights
-
 
 def measures_of(vertices: FloatArray, anatomy: Mapping[str, int]) -> dict[str, float]:
     """All distances of the report between vertices (V, 3), code -> [mm].
 
     What is taken on one side is the mean of both.
     """
-    found = {}
-    for code, names in PAIRS.items():
-        sides = [names, [name.replace("_left", "_right") for name in names]]
-        if "_right" in names[0]:
-            sides = [names]
-        ways = [vertices[anatomy[a]] - vertices[anatomy[b]] for a, b in sides]
-        found[code] = float(np.mean([np.linalg.norm(way) for way in ways]))
-    return found
+
+    def between(first: str, second: str) -> float:
+        """Their distance."""
+        return float(np.linalg.norm(vertices[anatomy[first]] - vertices[anatomy[second]]))
+
+    right = {name: name.replace("_left", "_right") for pair in PAIRS.values() for name in pair}
+    return {
+        code: between(a, b)
+        if "_right" in a + b
+        else 0.5 * (between(a, b) + between(right[a], right[b]))
+        for code, (a, b) in PAIRS.items()
+    }
 
 
 def lids_on_eyes(

@@ -21,7 +21,7 @@ The shapes beyond measures, and how far they go, are chosen by eye: no norm was 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from types import MappingProxyType
@@ -47,84 +47,54 @@ class Sex(Enum):
     MAN = "man"
 
 
-@dataclass(frozen=True)
-class Loading:
-    """How much of a measure's deviation comes from what it shares with others.
-
-    size: of the whole face. length: of long and narrow faces (+) or short and wide ones (-).
-    group, share: the neighbours that it goes with, and how much. The squares' sum is below 1.
-    """
-
-    size: float
-    length: float
-    group: str = ""
-    share: float = 0.0
-
-
-LOADINGS: Mapping[str, Loading] = MappingProxyType(
+# Of each measure that is drawn: how much of its deviation is size, length (long and narrow faces
+# against short and wide ones), and what it shares with neighbours. Their squares' sum is below 1.
+LOADINGS: Mapping[str, tuple[float, float, str, float]] = MappingProxyType(
     {
-        "n-gn": Loading(0.50, 0.55, "lower face", 0.35),
-        "n-sn": Loading(0.45, 0.40, "nose length", 0.70),
-        "n-prn": Loading(0.45, 0.40, "nose length", 0.70),
-        "sn-prn": Loading(0.30, 0.10),
-        "sn-ls": Loading(0.25, 0.25, "red", -0.28),
-        "ls-sto": Loading(0.15, -0.05, "red", 0.78),
-        "sto-li": Loading(0.15, -0.05, "red", 0.78),
-        "li-sl": Loading(0.25, 0.20, "lower face", 0.50),
-        "en-en": Loading(0.35, -0.25, "eyes", -0.10),
-        "ex-ex": Loading(0.50, -0.30, "eyes", 0.20),
-        "al-al": Loading(0.35, -0.25, "mouth width", 0.25),
-        "ch-ch": Loading(0.35, -0.10, "mouth width", 0.50),
-        "cph-cph": Loading(0.20, -0.05, "mouth width", 0.30),
-        "zy-zy": Loading(0.60, -0.40, "width", 0.30),
-        "go-go": Loading(0.50, -0.30, "width", 0.30),
-        "ft-ft": Loading(0.50, -0.30, "width", 0.30),
+        "n-gn": (0.50, 0.55, "lower face", 0.35),
+        "n-sn": (0.45, 0.40, "nose length", 0.70),
+        "n-prn": (0.45, 0.40, "nose length", 0.70),
+        "sn-prn": (0.30, 0.10, "nose length", 0.0),
+        "sn-ls": (0.25, 0.25, "red", -0.28),
+        "ls-sto": (0.15, -0.05, "red", 0.78),
+        "sto-li": (0.15, -0.05, "red", 0.78),
+        "li-sl": (0.25, 0.20, "lower face", 0.50),
+        "en-en": (0.35, -0.25, "eyes", -0.10),
+        "ex-ex": (0.50, -0.30, "eyes", 0.20),
+        "al-al": (0.35, -0.25, "mouth width", 0.25),
+        "ch-ch": (0.35, -0.10, "mouth width", 0.50),
+        "cph-cph": (0.20, -0.05, "mouth width", 0.30),
+        "zy-zy": (0.60, -0.40, "width", 0.30),
+        "go-go": (0.50, -0.30, "width", 0.30),
+        "ft-ft": (0.50, -0.30, "width", 0.30),
     }
 )
 
-
-@dataclass(frozen=True)
-class Shape:
-    """A shape beyond the measures: points of the left half or the middle, which go one way.
-
-    pushes: name of an anatomical point, or number of a landmark, and the way it goes for one
-        deviation [mm]; the right half mirrors it.
-    """
-
-    pushes: tuple[tuple[str | int, tuple[float, float, float]], ...]
-
-
-SHAPES: Mapping[str, Shape] = MappingProxyType(
+# Shapes beyond the measures: points of the left half or the middle (an anatomical name, or the
+# number of a landmark), and the way each goes for one deviation [mm]; the right half mirrors it.
+SHAPES: Mapping[str, tuple[tuple[str | int, tuple[float, float, float]], ...]] = MappingProxyType(
     {
-        "nose bridge": Shape((("rhinion", (0.0, 0.0, 1.3)),)),
-        "brow ridge": Shape((("glabella", (0, 0, 1.2)), (24, (0, 0, 1.2)), (25, (0, 0, 0.8)))),
-        "forehead": Shape((("metopion", (0, 0, 1.2)), ("trichion", (0, 0, 3.0)))),
-        "brow height": Shape(((22, (0, 1.3, 0)), (24, (0, 1.3, 0)), (26, (0, 1.0, 0)))),
-        "brow tilt": Shape(((22, (0, -0.8, 0)), (26, (0, 1.2, 0)))),
-        "eye slant": Shape(
-            (("endocanthion_left", (0, -0.4, 0)), ("exocanthion_left", (0, 0.8, 0)))
+        "nose bridge": (("rhinion", (0, 0, 1.3)),),
+        "brow ridge": (("glabella", (0, 0, 1.2)), (24, (0, 0, 1.2)), (25, (0, 0, 0.8))),
+        "forehead": (("metopion", (0, 0, 1.2)), ("trichion", (0, 0, 3.0))),
+        "brow height": ((22, (0, 1.3, 0)), (24, (0, 1.3, 0)), (26, (0, 1.0, 0))),
+        "brow tilt": ((22, (0, -0.8, 0)), (26, (0, 1.2, 0))),
+        "eye slant": (("endocanthion_left", (0, -0.4, 0)), ("exocanthion_left", (0, 0.8, 0))),
+        "eye opening": (
+            ("palpebrale_superius_left", (0, 0.5, 0)), ("palpebrale_inferius_left", (0, -0.2, 0)),
         ),
-        "eye opening": Shape(
-            (("palpebrale_superius_left", (0, 0.5, 0)), ("palpebrale_inferius_left", (0, -0.2, 0)))
-        ),
-        "nose wings": Shape((("alare_left", (0, 0.8, 0)),)),
-        "cheekbones": Shape((("zygion_left", (0, 1.5, 1.0)),)),
-        "cheeks": Shape((("cheek_left", (1.0, 0, 1.7)), (12, (1.2, 0, 0.6)))),
-        "jaw angle": Shape((("gonion_left", (0, 3.0, 1.0)),)),
-        "chin": Shape((("pogonion", (0, 0, 2.2)), ("gnathion", (0, 0, 2.0)))),
-        "chin width": Shape(((9, (2.5, 0, 0)), (10, (2.5, 0, 0)))),
-        "jaw line": Shape(((11, (2.0, -1.5, 0)), (12, (1.5, -1.5, 0)))),
-        "lips": Shape((("labiale_superius", (0, 0, 0.7)), ("labiale_inferius", (0, 0, 0.7)))),
-        "mouth corners": Shape((("cheilion_left", (0, 0.7, 0)),)),
+        "nose wings": (("alare_left", (0, 0.8, 0)),),
+        "cheekbones": (("zygion_left", (0, 1.5, 1.0)),),
+        "cheeks": (("cheek_left", (1.0, 0, 1.7)), (12, (1.2, 0, 0.6))),
+        "jaw angle": (("gonion_left", (0, 3.0, 1.0)),),
+        "chin": (("pogonion", (0, 0, 2.2)), ("gnathion", (0, 0, 2.0))),
+        "chin width": ((9, (2.5, 0, 0)), (10, (2.5, 0, 0))),
+        "jaw line": ((11, (2.0, -1.5, 0)), (12, (1.5, -1.5, 0))),
+        "lips": (("labiale_superius", (0, 0, 0.7)), ("labiale_inferius", (0, 0, 0.7))),
+        "mouth corners": (("cheilion_left", (0, 0.7, 0)),),
     }
 )  # fmt: skip
-
-# Where left and right differ, and by how much [mm]; points as of shapes.
-UNEVEN: tuple[str | int, ...] = (
-    "pronasale", "pogonion", "cheilion_left", "exocanthion_left", "zygion_left", "gonion_left",
-    "alare_left", 24,
-)  # fmt: skip
-UNEVENNESS = 0.5
+UNEVENNESS = 0.1  # of a shape's deviation, by which it is more on the left and less on the right
 
 
 @dataclass(frozen=True)
@@ -134,14 +104,13 @@ class Identity:
     sex: whose norms `scores` belong to.
     scores: for each measure of `NORMS`, deviations from its mean.
     shapes: for each of `SHAPES`, deviations from the built-in head's.
-    unevenness: how left and right differ: half of it at each of `UNEVEN` [mm], shape (8, 3); None
-        for a face that is its own mirror image.
+    unevenness: for each of `SHAPES`, by how much it is more on the left and less on the right.
     """
 
     sex: Sex
     scores: Mapping[str, float]
     shapes: Mapping[str, float]
-    unevenness: tuple[tuple[float, float, float], ...] | None = None
+    unevenness: Mapping[str, float]
 
     @property
     def measures(self) -> dict[str, float]:
@@ -152,20 +121,9 @@ class Identity:
         }
 
     def scaled(self, share: float) -> Identity:
-        """An identity with a share of the deviations."""
-        rows = self.unevenness
-        return (
-            self
-            if share == 1.0
-            else Identity(
-                self.sex,
-                {code: share * score for code, score in self.scores.items()},
-                {name: share * score for name, score in self.shapes.items()},
-                None
-                if rows is None
-                else tuple((share * x, share * y, share * z) for x, y, z in rows),
-            )
-        )
+        """An identity with a share of all deviations: 0 is the mean of its sex."""
+        kinds = (self.scores, self.shapes, self.unevenness)
+        return Identity(self.sex, *({key: share * kind[key] for key in kind} for kind in kinds))
 
 
 def norms_of(sex: Sex) -> dict[str, Sample]:
@@ -173,34 +131,32 @@ def norms_of(sex: Sex) -> dict[str, Sample]:
     return {code: norm.women if sex is Sex.WOMAN else norm.men for code, norm in NORMS.items()}
 
 
-def sample_identity(seed: int, *, is_even: bool = False, spread: float = 1.0) -> Identity:
-    """The person of a number: the same one every time, of either sex.
+def sample_identity(seed: int, *, is_even: bool = False) -> Identity:
+    """The person of a number: the same one every time, of either sex; even: left and right alike.
 
-    is_even: left and right are alike. spread: 0 gives the mean of a sex, 1 the published
-    deviations.
+    seed: 0 and more.
     """
     random = np.random.default_rng([seed, 17])
+
+    def bounded(names: Iterable[str]) -> dict[str, float]:
+        """Independent deviations, none too large."""
+        return {name: float(np.clip(random.normal(), -MOST, MOST)) for name in names}
+
     sex = Sex.WOMAN if random.random() < 0.5 else Sex.MAN
-    shared = {"size": random.normal(), "length": random.normal()}
-    scores = {}
-    for code, loading in LOADINGS.items():
-        if loading.group not in shared:
-            shared[loading.group] = random.normal()
-        parts = np.array([loading.size, loading.length, loading.share])
-        factors = np.array([shared["size"], shared["length"], shared[loading.group]])
-        own = np.sqrt(1.0 - parts @ parts)
-        scores[code] = spread * float(parts @ factors + own * random.normal())
-    scores = {code: float(np.clip(score, -MOST, MOST)) for code, score in scores.items()}
-    deeper, bend = np.clip(random.normal(size=2), -MOST, MOST)
     norms = norms_of(sex)
-    value = {
-        code: norms[code].mean + score * norms[code].deviation for code, score in scores.items()
-    }
-    depth = EYE_DEPTH[0] + EYE_DEPTH[1] * spread * deeper
+    size, length = random.normal(size=2)
+    groups = {group: random.normal() for _, _, group, _ in LOADINGS.values()}
+    scores, value = {}, {}
+    for code, (large, long, group, share) in LOADINGS.items():
+        rest = np.sqrt(1.0 - large**2 - long**2 - share**2)
+        score = large * size + long * length + share * groups[group] + rest * random.normal()
+        scores[code] = float(np.clip(score, -MOST, MOST))
+        value[code] = norms[code].mean + scores[code] * norms[code].deviation
+    own = bounded(("eye", "lip"))
+    depth = EYE_DEPTH[0] + EYE_DEPTH[1] * own["eye"]
     eye = float(np.hypot(0.5 * (value["ex-ex"] - value["en-en"]), depth))
-    lip = (value["sn-ls"] + value["ls-sto"]) * (LIP_BEND[0] + LIP_BEND[1] * spread * bend)
+    lip = (value["sn-ls"] + value["ls-sto"]) * (LIP_BEND[0] + LIP_BEND[1] * own["lip"])
     scores |= {"en-ex": norms["en-ex"].score(eye), "sn-sto": norms["sn-sto"].score(lip)}
-    shapes = {name: spread * float(np.clip(random.normal(), -MOST, MOST)) for name in SHAPES}
-    uneven = random.normal(0.0, UNEVENNESS * spread, (len(UNEVEN), 3))
-    rows = None if is_even else tuple((float(x), float(y), float(z)) for x, y, z in uneven)
-    return Identity(sex, scores, shapes, rows)
+    shapes, sides = bounded(SHAPES), bounded(SHAPES)
+    share = 0.0 if is_even else UNEVENNESS
+    return Identity(sex, scores, shapes, {name: share * sides[name] for name in SHAPES})

@@ -30,6 +30,7 @@ from tests.sim.poses import inverted_triangles
 SEEDS = st.integers(0, 2**32 - 1)
 NEAR = 0.3  # [mm] of a measure of an uneven face
 EVEN_NEAR = 0.06  # and of an even one
+EVEN = dict.fromkeys(SHAPES, 0.0)
 PERSONS = (0, 5, 10, 1039)  # long and short, and one whose measures contradict each other
 
 
@@ -107,14 +108,14 @@ def test_persons_are_spread_as_published() -> None:
 
 def test_each_shape_does_what_its_name_says(head: Head) -> None:
     """A shape moves its points its way, and leaves all measures as they are."""
-    mean = Identity(Sex.WOMAN, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0))
+    mean = Identity(Sex.WOMAN, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN)
     plain = make_person(mean)
-    for name, shape in SHAPES.items():
+    for name, pushes in SHAPES.items():
         bent = make_person(replace(mean, shapes={**mean.shapes, name: 1.0}))
         for code, value in plain.measures.items():
             if code in NORMS:
                 assert bent.measures[code] == pytest.approx(value, abs=0.02), name
-        for point, way in shape.pushes:
+        for point, way in pushes:
             vertex = head.landmarks[point] if isinstance(point, int) else head.anatomy[point]
             moved = bent.vertices[vertex] - plain.vertices[vertex]
             length = np.linalg.norm(way)
@@ -123,7 +124,7 @@ def test_each_shape_does_what_its_name_says(head: Head) -> None:
 
 def test_calipers_are_allowed_for() -> None:
     """Widths that were taken with calipers are asked for as a surface has them."""
-    mean = Identity(Sex.MAN, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0))
+    mean = Identity(Sex.MAN, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN)
     for code, norm in norms_of(Sex.MAN).items():
         assert mean.measures[code] == norm.mean + PRESSED.get(code, 0.0)
 
