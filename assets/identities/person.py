@@ -93,7 +93,8 @@ def _made(identity: Identity) -> Person:
     return Person(
         vertices, known.faces, known.landmarks, field.scale * known.bone_depth, eyes,
         place_parts(known, skin, field, eyes), known.uv, known.face_uv, known.albedo,
-        known.wrinkles, known.segments, known.rig, known.layers, Similarity(1.0, np.eye(3), np.zeros(3)),
+        known.wrinkles, known.segments, known.rig, known.layers,
+        Similarity(1.0, np.eye(3), np.zeros(3)),
         np.arange(len(vertices), dtype=np.int32), known.mandible_weight,
         field.points(known.jaw_axis), known.anatomy, known.mirror, known.openness, identity,
     )  # fmt: skip
