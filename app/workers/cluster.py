@@ -6,6 +6,7 @@ what is sent there asks a `Crew`, just as here.
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import secrets
 import socket
@@ -38,12 +39,14 @@ def run_on_cluster(
     except ImportError:
         raise UserError("--scheduler needs distributed: pip install 'risorius[cluster]'") from None
     try:
-        # Asked first, for a client that finds nobody takes half a minute to give up.
+        # Asked first: a client takes half a minute to find that nobody is there, and waits for ever
+        # where somebody answers who is no scheduler.
         host_and_port = distributed.comm.get_address_host_port(scheduler)
         socket.create_connection(host_and_port, PATIENCE).close()
+        asyncio.run(_greet(distributed, scheduler))
         client = distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False)
     except (OSError, TimeoutError, ValueError, OverflowError) as error:
-        why = getattr(error, "strerror", None) or error
+        why = getattr(error, "strerror", None) or str(error) or "it does not speak Dask's protocol"
         raise UserError(
             f"--scheduler {scheduler}: no Dask scheduler answers there ({why}); "
             "write what it says when it starts, as in tcp://host:8786"
@@ -82,6 +85,12 @@ def run_on_cluster(
                 yield outcome
         finally:
             end()
+
+
+async def _greet(distributed: Any, scheduler: str) -> None:
+    """Shake hands with a scheduler; TimeoutError where nobody does in time."""
+    greeting = distributed.comm.connect(scheduler, timeout=PATIENCE)
+    (await asyncio.wait_for(greeting, PATIENCE)).abort()
 
 
 def _do(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -155,6 +156,15 @@ def test_a_scheduler_that_is_not_there(address: str) -> None:
     """One line, at once."""
     with pytest.raises(UserError, match="no Dask scheduler answers there"):
         outcomes(working.double, [1], scheduler=address)
+
+
+def test_a_port_where_somebody_else_listens(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One line in the end: who is connected and says nothing is no scheduler."""
+    monkeypatch.setattr("risorius.app.workers.cluster.PATIENCE", 0.5)
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        with pytest.raises(UserError, match="does not speak Dask's protocol"):
+            outcomes(working.double, [1], scheduler=address)
 
 
 @pytest.fixture(scope="module")
