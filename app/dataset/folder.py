@@ -49,7 +49,8 @@ class SetFolder:
         options: all that decides what samples are, as JSON has it. Raises UserError where the
         folder holds something else, or a set that was begun with other options.
         """
-        real_path(self.path)
+        if real_path(self.path).is_file():
+            raise UserError(f"{self.path}: is a file; name a folder")
         with cannot_be_written(self.path):
             self.path.mkdir(parents=True, exist_ok=True)
             self._check(options, resume=resume)
@@ -62,26 +63,33 @@ class SetFolder:
             with cannot_be_written(self.path):
                 for left in unfinished.glob("[0-9]*"):
                     shutil.rmtree(left)
-            if not (self.path / BEGUN).exists():
+            if not self.there():
                 self.save_json(BEGUN, options)
             yield
         with cannot_be_written(self.path):
             shutil.rmtree(unfinished)
 
     def _check(self, options: Mapping[str, Any], *, resume: bool) -> None:
-        """UserError unless this is an empty folder, or the set that is to be resumed."""
+        """UserError unless this is an empty folder, or the set that is to be resumed.
+
+        A set that ended before its first sample may be begun anew, in another way.
+        """
         begun = self.path / BEGUN
         if not begun.exists():
             if any(item.name != UNFINISHED for item in self.path.iterdir()):
                 raise UserError(f"{self.path}: is not empty and no data set; name another folder")
             return
-        if not resume:
-            raise UserError(f"{self.path}: holds a data set; add --resume, or name another folder")
         try:
             was = json.loads(begun.read_text("utf-8"))
-            assert isinstance(was, dict)
+            assert isinstance(was, dict) and "risorius" in was
         except (ValueError, AssertionError):
-            raise UserError(f"{begun}: does not say how the set was begun; name another") from None
+            raise UserError(
+                f"{begun}: does not say how a set was begun; name another folder"
+            ) from None
+        if not self.there():
+            return
+        if not resume:
+            raise UserError(f"{self.path}: holds a data set; add --resume, or name another folder")
         for name in dict.fromkeys((*was, *options)):
             if was.get(name) != options.get(name):
                 raise UserError(

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import colorsys
+import contextlib
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -55,11 +56,8 @@ class Backgrounds:
         """
         path = self.pictures[int(random.integers(len(self.pictures)))]
         share, across, along = random.uniform([SMALLEST, 0.0, 0.0], 1.0)
-        try:
-            with PIL.Image.open(path) as opened:
-                whole = PIL.ImageOps.exif_transpose(opened).convert("RGB")
-        except (OSError, ValueError, PIL.Image.DecompressionBombError) as error:
-            raise UserError(f"{path}: cannot be read as a picture: {error}") from None
+        with _readable(path) as opened:
+            whole = PIL.ImageOps.exif_transpose(opened).convert("RGB")
         scale = share * min(whole.width / size[0], whole.height / size[1])
         width, height = scale * size[0], scale * size[1]
         left, top = across * (whole.width - width), along * (whole.height - height)
@@ -101,6 +99,9 @@ def backgrounds_of(text: str | None) -> Backgrounds:
         pictures = files_in(folder, SUFFIXES)
         if not pictures:
             raise UserError(f"--background {text}: no picture in it, {', '.join(SUFFIXES)}")
+        for path in pictures:
+            with _readable(path):  # its header: of thousands the whole would take minutes
+                pass
         return Backgrounds(pictures=pictures)
     try:
         red, green, blue = PIL.ImageColor.getrgb(text)[:3]
@@ -109,6 +110,16 @@ def backgrounds_of(text: str | None) -> Backgrounds:
             f"--background {text}: neither a folder nor a colour, as in '#8090a0' or grey"
         ) from None
     return Backgrounds((red / 255.0, green / 255.0, blue / 255.0))
+
+
+@contextlib.contextmanager
+def _readable(path: Path) -> Iterator[PIL.Image.Image]:
+    """An opened picture; UserError where it is none, or proves broken in the block."""
+    try:
+        with PIL.Image.open(path) as opened:
+            yield opened
+    except (OSError, ValueError, PIL.Image.DecompressionBombError) as error:
+        raise UserError(f"{path}: cannot be read as a picture: {error}") from None
 
 
 def files_in(folder: Path, suffixes: Sequence[str]) -> tuple[Path, ...]:

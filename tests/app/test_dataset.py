@@ -130,6 +130,24 @@ def test_what_is_no_such_set_is_left_alone(made: Path, tmp_path: Path) -> None:
     assert [path.name for path in other.iterdir()] == ["mine.txt"]
 
 
+def test_a_set_without_samples_is_begun_anew(tmp_path: Path) -> None:
+    """What was wrong before the first sample can be put right; a file of that name is no set."""
+    heads = tmp_path / "heads"
+    heads.mkdir()
+    (heads / "one.obj").write_text("no mesh", "utf-8")
+    (heads / "one.json").write_text("[]", "utf-8")
+    folder = tmp_path / "set"
+    failed = run(folder, "--heads", str(heads), count=1)
+    assert failed.exit_code == 2 and "one.obj" in failed.stderr
+    assert run(folder, count=1).exit_code == 0
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    (mine / "dataset.json").write_text("{}", "utf-8")
+    for place in (mine, mine / "dataset.json"):
+        assert run(place, "--resume", count=1).exit_code == 2
+    assert (mine / "dataset.json").read_text("utf-8") == "{}"
+
+
 def test_two_cannot_make_one_set(made: Path) -> None:
     request = request_of(made, seed=SEED, size=SIZE, passes=PASSES)
     with SetFolder(made).held(request.options(), resume=True):
@@ -248,13 +266,17 @@ def test_heads_of_a_folder_are_the_persons(tmp_path: Path) -> None:
         (("--passes", "colour"), "'colour' is no pass"),
         (("--camera", "x"), "--camera x: write yaw"),
         (("--background", "no such"), "neither a folder nor a colour"),
+        (("--background", "broken"), "broken/face.png: cannot be read as a picture"),
         (("--heads", "/nowhere"), "no such folder"),
         (("--sample", "/nowhere.toml"), "no such table"),
     ],
 )
 def test_what_cannot_be_is_told_before_work(
-    tmp_path: Path, options: tuple[str, ...], told: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: tuple[str, ...], told: str
 ) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "broken").mkdir()
+    (tmp_path / "broken" / "face.png").write_text("no picture", "utf-8")
     result = run(tmp_path / "set", *options)
     assert result.exit_code == 2
     assert told in result.stderr
