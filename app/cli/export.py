@@ -49,9 +49,7 @@ with_exporting = packed(
     click.option(
         "--rig",
         type=click.Choice(list(RIGS)),
-        is_flag=False,
-        flag_value="arkit",
-        help="Targets to pose by name, as avatars have them; arkit unless told.",
+        help="Targets to pose by name, as avatars have them: ARKit's shapes or action units.",
     ),
     click.option(
         "--overwrite", is_flag=True, help="Replace frames in a folder, or files beside -o."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -113,19 +113,24 @@ def format_for(output: Path, name: str | None) -> Format:
     Of two formats with one suffix, the first is meant.
     """
     suffix = output.suffix.lower()
+    known = dict.fromkeys(suffix for each in FORMATS for suffix in each.suffixes)
     for each in FORMATS:
-        if each.name == name or (name is None and suffix in each.suffixes and suffix):
-            _check_suffix(output, each)
+        if each.name == name or (name is None and suffix in each.suffixes):
+            _check_suffix(output, each, known)
             return each
-    allowed = ", ".join(dict.fromkeys(suffix for each in FORMATS for suffix in each.suffixes))
+    allowed = ", ".join(known)
     folders = " or ".join(f"--as {each.name}" for each in FORMATS if not each.suffixes)
-    raise UserError(
-        f"{output}: what is '{suffix}'? Allowed are {allowed}, and folders with {folders}"
-    )
+    wrong = f"what is '{suffix}'?" if suffix else "has no suffix."
+    raise UserError(f"{output}: {wrong} Allowed are {allowed}, and folders with {folders}")
 
 
-def _check_suffix(output: Path, chosen: Format) -> None:
-    """UserError where a file of this format cannot be called so."""
+def _check_suffix(output: Path, chosen: Format, known: Container[str]) -> None:
+    """UserError where a file of this format cannot be called so, or a folder would seem a file."""
+    if not chosen.suffixes and output.suffix.lower() in known:
+        raise UserError(
+            f"{output}: {chosen.title} is a folder, and this is the name of a file; "
+            f"leave out {output.suffix} or --as {chosen.name}"
+        )
     if chosen.suffixes and output.suffix.lower() not in chosen.suffixes:
         raise UserError(
             f"{output}: {chosen.title} is written as {' or '.join(chosen.suffixes)}; "

@@ -90,9 +90,10 @@ def test_curves_need_muscles(name: str, folder: Path) -> None:
     ("arguments", "words"),
     [
         (("-o", "x.pc2", "--refined"), "it goes with usd, usdz, obj, ply, vtkhdf"),
-        (("-o", "x.usdc", "--rig"), "--rig does not go with USD; it goes with gltf"),
+        (("-o", "x.usdc", "--rig", "arkit"), "--rig does not go with USD; it goes with gltf"),
         (("-o", "x.obj"), "and folders with --as obj or --as ply"),
-        (("-o", "x"), "what is ''? Allowed are .glb"),
+        (("-o", "x"), "x: has no suffix. Allowed are .glb"),
+        (("-o", "x.glb", "--as", "obj"), "leave out .glb or --as obj"),
         (("-o", "x.usdc", "--as", "npz"), "numpy arrays is written as .npz"),
         (("-o", "cloth.toml", "--as", "obj"), "cloth.toml: is read and would be written"),
         (("-o", "deep/none", "--as", "ply", "--fps", "0"), None),

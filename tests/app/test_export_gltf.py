@@ -428,11 +428,11 @@ def test_a_rig_keeps_the_tongue_in_the_mouth(tmp_path: Path) -> None:
 
 
 def test_the_command_writes_it(tmp_path: Path) -> None:
-    """By its suffix; --rig alone is ARKit's; what is told of the rig goes to the error stream."""
+    """By its suffix; what is told of the rig goes to the error stream."""
     script, output = tmp_path / "shapes.toml", tmp_path / "out.glb"
     script.write_text(SHAPES)
     arguments = ["export", str(script), "-o", str(output), "--fps", "15", "--quiet"]
-    result = CliRunner().invoke(risorius(), [*arguments, "--rig"])
+    result = CliRunner().invoke(risorius(), [*arguments, "--rig", "arkit"])
     assert result.exit_code == 0 and "glTF, 10 frames" in result.stdout
     assert "follow the motion to" in result.stderr and result.stderr.count("\n") == 1
     assert "jawOpen" in Player(output).target_names("skin")
