@@ -40,19 +40,31 @@ class Batching:
 with_batching = packed(
     "batching",
     Batching,
-    click.option("--jobs", type=click.IntRange(1, 1024), help="Lines at once: a core each."),
     click.option(
-        "--scheduler", metavar="ADDRESS", help="Of a Dask cluster that does it: tcp://host:8786."
+        "--jobs", type=click.IntRange(1, 1024), help="Lines at once; as many as cores unless told."
     ),
-    click.option("--resume", is_flag=True, help="Leave alone what is whole and would be the same."),
+    click.option(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="Of a Dask cluster that does the work: tcp://host:8786.",
+    ),
+    click.option(
+        "--resume",
+        is_flag=True,
+        help="Leave out lines whose outputs are there and would come out the same.",
+    ),
     click.option(
         "--retries",
         type=click.IntRange(0, 10),
         default=2,
         show_default=True,
-        help="Of a line whose process dies.",
+        help="How often a line is tried again whose process died.",
     ),
-    click.option("--logs", type=PATH, help="A folder; else LIST_logs beside LIST."),
+    click.option(
+        "--logs",
+        type=PATH,
+        help="A folder for what lines print; LIST_logs beside LIST unless told.",
+    ),
     click.option("--quiet", is_flag=True, help="No progress bar."),
 )
 
@@ -61,10 +73,11 @@ with_batching = packed(
 @click.argument("listing", metavar="LIST", type=PATH)
 @with_batching
 def batch(listing: Path, batching: Batching) -> None:
-    """Do the commands in LIST side by side: one a line, as typed after risorius.
+    """Do a list of commands side by side.
 
-    Lines may hold capture, export, convert and speak; those that begin with # hold nothing.
-    Relative paths begin where you stand. All lines are checked before the first is begun.
+    LIST is a text file with a command in each line, as typed after risorius. Lines may hold
+    capture, export, convert and speak; those that begin with # hold nothing. Relative paths begin
+    where you stand. All lines are checked before the first is begun.
     """
     from ..batch.running import FAILED, run_lines
     from ..batch.summary import save_summary, table
