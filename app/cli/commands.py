@@ -68,9 +68,8 @@ def capture(
 ) -> None:
     """Draw SCRIPT as a film, frames, a picture or a contact sheet.
 
-    No screen is needed. A recording of a face is a SCRIPT, too: Live Link Face, OpenFace, py-feat,
-    MediaPipe, ... Without SCRIPT the scene's own one is played, or a pose of controls is held:
-    --set AU12=0.8.
+    A recording of a face is a SCRIPT, too: Live Link Face, OpenFace, MediaPipe, ... Without SCRIPT
+    the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
     """
     from ..capture import CaptureOptions
     from ..capture import capture as film_of
