@@ -68,7 +68,7 @@ def batch(listing: Path, batching: Batching) -> None:
     """
     from ..batch.running import FAILED, run_lines
     from ..batch.summary import save_summary, table
-    from ..workers.running import cores
+    from ..workers.child import cores
 
     if batching.jobs is not None and batching.scheduler is not None:
         raise UserError("--jobs is for this computer; with --scheduler the cluster has its workers")
