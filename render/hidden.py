@@ -149,8 +149,9 @@ def draw_sides(
     gl.cull_face = "back"
     for program, share in shares:
         stream.draw(program, share)
-    is_chosen = view is not None and occluder is not None and occluder.target.samples > 0
-    if is_chosen and view is not None and occluder is not None:
+    is_chosen = False
+    if view is not None and occluder is not None and occluder.target.samples:
+        is_chosen = True
         covered = view.covered_pixels(stream.corners)
         occluder.look(view, covered)
         positions = stream.vertices[: stream.vertex_count, :3]

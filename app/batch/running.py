@@ -15,7 +15,7 @@ import click
 from ..errors import UserError
 from ..motion import tally
 from ..workers import run_all
-from .journal import Journal
+from .journal import Journal, made_from
 from .listing import Job
 
 OK, FAILED, SKIPPED = "ok", "failed", "skipped"
@@ -61,7 +61,7 @@ def run_lines(
             continue
         yield Result(job, SKIPPED, made["seconds"], made["frames"], 0, "", _log(logs, job))
     journal.begin(waiting)
-    states = [journal.state(job) for job in waiting]
+    states = [made_from(job) for job in waiting]
     files = [_log(logs, job) for job in waiting]
     for file in files:
         file.unlink(missing_ok=True)

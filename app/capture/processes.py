@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import logging.handlers
 import os
 import pickle
 import queue
@@ -106,16 +107,12 @@ def _next_of(drawer: Child) -> Frame:
         logging.getLogger(COMPILER).handle(found)
 
 
-class _Teller(logging.Handler):
+class _Teller(logging.handlers.QueueHandler):
     """Has the process that asked say what is compiled here."""
 
-    def __init__(self, tell: Callable[[object], None]) -> None:
-        super().__init__(logging.INFO)
-        self._tell = tell
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Hand a line over."""
-        self._tell(logging.makeLogRecord({"levelno": record.levelno, "msg": record.getMessage()}))
+    def enqueue(self, record: logging.LogRecord) -> None:
+        """Hand a line over, where frames wait, too."""
+        self.queue.put(record)
 
 
 def serve() -> None:
@@ -126,7 +123,7 @@ def serve() -> None:
     room = max(int(AHEAD / (4 * width * height)), 2)
     drawn: queue.Queue[object] = queue.Queue(room)
     log = logging.getLogger(COMPILER)
-    log.addHandler(_Teller(drawn.put))
+    log.addHandler(_Teller(drawn))
     log.setLevel(logging.INFO)
     log.propagate = False
 

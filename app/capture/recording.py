@@ -16,7 +16,7 @@ from . import outputs, processes
 from .captions import contact_sheet
 from .drawing import Capture, CaptureOptions, Frame
 from .ffmpeg import Soundtrack
-from .formats import FORMATS, HEARD, check_format, format_of
+from .formats import FORMATS, HEARD, format_of
 
 
 def capture(
@@ -106,11 +106,8 @@ def _check(
         check_png(sheet)
     if output is not None and _is_image(output):
         check_png(output)
-    elif output is not None and format_of(output):
-        check_format(output, options.frames_per_second, is_transparent=options.is_transparent)
-        check_file(output)
-        if script.sound is not None and output.suffix.lower() in HEARD:
-            load_sound(script.sound)
+    elif output is not None and script.sound is not None and output.suffix.lower() in HEARD:
+        load_sound(script.sound)
 
 
 def _check_passes(script: Script, output: Path | None, options: CaptureOptions) -> None:

@@ -19,7 +19,7 @@ from typing import Any
 from risorius.assets.staging import locked
 
 from ..errors import UserError
-from ..files import cannot_be_written, real_path, written_atomically
+from ..files import cannot_be_written, real_path, save_text
 
 BEGUN = "dataset.json"  # how the set was begun
 UNFINISHED = ".unfinished"
@@ -125,8 +125,7 @@ class SetFolder:
 
     def save_json(self, name: str, content: Mapping[str, Any]) -> None:
         """Write a JSON file of the set, whole."""
-        with written_atomically(self.path / name) as part, cannot_be_written(self.path / name):
-            part.write_text(json.dumps(content, indent=1) + "\n", "utf-8")
+        save_text(self.path / name, json.dumps(content, indent=1) + "\n")
 
 
 def _short(value: object) -> str:
