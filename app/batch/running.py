@@ -71,16 +71,9 @@ def run_lines(
         job, frames = waiting[outcome.index], outcome.result or 0
         if outcome.error is None:
             journal.add(job, states[outcome.index], frames, outcome.seconds)
-        status = OK if outcome.error is None else FAILED
-        yield Result(
-            job,
-            status,
-            outcome.seconds,
-            frames,
-            outcome.attempts,
-            outcome.error or "",
-            files[outcome.index],
-        )
+        status, log = OK if outcome.error is None else FAILED, files[outcome.index]
+        error = outcome.error or ""
+        yield Result(job, status, outcome.seconds, frames, outcome.attempts, error, log)
 
 
 def _log(folder: Path, job: Job) -> Path:

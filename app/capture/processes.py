@@ -12,11 +12,11 @@ import logging
 import logging.handlers
 import os
 import pickle
-import queue
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from queue import Queue
 
 from risorius import render
 
@@ -110,6 +110,8 @@ def _next_of(drawer: Child) -> Frame:
 class _Teller(logging.handlers.QueueHandler):
     """Has the process that asked say what is compiled here."""
 
+    queue: Queue[object]
+
     def enqueue(self, record: logging.LogRecord) -> None:
         """Hand a line over, where frames wait, too."""
         self.queue.put(record)
@@ -121,7 +123,7 @@ def serve() -> None:
     share: Share = pickle.load(requests)
     width, height = share.options.size
     room = max(int(AHEAD / (4 * width * height)), 2)
-    drawn: queue.Queue[object] = queue.Queue(room)
+    drawn: Queue[object] = Queue(room)
     log = logging.getLogger(COMPILER)
     log.addHandler(_Teller(drawn))
     log.setLevel(logging.INFO)

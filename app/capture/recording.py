@@ -60,10 +60,7 @@ def capture(
             if film is not None:
                 film(frame.image, frame.known)
             if still and now == still_at:
-                if frame.known is None:
-                    save_png(still, frame.image)
-                else:
-                    save_labelled(still, frame.image, frame.known)
+                save_labelled(still, frame.image, frame.known)
             while wanted and wanted[0].time <= now + 0.5 / rate:
                 named.append((wanted.pop(0).name or "", frame.image))
         if sheet is not None:

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from risorius.assets.staging import locked
+from risorius.assets.staging import is_staging_folder, locked
 
 from ..errors import UserError
 from ..files import cannot_be_written, real_path, save_text
@@ -72,7 +72,8 @@ class SetFolder:
         """UserError unless this is an empty folder, or the set that is to be resumed."""
         begun = self.path / BEGUN
         if not begun.exists():
-            if any(item.name != UNFINISHED for item in self.path.iterdir()):
+            items = (item for item in self.path.iterdir() if not is_staging_folder(item))
+            if any(item.name != UNFINISHED for item in items):
                 raise UserError(f"{self.path}: is not empty and no data set; name another folder")
             return
         if not resume:

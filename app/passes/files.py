@@ -59,11 +59,12 @@ class Labelled:
         labels.write_text(text + "\n", encoding="utf-8")
 
 
-def save_labelled(picture: Path, image: Image, known: Labelled) -> None:
+def save_labelled(picture: Path, image: Image, known: Labelled | None) -> None:
     """Write a picture and what is known of it, all or nothing; UserError where that cannot be."""
     with written_atomically(picture) as part, cannot_be_written(picture):
         PIL.Image.fromarray(image).save(part, format="PNG")
-        known.save(part)
+        if known is not None:
+            known.save(part)
 
 
 def check_wanted(wanted: Sequence[str], scene: str) -> None:

@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
-from risorius.app.batch.journal import Journal
+from risorius.app.batch.journal import Journal, made_from
 from risorius.app.batch.listing import Job
 from risorius.app.cli import main
 
@@ -196,13 +196,13 @@ def test_a_journal_that_was_cut_off_costs_its_last_line() -> None:
     job = Job(1, "a", "b:c", (), Path.cwd(), (Path("joy.toml"),), (Path("fear.toml"),))
     other = Job(2, "x", "b:c", (), Path.cwd(), (), (Path("joy.toml"),))
     for each in (job, other):
-        Journal(file).add(each, Journal.state(each), 3, 1.5)
+        Journal(file).add(each, made_from(each), 3, 1.5)
     whole = file.read_text()
     assert json.loads(whole.splitlines()[-1])["frames"] == 3
     for cut in (*range(0, len(whole), 7), len(whole)):
         file.write_text(whole[:cut])
         assert Journal(file).made(other) is None or cut == len(whole)
-        Journal(file).add(other, Journal.state(other), 3, 1.5)
+        Journal(file).add(other, made_from(other), 3, 1.5)
         assert Journal(file).made(other)
     file.write_text('[1]\n7\nnull\n{"line": 3}\n{"begun": 3}\n\x00' + whole)
     assert Journal(file).made(job)
