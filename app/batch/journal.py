@@ -45,7 +45,7 @@ class Journal:
         entry = self._made.get((job.text, str(job.folder)))
         if entry is None or any(entry.get(key) != value for key, value in made_from(job).items()):
             return None
-        return entry if entry["outputs"] == _outputs(job) else None
+        return entry if entry["outputs"] and entry["outputs"] == _outputs(job) else None
 
     def began(self, output: Path) -> bool:
         """Whether what is in an output's place was put there by a batch, for all that is known."""

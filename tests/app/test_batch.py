@@ -100,6 +100,23 @@ def test_a_list_is_done_and_not_done_again() -> None:
     assert batch("--resume").exit_code == 0 and statuses() == ["skipped"] * 4
 
 
+def test_files_that_come_along_are_in_the_way_too() -> None:
+    """Those of another line, and those that were there before."""
+    Path("mine.obj").write_text("mine")
+    Path("clips.txt").write_text(
+        "export joy.toml -o a.pc2\n"
+        "export fear.toml -o a.mdd\n"
+        "export joy.toml -o mine.pc2\n"
+        "capture joy.toml -o b.png --passes depth\n"
+        "capture fear.toml -o b.json.png --sheet b.png\n"
+    )
+    told = batch().stderr
+    assert "clips.txt:2: a.obj: is written by line 1" in told.replace(f"{Path.cwd()}/", "")
+    assert "clips.txt:3: mine.obj: is there; choose another name, or add --overwrite" in told
+    assert "clips.txt:5: b.png: is written by line 4" in told.replace(f"{Path.cwd()}/", "")
+    assert Path("mine.obj").read_text() == "mine" and not Path("a.pc2").exists()
+
+
 def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
     """One line for each, with its number; also where lines are in each other's way."""
     Path("mine").mkdir()
