@@ -120,7 +120,10 @@ class _Teller(logging.handlers.QueueHandler):
 def serve() -> None:
     """Draw the share that the standard input tells, onto the standard output."""
     requests, results = streams()
-    share: Share = pickle.load(requests)
+    try:
+        share: Share = pickle.load(requests)
+    except (EOFError, pickle.UnpicklingError):  # whoever began this process was stopped
+        return
     width, height = share.options.size
     room = max(int(AHEAD / (4 * width * height)), 2)
     drawn: Queue[object] = Queue(room)

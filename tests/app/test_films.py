@@ -278,12 +278,13 @@ def test_a_film_whose_processes_end(tmp_path: Path, number: signal.Signals) -> N
     assert len(begun) == 3  # and the encoder
     os.kill(drawing[1] if number == signal.SIGKILL else process.pid, number)
     _, told = process.communicate(timeout=60)
-    [line] = [each for each in told.decode().splitlines() if not each.startswith("Compiling")]
+    lines = [each for each in told.decode().splitlines() if not each.startswith("Compiling")]
+    assert len(lines) == 1, lines
     if number == signal.SIGKILL:
         assert process.returncode == 2
-        assert "a process that draws the film ended (SIGKILL)" in line
+        assert "a process that draws the film ended (SIGKILL)" in lines[0]
     else:
-        assert (process.returncode, line) == (-number, "risorius: stopped")
+        assert (process.returncode, lines[0]) == (-number, "risorius: stopped")
     end = time.monotonic() + 10.0
     while any(Path(f"/proc/{each}/cmdline").exists() for each in begun) and time.monotonic() < end:
         time.sleep(0.05)
