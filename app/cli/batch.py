@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
 import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import click
 from tqdm import tqdm
@@ -81,7 +83,7 @@ def batch(listing: Path, batching: Batching) -> None:
     """
     from ..batch.running import FAILED, run_lines
     from ..batch.summary import save_summary, table
-    from ..workers.running import cores
+    from ..workers.child import cores
 
     if batching.jobs is not None and batching.scheduler is not None:
         raise UserError("--jobs is for this computer; with --scheduler the cluster has its workers")
@@ -165,7 +167,11 @@ def _job(number: int, text: str, journal: Journal) -> Job:
         if not path.exists():
             raise UserError(f"{path}: there is no such file")
     check_apart(outputs, inputs)
+    beside = _beside(name, given)
     if "overwrite" in given and not given["overwrite"]:
+        for path in beside if name == "export" and not outputs[0].exists() else ():
+            if os.path.lexists(path) and not journal.began(outputs[0].absolute()):
+                raise UserError(f"{path}: is there; choose another name, or add --overwrite")
         for path in outputs:
             if path.is_dir() and any(path.iterdir()) and not journal.began(path.absolute()):
                 raise UserError(
@@ -181,7 +187,20 @@ def _job(number: int, text: str, journal: Journal) -> Job:
         Path.cwd(),
         tuple(path.absolute() for path in (*inputs, *_named_in(given.get("script")))),
         tuple(path.absolute() for path in outputs),
+        tuple(path.absolute() for path in beside),
     )
+
+
+def _beside(name: str, given: dict[str, Any]) -> list[Path]:
+    """The files that come with the one that a line names."""
+    from ..export.formats import format_for
+    from ..passes.files import beside
+
+    output: Path | None = given.get("output")
+    if name == "export" and output is not None:
+        return list(format_for(output, given["name"]).outputs(output)[1:])
+    is_picture = output is not None and output.suffix.lower() == ".png"
+    return beside(output) if output and is_picture and given.get("passes") else []
 
 
 def _named_in(script: Path | None) -> Iterator[Path]:

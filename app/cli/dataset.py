@@ -112,24 +112,8 @@ def dataset(
     from ..dataset.making import make_set
     from ..dataset.request import request_of
 
-    request = request_of(
-        output,
-        seed=drawn.seed,
-        size=drawn.size,
-        passes=tuple(drawn.passes.split(",")),
-        table=drawn.sample,
-        camera=drawn.camera,
-        background=drawn.background,
-        heads=drawn.heads,
-    )
-    made = make_set(
-        request,
-        count,
-        jobs=jobs,
-        resume=resume,
-        coco=coco,
-        progress=not quiet,
-    )
+    request = request_of(output, **{**vars(drawn), "passes": drawn.passes.split(",")})
+    made = make_set(request, count, jobs=jobs, resume=resume, coco=coco, progress=not quiet)
     click.echo(
         f"{in_one_line(output)}: {counted(made.samples, 'sample')}, {made.new} of them new, "
         f"{made.size / 1e6:.1f} MB"
