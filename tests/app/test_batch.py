@@ -194,6 +194,7 @@ def test_jobs_and_scheduler_exclude_each_other() -> None:
     assert "no Dask scheduler answers there" in ended.stderr
 
 
+@pytest.mark.slow
 def test_what_fails_fails_alone() -> None:
     """Exit code 1, the reason in one line and in the summary; it is tried again with --resume."""
     Path("sadness.toml").write_text(SCRIPT.format(0.5, "no_such_control"))
@@ -230,6 +231,7 @@ def limited() -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX systems")
 def test_a_full_disk_is_told_in_a_line() -> None:
     """Films get no place, small files do: every line has its outcome, and nothing is left."""
@@ -363,6 +365,7 @@ def cluster() -> Iterator[Any]:
         yield opened
 
 
+@pytest.mark.slow
 def test_a_cluster_loses_a_worker_halfway(cluster: Any) -> None:
     """Every film is whole, none is made twice, and all are as they are here."""
     names = films(4)
@@ -382,6 +385,7 @@ def test_a_cluster_loses_a_worker_halfway(cluster: Any) -> None:
 
 
 @linux
+@pytest.mark.slow
 def test_ctrl_c_reaches_the_cluster(cluster: Any) -> None:
     """What workers have half written goes, and what was not begun is not begun."""
     films(6)
