@@ -93,7 +93,9 @@ def _without_side(name: str) -> str:
 
 def _sums(values: Floats, shares: Floats, floors: Floats) -> Floats:
     """What values of the layer come to, shape (N, C), as sim/controls.py adds them up."""
-    least = (values[:, :, None] * floors).max(axis=1)
+    least = np.zeros((len(values), floors.shape[1]))
+    for value, floor in zip(values.T, floors, strict=True):
+        np.maximum(least, np.outer(value, floor), out=least)
     return np.where(least > 0.0, np.maximum(values @ shares, least), values @ shares)
 
 

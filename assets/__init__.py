@@ -4,7 +4,6 @@
     plane = assets.load("plane")
     cloth = assets.load("cloth")
     mesh = assets.read_mesh("cloth.ply")  # or OBJ, STL, OFF, GLB
-    image = assets.paint(tone="dark")  # another skin for the head than `head.albedo`
     head = fitting.fit_head("anna.obj", "anna.json")  # from risorius.assets import fitting
 
 The programs that generate them are in this package, too: `python -m risorius.assets.build`.
@@ -13,8 +12,7 @@ The programs that generate them are in this package, too: `python -m risorius.as
 from .errors import AssetError
 from .loading import available, load
 from .meshes import Mesh, read_mesh
-from .model import Cloth, Eye, Head, Layer, Part, Plane, Segment, Tone, Wrinkles
-from .painting import paint
+from .model import Cloth, Eye, Head, Layer, Part, Plane, Segment, Wrinkles
 
 __all__ = [
     "AssetError",
@@ -26,10 +24,8 @@ __all__ = [
     "Part",
     "Plane",
     "Segment",
-    "Tone",
     "Wrinkles",
     "available",
     "load",
-    "paint",
     "read_mesh",
 ]

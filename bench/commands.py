@@ -11,7 +11,7 @@ from .simulation_commands import COMMANDS as SIMULATION
 
 @click.group()
 def bench() -> None:
-    """Measure; each command prints its figures and how they were taken."""
+    """Measure: each command prints figures and how they were taken."""
 
 
 for _each in (*REFINEMENT, *SIMULATION, *PLAYING):

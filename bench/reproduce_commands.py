@@ -20,7 +20,10 @@ PATH = click.Path(path_type=Path)
 
 @click.group()
 def reproduce() -> None:
-    """Make what the paper shows and says anew; exit code 1 where a tolerance is missed."""
+    """Make what the paper shows and says anew.
+
+    The exit code is 1 where a tolerance is missed.
+    """
 
 
 @reproduce.command("all")

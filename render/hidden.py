@@ -23,7 +23,6 @@ from .stream import Share, Stream
 TILE = 8  # [pixels] each way
 LARGEST = 16  # tiles: side of the largest squares of which the farthest depth is kept
 MARGIN = 1e-4  # of the range of depths: beyond the rounding of drivers, 0.05 mm on a head
-_LEVELS = np.floor(np.log2(np.maximum(np.arange(8192), 1))).astype(np.int64)  # of so many tiles
 _UNIT = 1  # texture unit: the one of the layer
 
 
@@ -114,7 +113,7 @@ class Occluder:
             last = [self._tile(each, axis) for axis, each in enumerate(high)]
         # Squares as large as fit, one in each corner, hold all tiles that a triangle touches.
         reach = np.maximum(last[0] - first[0], last[1] - first[1]) + 1
-        level = np.minimum(_LEVELS[reach], len(self._farthest) - 1)
+        level = np.minimum(np.frexp(np.maximum(reach, 1))[1] - 1, len(self._farthest) - 1)
         side = 1 << level
         is_known &= reach <= 2 * side
         ends = [np.maximum(last[axis] + 1 - side, first[axis]) for axis in (0, 1)]
@@ -149,8 +148,9 @@ def draw_sides(
     gl.cull_face = "back"
     for program, share in shares:
         stream.draw(program, share)
-    is_chosen = view is not None and occluder is not None and occluder.target.samples > 0
-    if is_chosen and view is not None and occluder is not None:
+    is_chosen = False
+    if view is not None and occluder is not None and occluder.target.samples:
+        is_chosen = True
         covered = view.covered_pixels(stream.corners)
         occluder.look(view, covered)
         positions = stream.vertices[: stream.vertex_count, :3]

@@ -23,7 +23,7 @@ class Journal:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._made: dict[str, dict[str, Any]] = {}  # by line and folder
+        self._made: dict[tuple[str, str], dict[str, Any]] = {}  # by line and folder
         self._begun: set[str] = set()  # outputs that were not there before
         try:
             text = read_text(path, what="journal", longest=LONGEST)
@@ -38,14 +38,14 @@ class Journal:
     def _take(self, entry: dict[str, Any]) -> None:
         self._begun.update(entry.get("begun", ()))
         if "line" in entry:
-            self._made[_key(entry["line"], entry["folder"])] = entry
+            self._made[entry["line"], entry["folder"]] = entry
 
     def made(self, job: Job) -> dict[str, Any] | None:
         """What is known of a line that was done, if it would give the same now; None otherwise."""
-        entry = self._made.get(_key(job.text, str(job.folder)))
-        if entry is None or any(entry.get(key) != value for key, value in _state(job).items()):
+        entry = self._made.get((job.text, str(job.folder)))
+        if entry is None or any(entry.get(key) != value for key, value in made_from(job).items()):
             return None
-        return entry if entry["outputs"] == _outputs(job) else None
+        return entry if entry["outputs"] and entry["outputs"] == _outputs(job) else None
 
     def began(self, output: Path) -> bool:
         """Whether what is in an output's place was put there by a batch, for all that is known."""
@@ -56,7 +56,7 @@ class Journal:
         self._add({"begun": [str(output) for job in jobs for output in job.outputs]})
 
     def add(self, job: Job, state: dict[str, Any], frames: int, seconds: float) -> None:
-        """A line is done; `state` is what `state` gave before."""
+        """A line is done; `state` is what `made_from` gave before."""
         self._add({**state, "outputs": _outputs(job), "frames": frames, "seconds": seconds})
 
     def _add(self, entry: dict[str, Any]) -> None:
@@ -64,17 +64,9 @@ class Journal:
         with cannot_be_written(self._path), self._path.open("a", encoding="utf-8") as file:
             file.write(f"\n{json.dumps(entry)}")  # the last line may have been cut off
 
-    @staticmethod
-    def state(job: Job) -> dict[str, Any]:
-        """All that decides what a line gives."""
-        return _state(job)
 
-
-def _key(line: str, folder: str) -> str:
-    return f"{folder}\n{line}"
-
-
-def _state(job: Job) -> dict[str, Any]:
+def made_from(job: Job) -> dict[str, Any]:
+    """All that decides what a line gives."""
     inputs = [list(state_of(path)) for path in job.inputs]
     return {
         "line": job.text,

@@ -19,7 +19,7 @@ class Job:
     """A line that is to be done.
 
     command: where its click command is, "module:name". folder: where its relative paths begin.
-    inputs, outputs: the files that it reads and writes.
+    inputs, outputs: the files that it reads and writes. beside: files that come with the latter.
     """
 
     number: int
@@ -29,6 +29,7 @@ class Job:
     folder: Path
     inputs: tuple[Path, ...]
     outputs: tuple[Path, ...]
+    beside: tuple[Path, ...] = ()
 
 
 def lines_of(path: Path) -> Iterator[tuple[int, str]]:
@@ -55,7 +56,7 @@ def clashes(jobs: Sequence[Job]) -> Iterator[tuple[int, str]]:
     """Lines that cannot be done beside others: their numbers, and why."""
     writer_of: dict[str, Job] = {}
     for job in jobs:
-        for output in job.outputs:
+        for output in (*job.outputs, *job.beside):
             other = writer_of.setdefault(os.path.realpath(output), job)
             if other is not job:
                 yield job.number, f"{output}: is written by line {other.number} already"

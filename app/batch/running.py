@@ -15,7 +15,7 @@ import click
 from ..errors import UserError
 from ..motion import tally
 from ..workers import run_all
-from .journal import Journal
+from .journal import Journal, made_from
 from .listing import Job
 
 OK, FAILED, SKIPPED = "ok", "failed", "skipped"
@@ -61,7 +61,7 @@ def run_lines(
             continue
         yield Result(job, SKIPPED, made["seconds"], made["frames"], 0, "", _log(logs, job))
     journal.begin(waiting)
-    states = [journal.state(job) for job in waiting]
+    states = [made_from(job) for job in waiting]
     files = [_log(logs, job) for job in waiting]
     for file in files:
         file.unlink(missing_ok=True)
@@ -71,16 +71,9 @@ def run_lines(
         job, frames = waiting[outcome.index], outcome.result or 0
         if outcome.error is None:
             journal.add(job, states[outcome.index], frames, outcome.seconds)
-        status = OK if outcome.error is None else FAILED
-        yield Result(
-            job,
-            status,
-            outcome.seconds,
-            frames,
-            outcome.attempts,
-            outcome.error or "",
-            files[outcome.index],
-        )
+        status, log = OK if outcome.error is None else FAILED, files[outcome.index]
+        error = outcome.error or ""
+        yield Result(job, status, outcome.seconds, frames, outcome.attempts, error, log)
 
 
 def _log(folder: Path, job: Job) -> Path:

@@ -11,10 +11,6 @@ from ..files import cannot_be_written, written_atomically
 from .running import FAILED, OK, SKIPPED, Result
 
 MOST_ROWS = 30  # of a table that is printed whole; of a longer one, what failed
-COLUMNS = (
-    "line", "status", "seconds", "frames", "frames_per_second", "attempts", "outputs", "error",
-    "log", "command",
-)  # fmt: skip
 
 
 def table(results: Sequence[Result], seconds: float) -> Iterator[str]:
@@ -35,25 +31,26 @@ def table(results: Sequence[Result], seconds: float) -> Iterator[str]:
 
 def save_summary(target: Path, results: Sequence[Result]) -> None:
     """Write a CSV file with a row for each line; UserError where that cannot be."""
+    rows = [
+        {
+            "line": each.job.number,
+            "status": each.status,
+            "seconds": f"{each.seconds:.3f}",
+            "frames": each.frames,
+            "frames_per_second": f"{each.rate:.3f}",
+            "attempts": each.attempts,
+            "outputs": " ".join(map(str, each.job.outputs)),
+            "error": each.error,
+            "log": each.log,
+            "command": each.job.text,
+        }
+        for each in sorted(results, key=lambda each: each.job.number)
+    ]
     with (
         written_atomically(target) as part,
         cannot_be_written(target),
         part.open("w", encoding="utf-8", newline="") as file,
     ):
-        writer = csv.writer(file)
-        writer.writerow(COLUMNS)
-        for each in sorted(results, key=lambda each: each.job.number):
-            writer.writerow(
-                (
-                    each.job.number,
-                    each.status,
-                    f"{each.seconds:.3f}",
-                    each.frames,
-                    f"{each.rate:.3f}",
-                    each.attempts,
-                    " ".join(map(str, each.job.outputs)),
-                    each.error,
-                    each.log,
-                    each.job.text,
-                )
-            )
+        writer = csv.DictWriter(file, rows[0])
+        writer.writeheader()
+        writer.writerows(rows)

@@ -96,15 +96,11 @@ class Capture:
 
     def draw_frame(self) -> Frame:
         """Draw the scene as it is now, and say what is known of the picture."""
-        image = self.draw_image()
+        image, known = self.draw_image(), None
         triangles = max(drawn.triangle_count for drawn in self.pipeline.meshes)
-        return Frame(image, self.label(), triangles)
-
-    def label(self) -> Labelled | None:
-        """What is known of the image that was drawn last; None where nobody wants to know."""
-        if self._passes is None:
-            return None
-        return labelled(self._passes, self.camera, self.options.passes)
+        if self._passes is not None:
+            known = labelled(self._passes, self.camera, self.options.passes)
+        return Frame(image, known, triangles)
 
     def play(
         self, script: Script, *, until: float | None = None, progress: bool = True

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import re
 from collections import deque
 from collections.abc import Iterator
@@ -23,6 +22,7 @@ from ..files import (
 )
 from ..passes.files import ENDS, Labelled
 from ..stopping import cleaned_up_if_stopped
+from ..workers.child import share_of_cores
 from .ffmpeg import Encoder, Soundtrack
 from .formats import check_format, size_of_film
 from .transparency import with_colours_around
@@ -81,7 +81,7 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
     """
     count = 0
     waiting: deque[Future[None]] = deque()
-    workers = os.cpu_count() or 1  # threads, for most of the time is spent in zlib
+    workers = share_of_cores()  # threads, for most of the time is spent in zlib
 
     def write(picture: Path, image: Image, beside: Labelled | None) -> None:
         """Write one frame, in a thread."""

@@ -9,15 +9,14 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import logging.handlers
 import os
 import pickle
-import queue
-import signal
-import subprocess
-import sys
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
+from queue import Queue
 
 from risorius import render
 
@@ -25,6 +24,7 @@ from ..errors import UserError
 from ..motion import counted_frames, scene_of
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped
+from ..workers.child import Child, DiedError, share_of_cores, streams
 from .drawing import Capture, CaptureOptions, Frame
 
 SAMPLES_EACH = 3e8  # 80 frames of 1280 x 720: fewer are not worth a start of three seconds
@@ -48,21 +48,11 @@ def worthwhile(options: CaptureOptions, frame_count: int) -> int:
     """How many processes should draw so many frames: 1 where a GPU does, or a core is all."""
     width, height = options.size
     samples = width * height * max(options.samples, 1) * frame_count
-    count = min(_cores(), MOST, int(samples / SAMPLES_EACH))
+    count = min(share_of_cores(), MOST, int(samples / SAMPLES_EACH))
     if count < 2:
         return 1
     with render.open_offscreen((1, 1), samples=0) as surface:
         return count if surface.is_software else 1
-
-
-def _cores() -> int:
-    """How many this process may use; whoever limits the threads of software OpenGL limits that."""
-    told = os.environ.get("LP_NUM_THREADS", "")
-    if told.isdecimal():
-        return max(int(told), 1)
-    if sys.platform == "linux":
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 @contextlib.contextmanager
@@ -73,7 +63,7 @@ def drawing(
 
     Each frame has to be taken. What goes wrong in a process is raised where its frame is taken.
     """
-    drawers: list[_Drawer] = []
+    drawers: list[Child] = []
 
     def stop() -> None:
         """End them all; they have nothing to clean up."""
@@ -84,12 +74,15 @@ def drawing(
         """All frames, from one process after the other."""
         rate = options.frames_per_second
         for index in counted_frames(until, rate, progress=progress):
-            yield index / rate, drawers[index % count].take
+            yield index / rate, partial(_next_of, drawers[index % count])
 
+    environment = {**os.environ, "LP_NUM_THREADS": "0"}  # no threads beside it
     with cleaned_up_if_stopped(stop):
         try:
             for first in range(count):
-                drawers.append(_Drawer(Share(script, options, until, first, count)))
+                drawers.append(Child(__name__, environment))
+                with contextlib.suppress(DiedError):  # told where its first frame is taken
+                    drawers[-1].send(Share(script, options, until, first, count))
             yield frames()
         finally:
             stop()
@@ -97,70 +90,45 @@ def drawing(
                 drawer.close()
 
 
-class _Drawer:
-    """A process that draws, as the one that asked for it sees it."""
-
-    def __init__(self, share: Share) -> None:
-        code = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve()"
-        self.process = subprocess.Popen(  # in a session of its own: Ctrl-C is for us alone
-            [sys.executable, "-c", code],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env={**os.environ, "LP_NUM_THREADS": "0"},  # no threads beside it
-            start_new_session=True,
-        )
-        assert self.process.stdin is not None and self.process.stdout is not None
-        self._frames = self.process.stdout
-        with contextlib.suppress(BrokenPipeError):  # it died: told where its first frame is taken
-            pickle.dump(share, self.process.stdin)
-            self.process.stdin.close()
-
-    def take(self) -> Frame:
-        """Its next frame; raises what it raised, UserError where it died."""
-        while True:
-            try:
-                found = pickle.load(self._frames)
-            except (EOFError, pickle.UnpicklingError):
-                code = self.process.wait()
-                why = signal.Signals(-code).name if code < 0 else f"exit code {code}"
-                raise UserError(
-                    f"a process that draws the film ended ({why}); try again, and where memory is "
-                    "short, take a smaller --size"
-                ) from None
-            if isinstance(found, Frame):
-                return found
-            if isinstance(found, Exception):
-                raise found
-            logging.getLogger(COMPILER).handle(found)
-
-    def close(self) -> None:
-        """Let go of what is left of it."""
-        self.process.wait()
-        self._frames.close()
+def _next_of(drawer: Child) -> Frame:
+    """The next frame of a process; raises what it raised, UserError where it died."""
+    while True:
+        try:
+            found = drawer.receive()
+        except DiedError as why:
+            raise UserError(
+                f"a process that draws the film ended ({why}); try again, and where memory is "
+                "short, take a smaller --size"
+            ) from None
+        if isinstance(found, Frame):
+            return found
+        if isinstance(found, Exception):
+            raise found
+        logging.getLogger(COMPILER).handle(found)
 
 
-class _Teller(logging.Handler):
+class _Teller(logging.handlers.QueueHandler):
     """Has the process that asked say what is compiled here."""
 
-    def __init__(self, tell: Callable[[object], None]) -> None:
-        super().__init__(logging.INFO)
-        self._tell = tell
+    queue: Queue[object]
 
-    def emit(self, record: logging.LogRecord) -> None:
-        """Hand a line over."""
-        self._tell(logging.makeLogRecord({"levelno": record.levelno, "msg": record.getMessage()}))
+    def enqueue(self, record: logging.LogRecord) -> None:
+        """Hand a line over, where frames wait, too."""
+        self.queue.put(record)
 
 
 def serve() -> None:
     """Draw the share that the standard input tells, onto the standard output."""
-    share: Share = pickle.load(sys.stdin.buffer)
-    results = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what is printed is no frame
+    requests, results = streams()
+    try:
+        share: Share = pickle.load(requests)
+    except (EOFError, pickle.UnpicklingError):  # whoever began this process was stopped
+        return
     width, height = share.options.size
     room = max(int(AHEAD / (4 * width * height)), 2)
-    drawn: queue.Queue[object] = queue.Queue(room)
+    drawn: Queue[object] = Queue(room)
     log = logging.getLogger(COMPILER)
-    log.addHandler(_Teller(drawn.put))
+    log.addHandler(_Teller(drawn))
     log.setLevel(logging.INFO)
     log.propagate = False
 

@@ -16,7 +16,7 @@ from . import outputs, processes
 from .captions import contact_sheet
 from .drawing import Capture, CaptureOptions, Frame
 from .ffmpeg import Soundtrack
-from .formats import FORMATS, HEARD, check_format, format_of
+from .formats import FORMATS, HEARD, format_of
 
 
 def capture(
@@ -60,10 +60,7 @@ def capture(
             if film is not None:
                 film(frame.image, frame.known)
             if still and now == still_at:
-                if frame.known is None:
-                    save_png(still, frame.image)
-                else:
-                    save_labelled(still, frame.image, frame.known)
+                save_labelled(still, frame.image, frame.known)
             while wanted and wanted[0].time <= now + 0.5 / rate:
                 named.append((wanted.pop(0).name or "", frame.image))
         if sheet is not None:
@@ -106,11 +103,8 @@ def _check(
         check_png(sheet)
     if output is not None and _is_image(output):
         check_png(output)
-    elif output is not None and format_of(output):
-        check_format(output, options.frames_per_second, is_transparent=options.is_transparent)
-        check_file(output)
-        if script.sound is not None and output.suffix.lower() in HEARD:
-            load_sound(script.sound)
+    elif output is not None and script.sound is not None and output.suffix.lower() in HEARD:
+        load_sound(script.sound)
 
 
 def _check_passes(script: Script, output: Path | None, options: CaptureOptions) -> None:

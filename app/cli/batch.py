@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
 import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import click
 from tqdm import tqdm
@@ -40,19 +42,31 @@ class Batching:
 with_batching = packed(
     "batching",
     Batching,
-    click.option("--jobs", type=click.IntRange(1, 1024), help="Lines at once: a core each."),
     click.option(
-        "--scheduler", metavar="ADDRESS", help="Of a Dask cluster that does it: tcp://host:8786."
+        "--jobs", type=click.IntRange(1, 1024), help="Lines at once; as many as cores unless told."
     ),
-    click.option("--resume", is_flag=True, help="Leave alone what is whole and would be the same."),
+    click.option(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="Of a Dask cluster that does the work: tcp://host:8786.",
+    ),
+    click.option(
+        "--resume",
+        is_flag=True,
+        help="Leave out lines whose outputs are there and would come out the same.",
+    ),
     click.option(
         "--retries",
         type=click.IntRange(0, 10),
         default=2,
         show_default=True,
-        help="Of a line whose process dies.",
+        help="How often a line is tried again whose process died.",
     ),
-    click.option("--logs", type=PATH, help="A folder; else LIST_logs beside LIST."),
+    click.option(
+        "--logs",
+        type=PATH,
+        help="A folder for what lines print; LIST_logs beside LIST unless told.",
+    ),
     click.option("--quiet", is_flag=True, help="No progress bar."),
 )
 
@@ -61,14 +75,15 @@ with_batching = packed(
 @click.argument("listing", metavar="LIST", type=PATH)
 @with_batching
 def batch(listing: Path, batching: Batching) -> None:
-    """Do the commands in LIST side by side: one a line, as typed after risorius.
+    """Do a list of commands side by side.
 
-    Lines may hold capture, export, convert and speak; those that begin with # hold nothing.
-    Relative paths begin where you stand. All lines are checked before the first is begun.
+    LIST is a text file with a command in each line, as typed after risorius. Lines may hold
+    capture, export, convert and speak; those that begin with # hold nothing. Relative paths begin
+    where you stand. All lines are checked before the first is begun.
     """
     from ..batch.running import FAILED, run_lines
     from ..batch.summary import save_summary, table
-    from ..workers.running import cores
+    from ..workers.child import cores
 
     if batching.jobs is not None and batching.scheduler is not None:
         raise UserError("--jobs is for this computer; with --scheduler the cluster has its workers")
@@ -152,7 +167,11 @@ def _job(number: int, text: str, journal: Journal) -> Job:
         if not path.exists():
             raise UserError(f"{path}: there is no such file")
     check_apart(outputs, inputs)
+    beside = _beside(name, given)
     if "overwrite" in given and not given["overwrite"]:
+        for path in beside if name == "export" and not outputs[0].exists() else ():
+            if os.path.lexists(path) and not journal.began(outputs[0].absolute()):
+                raise UserError(f"{path}: is there; choose another name, or add --overwrite")
         for path in outputs:
             if path.is_dir() and any(path.iterdir()) and not journal.began(path.absolute()):
                 raise UserError(
@@ -168,7 +187,20 @@ def _job(number: int, text: str, journal: Journal) -> Job:
         Path.cwd(),
         tuple(path.absolute() for path in (*inputs, *_named_in(given.get("script")))),
         tuple(path.absolute() for path in outputs),
+        tuple(path.absolute() for path in beside),
     )
+
+
+def _beside(name: str, given: dict[str, Any]) -> list[Path]:
+    """The files that come with the one that a line names."""
+    from ..export.formats import format_for
+    from ..passes.files import beside
+
+    output: Path | None = given.get("output")
+    if name == "export" and output is not None:
+        return list(format_for(output, given["name"]).outputs(output)[1:])
+    is_picture = output is not None and output.suffix.lower() == ".png"
+    return beside(output) if output and is_picture and given.get("passes") else []
 
 
 def _named_in(script: Path | None) -> Iterator[Path]:

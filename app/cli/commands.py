@@ -66,10 +66,10 @@ def capture(
     playback: Playback,
     drawing: Drawing,
 ) -> None:
-    """Render SCRIPT offscreen into a film, frames, a picture or a contact sheet.
+    """Draw SCRIPT as a film, frames, a picture or a contact sheet.
 
-    A recording of a face is a SCRIPT, too: Live Link Face, OpenFace, py-feat, MediaPipe, ...
-    Without SCRIPT the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
+    A recording of a face is a SCRIPT, too: Live Link Face, OpenFace, MediaPipe, ... Without SCRIPT
+    the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
     """
     from ..capture import CaptureOptions
     from ..capture import capture as film_of
@@ -161,7 +161,10 @@ def view(
 @click.option("--address", default=LOOPBACK, show_default=True, help="Of the receiving computer.")
 @click.option("--loop", is_flag=True, help="Again and again, until Ctrl-C.")
 def send(recording: Path, kind: str, port: int | None, address: str, loop: bool) -> None:
-    """Play RECORDING as packets, as a phone sends them; `risorius view --live` follows them."""
+    """Send RECORDING as a phone would.
+
+    `risorius view --live` follows it.
+    """
     from ..live.sender import Sender, carried
     from ..recordings.reading import read_take
 
@@ -195,7 +198,7 @@ def replay(
     playback: Playback,
     drawing: Drawing,
 ) -> None:
-    """Play SCRIPT, or a recording of a face, in real time in the window."""
+    """Play SCRIPT, or a recording of a face, in the window."""
     from ..performances import script_for
     from ..sound import with_sound
 
@@ -211,7 +214,10 @@ def replay(
 @QUIET
 @with_playback
 def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> None:
-    """Write the script that plays RECORDING: Live Link Face, OpenFace, py-feat, MediaPipe, ..."""
+    """Turn the RECORDING of a face into a script.
+
+    Live Link Face, OpenFace, py-feat, MediaPipe and others write recordings.
+    """
     from ..files import check_apart
     from ..performances import script_for
     from ..script import save_script
@@ -261,7 +267,7 @@ def open_window(
 @click.option("--text", default="", help="The words that are spoken, in English: better by far.")
 @click.option("-o", "--output", type=PATH, required=True, help="script.toml")
 def speak(audio: Path, text: str, output: Path) -> None:
-    """Make a script that speaks what is heard in AUDIO, with visemes in step."""
+    """Make a script whose lips speak what is heard in AUDIO."""
     from ..files import check_apart, check_file
     from ..script import save_script
     from ..sound import load_sound
@@ -278,7 +284,10 @@ def speak(audio: Path, text: str, output: Path) -> None:
 
 @click.command()
 def demo() -> None:
-    """Render the built-in head through its expressions to out/demo.mp4 and out/demo.png."""
+    """Draw the built-in head in its expressions.
+
+    Writes out/demo.mp4 and out/demo.png.
+    """
     from ..capture import CaptureOptions
     from ..capture import capture as film_of
     from ..performances import script_for
@@ -293,7 +302,10 @@ def demo() -> None:
 @click.command()
 @click.option("--scene", type=SCENE_NAMES, default="face", show_default=True)
 def controls(scene: str) -> None:
-    """List every control that a script may name: muscles, action units, expressions, visemes."""
+    """List every name that a script may use.
+
+    These are muscles, action units, expressions, visemes and ARKit's shapes.
+    """
     from ..scenes import SCENES
 
     built = SCENES[scene]()
@@ -309,7 +321,7 @@ def controls(scene: str) -> None:
 @click.option("--offscreen", is_flag=True, help="Only ask for offscreen OpenGL.")
 @click.option("--quiet", is_flag=True, help="Say nothing; the exit code tells.")
 def doctor(offscreen: bool, quiet: bool) -> None:
-    """Say what there is, what works because of it, and the cure for what is missing.
+    """Say what works here, and the cure for what does not.
 
     Exit code 0: everything is there. 1: some commands work. 2: nothing can be drawn.
     """

@@ -30,13 +30,22 @@ class Drawn:
 with_drawn = packed(
     "drawn",
     Drawn,
-    click.option("--sample", type=PATH, help="Your table of faces, TOML."),
+    click.option(
+        "--sample", type=PATH, help="Your table of what faces do; --sample-table prints ours."
+    ),
     click.option(
         "--camera",
         metavar="YAW[,PITCH[,ZOOM]]",
-        help="Each a number or LOW:HIGH, as in -30:30,-10:10,0.9:1.2; else as the table has it.",
+        help="Where from, in degrees: each a number or LOW:HIGH, as in -30:30,-10:10,0.9:1.2; "
+        "as the table has it unless told.",
     ),
-    click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True),
+    click.option(
+        "--seed",
+        type=click.IntRange(0, 2**32 - 1),
+        default=0,
+        show_default=True,
+        help="Which samples.",
+    ),
     click.option(
         "--passes",
         default="segmentation",
@@ -49,9 +58,13 @@ with_drawn = packed(
     click.option(
         "--background",
         metavar="COLOUR|FOLDER",
-        help="A colour, as in '#8090a0' or grey, or a folder of pictures; else soft colours.",
+        help="A colour, as '#8090a0' or grey, or a folder of pictures; soft colours unless told.",
     ),
-    click.option("--heads", type=PATH, help="A folder of heads of your own: NAME.obj, NAME.json."),
+    click.option(
+        "--heads",
+        type=PATH,
+        help="A folder of heads of your own: NAME.obj, and its landmarks in NAME.json.",
+    ),
 )
 
 
@@ -65,12 +78,14 @@ def _write_sample_table(context: click.Context, _: click.Parameter, asked: bool)
 
 
 @click.command()
-@click.option("--count", type=click.IntRange(1, MOST), required=True, help="Of samples.")
-@click.option("-o", "--output", type=PATH, required=True, help="A folder.")
+@click.option("--count", type=click.IntRange(1, MOST), required=True, help="How many samples.")
+@click.option("-o", "--output", type=PATH, required=True, help="The set's folder.")
 @with_drawn
-@click.option("--jobs", type=click.IntRange(1, 256), default=1, show_default=True)
-@click.option("--resume", is_flag=True, help="Go on with a set, or make it longer.")
-@click.option("--coco", is_flag=True, help="Landmarks as coco.json, too.")
+@click.option(
+    "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes."
+)
+@click.option("--resume", is_flag=True, help="Go on with a set, or make it larger.")
+@click.option("--coco", is_flag=True, help="Write landmarks as COCO's keypoints, too: coco.json.")
 @click.option("--quiet", is_flag=True, help="No progress bar.")
 @click.option(
     "--sample-table",
@@ -78,7 +93,7 @@ def _write_sample_table(context: click.Context, _: click.Parameter, asked: bool)
     is_eager=True,
     expose_value=False,
     callback=_write_sample_table,
-    help="Print the table that --sample replaces, to be copied and edited.",
+    help="Print the table that --sample replaces, and end.",
 )
 def dataset(
     count: int,
@@ -89,31 +104,16 @@ def dataset(
     coco: bool,
     quiet: bool,
 ) -> None:
-    """Make a data set: faces with exact action units, landmarks, pose, gaze, depth, ...
+    """Make pictures of faces with exact labels.
 
+    Labels are action units, landmarks, head pose, gaze, camera, and the passes that are asked for.
     Every sample follows from --seed and its number alone, whatever --jobs is.
     """
     from ..dataset.making import make_set
     from ..dataset.request import request_of
 
-    request = request_of(
-        output,
-        seed=drawn.seed,
-        size=drawn.size,
-        passes=tuple(drawn.passes.split(",")),
-        table=drawn.sample,
-        camera=drawn.camera,
-        background=drawn.background,
-        heads=drawn.heads,
-    )
-    made = make_set(
-        request,
-        count,
-        jobs=jobs,
-        resume=resume,
-        coco=coco,
-        progress=not quiet,
-    )
+    request = request_of(output, **{**vars(drawn), "passes": drawn.passes.split(",")})
+    made = make_set(request, count, jobs=jobs, resume=resume, coco=coco, progress=not quiet)
     click.echo(
         f"{in_one_line(output)}: {counted(made.samples, 'sample')}, {made.new} of them new, "
         f"{made.size / 1e6:.1f} MB"

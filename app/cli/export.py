@@ -10,7 +10,7 @@ import click
 from ..errors import counted, in_one_line
 from ..export.formats import RIGS, Request, check_request, format_for, names, write
 from ..playback import Playback
-from .options import PATH, SCENE_NAMES, Drawing, packed, told, with_drawing, with_playback
+from .options import PATH, SCENE_NAMES, Subject, packed, told, with_playback, with_subject
 from .parameters import FiniteRange
 
 
@@ -44,12 +44,15 @@ with_exporting = packed(
         help="Frames a second.",
     ),
     click.option(
-        "--refined", is_flag=True, help="The refined skin, whose triangles change in each frame."
+        "--refined",
+        is_flag=True,
+        help="The skin as it is drawn: other triangles in each frame, as --look, --refiner and "
+        "--option say.",
     ),
     click.option(
         "--rig",
         type=click.Choice(list(RIGS)),
-        help="Targets to pose by name, as avatars have them: ARKit's shapes or action units.",
+        help="Of a .glb: targets by name, as avatars have them.",
     ),
     click.option(
         "--overwrite", is_flag=True, help="Replace frames in a folder, or files beside -o."
@@ -65,7 +68,7 @@ with_exporting = packed(
 @click.option("--scene", type=SCENE_NAMES, help="What is animated.")
 @with_exporting
 @with_playback
-@with_drawing
+@with_subject
 def export(
     script: Path | None,
     settings: tuple[str, ...],
@@ -73,19 +76,23 @@ def export(
     scene: str | None,
     exporting: Exporting,
     playback: Playback,
-    drawing: Drawing,
+    subject: Subject,
 ) -> None:
-    """Write the motion of SCRIPT, or of a recording, for other programs."""
+    """Write the motion of SCRIPT for other programs.
+
+    A recording of a face is a SCRIPT, too. Without SCRIPT the scene's own one is played, or a pose
+    is held for a second: --set joy.
+    """
     from ..export.clip import record
     from ..files import check_apart
     from ..motion import scene_of
     from ..performances import script_for
 
     chosen = format_for(output, exporting.name)
-    inputs = (script, drawing.head, drawing.landmarks, playback.mapping)
+    inputs = (script, subject.head, subject.landmarks, playback.mapping)
     check_apart(chosen.outputs(output), inputs)
     request = Request(
-        drawing.refinement() if exporting.refined else None,
+        subject.refinement() if exporting.refined else None,
         exporting.rig,
         exporting.overwrite,
         not exporting.quiet,
@@ -93,7 +100,7 @@ def export(
     check_request(output, chosen, request)
     tell = None if exporting.quiet else told
     performance = script_for(script, scene, settings, playback=playback, tell=tell)
-    played = scene_of(performance, drawing.fitted_head())
+    played = scene_of(performance, subject.fitted_head())
     clip = record(performance, played, exporting.fps, progress=not exporting.quiet)
     remark = write(clip, output, chosen, request)
     click.echo(f"{in_one_line(output)}: {chosen.title}, {counted(clip.frame_count, 'frame')}")

@@ -55,18 +55,12 @@ def packed(name: str, settings: type[Any], *options: Command) -> Callable[[Comma
 
 
 @dataclass(frozen=True)
-class Drawing:
-    """What view, replay and capture are told alike: whose head, how refined, in what style."""
+class Subject:
+    """What is told of whose head it is, and how it is refined."""
 
     head: Path | None
     landmarks: Path | None
     person: int | None
-    light: str
-    wrinkles: float
-    skin: str
-    splits: bool
-    wireframe: bool
-    shading: str
     refiner_settings: tuple[str, ...]
     refiner: str | None
     look: str
@@ -83,6 +77,18 @@ class Drawing:
 
         options = parse_options(self.refiner, self.refiner_settings)
         return Refinement(self.look, self.refiner, options)
+
+
+@dataclass(frozen=True)
+class Drawing(Subject):
+    """What view, replay and capture are told alike: whose head, how refined, in what style."""
+
+    light: str
+    wrinkles: float
+    skin: str
+    splits: bool
+    wireframe: bool
+    shading: str
 
     @property
     def style_options(self) -> dict[str, Any]:
@@ -111,9 +117,7 @@ class Drawing:
         )
 
 
-with_drawing = packed(
-    "drawing",
-    Drawing,
+HEAD = (
     click.option("--head", type=PATH, help="A head of your own: any triangle mesh."),
     click.option("--landmarks", type=PATH, help="The 68 iBug landmarks of --head, as JSON."),
     click.option(
@@ -122,6 +126,8 @@ with_drawing = packed(
         metavar="NUMBER",
         help="Another person than the built-in head: for each number one.",
     ),
+)
+STYLE = (
     click.option(
         "--light",
         type=click.Choice(LIGHT_NAMES),
@@ -151,6 +157,8 @@ with_drawing = packed(
         default="pixel",
         show_default=True,
     ),
+)
+REFINING = (
     click.option(
         "--option",
         "refiner_settings",
@@ -173,6 +181,8 @@ with_drawing = packed(
         help="How the mesh is refined; paper is the paper's own rule.",
     ),
 )
+with_subject = packed("subject", Subject, *HEAD, *REFINING)
+with_drawing = packed("drawing", Drawing, *HEAD, *STYLE, *REFINING)
 
 
 @dataclass(frozen=True)

@@ -16,10 +16,10 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from risorius.assets.staging import locked
+from risorius.assets.staging import is_staging_folder, locked
 
 from ..errors import UserError
-from ..files import cannot_be_written, real_path, written_atomically
+from ..files import cannot_be_written, real_path, save_text
 
 BEGUN = "dataset.json"  # how the set was begun
 UNFINISHED = ".unfinished"
@@ -76,7 +76,8 @@ class SetFolder:
         """
         begun = self.path / BEGUN
         if not begun.exists():
-            if any(item.name != UNFINISHED for item in self.path.iterdir()):
+            items = (item for item in self.path.iterdir() if not is_staging_folder(item))
+            if any(item.name != UNFINISHED for item in items):
                 raise UserError(f"{self.path}: is not empty and no data set; name another folder")
             return
         try:
@@ -133,8 +134,7 @@ class SetFolder:
 
     def save_json(self, name: str, content: Mapping[str, Any]) -> None:
         """Write a JSON file of the set, whole."""
-        with written_atomically(self.path / name) as part, cannot_be_written(self.path / name):
-            part.write_text(json.dumps(content, indent=1) + "\n", "utf-8")
+        save_text(self.path / name, json.dumps(content, indent=1) + "\n")
 
 
 def _short(value: object) -> str:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from tqdm import tqdm
 
 from ..errors import UserError
-from ..files import cannot_be_written, written_atomically
+from ..files import cannot_be_written, save_text, written_atomically
 from ..keeping import kept
 from ..stopping import cleaned_up_if_stopped
 from ..workers import run_all
@@ -108,13 +108,10 @@ def _finish(folder: SetFolder, request: Request, count: int, *, coco: bool) -> N
     def samples() -> Iterator[dict[str, Any]]:
         return map(folder.sample, range(count))
 
-    def write(name: str, how: Callable[..., Any], *told: Any) -> Any:
-        with written_atomically(folder.path / name) as part:
-            with cannot_be_written(folder.path / name):
-                return how(part, *told)
-
-    counts = write("index.csv", write_index, samples())
-    card = card_of(request, counts)
-    write("README.md", lambda part: part.write_text(card, "utf-8"))
+    index, keypoints = folder.path / "index.csv", folder.path / "coco.json"
+    with written_atomically(index) as part, cannot_be_written(index):
+        counts = write_index(part, samples())
+    save_text(folder.path / "README.md", card_of(request, counts))
     if coco:
-        write("coco.json", write_coco, samples, f"{count} faces made by Risorius")
+        with written_atomically(keypoints) as part, cannot_be_written(keypoints):
+            write_coco(part, samples, f"{count} faces made by Risorius")

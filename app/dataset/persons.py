@@ -13,7 +13,7 @@ from risorius.assets.identities import Person, coloured, make_person, sample_ide
 from .request import Request
 from .sampling import chosen
 
-ONLY_BROWN = 10.0  # [degrees] of the tone below which eyes are brown, as nearly all are there
+ONLY_BROWN = 28.0  # [degrees] of the tone below which eyes are brown, as nearly all are there
 PERSONS = 1  # sets their seeds apart from those of samples
 
 

@@ -74,7 +74,7 @@ def request_of(
     seed: int,
     size: tuple[int, int],
     passes: Sequence[str],
-    table: Path | None = None,
+    sample: Path | None = None,
     camera: str | None = None,
     background: str | None = None,
     heads: Path | None = None,
@@ -82,14 +82,14 @@ def request_of(
     """What the command line asks for; UserError for what cannot be."""
     check_wanted(passes, "face")
     passes = tuple(name for name in IMAGES if name in passes)
-    samples = load_table(table)
+    samples = load_table(sample)
     if camera is not None:
         samples = with_camera(samples, camera)
     found = () if heads is None else _heads_in(heads)
     if found:
         samples = replace(samples, persons={**samples.persons, "count": len(found)})
     told = {
-        "sample": table,
+        "sample": sample,
         "camera": camera,
         "seed": seed,
         "passes": ",".join(passes),

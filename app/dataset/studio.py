@@ -8,6 +8,7 @@ process, in any order.
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -65,7 +66,7 @@ class Studio:
         self._request = request
         self._surface = render.open_offscreen(request.size, samples=SAMPLES)
         self._renderer = render.Renderer(self._surface)
-        self._persons: dict[int, _Model] = {}
+        self._person = lru_cache(MOST_PERSONS)(self._person_of)
 
     def shoot(self, index: int) -> Shot:
         """Take sample number `index` of the request's seed."""
@@ -114,17 +115,11 @@ class Studio:
         told = {"name": sample.light, **asdict(light)}
         return image, {"light": told, "background": name if colours is None else asdict(colours)}
 
-    def _person(self, number: int) -> _Model:
+    def _person_of(self, number: int) -> _Model:
         """A person of the set before the frame."""
-        person = self._persons.pop(number, None)
-        if person is None:
-            somebody = person_of(self._request, number)
-            pipeline = Pipeline(FaceScene(somebody.head), self._renderer, [Refinement()])
-            person = _Model(pipeline, Passes(pipeline), somebody.labels)
-        self._persons[number] = person
-        if len(self._persons) > MOST_PERSONS:
-            del self._persons[next(iter(self._persons))]
-        return person
+        somebody = person_of(self._request, number)
+        pipeline = Pipeline(FaceScene(somebody.head), self._renderer, [Refinement()])
+        return _Model(pipeline, Passes(pipeline), somebody.labels)
 
 
 def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.OrbitCamera:

@@ -5,9 +5,8 @@ Sources of what stands in it are named there. This reads and checks it.
 
 from __future__ import annotations
 
-import math
 import tomllib
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
@@ -21,6 +20,7 @@ from risorius.render import LIGHTS
 
 from ..errors import UserError
 from ..files import read_text
+from ..recordings.viseme_tracks import is_number
 
 LONGEST_FILE = 2**18  # [bytes]
 KINDS = ("neutral", "expression", "mixture", "speech", "unit")
@@ -30,7 +30,8 @@ OF_EYES_AND_HEAD = {f"AU{number}" for number in range(51, 65)}  # these have the
 FILLED_UP = ("sides", "eyes", "head", "camera", "persons")  # rows that are left out are taken
 Shares = Mapping[str, float]
 Range = tuple[float, float]
-Check = Callable[[str, Any], Any]  # takes where something stands and what; returns it, or raises
+ANY = "*"  # rows of any name
+WEIGHT, SHARE = (0.0, 1e6), (0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,7 @@ def load_table(path: Path | None) -> SampleTable:
     Raises UserError with file, section and row.
     """
     sections = tomllib.loads(table_text())
+    where = str(path or "aus.toml")
     if path is not None:
         try:
             own = tomllib.loads(read_text(path, what="table of samples", longest=LONGEST_FILE))
@@ -81,7 +83,14 @@ def load_table(path: Path | None) -> SampleTable:
         for name, rows in own.items():
             is_added = name in FILLED_UP and isinstance(rows, dict)
             sections[name] = {**sections[name], **rows} if is_added else rows
-    return SampleTable(**_rows(_sections())(str(path or "aus.toml"), sections))
+    found = _checked(where, sections, {**_weighted(), **_others()})
+    shares = {name: found[name].values() for name in _weighted()}
+    shares["expressions"] = [row.get("share") for row in found["expressions"].values()]
+    for name, given in shares.items():
+        if not any(given):
+            raise UserError(f"{where}, '{name}': all shares are 0; one at least must be above")
+    found["persons"]["count"] = int(found["persons"]["count"])
+    return SampleTable(**{**found, "excluded": found["excluded"].get("pairs", ())})
 
 
 def with_camera(table: SampleTable, text: str) -> SampleTable:
@@ -100,8 +109,8 @@ def with_camera(table: SampleTable, text: str) -> SampleTable:
             "-30:30,0:10"
         ) from None
     pairs = {name: ends * 2 if len(ends) == 1 else ends for name, ends in given.items()}
-    camera = _sections()["camera"](f"--camera {text}", {**table.camera, **pairs})
-    return replace(table, camera=camera)
+    camera = _checked(f"--camera {text}", pairs, _others()["camera"])
+    return replace(table, camera={**table.camera, **camera})
 
 
 @cache
@@ -114,121 +123,72 @@ def _layer(title: str) -> Mapping[str, Any]:
     return {layer.title: layer.rows for layer in assets.load("head").layers}[title]
 
 
-def _sections() -> dict[str, Check]:
-    """How each section is checked."""
-    share, weight = _number(0.0, 1.0), _number(0.0, 1e6)
-    units = [unit for unit in _layer("Action units") if unit not in {BLINK, *OF_EYES_AND_HEAD}]
-    shares = dict.fromkeys(units, share)
-    expression = _rows({"share": weight, "one_sided": share, **shares})
-    camera = {"yaw": (-90.0, 90.0), "pitch": (-60.0, 60.0), "zoom": (0.2, 2.0),
-              "field_of_view": (5.0, 90.0), "shift": (-0.3, 0.3)}  # fmt: skip
-    eyes = {"blink": 1.0, "at_camera": 1.0, "horizontal": 15.0, "vertical": 15.0}
-    head = {"yaw": 20.0, "pitch": 15.0, "roll": 15.0}  # half of what the neck turns [degrees]
+def _units() -> list[str]:
+    return [unit for unit in _layer("Action units") if unit not in {BLINK, *OF_EYES_AND_HEAD}]
+
+
+def _weighted() -> dict[str, dict[str, Any]]:
+    """Sections from which one name is drawn, as `_checked` wants them."""
+    names = {"kinds": KINDS, "letters": LETTERS, "units": _units(), "speech": _layer("Visemes"),
+             "irises": IRISES, "lights": LIGHTS}  # fmt: skip
+    return {section: dict.fromkeys(each, WEIGHT) for section, each in names.items()}
+
+
+def _others() -> dict[str, dict[str, Any]]:
+    """All other sections."""
+    shares = dict.fromkeys(_units(), SHARE)
     return {
-        "kinds": _weights(KINDS),
-        "letters": _weights(LETTERS),
-        "expressions": _expressions(expression),
-        "units": _weights(units),
-        "together": _rows(dict.fromkeys(units, _rows(shares))),
-        "excluded": lambda where, given: _pairs(where, given, units),
-        "speech": _weights(tuple(_layer("Visemes"))),
-        "sides": _rows(dict.fromkeys(("asymmetric", "difference", "one_sided"), share)),
-        "eyes": _rows({name: _number(0.0, most) for name, most in eyes.items()}),
-        "head": _rows({name: _number(0.0, most) for name, most in head.items()}),
-        "camera": _rows({name: _range(*ends) for name, ends in camera.items()}),
-        "persons": _rows({"count": _count, "tone": _range(DARKEST, LIGHTEST)}),
-        "irises": _weights(tuple(IRISES)),
-        "lights": _weights(tuple(LIGHTS)),
-    }
+        "expressions": {ANY: {"share": WEIGHT, "one_sided": SHARE, **shares}},
+        "together": dict.fromkeys(shares, shares),
+        "excluded": {"pairs": frozenset(shares)},
+        "sides": dict.fromkeys(("asymmetric", "difference", "one_sided"), SHARE),
+        "eyes": {"blink": SHARE, "at_camera": SHARE, "horizontal": (0, 15), "vertical": (0, 15)},
+        "head": {"yaw": (0, 20), "pitch": (0, 15), "roll": (0, 15)},  # half of what the neck turns
+        "camera": {"yaw": [-90, 90], "pitch": [-60, 60], "zoom": [0.2, 2.0],
+                   "field_of_view": [5, 90], "shift": [-0.3, 0.3]},
+        "persons": {"count": (1, 1e6), "tone": [DARKEST, LIGHTEST]},
+    }  # fmt: skip
 
 
-def _wrong(where: str, given: object, allowed: str) -> UserError:
-    return UserError(f"{where}: was {given!r}, {allowed}")
+def _checked(where: str, given: Any, allowed: Any) -> Any:
+    """What is given, its numbers as floats; UserError where it is not allowed.
 
+    allowed: (least, most) for a number, [least, most] for a pair [low, high] of them, a set for
+    pairs of its names, and for rows what is allowed by their names, or by ANY.
+    """
 
-def _number(least: float, most: float) -> Check:
-    def check(where: str, given: Any) -> float:
-        """A finite number from `least` to `most`."""
-        is_number = isinstance(given, int | float) and not isinstance(given, bool)
-        if not is_number or not math.isfinite(given) or not least <= given <= most:
-            raise _wrong(where, given, f"must be a number from {least:g} to {most:g}")
-        return float(given)
+    def wrong(what: str) -> UserError:
+        """An error about all that is given."""
+        return UserError(f"{where}: was {given!r}, must be {what}")
 
-    return check
-
-
-def _count(where: str, given: Any) -> int:
-    return int(_number(1, 1e6)(where, given))
-
-
-def _range(least: float, most: float) -> Check:
-    def check(where: str, given: Any) -> Range:
-        """[low, high], both from `least` to `most`."""
-        if not isinstance(given, list | tuple) or len(given) != 2:
-            raise _wrong(where, given, "must be [low, high]")
-        low, high = (_number(least, most)(where, value) for value in given)
-        if low > high:
-            raise _wrong(where, given, "must be [low, high], the lower first")
-        return low, high
-
-    return check
-
-
-def _each(check: Check) -> Check:
-    def check_each(where: str, given: Any) -> dict[str, Any]:
-        """Rows of any name."""
+    if isinstance(allowed, dict):
         if not isinstance(given, dict):
-            raise _wrong(where, given, "must be a table of rows")
-        return {name: check(f"{where}, '{name}'", row) for name, row in given.items()}
-
-    return check_each
-
-
-def _rows(checks: Mapping[str, Check]) -> Check:
-    def check(where: str, given: Any) -> dict[str, Any]:
-        """Rows of some of these names."""
-        given = _each(lambda _, row: row)(where, given)
+            raise wrong("a table of rows")
         for name in given:
-            if name not in checks:
+            if name not in allowed and ANY not in allowed:
                 raise UserError(
-                    f"{where}, '{name}': is no name here; allowed are {', '.join(checks)}"
+                    f"{where}, '{name}': is no name here; allowed are {', '.join(allowed)}"
                 )
-        return {name: checks[name](f"{where}, '{name}'", row) for name, row in given.items()}
-
-    return check
-
-
-def _weights(names: Iterable[str]) -> Check:
-    def check(where: str, given: Any) -> dict[str, float]:
-        """Shares of these names, which are not all 0."""
-        found: dict[str, float] = _rows(dict.fromkeys(names, _number(0.0, 1e6)))(where, given)
-        if not any(found.values()):
-            raise UserError(f"{where}: all shares are 0; one at least must be above")
-        return found
-
-    return check
-
-
-def _expressions(check: Check) -> Check:
-    def check_all(where: str, given: Any) -> dict[str, Shares]:
-        """Rows of any name, of which some have a share."""
-        rows: dict[str, Shares] = _each(check)(where, given)
-        if not any(row.get("share") for row in rows.values()):
-            raise UserError(f"{where}: all shares are 0; one at least must be above")
-        return rows
-
-    return check_all
-
-
-def _pairs(where: str, given: Any, units: Sequence[str]) -> tuple[frozenset[str], ...]:
-    pairs = given.get("pairs") if isinstance(given, dict) else None
-    if not isinstance(pairs, list):
-        raise _wrong(where, given, 'must be pairs = [["AU26", "AU27"], ...]')
-    for pair in pairs:
-        if (
-            not isinstance(pair, list)
-            or len(set(map(str, pair))) != 2
-            or not set(map(str, pair)) <= set(units)
-        ):
-            raise _wrong(where, pair, "must be two different action units")
-    return tuple(map(frozenset, pairs))
+        return {
+            name: _checked(f"{where}, '{name}'", row, allowed.get(name, allowed.get(ANY)))
+            for name, row in given.items()
+        }
+    if isinstance(allowed, frozenset):
+        if not isinstance(given, list):
+            raise wrong('pairs, as in [["AU26", "AU27"], ...]')
+        for pair in given:
+            names = set(map(str, pair)) if isinstance(pair, list) else set()
+            if len(names) != 2 or not names <= allowed:
+                raise UserError(f"{where}: was {pair!r}, must be two different action units")
+        return tuple(map(frozenset, given))
+    least, most = allowed
+    if isinstance(allowed, list):
+        if not isinstance(given, list) or len(given) != 2:
+            raise wrong("[low, high]")
+        low, high = (_checked(where, value, (least, most)) for value in given)
+        if low > high:
+            raise wrong("[low, high], the lower first")
+        return low, high
+    if not is_number(given) or not least <= given <= most:
+        raise wrong(f"a number from {least:g} to {most:g}")
+    return float(given)

@@ -35,11 +35,6 @@ def write_npz(clip: Clip, part: Path, _: Request) -> None:
 
 def _rest_of(surface: Surface) -> dict[str, Any]:
     """What not every surface has, by name."""
-    own = {
-        "shapes": surface.shapes,
-        "matrices": surface.matrices,
-        "colours": surface.colours,
-        "uv": surface.uv,
-        "face_uv": surface.face_uv,
-    }
+    names = ("shapes", "matrices", "colours", "uv", "face_uv")
+    own = {name: getattr(surface, name) for name in names}
     return {name: array for name, array in own.items() if array is not None}

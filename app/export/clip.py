@@ -123,17 +123,19 @@ def record(
     positions: list[Singles] = []
     bones: list[Mapping[str, Floats]] = []
     shapes: dict[str, list[Singles]] = {part.name: [] for part in scene.parts}
-    controls, activations = _Curves(), _Curves()
+    simulation = scene.simulation if isinstance(scene, FaceScene) else None
+    controls: list[Floats] = []
+    activations: list[Floats] = []
     for _ in play(scene, script, frames_per_second, progress=progress):
         positions.append(scene.positions.astype(np.float32))
         bones.append({name: np.array(each) for name, each in scene.bone_transforms().items()})
         for part in scene.parts:
             shapes[part.name].append(part.vertices)
-        controls.add(scene.values)
-        activations.add(scene.simulation.sums if isinstance(scene, FaceScene) else {})
+        controls.append(np.array([*scene.values.values()]))
+        activations.append(np.array([*simulation.sums.values()] if simulation else []))
     matrices = {name: np.stack([each[name] for each in bones]) for name in bones[0]}
     skin = Surface(
-        "skin" if isinstance(scene, FaceScene) else scene.name,
+        "skin" if simulation else scene.name,
         scene.rest_positions,
         scene.faces,
         np.stack(positions),
@@ -158,25 +160,11 @@ def record(
         frames_per_second,
         (skin, *parts),
         matrices,
-        controls.arrays(),
-        activations.arrays(),
+        dict(zip(scene.values, np.stack(controls, axis=1), strict=True)),
+        dict(zip(simulation.sums, np.stack(activations, axis=1), strict=True))
+        if simulation
+        else {},
     )
-
-
-class _Curves:
-    """Values by name that are added frame by frame."""
-
-    def __init__(self) -> None:
-        self._frames: list[Mapping[str, float]] = []
-
-    def add(self, values: Mapping[str, float]) -> None:
-        """The values of the next frame."""
-        self._frames.append(dict(values))
-
-    def arrays(self) -> dict[str, Floats]:
-        """Each name's values in all frames, 0 where it was not there."""
-        names = dict.fromkeys(name for frame in self._frames for name in frame)
-        return {name: np.array([each.get(name, 0.0) for each in self._frames]) for name in names}
 
 
 def _bent(shapes: list[Singles]) -> Singles | None:

@@ -21,8 +21,11 @@ Floats = npt.NDArray[np.float64]
 TOLERANCE = 0.098  # [mm] off at most; what single precision adds stays below 0.1
 MOST_TARGETS = 250  # some readers count them in a byte
 ROUNDS = 8  # of weighing vertices: more save hardly a shape
+MOST_SAVED = 15  # shapes in one of them
 LEAST_WEIGHING = 0.03  # of a vertex in one round against the one that is farthest off
 NOTHING = 1e-6  # [mm] a target that moves no vertex so far is left out
+LEAST_SQUARE = 1e-13  # of a component against the largest; less is rounding
+AT_ONCE = 256  # frames that are compared at once, so that memory stays small
 
 
 @dataclass(frozen=True)
@@ -45,25 +48,24 @@ def decompose(moved: Floats, tolerance: float = TOLERANCE, most: int = MOST_TARG
     moved: of each vertex from rest in each frame, shape (N, V, 3), in the unit of `tolerance`.
     Where `most` targets do not suffice, the error is larger.
     """
-    rows = moved.reshape(len(moved), -1)
-    curves, strengths, shapes = np.linalg.svd(rows, full_matrices=False)
-    shapes *= strengths[:, None]
+    curves, shapes = _components(moved.reshape(len(moved), -1))
     weighing = np.ones(moved.shape[1])
     found: list[Morphs] = []
+    low, high = 0, min(len(shapes), most - 1)
     for _ in range(ROUNDS):
-        mixing = np.linalg.svd(shapes * np.repeat(weighing, 3), full_matrices=False)[0]
+        weighed = shapes * np.repeat(weighing, 3)
+        mixing = np.linalg.eigh(weighed @ weighed.T)[1][:, ::-1]
         mixed_curves, mixed_shapes = curves @ mixing, mixing.T @ shapes
-        low, high = 0, min(len(mixed_shapes), most - 1)
         while low < high:
             count = (low + high) // 2
-            off = _distances(moved, mixed_curves[:, :count], mixed_shapes[:count])
+            off = _farthest(moved, mixed_curves[:, :count], mixed_shapes[:count])
             low, high = (low, count) if off.max() <= tolerance else (count + 1, high)
         found.append(_shifted(moved, mixed_curves[:, :high], mixed_shapes[:high]))
         fewer = max(high - 1, 0)
-        left = _distances(moved, mixed_curves[:, :fewer], mixed_shapes[:fewer])
-        share = left.max(axis=0) / max(left.max(), NOTHING)
-        weighing *= np.sqrt(np.maximum(share, LEAST_WEIGHING))
+        left = _farthest(moved, mixed_curves[:, :fewer], mixed_shapes[:fewer])
+        weighing *= np.sqrt(np.maximum(left / max(left.max(), NOTHING), LEAST_WEIGHING))
         weighing /= weighing.max()
+        low = max(high - MOST_SAVED, 0)
     return min(found, key=lambda each: (max(each.error, tolerance), len(each.targets)))
 
 
@@ -77,11 +79,29 @@ def follow(weights: Floats, changes: Floats) -> Floats:
     return np.asarray(fitted.reshape(-1, *changes.shape[1:]), np.float64)
 
 
-def _distances(moved: Floats, curves: Floats, shapes: Floats) -> Floats:
-    """How far off the sum of the shapes is, shape (N, V)."""
-    off = moved - (curves @ shapes).reshape(moved.shape)
-    distances: Floats = np.linalg.norm(off, axis=2)
-    return distances
+def _components(rows: Floats) -> tuple[Floats, Floats]:
+    """Curves (N, r) of unit length and shapes (r, 3 V) whose product is the rows (N, 3 V).
+
+    What is left away is less than rounding. The squares of the rows are decomposed, those of the
+    shorter side, so that a clip of ten minutes takes seconds.
+    """
+    is_long = len(rows) > rows.shape[1]
+    squares, vectors = np.linalg.eigh(rows.T @ rows if is_long else rows @ rows.T)
+    kept = squares > max(LEAST_SQUARE * squares.max(), NOTHING**2)
+    curves = vectors[:, kept][:, ::-1]
+    if is_long:
+        curves = rows @ curves / np.sqrt(squares[kept][::-1])
+    return curves, curves.T @ rows
+
+
+def _farthest(moved: Floats, curves: Floats, shapes: Floats) -> Floats:
+    """How far off the sum of the shapes is at most at each vertex, shape (V,)."""
+    farthest = np.zeros(moved.shape[1])
+    for begin in range(0, len(moved), AT_ONCE):
+        frames = moved[begin : begin + AT_ONCE]
+        off = (curves[begin : begin + AT_ONCE] @ shapes).reshape(frames.shape) - frames
+        farthest = np.maximum(farthest, np.einsum("nvc,nvc->nv", off, off).max(axis=0))
+    return np.sqrt(farthest)
 
 
 def _shifted(moved: Floats, curves: Floats, shapes: Floats) -> Morphs:
@@ -95,5 +115,5 @@ def _shifted(moved: Floats, curves: Floats, shapes: Floats) -> Morphs:
     weights = np.column_stack([np.ones(len(moved)), np.clip(shifted, 0.0, 1.0)])
     kept = np.abs(targets).max(axis=1, initial=0.0) > NOTHING
     targets, weights = targets[kept], weights[:, kept]
-    error = float(_distances(moved, weights, targets).max())
+    error = float(_farthest(moved, weights, targets).max())
     return Morphs(targets.reshape(-1, *moved.shape[1:]), weights, error)

@@ -16,6 +16,7 @@ import numpy.typing as npt
 import PIL.Image
 
 from risorius.assets.topology import vertex_normals
+from risorius.render.style import linear
 
 from .clip import Clip, Surface
 from .formats import Request, needed
@@ -98,7 +99,7 @@ def _add_surface(mesh: Any, surface: Surface, request: Request) -> None:
     if surface.colours is not None:
         kind = Sdf.ValueTypeNames.Color3fArray
         colours = _primvar(mesh, "displayColor", kind, UsdGeom.Tokens.vertex)
-        colours.Set(Vt.Vec3fArray.FromNumpy(_linear(surface.colours)))
+        colours.Set(Vt.Vec3fArray.FromNumpy(linear(surface.colours).astype(np.float32)))
 
 
 def _add_refined(mesh: Any, clip: Clip, request: Request) -> None:
@@ -136,12 +137,6 @@ def _set_points(mesh: Any, points: npt.NDArray[Any], normals: npt.NDArray[Any], 
 def _primvar(mesh: Any, name: str, kind: Any, interpolation: Any) -> Any:
     """A value that rides along with vertices or corners."""
     return UsdGeom.PrimvarsAPI(mesh).CreatePrimvar(name, kind, interpolation)
-
-
-def _linear(colours: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
-    """Colours of a screen (sRGB) as light, which displayColor is."""
-    light = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
-    return light.astype(np.float32)
 
 
 def _add_material(stage: Any, mesh: Any, surface: Surface, picture: str | None) -> None:

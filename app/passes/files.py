@@ -9,7 +9,6 @@ frame_00000.json        camera, head, gaze, landmarks, controls          labels.
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,8 +21,7 @@ import PIL.Image
 from risorius import render
 
 from ..errors import UserError
-from ..files import Image, cannot_be_written, temporary_folder
-from ..stopping import done_whole
+from ..files import Image, cannot_be_written, written_atomically
 from .exr import CHANNELS, openexr, write_exr
 from .labels import labels_of
 from .passes import NAMES, OF_FACES, Passes
@@ -48,7 +46,6 @@ class Labelled:
 
     def save(self, picture: Path) -> None:
         """Write the files that belong beside `picture`; OSError where one cannot be written."""
-
         exr, classes, landmarks, labels = beside(picture)
         floats = {name: image for name, image in self.images.items() if name in CHANNELS}
         if floats:
@@ -62,17 +59,12 @@ class Labelled:
         labels.write_text(text + "\n", encoding="utf-8")
 
 
-def save_labelled(picture: Path, image: Image, known: Labelled) -> None:
+def save_labelled(picture: Path, image: Image, known: Labelled | None) -> None:
     """Write a picture and what is known of it, all or nothing; UserError where that cannot be."""
-    with cannot_be_written(picture):
-        picture.parent.mkdir(parents=True, exist_ok=True)
-    with temporary_folder(picture, picture.parent) as folder:
-        with cannot_be_written(picture):
-            PIL.Image.fromarray(image).save(folder / picture.name)
-            known.save(folder / picture.name)
-        with done_whole(), cannot_be_written(picture):
-            for made in folder.iterdir():
-                os.replace(made, os.path.realpath(picture.with_name(made.name)))  # links stay
+    with written_atomically(picture) as part, cannot_be_written(picture):
+        PIL.Image.fromarray(image).save(part, format="PNG")
+        if known is not None:
+            known.save(part)
 
 
 def check_wanted(wanted: Sequence[str], scene: str) -> None:

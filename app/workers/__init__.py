@@ -3,11 +3,11 @@
     for outcome in run_all(work, items, jobs=2):
         ...
 
-Every item is worked on in a process of its own kind, started anew and never forked: a process that
-was forked after OpenGL was opened hangs. A process takes one item after the other, so that it pays
-once for imports, compiled code and what it keeps (`app/keeping.py`). One that dies, killed or by a
-fault in a driver, costs another attempt at its item, and nothing else.
+A process takes one item after the other, so that it pays once for imports, compiled code and what
+it keeps (`app/keeping.py`). One that dies, killed or by a fault in a driver, costs another attempt
+at its item, and nothing else.
 
+    child.py     a process of ours, started anew, and messages to it and back
     running.py   `run_all`, and what became of an item
     crew.py      the processes of one run, as the process that started them sees them
     serving.py   what runs in them

@@ -11,6 +11,7 @@ import contextlib
 import secrets
 import socket
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -62,12 +63,9 @@ def run_on_cluster(
         try:
             places = list(range(len(items)))
             futures = client.map(
-                _do,
-                [run] * len(places),
-                [work] * len(places),
+                partial(_do, run, work, retries),
                 places,
                 items,
-                [retries] * len(places),
                 list(logs) if logs else [None] * len(places),
                 pure=False,
                 retries=retries,
@@ -96,9 +94,9 @@ async def _greet(distributed: Any, scheduler: str) -> None:
 def _do(
     run: str,
     work: Callable[[Any], Any],
+    retries: int,
     index: int,
     item: Any,
-    retries: int,
     log: Path | None,
 ) -> Outcome:
     """In a Dask worker: work on an item."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from typing import Any
 
 from ..stopping import cleaned_up_if_stopped
+from .child import cores
 from .crew import Crew, Outcome
 
 
@@ -50,10 +50,3 @@ def run_all(
         finally:
             threads.shutdown(wait=False, cancel_futures=True)
             crew.stop()
-
-
-def cores() -> int:
-    """How many cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

@@ -1,6 +1,5 @@
 """The process that works: it takes one item after the other from the process that started it.
 
-Requests come through its standard input and replies go through its standard output, as pickles.
 What is printed meanwhile, by anybody, goes to the log of the item. Where the input ends, whoever
 started it has ended or has no use for it: it ends at once, and half-written files go.
 """
@@ -13,7 +12,6 @@ import os
 import pickle
 import queue
 import signal
-import struct
 import sys
 import threading
 import time
@@ -26,9 +24,10 @@ from typing import IO, Any
 from ..errors import in_one_line, line_for
 from ..keeping import keep, let_go
 from ..stopping import handle_signals
+from .child import streams
 
 PATIENCE = 300.0  # [s] without work, after which the process ends
-LENGTH = struct.Struct("<Q")  # before each message: how long it is [bytes]
+Request = tuple[Path | None, bytes]  # the log, and a pickled function with its argument
 
 
 @dataclass(frozen=True)
@@ -40,58 +39,39 @@ class Reply:
     seconds: float
 
 
-def send(stream: IO[bytes], message: object) -> None:
-    """Write a message; what cannot be pickled raises before anything is written."""
-    content = pickle.dumps(message)
-    stream.write(LENGTH.pack(len(content)) + content)
-    stream.flush()
-
-
-def receive(stream: IO[bytes]) -> bytes:
-    """The next message, pickled; EOFError where there is none, or not the whole of it."""
-    head = stream.read(LENGTH.size)
-    if len(head) < LENGTH.size:
-        raise EOFError
-    (length,) = LENGTH.unpack(head)
-    content = stream.read(length)
-    if len(content) < length:
-        raise EOFError
-    return content
-
-
 def serve() -> None:
     """Work until nobody asks any more."""
-    requests, replies = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
-    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-    os.dup2(2, 1)  # what is printed is no reply
+    requests, replies = streams()
     handle_signals()
     faulthandler.enable()  # a fault in a driver tells the log where
     keep()
-    inbox: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    inbox: queue.SimpleQueue[Request] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(requests, inbox), daemon=True).start()
     with contextlib.suppress(queue.Empty, BrokenPipeError):
         while True:
             _answer(inbox.get(timeout=PATIENCE), replies)
 
 
-def _listen(requests: IO[bytes], inbox: queue.SimpleQueue[bytes]) -> None:
+def _listen(requests: IO[bytes], inbox: queue.SimpleQueue[Request]) -> None:
     """Take requests, also while one is worked on: only so is their end noticed at once."""
-    with contextlib.suppress(EOFError):
+    with contextlib.suppress(EOFError, pickle.UnpicklingError):
         while True:
-            inbox.put(receive(requests))
+            inbox.put(pickle.load(requests))
     os.kill(os.getpid(), signal.SIGTERM)
 
 
-def _answer(request: bytes, replies: IO[bytes]) -> None:
+def _answer(request: Request, replies: IO[bytes]) -> None:
     start = time.monotonic()
-    log, asked = pickle.loads(request)
+    log, asked = request
     with _printed_to(log):
         result, error = _attempt(asked)
         try:
-            send(replies, Reply(result, error, time.monotonic() - start))
+            reply = pickle.dumps(Reply(result, error, time.monotonic() - start))
         except (pickle.PicklingError, TypeError, AttributeError) as unfit:
             why = f"the result cannot be sent: {in_one_line(unfit)}"
-            send(replies, Reply(None, why, time.monotonic() - start))
+            reply = pickle.dumps(Reply(None, why, time.monotonic() - start))
+        replies.write(reply)
+        replies.flush()
 
 
 def _attempt(asked: bytes) -> tuple[Any, str | None]:

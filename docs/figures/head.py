@@ -48,10 +48,10 @@ WRINKLES = (
 # Seeds of persons; and of some more, with what they do, in which light, from where.
 AT_EASE = (19, 40, 13, 43, 47, 27, 9, 10)
 IN_LIGHT = (
-    (30, "joy", "window", "-24,2,1.2"),
-    (5, "surprise", "overcast", "0,0,1.2"),
-    (18, "anger", "hard", "18,0,1.2"),
-    (12, "fear", "side", "-10,0,1.2"),
+    (30, "joy", "window", "-24,2,1.0"),
+    (5, "surprise", "overcast", "0,0,1.0"),
+    (18, "anger", "hard", "18,0,1.0"),
+    (12, "fear", "side", "-10,0,1.0"),
 )
 
 Points = npt.NDArray[np.float64]
@@ -141,7 +141,7 @@ def wrinkles() -> Image:
 def persons() -> Image:
     """Other persons than the built-in head, at rest and in some expression and light."""
     cells = []
-    front = ((seed, "", "studio", "0,0,1.2") for seed in AT_EASE)
+    front = ((seed, "", "studio", "0,0,1.0") for seed in AT_EASE)
     for seed, pose, light, view in (*front, *IN_LIGHT):
         scene = FaceScene(head_for(None, None, seed))
         scene.pose({pose: 1.0} if pose else {})

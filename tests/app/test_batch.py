@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
-from risorius.app.batch.journal import Journal
+from risorius.app.batch.journal import Journal, made_from
 from risorius.app.batch.listing import Job
 from risorius.app.cli import main
 
@@ -100,6 +100,23 @@ def test_a_list_is_done_and_not_done_again() -> None:
     assert batch("--resume").exit_code == 0 and statuses() == ["skipped"] * 4
 
 
+def test_files_that_come_along_are_in_the_way_too() -> None:
+    """Those of another line, and those that were there before."""
+    Path("mine.obj").write_text("mine")
+    Path("clips.txt").write_text(
+        "export joy.toml -o a.pc2\n"
+        "export fear.toml -o a.mdd\n"
+        "export joy.toml -o mine.pc2\n"
+        "capture joy.toml -o b.png --passes depth\n"
+        "capture fear.toml -o b.json.png --sheet b.png\n"
+    )
+    told = batch().stderr
+    assert "clips.txt:2: a.obj: is written by line 1" in told.replace(f"{Path.cwd()}/", "")
+    assert "clips.txt:3: mine.obj: is there; choose another name, or add --overwrite" in told
+    assert "clips.txt:5: b.png: is written by line 4" in told.replace(f"{Path.cwd()}/", "")
+    assert Path("mine.obj").read_text() == "mine" and not Path("a.pc2").exists()
+
+
 def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
     """One line for each, with its number; also where lines are in each other's way."""
     Path("mine").mkdir()
@@ -177,6 +194,7 @@ def test_jobs_and_scheduler_exclude_each_other() -> None:
     assert "no Dask scheduler answers there" in ended.stderr
 
 
+@pytest.mark.slow
 def test_what_fails_fails_alone() -> None:
     """Exit code 1, the reason in one line and in the summary; it is tried again with --resume."""
     Path("sadness.toml").write_text(SCRIPT.format(0.5, "no_such_control"))
@@ -196,13 +214,13 @@ def test_a_journal_that_was_cut_off_costs_its_last_line() -> None:
     job = Job(1, "a", "b:c", (), Path.cwd(), (Path("joy.toml"),), (Path("fear.toml"),))
     other = Job(2, "x", "b:c", (), Path.cwd(), (), (Path("joy.toml"),))
     for each in (job, other):
-        Journal(file).add(each, Journal.state(each), 3, 1.5)
+        Journal(file).add(each, made_from(each), 3, 1.5)
     whole = file.read_text()
     assert json.loads(whole.splitlines()[-1])["frames"] == 3
     for cut in (*range(0, len(whole), 7), len(whole)):
         file.write_text(whole[:cut])
         assert Journal(file).made(other) is None or cut == len(whole)
-        Journal(file).add(other, Journal.state(other), 3, 1.5)
+        Journal(file).add(other, made_from(other), 3, 1.5)
         assert Journal(file).made(other)
     file.write_text('[1]\n7\nnull\n{"line": 3}\n{"begun": 3}\n\x00' + whole)
     assert Journal(file).made(job)
@@ -213,6 +231,7 @@ def limited() -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX systems")
 def test_a_full_disk_is_told_in_a_line() -> None:
     """Films get no place, small files do: every line has its outcome, and nothing is left."""
@@ -346,6 +365,7 @@ def cluster() -> Iterator[Any]:
         yield opened
 
 
+@pytest.mark.slow
 def test_a_cluster_loses_a_worker_halfway(cluster: Any) -> None:
     """Every film is whole, none is made twice, and all are as they are here."""
     names = films(4)
@@ -365,6 +385,7 @@ def test_a_cluster_loses_a_worker_halfway(cluster: Any) -> None:
 
 
 @linux
+@pytest.mark.slow
 def test_ctrl_c_reaches_the_cluster(cluster: Any) -> None:
     """What workers have half written goes, and what was not begun is not begun."""
     films(6)

@@ -187,7 +187,6 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["capture", "no.toml", "-o", "x.mp4"], "no.toml: no such script"),
         (["capture", "SMILE"], "nothing to write: give -o OUTPUT"),
         (["capture", "SMILE", "-o", "x.avi"], "what is '.avi'? Allowed are .mp4"),
-        (["capture", "SMILE", "-o", "x.mp4", "--size", "321x200"], "take 322x200"),
         (
             ["capture", "SMILE", "-o", "x.mp4", "--refiner", "magic"],
             "'magic' is unknown; there are",

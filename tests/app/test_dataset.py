@@ -97,6 +97,7 @@ def test_a_set_goes_on_where_it_was_left(made: Path, tmp_path: Path) -> None:
     assert content(folder) == content(made)
 
 
+@pytest.mark.slow
 def test_a_set_can_be_made_longer(made: Path, tmp_path: Path) -> None:
     """To the set that would have been made at once; not shorter."""
     folder = tmp_path / "short"

@@ -149,7 +149,13 @@ def test_a_missing_library_is_named(
     assert line == f"risorius: this needs {package}: pip install 'risorius[export]'"
 
 
-@pytest.mark.parametrize("name", OUTPUTS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(each, marks=() if each in ("gltf", "obj") else pytest.mark.slow)
+        for each in OUTPUTS
+    ],
+)
 def test_a_full_disk_is_one_line(name: str, folder: Path) -> None:
     """The system writes no more than so many bytes: one line, and the old file stays."""
     output = Path(OUTPUTS[name])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
 import signal
@@ -244,10 +245,13 @@ def test_what_fails_in_a_process_is_told(tmp_path: Path, monkeypatch: pytest.Mon
     assert list(tmp_path.iterdir()) == []
 
 
-def children(process: int) -> list[int]:
-    """The numbers of the processes that one began and that are still there."""
-    found = Path(f"/proc/{process}/task/{process}/children").read_text().split()
-    return [int(each) for each in found]
+def children(process: int) -> dict[int, str]:
+    """The processes that one began and that are still there, and their command lines."""
+    lines = {}
+    for each in Path(f"/proc/{process}/task/{process}/children").read_text().split():
+        with contextlib.suppress(OSError):  # it has just ended
+            lines[int(each)] = Path(f"/proc/{each}/cmdline").read_text()
+    return lines
 
 
 @linux
@@ -265,19 +269,22 @@ def test_a_film_whose_processes_end(tmp_path: Path, number: signal.Signals) -> N
         stderr=subprocess.PIPE,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
-    while process.poll() is None and not any(tmp_path.glob("**/film.mp4")):
+    begun: dict[int, str] = {}
+    drawing: list[int] = []
+    while process.poll() is None and len(drawing) < 2:
         time.sleep(0.01)
-    begun = children(process.pid)
+        begun = children(process.pid)
+        drawing = [each for each, line in begun.items() if "serve" in line]
     assert len(begun) == 3  # and the encoder
-    drawing = [each for each in begun if "serve" in Path(f"/proc/{each}/cmdline").read_text()]
     os.kill(drawing[1] if number == signal.SIGKILL else process.pid, number)
     _, told = process.communicate(timeout=60)
-    [line] = [each for each in told.decode().splitlines() if not each.startswith("Compiling")]
+    lines = [each for each in told.decode().splitlines() if not each.startswith("Compiling")]
+    assert len(lines) == 1, lines
     if number == signal.SIGKILL:
         assert process.returncode == 2
-        assert "a process that draws the film ended (SIGKILL)" in line
+        assert "a process that draws the film ended (SIGKILL)" in lines[0]
     else:
-        assert (process.returncode, line) == (-number, "risorius: stopped")
+        assert (process.returncode, lines[0]) == (-number, "risorius: stopped")
     end = time.monotonic() + 10.0
     while any(Path(f"/proc/{each}/cmdline").exists() for each in begun) and time.monotonic() < end:
         time.sleep(0.05)

@@ -85,6 +85,7 @@ def made(folder: Path, command: str) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
+@pytest.mark.slow
 def test_work_before_changes_no_byte(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each command is done alone, and then after every other in one process that keeps."""
     monkeypatch.chdir(tmp_path)

@@ -16,6 +16,7 @@ import pytest
 
 from risorius.app.errors import UserError
 from risorius.app.workers import Outcome, run_all
+from risorius.app.workers.child import cores, share_of_cores
 
 from . import working
 
@@ -89,7 +90,7 @@ def test_what_kills_every_process_fails_alone(retries: int, tmp_path: Path) -> N
     assert [each.result for each in found] == ["first", None, "last"]
     assert [each.attempts for each in found] == [1, retries + 1, 1]
     assert found[1].error is not None
-    assert f"died {retries + 1} times" in found[1].error and "signal 11" in found[1].error
+    assert f"died {retries + 1} times" in found[1].error and "SIGSEGV" in found[1].error
     assert "working.py" in logs[1].read_text()
 
 
@@ -122,6 +123,17 @@ def test_libraries_share_the_cores(monkeypatch: pytest.MonkeyPatch) -> None:
     assert outcomes(working.library_threads, [0], jobs=1024)[0].result == "1"
     monkeypatch.setenv("LP_NUM_THREADS", "7")
     assert outcomes(working.library_threads, [0])[0].result == "7"
+
+
+@pytest.mark.parametrize(("told", "share"), [("3", 3), ("0", 1), ("many", None), (None, None)])
+def test_a_command_takes_the_cores_that_it_is_told(
+    monkeypatch: pytest.MonkeyPatch, told: str | None, share: int | None
+) -> None:
+    """By LP_NUM_THREADS, one at least; all there are where that says nothing."""
+    monkeypatch.delenv("LP_NUM_THREADS", raising=False)
+    if told is not None:
+        monkeypatch.setenv("LP_NUM_THREADS", told)
+    assert share_of_cores() == (share or cores()) >= 1
 
 
 def test_whoever_stops_early_leaves_no_process() -> None:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from risorius import assets
 from risorius.assets.generator.eyeballs import IRISES
+from risorius.assets.generator.painting import paint_skin
 from risorius.assets.generator.pigments import COMPLEXIONS, to_linear
 from risorius.assets.identities import (
     DARKEST,
@@ -98,7 +99,7 @@ def _texel(head: Head, image: npt.NDArray[np.uint8], vertex: int) -> tuple[int, 
 @pytest.mark.parametrize("tone", Tone)
 def test_tones_are_as_the_painter_paints_them(head: Head, tone: Tone) -> None:
     """The picture of each complexion, but for freckles, which are those of the shipped one."""
-    painted = assets.paint(tone=tone).astype(int)
+    painted = paint_skin(head, tone=tone).astype(int)
     angles = np.linspace(DARKEST, LIGHTEST, 26)
     wanted = typology_angle(skin_of(head, painted.astype(np.uint8)))
     found = [typology_angle(skin_of(head, recoloured(float(angle)))) for angle in angles]
