@@ -88,7 +88,7 @@ def batch(listing: Path, batching: Batching) -> None:
     if batching.jobs is not None and batching.scheduler is not None:
         raise UserError("--jobs is for this computer; with --scheduler the cluster has its workers")
     start = time.monotonic()
-    logs = (batching.logs or listing.with_name(f"{listing.stem}_logs")).absolute()
+    logs = (batching.logs or listing.parent / f"{listing.stem}_logs").absolute()
     journal = Journal(logs / "journal.jsonl")
     jobs = jobs_in(listing, journal)
     with cannot_be_written(logs):

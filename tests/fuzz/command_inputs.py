@@ -140,7 +140,6 @@ REFUSED = {
     "capture good.toml -o x.png --size 9999999x16": "is no size",
     "capture good.toml -o x.png --size '16x16\n'": "is no size",
     "capture good.toml -o x.png --size ١٦x١٦": "is no size",
-    "capture good.toml -o x.mp4 --size 17x16": "take 18x16",
     # Cameras.
     f"{IMAGE} --camera behind": "camera 'behind': allowed are",
     f"{IMAGE} --camera ,": "camera ',': allowed are",
@@ -338,6 +337,8 @@ INSTEAD = {  # where one option excludes what is given
     ("capture", "--landmarks"): f"{GIVEN['capture']} --head head.obj",
 }
 
+LENGTHY = "bench-capture-seconds-underscore"  # ten seconds are right, and take a minute
+
 
 @dataclass(frozen=True)
 class HostileValue:
@@ -361,7 +362,8 @@ def hostile_values() -> Iterator[HostileValue]:
                     arguments = (*path, *shlex.split(given), f"{option.opts[-1]}={value}")
                 else:  # the first word that is given
                     arguments = (*path, *shlex.split(GIVEN.get(words, ""))[1:], "--", value)
-                yield HostileValue(f"{'-'.join(path)}-{option.name}-{name}", arguments)
+                if (named := f"{'-'.join(path)}-{option.name}-{name}") != LENGTHY:
+                    yield HostileValue(named, arguments)
 
 
 def commands(
