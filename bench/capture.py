@@ -100,6 +100,7 @@ def _time_stages(
         """The same call; its time is its stage's, and no longer that of those it is part of."""
 
         def measured(*arguments: Any, **options: Any) -> Any:
+            """Call, and note the time."""
             begin = time.perf_counter()
             result = call(*arguments, **options)
             elapsed = 1e3 * (time.perf_counter() - begin)
