@@ -1,10 +1,11 @@
-"""The window that the tests of a file share, and how each of them finds it."""
+"""What tests of a file share: the window, and how each of them finds it; a Dask cluster."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from imgui_bundle import imgui
@@ -44,3 +45,13 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     viewer.messages.text = ""
     viewer.panel_state.wanted_tab = "Face"
     xdotool(viewer, "key", "f")
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    """A Dask cluster of two workers in processes of their own."""
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as opened:
+        yield opened

@@ -11,7 +11,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -353,16 +352,6 @@ def test_killed_at_random_moments() -> None:
         assert resumed.exit_code == 0, resumed.output
         assert contents(*Path("made").glob("*.mp4")) == undisturbed
         assert len(rows()) == 3
-
-
-@pytest.fixture(scope="module")
-def cluster() -> Iterator[Any]:
-    """A Dask cluster of two workers in processes of their own."""
-    distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
-    ) as opened:
-        yield opened
 
 
 @pytest.mark.slow

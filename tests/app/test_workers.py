@@ -8,7 +8,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -177,16 +177,6 @@ def test_a_port_where_somebody_else_listens(monkeypatch: pytest.MonkeyPatch) -> 
         address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
         with pytest.raises(UserError, match="does not speak Dask's protocol"):
             outcomes(working.double, [1], scheduler=address)
-
-
-@pytest.fixture(scope="module")
-def cluster() -> Iterator[Any]:
-    """A Dask cluster of two workers in processes of their own."""
-    distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
-    ) as opened:
-        yield opened
 
 
 def test_a_cluster_gives_what_a_loop_gives(cluster: Any, tmp_path: Path) -> None:
