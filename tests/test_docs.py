@@ -171,6 +171,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "html"
 
 
+@pytest.mark.slow
 def test_the_site_needs_no_network(site: Path) -> None:
     """Scripts, styles, fonts and pictures all come from the site itself."""
     pages = list(site.rglob("*.html"))
@@ -182,6 +183,7 @@ def test_the_site_needs_no_network(site: Path) -> None:
         assert not re.search(r"url\([\"']?(?:https?:)?//", style.read_text(encoding="utf-8")), style
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("package", ["refine", "sim", "render", "assets"])
 def test_the_reference_has_every_public_name(site: Path, package: str) -> None:
     """What a package exports has a place on its page; special methods have none."""

@@ -100,6 +100,7 @@ def test_second_start_compiles_nothing(run: Run, package: Path) -> None:
     assert run() == [RESULT]
 
 
+@pytest.mark.slow
 def test_change_in_another_file_counts(run: Run, package: Path) -> None:
     """What a kernel takes from another file of its package is part of its code."""
     run()
@@ -108,6 +109,7 @@ def test_change_in_another_file_counts(run: Run, package: Path) -> None:
     assert len(stored_files(package)) == 1  # the old code was written over
 
 
+@pytest.mark.slow
 def test_code_of_other_programs_is_not_kept(tmp_path: Path, package: Path) -> None:
     """Nobody knows what it depends on; nor what a function has closed over."""
     program = tmp_path / "program.py"
@@ -141,6 +143,7 @@ def test_changed_options_count(run: Run, package: Path) -> None:
     assert run() == [COMPILED, RESULT]
 
 
+@pytest.mark.slow
 def test_damaged_file_is_made_again(run: Run, package: Path) -> None:
     """A file that is empty, foreign or cut off costs a compilation, nothing else."""
     run()
@@ -157,6 +160,7 @@ def read_only(folder: Path) -> None:
     (folder / "__pycache__").write_text("")
 
 
+@pytest.mark.slow
 def test_code_goes_to_the_user_where_the_package_is_read_only(
     run: Run, package: Path, tmp_path: Path
 ) -> None:

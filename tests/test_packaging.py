@@ -100,6 +100,7 @@ def test_nothing_is_imported_by_its_folder() -> None:
             assert not bare, f"{file}:{node.lineno}: write `from risorius import {bare.pop()}`"
 
 
+@pytest.mark.slow
 def test_no_file_is_loaded_twice() -> None:
     """All modules at once, with the checkout as the current folder."""
     modules = [

@@ -305,14 +305,8 @@ def test_a_worker_is_killed_halfway() -> None:
 
 
 @linux
-@pytest.mark.parametrize(
-    "number",
-    [
-        signal.SIGINT,
-        pytest.param(signal.SIGTERM, marks=pytest.mark.slow),
-        pytest.param(signal.SIGHUP, marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_stopped_halfway_and_resumed(number: signal.Signals) -> None:
     """Nothing half-written is left, no process runs on, and what is missing is made afterwards."""
     names = films(3)

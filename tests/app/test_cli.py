@@ -89,6 +89,7 @@ def test_frames_and_one_picture(smile: Path, tmp_path: Path) -> None:
     assert np.abs(last - image).max() == 0
 
 
+@pytest.mark.slow
 def test_the_same_script_gives_the_same_pictures(smile: Path, tmp_path: Path) -> None:
     """Two captures are the same bytes."""
     for name in ("a.png", "b.png"):
@@ -97,6 +98,7 @@ def test_the_same_script_gives_the_same_pictures(smile: Path, tmp_path: Path) ->
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
+@pytest.mark.slow
 def test_a_picture_beside_a_sheet(smile: Path, tmp_path: Path) -> None:
     """Both of one run, also of a moment after the script's end, are what each would be alone."""
     size = ("--size", "160x120", "--samples", "0", "--quiet")
@@ -111,6 +113,7 @@ def test_a_picture_beside_a_sheet(smile: Path, tmp_path: Path) -> None:
     assert counts[0] == max(counts[1:])
 
 
+@pytest.mark.slow
 def test_looks_and_refiners_side_by_side(smile: Path, tmp_path: Path) -> None:
     """Each part of a comparison is the picture that its look or refiner would make alone."""
 

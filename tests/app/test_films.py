@@ -254,6 +254,7 @@ def children(process: int) -> dict[int, str]:
     return lines
 
 
+@pytest.mark.slow
 @linux
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
 def test_a_film_whose_processes_end(tmp_path: Path, number: signal.Signals) -> None:

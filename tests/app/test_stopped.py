@@ -128,6 +128,7 @@ def test_frames_give_way_whole(tmp_path: Path) -> None:
     assert names == ["frame_00000.png", "frame_00001.png", "frame_00002.png"]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell")
 def test_missing_streams_are_no_error(tmp_path: Path) -> None:
     """Nobody reads the output, or there is no stream at all: no traceback, and the picture."""

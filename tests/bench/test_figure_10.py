@@ -9,6 +9,8 @@ from risorius.bench import figure_10
 from risorius.bench.figure_10 import Cell, Shot, difference
 from risorius.bench.outlines import MOUTH, Variant, wrong_pixels
 
+pytestmark = pytest.mark.slow  # every test looks at the same pictures
+
 SIZE = (280, 210)
 BLIND = Variant("blind", "kahler", {"scheme": "cubic", "criterion": "bulge"})
 SEEN = 8.0  # levels of 255: a change that is seen

@@ -8,6 +8,7 @@ from risorius.app.live import PROTOCOLS
 from risorius.bench import live
 
 
+@pytest.mark.slow
 def test_every_protocol_is_timed_stage_by_stage(monkeypatch: pytest.MonkeyPatch) -> None:
     """Frames come, in all protocols, and none is in the skin before its longest stage is over."""
     monkeypatch.setattr(live, "ROUNDS", 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from risorius.bench import outlines
 from risorius.bench.outlines import BACKGROUND, MOUTH, SKIN, Outline, Variant, wrong_pixels
@@ -16,6 +17,7 @@ def test_wrong_pixels_by_hand() -> None:
     assert wrong_pixels(truth, truth) == 0
 
 
+@pytest.mark.slow
 def test_measure_and_report() -> None:
     """By `border` fewer pixels are wrong than without refinement, and by the paper's rule more."""
     variants = [

@@ -42,6 +42,7 @@ def rolled_plane() -> Subject:
     return Subject("plane", "plane", dense_faces, coarse_faces, PosePair(dense, coarse), poses)
 
 
+@pytest.mark.slow
 def test_scores_of_a_cylinder() -> None:
     """Cubic edges follow a cylinder, Loop shrinks it; what splits more is never coarser."""
     subject = rolled_plane()

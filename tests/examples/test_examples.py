@@ -127,6 +127,7 @@ def test_own_recording(tmp_path: Path) -> None:
     assert abs(gaps[-1] - gaps[0]) < 0.5
 
 
+@pytest.mark.slow
 def test_read_dataset(tmp_path: Path) -> None:
     """What was made is read, and nobody is both in training and in testing."""
     request = request_of(tmp_path, seed=1, size=(48, 40), passes=("segmentation",))

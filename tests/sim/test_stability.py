@@ -32,6 +32,7 @@ def test_energy_only_falls_without_input(
     assert energies[-1] < 1e-6 * energies[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("frames_per_second", [240.0, 60.0, 47.3, 20.0])
 def test_random_jumps_stay_bounded_and_come_back(
     simulation: sim.Simulation, generator: np.random.Generator, frames_per_second: float

@@ -311,6 +311,7 @@ def test_every_kind_of_mesh(scheme: str, name: str) -> None:
             assert np.isfinite(refined.normals).all()
 
 
+@pytest.mark.slow
 def test_runs_as_python() -> None:
     """Without the compiler every scheme shows the same normals."""
     program = (
