@@ -37,6 +37,7 @@ from ..model import (
 from ..topology import vertex_normals
 from ..user_files import named
 from .landmark_file import COUNT, read_landmarks
+from .landmark_order import check_counting, check_lips, groups_in_disorder
 from .organs import FittedSkin, place_eyes, place_parts
 from .soundness import SkinPiece, check_manifold, check_openings, skin_of
 from .warp import Similarity, Warp, nearest_on
@@ -47,6 +48,7 @@ LARGEST = 10_000.0  # [mm] from the middle of the face: farther off, a vertex is
 # Landmarks so far apart on the built-in head cannot be one place: no muscle spans no way.
 APART = 30.0  # [mm]
 ONE_PLACE = 1.0  # [mm]
+MOST_DISORDERED = 3  # groups of landmarks: where more are so, none of them is meant as it stands
 FARTHEST_FROM_A_FACE = 14.0  # [mm] mean distance of landmarks from those of the built-in head
 
 
@@ -104,18 +106,22 @@ def fit(
     landmarks: vertex numbers, shape (68,); points: where they lie exactly [unit of the mesh], shape
     (68, 3), unless at those vertices. Raises AssetError for a mesh that cannot work.
     """
+    are_numbers = points is None
     points = mesh.vertices[landmarks] if points is None else points
     known = load("head") if template is None else template
     skin = skin_of(mesh.vertices, mesh.faces, landmarks)
     check_manifold(mesh.faces)
+    if are_numbers:
+        check_counting(mesh.vertices, landmarks, known.vertices[known.landmarks])
     similarity = _placed(points, known)
     skin = replace(skin, vertices=similarity.points(skin.vertices))
     _check_size(skin)
     skin = _facing_outward(skin)
     check_openings(skin)
+    check_lips(skin)
     normals = vertex_normals(skin.vertices, skin.faces)
     target = similarity.points(points)
-    warp = Warp(*_distinct(known.vertices[known.landmarks], target))
+    warp = Warp(known.vertices[known.landmarks], target)
     warped = warp.points(known.vertices)
     nearest = nearest_on(skin.vertices, normals, warped, known.faces)
     weight = nearest.interpolate(known.mandible_weight)
@@ -155,7 +161,11 @@ def _placed(points: FloatArray, known: Head) -> Similarity:
         )
     similarity = Similarity.between(points[ORIENTING], template[ORIENTING])
     off = np.linalg.norm(similarity.points(points) - template, axis=1)
-    if off[ORIENTING].mean() > FARTHEST_FROM_A_FACE:
+    disordered = groups_in_disorder(similarity.points(points), template)
+    is_far = off[ORIENTING].mean() > FARTHEST_FROM_A_FACE
+    if disordered and not (is_far and len(disordered) > MOST_DISORDERED):
+        raise AssetError(disordered[0].complaint)
+    if is_far:
         raise AssetError(
             f"the landmarks are no face: landmark {off.argmax()} lies {off.max():.0f} mm off, the "
             f"mean one {off[ORIENTING].mean():.0f} mm; give the 68 iBug points in their order"
@@ -199,8 +209,3 @@ def _facing_outward(skin: SkinPiece) -> SkinPiece:
         return skin
     return replace(skin, faces=np.ascontiguousarray(skin.faces[:, ::-1]))
 
-
-def _distinct(source: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Both point sets without those that repeat in the first one."""
-    first = np.sort(np.unique(source.round(6), axis=0, return_index=True)[1])
-    return source[first], target[first]

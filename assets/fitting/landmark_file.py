@@ -21,6 +21,7 @@ from ..errors import AssetError
 from ..meshes import FARTHEST, Mesh
 from ..model import FloatArray, IndexArray
 from ..user_files import named, read_file
+from .landmark_order import INNER_LIPS, OUTER_LIPS
 from .soundness import path_lengths
 from .warp import nearest_on
 
@@ -31,14 +32,12 @@ FARTHEST_OFF = (
     0.05  # of the distance between the outer eye corners: a point off the mesh is a mistake
 )
 OUTER_EYE_CORNERS = [36, 45]
-OUTER_LIPS = ((50, 51, 52), (56, 57, 58))  # upper, lower
-INNER_LIPS = ((61, 62, 63), (65, 66, 67))
 
 
-def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray]:
+def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray | None]:
     """The 68 landmarks of a mesh: vertex numbers (68,), int32, and points (68, 3) [its unit].
 
-    Where the file holds points, they lie between vertices and the numbers are the nearest ones.
+    Where the file holds points, the numbers are the nearest vertices; else there are no points.
 
     Raises AssetError for a file that is missing, too long or no JSON, another count, numbers out of
     range, and a point that is not on the mesh.
@@ -50,8 +49,7 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray]:
                 f"{len(found)} landmarks; it must be the {COUNT} iBug points in their order"
             )
         if all(isinstance(entry, int) and not isinstance(entry, bool) for entry in found):
-            numbers = _numbers(found, len(mesh.vertices))
-            return numbers, mesh.vertices[numbers]
+            return _numbers(found, len(mesh.vertices)), None
         points = _points(found)
         return _nearest(points, mesh), points
     except AssetError as error:

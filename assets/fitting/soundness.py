@@ -17,7 +17,7 @@ from scipy.sparse import csgraph
 from ..errors import AssetError
 from ..model import FloatArray, IndexArray
 
-MOST_TRIANGLES = 50_000
+MOST_TRIANGLES = 250_000
 FEWEST_TRIANGLES = 300  # below it eyes and mouth have no shape (chosen)
 LIPS = (62, 66)  # inner landmarks in the middle, above and below
 LIP_CORNERS = (60, 64)
