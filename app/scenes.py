@@ -23,7 +23,6 @@ from .errors import UserError
 from .keeping import kept, state_of
 from .mouth import Tongue, shaded_mouth
 
-MOST_BAKED = 3000  # vertices; a larger head would take seconds, and takes the built-in one's light
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
 
 
@@ -126,8 +125,6 @@ class FaceScene(Scene):
         head, simulation = self.head, self.simulation
         if isinstance(head, Person):  # same triangles, hardly another form
             return head.openness
-        if len(head.vertices) > MOST_BAKED:  # it wears the same texture, laid out alike
-            return assets.load("head").openness
         if isinstance(head, assets.Head) and head.openness_file.exists():
             return head.openness
         from .ambient import openness  # only who brings a head waits for it to be compiled

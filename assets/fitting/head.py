@@ -39,6 +39,7 @@ from ..user_files import named
 from .landmark_file import COUNT, read_landmarks
 from .landmark_order import check_counting, check_lips, groups_in_disorder
 from .organs import FittedSkin, place_eyes, place_parts
+from .painting import plain_picture, spread_uv
 from .soundness import SkinPiece, check_manifold, check_openings, skin_of
 from .warp import Similarity, Warp, nearest_on
 
@@ -134,9 +135,9 @@ def fit(
         bone_depth=nearest.interpolate(known.bone_depth),
         eyes=eyes,
         parts=place_parts(known, fitted, warp, eyes),
-        uv=nearest.interpolate(known.uv).astype(np.float32),
+        uv=spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces)),
         face_uv=skin.faces,
-        albedo=known.albedo,
+        albedo=plain_picture(known),
         wrinkles=replace(
             known.wrinkles, across=nearest.interpolate(known.wrinkles.across).astype(np.float32)
         ),
