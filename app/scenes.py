@@ -6,6 +6,7 @@ knows nothing of refinement or drawing.
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -23,6 +24,8 @@ from .errors import UserError
 from .keeping import kept, state_of
 from .mouth import Tongue, shaded_mouth
 
+CHIN, NECK = 8, 40.0  # landmark, and [mm] below it that a portrait shows
+LOG = logging.getLogger("risorius.heads")  # what was done to a head that somebody brings
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
 
 
@@ -52,6 +55,11 @@ class Scene:
     def extent(self) -> npt.NDArray[np.float64]:
         """Points that a camera has to see, if it is to see the whole scene [mm], shape (n, 3)."""
         return self.rest_positions
+
+    @property
+    def framed(self) -> npt.NDArray[np.float64]:
+        """Points that fill the frame of a camera [mm], shape (n, 3)."""
+        return self.extent
 
     @property
     def values(self) -> Mapping[str, float]:
@@ -115,6 +123,12 @@ class FaceScene(Scene):
     @property
     def positions(self) -> npt.NDArray[np.float64]:
         return self.simulation.positions
+
+    @property
+    def framed(self) -> npt.NDArray[np.float64]:
+        """The head and the beginning of the neck; shoulders, and where they are cut, may lie beyond."""
+        chin = self.rest_positions[self.landmarks[CHIN], 1]
+        return self.rest_positions[self.rest_positions[:, 1] > chin - NECK]
 
     @property
     def values(self) -> Mapping[str, float]:
@@ -336,4 +350,7 @@ def head_for(
         return None
     if head is None or landmarks is None:
         raise UserError("--head HEAD.obj and --landmarks LANDMARKS.json go together")
-    return kept("head", (state_of(head), state_of(landmarks)), lambda: fit_head(head, landmarks))
+    fitted = kept("head", (state_of(head), state_of(landmarks)), lambda: fit_head(head, landmarks))
+    for note in fitted.notes:
+        LOG.warning("risorius: %s: %s", head, note)
+    return fitted

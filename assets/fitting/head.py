@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..errors import AssetError
 from ..files import Image
@@ -36,7 +37,8 @@ from ..model import (
 )
 from ..topology import vertex_normals
 from ..user_files import named
-from .landmark_file import COUNT, read_landmarks
+from .coarser import coarser
+from .landmark_file import COUNT, nearest_vertices, read_landmarks
 from .landmark_order import check_counting, check_lips, groups_in_disorder
 from .organs import FittedSkin, place_eyes, place_parts
 from .painting import plain_picture, spread_uv
@@ -49,6 +51,7 @@ LARGEST = 10_000.0  # [mm] from the middle of the face: farther off, a vertex is
 # Landmarks so far apart on the built-in head cannot be one place: no muscle spans no way.
 APART = 30.0  # [mm]
 ONE_PLACE = 1.0  # [mm]
+MOST_SIMULATED = 50_000  # triangles: a step of these takes a good half of a frame of 1/60 s
 MOST_DISORDERED = 3  # groups of landmarks: where more are so, none of them is meant as it stands
 FARTHEST_FROM_A_FACE = 14.0  # [mm] mean distance of landmarks from those of the built-in head
 
@@ -62,7 +65,8 @@ class FittedHead:
     the mesh's own) was left away.
 
     to_millimetres: takes the file's coordinates to these.
-    file_vertices: numbers in the file of the vertices, shape (V,), int32.
+    file_vertices: numbers in the file of the vertices, or of the nearest, shape (V,), int32.
+    notes: what was done to the mesh and its bringer should know, a line each.
     """
 
     vertices: FloatArray
@@ -80,6 +84,7 @@ class FittedHead:
     layers: tuple[Layer, ...]
     to_millimetres: Similarity
     file_vertices: IndexArray
+    notes: tuple[str, ...] = ()
 
 
 def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
@@ -120,8 +125,12 @@ def fit(
     skin = _facing_outward(skin)
     check_openings(skin)
     check_lips(skin)
-    normals = vertex_normals(skin.vertices, skin.faces)
     target = similarity.points(points)
+    notes: tuple[str, ...] = ()
+    if len(skin.faces) > MOST_SIMULATED:
+        notes = (f"its {len(skin.faces)} triangles are too many to move in time; simplified",)
+        skin = _simplified(skin, target)
+    normals = vertex_normals(skin.vertices, skin.faces)
     warp = Warp(known.vertices[known.landmarks], target)
     warped = warp.points(known.vertices)
     nearest = nearest_on(skin.vertices, normals, warped, known.faces)
@@ -146,7 +155,17 @@ def fit(
         layers=known.layers,
         to_millimetres=similarity,
         file_vertices=skin.file_vertices,
+        notes=notes,
     )
+
+
+def _simplified(skin: SkinPiece, landmarks: FloatArray) -> SkinPiece:
+    """The same form with as many triangles as can be moved in time."""
+    vertices, faces = coarser(skin.vertices, skin.faces, MOST_SIMULATED)
+    check_manifold(faces)
+    nearest = cKDTree(skin.vertices).query(vertices)[1]
+    numbers = nearest_vertices(landmarks, vertices, faces)
+    return SkinPiece(vertices, faces, numbers, skin.file_vertices[nearest])
 
 
 def _placed(points: FloatArray, known: Head) -> Similarity:

@@ -122,11 +122,7 @@ def _is_number(entry: Any) -> bool:
 
 
 def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:
-    """The vertices nearest to points; each point must be near the mesh.
-
-    Where lips touch, the nearest vertex may be on the other lip. So a point inside of the lips goes
-    to the nearest vertex that is nearer, along the skin, to the outside of its own lip.
-    """
+    """The vertices nearest to points; each point must be near the mesh."""
     on_mesh = nearest_on(points, np.zeros_like(points), mesh.vertices, mesh.faces)
     distance = np.linalg.norm(on_mesh.interpolate(mesh.vertices) - points, axis=1)
     allowed = FARTHEST_OFF * float(np.linalg.norm(np.diff(points[OUTER_EYE_CORNERS], axis=0)))
@@ -136,13 +132,22 @@ def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:
             f"landmark {place} lies {distance[place]:.3g} units off the mesh; allowed are "
             f"{allowed:.3g} (a twentieth of the eyes' distance): are unit and axes the mesh's?"
         )
-    numbers: IndexArray = cKDTree(mesh.vertices).query(points)[1].astype(np.int32)
+    return nearest_vertices(points, mesh.vertices, mesh.faces)
+
+
+def nearest_vertices(points: FloatArray, vertices: FloatArray, faces: IndexArray) -> IndexArray:
+    """The vertices nearest to the points of landmarks, shape (68,).
+
+    Where lips touch, the nearest vertex may be on the other lip. So a point inside of the lips goes
+    to the nearest vertex that is nearer, along the skin, to the outside of its own lip.
+    """
+    numbers: IndexArray = cKDTree(vertices).query(points)[1].astype(np.int32)
     to_upper, to_lower = (
-        path_lengths(mesh.vertices, mesh.faces, numbers[list(lip)]).min(axis=0)
+        path_lengths(vertices, faces, numbers[list(lip)]).min(axis=0)
         for lip in OUTER_LIPS
     )
     for lip, is_own in zip(INNER_LIPS, (to_upper < to_lower, to_lower < to_upper), strict=True):
         own = np.flatnonzero(is_own)
         if len(own):
-            numbers[list(lip)] = own[cKDTree(mesh.vertices[own]).query(points[list(lip)])[1]]
+            numbers[list(lip)] = own[cKDTree(vertices[own]).query(points[list(lip)])[1]]
     return numbers

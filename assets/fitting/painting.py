@@ -15,7 +15,7 @@ import PIL.Image
 import PIL.ImageDraw
 from scipy import ndimage, sparse
 from scipy.sparse import csgraph
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import cg
 from scipy.spatial import cKDTree
 
 from ..files import Image
@@ -29,6 +29,7 @@ TRUSTED_WITHIN = 6.0  # [mm] from a foot: the trust in it falls to half
 FACING = 0.3  # least cosine between the normals of a vertex and of its foot
 COMPETING, APART = 24, 2.0  # feet, and [mm]: so near to each other while vertices are farther
 HOLD = 4.0  # of a trusted foot, against one neighbour
+PRECISE, MOST_ROUNDS = 1e-5, 1000  # of what holds; rounds in which it is solved
 LEAST = 1e-6  # trust, so that every vertex finds a colour
 BLOCK, BLURS, NEAR = 8, (12.0, 5.0, 2.0, 1.0), 0.1  # [texels], [blocks], share of what is seen
 MARGIN = 6  # [texels] that are drawn over around an ear
@@ -65,10 +66,14 @@ def spread_uv(
     linked = sparse.coo_array((ones, links.T), shape=(count, count))
     linked = linked + linked.T
     degree = linked.sum(axis=0)
-    system = sparse.diags_array(degree + hold) - linked
-    wanted = hold[:, None] * nearest.interpolate(known.uv)
-    spread: FloatArray = splu(system.tocsc(), permc_spec="MMD_AT_PLUS_A").solve(wanted)
-    return spread.astype(np.float32)
+    system = (sparse.diags_array(degree + hold) - linked).tocsr()
+    start = nearest.interpolate(known.uv)
+    scale = sparse.diags_array(1.0 / (degree + hold))
+    columns = [
+        cg(system, hold * each, x0=each, M=scale, rtol=PRECISE, maxiter=MOST_ROUNDS)[0]
+        for each in start.T
+    ]
+    return np.stack(columns, axis=1).astype(np.float32)
 
 
 def _is_behind_others(feet: FloatArray, away: FloatArray, vertices: FloatArray) -> BoolArray:

@@ -44,12 +44,6 @@ def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> S
     Raises AssetError if landmarks lie on two pieces or on none, or there are too many triangles,
     or too few.
     """
-    if not FEWEST_TRIANGLES <= len(faces) <= MOST_TRIANGLES:
-        cure = "reduce" if len(faces) > MOST_TRIANGLES else "subdivide"
-        raise AssetError(
-            f"the head has {len(faces)} triangles; allowed are {FEWEST_TRIANGLES} to "
-            f"{MOST_TRIANGLES}: {cure} it in a modelling program"
-        )
     count = len(vertices)
     links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
     graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(count, count))
@@ -63,9 +57,14 @@ def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> S
     is_in_piece = piece == piece[landmarks[0]]
     used = np.flatnonzero(is_in_piece).astype(np.int32)
     number = np.cumsum(is_in_piece).astype(np.int32) - 1
-    return SkinPiece(
-        vertices[used], number[faces[is_in_piece[faces[:, 0]]]], number[landmarks], used
-    )
+    skin = number[faces[is_in_piece[faces[:, 0]]]]
+    if not FEWEST_TRIANGLES <= len(skin) <= MOST_TRIANGLES:
+        cure = "reduce" if len(skin) > MOST_TRIANGLES else "subdivide"
+        raise AssetError(
+            f"the head has {len(skin)} triangles; allowed are {FEWEST_TRIANGLES} to "
+            f"{MOST_TRIANGLES}: {cure} it in a modelling program"
+        )
+    return SkinPiece(vertices[used], skin, number[landmarks], used)
 
 
 def check_manifold(faces: IndexArray) -> None:
