@@ -1,8 +1,9 @@
-"""Read a triangle mesh that somebody brings: OBJ, PLY, STL, OFF or GLB, its surface alone.
+"""Read a triangle mesh that somebody brings: OBJ, PLY, STL, OFF or GLB, and what paints it.
 
 trimesh reads all but OBJ. It likes to merge, split and reorder vertices on loading, and to open the
 pictures and materials that a file names; here every vertex and triangle stays where the file has
-it, because landmarks and animation caches count on their numbers, and no other file is opened.
+it, because landmarks and animation caches count on their numbers. What paints an OBJ file is in
+files beside it; see pictures.py.
 """
 
 import io
@@ -17,6 +18,7 @@ import numpy.typing as npt
 
 from .errors import AssetError
 from .mesh_claims import CHECKS
+from .pictures import Texture, texture_of
 from .topology import unique_points
 from .user_files import MOST_VERTICES, named, read_file
 from .wavefront import read_obj
@@ -37,10 +39,14 @@ class Mesh:
 
     vertices: positions [unit of the file], shape (V, 3), float64.
     faces: vertex numbers, shape (F, 3), int32.
+    texture: how the file itself paints it, where it does.
+    colours: of its vertices, sRGB, shape (V, 3), uint8, where the file has such.
     """
 
     vertices: npt.NDArray[np.float64]
     faces: npt.NDArray[np.int32]
+    texture: Texture | None = None
+    colours: npt.NDArray[np.uint8] | None = None
 
 
 def read_mesh(path: str | Path) -> Mesh:
@@ -62,10 +68,13 @@ def read_mesh(path: str | Path) -> Mesh:
             most_bytes=MOST_BYTES,
             cure="reduce it in a modelling program, or save it without pictures",
         )
+        texture = colours = None
         if suffix == "obj":
-            vertices, faces = read_obj(content, most=MOST_VERTICES)
+            surface = read_obj(content, most=MOST_VERTICES)
+            vertices, faces = surface.vertices, surface.faces
+            texture = texture_of(surface, Path(path).parent)
         else:
-            vertices, faces = _read_by_trimesh(CHECKS[suffix](content), suffix)
+            vertices, faces, colours = _read_by_trimesh(CHECKS[suffix](content), suffix)
         if suffix == "stl":
             vertices = vertices + 0.0  # no zero with a sign
             first, number = unique_points(vertices)
@@ -73,11 +82,13 @@ def read_mesh(path: str | Path) -> Mesh:
         _check(vertices, faces)
     except AssetError as error:
         raise AssetError(f"{named(path)}: {error}") from None
-    return Mesh(vertices.astype(np.float64), faces.astype(np.int32))
+    return Mesh(vertices.astype(np.float64), faces.astype(np.int32), texture, colours)
 
 
-def _read_by_trimesh(content: bytes, suffix: str) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
-    """Vertices and triangles; AssetError for whatever trimesh may raise."""
+def _read_by_trimesh(
+    content: bytes, suffix: str
+) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[np.uint8] | None]:
+    """Vertices, triangles, and colours if all have one; AssetError for whatever trimesh raises."""
     import trimesh  # half a second, needed by nothing else here
 
     try:
@@ -100,8 +111,13 @@ def _read_by_trimesh(content: bytes, suffix: str) -> tuple[npt.NDArray[Any], npt
             "modelling program, triangulate it and save it anew"
         ) from None
     if mesh is None:
-        return np.zeros((0, 3)), np.zeros((0, 3), np.int64)
-    return np.array(mesh.vertices), np.array(mesh.faces)
+        return np.zeros((0, 3)), np.zeros((0, 3), np.int64), None
+    vertices, colours = np.array(mesh.vertices), None
+    if suffix in ("ply", "glb") and mesh.visual.kind == "vertex":
+        found = np.asarray(mesh.visual.vertex_colors)
+        if found.shape == (len(vertices), 4) and found.dtype == np.uint8:
+            colours = found[:, :3].copy()
+    return vertices, np.array(mesh.faces), colours
 
 
 def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:

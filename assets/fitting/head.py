@@ -14,7 +14,7 @@ Differs from it: no mesh is fitted to scanned points; the mesh that is brought i
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +40,7 @@ from ..user_files import named
 from .coarser import coarser
 from .landmark_file import COUNT, nearest_vertices, read_landmarks
 from .landmark_order import check_counting, check_lips, groups_in_disorder
+from .layouts import Layout, drawn_over, maps_in, own_picture
 from .organs import FittedSkin, place_eyes, place_parts
 from .painting import plain_picture, spread_uv
 from .soundness import SkinPiece, check_manifold, check_openings, skin_of
@@ -84,7 +85,7 @@ class FittedHead:
     layers: tuple[Layer, ...]
     to_millimetres: Similarity
     file_vertices: IndexArray
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] = field(default=(), kw_only=True)
 
 
 def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
@@ -127,6 +128,7 @@ def fit(
     check_lips(skin)
     target = similarity.points(points)
     notes: tuple[str, ...] = ()
+    whole = skin
     if len(skin.faces) > MOST_SIMULATED:
         notes = (f"its {len(skin.faces)} triangles are too many to move in time; simplified",)
         skin = _simplified(skin, target)
@@ -137,6 +139,9 @@ def fit(
     weight = nearest.interpolate(known.mandible_weight)
     fitted = FittedSkin(skin.vertices, normals, target, weight)
     eyes = place_eyes(known, fitted)
+    uv = spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces))
+    across = nearest.interpolate(known.wrinkles.across).astype(np.float32)
+    painted = _painted(mesh, whole, skin, Layout(uv, skin.faces), known)
     return FittedHead(
         vertices=skin.vertices,
         faces=skin.faces,
@@ -144,13 +149,11 @@ def fit(
         bone_depth=nearest.interpolate(known.bone_depth),
         eyes=eyes,
         parts=place_parts(known, fitted, warp, eyes),
-        uv=spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces)),
-        face_uv=skin.faces,
-        albedo=plain_picture(known),
-        wrinkles=replace(
-            known.wrinkles, across=nearest.interpolate(known.wrinkles.across).astype(np.float32)
-        ),
-        segments=known.segments,
+        uv=painted.layout.uv,
+        face_uv=painted.layout.face_uv,
+        albedo=painted.albedo,
+        wrinkles=replace(painted.wrinkles, across=across),
+        segments=painted.segments,
         rig=known.rig,
         layers=known.layers,
         to_millimetres=similarity,
@@ -159,13 +162,49 @@ def fit(
     )
 
 
+@dataclass(frozen=True)
+class Painted:
+    """A picture of the skin, maps over it, and where its triangles lie in them all."""
+
+    layout: Layout
+    albedo: Image
+    wrinkles: Wrinkles
+    segments: Image
+
+
+def _painted(
+    mesh: Mesh, whole: SkinPiece, skin: SkinPiece, built_in: Layout, known: Head
+) -> Painted:
+    """What the file paints the skin with, or the built-in picture.
+
+    built_in: where the skin's triangles lie in the built-in layout. A skin that was simplified has
+    no other, and what the whole one is painted with is drawn there.
+    """
+    own = None
+    if mesh.texture is not None:
+        own = own_picture(mesh.texture, whole.file_faces, whole.is_turned)
+    if own is not None and skin is whole:
+        return Painted(own[1], own[0], *maps_in(known, built_in, own[1]))
+    picture, layout = plain_picture(known), built_in
+    if skin is not whole and (own is not None or mesh.colours is not None):
+        normals = vertex_normals(whole.vertices, whole.faces)
+        nearest = nearest_on(whole.vertices, normals, skin.vertices, skin.faces)
+        layout = Layout(nearest.interpolate(built_in.uv).astype(np.float32), whole.faces)
+    if own is not None:
+        picture = drawn_over(picture, layout, own)
+    elif mesh.colours is not None:
+        colours = mesh.colours[whole.file_vertices].astype(np.float64)
+        picture = drawn_over(picture, layout, colours[whole.faces])
+    return Painted(built_in, picture, known.wrinkles, known.segments)
+
+
 def _simplified(skin: SkinPiece, landmarks: FloatArray) -> SkinPiece:
     """The same form with as many triangles as can be moved in time."""
     vertices, faces = coarser(skin.vertices, skin.faces, MOST_SIMULATED)
     check_manifold(faces)
     nearest = cKDTree(skin.vertices).query(vertices)[1]
     numbers = nearest_vertices(landmarks, vertices, faces)
-    return SkinPiece(vertices, faces, numbers, skin.file_vertices[nearest])
+    return SkinPiece(vertices, faces, numbers, skin.file_vertices[nearest], np.arange(0))
 
 
 def _placed(points: FloatArray, known: Head) -> Similarity:
@@ -227,5 +266,5 @@ def _facing_outward(skin: SkinPiece) -> SkinPiece:
     normals = vertex_normals(skin.vertices, skin.faces)
     if normals[skin.landmarks[ORIENTING], 2].mean() > 0.0:
         return skin
-    return replace(skin, faces=np.ascontiguousarray(skin.faces[:, ::-1]))
+    return replace(skin, faces=np.ascontiguousarray(skin.faces[:, ::-1]), is_turned=True)
 
