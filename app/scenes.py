@@ -126,9 +126,10 @@ class FaceScene(Scene):
 
     @property
     def framed(self) -> npt.NDArray[np.float64]:
-        """The head and the beginning of the neck; shoulders, and where they are cut, may lie beyond."""
-        chin = self.rest_positions[self.landmarks[CHIN], 1]
-        return self.rest_positions[self.rest_positions[:, 1] > chin - NECK]
+        """The head and the beginning of the neck; what is below may lie beyond the frame."""
+        lowest = float(self.rest_positions[self.landmarks[CHIN], 1]) - NECK
+        seen: npt.NDArray[np.float64] = self.rest_positions[self.rest_positions[:, 1] > lowest]
+        return seen
 
     @property
     def values(self) -> Mapping[str, float]:

@@ -95,6 +95,14 @@ def _reader(path: Path) -> Callable[[], Image]:
     return read
 
 
+def read_packed(content: bytes) -> Image:
+    """A picture that lies in the mesh file itself."""
+    try:
+        return read_picture(content)
+    except AssetError as error:
+        raise AssetError(f"its picture: {error}") from None
+
+
 def read_picture(content: bytes) -> Image:
     """A PNG or JPEG picture, sRGB, shape (H, W, 3), shrunk to LARGEST."""
     try:

@@ -267,4 +267,3 @@ def _facing_outward(skin: SkinPiece) -> SkinPiece:
     if normals[skin.landmarks[ORIENTING], 2].mean() > 0.0:
         return skin
     return replace(skin, faces=np.ascontiguousarray(skin.faces[:, ::-1]), is_turned=True)
-

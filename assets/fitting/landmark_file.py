@@ -49,11 +49,16 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray | Non
                 f"{len(found)} landmarks; it must be the {COUNT} iBug points in their order"
             )
         if all(isinstance(entry, int) and not isinstance(entry, bool) for entry in found):
-            return _numbers(found, len(mesh.vertices)), None
+            return _as_faces_name(_numbers(found, len(mesh.vertices)), mesh), None
         points = _points(found)
         return _nearest(points, mesh), points
     except AssetError as error:
         raise AssetError(f"{named(path)}: {error}") from None
+
+
+def _as_faces_name(numbers: IndexArray, mesh: Mesh) -> IndexArray:
+    """Vertices as triangles name them: of those that lie in one place always the same one."""
+    return numbers if mesh.same is None else mesh.same[numbers].astype(np.int32)
 
 
 def _document(path: Path) -> Any:
@@ -141,10 +146,10 @@ def nearest_vertices(points: FloatArray, vertices: FloatArray, faces: IndexArray
     Where lips touch, the nearest vertex may be on the other lip. So a point inside of the lips goes
     to the nearest vertex that is nearer, along the skin, to the outside of its own lip.
     """
-    numbers: IndexArray = cKDTree(vertices).query(points)[1].astype(np.int32)
+    used = np.unique(faces)
+    numbers: IndexArray = used[cKDTree(vertices[used]).query(points)[1]].astype(np.int32)
     to_upper, to_lower = (
-        path_lengths(vertices, faces, numbers[list(lip)]).min(axis=0)
-        for lip in OUTER_LIPS
+        path_lengths(vertices, faces, numbers[list(lip)]).min(axis=0) for lip in OUTER_LIPS
     )
     for lip, is_own in zip(INNER_LIPS, (to_upper < to_lower, to_lower < to_upper), strict=True):
         own = np.flatnonzero(is_own)

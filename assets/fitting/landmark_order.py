@@ -114,4 +114,3 @@ def check_counting(vertices: FloatArray, landmarks: IndexArray, template: FloatA
             "the landmarks' vertex numbers are counted from 1; count from 0, or subtract 1 from "
             "each"
         )
-

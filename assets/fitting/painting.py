@@ -80,7 +80,9 @@ def _is_behind_others(feet: FloatArray, away: FloatArray, vertices: FloatArray) 
     """Whether another part of the skin lies over the same place, and nearer to it, shape (V,)."""
     distance, beside = cKDTree(feet).query(feet, k=min(COMPETING, len(feet)))
     is_other = np.linalg.norm(vertices[beside] - vertices[:, None], axis=2) > distance + APART
-    return (is_other & (distance < APART) & (away[beside] < away[:, None] - 0.5 * APART)).any(axis=1)
+    return (is_other & (distance < APART) & (away[beside] < away[:, None] - 0.5 * APART)).any(
+        axis=1
+    )
 
 
 def _foldedness(known: Head) -> FloatArray:
