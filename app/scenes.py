@@ -24,7 +24,7 @@ from .errors import UserError
 from .keeping import kept, state_of
 from .mouth import Tongue, shaded_mouth
 
-CHIN, NECK = 8, 40.0  # landmark, and [mm] below it that a portrait shows
+CHIN, NECK = 8, 32.0  # landmark, and [mm] below it that a portrait shows
 LOG = logging.getLogger("risorius.heads")  # what was done to a head that somebody brings
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
 

@@ -79,7 +79,8 @@ class Texels:
 
     def interpolate(self, values: FloatArray) -> FloatArray:
         """What corners have, (F, 3, k), at the texels, shape (n, k)."""
-        return np.einsum("nc,nck->nk", self.weights, values[self.faces])
+        found: FloatArray = np.einsum("nc,nck->nk", self.weights, values[self.faces])
+        return found
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:

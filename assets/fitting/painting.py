@@ -19,7 +19,7 @@ from scipy.sparse.linalg import cg
 from scipy.spatial import cKDTree
 
 from ..files import Image
-from ..model import FloatArray, Head, Segment, SingleArray
+from ..model import FloatArray, Head, IndexArray, Segment, SingleArray
 from .warp import SurfacePoints
 
 BoolArray = npt.NDArray[np.bool_]
@@ -36,7 +36,10 @@ MARGIN = 6  # [texels] that are drawn over around an ear
 
 
 def spread_uv(
-    known: Head, warped: FloatArray, nearest: SurfacePoints, skin: tuple[FloatArray, ...]
+    known: Head,
+    warped: FloatArray,
+    nearest: SurfacePoints,
+    skin: tuple[FloatArray, FloatArray, IndexArray],
 ) -> SingleArray:
     """Texture coordinates in the built-in picture for another head's vertices, shape (V, 2).
 
@@ -80,9 +83,9 @@ def _is_behind_others(feet: FloatArray, away: FloatArray, vertices: FloatArray) 
     """Whether another part of the skin lies over the same place, and nearer to it, shape (V,)."""
     distance, beside = cKDTree(feet).query(feet, k=min(COMPETING, len(feet)))
     is_other = np.linalg.norm(vertices[beside] - vertices[:, None], axis=2) > distance + APART
-    return (is_other & (distance < APART) & (away[beside] < away[:, None] - 0.5 * APART)).any(
-        axis=1
-    )
+    is_nearer = away[beside] < away[:, None] - 0.5 * APART
+    is_behind: BoolArray = (is_other & (distance < APART) & is_nearer).any(axis=1)
+    return is_behind
 
 
 def _foldedness(known: Head) -> FloatArray:
@@ -128,4 +131,7 @@ def plain_picture(known: Head) -> Image:
         filled[is_near] = (ndimage.gaussian_filter(seen, size) / np.maximum(weight, NEAR))[is_near]
     smooth = PIL.Image.fromarray(np.round(filled).astype(np.uint8)).resize((width, height))
     over = ndimage.gaussian_filter(is_folded.astype(np.float32), 0.5 * MARGIN)[..., None]
-    return np.round(over * np.asarray(smooth) + (1.0 - over) * known.albedo).astype(np.uint8)
+    picture: Image = np.round(over * np.asarray(smooth) + (1.0 - over) * known.albedo).astype(
+        np.uint8
+    )
+    return picture

@@ -42,7 +42,7 @@ def _uv(other: Stranger) -> tuple[np.ndarray, np.ndarray]:
     places = other.mesh.vertices[:, [0, 2]]
     places = (places - places.min(axis=0)) / np.ptp(places, axis=0)
     half = places * [0.45, 0.9] + 0.05
-    uv = np.vstack([half, half + [0.45, 0.0]])
+    uv = np.vstack([half, half + np.array([0.45, 0.0])])
     is_left = places[other.mesh.faces, 0].mean(axis=1) > 0.5
     return uv, other.mesh.faces + len(places) * is_left[:, None]
 
