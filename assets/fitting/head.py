@@ -14,6 +14,7 @@ Differs from it: no mesh is fitted to scanned points; the mesh that is brought i
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -53,6 +54,7 @@ LARGEST = 10_000.0  # [mm] from the middle of the face: farther off, a vertex is
 APART = 30.0  # [mm]
 ONE_PLACE = 1.0  # [mm]
 MOST_SIMULATED = 50_000  # triangles: a step of these takes a good half of a frame of 1/60 s
+ATTEMPTS = 8  # to simplify a mesh and keep it a surface
 MOST_DISORDERED = 3  # groups of landmarks: where more are so, none of them is meant as it stands
 FARTHEST_FROM_A_FACE = 14.0  # [mm] mean distance of landmarks from those of the built-in head
 
@@ -200,8 +202,16 @@ def _painted(
 
 def _simplified(skin: SkinPiece, landmarks: FloatArray) -> SkinPiece:
     """The same form with as many triangles as can be moved in time."""
-    vertices, faces = coarser(skin.vertices, skin.faces, MOST_SIMULATED)
-    check_manifold(faces)
+    for attempt in range(ATTEMPTS):
+        vertices, faces = coarser(skin.vertices, skin.faces, MOST_SIMULATED, attempt)
+        with contextlib.suppress(AssetError):
+            check_manifold(faces)
+            break
+    else:
+        raise AssetError(
+            f"its {len(skin.faces)} triangles cannot be simplified; reduce it to {MOST_SIMULATED} "
+            "in a modelling program"
+        )
     nearest = cKDTree(skin.vertices).query(vertices)[1]
     numbers = nearest_vertices(landmarks, vertices, faces)
     return SkinPiece(vertices, faces, numbers, skin.file_vertices[nearest], np.arange(0))
