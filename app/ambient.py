@@ -23,9 +23,13 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import cKDTree
 
 from risorius import assets, sim
+from risorius.assets.fitting.coarser import coarser
+from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.loading import HEAD_FILE, load_head
+from risorius.assets.topology import vertex_normals
 from risorius.jit import njit
 
 from .errors import told_in_one_line
@@ -33,6 +37,7 @@ from .files import cannot_be_written, check_file, written_atomically
 from .stopping import handle_signals
 
 REACH = 45.0  # [mm] beyond which nothing shades
+MOST_SEEN = 6000  # triangles that rays are cast at: more would take seconds, and look the same
 RAYS = 48  # from each vertex
 DEPTH = 1.6  # power of what is left; chosen by eye: folds are told from afar, and nothing is black
 REVEALED = 0.8  # most light that comes to what only a moving face shows
@@ -53,18 +58,19 @@ def openness(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
     head: with texture coordinates `uv`, `face_uv` and `albedo` (H, W, 3).
     simulation: of that head, at rest; it is moved, and at rest again at the end.
     """
-    faces = simulation.faces
+    seen, faces = _looked_through(simulation.positions, simulation.faces)
     sides = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     edges, edge_of_side = np.unique(sides, axis=0, return_inverse=True)
     # Places that are looked at: vertices, and middles of long edges along which it gets dark.
-    count = len(simulation.positions)
+    count = len(seen)
     ends = np.concatenate([np.repeat(np.arange(count)[:, None], 2, axis=1), edges])
     values = np.empty(len(ends), np.float32)
-    values[:count] = open_to_light(simulation.positions, faces, ends[:count])
-    lengths = np.linalg.norm(np.diff(simulation.positions[edges], axis=1)[:, 0], axis=1)
+    at_rest = simulation.positions[seen]
+    values[:count] = open_to_light(at_rest, faces, ends[:count])
+    lengths = np.linalg.norm(np.diff(at_rest[edges], axis=1)[:, 0], axis=1)
     is_steep = abs(np.diff(values[edges])[:, 0]) > STEEP
     steep = count + np.flatnonzero(is_steep & (lengths > LONG))
-    values[steep] = open_to_light(simulation.positions, faces, ends[steep])
+    values[steep] = open_to_light(at_rest, faces, ends[steep])
     name = next((each for each in REVEALING if each in simulation.limits), None)
     if name is not None:
         simulation.set(name, 1.0)
@@ -72,23 +78,40 @@ def openness(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
             simulation.step(1.0 / 60.0)
         looked_at = np.concatenate([np.arange(count), steep])
         hidden = looked_at[values[looked_at] < REVEALED]
-        moved = open_to_light(simulation.positions, faces, ends[hidden])
+        moved = open_to_light(simulation.positions[seen], faces, ends[hidden])
         values[hidden] = np.maximum(values[hidden], REVEALED * moved)
         simulation.reset()
     between = np.setdiff1d(np.arange(count, len(ends)), steep)
     values[between] = values[ends[between]].mean(axis=1)
-    height, width = head.albedo.shape[:2]
-    # Each triangle is painted in four: its corners, then what is between their middles.
-    corners = (head.uv * [width, -height] + [-0.5, height - 0.5])[head.face_uv]
     shades = values**DEPTH
-    middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
-    places = _quartered(corners, middles)
-    colours = _quartered(shades[faces], shades[count + edge_of_side.reshape(-1, 3)])
-    image = np.ones((height, width), np.float32)
-    outside = np.tile([MARGIN, MARGIN, MARGIN, 0.0], len(faces))
-    for margins in (outside, np.zeros_like(outside)):  # first what overlaps, then what is meant
-        _paint(places, colours, margins, image)
+    height, width = head.albedo.shape[:2]
+    places = (head.uv * [width, -height] + [-0.5, height - 0.5])[head.face_uv]
+    if len(faces) < len(simulation.faces):
+        normals = vertex_normals(simulation.positions, simulation.faces)
+        near = nearest_on(simulation.positions, normals, at_rest, faces)
+        colours = near.interpolate(shades[:count]).astype(np.float32)[simulation.faces]
+    else:  # each triangle is painted in four: its corners, then what is between their middles
+        middles = 0.5 * (places + np.roll(places, -1, axis=1))
+        places = _quartered(places, middles)
+        colours = _quartered(shades[faces], shades[count + edge_of_side.reshape(-1, 3)])
+    # What is meant lies over what overlaps; and folds that another head's texture shows twice, such
+    # as the inside of a nostril, must not darken the open skin there: the more open one counts.
+    around, inside = np.zeros((2, height, width), np.float32)
+    _paint(places, colours, MARGIN, around)
+    _paint(places, colours, 0.0, inside)
+    image = np.where(inside > 0.0, inside, np.where(around > 0.0, around, 1.0))
     return np.round(255.0 * image).astype(np.uint8)
+
+
+def _looked_through(positions: Points, faces: Triangles) -> tuple[npt.NDArray[np.intp], Triangles]:
+    """Vertices of a mesh and triangles between them that are enough to see what is open."""
+    if len(faces) <= MOST_SEEN:
+        return np.arange(len(positions)), faces
+    points, triangles = coarser(positions, faces, MOST_SEEN)
+    numbers, seen = np.unique(cKDTree(positions).query(points)[1], return_inverse=True)
+    triangles = seen[triangles].astype(np.int32)
+    is_sound = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    return numbers, np.ascontiguousarray(triangles[is_sound])
 
 
 def _quartered(corners: npt.NDArray[Any], middles: npt.NDArray[Any]) -> npt.NDArray[Any]:
@@ -198,13 +221,15 @@ def _nearest(ray: Values, near: Values, count: int) -> float:
 
 
 @njit
-def _paint(places: Points, values: Values, margins: Points, image: Values) -> None:
-    """Paint texels in triangles and margins beside them, straight between values at corners."""
+def _paint(places: Points, values: Values, margin: float, image: Values) -> None:
+    """Paint texels in triangles and a margin beside them, straight between values at corners.
+
+    Where they overlap the greatest value counts.
+    """
     height, width = image.shape
     for t in range(len(places)):
         a, b, c = places[t]
         at_a, at_b, at_c = values[t]
-        margin = margins[t]
         area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
         if abs(area) < 1e-9:
             continue
@@ -224,7 +249,7 @@ def _paint(places: Points, values: Values, margins: Points, image: Values) -> No
                 of_a = 1.0 - of_b - of_c
                 if of_a > -slack_a and of_b > -slack_b and of_c > -slack_c:
                     value = of_a * at_a + of_b * at_b + of_c * at_c
-                    image[y, x] = min(max(value, least), most)
+                    image[y, x] = max(image[y, x], min(max(value, least), most))
 
 
 def bake(head: assets.Head) -> dict[str, npt.NDArray[np.generic]]:

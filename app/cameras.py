@@ -32,9 +32,8 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
     Raises UserError with the views that there are.
     """
     view = view or DEFAULT_VIEW
-    extent = scene.extent
     if view in render.VIEWS:
-        return render.OrbitCamera.framing(extent, view=view)
+        return _framing(scene, view)
     try:
         yaw, pitch, zoom = [*map(float, view.split(",")), 1.0][:3]
         if view.count(",") > 2 or not np.isfinite([yaw, pitch, zoom]).all() or zoom <= 0.0:
@@ -44,8 +43,15 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
             f"camera '{view}': allowed are {', '.join(render.VIEWS)}, "
             "or yaw,pitch[,zoom] in degrees, zoom above 0"
         ) from None
-    camera = render.OrbitCamera.framing(extent, view="front")
+    camera = _framing(scene, "front")
     camera.orbit(yaw, pitch)
     camera.target = scene.focus.copy()
     camera.zoom(zoom)
+    return camera
+
+
+def _framing(scene: Scene, view: str) -> render.OrbitCamera:
+    """A camera that sees what the scene wants framed; the rest of it may go beyond the frame."""
+    camera = render.OrbitCamera.framing(scene.extent, view=view)
+    camera.fit(scene.framed)
     return camera

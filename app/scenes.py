@@ -6,6 +6,7 @@ knows nothing of refinement or drawing.
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -23,7 +24,8 @@ from .errors import UserError
 from .keeping import kept, state_of
 from .mouth import Tongue, shaded_mouth
 
-MOST_BAKED = 3000  # vertices; a larger head would take seconds, and takes the built-in one's light
+CHIN, NECK = 8, 32.0  # landmark, and [mm] below it that a portrait shows
+LOG = logging.getLogger("risorius.heads")  # what was done to a head that somebody brings
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
 
 
@@ -53,6 +55,11 @@ class Scene:
     def extent(self) -> npt.NDArray[np.float64]:
         """Points that a camera has to see, if it is to see the whole scene [mm], shape (n, 3)."""
         return self.rest_positions
+
+    @property
+    def framed(self) -> npt.NDArray[np.float64]:
+        """Points that fill the frame of a camera [mm], shape (n, 3)."""
+        return self.extent
 
     @property
     def values(self) -> Mapping[str, float]:
@@ -118,6 +125,13 @@ class FaceScene(Scene):
         return self.simulation.positions
 
     @property
+    def framed(self) -> npt.NDArray[np.float64]:
+        """The head and the beginning of the neck; what is below may lie beyond the frame."""
+        lowest = float(self.rest_positions[self.landmarks[CHIN], 1]) - NECK
+        seen: npt.NDArray[np.float64] = self.rest_positions[self.rest_positions[:, 1] > lowest]
+        return seen
+
+    @property
     def values(self) -> Mapping[str, float]:
         return self.simulation.values
 
@@ -126,8 +140,6 @@ class FaceScene(Scene):
         head, simulation = self.head, self.simulation
         if isinstance(head, Person):  # same triangles, hardly another form
             return head.openness
-        if len(head.vertices) > MOST_BAKED:  # it wears the same texture, laid out alike
-            return assets.load("head").openness
         if isinstance(head, assets.Head) and head.openness_file.exists():
             return head.openness
         from .ambient import openness  # only who brings a head waits for it to be compiled
@@ -339,4 +351,7 @@ def head_for(
         return None
     if head is None or landmarks is None:
         raise UserError("--head HEAD.obj and --landmarks LANDMARKS.json go together")
-    return kept("head", (state_of(head), state_of(landmarks)), lambda: fit_head(head, landmarks))
+    fitted = kept("head", (state_of(head), state_of(landmarks)), lambda: fit_head(head, landmarks))
+    for note in fitted.notes:
+        LOG.warning("risorius: %s: %s", head, note)
+    return fitted

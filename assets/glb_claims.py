@@ -144,3 +144,32 @@ def _size(mesh: dict[str, Any], counts: list[int]) -> tuple[int, int, int]:
                 raise AssetError("a mesh of it has no positions or no corners; export it anew")
             ends.append(counts[place])
     return len(pieces), sum(ends[::2]), sum(ends[1::2])
+
+
+def pictures_apart(content: bytes) -> tuple[bytes, list[bytes | None]]:
+    """A GLB file without pictures, and the one of colour of each material, packed as it was.
+
+    content: a file that `check_glb` let pass. Materials are named by their numbers, "0", "1", ...
+    """
+    document = _document(content)
+    end = 20 + struct.unpack_from("<I", content, 12)[0]
+    pictures = [_picture(document, row, content[end + 8 :]) for row in _rows(document, "materials")]
+    document["materials"] = [{"name": str(number)} for number in range(len(pictures))]
+    for key in ("images", "textures", "samplers"):
+        document.pop(key, None)
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    rest = struct.pack("<I4s", len(text), b"JSON") + text + content[end:]
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(rest)) + rest, pictures
+
+
+def _picture(document: dict[str, Any], material: dict[str, Any], data: bytes) -> bytes | None:
+    """The picture of a material's colour, if it lies in the file's binary part."""
+    try:
+        texture = material["pbrMetallicRoughness"]["baseColorTexture"]
+        image = document["images"][document["textures"][texture["index"]]["source"]]
+        view = document["bufferViews"][image["bufferView"]]
+        first = view.get("byteOffset", 0)
+        return data[first : first + view["byteLength"]]
+    except (KeyError, IndexError, TypeError, AttributeError):
+        return None

@@ -1,14 +1,16 @@
-"""Read a triangle mesh that somebody brings: OBJ, PLY, STL, OFF or GLB, its surface alone.
+"""Read a triangle mesh that somebody brings: OBJ, PLY, STL, OFF or GLB, and what paints it.
 
 trimesh reads all but OBJ. It likes to merge, split and reorder vertices on loading, and to open the
 pictures and materials that a file names; here every vertex and triangle stays where the file has
-it, because landmarks and animation caches count on their numbers, and no other file is opened.
+it, because landmarks and animation caches count on their numbers. What paints an OBJ file is in
+files beside it; see pictures.py.
 """
 
 import io
 import logging
 import warnings
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +18,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import AssetError
+from .glb_claims import pictures_apart
 from .mesh_claims import CHECKS
+from .pictures import Texture, read_packed, texture_of
 from .topology import unique_points
 from .user_files import MOST_VERTICES, named, read_file
 from .wavefront import read_obj
@@ -37,10 +41,16 @@ class Mesh:
 
     vertices: positions [unit of the file], shape (V, 3), float64.
     faces: vertex numbers, shape (F, 3), int32.
+    texture: how the file itself paints it, where it does.
+    colours: of its vertices, sRGB, shape (V, 3), uint8, where the file has such.
+    same: of vertices that the file doubles, the one that `faces` name, shape (V,).
     """
 
     vertices: npt.NDArray[np.float64]
     faces: npt.NDArray[np.int32]
+    texture: Texture | None = None
+    colours: npt.NDArray[np.uint8] | None = None
+    same: npt.NDArray[np.integer[Any]] | None = None
 
 
 def read_mesh(path: str | Path) -> Mesh:
@@ -62,22 +72,37 @@ def read_mesh(path: str | Path) -> Mesh:
             most_bytes=MOST_BYTES,
             cure="reduce it in a modelling program, or save it without pictures",
         )
+        texture = colours = None
         if suffix == "obj":
-            vertices, faces = read_obj(content, most=MOST_VERTICES)
+            surface = read_obj(content, most=MOST_VERTICES)
+            vertices, faces = surface.vertices, surface.faces
+            texture = texture_of(surface, Path(path).parent)
         else:
-            vertices, faces = _read_by_trimesh(CHECKS[suffix](content), suffix)
+            content = CHECKS[suffix](content)
+            pictures: list[bytes | None] = []
+            if suffix == "glb":
+                content, pictures = pictures_apart(content)
+            pieces = _read_by_trimesh(content, suffix)
+            vertices, faces = _joined(pieces)
+            colours = _colours(pieces)
+            texture = _texture(pieces, pictures)
         if suffix == "stl":
             vertices = vertices + 0.0  # no zero with a sign
             first, number = unique_points(vertices)
             vertices, faces = vertices[first], number[faces]
         _check(vertices, faces)
+        same = None
+        if suffix == "glb" and texture is not None:  # its vertices are doubled along seams
+            first, number = unique_points(vertices + 0.0)
+            same = first[number]
+            faces = same[faces]
     except AssetError as error:
         raise AssetError(f"{named(path)}: {error}") from None
-    return Mesh(vertices.astype(np.float64), faces.astype(np.int32))
+    return Mesh(vertices.astype(np.float64), faces.astype(np.int32), texture, colours, same)
 
 
-def _read_by_trimesh(content: bytes, suffix: str) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
-    """Vertices and triangles; AssetError for whatever trimesh may raise."""
+def _read_by_trimesh(content: bytes, suffix: str) -> list[Any]:
+    """The pieces of a mesh, in their places; AssetError for whatever trimesh may raise."""
     import trimesh  # half a second, needed by nothing else here
 
     try:
@@ -89,19 +114,58 @@ def _read_by_trimesh(content: bytes, suffix: str) -> tuple[npt.NDArray[Any], npt
                 file_type=suffix,
                 process=False,
                 maintain_order=True,
-                skip_materials=True,
+                skip_materials=suffix != "glb",  # whose pictures were taken out
                 fix_texture=False,
             )
-            mesh = scene.to_mesh() if len(scene.geometry) else None
+            return [each for each in scene.dump() if hasattr(each, "faces")]
     except Exception as error:  # every reader of trimesh has its own kinds
         reason = " ".join(str(error).split())[:200]
         raise AssetError(
             f"broken, or not what its name says ({type(error).__name__}: {reason}); open it in a "
             "modelling program, triangulate it and save it anew"
         ) from None
-    if mesh is None:
-        return np.zeros((0, 3)), np.zeros((0, 3), np.int64)
-    return np.array(mesh.vertices), np.array(mesh.faces)
+
+
+def _joined(pieces: list[Any]) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+    """Vertices and triangles of all pieces, one after the other."""
+    starts = np.cumsum([0, *(len(each.vertices) for each in pieces)])
+    faces = [each.faces + start for each, start in zip(pieces, starts, strict=False)]
+    vertices = [each.vertices for each in pieces]
+    return np.vstack([np.zeros((0, 3)), *vertices]), np.vstack([np.zeros((0, 3), np.int64), *faces])
+
+
+def _colours(pieces: list[Any]) -> npt.NDArray[np.uint8] | None:
+    """The colours of all vertices; None where a piece has none."""
+    if not pieces or any(each.visual.kind != "vertex" for each in pieces):
+        return None
+    found = [np.asarray(each.visual.vertex_colors)[:, :3] for each in pieces]
+    return np.vstack(found).astype(np.uint8)
+
+
+def _texture(pieces: list[Any], pictures: list[bytes | None]) -> Texture | None:
+    """What pictures the pieces of a GLB file have, and where; None where there are none."""
+    uv, picture, is_painted = [], [], False
+    for each in pieces:
+        material, found = -1, getattr(each.visual, "uv", None)
+        if found is not None and len(found) == len(each.vertices):
+            name = each.visual.material.name
+            material = int(name) if pictures[int(name)] is not None else -1
+        else:
+            found = np.zeros((len(each.vertices), 2))
+        uv.append(np.asarray(found, np.float32)[:, :2])
+        picture.append(np.full(len(each.faces), material))
+        is_painted |= material >= 0
+    if not is_painted:
+        return None
+    readers = tuple(partial(read_packed, each) for each in pictures if each is not None)
+    place = np.cumsum([each is not None for each in pictures]) - 1
+    numbers = np.concatenate(picture)
+    return Texture(
+        np.vstack(uv),
+        _joined(pieces)[1].astype(np.int32),
+        np.where(numbers < 0, -1, place[numbers]),
+        readers,
+    )
 
 
 def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:

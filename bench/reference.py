@@ -118,7 +118,8 @@ def _read(checkout: Path, name: str) -> tuple[Points, Faces]:
         )
     try:
         content = file.read_bytes()
-        return read_obj(gzip.decompress(content) if file.suffix == ".gz" else content, most=MOST)
+        surface = read_obj(gzip.decompress(content) if file.suffix == ".gz" else content, most=MOST)
+        return surface.vertices, surface.faces
     except (assets.AssetError, EOFError, gzip.BadGzipFile, zlib.error) as error:
         raise UserError(f"{file}: {error}") from None
 

@@ -14,11 +14,13 @@ Differs from it: no mesh is fitted to scanned points; the mesh that is brought i
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import contextlib
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..errors import AssetError
 from ..files import Image
@@ -36,8 +38,12 @@ from ..model import (
 )
 from ..topology import vertex_normals
 from ..user_files import named
-from .landmark_file import COUNT, read_landmarks
+from .coarser import coarser
+from .landmark_file import COUNT, nearest_vertices, read_landmarks
+from .landmark_order import check_counting, check_lips, groups_in_disorder
+from .layouts import Layout, drawn_over, maps_in, own_picture
 from .organs import FittedSkin, place_eyes, place_parts
+from .painting import plain_picture, spread_uv
 from .soundness import SkinPiece, check_manifold, check_openings, skin_of
 from .warp import Similarity, Warp, nearest_on
 
@@ -47,6 +53,9 @@ LARGEST = 10_000.0  # [mm] from the middle of the face: farther off, a vertex is
 # Landmarks so far apart on the built-in head cannot be one place: no muscle spans no way.
 APART = 30.0  # [mm]
 ONE_PLACE = 1.0  # [mm]
+MOST_SIMULATED = 50_000  # triangles: a step of these takes a good half of a frame of 1/60 s
+ATTEMPTS = 8  # to simplify a mesh and keep it a surface
+MOST_DISORDERED = 3  # groups of landmarks: where more are so, none of them is meant as it stands
 FARTHEST_FROM_A_FACE = 14.0  # [mm] mean distance of landmarks from those of the built-in head
 
 
@@ -59,7 +68,8 @@ class FittedHead:
     the mesh's own) was left away.
 
     to_millimetres: takes the file's coordinates to these.
-    file_vertices: numbers in the file of the vertices, shape (V,), int32.
+    file_vertices: numbers in the file of the vertices, or of the nearest, shape (V,), int32.
+    notes: what was done to the mesh and its bringer should know, a line each.
     """
 
     vertices: FloatArray
@@ -77,6 +87,7 @@ class FittedHead:
     layers: tuple[Layer, ...]
     to_millimetres: Similarity
     file_vertices: IndexArray
+    notes: tuple[str, ...] = field(default=(), kw_only=True)
 
 
 def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
@@ -104,23 +115,35 @@ def fit(
     landmarks: vertex numbers, shape (68,); points: where they lie exactly [unit of the mesh], shape
     (68, 3), unless at those vertices. Raises AssetError for a mesh that cannot work.
     """
+    are_numbers = points is None
     points = mesh.vertices[landmarks] if points is None else points
     known = load("head") if template is None else template
     skin = skin_of(mesh.vertices, mesh.faces, landmarks)
     check_manifold(mesh.faces)
+    if are_numbers:
+        check_counting(mesh.vertices, landmarks, known.vertices[known.landmarks])
     similarity = _placed(points, known)
     skin = replace(skin, vertices=similarity.points(skin.vertices))
     _check_size(skin)
     skin = _facing_outward(skin)
     check_openings(skin)
-    normals = vertex_normals(skin.vertices, skin.faces)
+    check_lips(skin)
     target = similarity.points(points)
-    warp = Warp(*_distinct(known.vertices[known.landmarks], target))
+    notes: tuple[str, ...] = ()
+    whole = skin
+    if len(skin.faces) > MOST_SIMULATED:
+        notes = (f"its {len(skin.faces)} triangles are too many to move in time; simplified",)
+        skin = _simplified(skin, target)
+    normals = vertex_normals(skin.vertices, skin.faces)
+    warp = Warp(known.vertices[known.landmarks], target)
     warped = warp.points(known.vertices)
     nearest = nearest_on(skin.vertices, normals, warped, known.faces)
     weight = nearest.interpolate(known.mandible_weight)
     fitted = FittedSkin(skin.vertices, normals, target, weight)
     eyes = place_eyes(known, fitted)
+    uv = spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces))
+    across = nearest.interpolate(known.wrinkles.across).astype(np.float32)
+    painted = _painted(mesh, whole, skin, Layout(uv, skin.faces), known)
     return FittedHead(
         vertices=skin.vertices,
         faces=skin.faces,
@@ -128,18 +151,70 @@ def fit(
         bone_depth=nearest.interpolate(known.bone_depth),
         eyes=eyes,
         parts=place_parts(known, fitted, warp, eyes),
-        uv=nearest.interpolate(known.uv).astype(np.float32),
-        face_uv=skin.faces,
-        albedo=known.albedo,
-        wrinkles=replace(
-            known.wrinkles, across=nearest.interpolate(known.wrinkles.across).astype(np.float32)
-        ),
-        segments=known.segments,
+        uv=painted.layout.uv,
+        face_uv=painted.layout.face_uv,
+        albedo=painted.albedo,
+        wrinkles=replace(painted.wrinkles, across=across),
+        segments=painted.segments,
         rig=known.rig,
         layers=known.layers,
         to_millimetres=similarity,
         file_vertices=skin.file_vertices,
+        notes=notes,
     )
+
+
+@dataclass(frozen=True)
+class Painted:
+    """A picture of the skin, maps over it, and where its triangles lie in them all."""
+
+    layout: Layout
+    albedo: Image
+    wrinkles: Wrinkles
+    segments: Image
+
+
+def _painted(
+    mesh: Mesh, whole: SkinPiece, skin: SkinPiece, built_in: Layout, known: Head
+) -> Painted:
+    """What the file paints the skin with, or the built-in picture.
+
+    built_in: where the skin's triangles lie in the built-in layout. A skin that was simplified has
+    no other, and what the whole one is painted with is drawn there.
+    """
+    own = None
+    if mesh.texture is not None:
+        own = own_picture(mesh.texture, whole.file_faces, whole.is_turned)
+    if own is not None and skin is whole:
+        return Painted(own[1], own[0], *maps_in(known, built_in, own[1]))
+    picture, layout = plain_picture(known), built_in
+    if skin is not whole and (own is not None or mesh.colours is not None):
+        normals = vertex_normals(whole.vertices, whole.faces)
+        nearest = nearest_on(whole.vertices, normals, skin.vertices, skin.faces)
+        layout = Layout(nearest.interpolate(built_in.uv).astype(np.float32), whole.faces)
+    if own is not None:
+        picture = drawn_over(picture, layout, own)
+    elif mesh.colours is not None:
+        colours = mesh.colours[whole.file_vertices].astype(np.float64)
+        picture = drawn_over(picture, layout, colours[whole.faces])
+    return Painted(built_in, picture, known.wrinkles, known.segments)
+
+
+def _simplified(skin: SkinPiece, landmarks: FloatArray) -> SkinPiece:
+    """The same form with as many triangles as can be moved in time."""
+    for attempt in range(ATTEMPTS):
+        vertices, faces = coarser(skin.vertices, skin.faces, MOST_SIMULATED, attempt)
+        with contextlib.suppress(AssetError):
+            check_manifold(faces)
+            break
+    else:
+        raise AssetError(
+            f"its {len(skin.faces)} triangles cannot be simplified; reduce it to {MOST_SIMULATED} "
+            "in a modelling program"
+        )
+    nearest = cKDTree(skin.vertices).query(vertices)[1]
+    numbers = nearest_vertices(landmarks, vertices, faces)
+    return SkinPiece(vertices, faces, numbers, skin.file_vertices[nearest], np.arange(0))
 
 
 def _placed(points: FloatArray, known: Head) -> Similarity:
@@ -155,7 +230,11 @@ def _placed(points: FloatArray, known: Head) -> Similarity:
         )
     similarity = Similarity.between(points[ORIENTING], template[ORIENTING])
     off = np.linalg.norm(similarity.points(points) - template, axis=1)
-    if off[ORIENTING].mean() > FARTHEST_FROM_A_FACE:
+    disordered = groups_in_disorder(similarity.points(points), template)
+    is_far = off[ORIENTING].mean() > FARTHEST_FROM_A_FACE
+    if disordered and not (is_far and len(disordered) > MOST_DISORDERED):
+        raise AssetError(disordered[0].complaint)
+    if is_far:
         raise AssetError(
             f"the landmarks are no face: landmark {off.argmax()} lies {off.max():.0f} mm off, the "
             f"mean one {off[ORIENTING].mean():.0f} mm; give the 68 iBug points in their order"
@@ -197,10 +276,4 @@ def _facing_outward(skin: SkinPiece) -> SkinPiece:
     normals = vertex_normals(skin.vertices, skin.faces)
     if normals[skin.landmarks[ORIENTING], 2].mean() > 0.0:
         return skin
-    return replace(skin, faces=np.ascontiguousarray(skin.faces[:, ::-1]))
-
-
-def _distinct(source: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Both point sets without those that repeat in the first one."""
-    first = np.sort(np.unique(source.round(6), axis=0, return_index=True)[1])
-    return source[first], target[first]
+    return replace(skin, faces=np.ascontiguousarray(skin.faces[:, ::-1]), is_turned=True)

@@ -21,6 +21,7 @@ from ..errors import AssetError
 from ..meshes import FARTHEST, Mesh
 from ..model import FloatArray, IndexArray
 from ..user_files import named, read_file
+from .landmark_order import INNER_LIPS, OUTER_LIPS
 from .soundness import path_lengths
 from .warp import nearest_on
 
@@ -31,14 +32,12 @@ FARTHEST_OFF = (
     0.05  # of the distance between the outer eye corners: a point off the mesh is a mistake
 )
 OUTER_EYE_CORNERS = [36, 45]
-OUTER_LIPS = ((50, 51, 52), (56, 57, 58))  # upper, lower
-INNER_LIPS = ((61, 62, 63), (65, 66, 67))
 
 
-def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray]:
+def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray | None]:
     """The 68 landmarks of a mesh: vertex numbers (68,), int32, and points (68, 3) [its unit].
 
-    Where the file holds points, they lie between vertices and the numbers are the nearest ones.
+    Where the file holds points, the numbers are the nearest vertices; else there are no points.
 
     Raises AssetError for a file that is missing, too long or no JSON, another count, numbers out of
     range, and a point that is not on the mesh.
@@ -50,12 +49,16 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray]:
                 f"{len(found)} landmarks; it must be the {COUNT} iBug points in their order"
             )
         if all(isinstance(entry, int) and not isinstance(entry, bool) for entry in found):
-            numbers = _numbers(found, len(mesh.vertices))
-            return numbers, mesh.vertices[numbers]
+            return _as_faces_name(_numbers(found, len(mesh.vertices)), mesh), None
         points = _points(found)
         return _nearest(points, mesh), points
     except AssetError as error:
         raise AssetError(f"{named(path)}: {error}") from None
+
+
+def _as_faces_name(numbers: IndexArray, mesh: Mesh) -> IndexArray:
+    """Vertices as triangles name them: of those that lie in one place always the same one."""
+    return numbers if mesh.same is None else mesh.same[numbers].astype(np.int32)
 
 
 def _document(path: Path) -> Any:
@@ -124,11 +127,7 @@ def _is_number(entry: Any) -> bool:
 
 
 def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:
-    """The vertices nearest to points; each point must be near the mesh.
-
-    Where lips touch, the nearest vertex may be on the other lip. So a point inside of the lips goes
-    to the nearest vertex that is nearer, along the skin, to the outside of its own lip.
-    """
+    """The vertices nearest to points; each point must be near the mesh."""
     on_mesh = nearest_on(points, np.zeros_like(points), mesh.vertices, mesh.faces)
     distance = np.linalg.norm(on_mesh.interpolate(mesh.vertices) - points, axis=1)
     allowed = FARTHEST_OFF * float(np.linalg.norm(np.diff(points[OUTER_EYE_CORNERS], axis=0)))
@@ -138,13 +137,22 @@ def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:
             f"landmark {place} lies {distance[place]:.3g} units off the mesh; allowed are "
             f"{allowed:.3g} (a twentieth of the eyes' distance): are unit and axes the mesh's?"
         )
-    numbers: IndexArray = cKDTree(mesh.vertices).query(points)[1].astype(np.int32)
+    return nearest_vertices(points, mesh.vertices, mesh.faces)
+
+
+def nearest_vertices(points: FloatArray, vertices: FloatArray, faces: IndexArray) -> IndexArray:
+    """The vertices nearest to the points of landmarks, shape (68,).
+
+    Where lips touch, the nearest vertex may be on the other lip. So a point inside of the lips goes
+    to the nearest vertex that is nearer, along the skin, to the outside of its own lip.
+    """
+    used = np.unique(faces)
+    numbers: IndexArray = used[cKDTree(vertices[used]).query(points)[1]].astype(np.int32)
     to_upper, to_lower = (
-        path_lengths(mesh.vertices, mesh.faces, numbers[list(lip)]).min(axis=0)
-        for lip in OUTER_LIPS
+        path_lengths(vertices, faces, numbers[list(lip)]).min(axis=0) for lip in OUTER_LIPS
     )
     for lip, is_own in zip(INNER_LIPS, (to_upper < to_lower, to_lower < to_upper), strict=True):
         own = np.flatnonzero(is_own)
         if len(own):
-            numbers[list(lip)] = own[cKDTree(mesh.vertices[own]).query(points[list(lip)])[1]]
+            numbers[list(lip)] = own[cKDTree(vertices[own]).query(points[list(lip)])[1]]
     return numbers

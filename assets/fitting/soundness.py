@@ -6,6 +6,7 @@ least slit: where the lips are welded no muscle can part them.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +18,7 @@ from scipy.sparse import csgraph
 from ..errors import AssetError
 from ..model import FloatArray, IndexArray
 
-MOST_TRIANGLES = 50_000
+MOST_TRIANGLES = 250_000
 FEWEST_TRIANGLES = 300  # below it eyes and mouth have no shape (chosen)
 LIPS = (62, 66)  # inner landmarks in the middle, above and below
 LIP_CORNERS = (60, 64)
@@ -36,6 +37,8 @@ class SkinPiece:
     faces: IndexArray  # (F, 3)
     landmarks: IndexArray  # (68,) in this piece
     file_vertices: IndexArray  # (V,) numbers in the whole mesh
+    file_faces: npt.NDArray[np.int64]  # (F,) likewise
+    is_turned: bool = False  # whether triangles were turned inside out
 
 
 def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> SkinPiece:
@@ -44,12 +47,7 @@ def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> S
     Raises AssetError if landmarks lie on two pieces or on none, or there are too many triangles,
     or too few.
     """
-    if not FEWEST_TRIANGLES <= len(faces) <= MOST_TRIANGLES:
-        cure = "reduce" if len(faces) > MOST_TRIANGLES else "subdivide"
-        raise AssetError(
-            f"the head has {len(faces)} triangles; allowed are {FEWEST_TRIANGLES} to "
-            f"{MOST_TRIANGLES}: {cure} it in a modelling program"
-        )
+    _check_count(faces, FEWEST_TRIANGLES, math.inf)
     count = len(vertices)
     links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
     graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(count, count))
@@ -63,9 +61,19 @@ def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> S
     is_in_piece = piece == piece[landmarks[0]]
     used = np.flatnonzero(is_in_piece).astype(np.int32)
     number = np.cumsum(is_in_piece).astype(np.int32) - 1
-    return SkinPiece(
-        vertices[used], number[faces[is_in_piece[faces[:, 0]]]], number[landmarks], used
-    )
+    file_faces = np.flatnonzero(is_in_piece[faces[:, 0]])
+    skin = number[faces[file_faces]]
+    _check_count(skin, FEWEST_TRIANGLES, MOST_TRIANGLES)
+    return SkinPiece(vertices[used], skin, number[landmarks], used, file_faces)
+
+
+def _check_count(faces: IndexArray, fewest: float, most: float) -> None:
+    if not fewest <= len(faces) <= most:
+        cure = "reduce" if len(faces) > most else "subdivide"
+        raise AssetError(
+            f"the head has {len(faces)} triangles; allowed are {FEWEST_TRIANGLES} to "
+            f"{MOST_TRIANGLES}: {cure} it in a modelling program"
+        )
 
 
 def check_manifold(faces: IndexArray) -> None:

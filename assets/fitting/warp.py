@@ -71,7 +71,9 @@ class Warp:
     """The smoothest deformation of space that takes some points to others."""
 
     def __init__(self, source: FloatArray, target: FloatArray) -> None:
-        """Both (n, 3), in no plane; equal points of `source` must not repeat."""
+        """Both (n, 3), in no plane; of equal points of `source` the first one counts."""
+        first = np.sort(np.unique(source.round(6), axis=0, return_index=True)[1])
+        source, target = source[first], target[first]
         count = len(source)
         self._centres = source
         ones = np.hstack([np.ones((count, 1)), source])
@@ -81,6 +83,12 @@ class Warp:
         system[count:, :count] = ones.T
         right = np.vstack([target, np.zeros((4, 3))])
         self._weights: FloatArray = np.asarray(np.linalg.solve(system, right), np.float64)
+        self._bent: FloatArray = system[:count, :count] @ self._weights[:count]
+
+    @property
+    def bending(self) -> float:
+        """How much it bends, in squares of the target's unit over the source's; 0: not at all."""
+        return -float((self._weights[: len(self._centres)] * self._bent).sum())
 
     def points(self, points: npt.ArrayLike) -> FloatArray:
         """Where points (n, 3) come to lie."""

@@ -1,0 +1,137 @@
+"""The built-in skin's picture on another head: where each vertex finds its colour in it.
+
+A vertex takes the texture coordinates of the nearest point on the warped built-in skin. That is
+right on a face and wrong where one head has folds that the other has not: in nostrils, behind ears,
+in the mouth. So feet are trusted the less the farther they are, not at all on an ear or in a
+nostril, and what is between trusted ones is spread evenly, as by springs. With its surroundings
+fixed such a patch covers what they enclose, once (Tutte 1963, "How to draw a graph").
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+import PIL.ImageDraw
+from scipy import ndimage, sparse
+from scipy.sparse import csgraph
+from scipy.sparse.linalg import cg
+from scipy.spatial import cKDTree
+
+from ..files import Image
+from ..model import FloatArray, Head, IndexArray, Segment, SingleArray
+from .warp import SurfacePoints
+
+BoolArray = npt.NDArray[np.bool_]
+
+EARS = (Segment.RIGHT_EAR, Segment.LEFT_EAR)
+TRUSTED_WITHIN = 6.0  # [mm] from a foot: the trust in it falls to half
+FACING = 0.3  # least cosine between the normals of a vertex and of its foot
+COMPETING, APART = 24, 2.0  # feet, and [mm]: so near to each other while vertices are farther
+HOLD = 4.0  # of a trusted foot, against one neighbour
+PRECISE, MOST_ROUNDS = 1e-5, 1000  # of what holds; rounds in which it is solved
+LEAST = 1e-6  # trust, so that every vertex finds a colour
+BLOCK, BLURS, NEAR = 8, (12.0, 5.0, 2.0, 1.0), 0.1  # [texels], [blocks], share of what is seen
+MARGIN = 6  # [texels] that are drawn over around an ear
+
+
+def spread_uv(
+    known: Head,
+    warped: FloatArray,
+    nearest: SurfacePoints,
+    skin: tuple[FloatArray, FloatArray, IndexArray],
+) -> SingleArray:
+    """Texture coordinates in the built-in picture for another head's vertices, shape (V, 2).
+
+    warped: the built-in skin, where it was brought; nearest: feet on it.
+    skin: the other head's vertices, unit normals and faces.
+    """
+    vertices, normals, faces = skin
+    feet = nearest.interpolate(warped)
+    away = np.linalg.norm(feet - vertices, axis=1)
+    across = np.cross(
+        warped[nearest.corners[:, 1]] - warped[nearest.corners[:, 0]],
+        warped[nearest.corners[:, 2]] - warped[nearest.corners[:, 0]],
+    )
+    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
+    trust = 1.0 / (1.0 + (away / TRUSTED_WITHIN) ** 2)
+    trust[(across * normals).sum(axis=1) < FACING] = 0.0
+    trust[nearest.interpolate(_foldedness(known)) > 0.3] = 0.0
+    # A neck or shoulders below those of the built-in head all find its rim.
+    rim = np.concatenate([known.rings["rim_left"], known.rings["rim_right"]])
+    on_rim = nearest.interpolate(np.isin(np.arange(len(known.vertices)), rim).astype(np.float64))
+    trust[_is_behind_others(feet, away, vertices) & (on_rim < 0.99)] = 0.0
+    hold = HOLD * np.maximum(trust, LEAST)
+    count = len(vertices)
+    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
+    links = np.unique(np.sort(sides, axis=1), axis=0)
+    ones = np.ones(len(links))
+    linked = sparse.coo_array((ones, links.T), shape=(count, count))
+    linked = linked + linked.T
+    degree = linked.sum(axis=0)
+    system = (sparse.diags_array(degree + hold) - linked).tocsr()
+    start = nearest.interpolate(known.uv)
+    scale = sparse.diags_array(1.0 / (degree + hold))
+    columns = [
+        cg(system, hold * each, x0=each, M=scale, rtol=PRECISE, maxiter=MOST_ROUNDS)[0]
+        for each in start.T
+    ]
+    return np.stack(columns, axis=1).astype(np.float32)
+
+
+def _is_behind_others(feet: FloatArray, away: FloatArray, vertices: FloatArray) -> BoolArray:
+    """Whether another part of the skin lies over the same place, and nearer to it, shape (V,)."""
+    distance, beside = cKDTree(feet).query(feet, k=min(COMPETING, len(feet)))
+    is_other = np.linalg.norm(vertices[beside] - vertices[:, None], axis=2) > distance + APART
+    is_nearer = away[beside] < away[:, None] - 0.5 * APART
+    is_behind: BoolArray = (is_other & (distance < APART) & is_nearer).any(axis=1)
+    return is_behind
+
+
+def _foldedness(known: Head) -> FloatArray:
+    """1 at the built-in head's vertices on ears and in nostrils, 0 elsewhere, shape (V,)."""
+    size = len(known.segments)
+    columns, rows = (known.uv * [size, -size] + [0.0, size]).T.astype(np.int64)
+    there = known.segments[rows.clip(0, size - 1), columns.clip(0, size - 1)]
+    is_folded = np.isin(there, EARS)
+    rims = np.concatenate([known.rings["nostril_left"], known.rings["nostril_right"]])
+    is_rim = np.isin(np.arange(len(known.vertices)), rims)
+    links = np.concatenate([known.faces[:, [0, 1]], known.faces[:, [1, 2]]])
+    links = links[~is_rim[links].any(axis=1)]
+    graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(len(is_rim),) * 2)
+    piece = csgraph.connected_components(graph, directed=False)[1]
+    is_folded |= piece != np.bincount(piece).argmax()  # rims, and the pits that they cut off
+    return is_folded.astype(np.float64)
+
+
+def plain_picture(known: Head) -> Image:
+    """The built-in picture with the skin around ears and nostrils drawn over them.
+
+    Another head has them elsewhere, as form, which the light shows.
+    """
+    height, width = known.segments.shape
+    is_folded = np.isin(known.segments, EARS)
+    drawn = PIL.Image.new("L", (width, height))
+    places = known.uv[known.faces[_foldedness(known)[known.faces].all(axis=1)]]
+    for corners in places * [width, -height] + [0.0, height]:
+        PIL.ImageDraw.Draw(drawn).polygon([tuple(corner) for corner in corners], fill=255)
+    is_folded = ndimage.binary_dilation(is_folded | (np.asarray(drawn) > 0), iterations=MARGIN)
+    # Coarse blocks will do: what fills a hole is smooth.
+    rows, columns = height // BLOCK, width // BLOCK
+    inside = slice(0, rows * BLOCK), slice(0, columns * BLOCK)
+    blocks = (rows, BLOCK, columns, BLOCK, -1)
+    left = (~is_folded[inside]).astype(np.float64)
+    share = left.reshape(blocks).mean(axis=(1, 3))
+    seen = (known.albedo[inside] * left[..., None]).reshape(blocks).mean(axis=(1, 3))
+    filled = np.zeros_like(seen)
+    for blur in BLURS:  # from far around to close by
+        size = (blur, blur, 0.0)
+        weight = ndimage.gaussian_filter(share, size)
+        is_near = weight[..., 0] > NEAR
+        filled[is_near] = (ndimage.gaussian_filter(seen, size) / np.maximum(weight, NEAR))[is_near]
+    smooth = PIL.Image.fromarray(np.round(filled).astype(np.uint8)).resize((width, height))
+    over = ndimage.gaussian_filter(is_folded.astype(np.float32), 0.5 * MARGIN)[..., None]
+    picture: Image = np.round(over * np.asarray(smooth) + (1.0 - over) * known.albedo).astype(
+        np.uint8
+    )
+    return picture

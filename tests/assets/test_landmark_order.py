@@ -1,0 +1,87 @@
+"""Landmarks that are not in their order are refused by name; right ones, however rough, are not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from risorius import assets
+from risorius.assets import AssetError
+from risorius.assets.fitting import fit
+from risorius.assets.fitting.landmark_order import GROUPS, Group, groups_in_disorder
+from tests.heads import Stranger, shape, stranger
+
+HEAD = assets.load("head")
+TEMPLATE = HEAD.vertices[HEAD.landmarks]
+RINGS = ("right eye", "left eye", "outer border of the lips", "inner border of the lips")
+ROUGHNESS = 2.0  # [mm]
+
+
+@pytest.fixture(scope="module")
+def other() -> Stranger:
+    """A head of another shape, its mouth closed."""
+    return stranger()
+
+
+@settings(deadline=None, max_examples=60)
+@given(seed=st.integers(0, 2**32 - 1), stretch=st.tuples(*[st.floats(0.85, 1.15)] * 3))
+def test_right_landmarks_are_taken(seed: int, stretch: tuple[float, float, float]) -> None:
+    """Of another head, stretched, and each up to 2 mm beside its place."""
+    random = np.random.default_rng(seed)
+    away = random.normal(size=(68, 3))
+    away *= ROUGHNESS * random.random((68, 1)) / np.linalg.norm(away, axis=1, keepdims=True)
+    assert not groups_in_disorder(shape(TEMPLATE) * stretch + away, TEMPLATE)
+
+
+@pytest.mark.parametrize("group", GROUPS, ids=lambda group: group.name)
+@settings(deadline=None, max_examples=10)
+@given(data=st.data())
+def test_a_group_in_another_order_is_named(group: Group, data: st.DataObject) -> None:
+    """Reversed, shifted, or both; wherever the group lies."""
+    own = np.arange(group.first, group.first + group.count)
+    orders = [each for each in group.other_orders() if _moves(own, each) > 5.0]
+    order = data.draw(st.sampled_from(orders))
+    points = shape(TEMPLATE)
+    points[own] = points[order] + data.draw(st.tuples(*[st.floats(-8.0, 8.0)] * 3))
+    assert group in groups_in_disorder(points, TEMPLATE)
+
+
+def _moves(own: np.ndarray, order: np.ndarray) -> float:
+    """How far an order moves the points of a group on average [mm]."""
+    return float(np.linalg.norm(TEMPLATE[own] - TEMPLATE[order], axis=1).mean())
+
+
+@pytest.mark.parametrize("group", GROUPS, ids=lambda group: group.name)
+def test_a_reversed_group_is_refused_in_one_line(group: Group, other: Stranger) -> None:
+    """The line has its numbers and the order that is right."""
+    numbers = other.landmarks.copy()
+    own = slice(group.first, group.first + group.count)
+    numbers[own] = numbers[own][::-1]
+    with pytest.raises(AssetError, match=f"^landmarks {group.first} to .*{group.right_order}"):
+        fit(other.mesh, numbers)
+
+
+@pytest.mark.parametrize("name", RINGS)
+def test_a_ring_the_other_way_round_is_refused(name: str, other: Stranger) -> None:
+    """From the right corner, but over the lower lid or lip; closed lips differ by their skin."""
+    group = next(each for each in GROUPS if each.name == name)
+    numbers = other.landmarks.copy()
+    rest = slice(group.first + 1, group.first + group.count)
+    numbers[rest] = numbers[rest][::-1]
+    with pytest.raises(AssetError, match=f"the {name}, are not in their order"):
+        fit(other.mesh, numbers)
+
+
+def test_numbers_counted_from_1_are_refused(other: Stranger) -> None:
+    """Each is the vertex behind the one that is meant."""
+    with pytest.raises(AssetError, match="counted from 1"):
+        fit(other.mesh, (other.landmarks + 1).astype(np.int32))
+
+
+@pytest.mark.parametrize("by", [1, -1, 5])
+def test_a_list_that_begins_elsewhere_is_refused(by: int, other: Stranger) -> None:
+    """Nothing is in its place then."""
+    with pytest.raises(AssetError, match="landmark"):
+        fit(other.mesh, np.roll(other.landmarks, by))
