@@ -33,7 +33,7 @@ FARTHEST_OFF = 14.0  # [mm] of the first points, in the mean: beyond it they are
 NEAR = 30.0  # [mm] around landmarks: the part of the built-in face that is laid on the mesh
 MOST_POINTS = 300  # of that part (chosen; more take longer and find the same)
 AROUND = np.array([60.0, 90.0, 120.0])  # [mm] around the first points, in which a face ends
-STIFFNESSES = (1e4, 3e3, 1e3, 300.0, 100.0, 100.0)  # [mm] of the warp, from step to step
+STIFFNESSES = (1e4, 3e3, 1e3, 300.0, 100.0, 30.0)  # [mm] of the warp, from step to step
 REACH = 18.0  # [mm] beyond which a place on the mesh is not what a point of the face looks for
 
 Known = Mapping[int, npt.ArrayLike]  # points (3,) [unit of the mesh] by the landmark's number
@@ -48,7 +48,7 @@ def guess(mesh: Mesh, known: Known, *, template: Head | None = None) -> FloatArr
     head = load("head") if template is None else template
     similarity = placing(known, template=head)
     numbers = sorted(known)
-    given = similarity.points([known[number] for number in numbers])
+    given = similarity.points(np.array([known[number] for number in numbers]))
     vertices = similarity.points(mesh.vertices)
     faces = skin_around(vertices, mesh.faces, given)
     # What is laid on the mesh: the landmarks, and the face around them.
