@@ -52,7 +52,7 @@ class Painter:
         only lives, and will move again in a moment: finer pictures in between would flicker.
         """
         surface = self._stage.surface
-        surface.area = self._view.viewport
+        surface.area = self._view.drawn
         surface.rules = self._view.divider()
         state = self._view.state
         painted, detail = self._painted

@@ -61,6 +61,11 @@ class View:
         """Its part of the framebuffer."""
         return self.pixels(self.area)
 
+    @property
+    def drawn(self) -> Viewport | None:
+        """What is drawn of the framebuffer, panels apart; None for all of it."""
+        return self.viewport
+
     def pixels(self, area: tuple[float, float, float, float]) -> Viewport:
         """A part of the window, as one of the framebuffer."""
         display = imgui.get_io().display_size

@@ -200,8 +200,10 @@ class Viewer(Parts):
             return
         if is_visible:
             self.surface.resolve()
-            left, bottom, width, _ = (self.room or self).view.viewport
-            if self.room is not None or not self.panel_state.are_hidden:
+            if self.room is not None:
+                self.surface.fill(self.room.view.panel, self.gui.theme.panel)
+            elif not self.panel_state.are_hidden:
+                left, bottom, width, _ = self.view.viewport
                 self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
                 self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
         self._draw_gui(is_visible=is_visible)

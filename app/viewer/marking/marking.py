@@ -33,6 +33,8 @@ from .marks import GROUP_OF, ORDER, Marks, name_of
 
 SEEN_RADIUS = 140.0  # [mm] of the mesh, as long as nobody knows how large a head is in it
 SUFFIX = ".json"
+INNER_LIPS = range(60, 68)
+FORWARD = np.array([0.0, 0.0, 1.0])  # out of a face that is upright
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -88,9 +90,13 @@ class Marking:
 
     def seen(self, numbers: Iterable[int]) -> tuple[FloatArray, FloatArray]:
         """Where marks are seen, and the normals of the skin there, shape (n, 3) each."""
-        places = [self.marks.places[number] for number in numbers]
+        chosen = list(numbers)
+        places = [self.marks.places[number] for number in chosen]
         points = self.placing.points(np.reshape(places, (-1, 3)))
-        return points, self._normals[self._nearest.query(points)[1]]
+        normals = self._normals[self._nearest.query(points)[1]]
+        if self.is_upright:  # skin between lips that touch looks up or down, and is seen from ahead
+            normals[[number in INNER_LIPS for number in chosen]] = FORWARD
+        return points, normals
 
     # What is marked
 

@@ -73,5 +73,7 @@ class MarkingMouse(CameraMouse):
         points, normals = marking.seen(marking.marks.places)
         off = np.linalg.norm(view.on_screen(points) - (io.mouse_pos.x, io.mouse_pos.y), axis=1)
         off[~view.are_seen(points, normals)] = np.inf
-        nearest = int(off.argmin()) if len(off) else -1
-        return [*marking.marks.places][nearest] if len(off) and off[nearest] < em(REACH) else None
+        found = dict(zip(marking.marks.places, off.tolist(), strict=True))
+        # Of marks in one place, as on lips that touch, the current one is meant.
+        nearest = min(found, key=lambda n: found[n] - em(0.3) * (n == marking.current), default=0)
+        return nearest if found.get(nearest, np.inf) < em(REACH) else None

@@ -20,15 +20,15 @@ from .picture import FloatArray, MarkingPicture, MarkingView, places_in
 
 Spot = tuple[float, float]  # [window units]
 WIDTH, SHARE = 21.0, 0.4  # [em] of the panel, and at most of the window
+GUIDE_SHARE = 0.34  # of the window's height, at most
 LARGE = 1.2  # letters of what is asked, as parts of the others
 DARK, WHITE = (0.08, 0.08, 0.10), (1.0, 1.0, 1.0)
 FAINT = 0.22  # opacity of what is on the side that is turned away
 # Buttons in rows, by the labels of their commands.
 ROWS = (
     ("Point before", "Next point"),
-    ("Undo", "Redo"),
+    ("Undo", "Redo", "Guess again"),
     ("Mirror this group", "Mirror the whole side"),
-    ("Guess again",),
 )
 TURNS = ("Tip the mesh", "Roll the mesh")
 
@@ -53,14 +53,15 @@ class MarkingPanel:
         display = imgui.get_io().display_size
         top = self._menus.draw()
         left = round(min(em(WIDTH), SHARE * display.x))
-        with fixed_panel("Marking", (0.0, top), (left, display.y - top)):
+        below = round(top + min(0.9 * left, GUIDE_SHARE * display.y))
+        view.guide_area = (0.0, top, left, below - top)
+        view.area = (left, top, max(display.x - left, 1.0), max(display.y - top, 1.0))
+        with fixed_panel("Marking", (0.0, below), (left, display.y - below)):
             imgui.push_text_wrap_pos(0.0)
             self._draw_task()
             self._draw_buttons()
             self._draw_groups()
             imgui.pop_text_wrap_pos()
-        view.area = (left, top, max(display.x - left, 1.0), max(display.y - top, 1.0))
-        view.place_guide()
         self._draw_marks(view)
         self._draw_guide(view)
 
@@ -80,18 +81,19 @@ class MarkingPanel:
         imgui.spacing()
         if marking.can_guess:
             imgui.text_wrapped(
-                "Drag points that are not where they belong. A click on the skin moves the one "
-                "above; Tab goes on to the next."
+                "Drag points that are not where they belong; a click on the skin moves this one. "
+                "White inside: guessed, and not moved yet."
             )
         else:
             imgui.text_wrapped(
-                "Turn the head until it looks at you: drag beside or on it; the wheel zooms. Then "
-                "click the point on the skin that the guide shows."
+                "Turn the head until it looks at you: drag it with the mouse; tip or roll a mesh "
+                "that lies on its back or side. The wheel zooms. Then click the point on the skin "
+                "that the guide shows."
             )
         imgui.spacing()
 
     def _draw_buttons(self) -> None:
-        rows = ROWS if self._marking.can_guess else (TURNS, *ROWS[1:2])
+        rows = ROWS if self._marking.can_guess else (TURNS, ROWS[1])
         for row in rows:
             self._draw_row(row)
         imgui.spacing()
@@ -119,16 +121,20 @@ class MarkingPanel:
         if not marking.can_guess:
             return
         muted(self._gui, "placed by hand")
+        if not imgui.begin_table("groups", 2):
+            return
         for group in GROUPS:
+            imgui.table_next_column()
             count = sum(number in marking.marks.by_hand for number in group.numbers)
             is_current = marking.current in group.numbers
-            label = f"     {group.title}   {count} of {len(group.numbers)}###{group.title}"
+            label = f"        {group.title}  {count}/{len(group.numbers)}###{group.title}"
             at = imgui.get_cursor_screen_pos()
             if imgui.selectable(label, is_current)[0]:
                 marking.current = group.numbers[0]
             self._gui.remember(f"group {group.title}")
             middle = (at.x + em(0.6), at.y + 0.5 * imgui.get_text_line_height())
             _dot(imgui.get_window_draw_list(), middle, em(0.32), group.colour)
+        imgui.end_table()
 
     def _draw_marks(self, view: MarkingView) -> None:
         """The points over the mesh, joined by lines; numbers for those of the current group."""
@@ -165,6 +171,8 @@ class MarkingPanel:
         at = _spots(places_in(area, self._picture.guide_camera(), points))
         current = marking.current
         others = GROUP_OF[current].numbers if marking.can_guess else FIRST
+        seen = self._picture.guide_seen()
+        others = tuple(number for number in others if seen[number] or number == current)
         pen.push_clip_rect((left, top), (left + width, top + height))
         if marking.can_guess:
             _join(pen, {n: at[n] for n in others}, dict.fromkeys(others, True))
@@ -173,8 +181,6 @@ class MarkingPanel:
         pen.add_circle(at[current], em(0.75), _ink(WHITE), 0, em(0.2))
         _dot(pen, at[current], em(0.38), GROUP_OF[current].colour)
         pen.pop_clip_rect()
-        frame = _ink(self._gui.theme.accent)
-        pen.add_rect((left, top), (left + width, top + height), frame, em(0.3), em(0.1))
         _word(pen, (left + em(0.6), top + em(0.4)), "guide: where it belongs")
 
 

@@ -7,21 +7,18 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from risorius import render
+from risorius import assets, render
+from risorius.assets.topology import vertex_normals
 from risorius.sim.landmarks import MIRRORED
 
 from ...looks import STATIC, Refinement
-from ...pipeline import Pipeline
+from ...pipeline import Pipeline, Viewport
 from ...scenes import Scene, build_scene
-from ..gui import em
 from ..settings import Display, Settings
 from ..view import View
 from .marking import Marking
 from .marks import GROUP_OF, name_of
 
-GUIDE_SIZE = 17.0  # [em] of the guide's sides ...
-GUIDE_SHARE = 0.42  # ... and at most of those of the picture
-GAP = 0.8  # [em] around it
 FACING = 0.15  # cosine to the line of sight beyond which a mark is seen
 
 FloatArray = npt.NDArray[np.float64]
@@ -75,17 +72,18 @@ class MarkingView(View):
         return places_in(self.area, self.camera, points)
 
     def are_seen(self, points: FloatArray, normals: FloatArray) -> npt.NDArray[np.bool_]:
-        """Whether the skin at points (n, 3) looks at the camera, shape (n,)."""
-        to_eye = self.camera.eye - points
-        toward = (normals * to_eye).sum(axis=1)
-        return np.asarray(toward > FACING * np.linalg.norm(to_eye, axis=1))
+        """Whether skin at points (n, 3) looks at the camera, shape (n,)."""
+        return are_facing(self.camera, points, normals)
 
-    def place_guide(self) -> None:
-        """Find room for it, in the upper right corner of the picture."""
-        left, top, width, height = self.area
-        side = min(em(GUIDE_SIZE), GUIDE_SHARE * width, GUIDE_SHARE * height)
-        gap = em(GAP)
-        self.guide_area = (left + width - side - gap, top + gap, side, side)
+    @property
+    def drawn(self) -> None:
+        """All of the window: the guide is in its upper left corner."""
+
+    @property
+    def panel(self) -> Viewport:
+        """The part of the framebuffer below the guide."""
+        left, bottom, width, _ = self.pixels(self.guide_area)
+        return left, 0, width, bottom
 
 
 class MarkingPicture:
@@ -95,6 +93,9 @@ class MarkingPicture:
         self.surface, self.marking = surface, marking
         self._renderer = render.Renderer(surface)
         self._guide = Pipeline(build_scene("face"), self._renderer, [Refinement()])
+        head = assets.load("head")
+        normals = vertex_normals(head.vertices, head.faces)
+        self._guide_marks = head.vertices[head.landmarks], normals[head.landmarks]
         self.bind_mesh()
 
     def bind_mesh(self) -> None:
@@ -139,8 +140,11 @@ class MarkingPicture:
     @property
     def guide_points(self) -> FloatArray:
         """The landmarks of the guide, shape (68, 3)."""
-        head = self._guide.scene
-        return np.asarray(head.rest_positions[head.landmarks])  # type: ignore[attr-defined]
+        return self._guide_marks[0]
+
+    def guide_seen(self) -> npt.NDArray[np.bool_]:
+        """Which of them look at its camera, shape (68,)."""
+        return are_facing(self.guide_camera(), *self._guide_marks)
 
     def guide_camera(self) -> render.OrbitCamera:
         """The camera that shows the current landmark best; the whole face for the first ones."""
@@ -160,6 +164,15 @@ def yaw_of(number: int) -> float:
     """From where a landmark is seen best [degrees]."""
     sign = 0.0 if MIRRORED[number] == number else -1.0 if "right" in name_of(number) else 1.0
     return sign * GROUP_OF[number].yaw
+
+
+def are_facing(
+    camera: render.OrbitCamera, points: FloatArray, normals: FloatArray
+) -> npt.NDArray[np.bool_]:
+    """Whether skin at points (n, 3) looks at a camera, shape (n,)."""
+    to_eye = camera.eye - points
+    toward = (normals * to_eye).sum(axis=1)
+    return np.asarray(toward > FACING * np.linalg.norm(to_eye, axis=1))
 
 
 def places_in(
