@@ -44,7 +44,12 @@ def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> S
     Raises AssetError if landmarks lie on two pieces or on none, or there are too many triangles,
     or too few.
     """
-    check_count(faces)
+    if not FEWEST_TRIANGLES <= len(faces) <= MOST_TRIANGLES:
+        cure = "reduce" if len(faces) > MOST_TRIANGLES else "subdivide"
+        raise AssetError(
+            f"the head has {len(faces)} triangles; allowed are {FEWEST_TRIANGLES} to "
+            f"{MOST_TRIANGLES}: {cure} it in a modelling program"
+        )
     piece = pieces_of(faces, len(vertices))
     others = np.flatnonzero(piece[landmarks] != np.bincount(piece[landmarks]).argmax())
     if len(others):
@@ -58,16 +63,6 @@ def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> S
     return SkinPiece(
         vertices[used], number[faces[is_in_piece[faces[:, 0]]]], number[landmarks], used
     )
-
-
-def check_count(faces: IndexArray) -> None:
-    """Raise AssetError for a mesh of too many or too few triangles."""
-    if not FEWEST_TRIANGLES <= len(faces) <= MOST_TRIANGLES:
-        cure = "reduce" if len(faces) > MOST_TRIANGLES else "subdivide"
-        raise AssetError(
-            f"the head has {len(faces)} triangles; allowed are {FEWEST_TRIANGLES} to "
-            f"{MOST_TRIANGLES}: {cure} it in a modelling program"
-        )
 
 
 def pieces_of(faces: IndexArray, count: int) -> IndexArray:

@@ -164,9 +164,10 @@ def test_swapped_sides_are_told_and_can_be_mended(marking: Marking) -> None:
 
 def test_a_mesh_that_can_be_no_head_is_refused_at_once(tmp_path: Path) -> None:
     """Before anybody has marked 68 points on it."""
-    (tmp_path / "one.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    with pytest.raises(UserError, match=r"one\.obj: the head has 1 triangles"):
-        Marking(tmp_path / "one.obj", Files(is_native=False))
+    mesh = tmp_path / "fan.obj"
+    mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 2 0\nv 0 3 1\nf 1 2 3\nf 1 2 4\nf 2 1 5\n")
+    with pytest.raises(UserError, match=r"fan\.obj: the mesh is not manifold"):
+        Marking(mesh, Files(is_native=False))
 
 
 def test_quarter_turns_turn_the_mesh_alone(marking: Marking) -> None:

@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 from risorius.assets.errors import AssetError
 from risorius.assets.fitting.guess import guess, placing, skin_around
 from risorius.assets.fitting.landmark_file import landmarks_text, read_marks
-from risorius.assets.fitting.soundness import check_count, check_manifold
+from risorius.assets.fitting.soundness import check_manifold
 from risorius.assets.fitting.warp import Similarity, nearest_on
 from risorius.assets.meshes import read_mesh
 from risorius.assets.topology import vertex_normals
@@ -48,7 +48,6 @@ class Marking:
         with _for_users():
             self.mesh = mesh = read_mesh(path)
         with _for_users(f"{path.name}: "):
-            check_count(mesh.faces)
             check_manifold(mesh.faces)
         middle = 0.5 * (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0))
         radius = max(float(np.linalg.norm(mesh.vertices - middle, axis=1).max()), 1e-12)
