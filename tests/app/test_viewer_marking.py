@@ -140,6 +140,10 @@ def test_vertex_numbers_can_be_corrected(marking: Marking, tmp_path: Path) -> No
     _, numbers = stranger().write(tmp_path)
     marking.open(numbers)
     assert off(marking).max() < 1e-8 and not marking.marks.guessed
+    wrong = Marking(marking.path, Files(is_native=False))
+    numbers.write_text(json.dumps({"landmarks": np.roll(stranger().landmarks, 20).tolist()}))
+    wrong.open(numbers)
+    assert wrong.marks.is_complete and not wrong.is_upright  # to be mended
     numbers.write_text('{"landmarks": [1, 2]}')
     with pytest.raises(UserError, match="68 iBug points"):
         marking.open(numbers)

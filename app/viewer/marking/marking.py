@@ -75,11 +75,14 @@ class Marking:
         self._nearest = cKDTree(self.positions)
 
     def _stand_up(self) -> None:
-        """The first time that all marks are there: upright, looking ahead, as large as a head."""
+        """The first time that all marks are there: upright, looking ahead, as large as a head.
+
+        Those of a file may be no face's; then the mesh stays as it is, and they can be mended.
+        """
         if not self.is_upright:
-            with _for_users():
-                self._place(placing(self.marks.places))
-            self.current, self.is_upright = ORDER[0], True
+            with contextlib.suppress(AssetError):
+                self._place(placing(self.marks.by_hand))
+                self.current, self.is_upright = ORDER[0], True
 
     def turn(self, axis: FloatArray) -> None:
         """Turn the mesh by a quarter about one of the axes of what is seen."""
