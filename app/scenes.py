@@ -350,7 +350,10 @@ def head_for(
     if head is None and landmarks is None:
         return None
     if head is None or landmarks is None:
-        raise UserError("--head HEAD.obj and --landmarks LANDMARKS.json go together")
+        raise UserError(
+            "--head HEAD.obj and --landmarks LANDMARKS.json go together; "
+            "`risorius view --head HEAD.obj` helps to mark the landmarks"
+        )
     fitted = kept("head", (state_of(head), state_of(landmarks)), lambda: fit_head(head, landmarks))
     for note in fitted.notes:
         LOG.warning("risorius: %s: %s", head, note)

@@ -138,8 +138,9 @@ def view(
 ) -> None:
     """Open the window: a face with a slider for every muscle.
 
-    With --live it follows somebody's face, which a phone or `risorius send` sends; --mapping,
-    --gain and --mirror are that face's then.
+    With --head alone, the landmarks of that mesh are marked first. With --live the face follows
+    somebody's, which a phone or `risorius send` sends; --mapping, --gain and --mirror are that
+    face's then.
     """
     from ..performances import script_for
     from ..sound import with_sound
@@ -149,7 +150,9 @@ def view(
         playback = replace(playback, mapping=None, gains=(), mirror=False)  # the live face has them
     tell = None if quiet else told
     performance = script_for(script, scene, playback=playback, tell=tell)
-    open_window(with_sound(performance, sound), size, drawing, listening=listening)
+    is_bare = drawing.head is not None and drawing.landmarks is None and drawing.person is None
+    mesh = drawing.head if is_bare else None
+    open_window(with_sound(performance, sound), size, drawing, listening=listening, mesh=mesh)
 
 
 @click.command()
@@ -242,9 +245,10 @@ def open_window(
     playing: bool = False,
     once: bool = False,
     listening: Listening | None = None,
+    mesh: Path | None = None,
 ) -> None:
-    """Open the viewer on a script's scene."""
-    head = drawing.fitted_head()
+    """Open the viewer on a script's scene; or on a mesh whose landmarks are to be marked."""
+    head = drawing.fitted_head() if mesh is None else None
     from ..viewer import Viewer
     from ..viewer.live_commands import check_scene
     from ..viewer.settings import display_of, settings_path
@@ -259,6 +263,8 @@ def open_window(
             line = viewer.live.start(listening)
             if line and not viewer.messages.text:  # unless there is something wrong to be told
                 viewer.messages.say(line)
+        if mesh is not None:
+            viewer.mark(mesh)
         viewer.run(playing=playing, once=once)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from risorius import assets
+from risorius.assets.fitting.landmark_file import UnfinishedError
 from risorius.assets.meshes import FORMATS
 
 from ..errors import UserError
@@ -17,6 +18,7 @@ from .files import Files
 from .messages import Message
 from .script_commands import SOUNDS, ScriptCommands
 
+FITTING, READING = "fitting the muscles to this head", "reading this mesh"  # as is announced
 MESHES = tuple(f".{name}" for name in FORMATS)
 LANDMARKS = ".json"
 
@@ -59,13 +61,14 @@ class DroppedFiles:
         """A face with the head, fitted; UserError for one that cannot be."""
         mesh, landmarks = self.mesh, self.landmarks
         if mesh is None or landmarks is None:
-            given, missing = (
-                (mesh, "landmarks, a .json") if mesh else (landmarks, "mesh, an .obj say")
+            name = landmarks.name if landmarks else ""
+            raise UserError(
+                f"{name}: is half of a head; drop it together with its mesh, an .obj say"
             )
-            name = given.name if given else ""
-            raise UserError(f"{name}: is half of a head; drop it together with its {missing}")
         try:
             return build_scene("face", head_for(mesh, landmarks))
+        except UnfinishedError:
+            raise
         except assets.AssetError as error:
             raise UserError(str(error)) from None
 
@@ -74,10 +77,18 @@ class FileDrop:
     """Opens dropped files; a head, which takes a while, in a frame after it was announced."""
 
     def __init__(
-        self, files: Files, scripts: ScriptCommands, show_scene: Callable[[Scene], None]
+        self,
+        files: Files,
+        scripts: ScriptCommands,
+        show_scene: Callable[[Scene], None],
+        mark: Callable[[Path, Path | None], Message],
     ) -> None:
-        """show_scene: puts a scene with another head in place of the present one."""
+        """show_scene: puts a scene with another head in place of the present one.
+
+        mark: has the landmarks of a mesh marked, or those of a file that are missing.
+        """
         self._files, self._scripts, self._show_scene = files, scripts, show_scene
+        self._mark = mark
         self._announced: DroppedFiles | None = None
 
     @property
@@ -91,7 +102,7 @@ class FileDrop:
         if not dropped.has_head:
             return self._open(dropped)
         self._announced = dropped
-        return "fitting the muscles to this head ..."
+        return f"{FITTING if dropped.landmarks else READING} ..."
 
     def do_announced(self) -> Message:
         """Fit the head that was announced; all that was done stays."""
@@ -101,8 +112,15 @@ class FileDrop:
     def _open(self, dropped: DroppedFiles) -> Message:
         """Show the head first, then what shall be played on it."""
         line, remark = None, dropped.remark()
-        if dropped.has_head:
-            self._show_scene(dropped.scene())
+        if dropped.mesh is not None and dropped.landmarks is None:
+            line = self._mark(dropped.mesh, None)
+        elif dropped.has_head:
+            try:
+                scene = dropped.scene()
+            except UnfinishedError:
+                assert dropped.mesh is not None
+                return self._mark(dropped.mesh, dropped.landmarks)
+            self._show_scene(scene)
             assert dropped.mesh is not None
             line = f"{dropped.mesh.name}: opened{remark}"
             remark = f" with {dropped.mesh.name}{remark}"
@@ -126,3 +144,13 @@ class FileDrop:
             )
 
         self._files.ask("Open head", go_on, saving=False, kind="Meshes", suffixes=MESHES)
+
+    def ask_mesh(self) -> None:
+        """Ask for a mesh without landmarks, and have them marked."""
+        self._files.ask(
+            "Mark a head",
+            lambda mesh: self.open([str(mesh)]),
+            saving=False,
+            kind="Meshes",
+            suffixes=MESHES,
+        )

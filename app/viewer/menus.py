@@ -41,6 +41,7 @@ def file_menu(
         command("New script", "Ctrl+N", scripts.new),
         command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
         command("Open head ...", "Ctrl+H", file_drop.ask_head),
+        command("Mark a head ...", "Ctrl+Shift+H", file_drop.ask_mesh),
         command("Open sound ...", "Ctrl+U", scripts.ask_sound),
         command("Remove sound", "", scripts.remove_sound, can_run=lambda: scripts.has_sound),
         command("Save script", "Ctrl+S", scripts.save),

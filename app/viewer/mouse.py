@@ -13,6 +13,8 @@ import numpy as np
 import numpy.typing as npt
 from imgui_bundle import imgui
 
+from risorius import render
+
 from .gui import LEFT, MIDDLE, RIGHT, em
 from .picking import Ray, muscle_at, skin_under
 from .stage import Stage
@@ -60,24 +62,17 @@ class SkinDrag:
         self._scene.simulation.end_drag()
 
 
-class Mouse:
-    """Follows the mouse from press to release."""
+class CameraMouse:
+    """Turns and moves a camera by the mouse, from press to release; the left button may do more."""
 
-    def __init__(self, view: View, stage: Stage, select_muscle: Callable[[str], None]) -> None:
-        """select_muscle: called with the name of one that was clicked."""
-        self._view, self._stage, self._select_muscle = view, stage, select_muscle
+    def __init__(self, view: View, surface: render.WindowSurface) -> None:
+        self._view, self._surface = view, surface
         self.forget()
 
     def forget(self) -> None:
         """Hold on to nothing any more: what it was on is not there."""
-        self._doing = ""  # orbit, pan, divider, skin
+        self._doing = ""  # orbit, pan, or what the left button does
         self._pressed_at = (0.0, 0.0)
-        self.skin_drag: SkinDrag | None = None
-
-    @property
-    def is_dragging_skin(self) -> bool:
-        """Whether the skin is being dragged."""
-        return self.skin_drag is not None and bool(self.skin_drag.offset.any())
 
     @property
     def is_dragging(self) -> bool:
@@ -92,13 +87,19 @@ class Mouse:
             if not any(imgui.is_mouse_down(button) for button in (LEFT, RIGHT, MIDDLE)):
                 self._release(io)
         elif not io.want_capture_mouse:
-            if self._is_at_divider(io.mouse_pos.x):
-                imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+            self._hover(io)
             for button in (LEFT, RIGHT, MIDDLE):
                 if imgui.is_mouse_clicked(button):
                     self._press(io, button)
             if io.mouse_wheel:
                 self._view.camera.zoom(ZOOM_PER_NOTCH**io.mouse_wheel)
+
+    def _hover(self, io: Any) -> None:
+        """The mouse is over the picture, and does nothing."""
+
+    def _take(self, io: Any) -> str:
+        """What the left button does, pressed here."""
+        return "orbit"
 
     def _press(self, io: Any, button: int) -> None:
         self._pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
@@ -106,29 +107,75 @@ class Mouse:
             self._doing = "pan"
         elif button == RIGHT or io.key_alt:
             self._doing = "orbit"
-        elif self._is_at_divider(io.mouse_pos.x):
-            self._doing = "divider"
         else:
-            scene = self._stage.scene
-            point = None
-            if hasattr(scene, "simulation"):
-                point = skin_under(self._ray(io), scene.positions, scene.faces)
-            self._doing = "orbit" if point is None else "skin"
-            if point is not None:
-                self.skin_drag = SkinDrag(scene, point)
+            self._doing = self._take(io)
 
     def _drag(self, io: Any) -> None:
         camera, delta = self._view.camera, io.mouse_delta
-        left, _, width, height = self._view.area
         if self._doing == "orbit":
             degrees = DEGREES_PER_EM / em()
             camera.orbit(-delta.x * degrees, delta.y * degrees)
         elif self._doing == "pan":
-            camera.pan(-delta.x / max(height, 1.0), delta.y / max(height, 1.0))
-        elif self._doing == "divider":
+            height = max(self._view.area[3], 1.0)
+            camera.pan(-delta.x / height, delta.y / height)
+
+    def _release(self, io: Any) -> None:
+        self.forget()
+
+    def _has_moved(self, io: Any) -> bool:
+        x, y = self._pressed_at
+        return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > CLICK)
+
+    def _place(self, io: Any) -> tuple[float, float]:
+        """Where the mouse is [pixels from the lower left corner of the surface]."""
+        width, height = self._surface.size
+        return (
+            io.mouse_pos.x * width / max(io.display_size.x, 1.0),
+            height - io.mouse_pos.y * height / max(io.display_size.y, 1.0),
+        )
+
+
+class Mouse(CameraMouse):
+    """The mouse on a face: it drags the skin, and the line between two halves."""
+
+    def __init__(self, view: View, stage: Stage, select_muscle: Callable[[str], None]) -> None:
+        """select_muscle: called with the name of one that was clicked."""
+        super().__init__(view, stage.surface)
+        self._stage, self._select_muscle = stage, select_muscle
+
+    def forget(self) -> None:
+        super().forget()
+        self.skin_drag: SkinDrag | None = None
+
+    @property
+    def is_dragging_skin(self) -> bool:
+        """Whether the skin is being dragged."""
+        return self.skin_drag is not None and bool(self.skin_drag.offset.any())
+
+    def _hover(self, io: Any) -> None:
+        if self._is_at_divider(io.mouse_pos.x):
+            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+
+    def _take(self, io: Any) -> str:
+        if self._is_at_divider(io.mouse_pos.x):
+            return "divider"
+        scene = self._stage.scene
+        if not hasattr(scene, "simulation"):
+            return "orbit"
+        point = skin_under(self._ray(io), scene.positions, scene.faces)
+        if point is None:
+            return "orbit"
+        self.skin_drag = SkinDrag(scene, point)
+        return "skin"
+
+    def _drag(self, io: Any) -> None:
+        super()._drag(io)
+        left, _, width, _ = self._view.area
+        if self._doing == "divider":
             self._view.display.divider = min(max((io.mouse_pos.x - left) / width, 0.0), 1.0)
         elif self.skin_drag is not None and (self._has_moved(io) or self.is_dragging_skin):
-            self.skin_drag.to(self._ray(io).at_depth_of(self.skin_drag.point, camera.axes()[2]))
+            across = self._view.camera.axes()[2]
+            self.skin_drag.to(self._ray(io).at_depth_of(self.skin_drag.point, across))
 
     def _release(self, io: Any) -> None:
         if self.skin_drag is not None:
@@ -139,10 +186,6 @@ class Mouse:
                     self._select_muscle(name)
         self.forget()
 
-    def _has_moved(self, io: Any) -> bool:
-        x, y = self._pressed_at
-        return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > CLICK)
-
     def _is_at_divider(self, x: float) -> bool:
         display = self._view.display
         left, _, width, _ = self._view.area
@@ -150,11 +193,7 @@ class Mouse:
 
     def _ray(self, io: Any) -> Ray:
         """Through the mouse, in the viewport that it is in."""
-        width, height = self._stage.surface.size
-        place = (
-            io.mouse_pos.x * width / max(io.display_size.x, 1.0),
-            height - io.mouse_pos.y * height / max(io.display_size.y, 1.0),
-        )
+        place = self._place(io)
         shots = self._stage.shots(self._view.display, self._view.viewport)
         under = [shot for shot in shots if place[0] >= shot.clip[0]] or shots[:1]
         return Ray.through(self._view.camera, under[-1].viewport, place)

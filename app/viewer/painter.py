@@ -2,20 +2,34 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 from risorius import render
 
 from .export import Exporter
 from .level_of_detail import FULL, LevelOfDetail
 from .messages import Messages
 from .physics import CALM
-from .stage import Stage
+from .settings import Display
 from .view import View
+
+
+class Picture(Protocol):
+    """What can be drawn into the window: a `Stage`, or else."""
+
+    surface: render.WindowSurface
+
+    def bind(self, display: Display) -> None:
+        """Get ready for what the user wants to see; UserError where that cannot be."""
+
+    def draw(self, view: View) -> None:
+        """Draw it as it is now; the surface's `detail` says how finely."""
 
 
 class Painter:
     """Keeps the picture of the scene up to date, as finely as the machine can."""
 
-    def __init__(self, stage: Stage, view: View, exporter: Exporter, messages: Messages) -> None:
+    def __init__(self, stage: Picture, view: View, exporter: Exporter, messages: Messages) -> None:
         self._stage, self._view, self._exporter = stage, view, exporter
         self._messages = messages
         self.level_of_detail = LevelOfDetail(is_software=stage.surface.is_software)
@@ -38,7 +52,7 @@ class Painter:
         only lives, and will move again in a moment: finer pictures in between would flicker.
         """
         surface = self._stage.surface
-        surface.area = self._view.viewport
+        surface.area = self._view.drawn
         surface.rules = self._view.divider()
         state = self._view.state
         painted, detail = self._painted

@@ -21,7 +21,8 @@ from .gui import Gui, wake_up
 from .idle_life import IdleLife
 from .key_selection import KeySelection
 from .live_commands import LiveCommands
-from .messages import Messages
+from .marking import Lent, Marking, Room
+from .messages import Message, Messages
 from .motion_export import MotionExport
 from .mouse import Mouse
 from .painter import Painter
@@ -118,7 +119,8 @@ class Parts:
         self.exporter = Exporter(self.stage, self.view)
         self.motion_export = MotionExport(session, self.files)
         self.live = LiveCommands(session, self.panel_state, wake_up)
-        self.file_drop = FileDrop(self.files, self.scripts, self.show_scene)
+        self.room: Room | None = None  # a mesh whose landmarks are being marked
+        self.file_drop = FileDrop(self.files, self.scripts, self.show_scene, self.mark)
         self.commands: tuple[Command, ...] = (
             *menus.file_menu(
                 self.scripts, self.file_drop, self.motion_export, self.exporter, self.ask_to_close
@@ -161,6 +163,7 @@ class Parts:
             self.remember()
         self.live.stop()
         self.exporter.close()
+        self._leave_marking()
         self.soundtrack.close()
         self.recovery.close()
         self._resources.close()
@@ -177,6 +180,7 @@ class Parts:
     def show_scene(self, scene: Scene) -> None:
         """Take another scene with the same controls in place of this one."""
         self.session.move_to(scene)
+        self._leave_marking()
         display = self.settings.display
         display.remove_missing_overlays(scene)
         refused = remove_refused_options(display, scene)
@@ -187,6 +191,49 @@ class Parts:
         self.painter.forget()
         if refused:
             self.messages.say(refused)
+
+    def mark(self, mesh: Path, landmarks: Path | None = None) -> Message:
+        """Mark the landmarks of a mesh, or go on with those of a file; the face waits meanwhile.
+
+        UserError where that cannot be.
+        """
+        if self.exporter.film is not None:
+            raise UserError("end the film first (F10)")
+        marking = Marking(mesh, self.files)
+        line = None if landmarks is None else marking.open(landmarks)
+
+        def begin() -> Message:
+            """Do so."""
+            self._leave_marking()
+            self.session.is_playing = False
+            self.room = Room(
+                marking,
+                Lent(
+                    self.surface,
+                    self.gui,
+                    self.settings,
+                    self.session,
+                    self.messages,
+                    self.question,
+                    self.exporter,
+                    self.panel_state,
+                ),
+                use=lambda *files: self.file_drop.open([str(file) for file in files]),
+                leave=self._leave_marking,
+                close=self.ask_to_close,
+            )
+            return line
+
+        return begin() if self.room is None else self.room.leave(begin)
+
+    def _leave_marking(self) -> Message:
+        """Back to the face."""
+        if self.room is not None:
+            self.room.close()
+            self.room = None
+            self.mouse.forget()
+            self.painter.forget()
+        return None
 
     def select_muscle(self, name: str) -> None:
         """Show a muscle's slider."""

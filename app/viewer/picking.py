@@ -45,23 +45,29 @@ class Ray:
         return met
 
 
-def skin_under(ray: Ray, positions: FloatArray, faces: npt.NDArray[Any]) -> FloatArray | None:
-    """The nearest point of the mesh that the ray meets from outside, or None.
+def skin_under(
+    ray: Ray, positions: FloatArray, faces: npt.NDArray[Any], *, from_outside: bool = True
+) -> FloatArray | None:
+    """The nearest point of the mesh that the ray meets, or None; `from_outside` or either side.
 
-    Möller and Trumbore 1997, for all triangles at once.
+    Möller and Trumbore 1997, for all triangles at once whose corners lie around the ray.
     """
+    axes = np.linalg.svd(ray.direction[None])[2][1:]  # across the ray
+    for side in ((positions - ray.origin) @ axis > 0.0 for axis in axes):
+        count = side[faces[:, 0]].astype(np.int8) + side[faces[:, 1]] + side[faces[:, 2]]
+        faces = faces[(count > 0) & (count < 3)]
     a, b, c = (positions[faces[:, corner]] for corner in range(3))
     ab, ac = b - a, c - a
     across = np.cross(ray.direction, ac)
     volume = (ab * across).sum(axis=1)
-    front = volume > 1e-12
-    volume = np.where(front, volume, 1.0)
+    met = (volume if from_outside else np.abs(volume)) > 1e-12
+    volume = np.where(met, volume, 1.0)
     from_a = ray.origin - a
     u = (from_a * across).sum(axis=1) / volume
     turned = np.cross(from_a, ab)
     v = (turned @ ray.direction) / volume
     distance = (ac * turned).sum(axis=1) / volume
-    hit = front & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (distance > 0.0)
+    hit = met & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (distance > 0.0)
     if not hit.any():
         return None
     point: FloatArray = ray.origin + distance[hit].min() * ray.direction

@@ -59,10 +59,19 @@ class View:
     @property
     def viewport(self) -> Viewport:
         """Its part of the framebuffer."""
+        return self.pixels(self.area)
+
+    @property
+    def drawn(self) -> Viewport | None:
+        """What is drawn of the framebuffer, panels apart; None for all of it."""
+        return self.viewport
+
+    def pixels(self, area: tuple[float, float, float, float]) -> Viewport:
+        """A part of the window, as one of the framebuffer."""
         display = imgui.get_io().display_size
         width, height = self._surface.size
         across, along = width / max(display.x, 1.0), height / max(display.y, 1.0)
-        left, top, wide, high = self.area
+        left, top, wide, high = area
         x, y = round(left * across), round((display.y - top - high) * along)
         return max(x, 0), max(y, 0), max(round(wide * across), 1), max(round(high * along), 1)
 

@@ -19,6 +19,7 @@ from .command import run_pressed
 from .export import FRAMES_PER_SECOND
 from .gui import on_drop, poll_events, wait_for_event
 from .live_commands import PACING
+from .painter import Painter
 from .panels.help import draw_help
 from .panels.message_line import draw_message
 from .panels.question_box import draw_question
@@ -88,8 +89,27 @@ class Viewer(Parts):
         now = time.perf_counter()
         elapsed, self._last = now - self._last, now
         self.times.note_frame(elapsed)
-        mark = " *" if self.session.unsaved else ""
-        self.placement.set_title(f"Risorius: {self.session.name}{mark}")
+        room = self.room
+        name = self.session.name if room is None else room.marking.path.name
+        is_unsaved = self.session.unsaved if room is None else room.marking.unsaved
+        self.placement.set_title(f"Risorius: {name}{' *' if is_unsaved else ''}")
+        is_moving = self._move_face(elapsed) if room is None else room.paint(elapsed)
+        if self.is_left_alone and not (is_moving or imgui.get_io().want_text_input):
+            return  # what is shown stays as it is; of a line of text the cursor blinks
+        self._show_panels(elapsed, is_moving=is_moving)
+        self.surface.end()
+        for task in announced:
+            self.messages.text = ""
+            self.messages.attempt(task)
+            self._last = time.perf_counter()
+        if is_moving and not self.is_left_alone:
+            self.shown_painter.level_of_detail.note(time.perf_counter() - now)
+        if self.exporter.film is not None:  # on a fast machine a film is made in real time
+            time.sleep(max(1.0 / FRAMES_PER_SECOND - (time.perf_counter() - now), 0.0))
+        self._awake = max(self._awake - 1, 0)
+
+    def _move_face(self, elapsed: float) -> bool:
+        """Let time pass for the face, and draw it; whether the picture has changed."""
         is_filming = self.exporter.film is not None
         seconds = 1.0 / FRAMES_PER_SECOND if is_filming else elapsed
         self.messages.attempt(self.soundtrack.refresh)
@@ -102,34 +122,29 @@ class Viewer(Parts):
         life = partial(self.life.after, is_held=is_held) if self.life.is_on else None
         advance = partial(self.physics.advance, seconds, is_skin_dragged=is_skin_dragged)
         self.messages.attempt(partial(advance, is_urgent=self.live.is_urgent, life=life))
-        is_moving = self.painter.paint(
+        return self.painter.paint(
             elapsed, has_moved=self.physics.has_moved, is_alive=self.physics.is_left_alone
         )
-        if self.is_left_alone and not (is_moving or imgui.get_io().want_text_input):
-            return  # what is shown stays as it is; of a line of text the cursor blinks
-        self._show_panels(elapsed, is_moving=is_moving)
-        self.surface.end()
-        for task in announced:
-            self.messages.text = ""
-            self.messages.attempt(task)
-            self._last = time.perf_counter()
-        if is_moving and not self.is_left_alone:
-            self.painter.level_of_detail.note(time.perf_counter() - now)
-        if self.exporter.film is not None:  # on a fast machine a film is made in real time
-            time.sleep(max(1.0 / FRAMES_PER_SECOND - (time.perf_counter() - now), 0.0))
-        self._awake = max(self._awake - 1, 0)
+
+    @property
+    def shown_painter(self) -> Painter:
+        """That of what is shown: the face, or a mesh that is marked."""
+        return self.painter if self.room is None else self.room.painter
 
     @property
     def is_idle(self) -> bool:
         """Whether nothing moves, and nothing is about to."""
+        is_settled = (
+            self._awake == 0 and self.shown_painter.is_complete and not self.messages.is_fading
+        )
+        if self.room is not None:
+            return is_settled
         return (
-            self.physics.is_at_rest
+            is_settled
+            and self.physics.is_at_rest
             and not self.life.is_on
-            and self._awake == 0
-            and self.painter.is_complete
             and not self.session.is_recording
             and not self.live.is_busy
-            and not self.messages.is_fading
             and not self.soundtrack.is_heard
             and self.exporter.film is None
         )
@@ -138,7 +153,8 @@ class Viewer(Parts):
     def is_left_alone(self) -> bool:
         """Whether the face does no more than live, and nothing else happens."""
         return (
-            self.physics.is_left_alone
+            self.room is None
+            and self.physics.is_left_alone
             and self._awake == 0
             and not self.messages.is_fading
             and not self.files.is_waiting
@@ -178,14 +194,16 @@ class Viewer(Parts):
         if not self.is_left_alone:  # what the face does by itself moves no slider
             self.panel_cache.age(elapsed)
         # What is dragged in the scene moves no slider.
-        has_input = is_answering and not self.mouse.is_dragging
+        has_input = self.room is not None or (is_answering and not self.mouse.is_dragging)
         is_visible = self.panel_cache.are_due(size, is_moving=is_moving, has_input=has_input)
         if not (is_visible or is_answering):
             return
         if is_visible:
             self.surface.resolve()
-            left, bottom, width, _ = self.view.viewport
-            if not self.panel_state.are_hidden:
+            if self.room is not None:
+                self.surface.fill(self.room.view.panel, self.gui.theme.panel)
+            elif not self.panel_state.are_hidden:
+                left, bottom, width, _ = self.view.viewport
                 self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
                 self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
         self._draw_gui(is_visible=is_visible)
@@ -195,23 +213,29 @@ class Viewer(Parts):
     def _draw_gui(self, *, is_visible: bool) -> None:
         """Panels, and what the user does to them and to the face; is_visible: see Gui.frame."""
         messages, gui, state = self.messages, self.gui, self.panel_state
+        room, view, commands = self.room, self.view, self.commands
+        if room is not None:
+            view, commands = room.view, room.commands
         with gui.frame(is_visible=is_visible):
             gui.set_theme(self.settings.theme, self.settings.zoom)
-            self.layout.draw(self.view)
+            if room is None:
+                self.layout.draw(view)
+            else:
+                room.panel.draw(room.view)
             messages.age(imgui.get_io().delta_time)
-            draw_message(gui, messages, self.view)
+            draw_message(gui, messages, view)
             for draw in (
-                partial(draw_recovery, gui, self.recovery, self.session, self.question, self.view),
+                partial(draw_recovery, gui, self.recovery, self.session, self.question, view),
                 self.files.poll,
                 self.chooser.draw,
                 partial(draw_question, gui, self.question, self.session, self.scripts),
             ):
                 messages.attempt(draw)
             if state.is_help_open:
-                state.is_help_open = draw_help(gui, self.commands)
+                state.is_help_open = draw_help(gui, commands, is_marking=room is not None)
             if not (self.files.is_waiting or self.question.is_open):
-                run_pressed(self.commands, messages)
-                self.mouse.follow()
+                run_pressed(commands, messages)
+                (self if room is None else room).mouse.follow()
 
     def drop(self, paths: Sequence[str]) -> None:
         """Open files that were dropped onto the window."""

@@ -3,13 +3,16 @@
     {"landmarks": [1225, 1888, ...]}              vertex numbers, counted from 0
     {"landmarks": [[-73.6, 36.8, 36.6], ...]}     points on the mesh, in its own unit
 
-The key may be called anything, other keys are left alone, and the bare list will do.
+The key may be called anything, other keys are left alone, and the bare list will do. While a head
+is being marked, landmarks that are not placed yet are null, and "guessed" has the numbers of those
+that nobody has looked at.
 Source: Sagonas et al. 2013, "300 Faces in-the-Wild Challenge" (the order of the points).
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from reprlib import repr as shortened
 from typing import Any
@@ -28,6 +31,7 @@ from .warp import nearest_on
 COUNT = 68
 MOST_BYTES = 1_000_000
 KEY = "landmarks"  # the list to take where there are several
+GUESSED = "guessed"
 FARTHEST_OFF = (
     0.05  # of the distance between the outer eye corners: a point off the mesh is a mistake
 )
@@ -43,15 +47,40 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray | Non
     range, and a point that is not on the mesh.
     """
     try:
-        found = _list_in(_document(path))
-        if len(found) != COUNT:
-            raise AssetError(
-                f"{len(found)} landmarks; it must be the {COUNT} iBug points in their order"
+        found = _all_in(_document(path))
+        if None in found:
+            raise UnfinishedError(
+                f"landmark {found.index(None)} is null: not marked yet, as {found.count(None)} of "
+                f"{COUNT}; go on with it in the window, with the mesh alone: risorius view --head"
             )
-        if all(isinstance(entry, int) and not isinstance(entry, bool) for entry in found):
+        if _are_numbers(found):
             return _as_faces_name(_numbers(found, len(mesh.vertices)), mesh), None
         points = _points(found)
         return _nearest(points, mesh), points
+    except AssetError as error:
+        raise type(error)(f"{named(path)}: {error}") from None
+
+
+def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, FloatArray], frozenset[int]]:
+    """Points (3,) [unit of the mesh] of those landmarks that are marked, and which were guessed.
+
+    Raises AssetError as `read_landmarks` does, but for those that are missing.
+    """
+    try:
+        document = _document(path)
+        found = _all_in(document)
+        marked = [number for number, entry in enumerate(found) if entry is not None]
+        if not marked:
+            return {}, frozenset()
+        found = [found[marked[0]] if entry is None else entry for entry in found]
+        if _are_numbers(found):
+            points = mesh.vertices[_numbers(found, len(mesh.vertices))]
+        else:
+            points = _points(found)
+        guessed = document.get(GUESSED) if isinstance(document, dict) else None
+        guesses = guessed if isinstance(guessed, list) else []
+        is_guessed = frozenset(number for number in marked if number in guesses)
+        return {number: points[number] for number in marked}, is_guessed
     except AssetError as error:
         raise AssetError(f"{named(path)}: {error}") from None
 
@@ -59,6 +88,16 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray | Non
 def _as_faces_name(numbers: IndexArray, mesh: Mesh) -> IndexArray:
     """Vertices as triangles name them: of those that lie in one place always the same one."""
     return numbers if mesh.same is None else mesh.same[numbers].astype(np.int32)
+
+
+def landmarks_text(places: Mapping[int, Sequence[float]], guessed: Iterable[int] = ()) -> str:
+    """A landmark file of points by their number; null for those that are missing."""
+    rows = ",\n    ".join(json.dumps(places.get(number)) for number in range(COUNT))
+    return f'{{\n  "{KEY}": [\n    {rows}\n  ],\n  "{GUESSED}": {sorted(guessed)}\n}}\n'
+
+
+class UnfinishedError(AssetError):
+    """A landmark file in which some are not marked yet."""
 
 
 def _document(path: Path) -> Any:
@@ -75,6 +114,20 @@ def _document(path: Path) -> Any:
     raise AssetError(
         f'not readable as JSON: {reason}; it must be {{"{KEY}": [...]}} with {COUNT} entries'
     )
+
+
+def _all_in(document: Any) -> list[Any]:
+    """The 68 entries of the list that can be meant."""
+    found = _list_in(document)
+    if len(found) != COUNT:
+        raise AssetError(
+            f"{len(found)} landmarks; it must be the {COUNT} iBug points in their order"
+        )
+    return found
+
+
+def _are_numbers(found: list[Any]) -> bool:
+    return all(isinstance(entry, int) and not isinstance(entry, bool) for entry in found)
 
 
 def _list_in(document: Any) -> list[Any]:

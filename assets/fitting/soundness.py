@@ -48,10 +48,7 @@ def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> S
     or too few.
     """
     _check_count(faces, FEWEST_TRIANGLES, math.inf)
-    count = len(vertices)
-    links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
-    graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(count, count))
-    piece = csgraph.connected_components(graph, directed=False)[1]
+    piece = pieces_of(faces, len(vertices))
     others = np.flatnonzero(piece[landmarks] != np.bincount(piece[landmarks]).argmax())
     if len(others):
         raise AssetError(
@@ -74,6 +71,13 @@ def _check_count(faces: IndexArray, fewest: float, most: float) -> None:
             f"the head has {len(faces)} triangles; allowed are {FEWEST_TRIANGLES} to "
             f"{MOST_TRIANGLES}: {cure} it in a modelling program"
         )
+
+
+def pieces_of(faces: IndexArray, count: int) -> IndexArray:
+    """Which piece of a mesh each of its `count` vertices belongs to, shape (count,)."""
+    links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
+    graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(count, count))
+    return np.asarray(csgraph.connected_components(graph, directed=False)[1], np.int32)
 
 
 def check_manifold(faces: IndexArray) -> None:

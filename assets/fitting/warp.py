@@ -50,6 +50,12 @@ class Similarity:
         """Whether left and right are exchanged."""
         return bool(np.linalg.det(self.rotation) < 0.0)
 
+    @property
+    def inverse(self) -> Similarity:
+        """The way back."""
+        back = self.rotation.T / self.scale
+        return Similarity(1.0 / self.scale, self.rotation.T, -back @ self.shift)
+
     def points(self, points: npt.ArrayLike) -> FloatArray:
         """Points moved, shape (..., 3)."""
         return self.vectors(points) + self.shift
@@ -68,17 +74,25 @@ class Deformation(Protocol):
 
 
 class Warp:
-    """The smoothest deformation of space that takes some points to others."""
+    """The smoothest deformation of space that takes some points to others, or near them."""
 
-    def __init__(self, source: FloatArray, target: FloatArray) -> None:
-        """Both (n, 3), in no plane; of equal points of `source` the first one counts."""
+    def __init__(
+        self, source: FloatArray, target: FloatArray, give: float | FloatArray = 0.0
+    ) -> None:
+        """Both (n, 3), in no plane; of equal points of `source` the first one counts.
+
+        give: how readily points miss their targets where the deformation is less smooth, of all or
+        each (n,) [unit of `source`].
+        """
+        give = np.full(len(source), give)
         first = np.sort(np.unique(source.round(6), axis=0, return_index=True)[1])
-        source, target = source[first], target[first]
+        source, target, give = source[first], target[first], give[first]
         count = len(source)
         self._centres = source
         ones = np.hstack([np.ones((count, 1)), source])
         system = np.zeros((count + 4, count + 4))
-        system[:count, :count] = _distances(source, source)
+        # The kernel r is negative where others are positive: so is what makes it give.
+        system[:count, :count] = _distances(source, source) - np.diag(give)
         system[:count, count:] = ones
         system[count:, :count] = ones.T
         right = np.vstack([target, np.zeros((4, 3))])

@@ -5,12 +5,15 @@ Each is a window as a user would see it, brought there by the same commands that
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable, Sequence
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 from imgui_bundle import imgui
 
+from risorius import assets
 from risorius.app.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.performances import script_for
@@ -18,6 +21,7 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.keyframes import places_of
 from risorius.app.viewer.mouse import SkinDrag
 from risorius.app.viewer.settings import Display
+from risorius.assets.fitting.guess import FIRST
 from risorius.bench import figures
 
 SIZE = (1160, 700)
@@ -121,6 +125,25 @@ def large(viewer: Viewer) -> None:
     viewer.session.toggle_alone("kiss")
 
 
+def landmarks(viewer: Viewer) -> None:
+    """Landmarks of a mesh, guessed from five points: the built-in head, as if it was foreign."""
+    head = assets.load("head")
+    fine = head.finer(1)
+    lines = [f"v {x:.5f} {y:.5f} {z:.5f}" for x, y, z in fine.vertices]
+    lines += [f"f {a} {b} {c}" for a, b, c in fine.faces + 1]
+    with tempfile.TemporaryDirectory() as folder:
+        mesh = Path(folder) / "anna.obj"
+        mesh.write_text("\n".join(lines))
+        viewer.mark(mesh)
+    assert viewer.room is not None
+    marking = viewer.room.marking
+    for number in FIRST:
+        marking.put(number, marking.placing.points(head.vertices[head.landmarks[number]]))
+    marking.note()
+    marking.current = 50
+    viewer.frame()
+
+
 STOPS: dict[str, Callable[[Viewer], None]] = {
     "viewer": face,
     "viewer_controls": controls,
@@ -133,6 +156,7 @@ STOPS: dict[str, Callable[[Viewer], None]] = {
     "viewer_keys": keys,
     "viewer_unsaved": unsaved,
     "viewer_large": large,
+    "viewer_landmarks": landmarks,
 }
 
 

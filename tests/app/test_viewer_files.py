@@ -248,7 +248,7 @@ def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path
     try:
         viewer.session.set("jaw_open", 0.5)
         viewer.session.note()
-        drop(viewer, mesh)
+        drop(viewer, landmarks)
         assert viewer.messages.is_error and "half of a head" in viewer.messages.text
         drop(viewer, landmarks, mesh)
         assert until(viewer, lambda: "opened" in viewer.messages.text, 30.0)

@@ -20,6 +20,12 @@ MOUSE = (
     ("drag a panel's edge", "make it wider"),
     ("drop files", "open them"),
 )
+MARKING = (
+    ("click the skin", "place the point asked for"),
+    ("drag a point", "move it on the skin"),
+    ("drag, or right", "turn the head"),
+    *MOUSE[2:4],
+)
 TIMELINE = (
     ("click a key", "select it, go there"),
     ("Shift click", "select more, or fewer"),
@@ -36,26 +42,30 @@ TIMELINE = (
 COLUMNS = (
     ("File", "Edit", "Time"),
     ("Keys", "Expression", "Live", "Help"),
-    ("View",),
+    ("View", "Landmarks"),
     ("Mouse", "Timeline"),
 )
 NARROW_COLUMNS = (
     ("File", "Edit", "Time", "Live", "Help"),
-    ("Keys", "View"),
+    ("Keys", "View", "Landmarks"),
     ("Mouse", "Timeline", "Expression"),
 )
 WIDE = 63.0  # [em] that the wide ones take
 
 
-def draw_help(gui: Gui, commands: Sequence[Command]) -> bool:
-    """Draw the list, scrolled where the window is small; whether it stays open."""
+def draw_help(gui: Gui, commands: Sequence[Command], *, is_marking: bool = False) -> bool:
+    """Draw the list, scrolled where the window is small; whether it stays open.
+
+    is_marking: the commands are those for marking landmarks.
+    """
     display = imgui.get_io().display_size
     imgui.set_next_window_pos((0.5 * display.x, 0.5 * display.y), 0, (0.5, 0.5))
     imgui.set_next_window_size_constraints((0.0, 0.0), display)
     flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_collapse
     flags |= imgui.WindowFlags_.horizontal_scrollbar
     _, stays = imgui.begin("Keys and mouse (F1)", True, flags)
-    lines: dict[str, list[tuple[str, str]]] = {"Mouse": list(MOUSE), "Timeline": list(TIMELINE)}
+    lines: dict[str, list[tuple[str, str]]]
+    lines = {"Mouse": [*MARKING]} if is_marking else {"Mouse": [*MOUSE], "Timeline": [*TIMELINE]}
     for command in commands:
         if command.key:
             keys = ", ".join(filter(None, (command.displayed_key, command.other_key)))
@@ -64,9 +74,9 @@ def draw_help(gui: Gui, commands: Sequence[Command]) -> bool:
         if index:
             imgui.same_line(0.0, em(1.5))
         imgui.begin_group()
-        for title in titles:
+        for title in filter(lines.get, titles):
             muted(gui, title)
-            _draw_lines(gui, title, lines.get(title, []))
+            _draw_lines(gui, title, lines[title])
         imgui.end_group()
     place, size = imgui.get_window_pos(), imgui.get_window_size()
     gui.places["help"] = (place.x, place.y, place.x + size.x, place.y + size.y)

@@ -1,0 +1,186 @@
+"""What is drawn while landmarks are marked: the mesh, and beside it a guide to the next point."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import assets, render
+from risorius.assets.topology import vertex_normals
+from risorius.sim.landmarks import MIRRORED
+
+from ...looks import STATIC, Refinement
+from ...pipeline import Pipeline, Viewport
+from ...scenes import Scene, build_scene
+from ..settings import Display, Settings
+from ..view import View
+from .marking import Marking
+from .marks import GROUP_OF, name_of
+
+FACING = 0.15  # cosine to the line of sight beyond which a mark is seen
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class MeshScene(Scene):
+    """A mesh that nothing moves."""
+
+    name = "face"
+    limits: Mapping[str, tuple[float, float]] = {}
+
+    def __init__(self, marking: Marking) -> None:
+        self.rest_positions, self.faces = marking.positions, marking.faces
+
+    @property
+    def positions(self) -> FloatArray:
+        return self.rest_positions
+
+
+class MarkingView(View):
+    """How the mesh is seen: as clay, by a camera that frames all of it."""
+
+    def __init__(self, marking: Marking, settings: Settings, surface: render.WindowSurface) -> None:
+        self._marking, self._settings, self._surface = marking, settings, surface
+        self.area, self.pointed = (0.0, 0.0, 1.0, 1.0), ()
+        self.guide_area = self.area
+        self.fit_scene()
+
+    def fit_scene(self) -> None:
+        marking = self._marking
+        self.camera = render.OrbitCamera.framing(marking.positions)
+        if marking.is_upright:  # all of the face, however much there is of hair and shoulders
+            self.camera.fit(marking.seen(marking.marks.places)[0], 0.14)
+
+    def look_at(self, number: int) -> None:
+        """Turn to a landmark, whose side may be turned away."""
+        if self._marking.is_upright:
+            self.camera.yaw, self.camera.pitch = yaw_of(number), 0.0
+
+    @property
+    def display(self) -> Display:
+        return Display(skin="clay")
+
+    @property
+    def state(self) -> object:
+        marking = self._marking
+        return super().state, id(marking.positions), marking.current, marking.can_guess
+
+    def on_screen(self, points: FloatArray) -> FloatArray:
+        """Where points (n, 3) are in the window [its units], shape (n, 2)."""
+        return places_in(self.area, self.camera, points)
+
+    def are_seen(self, points: FloatArray, normals: FloatArray) -> npt.NDArray[np.bool_]:
+        """Whether skin at points (n, 3) looks at the camera, shape (n,)."""
+        return are_facing(self.camera, points, normals)
+
+    @property
+    def drawn(self) -> None:
+        """All of the window: the guide is in its upper left corner."""
+
+    @property
+    def panel(self) -> Viewport:
+        """The part of the framebuffer below the guide."""
+        left, bottom, width, _ = self.pixels(self.guide_area)
+        return left, 0, width, bottom
+
+
+class MarkingPicture:
+    """Draws both."""
+
+    def __init__(self, marking: Marking, surface: render.WindowSurface) -> None:
+        self.surface, self.marking = surface, marking
+        self._renderer = render.Renderer(surface)
+        self._guide = Pipeline(build_scene("face"), self._renderer, [Refinement()])
+        head = assets.load("head")
+        normals = vertex_normals(head.vertices, head.faces)
+        self._guide_marks = head.vertices[head.landmarks], normals[head.landmarks]
+        self.bind_mesh()
+
+    def bind_mesh(self) -> None:
+        """Take the mesh as it is placed now."""
+        static = Refinement(refiner=STATIC)
+        self._mesh = Pipeline(MeshScene(self.marking), self._renderer, [static])
+        self._bound = self.marking.positions
+
+    def bind(self, display: Display) -> None:
+        """Follow the mesh where it was placed anew."""
+        if self._bound is not self.marking.positions:
+            self.close_mesh()
+            self.bind_mesh()
+
+    def close_mesh(self) -> None:
+        """Let go of the mesh."""
+        for drawn in self._mesh.meshes:
+            drawn.stream.release()
+
+    def close(self) -> None:
+        """Let go of everything."""
+        self.close_mesh()
+        for drawn in self._guide.meshes:
+            drawn.stream.release()
+        if self._guide.texture is not None:
+            self._guide.texture.release()
+        if self._guide.wrinkling is not None:
+            self._guide.wrinkling.map.release()
+        self._renderer.release()
+
+    def draw(self, view: View) -> None:
+        """Draw the mesh, and the guide into its corner."""
+        assert isinstance(view, MarkingView)
+        self.surface.begin()
+        clay = render.Style(albedo=render.CLAY, background=view.background)
+        self._mesh.draw(view.camera, clay, [view.viewport])
+        skin = render.Style(background=view.background)
+        self._guide.draw(self.guide_camera(), skin, [view.pixels(view.guide_area)])
+        self.surface.target.flush()
+        self.surface.gl.finish()
+
+    @property
+    def guide_points(self) -> FloatArray:
+        """The landmarks of the guide, shape (68, 3)."""
+        return self._guide_marks[0]
+
+    def guide_seen(self) -> npt.NDArray[np.bool_]:
+        """Which of them look at its camera, shape (68,)."""
+        return are_facing(self.guide_camera(), *self._guide_marks)
+
+    def guide_camera(self) -> render.OrbitCamera:
+        """The camera that shows the current landmark best; the whole face for the first ones."""
+        marking, points = self.marking, self.guide_points
+        camera = render.OrbitCamera.framing(points)
+        number = marking.current
+        if marking.can_guess:
+            group = GROUP_OF[number]
+            line = next(line for line in group.lines if number in line)
+            camera.target = points[list(line)].mean(axis=0)
+            camera.orbit(yaw_of(number))
+            camera.zoom(group.zoom / GROUP_OF[0].zoom)
+        return camera
+
+
+def yaw_of(number: int) -> float:
+    """From where a landmark is seen best [degrees]."""
+    sign = 0.0 if MIRRORED[number] == number else -1.0 if "right" in name_of(number) else 1.0
+    return sign * GROUP_OF[number].yaw
+
+
+def are_facing(
+    camera: render.OrbitCamera, points: FloatArray, normals: FloatArray
+) -> npt.NDArray[np.bool_]:
+    """Whether skin at points (n, 3) looks at a camera, shape (n,)."""
+    to_eye = camera.eye - points
+    toward = (normals * to_eye).sum(axis=1)
+    return np.asarray(toward > FACING * np.linalg.norm(to_eye, axis=1))
+
+
+def places_in(
+    area: tuple[float, float, float, float], camera: render.OrbitCamera, points: FloatArray
+) -> FloatArray:
+    """Where a camera that fills an area of the window sees points (n, 3), shape (n, 2)."""
+    left, top, width, height = area
+    matrix = np.asarray(camera.view_matrix() @ camera.projection_matrix(width / max(height, 1.0)))
+    clip = np.column_stack([points, np.ones(len(points))]) @ matrix
+    middle = np.array([left + 0.5 * width, top + 0.5 * height])
+    return np.asarray(middle + 0.5 * clip[:, :2] / clip[:, 3:] * (width, -height))

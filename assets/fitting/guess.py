@@ -1,0 +1,126 @@
+"""Where the 68 landmarks of a head may lie, from the few that somebody has placed.
+
+    first points  ->  similarity to the built-in head
+                  ->  its face laid on the mesh, stiff at first  ->  its landmarks on the mesh
+
+The built-in face is laid on the mesh as one lays a cloth: each of its points goes to the nearest
+place that faces the same way, and a warp that bends ever more follows what they did.
+
+Source: Amberg, Romdhani, Vetter 2007, "Optimal step nonrigid ICP" (stiffness that falls from step
+to step; here that of a smoothing thin-plate warp).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
+
+from ..errors import AssetError
+from ..loading import load
+from ..meshes import Mesh
+from ..model import FloatArray, Head, IndexArray
+from ..topology import vertex_normals
+from .soundness import pieces_of
+from .warp import Similarity, Warp, nearest_on
+
+# Outer corners of the eyes, tip of the nose, corners of the mouth: easily found by anybody, and
+# far apart in every direction.
+FIRST = (36, 45, 30, 48, 54)
+FARTHEST_OFF = 14.0  # [mm] of the first points, in the mean: beyond it they are no face's
+NEAR = 30.0  # [mm] around landmarks: the part of the built-in face that is laid on the mesh
+MOST_POINTS = 300  # of that part (chosen; more take longer and find the same)
+AROUND = np.array([60.0, 90.0, 120.0])  # [mm] around the first points, in which a face ends
+STIFFNESSES = (1e4, 3e3, 1e3, 300.0, 100.0, 30.0)  # [mm] of the warp, from step to step
+REACH = 18.0  # [mm] beyond which a place on the mesh is not what a point of the face looks for
+
+Known = Mapping[int, npt.ArrayLike]  # points (3,) [unit of the mesh] by the landmark's number
+
+
+def guess(mesh: Mesh, known: Known, *, template: Head | None = None) -> FloatArray:
+    """Where all 68 landmarks lie on a mesh [its unit], shape (68, 3).
+
+    known: those of `FIRST` at least; they stay where they are. template: the built-in head unless
+    told. Raises AssetError where they are no face's.
+    """
+    head = load("head") if template is None else template
+    similarity = placing(known, template=head)
+    numbers = sorted(known)
+    given = similarity.points(np.array([known[number] for number in numbers]))
+    vertices = similarity.points(mesh.vertices)
+    faces = skin_around(vertices, mesh.faces, given)
+    # What is laid on the mesh: the landmarks, and the face around them.
+    chosen = np.concatenate([head.landmarks, _around_landmarks(head)])
+    points, known_points = head.vertices[chosen], head.vertices[head.landmarks[numbers]]
+    is_free = ~np.isin(np.arange(len(chosen)), numbers)
+    laid = head.vertices
+    for stiffness in STIFFNESSES:
+        feet = _feet(laid, head, chosen, vertices, faces)
+        is_laid = is_free & (np.linalg.norm(feet - laid[chosen], axis=1) < REACH)
+        give = np.concatenate([np.zeros(len(numbers)), np.full(is_laid.sum(), stiffness)])
+        source = np.vstack([known_points, points[is_laid]])
+        laid = Warp(source, np.vstack([given, feet[is_laid]]), give).points(head.vertices)
+    found = _feet(laid, head, head.landmarks, vertices, faces)
+    found[numbers] = given
+    return similarity.inverse.points(found)
+
+
+def placing(known: Known, *, template: Head | None = None) -> Similarity:
+    """The similarity to the face space [mm] by landmarks that are known, four of them at least.
+
+    Raises AssetError where they are no face's, or that of a mirror image.
+    """
+    head = load("head") if template is None else template
+    numbers = sorted(known)
+    own = head.vertices[head.landmarks[numbers]]
+    given = np.array([known[number] for number in numbers], dtype=np.float64)
+    if not np.ptp(given, axis=0).any():
+        raise AssetError("all landmarks are one point; give each its own place")
+    similarity = Similarity.between(given, own)
+    off = np.linalg.norm(similarity.points(given) - own, axis=1)
+    if off.mean() > FARTHEST_OFF:
+        raise AssetError(
+            f"these points are no face's: landmark {numbers[int(off.argmax())]} lies "
+            f"{off.max():.0f} mm off, the mean one {off.mean():.0f} mm; give each its own place"
+        )
+    if similarity.is_mirrored:
+        raise AssetError(
+            "left and right are swapped, or the mesh is mirrored: right is the subject's own, on "
+            "your left where the face looks at you"
+        )
+    return similarity
+
+
+def skin_around(vertices: FloatArray, faces: IndexArray, given: FloatArray) -> IndexArray:
+    """The triangles of the skin around some points of a face, facing outward; all in face space.
+
+    The skin is what most of the points lie on: eyeballs, teeth and hair are left away.
+    """
+    middles = vertices[faces].mean(axis=1)
+    under = cKDTree(middles).query(given)[1]
+    piece = pieces_of(faces, len(vertices))[faces[:, 0]]
+    is_skin = piece == np.bincount(piece[under]).argmax()
+    a, b, c = (vertices[faces[under[is_skin[under]], corner]] for corner in range(3))
+    if np.cross(b - a, c - a)[:, 2].sum() < 0.0:
+        faces = faces[:, ::-1]
+    low, high = given.min(axis=0) - AROUND, given.max(axis=0) + AROUND
+    is_near = ((middles > low) & (middles < high)).all(axis=1)
+    return np.ascontiguousarray(faces[is_skin & is_near])
+
+
+def _around_landmarks(head: Head) -> IndexArray:
+    """Some vertices near the landmarks of a head, but those themselves."""
+    near = cKDTree(head.vertices[head.landmarks]).query(head.vertices)[0] < NEAR
+    near[head.landmarks] = False
+    every = np.flatnonzero(near).astype(np.int32)
+    return every[:: max(len(every) // MOST_POINTS, 1)]
+
+
+def _feet(
+    laid: FloatArray, head: Head, chosen: IndexArray, vertices: FloatArray, faces: IndexArray
+) -> FloatArray:
+    """Where some vertices of the laid head come to lie on a mesh that faces as they do."""
+    normals = vertex_normals(laid, head.faces)[chosen]
+    return nearest_on(laid[chosen], normals, vertices, faces).interpolate(vertices)

@@ -1,0 +1,377 @@
+"""Marking the 68 landmarks of a mesh: by real clicks in the window, and without one."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from PIL import Image
+
+from risorius import render
+from risorius.__main__ import command
+from risorius.app.errors import UserError
+from risorius.app.viewer import Viewer, picking
+from risorius.app.viewer.files import Files
+from risorius.app.viewer.marking import Marking, Room
+from risorius.app.viewer.marking.marks import FIRST, GROUP_OF, ORDER, name_of
+from risorius.app.viewer.marking.picture import places_in
+from risorius.assets import AssetError
+from risorius.assets.fitting.guess import placing
+from risorius.assets.fitting.landmark_file import read_landmarks
+from risorius.sim.landmarks import MIRRORED
+from tests.heads import METRES, Array, stranger
+
+from .driving import NEEDS_A_SCREEN, click, drop, middle, on_screen, until, write, xdotool
+
+NEAR = 6.0 * METRES  # of the built-in head's own shape, guesses are that good
+
+
+@pytest.fixture
+def mesh(tmp_path: Path) -> Path:
+    """A head in metres, z up."""
+    return stranger().write(tmp_path)[0]
+
+
+@pytest.fixture
+def marking(mesh: Path) -> Marking:
+    """It, with nothing marked."""
+    return Marking(mesh, Files(is_native=False))
+
+
+def true_places() -> Array:
+    """Where its landmarks are."""
+    other = stranger()
+    return other.mesh.vertices[other.landmarks]
+
+
+def mark_first(marking: Marking) -> None:
+    """Place the first five, as they are asked for, exactly."""
+    for number in FIRST:
+        assert marking.current == number
+        marking.put(number, marking.placing.points(true_places()[number]))
+        marking.note()
+
+
+def off(marking: Marking) -> Array:
+    """How far marks are from where they belong [m]."""
+    found = np.array([marking.marks.places[number] for number in range(68)])
+    distance: Array = np.linalg.norm(found - true_places(), axis=1)
+    return distance
+
+
+def test_every_landmark_has_a_name_of_its_own() -> None:
+    """All 68, each in one group; those of a pair are called alike but for the side."""
+    assert sorted(ORDER) == list(range(68)) and len({name_of(n) for n in ORDER}) == 68
+    for number in ORDER:
+        name, other = name_of(number), name_of(int(MIRRORED[number]))
+        assert ("right" in name) == ("left" in other)
+        assert GROUP_OF[number] is GROUP_OF[int(MIRRORED[number])]
+
+
+def test_five_points_stand_the_head_up_and_give_the_rest(marking: Marking) -> None:
+    """The head is upright in millimetres then, and each step can be undone."""
+    mark_first(marking)
+    assert marking.marks.is_complete and len(marking.marks.guessed) == 63
+    assert np.median(off(marking)) < 2.0 * METRES
+    eyes = marking.seen((36, 45))[0]
+    assert eyes[1, 0] - eyes[0, 0] > 60.0 and abs(eyes[1, 1] - eyes[0, 1]) < 8.0
+    marking.undo()
+    assert list(marking.marks.places) == list(FIRST)
+    marking.undo()
+    assert marking.current == FIRST[-1] and len(marking.marks.places) == 4
+    marking.redo()
+    marking.redo()
+    assert marking.marks.is_complete and not marking.can_redo
+
+
+def test_the_other_side_is_mirrored(marking: Marking) -> None:
+    """A group, or all of a side; the points in the middle stay, and all lie on the skin."""
+    mark_first(marking)
+    before = marking.marks.places
+    right_eye = range(36, 42)
+    for number in right_eye:
+        marking.put(number, marking.placing.points(true_places()[number]))
+    marking.note()
+    marking.current = 38
+    marking.mirror()
+    left_eye = [int(MIRRORED[number]) for number in right_eye]
+    assert off(marking)[left_eye].max() < NEAR
+    assert all(marking.marks.places[n] == before[n] for n in range(68) if n not in {*range(36, 48)})
+    marking.mirror(whole=True)
+    assert {*marking.marks.guessed} & {int(MIRRORED[n]) for n in range(8)} == set()
+    assert marking.marks.places[33] == before[33]
+    assert off(marking).max() < 2.0 * NEAR
+    marking.current = 30
+    assert "middle" in str(marking.mirror())
+
+
+def test_half_done_marks_are_kept_and_continued(marking: Marking, tmp_path: Path) -> None:
+    """null where nothing is marked: no head for `--landmarks`, but marking goes on from it."""
+    target = tmp_path / "half.json"
+    for number in FIRST[:3]:
+        marking.put(number, marking.placing.points(true_places()[number]))
+        marking.note()
+    assert marking.unsaved
+    marking.file = target
+    marking.save()
+    assert not marking.unsaved and json.loads(target.read_text())["landmarks"].count(None) == 65
+    with pytest.raises(AssetError, match="65 of 68"):
+        read_landmarks(target, marking.mesh)
+    again = Marking(marking.path, Files(is_native=False))
+    again.open(target)
+    assert again.marks == marking.marks and again.current == FIRST[3] and not again.unsaved
+    for number in FIRST[3:]:
+        again.put(number, again.placing.points(true_places()[number]))
+        again.note()
+    again.save()
+    third = Marking(marking.path, Files(is_native=False))
+    third.open(target)
+    assert third.marks == again.marks and third.is_upright  # what is guessed still is
+
+
+def test_vertex_numbers_can_be_corrected(marking: Marking, tmp_path: Path) -> None:
+    """A landmark file of another program is taken up, and saved as points."""
+    _, numbers = stranger().write(tmp_path)
+    marking.open(numbers)
+    assert off(marking).max() < 1e-8 and not marking.marks.guessed
+    wrong = Marking(marking.path, Files(is_native=False))
+    numbers.write_text(json.dumps({"landmarks": np.roll(stranger().landmarks, 20).tolist()}))
+    wrong.open(numbers)
+    assert wrong.marks.is_complete and not wrong.is_upright  # to be mended
+    numbers.write_text('{"landmarks": [1, 2]}')
+    with pytest.raises(UserError, match="68 iBug points"):
+        marking.open(numbers)
+    assert marking.marks.is_complete
+
+
+def test_swapped_sides_are_told_and_can_be_mended(marking: Marking) -> None:
+    """The last of the first points brings the line; moving points brings the guess."""
+    swapped = true_places()[MIRRORED]
+    for number in FIRST[:-1]:
+        marking.put(number, marking.placing.points(swapped[number]))
+        marking.note()
+    marking.put(FIRST[-1], marking.placing.points(swapped[FIRST[-1]]))
+    with pytest.raises(UserError, match="left and right are swapped") as raised:
+        marking.note()
+    assert "\n" not in str(raised.value) and not marking.marks.is_complete
+    for number in FIRST:
+        marking.put(number, marking.placing.points(true_places()[number]))
+    marking.note()
+    assert np.median(off(marking)) < 2.0 * METRES
+
+
+def test_a_mesh_that_can_be_no_head_is_refused_at_once(tmp_path: Path) -> None:
+    """Before anybody has marked 68 points on it."""
+    mesh = tmp_path / "fan.obj"
+    mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 2 0\nv 0 3 1\nf 1 2 3\nf 1 2 4\nf 2 1 5\n")
+    with pytest.raises(UserError, match=r"fan\.obj: the mesh is not manifold"):
+        Marking(mesh, Files(is_native=False))
+
+
+def test_quarter_turns_turn_the_mesh_alone(marking: Marking) -> None:
+    """Four of them are none; a mark stays where it is on the mesh, whatever is turned."""
+    before = marking.positions
+    mark_first(marking)
+    marks, start = marking.marks, marking.positions
+    for axis in np.eye(3):
+        for _ in range(4):
+            marking.turn(axis)
+        np.testing.assert_allclose(marking.positions, start, atol=1e-6)
+    assert marking.marks == marks and before.shape == start.shape
+
+
+def test_points_are_picked_from_either_side() -> None:
+    """The nearest of two walls that a ray meets, whichever way they face."""
+    walls = np.array([[-1, -1, z] for z in (0.0, -1.0)] + [[3, -1, z] for z in (0.0, -1.0)]
+                     + [[-1, 3, z] for z in (0.0, -1.0)])  # fmt: skip
+    camera = render.OrbitCamera.framing(walls)
+    camera.target, camera.yaw = np.array([0.2, 0.3, 0.0]), 0.0
+    ray = picking.Ray.through(camera, (0, 0, 100, 100), (50.0, 50.0))
+    inward, outward = np.array([[0, 4, 2], [1, 5, 3]]), np.array([[0, 2, 4], [1, 3, 5]])
+    for faces in (inward, outward):
+        point = picking.skin_under(ray, walls, faces, from_outside=False)
+        np.testing.assert_allclose(point, [0.2, 0.3, 0.0], atol=1e-9)
+    assert picking.skin_under(ray, walls, inward) is None
+
+
+class TestInTheWindow:
+    """With real events."""
+
+    pytestmark: ClassVar = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
+
+    @pytest.fixture(autouse=True)
+    def back(self, viewer: Viewer) -> Iterator[None]:
+        """Leave the window as it was."""
+        before = viewer.session.scene
+        yield
+        viewer.question.task = None
+        viewer._leave_marking()
+        if viewer.session.scene is not before:
+            viewer.show_scene(before)
+        viewer.surface.should_close = viewer.is_leaving = False
+
+    def room(self, viewer: Viewer) -> Room:
+        """What is marked."""
+        assert until(viewer, lambda: viewer.room is not None, 20.0)
+        assert viewer.room is not None
+        return viewer.room
+
+    def place(self, viewer: Viewer, point: Array) -> tuple[int, int]:
+        """Where a point of the mesh is, on the screen."""
+        room = self.room(viewer)
+        seen = room.marking.placing.points(point[None])
+        return on_screen(viewer, *places_in(room.view.area, room.view.camera, seen)[0])
+
+    def face_it(self, viewer: Viewer) -> None:
+        """Tip the mesh, so that z is up no more, and turn the camera to the face."""
+        room = self.room(viewer)
+        xdotool(viewer, "key", "t")
+        front = placing(dict(enumerate(true_places()))).inverse.vectors([0.0, 0.0, 1.0])
+        x, y, z = room.marking.placing.vectors(front)
+        camera = room.view.camera
+        camera.orbit(math.degrees(math.atan2(x, z)) - camera.yaw)
+        camera.orbit(0.0, math.degrees(math.atan2(y, math.hypot(x, z))) - camera.pitch)
+        assert abs(camera.pitch) < 30.0
+
+    def mark_first(self, viewer: Viewer) -> None:
+        """Click the first points."""
+        self.face_it(viewer)
+        for number in FIRST:
+            assert self.room(viewer).marking.current == number
+            xdotool(viewer, "mousemove", *self.place(viewer, true_places()[number]))
+            xdotool(viewer, "click", 1)
+        assert until(viewer, lambda: self.room(viewer).marking.marks.is_complete, 20.0)
+
+    def test_a_head_is_marked_from_the_first_click_to_the_picture(
+        self, viewer: Viewer, mesh: Path, tmp_path: Path
+    ) -> None:
+        """Dropped, five clicks, one drag, mirrored, undone, saved; then capture takes the file."""
+        drop(viewer, mesh)
+        marking = self.room(viewer).marking
+        self.mark_first(viewer)
+        assert np.median(off(marking)) < 2.0 * METRES and off(marking).max() < 2.0 * NEAR
+        before, number = marking.marks, 37
+        start = self.place(viewer, np.array(before.places[number]))
+        xdotool(viewer, "mousemove", *start)
+        xdotool(viewer, "mousedown", 1)
+        xdotool(viewer, "mousemove_relative", "--", 2, -12)
+        xdotool(viewer, "mousemove_relative", "--", 2, -8)
+        xdotool(viewer, "mouseup", 1)
+        moved = np.subtract(marking.marks.places[number], before.places[number])
+        assert np.linalg.norm(moved) > 2.0 * METRES and marking.current == number
+        assert [n for n in ORDER if marking.marks.places[n] != before.places[n]] == [number]
+        xdotool(viewer, "key", "m")
+        assert marking.marks.places[44] != before.places[44]
+        xdotool(viewer, "key", "ctrl+z")
+        assert marking.marks.places[44] == before.places[44] and number in marking.marks.by_hand
+        xdotool(viewer, "key", "ctrl+z")
+        assert marking.marks == before
+        xdotool(viewer, "key", "Tab")
+        assert marking.current == ORDER[ORDER.index(number) + 1]
+        click(viewer, "Use this head")
+        assert viewer.files.is_waiting
+        xdotool(viewer, "key", "ctrl+a")
+        write(viewer, "marked")
+        xdotool(viewer, "key", "Return")
+        assert until(viewer, lambda: viewer.room is None, 60.0)
+        assert len(viewer.session.scene.faces) == len(stranger().mesh.faces)
+        image, marks = tmp_path / "joy.png", mesh.with_name("marked.json")
+        options = ("--set", "joy", "--size", "160x160", "-o", image)
+        words = ("capture", "--head", mesh, "--landmarks", marks, *options)
+        result = CliRunner().invoke(command(), [str(word) for word in words])
+        assert result.exit_code == 0, result.output
+        assert np.asarray(Image.open(image)).std() > 10.0
+
+    def test_a_click_places_and_a_drag_turns(self, viewer: Viewer, mesh: Path) -> None:
+        """On the skin, a press that moves turns the head and marks nothing."""
+        viewer.mark(mesh)
+        self.face_it(viewer)
+        room = self.room(viewer)
+        camera = room.view.camera.copy()
+        xdotool(viewer, "mousemove", *self.place(viewer, true_places()[30]))
+        xdotool(viewer, "mousedown", 1)
+        xdotool(viewer, "mousemove_relative", "--", 40, 0)
+        xdotool(viewer, "mouseup", 1)
+        assert room.view.camera.yaw != camera.yaw and not room.marking.marks.places
+        assert until(viewer, lambda: viewer.is_idle)
+
+    def test_marks_are_not_lost_without_a_question(self, viewer: Viewer, mesh: Path) -> None:
+        """Leaving and closing ask; a second mesh, too; saving in answer goes on."""
+        viewer.session.set("jaw_open", 0.5)
+        viewer.mark(mesh)
+        xdotool(viewer, "key", "ctrl+w")
+        assert viewer.room is None  # nothing was marked, and the pose is not in danger
+        viewer.mark(mesh)
+        self.mark_first(viewer)
+        room = viewer.room
+        click(viewer, "Leave")
+        assert viewer.question.is_open and "question: Save pose ..." not in viewer.gui.places
+        xdotool(viewer, "key", "Escape")
+        assert viewer.room is room
+        viewer.mark(mesh)
+        assert viewer.question.is_open
+        xdotool(viewer, "key", "Escape")
+        xdotool(viewer, "key", "ctrl+q")
+        assert "the pose and the landmarks of stranger.obj" in viewer.question.unsaved
+        xdotool(viewer, "key", "Escape")
+        click(viewer, "Leave")
+        click(viewer, "question: Save landmarks")
+        write(viewer, "")
+        xdotool(viewer, "key", "ctrl+a")
+        write(viewer, "kept")
+        xdotool(viewer, "key", "Return")
+        assert until(viewer, lambda: viewer.room is None)
+        assert mesh.with_name("kept.json").exists() and viewer.session.values["jaw_open"] == 0.5
+
+    def test_marks_that_make_no_head_are_told_and_kept(self, viewer: Viewer, mesh: Path) -> None:
+        """Use this head: one line, and the marks are there to be mended."""
+        viewer.mark(mesh)
+        self.mark_first(viewer)
+        marking = self.room(viewer).marking
+        lower = marking.marks.places[8]
+        for number in range(42, 48):
+            marking.marks = marking.marks.placed(number, lower)
+        marking.note()
+        marking.file = mesh.with_name("wrong.json")
+        xdotool(viewer, "key", "ctrl+Return")
+        assert until(viewer, lambda: viewer.messages.is_error, 30.0)
+        assert "\n" not in viewer.messages.text and viewer.room is not None
+        assert not marking.unsaved and marking.file.exists()
+
+    def test_the_menu_and_half_a_file_begin_marking(self, viewer: Viewer, mesh: Path) -> None:
+        """File, Mark a head; and a mesh that is dropped with a landmark file that has gaps."""
+        click(viewer, "menu File")
+        click(viewer, "menu File: Mark a head ...")
+        click(viewer, "file stranger.obj", times=2)
+        assert not self.room(viewer).marking.marks.places
+        xdotool(viewer, "key", "ctrl+w")
+        half = mesh.with_name("half.json")
+        rows = [row if n < 5 else None for n, row in enumerate(true_places().tolist())]
+        half.write_text(json.dumps({"landmarks": rows}))
+        drop(viewer, mesh, half)
+        assert len(self.room(viewer).marking.marks.places) == 5
+
+    @pytest.mark.parametrize("theme", ["light", "dark"])
+    def test_everything_is_in_a_small_window(self, viewer: Viewer, mesh: Path, theme: str) -> None:
+        """The last button is inside, the guide beside the panel; both themes draw."""
+        viewer.settings.theme = theme
+        viewer.mark(mesh)
+        self.mark_first(viewer)
+        room = self.room(viewer)
+        assert until(viewer, lambda: viewer.is_idle)
+        _, _, right, bottom = viewer.gui.places["Leave"]
+        left, top, _, height = room.view.area
+        _, _, guide_width, guide_height = room.view.guide_area
+        assert right < left and bottom < top + height
+        assert guide_width <= left and guide_height > 0.2 * height
+        x, y = middle(viewer, "group jaw line")
+        xdotool(viewer, "mousemove", x, y)
+        xdotool(viewer, "click", 1)
+        assert room.marking.current == 0
+        viewer.settings.theme = "light"

@@ -1,0 +1,101 @@
+"""The first guess of 68 landmarks: near the true ones, on the skin, and refused where senseless."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from risorius import assets
+from risorius.assets import AssetError
+from risorius.assets.fitting.guess import FIRST, guess
+from risorius.assets.fitting.warp import nearest_on
+from risorius.assets.identities import make_person, sample_identity
+from risorius.assets.meshes import Mesh
+from risorius.sim.landmarks import MIRRORED
+from tests.heads import METRES, Array, Stranger, stranger
+
+JAW = 17  # the first landmarks: of the line along the jaw nobody says where on it a point belongs
+
+
+def errors(mesh: Mesh, true: Array) -> Array:
+    """How far from the true points those lie that are guessed from the first ones."""
+    found = guess(mesh, {number: true[number] for number in FIRST})
+    off: Array = np.linalg.norm(found - true, axis=1)
+    assert not off[list(FIRST)].max() > 1e-9 * np.abs(true).max()
+    return off
+
+
+def test_the_built_in_head_is_found_again() -> None:
+    """Of finer triangles, all of it lies where it was."""
+    head = assets.load("head")
+    fine = head.finer(1)
+    assert errors(Mesh(fine.vertices, fine.faces), head.vertices[head.landmarks]).max() < 1.0
+
+
+@pytest.mark.parametrize("seed", range(1, 6))
+def test_other_persons_are_found(seed: int) -> None:
+    """Without the jaw line half of the points are within 3 mm, and none is 12 mm off."""
+    person = make_person(sample_identity(seed))
+    off = errors(Mesh(person.vertices, person.faces), person.vertices[person.landmarks])
+    assert np.median(off) < 3.0
+    assert off[JAW:].max() < 12.0
+    assert off[:JAW].max() < 25.0
+
+
+def test_unit_axes_and_other_pieces_do_not_matter() -> None:
+    """In metres, z up, facing inward, with balls in its eyes: guessed on the skin, not on these."""
+    other: Stranger = stranger()
+    true = other.mesh.vertices[other.landmarks]
+    balls = [true[list(eye)].mean(axis=0) for eye in (range(36, 42), range(42, 48))]
+    corners = np.vstack([np.eye(3), -np.eye(3)]) * 14.0 * METRES
+    ball = np.array([[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5]])
+    vertices, faces = other.mesh.vertices, other.mesh.faces[:, ::-1]
+    for middle in balls:
+        faces = np.vstack([faces, ball + len(vertices)])
+        vertices = np.vstack([vertices, corners + middle])
+    mesh = Mesh(vertices, faces.astype(np.int32))
+    off = errors(mesh, true) / METRES
+    assert np.median(off) < 2.0 and off[JAW:].max() < 6.0
+    found = guess(mesh, {number: true[number] for number in FIRST})
+    skin = nearest_on(found, np.zeros((68, 3)), other.mesh.vertices, other.mesh.faces)
+    gap = np.linalg.norm(skin.interpolate(other.mesh.vertices) - found, axis=1)
+    assert gap.max() < 1e-3 * METRES
+
+
+def test_more_points_make_it_better_and_stay() -> None:
+    """What is placed by hand is left alone, and draws its neighbours along."""
+    person = make_person(sample_identity(1))
+    mesh, true = Mesh(person.vertices, person.faces), person.vertices[person.landmarks]
+    few = errors(mesh, true)
+    known = {number: true[number] for number in (*FIRST, 4, 8, 12)}
+    many = np.linalg.norm(guess(mesh, known) - true, axis=1)
+    assert many[[*known]].max() < 1e-9
+    assert many[:JAW].mean() < 0.7 * few[:JAW].mean()
+
+
+@pytest.mark.parametrize(
+    ("order", "words"),
+    [
+        (MIRRORED, "left and right are swapped"),
+        (np.roll(np.arange(68), 18), "no face"),
+        (np.zeros(68, int), "one point"),
+    ],
+)
+def test_points_of_no_face_are_refused(order: npt.NDArray[np.int64], words: str) -> None:
+    """In another order than theirs, they are told in one line."""
+    head = assets.load("head")
+    points = head.vertices[head.landmarks][order]
+    with pytest.raises(AssetError, match=words) as raised:
+        guess(Mesh(head.vertices, head.faces), {number: points[number] for number in FIRST})
+    assert "\n" not in str(raised.value)
+
+
+def test_a_mirror_image_of_a_head_is_refused() -> None:
+    """A mesh that was turned inside out by its program has its left on the right."""
+    other = stranger()
+    mesh = replace(other.mesh, vertices=other.mesh.vertices * [-1.0, 1.0, 1.0])
+    with pytest.raises(AssetError, match="mirror"):
+        guess(mesh, {number: mesh.vertices[other.landmarks[number]] for number in FIRST})
