@@ -137,6 +137,7 @@ def build_wrinkles(head: Head, size: int) -> dict[str, npt.NDArray[np.generic]]:
         "map": wrinkles.map,
         "steepest": np.array(wrinkles.steepest),
         "across": wrinkles.across,
+        "relief": wrinkles.relief,
         "made_from": np.array(head.fingerprint, dtype=np.uint32),
     }
 

@@ -116,6 +116,9 @@ class Layer:
     rows: Mapping[str, Mapping[str, Any]]
 
 
+HIGHEST_FOLD = 1.0  # [mm] that a wrinkle moves skin at most
+
+
 @dataclass(frozen=True)
 class Wrinkles:
     """What a face wrinkles like: furrows over its texture, and when its vertices show them.
@@ -126,11 +129,14 @@ class Wrinkles:
     steepest: slope of 255 in `map` [mm for one unit of the texture coordinates].
     across: for each vertex and slot the direction at rest in which skin shortens when it wrinkles;
         its length is how readily it does; zero where it does not; shape (V, 2, 3), float32.
+    relief: the shape that triangles can show of it: height of the skin by either slot, 127 is
+        `HIGHEST_FOLD`; covers the same as `map`, coarser; shape (h, w, 2), int8.
     """
 
     map: Image
     steepest: float
     across: SingleArray
+    relief: npt.NDArray[np.int8]
 
 
 @dataclass(frozen=True)
@@ -248,9 +254,11 @@ class Head:
 
         Raises AssetError when the file is missing, broken or that of another head.
         """
-        names = ("map", "steepest", "across")
+        names = ("map", "steepest", "across", "relief")
         arrays = read_arrays_of(self.fingerprint, self.wrinkles_file, names)
-        return Wrinkles(arrays["map"], float(arrays["steepest"]), arrays["across"])
+        return Wrinkles(
+            arrays["map"], float(arrays["steepest"]), arrays["across"], arrays["relief"]
+        )
 
     @cached_property
     def segments(self) -> Image:

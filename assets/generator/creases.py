@@ -60,6 +60,7 @@ class Crease(NamedTuple):
     readiness: float  # how much of a wrinkle a given shortening makes
     cover: Values  # (n,) 0..1, where furrows are seen, and 0 far from them
     furrows: Furrows
+    fold: Values | float = 0.0  # (n,) height of the skin beside furrows [mm], broad and smooth
 
 
 def furrows_of(
@@ -204,16 +205,19 @@ def smile_lines(points: Points, seed: int) -> Crease:
     slope = np.interp(y, heights, np.gradient(sides, heights))
     lean = 1.0 / np.sqrt(1.0 + slope**2)
     place = lean * beside + line_wander(points, 0.6, 16.0, seed)
-    fold = bump(place, -0.4, 1.5) * plateau(y, -80.0, -64.0, -44.0, -38.0)
+    along = plateau(y, -84.0, -74.0, -43.0, -36.0)
+    crease = bump(place, -0.4, 1.7) * along
+    # Lip side hollow, cheek side full: the cheek hangs over the crease.
+    fold = along * (0.95 * bump(place, 5.5, 4.5) - 1.15 * bump(place, -0.6, 2.6))
     bracket = bump(place - 0.08 * (y + 66.0), 7.5, 1.4) * plateau(y, -82.0, -70.0, -57.0, -47.0)
     outer = bump(place - 0.12 * (y + 62.0), 14.5, 1.0) * plateau(y, -76.0, -66.0, -54.0, -44.0)
     ragged = np.clip(0.75 + 0.35 * noise(points, 9.0, seed=seed + 3), 0.0, 1.0)
-    depth = ragged * (0.42 * fold + 0.20 * bracket + 0.12 * outer)
+    depth = 0.35 * crease + ragged * (0.20 * bracket + 0.12 * outer)
     across = np.column_stack([lean, -lean * slope, np.zeros_like(x)])
     near = plateau(beside, -16.0, -8.0, 24.0, 34.0) * plateau(y, -98.0, -88.0, -40.0, -33.0)
-    cover = smooth_step(40.0, 56.0, z) * plateau(place, -6.0, -3.0, 17.0, 20.0)
-    cover = cover * plateau(y, -85.0, -82.0, -38.0, -34.0)
-    return Crease(0, near, across, 1.6, cover, Furrows(depth, -depth))
+    cover = smooth_step(40.0, 56.0, z) * plateau(place, -7.0, -4.0, 17.0, 20.0)
+    cover = cover * plateau(y, -87.0, -84.0, -36.0, -32.0)
+    return Crease(0, near, across, 1.6, cover, Furrows(depth, -depth), fold)
 
 
 def chin(points: Points, seed: int) -> Crease:
