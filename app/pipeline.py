@@ -35,6 +35,7 @@ class DrawnMesh:
     stream: render.Stream
     uses_view: bool  # whether the refiner has a use for where the eye is
     relief: Relief | None = None  # by which wrinkles move what was refined
+    strength: float = 1.0  # how much of them shows
     mesh: refine.RefinedMesh | None = None  # what was refined last
 
     @classmethod
@@ -61,6 +62,7 @@ class DrawnMesh:
     def upload(self, wrinkling: Amounts | None = None, strength: float = 1.0) -> None:
         """Hand over what was refined last, moved as far as the scene's vertices wrinkle."""
         assert self.mesh is not None
+        self.strength = strength
         rows = None if wrinkling is None else on_rows(wrinkling, self.refiner)
         if rows is not None and self.relief is not None and self.has_uv:
             self.relief.move(self.mesh, strength * rows)

@@ -88,6 +88,14 @@ class Relief:
         height = (rows[folded] * self.heights(mesh.uv[folded])).sum(axis=1, keepdims=True)
         mesh.positions[folded] += height * mesh.normals[folded]
 
+    def carve(self, mesh: refine.RefinedMesh, rows: Amounts) -> None:
+        """Move it and turn its normals, too, for programs that know nothing of the map."""
+        smooth = _normals(mesh)
+        self.move(mesh, rows)
+        turned = mesh.normals + _normals(mesh) - smooth
+        length = np.linalg.norm(turned, axis=1, keepdims=True)
+        np.divide(turned, length, out=mesh.normals, where=length > 0.0)
+
 
 class FoldCriterion:
     """Splits edges over which the relief, as far as it shows, bends away from the straight line."""
@@ -137,6 +145,16 @@ class FoldCriterion:
 def _mixed(first: npt.NDArray[Any], second: npt.NDArray[Any], share: npt.NDArray[Any]) -> Amounts:
     mixed: Amounts = (1.0 - share) * first + share * second
     return mixed
+
+
+def _normals(mesh: refine.RefinedMesh) -> Amounts:
+    """Unit normals of the triangles around each vertex, by area, shape (N, 3)."""
+    a, b, c = (mesh.positions[mesh.triangles[:, k]] for k in range(3))
+    sums = np.zeros_like(mesh.positions)
+    for k in range(3):
+        np.add.at(sums, mesh.triangles[:, k], np.cross(b - a, c - a))
+    normals: Amounts = sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-20)
+    return normals
 
 
 def _bends(heights: Amounts) -> Amounts:

@@ -112,7 +112,7 @@ class Clip:
             if relief is not None and compression is not None and mesh.uv is not None:
                 rows = on_rows(compression.amounts(positions), refiner)
                 if rows is not None:
-                    relief.move(mesh, rows)
+                    relief.carve(mesh, rows)
             yield mesh
 
 

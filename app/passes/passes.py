@@ -61,8 +61,16 @@ class Passes:
         if "tension" in wanted:
             stretch, compression, _ = self._tension.measure(scene.positions)
             values = on_rows(np.stack([stretch, compression], axis=1), drawn.refiner)
+        wrinkles = None
+        if pipeline.wrinkling is not None and drawn.has_uv:
+            wrinkles = pipeline.wrinkling.map, drawn.strength
         geometry = pipeline.renderer.draw_geometry(
-            drawn.stream, scene.parts, scene.bone_transforms(), camera, values=values
+            drawn.stream,
+            scene.parts,
+            scene.bone_transforms(),
+            camera,
+            values=values,
+            wrinkles=wrinkles,
         )
         # Entry -1, the last one, is that of pixels where nothing is drawn.
         parts = len(self._part_classes)

@@ -37,7 +37,7 @@ def paint_wrinkles(head: Head, size: int) -> Wrinkles:
         second = np.zeros(len(texels.rows))
         for crease in creases(texels.points * [side, 1.0, 1.0], texels.mouth_row):
             visible = crease.cover * _free(texels.eye_row, texels.ear_row, texels.nostril)
-            height[place] += visible * (crease.furrows.height + crease.fold)
+            height[place] += visible * (crease.furrows.height + crease.furrows.roll)
             depth[place] += visible * crease.furrows.depth
             covered += visible
             second += visible * crease.slot
