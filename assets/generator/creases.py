@@ -220,7 +220,7 @@ def smile_lines(points: Points, seed: int) -> Crease:
     slope = np.interp(y, heights, np.gradient(sides, heights))
     lean = 1.0 / np.sqrt(1.0 + slope**2)
     place = lean * beside + line_wander(points, 0.6, 16.0, seed)
-    along = plateau(y, -84.0, -74.0, -43.0, -36.0)
+    along = plateau(y, -84.0, -74.0, -41.0, -34.5)
     crease = bump(place, -0.4, 1.7) * along
     # Lip side hollow, cheek side full: the cheek hangs over the crease.
     fold = along * (0.95 * bump(place, 5.5, 4.5) - 1.15 * bump(place, -0.6, 2.6))
