@@ -30,6 +30,7 @@ from .generator.landmarks import anatomy, landmark_vertices
 from .generator.oral import lower_cavity, tongue, upper_cavity
 from .generator.painting import SIZE, paint_skin
 from .generator.segments import paint_segments
+from .generator.shirt import shirt
 from .generator.skin import SkinMesh, build_half, mirrored
 from .generator.solids import Solid
 from .generator.tints import paint_tints
@@ -60,6 +61,7 @@ def build_parts() -> list[tuple[str, str, float, Solid]]:
         ("gums_lower", "mandible", 0.15, gums(LOWER_ARCH)),
         ("teeth_lower", "mandible", 0.35, teeth(LOWER_ARCH)),
         ("tongue", "mandible", 0.25, tongue()),
+        ("shirt", "neck", 0.0, shirt()),
     ]
 
 
