@@ -3,6 +3,7 @@
 import moderngl
 import numpy as np
 
+from .camera_view import CameraView
 from .light import Light
 from .programs import write_uniform
 from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Style, linear
@@ -40,6 +41,12 @@ def set_part(program: moderngl.Program, shine: float, light: Light) -> None:
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine
     program["sharpness"] = 20.0 * 40.0**shine
+
+
+def set_hair(program: moderngl.Program, thickness: float, view: CameraView) -> None:
+    """How thin hairs are: half of their thickness, and of a pixel's size at distance 1."""
+    program["half_hair"] = thickness
+    program["half_pixel"] = 1.0 / (view.projection[1, 1] * view.viewport[3])
 
 
 def set_light(program: moderngl.Program, light: Light) -> None:

@@ -11,9 +11,9 @@ from .fields import Points, Values, smooth_step
 
 DAYLIGHT, GLOOM = 88.0, 30.0  # z [mm]: at the incisors, at the root of the tongue
 INCISORS = 92.5  # z [mm] of the front of the upper ones
-LEAST = 0.2  # chosen: the throat is dark, not black
+LEAST = 0.36  # chosen: the throat is dark, not black
 REDDENING = (0.92, 1.25, 1.3)  # powers for red, green, blue; chosen
-FALL = 1.35  # chosen: a straight fall leaves the molars too bright
+FALL = 1.1  # chosen: how fast the molars get dark
 BESIDE, BESIDE_SHARE = 30.0, 0.12  # [mm], chosen: the cheeks cover the sides
 
 
