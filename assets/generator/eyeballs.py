@@ -19,8 +19,8 @@ IRIS_RADIUS = 5.9  # [mm]
 PUPIL_RADIUS = 1.8  # in the light of a room
 CORNEA_RADIUS, CORNEA_RISE = 6.4, 1.1  # [mm]; less than in anatomy: the lids are thin
 FINE_SEGMENTS, COARSE_SEGMENTS = 60, 30  # as far as the limbus, beyond it
-RING_DISTANCES = (0.0, 1.0, 1.6, 1.95, 2.6, 3.3, 4.0, 4.7, 5.2, 5.6, 6.0, 6.5)  # [mm] from the axis
-LAST_ANGLE_DEG, COARSE_RINGS = 112.0, 8  # the rest is never seen
+RING_DISTANCES = (0.0, 1.6, 1.95, 2.6, 3.3, 4.0, 4.7, 5.2, 5.6, 6.0, 6.5)  # [mm] from the axis
+LAST_ANGLE_DEG, COARSE_RINGS = 100.0, 5  # the rest is never seen
 
 SCLERA = (0.90, 0.885, 0.87)
 LID_SHADOW = 0.30  # of the light, lost on the sclera below the upper lid

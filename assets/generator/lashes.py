@@ -24,8 +24,8 @@ THICKNESS = 0.06  # [mm] half of it, at the root
 PLACES = (0.0, 0.3, 0.65)  # of a lash's three rings; its tip is 1
 ROOT_DEPTH = 0.25  # [mm] of roots below the skin
 INNER_END, OUTER_END = 0.16, 0.985  # of the lid, between which lashes stand
-COLOUR = (0.14, 0.10, 0.08)
-WET_COLUMNS, WET_WIDTH, WET_ROWS = 25, 0.45, 4  # [mm] of the wet edge on the lid
+COLOUR = (0.12, 0.085, 0.068)
+WET_COLUMNS, WET_WIDTH, WET_ROWS = 19, 0.45, 3  # [mm] of the wet edge on the lid
 WET_LIGHT, WET_DARK = (0.86, 0.74, 0.71), (0.78, 0.55, 0.51)  # on the eyeball, and on the lid
 SEED = 7
 

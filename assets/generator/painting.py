@@ -162,7 +162,7 @@ def _eye(texels: Texels, hair: Points, waterline: Points) -> list[Cover]:
     row, upper = texels.eye_row, texels.is_upper_lid
     inner = smooth_step(18.5, 23.0, texels.points[:, 0])  # lashes begin beside the inner corner
     wet = smooth_step(2.1, 1.7, row)
-    roots = bump(row, 2.0, 0.16) * inner * (0.12 + 0.38 * upper)
+    roots = bump(row, 2.0, 0.16) * inner * (0.15 + 0.45 * upper)
     return [(waterline, 0.75 * wet), (hair, roots)]
 
 

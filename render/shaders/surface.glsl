@@ -78,7 +78,7 @@ uniform float shadow_reach;
 #endif
 #if defined(HAIR)
 uniform float half_hair;   // of a hair's thickness
-uniform float half_pixel;  // of a pixel's size at distance 1
+uniform float least_half;  // of what it is drawn with at least, at distance 1
 #endif
 out Surface { VARYINGS } surface;
 
@@ -86,7 +86,7 @@ void main() {
     vec4 position = model_view * vec4(in_position, 1.0);
     vec3 normal = normalize(mat3(model_view) * in_normal);
 #if defined(HAIR)
-    float seen = max(half_hair, -half_pixel * position.z);
+    float seen = max(half_hair, -least_half * position.z);
     position.xyz += normal * (seen - half_hair);
     surface.coverage = half_hair / seen;
 #endif
@@ -322,11 +322,11 @@ void main() {
     float lightness = key_lightness();
 #if defined(COLOURED)
     // Lids and lips are thin, and what they shade is small: light of a large lamp gets around them.
-    lightness = mix(0.42, 1.0, lightness);
+    lightness = mix(0.6, 1.0, lightness);
 #endif
     vec3 light = lit_colour(lit, front, lightness, subsurface, openness);
 #if defined(COLOURED)
-    light *= 0.9;  // parts sit in sockets and mouths, where less light gets in
+    light *= 0.96;  // parts sit in sockets and mouths, where less light gets in
 #else
     // Skin that only just turns away is the outline, where front and back have the same depth: it
     // keeps its colour, or dark specks of the inner side would come through there.
