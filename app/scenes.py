@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
-from risorius.assets.identities import Person, in_own_colours, make_person, sample_identity
+from risorius.assets.identities import Person, person_called
 
 from .errors import UserError
 from .growing import Growing
@@ -335,13 +335,13 @@ def _new_scene(name: str, head: FittedHead | None) -> Scene:
 
 
 def head_for(
-    head: Path | None, landmarks: Path | None, person: int | None = None
+    head: Path | None, landmarks: Path | None, person: int | str | None = None
 ) -> FittedHead | None:
-    """The user's own head, fitted, or that of a number's person; None for the built-in one."""
+    """The user's own head, fitted, or a person's by number or name; None for the built-in one."""
     if person is not None:
         if head is not None or landmarks is not None:
             raise UserError("--person makes a head; it goes with neither --head nor --landmarks")
-        return in_own_colours(make_person(sample_identity(person)), person)
+        return person_called(person)
     if head is None and landmarks is None:
         return None
     if head is None or landmarks is None:

@@ -31,6 +31,7 @@ from .generator.lashes import THICKNESS, lashes, wet_edges
 from .generator.oral import lower_cavity, tongue, upper_cavity
 from .generator.painting import SIZE, paint_skin
 from .generator.segments import paint_segments
+from .generator.shirt import shirt
 from .generator.skin import SkinMesh, build_half, mirrored
 from .generator.solids import Solid
 from .generator.tints import paint_tints
@@ -61,9 +62,14 @@ def build_parts() -> list[tuple[str, str, float, Solid]]:
         ("oral_cavity_lower", "mandible", 0.05, lower_cavity()),
         ("gums_lower", "mandible", 0.15, gums(LOWER_ARCH)),
         ("teeth_lower", "mandible", 0.35, teeth(LOWER_ARCH)),
+<<<<<<< HEAD
         ("tongue", "mandible", 0.2, tongue()),
         ("wet_edges", "cranium", 0.8, wet_edges()),
         ("lashes", "cranium", 0.2, lashes()),
+=======
+        ("tongue", "mandible", 0.25, tongue()),
+        ("shirt", "neck", 0.0, shirt()),
+>>>>>>> skin
     ]
 
 

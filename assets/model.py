@@ -59,6 +59,7 @@ class Segment(IntEnum):
     BOTTOM_LIP = 11
     NECK = 12
     HAIR = 13
+    CLOTHING = 15
     IGNORE = 255
 
 
@@ -80,14 +81,15 @@ class Eye:
 
 @dataclass(frozen=True)
 class Part:
-    """A rigid thing that is drawn but not simulated: an eyeball, a row of teeth, the tongue.
+    """A rigid thing that is drawn but not simulated: an eyeball, a row of teeth, a shirt.
 
     name: unique within the head.
     vertices: rest positions [mm], shape (n, 3), float32.
     normals: unit normals, shape (n, 3), float32.
     faces: vertex numbers, counter-clockwise from the visible side, shape (m, 3), int32.
     colours: sRGB 0..1, shape (n, 3), float32.
-    bone: "cranium", "mandible", "eye_left" or "eye_right"; the part moves with it.
+    bone: "cranium", "mandible", "eye_left" or "eye_right"; the part moves with it. What is on the
+        "neck" stands still.
     shine: strength of the highlight, 0 (dull) to 1 (wet).
     roots: for a part that grows from the skin and moves with it, for each vertex the one whose
         place on the skin it keeps to, shape (n,), int32; None for all others.
@@ -131,11 +133,13 @@ class Wrinkles:
     steepest: slope of 255 in `map` [mm for one unit of the texture coordinates].
     across: for each vertex and slot the direction at rest in which skin shortens when it wrinkles;
         its length is how readily it does; zero where it does not; shape (V, 2, 3), float32.
+    resting: how far it is wrinkled at rest, 0 to 1, as with age.
     """
 
     map: Image
     steepest: float
     across: SingleArray
+    resting: float = 0.0
 
 
 @dataclass(frozen=True)

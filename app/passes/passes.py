@@ -101,6 +101,8 @@ class Passes:
 def _classes(part: Any) -> Bytes:
     """The class of each triangle of a part."""
     by_side = {"eye_right": Segment.RIGHT_EYE, "eye_left": Segment.LEFT_EYE}
+    if part.bone == "neck":
+        return np.full(len(part.faces), Segment.CLOTHING, np.uint8)
     if part.bone in by_side:
         return np.full(len(part.faces), by_side[part.bone], np.uint8)
     if part.name in ("eye_corners", "wet_edges"):

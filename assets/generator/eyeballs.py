@@ -27,12 +27,12 @@ LID_SHADOW = 0.30  # of the light, lost on the sclera below the upper lid
 CAUSTIC = 0.45  # of the iris' light, gained below: the cornea gathers there what comes from above
 CANTHUS = (0.80, 0.55, 0.51)
 PUPIL = (0.015, 0.013, 0.013)
-CONJUNCTIVA = (0.79, 0.56, 0.51)
+CONJUNCTIVA = (0.77, 0.53, 0.48)
 
 # The pink flesh in the corners of the left eye: centre and radii [mm]. It closes the gap that the
 # ball leaves there, the inner one being the caruncle.
 CORNERS = (
-    ((18.7, -1.5, 75.6), (3.4, 2.7, 3.0)),
+    ((18.9, -1.6, 75.2), (3.9, 3.0, 2.9)),
     ((42.2, 0.8, 70.6), (3.0, 2.8, 2.6)),
 )
 

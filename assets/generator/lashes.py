@@ -108,9 +108,9 @@ def lashes() -> Solid:
 def wet_edges() -> Solid:
     """The tears along both lower lids; each vertex moves with the skin where it is itself."""
     inner, outer = _edges(upper=False)
-    place = np.linspace(0.1, 0.95, WET_COLUMNS)
-    on_lid = inner(place) + WET_WIDTH * unit(outer(place) - inner(place))
-    width: Values = np.sin(np.pi * np.linspace(0.04, 0.96, WET_COLUMNS)) ** 0.5
+    place = np.linspace(0.12, 0.9, WET_COLUMNS)
+    width: Values = np.sin(np.pi * np.linspace(0.03, 0.97, WET_COLUMNS)) ** 0.5
+    on_lid = inner(place) + WET_WIDTH * width[:, None] * unit(outer(place) - inner(place))
     up = unit(np.cross(inner(place, 1), inner(place) - EYE_CENTRE))
     up *= np.sign(up[:, 1:2])
     above = inner(place) + 0.9 * WET_WIDTH * width[:, None] * up

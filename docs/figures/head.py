@@ -27,7 +27,7 @@ from risorius.bench.subjects import settled_positions
 CELL = (260, 320)  # [pixels] of one portrait: a contact sheet stays below 600 kB
 VIEWS = ("front", "three-quarter", "profile", "below")
 OPENED = 90  # steps of 1/60 s after which an opened jaw stands still
-AT_REST = dict.fromkeys(("cranium", "mandible", "eye_left", "eye_right"), np.eye(4))
+AT_REST = dict.fromkeys(("neck", "cranium", "mandible", "eye_left", "eye_right"), np.eye(4))
 
 PAINTED = render.Style()
 CLAY = render.Style(textured=False, albedo=render.CLAY)

@@ -315,6 +315,13 @@ void main() {
     // Lips are redder than the skin around, and moist. Chosen by eye: not yet at red cheeks.
     float excess = front.r / (max(front.g, 1e-3) * redness);
     lit.specular *= 1.0 + 1.6 * clamp(5.0 * excess - 6.0, 0.0, 1.0);
+    // Pores and hairs, darker than what is around them, break the highlight; and it lies in hollows
+    // less than on what stands out. On dark skin a plain one would be all that is seen.
+    const vec3 LIGHTNESS = vec3(0.3, 0.6, 0.1);
+    float shown_here = dot(front, LIGHTNESS);
+    float around = dot(texture(albedo_texture, surface.uv, 3.0).rgb, LIGHTNESS);
+    float relief = clamp(shown_here / max(around, 1e-3), 0.5, 1.4);
+    lit.specular *= relief * relief * relief * mix(0.45, 1.0, sqrt(min(around * 2.2, 1.0))) * openness;
 #endif
 #if defined(WRINKLES)
     front *= 1.0 - wrinkle.depth * FURROW;

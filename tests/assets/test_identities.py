@@ -108,7 +108,9 @@ def test_persons_are_spread_as_published() -> None:
 
 def test_each_shape_does_what_its_name_says(head: Head) -> None:
     """A shape moves its points its way, and leaves all measures as they are."""
-    mean = Identity(Sex.WOMAN, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN)
+    mean = Identity(
+        Sex.WOMAN, 30.0, 0.0, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN
+    )
     plain = make_person(mean)
     for name, pushes in SHAPES.items():
         bent = make_person(replace(mean, shapes={**mean.shapes, name: 1.0}))
@@ -124,7 +126,7 @@ def test_each_shape_does_what_its_name_says(head: Head) -> None:
 
 def test_calipers_are_allowed_for() -> None:
     """Widths that were taken with calipers are asked for as a surface has them."""
-    mean = Identity(Sex.MAN, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN)
+    mean = Identity(Sex.MAN, 30.0, 0.0, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN)
     for code, norm in norms_of(Sex.MAN).items():
         assert mean.measures[code] == norm.mean + PRESSED.get(code, 0.0)
 

@@ -20,7 +20,7 @@ from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import Head, Tone
 
 Colours = npt.NDArray[np.float64]
-LARGEST_IMAGE_FILE = 1_000_000  # bytes
+LARGEST_IMAGE_FILE = 1_250_000  # bytes
 
 
 @pytest.fixture(scope="module")
