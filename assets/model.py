@@ -91,6 +91,9 @@ class Part:
     bone: "cranium", "mandible", "eye_left" or "eye_right"; the part moves with it. What is on the
         "neck" stands still.
     shine: strength of the highlight, 0 (dull) to 1 (wet).
+    roots: for a part that grows from the skin and moves with it, for each vertex the one whose
+        place on the skin it keeps to, shape (n,), int32; None for all others.
+    hair: half the thickness of the hairs that the part consists of [mm]; 0 where it is none.
     """
 
     name: str
@@ -100,6 +103,8 @@ class Part:
     colours: SingleArray
     bone: str
     shine: float
+    roots: IndexArray | None = None
+    hair: float = 0.0
 
 
 @dataclass(frozen=True)

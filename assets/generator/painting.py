@@ -136,18 +136,12 @@ def covers(texels: Texels, complexion: Complexion, grain: float, side: int) -> l
 
 
 def _eye(texels: Texels, hair: Points, waterline: Points) -> list[Cover]:
-    """The wet rim of the lower lid, and where the lashes stand."""
+    """The moist margins of the lids, and a thin shade where the lashes stand."""
     row, upper = texels.eye_row, texels.is_upper_lid
     inner = smooth_step(18.5, 23.0, texels.points[:, 0])  # lashes begin beside the inner corner
-    wet = smooth_step(2.1, 1.7, row) * (1.0 - 0.75 * upper)
-    line = upper * smooth_step(2.5, 2.0, row) * smooth_step(0.6, 1.3, row) * (0.35 + 0.65 * inner)
-    lower_line = (1.0 - upper) * bump(row, 2.12, 0.32) * inner
-    ragged = 1.0 + 0.15 * noise(texels.points, 0.9, seed=23)
-    return [
-        (waterline, 0.75 * wet),
-        (0.6 * hair, 0.86 * line),
-        (hair, np.clip(0.34 * lower_line * ragged, 0.0, 1.0)),
-    ]
+    wet = smooth_step(2.1, 1.7, row)
+    roots = bump(row, 2.0, 0.16) * inner * (0.15 + 0.45 * upper)
+    return [(waterline, 0.75 * wet), (hair, roots)]
 
 
 def _mouth(texels: Texels) -> list[Cover]:

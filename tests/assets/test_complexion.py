@@ -174,7 +174,7 @@ def test_irises_follow_the_shares_where_skin_is_light(angle: float) -> None:
 
 
 def test_features_do_what_their_names_say(head: Head) -> None:
-    """Thin brows show skin, beards darken, lips redden, grey hair is lighter, and hairlines recede."""
+    """Thin brows show skin, beards darken, lips redden, hair is grey or gone."""
     plain = recoloured(40.0).astype(int)
 
     def changed(**features: float) -> Light:
