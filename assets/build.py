@@ -62,14 +62,10 @@ def build_parts() -> list[tuple[str, str, float, Solid]]:
         ("oral_cavity_lower", "mandible", 0.05, lower_cavity()),
         ("gums_lower", "mandible", 0.15, gums(LOWER_ARCH)),
         ("teeth_lower", "mandible", 0.35, teeth(LOWER_ARCH)),
-<<<<<<< HEAD
         ("tongue", "mandible", 0.2, tongue()),
         ("wet_edges", "cranium", 0.8, wet_edges()),
         ("lashes", "cranium", 0.2, lashes()),
-=======
-        ("tongue", "mandible", 0.25, tongue()),
         ("shirt", "neck", 0.0, shirt()),
->>>>>>> skin
     ]
 
 

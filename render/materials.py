@@ -39,7 +39,8 @@ def set_skin(program: moderngl.Program, style: Style) -> None:
 def set_part(program: moderngl.Program, shine: float, light: Light) -> None:
     """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights."""
     set_light(program, light)
-    program["rim_light"] = 0.0, 0.0, 0.0  # no light from behind gets through the head
+    if shine > 0.0:  # what is wet lies in the head, through which no light from behind gets
+        program["rim_light"] = 0.0, 0.0, 0.0
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine
     program["sharpness"] = 20.0 * 40.0**shine

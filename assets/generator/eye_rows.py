@@ -14,7 +14,9 @@ from .form import EYE_CENTRE, EYE_RADIUS, distance
 COLUMNS = 20  # chosen: 3 mm edges along the margin
 INNER_CORNER = np.array([16.2, -1.9])  # [mm] x, y of the commissure
 OUTER_CORNER = np.array([43.9, 0.9])
-UPPER_RISE = 4.95  # [mm] of the upper margin above the line between the corners: it covers some iris
+UPPER_RISE = (
+    4.95  # [mm] of the upper margin above the line between the corners: it covers some iris
+)
 LOWER_DROP = 5.2
 CORNER_DEPTHS = (78.6, 73.4)  # [mm] z of the margin at the inner and the outer corner
 MARGIN_CLEARANCE = 0.25  # [mm] between eyeball and inner edge: touching would flicker
