@@ -18,7 +18,7 @@ from .fields import (
 )
 from .sections import base_radius, direction_coordinates, rays
 
-EYE_CENTRE = np.array([32.0, 0.2, 70.8])  # [mm] the left eye
+EYE_CENTRE = np.array([31.2, 0.2, 70.8])  # [mm] the left eye
 EYE_RADIUS = 13.0  # [mm] 1 mm above anatomy: fills the fissure between the lids
 LID_RADII = (15.2, 14.7, 15.1)  # [mm] the lids are an ellipsoid around the eyeball
 LID_FILLET = 3.8  # [mm]
