@@ -41,6 +41,7 @@ class Compression:
         self._readiness = np.linalg.norm(wrinkles.across, axis=2)
         if scene.face_uv is not None:
             self._readiness[_seam_vertices(scene.faces, scene.face_uv)] = 0.0
+        self._resting = wrinkles.resting * np.minimum(self._readiness, 1.0)
         self._shortening = refine.Shortening(scene.faces, scene.rest_positions, wrinkles.across)
 
     def amounts(self, positions: npt.NDArray[np.float64]) -> Amounts:
@@ -50,8 +51,9 @@ class Compression:
         """
         lost = self._readiness * self._shortening.measure(positions)
         beyond = np.square(np.maximum(lost - ONSET, 0.0))
-        amounts: Amounts = beyond / (beyond + (HALF - ONSET) ** 2)
-        return amounts
+        amounts = beyond / (beyond + (HALF - ONSET) ** 2)
+        shown: Amounts = np.maximum(amounts, self._resting).astype(np.float32)
+        return shown
 
 
 class Wrinkling(Compression):
