@@ -93,7 +93,7 @@ def furrows_of(
     off = np.abs(from_middle - shift) / lines.width
     depth = deepest * bump(off, 0.0, 1.0)
     trough = bump(np.abs(from_middle - shift), 0.0, ROLL * lines.spacing)
-    roll = lines.swelling * deepest * (0.5 - trough)
+    roll = lines.swelling * (0.5 * lines.fullness * lines.depth - deepest * trough)
     return Furrows(depth, 0.3 * deepest * bump(off, 2.1, 1.2) - depth, roll)
 
 
@@ -125,7 +125,7 @@ def forehead(points: Points, seed: int) -> Crease:
     place = place - 2.4 * (bump(x, 27.0, 17.0) + bump(x, -27.0, 17.0))  # arches over the brows
     place = place + line_wander(points, 1.7, 23.0, seed)
     main = furrows_of(
-        LineFamily(9.0, 1.3, 0.37, 30.0, swelling=1.4), place, points[:, 0], seed + 10
+        LineFamily(9.0, 1.3, 0.37, 30.0, swelling=1.9), place, points[:, 0], seed + 10
     )
     fine = furrows_of(LineFamily(4.1, 0.7, 0.11, 15.0, 0.25), place + 2.6, points[:, 0], seed + 20)
     near = smooth_step(16.0, 30.0, y) + 1e-3 * (y > 10.0)
