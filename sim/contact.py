@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from .landmarks import Array, mouth_line, polyline_distance
 from .skull import Eyeball
-from .substep import SEAL_AXES, SLIDES_IN_FRONT
+from .substep import SEAL_AXES, SLIDES_PAST
 from .surface import Surface
 
 LIP_EDGE = 5.0  # mm around the mouth line in which lip vertices are looked for
@@ -58,7 +58,7 @@ class LipPairs(NamedTuple):
     def deepest(self, x: Array, rest: Array, pressed: float) -> float:
         """How far the lips cross at most at positions (V, 3), more than `pressed` and at rest [mm].
 
-        A lower lip that has come out in front of the upper one (see substep.py) crosses nothing.
+        A lower lip in front of the upper one, or rolled in behind it (substep.py), crosses nothing.
         """
         if not len(self.lower):
             return 0.0
@@ -67,7 +67,7 @@ class LipPairs(NamedTuple):
         below = self.share[:, None] * rest[a] + (1.0 - self.share)[:, None] * rest[b]
         forward = (x - rest)[self.lower, 2] - (above - below)[:, 2]
         crossing = self.least_gap - pressed - (above[:, 1] - x[self.lower, 1])
-        return float(np.where(forward < SLIDES_IN_FRONT, crossing, 0.0).max(initial=0.0))
+        return float(np.where(np.abs(forward) < SLIDES_PAST, crossing, 0.0).max(initial=0.0))
 
 
 class Grip(NamedTuple):

@@ -187,6 +187,9 @@ class RingMuscle(Muscle):
     push: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, 0.0, 0.0))
     bulge: float = _number(0.0, 40.0, default=0.0)  # mm outward along the skin's normal
     flare: float = _number(-30.0, 30.0, default=0.0)  # mm up for the upper, down for the lower lip
+    turn_deg: tuple[float, float] = _vector(
+        2, -90.0, 90.0, default=(0.0, 0.0)
+    )  # about the centre: what lies above it goes forward, what lies before it to the side
     opening: tuple[float, float] = _vector(
         2, 0.0, 30.0, default=(0.0, 0.0)
     )  # mm, half width and half height of the oval mouth drawn to; both 0: to the centre
