@@ -117,6 +117,7 @@ def _known(name: str, shapes: Mapping[str, Any], simulation: sim.Simulation) -> 
         found = [(e, key) for e, key in endings if whole.endswith(e)]
         if found:
             whole, side = whole.removesuffix(found[0][0]), found[0][1]
+            whole = whole if whole in shapes else whole + side  # each side has controls of its own
     if whole not in shapes:
         return None
     table = shapes[whole]
