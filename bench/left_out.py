@@ -38,14 +38,13 @@ PLACES = ("origin", "insertion", "fibres", "centre", "shape", "radii", "arc_deg"
 NATURE = ("name", "action", "group", "pair", "halves", "crosses", "tone", "bone", "gate")
 KEPT = {*PLACES, *NATURE, "opens_lips", "lies_on"}  # all else of a muscle was fitted
 NUMBERS = {  # what is fitted, and how far it goes for the pull of a start to count as one
-    "contraction": 0.15, "width": 5.0, "beyond": 5.0, "bulge": 3.0, "wrap": 0.3,
-    "push": 8.0, "flare": 4.0, "turn_deg": 25.0,
+    "contraction": 0.15, "width": 5.0, "bulge": 3.0, "push": 8.0, "flare": 4.0,
 }  # fmt: skip
 PULL = 0.1  # of the start against a whole scan
 PRIME = 0.5  # share from which a muscle is a prime mover
 HELPER = 0.3  # plain share of the others
-SETTLE = 45  # frames of 1/60 s until a pose is still enough
-TRIES = 4  # steps of Gauss and Newton
+SETTLE = 30  # frames of 1/60 s until a pose is still enough
+TRIES = 2  # steps of Gauss and Newton
 
 
 @dataclass(frozen=True)
