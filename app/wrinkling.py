@@ -40,8 +40,9 @@ class Wrinkling:
         """
         lost = self._readiness * self._shortening.measure(positions)
         beyond = np.square(np.maximum(lost - ONSET, 0.0))
-        amounts: Amounts = beyond / (beyond + (HALF - ONSET) ** 2)
-        return np.maximum(amounts, self._resting, dtype=np.float32)
+        amounts = beyond / (beyond + (HALF - ONSET) ** 2)
+        shown: Amounts = np.maximum(amounts, self._resting).astype(np.float32)
+        return shown
 
 
 def on_rows(amounts: Amounts, refiner: refine.Refiner) -> Amounts | None:

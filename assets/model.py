@@ -42,7 +42,7 @@ class Tone(Enum):
 class Segment(IntEnum):
     """What a pixel of a face shows, by the numbers of FaceSynthetics (Wood et al. 2021).
 
-    Left and right are the subject's. HAIR is for heads that have any; shaved skin is SKIN.
+    Left and right are the subject's.
     """
 
     BACKGROUND = 0

@@ -15,7 +15,7 @@ from .brows import brow_cover
 from .fields import Points, Values, bump, smooth_step
 from .form import FOLD
 from .grain import SEED, blotches, crop, freckles, pores
-from .noise import noise, speckle
+from .noise import noise
 from .pigments import COMPLEXIONS, MELANIN, Complexion, reflectance, to_linear, to_screen
 from .regions import beard, blood, red, scalp, tan
 from .texels import Texels, left_texels

@@ -13,7 +13,7 @@ from .noise import noise
 from .outline import rim_curve
 from .solids import Solid, grid_faces, mix, welded
 
-COLUMNS, BODY_ROWS = 56, 18
+COLUMNS, BODY_ROWS = 52, 15
 CLOTH, RIB, WITHIN = (0.245, 0.275, 0.315), (0.215, 0.242, 0.28), (0.07, 0.075, 0.085)
 # Rows of the collar from within: distance from the neck, height over its edge [mm].
 COLLAR = ((-12.0, -16.0), (1.6, -8.0), (2.6, 3.0), (3.5, 5.4), (4.9, 5.2), (6.2, 2.0), (9.5, -7.5))
@@ -32,7 +32,7 @@ def shirt() -> Solid:
     rows = [*_collar(angle), *_body(angle)]
     points = np.vstack(rows)
     ring = np.repeat(np.arange(len(rows)), COLUMNS)
-    colours = mix(np.tile(CLOTH, (len(points), 1)), RIB, (ring <= len(COLLAR)) * 1.0)
+    colours = mix(CLOTH, RIB, (ring <= len(COLLAR)).astype(np.float64))
     colours = mix(colours, WITHIN, np.clip((3.0 - ring) / 2.0, 0.0, 1.0))
     colours *= 1.0 + 0.05 * noise(points, 2.2, seed=52)[:, None]
     return welded(Solid(points, grid_faces(len(rows), COLUMNS, wrapped=True)[:, ::-1], colours))

@@ -31,7 +31,7 @@ from ..generator.painting import BEARD_SHADOW
 from ..generator.pigments import BLOOD, COMPLEXIONS, MELANIN, SHADOW, to_linear, to_screen
 from ..generator.tints import BEHIND, IN_FRONT
 from ..loading import load
-from ..model import FloatArray, Part, SingleArray, Tone
+from ..model import FloatArray, Part, Segment, SingleArray, Tone
 from .person import Person
 from .traits import Identity, Sex
 
@@ -172,7 +172,12 @@ def coloured(
     """A head with skin and eyes of other colours; None leaves them as they are."""
     skin = head.albedo if angle is None else recoloured(angle, blood=blood, features=features)
     parts = head.parts if irises is None else with_irises(head.parts, irises)
-    return replace(head, albedo=skin, parts=parts)
+    segments = head.segments
+    if features.baldness > 0.0:
+        tints = _tints()
+        is_bald = (segments == Segment.HAIR) & (_kept_hair(tints, features) < 0.5 * tints.hair)
+        segments = np.where(is_bald, np.uint8(Segment.SKIN), segments)
+    return replace(head, albedo=skin, parts=parts, segments=segments)
 
 
 def drawn_irises(

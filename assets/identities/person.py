@@ -124,11 +124,12 @@ def _made(identity: Identity) -> Person:
 
 def _resting(years: float) -> float:
     """How far furrows show in a face at rest, 0 to 1."""
-    return MOST_RESTING * float(np.clip((years - 30.0) / 45.0, 0.0, 1.0)) ** 1.5
+    past = float(np.clip((years - 30.0) / 45.0, 0.0, 1.0))
+    return MOST_RESTING * past * past
 
 
 def _hair(known: Head) -> FloatArray:
-    """Share of the hair's height over the scalp at each vertex, shape (V,); none around the ears."""
+    """Share of the hair's height at each vertex, shape (V,); none around the ears."""
     angle, height, _ = direction_coordinates(known.vertices)
     behind = height - line_height(HAIRLINE, np.degrees(np.abs(angle)))
     ears = np.concatenate([known.rings[f"ear_0_{side}"] for side in ("left", "right")])
