@@ -30,6 +30,7 @@ class Wrinkling:
         assert wrinkles is not None
         self.map = renderer.load_wrinkles(wrinkles.map, wrinkles.steepest)
         self._readiness = np.linalg.norm(wrinkles.across, axis=2)
+        self._resting = wrinkles.resting * np.minimum(self._readiness, 1.0)
         self._shortening = refine.Shortening(scene.faces, scene.rest_positions, wrinkles.across)
 
     def amounts(self, positions: npt.NDArray[np.float64]) -> Amounts:
@@ -39,8 +40,9 @@ class Wrinkling:
         """
         lost = self._readiness * self._shortening.measure(positions)
         beyond = np.square(np.maximum(lost - ONSET, 0.0))
-        amounts: Amounts = beyond / (beyond + (HALF - ONSET) ** 2)
-        return amounts
+        amounts = beyond / (beyond + (HALF - ONSET) ** 2)
+        shown: Amounts = np.maximum(amounts, self._resting).astype(np.float32)
+        return shown
 
 
 def on_rows(amounts: Amounts, refiner: refine.Refiner) -> Amounts | None:

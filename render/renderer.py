@@ -22,7 +22,7 @@ from .camera_view import CameraView, box_corners
 from .geometry import checked_values, line_segments, value_texture
 from .geometry_buffer import Geometry, GeometryBuffer
 from .hidden import Occluder, draw_sides
-from .materials import COLOUR_DEFINES, set_palette, set_part, set_skin
+from .materials import COLOUR_DEFINES, set_hair, set_palette, set_part, set_skin
 from .outline import draw_fringes, fringes
 from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
@@ -240,7 +240,7 @@ class Renderer:
         viewport: Viewport | None = None,
         clip: Viewport | None = None,
     ) -> None:
-        """Draw coloured parts, each moved by the matrix of its bone (column vectors).
+        """Draw coloured parts, each moved by the matrix of its bone (column vectors); hairs last.
 
         Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
         is first seen and must not change after; a part that changes its shape hands out others.
@@ -258,9 +258,16 @@ class Renderer:
         if is_chosen and self._occluder is not None:
             self._occluder.choose_parts(placed)
         for buffers, transform in placed:
-            if self._set_view(program, view, buffers.corners, transform):
-                set_part(program, buffers.part.shine, style.light)
+            if not buffers.hair and self._set_view(program, view, buffers.corners, transform):
+                set_part(program, buffers.part, style.light)
                 buffers.draw(program, chosen=is_chosen)
+        program = self._program("surface.glsl", "PIXEL", "COLOURED", "HAIR")
+        for buffers, transform in placed:
+            if buffers.hair and self._set_view(program, view, buffers.corners, transform):
+                set_hair(program, buffers.hair, view)
+                set_part(program, buffers.part, style.light)
+                with self._blending():
+                    buffers.draw(program, chosen=is_chosen)
 
     def draw_geometry(
         self,

@@ -43,6 +43,7 @@ class LipPairs(NamedTuple):
     upper: npt.NDArray[np.int32]  # (P, 2) ends of an edge-like segment of the upper lip
     share: Array  # (P,) of the first end
     least_gap: Array  # (P,) mm, vertical; small negative where lips overlap at rest
+    press: Array  # (P,) x the overlap of pressed lips; more where they are apart at rest
     seal: Array  # (P,) stiffness
     averaging: Array  # (P,) 1 / number of pairs its vertices are in
     members: npt.NDArray[np.int32]  # (M,) all vertices in pairs
@@ -51,7 +52,7 @@ class LipPairs(NamedTuple):
         """Energy stored in the seal for displacements (V, 3)."""
         apart = moved[self.lower] - self.share[:, None] * moved[self.upper[:, 0]]
         apart -= (1.0 - self.share)[:, None] * moved[self.upper[:, 1]]
-        apart[:, 1] -= grip.overlap
+        apart[:, 1] -= grip.overlap * self.press
         stored = self.seal * (apart**2 @ np.array(SEAL_AXES))
         return float(grip.stiffness * stored.sum() / 2.0)
 
@@ -134,7 +135,8 @@ def _lip_pairs(surface: Surface, pairs: list[tuple[int, int, int, float]], seal:
     most = np.maximum(count[lower], count[upper].max(axis=1, initial=1))
     strength = seal * np.maximum(surface.areas[lower], LEAST_SEAL_AREA)
     members = np.flatnonzero(count).astype(np.int32)
-    return LipPairs(lower, upper, share, np.minimum(gap, 0.0), strength, 1.0 / most, members)
+    least, press = np.minimum(gap, 0.0), 1.0 + np.maximum(gap, 0.0) / PRESSED_OVERLAP
+    return LipPairs(lower, upper, share, least, press, strength, 1.0 / most, members)
 
 
 class EyeContact(NamedTuple):

@@ -294,6 +294,7 @@ class Simulation:
         """Motion of each bone from rest to now, name -> (4, 4) for column vectors [head units]."""
         anatomy = self._anatomy
         transforms = {
+            "neck": np.eye(4),
             "cranium": self._head.matrix(anatomy.space),
             "mandible": self._head.after(self._mandible).matrix(anatomy.space),
         }

@@ -47,6 +47,7 @@ LARGEST = 10_000.0  # [mm] from the middle of the face: farther off, a vertex is
 # Landmarks so far apart on the built-in head cannot be one place: no muscle spans no way.
 APART = 30.0  # [mm]
 ONE_PLACE = 1.0  # [mm]
+NECK = "neck"  # what hangs there, a shirt, is the built-in head's: another may have its shoulders
 FARTHEST_FROM_A_FACE = 14.0  # [mm] mean distance of landmarks from those of the built-in head
 
 
@@ -127,7 +128,7 @@ def fit(
         landmarks=skin.landmarks,
         bone_depth=nearest.interpolate(known.bone_depth),
         eyes=eyes,
-        parts=place_parts(known, fitted, warp, eyes),
+        parts=tuple(part for part in place_parts(known, fitted, warp, eyes) if part.bone != NECK),
         uv=nearest.interpolate(known.uv).astype(np.float32),
         face_uv=skin.faces,
         albedo=known.albedo,
