@@ -9,7 +9,7 @@ from risorius import render
 from .errors import UserError
 from .scenes import Scene
 
-DEFAULT_VIEW = "three-quarter"
+DEFAULT_VIEW = "front"  # the face looks at whoever looks at it
 
 
 MARGIN = 0.05  # of the frame, free on each side of a whole scene

@@ -22,6 +22,7 @@ class Look:
 
     refiner: str = "kahler"
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by refiner
+    folds: bool = False  # whether wrinkles get triangles and move them, see `wrinkling`
 
     def told(self, refiner: str) -> Mapping[str, Any]:
         """What a refiner is told where its defaults do not do; nothing, where this knows none."""
@@ -30,7 +31,7 @@ class Look:
 
 # By `bulge` alone the outlines of crown and chin would stay polygons: edges there are long and turn
 # little. `border` would make an opened mouth rounder, and lids and pursed lips uneven.
-SMOOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+rest"}})
+SMOOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+rest"}}, folds=True)
 # The hem of a cloth turns in the sheet itself.
 SMOOTH_CLOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+border"}})
 PAPER = Look()
@@ -67,6 +68,10 @@ class Refinement:
         look = LOOKS[self.look][scene]
         name = look.refiner if self.refiner is None else self.refiner
         return name, {**look.told(name), **self.options}
+
+    def folds(self, scene: str) -> bool:
+        """Whether wrinkles become shape; the mesh as it is has no triangles for it."""
+        return LOOKS[self.look][scene].folds and self.on(scene)[0] != STATIC
 
     @property
     def label(self) -> str:

@@ -16,7 +16,7 @@ from risorius.assets.topology import vertex_normals
 
 IN_MOUTH = ("teeth", "gums", "tongue")  # names begin so; the cavity is painted dark
 LIT, DARK = 2.0, 34.0  # [mm] behind the front teeth, where it begins to get dark and no darker
-DIMMED = 0.4  # of the colour (sRGB) that is lost there
+DIMMED = 0.15  # of the colour (sRGB) that is lost there
 
 Floats = npt.NDArray[np.float32]
 

@@ -20,7 +20,7 @@ from risorius import refine, render
 from .looks import Refinement
 from .refining import refiner_for
 from .scenes import Scene
-from .wrinkling import Amounts, on_rows, wrinkling_of
+from .wrinkling import Amounts, Relief, on_rows, relief_of, wrinkling_of
 
 TEXTURED_COLUMNS = 8  # position, normal, u v
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
@@ -34,6 +34,8 @@ class DrawnMesh:
     refiner: refine.Refiner
     stream: render.Stream
     uses_view: bool  # whether the refiner has a use for where the eye is
+    relief: Relief | None = None  # by which wrinkles move what was refined
+    strength: float = 1.0  # how much of them shows
     mesh: refine.RefinedMesh | None = None  # what was refined last
 
     @classmethod
@@ -44,7 +46,8 @@ class DrawnMesh:
             refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
         )
         uses_view = "view" in inspect.signature(refiner.refine).parameters
-        return cls(refinement.label, refiner, stream, uses_view)
+        relief = relief_of(scene, refinement)
+        return cls(refinement.label, refiner, stream, uses_view, relief)
 
     def refine(
         self, positions: npt.NDArray[np.float64], camera: render.OrbitCamera, viewport: Viewport
@@ -56,10 +59,13 @@ class DrawnMesh:
             view_option["view"] = refine.View(camera.eye, focal)
         self.mesh = self.refiner.refine(positions, out=self.stream, **view_option)
 
-    def upload(self, wrinkling: Amounts | None = None) -> None:
-        """Hand over what was refined last, and how far the scene's vertices wrinkle."""
+    def upload(self, wrinkling: Amounts | None = None, strength: float = 1.0) -> None:
+        """Hand over what was refined last, moved as far as the scene's vertices wrinkle."""
         assert self.mesh is not None
+        self.strength = strength
         rows = None if wrinkling is None else on_rows(wrinkling, self.refiner)
+        if rows is not None and self.relief is not None and self.has_uv:
+            self.relief.move(self.mesh, strength * rows)
         self.stream.upload(self.mesh.vertex_count, self.mesh.triangle_count, rows)
 
     @property
@@ -112,7 +118,7 @@ class Pipeline:
             amounts = self.wrinkling.amounts(self.scene.positions)
         for drawn, viewport in zip(self.meshes, viewports, strict=True):
             drawn.refine(self.scene.positions, camera, viewport)
-            drawn.upload(amounts)
+            drawn.upload(amounts, style.wrinkles)
             self._draw(drawn, bones, camera, style, viewport)
 
     def _draw(

@@ -14,6 +14,7 @@ from risorius import refine
 from .errors import UserError
 from .looks import LOOKS, STATIC, Refinement, named
 from .scenes import Scene
+from .wrinkling import FoldCriterion
 
 LARGEST = 1e30  # of a number in an option: in single precision it is still one
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
@@ -31,8 +32,12 @@ def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
             options["detail"] = finer_mesh(scene)
             if options["detail"] is None:
                 raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
+        bound = dict(options)
+        chosen = options.get("criterion")
+        if isinstance(chosen, str) and scene.wrinkles and refinement.folds(scene.name):
+            bound["criterion"] = [*chosen.split("+"), FoldCriterion(scene)]
         return refine.create(
-            name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **options
+            name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **bound
         )
     except (ValueError, TypeError) as error:
         raise UserError(f"refiner {name}: {error}{_of_look(refinement, options)}") from None

@@ -18,9 +18,10 @@ import numpy.typing as npt
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
-from risorius.assets.identities import Person, in_own_colours, make_person, sample_identity
+from risorius.assets.identities import Person, person_called
 
 from .errors import UserError
+from .growing import Growing
 from .keeping import kept, state_of
 from .mouth import Tongue, shaded_mouth
 
@@ -111,8 +112,12 @@ class FaceScene(Scene):
         self.groups, self.limits = simulation.groups, simulation.limits
         self.actions = simulation.actions
         self.expressions = simulation.layers.get("Expressions", ())
-        self.parts = shaded_mouth(head.parts)
-        self._tongues = [part for part in self.parts if isinstance(part, Tongue)]
+        self.parts = tuple(
+            part
+            if getattr(part, "roots", None) is None
+            else Growing.of(part, self.rest_positions, self.faces)
+            for part in shaded_mouth(head.parts)
+        )
         self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
         self.wrinkles = head.wrinkles
         self.landmarks = head.landmarks
@@ -156,17 +161,19 @@ class FaceScene(Scene):
         count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))
         for _ in range(count):
             self.simulation.step(seconds / count)
-        self._bend_tongue()
+        self._bend_parts()
 
     def reset(self) -> None:
         self.simulation.reset()
-        self._bend_tongue()
+        self._bend_parts()
 
-    def _bend_tongue(self) -> None:
-        bent = self.simulation.tongue()
-        for tongue in self._tongues:
-            if bent is not None:
-                tongue.bend(bent)
+    def _bend_parts(self) -> None:
+        bent, bones = self.simulation.tongue(), self.bone_transforms()
+        for part in self.parts:
+            if isinstance(part, Growing):
+                part.follow(self.positions, bones[part.bone])
+            elif isinstance(part, Tongue) and bent is not None:
+                part.bend(bent)
 
     def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
         return self.simulation.bone_transforms()
@@ -340,13 +347,13 @@ def _new_scene(name: str, head: FittedHead | None) -> Scene:
 
 
 def head_for(
-    head: Path | None, landmarks: Path | None, person: int | None = None
+    head: Path | None, landmarks: Path | None, person: int | str | None = None
 ) -> FittedHead | None:
-    """The user's own head, fitted, or that of a number's person; None for the built-in one."""
+    """The user's own head, fitted, or a person's by number or name; None for the built-in one."""
     if person is not None:
         if head is not None or landmarks is not None:
             raise UserError("--person makes a head; it goes with neither --head nor --landmarks")
-        return in_own_colours(make_person(sample_identity(person)), person)
+        return person_called(person)
     if head is None and landmarks is None:
         return None
     if head is None or landmarks is None:

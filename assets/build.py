@@ -27,9 +27,11 @@ from .generator.eyeballs import IRIS_RADIUS, corner_flesh, eyeball
 from .generator.finer import refine_skin
 from .generator.form import EYE_CENTRE, EYE_RADIUS
 from .generator.landmarks import anatomy, landmark_vertices
+from .generator.lashes import THICKNESS, lashes, wet_edges
 from .generator.oral import lower_cavity, tongue, upper_cavity
 from .generator.painting import SIZE, paint_skin
 from .generator.segments import paint_segments
+from .generator.shirt import shirt
 from .generator.skin import SkinMesh, build_half, mirrored
 from .generator.solids import Solid
 from .generator.tints import paint_tints
@@ -41,11 +43,12 @@ from .staging import StagingFolder
 from .topology import vertex_normals
 
 SMALLEST, LARGEST = 64, 8192  # [texels] of picture and wrinkles
+HAIRS = {"lashes": THICKNESS}
 MIRROR = np.array([-1.0, 1.0, 1.0])
 
 
 def build_parts() -> list[tuple[str, str, float, Solid]]:
-    """Return name, bone, shine and surface of every rigid part."""
+    """Return name, bone, shine and surface of every part."""
     left = eyeball()
     left.vertices = left.vertices + EYE_CENTRE
     right = left.mirrored()
@@ -59,7 +62,10 @@ def build_parts() -> list[tuple[str, str, float, Solid]]:
         ("oral_cavity_lower", "mandible", 0.05, lower_cavity()),
         ("gums_lower", "mandible", 0.15, gums(LOWER_ARCH)),
         ("teeth_lower", "mandible", 0.35, teeth(LOWER_ARCH)),
-        ("tongue", "mandible", 0.25, tongue()),
+        ("tongue", "mandible", 0.2, tongue()),
+        ("wet_edges", "cranium", 0.8, wet_edges()),
+        ("lashes", "cranium", 0.2, lashes()),
+        ("shirt", "neck", 0.0, shirt()),
     ]
 
 
@@ -71,6 +77,8 @@ def part_arrays() -> dict[str, npt.NDArray[np.generic]]:
         "part_names": np.array([name for name, *_ in parts]),
         "part_bones": np.array([bone for _, bone, *_ in parts]),
         "part_shine": np.array([shine for *_, shine, _ in parts]),
+        "part_hair": np.array([HAIRS.get(name, 0.0) for name, *_ in parts]),
+        "part_roots": np.concatenate([solid.roots for solid in solids]).astype(np.int32),
         "part_vertex_counts": np.array([len(solid.vertices) for solid in solids]),
         "part_face_counts": np.array([len(solid.faces) for solid in solids]),
         "part_vertices": np.vstack([solid.vertices for solid in solids]).astype(np.float32),
@@ -137,6 +145,7 @@ def build_wrinkles(head: Head, size: int) -> dict[str, npt.NDArray[np.generic]]:
         "map": wrinkles.map,
         "steepest": np.array(wrinkles.steepest),
         "across": wrinkles.across,
+        "relief": wrinkles.relief,
         "made_from": np.array(head.fingerprint, dtype=np.uint32),
     }
 

@@ -145,6 +145,7 @@ def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
     for i, name in enumerate(arrays["part_names"].tolist()):
         vertices = slice(vertex_ends[i] - arrays["part_vertex_counts"][i], vertex_ends[i])
         faces = slice(face_ends[i] - arrays["part_face_counts"][i], face_ends[i])
+        roots = arrays["part_roots"][vertices]
         parts.append(
             Part(
                 name=name,
@@ -154,6 +155,8 @@ def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
                 colours=arrays["part_colours"][vertices],
                 bone=str(arrays["part_bones"][i]),
                 shine=float(arrays["part_shine"][i]),
+                roots=roots if roots.min() >= 0 else None,
+                hair=float(arrays["part_hair"][i]),
             )
         )
     return tuple(parts)

@@ -42,7 +42,7 @@ class Tone(Enum):
 class Segment(IntEnum):
     """What a pixel of a face shows, by the numbers of FaceSynthetics (Wood et al. 2021).
 
-    Left and right are the subject's. HAIR is for heads that have any; shaved skin is SKIN.
+    Left and right are the subject's.
     """
 
     BACKGROUND = 0
@@ -59,6 +59,7 @@ class Segment(IntEnum):
     BOTTOM_LIP = 11
     NECK = 12
     HAIR = 13
+    CLOTHING = 15
     IGNORE = 255
 
 
@@ -80,15 +81,19 @@ class Eye:
 
 @dataclass(frozen=True)
 class Part:
-    """A rigid thing that is drawn but not simulated: an eyeball, a row of teeth, the tongue.
+    """A rigid thing that is drawn but not simulated: an eyeball, a row of teeth, a shirt.
 
     name: unique within the head.
     vertices: rest positions [mm], shape (n, 3), float32.
     normals: unit normals, shape (n, 3), float32.
     faces: vertex numbers, counter-clockwise from the visible side, shape (m, 3), int32.
     colours: sRGB 0..1, shape (n, 3), float32.
-    bone: "cranium", "mandible", "eye_left" or "eye_right"; the part moves with it.
+    bone: "cranium", "mandible", "eye_left" or "eye_right"; the part moves with it. What is on the
+        "neck" stands still.
     shine: strength of the highlight, 0 (dull) to 1 (wet).
+    roots: for a part that grows from the skin and moves with it, for each vertex the one whose
+        place on the skin it keeps to, shape (n,), int32; None for all others.
+    hair: half the thickness of the hairs that the part consists of [mm]; 0 where it is none.
     """
 
     name: str
@@ -98,6 +103,8 @@ class Part:
     colours: SingleArray
     bone: str
     shine: float
+    roots: IndexArray | None = None
+    hair: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -116,6 +123,9 @@ class Layer:
     rows: Mapping[str, Mapping[str, Any]]
 
 
+HIGHEST_FOLD = 1.0  # [mm] that a wrinkle moves skin at most
+
+
 @dataclass(frozen=True)
 class Wrinkles:
     """What a face wrinkles like: furrows over its texture, and when its vertices show them.
@@ -126,11 +136,16 @@ class Wrinkles:
     steepest: slope of 255 in `map` [mm for one unit of the texture coordinates].
     across: for each vertex and slot the direction at rest in which skin shortens when it wrinkles;
         its length is how readily it does; zero where it does not; shape (V, 2, 3), float32.
+    relief: the shape that triangles can show of it: height of the skin by either slot, 127 is
+        `HIGHEST_FOLD`; covers the same as `map`, coarser; shape (h, w, 2), int8.
+    resting: how far it is wrinkled at rest, 0 to 1, as with age.
     """
 
     map: Image
     steepest: float
     across: SingleArray
+    relief: npt.NDArray[np.int8]
+    resting: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -248,9 +263,11 @@ class Head:
 
         Raises AssetError when the file is missing, broken or that of another head.
         """
-        names = ("map", "steepest", "across")
+        names = ("map", "steepest", "across", "relief")
         arrays = read_arrays_of(self.fingerprint, self.wrinkles_file, names)
-        return Wrinkles(arrays["map"], float(arrays["steepest"]), arrays["across"])
+        return Wrinkles(
+            arrays["map"], float(arrays["steepest"]), arrays["across"], arrays["relief"]
+        )
 
     @cached_property
     def segments(self) -> Image:

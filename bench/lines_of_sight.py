@@ -7,6 +7,7 @@ what refinement makes of it, because smoothing thins a folded lip a little.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from typing import Any
 
@@ -18,18 +19,23 @@ from risorius import refine, sim
 Array = npt.NDArray[np.float64]
 Triangles = npt.NDArray[Any]
 
-VIEWS = ((0.0, 0.0), (30.0, 0.0), (-30.0, 0.0), (0.0, 8.0), (0.0, -8.0))  # yaw, pitch [degrees]
-MOUTH_CORNERS = (60, 64)  # landmarks of the inner lips
+YAWS = (0.0, -30.0, 30.0, -60.0, 60.0)  # degrees
+PITCHES = (0.0, -10.0, 10.0, -25.0, 25.0, -40.0, 40.0)
+VIEWS = tuple(  # the whole front, as far as cameras go round it
+    (yaw, pitch)
+    for yaw, pitch in itertools.product(YAWS, PITCHES)
+    if (yaw / 60.0) ** 2 + (pitch / 40.0) ** 2 < 1.3
+)
+LOWER_LIP = (60, 67, 66, 65, 64)  # landmarks of its inner edge, from corner to corner
 SLIT_PLANES = 40  # vertical planes across the mouth that the lines of sight lie in
 SLIT_END = 1.0  # mm beside a mouth corner that are not looked at: lips are joined there
-SLIT_WINDOW = 12.0  # mm above and below the mouth's middle in which an opening is the mouth
-MOUTH = 45.0  # mm around the mouth's middle in which skin may cover it
+SLIT_WINDOW = 5.0  # mm from the lower lip in which an opening begins that is the mouth
+MOUTH = 60.0  # mm around the mouth's middle in which skin may cover it
 EYE_CORNERS = {"right": (36, 39), "left": (42, 45)}  # landmarks
 LID_COLUMNS, LID_END = 23, 1.5  # planes across an eye; mm beside its corners not looked at
 LID_STEP = 0.05  # mm between lines of sight in a plane
-LID_WINDOW = 9.0  # mm above and below the eye's middle
-EYE = 25.0  # mm around the eye's middle in which skin may cover it
-FRONT = 60.0  # mm: skin further back is the back of the head
+LID_WINDOW = 12.0  # mm above and below the eye's middle
+EYE = 70.0  # mm around the eye's middle in which skin may cover it
 
 
 def meshes_of(
@@ -44,31 +50,32 @@ def meshes_of(
 
 
 def widest_slit(positions: Array, triangles: Triangles, landmarks: Array) -> float:
-    """Greatest height [mm] of the slit between the lips from any of VIEWS; see `lip_slit`.
+    """Greatest height [mm] of the slit between the lips that one looks through from any of VIEWS.
 
     `landmarks`: where the 68 are now (68, 3).
     """
-    corners = landmarks[list(MOUTH_CORNERS)]
+    lip = landmarks[list(LOWER_LIP)]
+    near = _around(positions[triangles], (lip[0] + lip[-1]) / 2.0, MOUTH)
+    turns = [_turned_by(*view) for view in VIEWS]
+    return max(_slit(near @ turn.T, lip @ turn.T) for turn in turns)
+
+
+def _slit(near: Array, lip: Array) -> float:
+    """Greatest height [mm] of the slit above the lower lip (5, 3), looked at along z."""
+    near = near[_to_viewer(near)]  # what is seen from within covers nothing
+    left, right = sorted(lip[[0, -1], 0])
+    columns = np.linspace(left + SLIT_END, right - SLIT_END, SLIT_PLANES)
+    heights = np.interp(columns, *lip[np.argsort(lip[:, 0]), :2].T)
     return max(
-        lip_slit(positions, triangles, corners, yaw=yaw, pitch=pitch) for yaw, pitch in VIEWS
+        _widest_opening(near, column, height, SLIT_WINDOW)
+        for column, height in zip(columns, heights, strict=True)
     )
 
 
-def lip_slit(
-    positions: Array, triangles: Triangles, corners: Array, *, yaw: float, pitch: float
-) -> float:
-    """Greatest height [mm] of the slit between the lips that one looks through.
-
-    `corners`: of the mouth (2, 3); `yaw`, `pitch`: from where one looks [degrees], 0 is the front.
-    """
-    turn = _turned_by(yaw, pitch)
-    x, ends = positions @ turn.T, corners @ turn.T
-    middle = ends.mean(axis=0)
-    near = x[triangles]
-    near = near[np.linalg.norm(near.mean(axis=1) - middle, axis=1) < MOUTH]
-    left, right = sorted(ends[:, 0])
-    columns = np.linspace(left + SLIT_END, right - SLIT_END, SLIT_PLANES)
-    return max(_widest_opening(near, column, middle[1], SLIT_WINDOW) for column in columns)
+def _around(triangles: Array, middle: Array, reach: float) -> Array:
+    """Those of the triangles (n, 3, 3) that lie within `reach` mm of a point."""
+    near: Array = triangles[np.linalg.norm(triangles.mean(axis=1) - middle, axis=1) < reach]
+    return near
 
 
 def _widest_opening(triangles: Array, x: float, middle: float, window: float) -> float:
@@ -84,6 +91,13 @@ def _widest_opening(triangles: Array, x: float, middle: float, window: float) ->
     reached = np.maximum.accumulate(high[order])[:-1]
     open_above = low[order][1:] - reached
     return float(open_above[np.abs(reached - middle) < window].max(initial=0.0))
+
+
+def _to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:
+    """Whether triangles (n, 3, 3) turn their outside to the viewer, shape (n,)."""
+    one, other = (triangles[:, k, :2] - triangles[:, 0, :2] for k in (1, 2))
+    facing: npt.NDArray[np.bool_] = one[:, 0] * other[:, 1] > one[:, 1] * other[:, 0]
+    return facing
 
 
 def _cut(triangles: Array, x: float) -> tuple[Array, npt.NDArray[np.bool_]]:
@@ -117,27 +131,37 @@ def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Array]:
 def lid_gaps(
     positions: Array, triangles: Triangles, landmarks: Array, eyeballs: Mapping[str, Array]
 ) -> dict[str, float]:
-    """Greatest height [mm] at which each eyeball is seen from the front.
+    """Greatest height [mm] at which one sees each eyeball, or past it, from any of VIEWS.
 
     Seen is what has no skin in front of it, be it between the lids or through them: the cornea
     stands out of the ball and may pierce a lid. `landmarks`: where the 68 are now (68, 3);
     `eyeballs`: see `eyeballs_of`. The result is by the eye's side.
     """
-    corners = positions[triangles]
+    turns = [_turned_by(*view) for view in VIEWS]
     gaps = {}
     for side, numbers in EYE_CORNERS.items():
-        ends = np.sort(landmarks[list(numbers), 0])
-        middle = landmarks[list(numbers), 1].mean()
-        near = corners[np.abs(corners[:, :, 0].mean(axis=1) - ends.mean()) < EYE]
-        near = near[np.abs(near[:, :, 1].mean(axis=1) - middle) < EYE]
-        near = near[near[:, :, 2].max(axis=1) > FRONT]
-        columns = np.linspace(ends[0] + LID_END, ends[1] - LID_END, LID_COLUMNS)
-        heights = np.arange(middle - LID_WINDOW, middle + LID_WINDOW, LID_STEP)
-        gaps[side] = LID_STEP * max(
-            int((_front(eyeballs[side], x, heights) > _front(near, x, heights)).sum())
-            for x in columns
-        )
+        ends, ball = landmarks[list(numbers)], eyeballs[side]
+        near = _around(positions[triangles], ends.mean(axis=0), EYE)
+        gaps[side] = max(_lid_gap(near @ turn.T, ends @ turn.T, ball @ turn.T) for turn in turns)
     return gaps
+
+
+def _lid_gap(near: Array, ends: Array, ball: Array) -> float:
+    """Greatest height [mm] without skin between the corners of an eye (2, 3), along z.
+
+    What has skin above and below it counts.
+    """
+    near = near[_to_viewer(near)]
+    left, right = np.sort(ends[:, 0])
+    middle, deepest = ends[:, 1].mean(), ball[:, :, 2].min()
+    heights = np.arange(middle - LID_WINDOW, middle + LID_WINDOW, LID_STEP)
+    widest = 0
+    for x in np.linspace(left + LID_END, right - LID_END, LID_COLUMNS):
+        covered = _front(near, x, heights) >= np.maximum(_front(ball, x, heights), deepest)
+        skin = np.flatnonzero(covered)  # beyond the outermost the head may have ended
+        if len(skin):
+            widest = max(widest, int((~covered[skin[0] : skin[-1]]).sum()))
+    return LID_STEP * widest
 
 
 def _front(triangles: Array, x: float, heights: Array) -> Array:

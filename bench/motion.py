@@ -1,8 +1,9 @@
 """How well the muscles move skin: simulated against scanned displacement, shape by shape.
 
 Takes a folder of scans (scans.py), fits the rig to that head as to anybody's, by its 68 landmarks
-(assets/fitting), and compares the fields, weighted by area. One-sided fields end in `_L` and `_R`,
-or `Left` and `Right`; capitals do not matter. shapes.toml says which controls make a shape.
+(assets/fitting), and compares the fields, weighted by area. A field has the name of one of ARKit's
+shapes in any spelling, and is compared with that row of the head's controls at 1. One side of a
+shape that has no sides ("cheekPuff_L") is made by the muscles of that side.
 
     cosine      1 = same directions and proportions          magnitude   |simulated| / |scanned|
     residual    |simulated - scanned|^2 / |scanned|^2        half        share of the motion that
@@ -11,12 +12,13 @@ Two yardsticks that know the scan stand beside them, each with its best gain: a 
 bump at the scanned peak (best of 7 widths), and the purely geometric muscle of Waters 1987 laid
 along the first fibre of each of the shape's muscles (best of 12 cones and ranges).
 
-The rig was fitted to ten of these shapes, so for them this is a training score.
+The rig was fitted to sixteen shapes of ICT-FaceKit, so for them this is a training score.
+Other persons in the folder are faces of other forms, moved by the same fields.
 """
 
 from __future__ import annotations
 
-import tomllib
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import astuple, dataclass, fields
 from pathlib import Path
@@ -26,19 +28,20 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import sim
+from risorius.app.recordings.spelling import shape_of
 from risorius.sim.coordinates import FaceSpace
 from risorius.sim.landmarks import Side
 from risorius.sim.rig import LinearMuscle, RingMuscle
 
 from .report import table
-from .scans import read_scans
+from .scans import Scans, read_scans
 from .subjects import settled_positions
 
 Array = npt.NDArray[np.float64]
 
-SHAPES = Path(__file__).parent / "shapes.toml"
 SETTLE = 60  # frames of 1/60 s until a pose is still
-SIDES = {"left": ("_left", "_l", "left"), "right": ("_right", "_r", "right")}  # endings of names
+SIDE = re.compile(r"_?(l|r|left|right)$", re.IGNORECASE)  # at the end of a field's name
+ALSO_CALLED = {"cheekraiser": "cheekSquint"}  # ICT-FaceKit has AU6 twice
 SEAM = 10.0  # mm beside the midline over which a one-sided shape fades, where we have but one whole
 BLOB_WIDTHS = (6.0, 9.0, 13.0, 18.0, 25.0, 35.0, 50.0)  # mm
 CONES = (25.0, 40.0, 60.0, 85.0)  # degrees about the fibre
@@ -69,31 +72,35 @@ class Shape:
     cut: Side | None  # the side of a one-sided field for which there is no one-sided control
 
 
-def measure(directory: str | Path) -> tuple[list[Row], list[str]]:
-    """Score every shape of the reference in `directory` that shapes.toml knows.
+def measure(directory: str | Path) -> tuple[list[Row], list[str], dict[str, list[Row]]]:
+    """Score every shape of the reference in `directory` that the head's ARKit table knows.
 
-    Returns the scores, and the names of fields that have none: unknown ones, and those in which
-    no skin moves. Raises ValueError, naming the file, if it is broken or no shape is left.
+    Returns the scores; the names of fields that have none: unknown ones, and those in which no skin
+    moves; and the scores of other persons, by name. Raises ValueError, naming the file, if it is
+    broken or no shape is left.
     """
     scans = read_scans(directory)
+    rows, left_out = _scores(scans)
+    if not rows:
+        raise ValueError(f"{directory}: face.npz holds none of ARKit's shapes")
+    others = {name: _scores(person)[0] for name, person in scans.persons()}
+    return rows, left_out, others
+
+
+def _scores(scans: Scans) -> tuple[list[Row], list[str]]:
+    """Score one person; also the names of fields without a score."""
     head = scans.head
     simulation = sim.create(head)
     areas = _vertex_areas(head.vertices, head.faces)
     ruler = _Ruler(head.vertices, head.landmarks, areas, head.rig)
-    shapes = _read_shapes()
     rows, left_out = [], []
     for name in scans.names:
-        shape = _known(name, shapes, simulation)
-        if shape is None:
+        shape = known_shape(name, simulation)
+        scanned = None if shape is None else scans.field(name)
+        if shape is None or scanned is None or not scanned.any():
             left_out.append(name)
-            continue
-        scanned = scans.field(name)
-        if scanned.any():
-            rows.append(ruler.row(simulation, shape, scanned))
         else:
-            left_out.append(name)
-    if not rows:
-        raise ValueError(f"{directory}: face.npz holds none of the shapes in {SHAPES.name}")
+            rows.append(ruler.row(simulation, shape, scanned))
     return rows, left_out
 
 
@@ -103,39 +110,36 @@ def mean_row(rows: list[Row]) -> Row:
     return Row("mean", *(float(np.nanmean([getattr(r, c) for r in rows])) for c in columns))
 
 
-def _read_shapes() -> dict[str, Any]:
-    """The table of shapes, by name in small letters."""
-    with SHAPES.open("rb") as file:
-        return {name.lower(): table for name, table in tomllib.load(file).items()}
-
-
-def _known(name: str, shapes: Mapping[str, Any], simulation: sim.Simulation) -> Shape | None:
-    """The shape that a field's name means, None where the table has none."""
-    whole, side = name.lower(), None
-    if whole not in shapes:  # "jawLeft" is a shape, "browDownLeft" is one half of a shape
-        endings = [(ending, key) for key, every in SIDES.items() for ending in every]
-        found = [(e, key) for e, key in endings if whole.endswith(e)]
-        if found:
-            whole, side = whole.removesuffix(found[0][0]), found[0][1]
-    if whole not in shapes:
+def known_shape(name: str, simulation: sim.Simulation) -> Shape | None:
+    """The shape that a field's name means, None where ARKit has none of that name."""
+    half = SIDE.search(name)
+    stem = name[: half.start()] if half else name
+    stem = ALSO_CALLED.get(stem.lower(), stem)
+    row, side = shape_of(stem + (half[0] if half else "")), None
+    if row is None and half:  # one half of a shape without sides
+        row, side = shape_of(stem), "left" if half[1][0] in "lL" else "right"
+    tables = simulation.tables
+    if row is None or row not in tables.shares:
         return None
-    table = shapes[whole]
-    base = _controls(table.get("over", {}), side, simulation)
-    values = {**base, **_controls(table["controls"], side, simulation)}
+    base = {}
+    if row in tables.share_of:  # it makes good what another does
+        base = _controls(tables.share_of[row], side, simulation)
+    values = {**base, **_controls(row, side, simulation)}
     is_whole = any(not control.endswith(("_left", "_right")) for control in values)
     return Shape(name, values, base, Side(side) if side and is_whole else None)
 
 
-def _controls(
-    mix: Mapping[str, float], side: str | None, simulation: sim.Simulation
-) -> dict[str, float]:
-    """Values of the simulation's controls: of one side, or of both where `side` is None."""
+def _controls(row: str, side: str | None, simulation: sim.Simulation) -> dict[str, float]:
+    """What a row asks of the lowest controls; those of one side alone, where `side` is given."""
+    asked = np.maximum(simulation.tables.shares[row], simulation.tables.floors[row])
+    asked = np.where(asked == 0.0, simulation.tables.shares[row], asked)
     values = {}
-    for name, value in mix.items():
-        sided = [f"{name}_{side}"] if side else [f"{name}_left", f"{name}_right"]
-        found = [control for control in sided if control in simulation.controls] or [name]
-        values.update(dict.fromkeys(found, value))
-    return values
+    for control, value in zip(simulation.controls, asked.tolist(), strict=True):
+        sided = f"{control}_{side}"
+        if value == 0.0 or (side and control.endswith(("_left", "_right")) and side not in control):
+            continue
+        values[sided if sided in simulation.controls else control] = value
+    return {name: float(np.clip(v, *simulation.limits[name])) for name, v in values.items()}
 
 
 def _posed(simulation: sim.Simulation, values: Mapping[str, float]) -> Array:
@@ -260,7 +264,7 @@ def _vertex_areas(vertices: Array, faces: npt.NDArray[np.int32]) -> Array:
     return areas
 
 
-def report(rows: list[Row], left_out: list[str]) -> str:
+def report(rows: list[Row], left_out: list[str], others: Mapping[str, list[Row]]) -> str:
     """The text to print."""
     columns = "shape:<20|cosine:7.3f|magnitude:9.2f|residual:8.3f|half:5.2f|blob:6.3f|Waters:6.3f"
     lines = [
@@ -271,7 +275,15 @@ def report(rows: list[Row], left_out: list[str]) -> str:
         "",
         *table(columns, [astuple(row) for row in [*rows, mean_row(rows)]]),
     ]
+    if others:
+        means = [(name, mean_row(each), min(each, key=_cosine)) for name, each in others.items()]
+        persons = [(n, m.cosine, m.magnitude, m.residual, w.shape, w.cosine) for n, m, w in means]
+        head = "person:<20|cosine:7.3f|magnitude:9.2f|residual:8.3f|least alike:>20|cosine:7.3f"
+        lines += ["", "Other persons, moved by the same fields:", "", *table(head, persons)]
     if left_out:
-        names = ", ".join(left_out)
-        lines += ["", f"left out, no skin moves or bench/shapes.toml does not know it: {names}"]
+        lines += ["", f"left out, no skin moves or ARKit has no such shape: {', '.join(left_out)}"]
     return "\n".join(lines)
+
+
+def _cosine(row: Row) -> float:
+    return row.cosine

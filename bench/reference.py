@@ -8,7 +8,7 @@ identity. Their first 9409 vertices are the face. Written are
                      of SHAPES the displacement of its vertices at full strength (V, 3); centimetres
     coarse_2029.npz  a decimation: triangles (M, 3), vertices (N, 3), and where each of these lies
                      on the face: fine_triangle (N,), barycentric (N, 3)
-    identities.npz   person_1 to person_3, drawn at random: vertices (V, 3)
+    identities.npz   person_1 to person_5, drawn at random: vertices (V, 3)
     LICENSE          that of the checkout
 """
 
@@ -53,7 +53,7 @@ SHAPES = (
 )
 """The expressions that are measured with."""
 COARSE_TRIANGLES = 2029
-PERSON_COUNT = 3
+PERSON_COUNT = 5
 SEED = 2003
 LANDMARKS = re.compile(r"\b\d+(?:\s*,\s*\d+){67}\b")
 """The 68 vertex numbers, as the checkout's README has them."""

@@ -2,12 +2,13 @@
 
 Read is a folder with a neutral face and displacement fields under ARKit-like names as `face.npz`
 (ICT-FaceKit's layout): `vertices` (V, 3), `triangles` (F, 3), `landmarks68` (68,), then one (V, 3)
-field per shape.
+field per shape. Other persons of the same triangles, moved alike, may lie beside it as
+`identities.npz`: vertices (V, 3) of each.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ import numpy.typing as npt
 from risorius.assets.fitting import FittedHead, fit
 from risorius.assets.meshes import Mesh
 
-from .subjects import DENSE, read_arrays
+from .subjects import DENSE, PERSONS, read_arrays
 
 NOT_SHAPES = ("vertices", "triangles", "landmarks68")
 
@@ -48,15 +49,26 @@ class Scans:
             )
         return self.head.to_millimetres.vectors(field[self.head.file_vertices])
 
+    def persons(self) -> Iterator[tuple[str, Scans]]:
+        """Other persons in the folder, each with a head of their own that moves alike."""
+        file = Path(self.directory) / PERSONS
+        if file.is_file():
+            for name, vertices in read_arrays(file, ()).items():
+                yield name, _scans(self.directory, {**self.arrays, "vertices": vertices}, PERSONS)
+
 
 def read_scans(directory: str | Path) -> Scans:
     """The scans in a folder. Raises ValueError, naming the file, if it is broken."""
-    arrays = read_arrays(Path(directory) / DENSE, NOT_SHAPES)
+    return _scans(directory, read_arrays(Path(directory) / DENSE, NOT_SHAPES), DENSE)
+
+
+def _scans(directory: str | Path, arrays: Mapping[str, npt.NDArray[Any]], file: str) -> Scans:
+    """Fit the rig to the head in some arrays; `file`: where its vertices are from."""
     mesh = Mesh(arrays["vertices"].astype(np.float64), arrays["triangles"].astype(np.int32))
     landmarks = arrays["landmarks68"].astype(np.int32)
     if not _is_sound(mesh, landmarks):
         raise ValueError(
-            f"{directory}: in {DENSE}, vertices must be finite, (V, 3), triangles (F, 3) and "
+            f"{directory}: in {file}, vertices must be finite, (V, 3), triangles (F, 3) and "
             "landmarks68 (68,) numbers of them"
         )
     return Scans(directory, fit(mesh, landmarks), arrays)

@@ -1,6 +1,6 @@
 """Commands of `risorius bench` that measure the simulated face, and what they compare it with.
 
-`simulate`, `motion`, `seen`, `gaps`, `soak`, `tearing`, `reference`.
+`simulate`, `motion`, `left-out`, `seen`, `gaps`, `soak`, `tearing`, `reference`.
 """
 
 from __future__ import annotations
@@ -38,6 +38,16 @@ def bench_motion(reference: Path) -> None:
 
     with told("--reference: "):
         click.echo(motion.report(*motion.measure(reference)))
+
+
+@click.command("left-out")
+@click.option("--reference", type=FOLDER, required=True, help="A folder as `motion` takes it.")
+def bench_left_out(reference: Path) -> None:
+    """Refit the muscles without each scanned shape in turn: is it foretold? Takes ten minutes."""
+    from . import left_out
+
+    with told("--reference: "):
+        click.echo(left_out.report(left_out.measure(reference)))
 
 
 @click.command("seen")
@@ -119,6 +129,7 @@ def bench_reference(checkout: Path, folder: Path, landmarks: Path | None) -> Non
 COMMANDS = (
     bench_simulate,
     bench_motion,
+    bench_left_out,
     bench_seen,
     bench_gaps,
     bench_soak,

@@ -16,6 +16,7 @@ from .camera_view import CameraView
 from .parts import PlacedPart
 from .programs import compile_program, write_uniform
 from .stream import Stream
+from .texture import WrinkleMap
 
 Floats = npt.NDArray[np.float32]
 
@@ -47,11 +48,17 @@ class GeometryBuffer:
         self.size = size
         self._gl = gl
         self._program = compile_program(gl, "geometry.glsl")
+        self._wrinkled: moderngl.Program | None = None
         self._textures = [gl.texture(size, components, dtype="f4") for components in (4, 4, 2)]
         self._target = gl.framebuffer(self._textures, gl.depth_renderbuffer(size))
 
     def draw(
-        self, stream: Stream, parts: Sequence[PlacedPart], view: CameraView, values: Floats | None
+        self,
+        stream: Stream,
+        parts: Sequence[PlacedPart],
+        view: CameraView,
+        values: Floats | None,
+        wrinkles: tuple[WrinkleMap, float] | None,
     ) -> Geometry:
         """Draw what `stream` last uploaded, and parts; see `Renderer.draw_geometry`."""
         gl, program = self._gl, self._program
@@ -60,10 +67,12 @@ class GeometryBuffer:
         gl.enable_only(moderngl.DEPTH_TEST)
         self._target.clear()
         stream.upload_values(values)
-        write_uniform(program, "projection", view.projection)
-        write_uniform(program, "model_view", view.world_to_view)
-        program["first"] = 1.0
-        stream.draw(program)
+        skin = program if wrinkles is None else self._program_of(*wrinkles)
+        for each in (program, skin):
+            write_uniform(each, "projection", view.projection)
+        write_uniform(skin, "model_view", view.world_to_view)
+        skin["first"] = 1.0
+        stream.draw(skin)
         first = 1 + stream.triangle_count
         for buffers, transform in parts:
             write_uniform(program, "model_view", transform.T @ view.world_to_view)
@@ -71,6 +80,13 @@ class GeometryBuffer:
             buffers.draw(program)
             first += len(buffers.part.faces)
         return self._read()
+
+    def _program_of(self, wrinkles: WrinkleMap, strength: float) -> moderngl.Program:
+        """The program for skin that wrinkles, ready to draw it."""
+        if self._wrinkled is None:
+            self._wrinkled = compile_program(self._gl, "geometry.glsl", "WRINKLES")
+        wrinkles.set_uniforms(self._wrinkled, strength)
+        return self._wrinkled
 
     def _read(self) -> Geometry:
         """Fetch the textures, top row first."""

@@ -3,11 +3,15 @@
 import moderngl
 import numpy as np
 
+from .camera_view import CameraView
 from .light import Light
+from .parts import Part
 from .programs import write_uniform
 from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Style, linear
 
 SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
+HEAD_BONES = ("cranium", "mandible", "eye_right", "eye_left")
+HAIR_PIXELS = 1.4  # that a hair is drawn wide at least: a triangle seen from its side is narrower
 _PALETTE = np.array([linear(colour) for colour in SPLIT_PALETTE], np.float32)
 _RAMPS = {
     kind: np.array([(*linear(colour), cover) for colour, cover in ramp], np.float32)
@@ -34,12 +38,21 @@ def set_skin(program: moderngl.Program, style: Style) -> None:
     program["sharpness"] = SKIN_SHARPNESS
 
 
-def set_part(program: moderngl.Program, shine: float, light: Light) -> None:
+def set_part(program: moderngl.Program, part: Part, light: Light) -> None:
     """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights."""
     set_light(program, light)
+    if part.bone in HEAD_BONES:  # light from behind does not get through a head
+        program["rim_light"] = 0.0, 0.0, 0.0
+    shine = part.shine
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine
     program["sharpness"] = 20.0 * 40.0**shine
+
+
+def set_hair(program: moderngl.Program, thickness: float, view: CameraView) -> None:
+    """How thin hairs are, half of it, and how thin they may be drawn at distance 1."""
+    program["half_hair"] = thickness
+    program["least_half"] = HAIR_PIXELS / (view.projection[1, 1] * view.viewport[3])
 
 
 def set_light(program: moderngl.Program, light: Light) -> None:

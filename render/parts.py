@@ -18,7 +18,8 @@ class Part(Protocol):
         other arrays of the same shape whenever its shape has changed.
     faces: counter-clockwise from the side that is seen, shape (m, 3), int32; the other side is not
         drawn. colours: sRGB 0..1, shape (n, 3), float32.
-    bone: whose transform moves it. shine: 0 dull, 1 wet.
+    bone: whose transform moves it. shine: 0 dull, 1 wet. Hairs have `hair`, half their thickness,
+        too.
     """
 
     @property
@@ -51,6 +52,7 @@ class PartBuffers:
         self._gl = gl
         self._vertices = gl.buffer(reserve=36 * len(part.vertices))
         self._uploaded: npt.NDArray[np.float32] | None = None
+        self.hair = getattr(part, "hair", 0.0)
         self.upload()
         self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
         self._chosen = gl.buffer(reserve=self._indices.size, dynamic=True)

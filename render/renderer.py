@@ -22,7 +22,7 @@ from .camera_view import CameraView, box_corners
 from .geometry import checked_values, line_segments, value_texture
 from .geometry_buffer import Geometry, GeometryBuffer
 from .hidden import Occluder, draw_sides
-from .materials import COLOUR_DEFINES, set_palette, set_part, set_skin
+from .materials import COLOUR_DEFINES, set_hair, set_palette, set_part, set_skin
 from .outline import draw_fringes, fringes
 from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
@@ -35,7 +35,6 @@ from .texture import Texture, WrinkleMap
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 
 _VALUE_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the target uses 1
-_WRINKLE_UNIT = 5  # 4 belongs to a window's enlargement
 # Colour as usual; the layer starts out transparent and collects premultiplied colour.
 _PREMULTIPLYING_BLEND: Any = (
     moderngl.SRC_ALPHA,
@@ -221,9 +220,7 @@ class Renderer:
             program["redness"] = texture.redness
             program["occlusion"] = float(style.occlusion)
         if wrinkles is not None:
-            program["wrinkle_map"] = wrinkles.bind(_WRINKLE_UNIT)
-            program["wrinkle_slope"] = wrinkles.steepest
-            program["wrinkle_strength"] = style.wrinkles
+            wrinkles.set_uniforms(program, style.wrinkles)
         if style.colour_by is not ColourBy.NONE:
             assert self._values is not None
             self._values.use(_VALUE_UNIT)
@@ -240,7 +237,7 @@ class Renderer:
         viewport: Viewport | None = None,
         clip: Viewport | None = None,
     ) -> None:
-        """Draw coloured parts, each moved by the matrix of its bone (column vectors).
+        """Draw coloured parts, each moved by the matrix of its bone (column vectors); hairs last.
 
         Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
         is first seen and must not change after; a part that changes its shape hands out others.
@@ -258,9 +255,16 @@ class Renderer:
         if is_chosen and self._occluder is not None:
             self._occluder.choose_parts(placed)
         for buffers, transform in placed:
-            if self._set_view(program, view, buffers.corners, transform):
-                set_part(program, buffers.part.shine, style.light)
+            if not buffers.hair and self._set_view(program, view, buffers.corners, transform):
+                set_part(program, buffers.part, style.light)
                 buffers.draw(program, chosen=is_chosen)
+        program = self._program("surface.glsl", "PIXEL", "COLOURED", "HAIR")
+        for buffers, transform in placed:
+            if buffers.hair and self._set_view(program, view, buffers.corners, transform):
+                set_hair(program, buffers.hair, view)
+                set_part(program, buffers.part, style.light)
+                with self._blending():
+                    buffers.draw(program, chosen=is_chosen)
 
     def draw_geometry(
         self,
@@ -270,19 +274,24 @@ class Renderer:
         camera: OrbitCamera,
         *,
         values: npt.NDArray[np.float32] | None = None,
+        wrinkles: tuple[WrinkleMap, float] | None = None,
     ) -> Geometry:
         """Numbers of what is seen, for each pixel of the surface; nothing on it changes.
 
         values: two numbers for each vertex that `stream` last uploaded, (vertex_count, 2), to be
             interpolated; None: zeros. Raises ValueError for another shape, or a bone without
             transform.
+        wrinkles: furrows of the skin that tilt its normals, and how deep they are, 0 to 1; needs
+            amounts of wrinkling, or counts for nothing.
         """
         view = self._camera_view(camera, None, None)
         size = self.surface.target.size
         if self._geometry_buffer is None or self._geometry_buffer.size != size:
             self._geometry_buffer = GeometryBuffer(self._gl, size)
         placed = self._parts.placed(parts, transforms)
-        return self._geometry_buffer.draw(stream, placed, view, values)
+        if not stream.has_wrinkles:
+            wrinkles = None
+        return self._geometry_buffer.draw(stream, placed, view, values, wrinkles)
 
     def draw_lines(
         self,

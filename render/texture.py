@@ -14,6 +14,7 @@ from .surface import Image, is_software
 
 _SRGB8_ALPHA8 = 0x8C43  # the constant of OpenGL; moderngl has no name for it
 _SAMPLED_TEXELS = 10_000  # about so many texels decide what is red
+WRINKLE_UNIT = 5  # texture unit; 4 belongs to a window's enlargement
 ANISOTROPY = 8.0  # most texels that one sample averages along its longest axis
 
 
@@ -80,6 +81,12 @@ class WrinkleMap(_Mipmaps):
             )
         self.steepest = steepest
         super().__init__(gl, texels)
+
+    def set_uniforms(self, program: moderngl.Program, strength: float) -> None:
+        """Let a program that includes wrinkles.glsl look it up."""
+        program["wrinkle_map"] = self.bind(WRINKLE_UNIT)
+        program["wrinkle_slope"] = self.steepest
+        program["wrinkle_strength"] = strength
 
 
 def _median_redness(image: Image) -> float:

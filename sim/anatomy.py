@@ -16,7 +16,7 @@ Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landm
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -40,7 +40,7 @@ from .layers import Layers, read_layers
 from .lids import Lids, place_lids
 from .lip_lid_sides import lip_side
 from .muscle_forces import MuscleForces, build_muscle_forces
-from .muscles import place_muscles, sides_of
+from .muscles import PlacedMuscle, place_muscles, sides_of
 from .rig import Rig
 from .rig_reader import read_rig
 from .skin_model import SkinModel
@@ -77,6 +77,8 @@ class Anatomy:
     space: FaceSpace
     rig: Rig
     surface: Surface
+    landmarks: Array  # (68, 3) mm; zeros without
+    lip_side: Array  # (V,) of lip_lid_sides.lip_side
     skull: Skull
     muscles: MuscleForces
     lids: Lids | None
@@ -135,11 +137,9 @@ def build_anatomy(head: Any) -> Anatomy:
     springs = TissueSprings.under(surface, rig.tissue)
     edges = EdgeSprings.along(surface, rig.tissue, corners)
     passive, greatest = _holds(muscles, lids, surface.vertex_count)
-    bound = edges.row_bound(surface.vertex_count)
-    bound += np.maximum(springs.tangential, springs.normal) + greatest
     skin = SkinModel(
         rest=surface.positions,
-        mass=masses_for_step(surface.areas, bound, LONGEST_SUBSTEP * STEP_MARGIN),
+        mass=_masses(surface, springs, edges, greatest),
         tissue=springs,
         edges=edges,
         lips=lips,
@@ -147,12 +147,34 @@ def build_anatomy(head: Any) -> Anatomy:
         teeth=watch_teeth(getattr(head, "parts", None), surface, space),
     )
     return Anatomy(
-        vertices=vertices, space=space, rig=rig, surface=surface, skull=skull, muscles=muscles,
-        lids=lids, skin=skin, tongue=place_tongue(getattr(head, "parts", None), space, numbers),
+        vertices=vertices, space=space, rig=rig, surface=surface, landmarks=known, lip_side=side,
+        skull=skull, muscles=muscles, lids=lids, skin=skin,
+        tongue=place_tongue(getattr(head, "parts", None), space, numbers),
         passive_hold=passive, turns=_turning_share(surface, landmarks),
         closed_weight=_closed_weight(surface, known, skull.mandible_weight, lips),
         controls=controls, layers=_layers(head, rig, controls),
     )  # fmt: skip
+
+
+def with_muscles(anatomy: Anatomy, rig: Rig, placed: tuple[PlacedMuscle, ...]) -> Anatomy:
+    """The same face with other muscles under the same names."""
+    surface, skin = anatomy.surface, anatomy.skin
+    weight, lips = anatomy.skull.mandible_weight, skin.lips.members
+    muscles = build_muscle_forces(
+        placed, rig, surface, weight, lips, anatomy.landmarks, anatomy.lip_side
+    )
+    passive, greatest = _holds(muscles, anatomy.lids, surface.vertex_count)
+    mass = _masses(surface, skin.tissue, skin.edges, greatest)
+    return replace(
+        anatomy, rig=rig, muscles=muscles, passive_hold=passive, skin=skin._replace(mass=mass)
+    )
+
+
+def _masses(surface: Surface, springs: TissueSprings, edges: EdgeSprings, greatest: Array) -> Array:
+    """Mass of each vertex; `greatest`: stiffness of fully active muscles there, shape (V,)."""
+    bound = edges.row_bound(surface.vertex_count)
+    bound += np.maximum(springs.tangential, springs.normal) + greatest
+    return masses_for_step(surface.areas, bound, LONGEST_SUBSTEP * STEP_MARGIN)
 
 
 def mesh_of(what: str, given: Any) -> tuple[Array, npt.NDArray[np.int32]]:
@@ -237,6 +259,7 @@ def _holds(muscles: MuscleForces, lids: Lids | None, count: int) -> tuple[Array,
     if lids is not None:
         for hold in (passive, greatest):
             np.add.at(hold, lids.vertices.vertex, lids.hold)
+        np.add.at(greatest, lids.vertices.vertex, lids.vertices.fold_hold)
     return passive, greatest
 
 

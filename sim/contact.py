@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from .landmarks import Array, mouth_line, polyline_distance
 from .skull import Eyeball
-from .substep import SEAL_AXES, SLIDES_IN_FRONT
+from .substep import SEAL_AXES, SLIDES_PAST
 from .surface import Surface
 
 LIP_EDGE = 5.0  # mm around the mouth line in which lip vertices are looked for
@@ -43,6 +43,7 @@ class LipPairs(NamedTuple):
     upper: npt.NDArray[np.int32]  # (P, 2) ends of an edge-like segment of the upper lip
     share: Array  # (P,) of the first end
     least_gap: Array  # (P,) mm, vertical; small negative where lips overlap at rest
+    press: Array  # (P,) x the overlap of pressed lips; more where they are apart at rest
     seal: Array  # (P,) stiffness
     averaging: Array  # (P,) 1 / number of pairs its vertices are in
     members: npt.NDArray[np.int32]  # (M,) all vertices in pairs
@@ -51,14 +52,14 @@ class LipPairs(NamedTuple):
         """Energy stored in the seal for displacements (V, 3)."""
         apart = moved[self.lower] - self.share[:, None] * moved[self.upper[:, 0]]
         apart -= (1.0 - self.share)[:, None] * moved[self.upper[:, 1]]
-        apart[:, 1] -= grip.overlap
+        apart[:, 1] -= grip.overlap * self.press
         stored = self.seal * (apart**2 @ np.array(SEAL_AXES))
         return float(grip.stiffness * stored.sum() / 2.0)
 
     def deepest(self, x: Array, rest: Array, pressed: float) -> float:
         """How far the lips cross at most at positions (V, 3), more than `pressed` and at rest [mm].
 
-        A lower lip that has come out in front of the upper one (see substep.py) crosses nothing.
+        A lower lip in front of the upper one, or rolled in behind it (substep.py), crosses nothing.
         """
         if not len(self.lower):
             return 0.0
@@ -67,7 +68,7 @@ class LipPairs(NamedTuple):
         below = self.share[:, None] * rest[a] + (1.0 - self.share)[:, None] * rest[b]
         forward = (x - rest)[self.lower, 2] - (above - below)[:, 2]
         crossing = self.least_gap - pressed - (above[:, 1] - x[self.lower, 1])
-        return float(np.where(forward < SLIDES_IN_FRONT, crossing, 0.0).max(initial=0.0))
+        return float(np.where(np.abs(forward) < SLIDES_PAST, crossing, 0.0).max(initial=0.0))
 
 
 class Grip(NamedTuple):
@@ -134,7 +135,8 @@ def _lip_pairs(surface: Surface, pairs: list[tuple[int, int, int, float]], seal:
     most = np.maximum(count[lower], count[upper].max(axis=1, initial=1))
     strength = seal * np.maximum(surface.areas[lower], LEAST_SEAL_AREA)
     members = np.flatnonzero(count).astype(np.int32)
-    return LipPairs(lower, upper, share, np.minimum(gap, 0.0), strength, 1.0 / most, members)
+    least, press = np.minimum(gap, 0.0), 1.0 + np.maximum(gap, 0.0) / PRESSED_OVERLAP
+    return LipPairs(lower, upper, share, least, press, strength, 1.0 / most, members)
 
 
 class EyeContact(NamedTuple):

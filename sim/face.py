@@ -261,13 +261,13 @@ class Simulation:
         if closed > 0.0:
             weight = weight + closed * (anatomy.closed_weight - weight)
         carry(state, surface.positions, surface.normals, weight, self._mandible)
-        if anatomy.lids is not None:
-            drive = anatomy.lids.drive(self._controls.activation)
-            angle = np.radians(anatomy.skull.eyes.gaze_deg) * self._gaze()[:, 1]
-            turn_lids(state, surface.positions, anatomy.lids.vertices, drive, angle)
-        activation = self._drive.activation()
         state.hold[:] = anatomy.passive_hold
         state.pull[:] = 0.0
+        if anatomy.lids is not None:
+            drive = anatomy.lids.drive(self._controls.activation)
+            angles = np.radians(anatomy.skull.eyes.gaze_deg) * self._gaze()
+            turn_lids(state, surface.positions, anatomy.lids.vertices, drive, angles)
+        activation = self._drive.activation()
         muscles.add(self._drive.pull(activation), self._mandible, weight, state)
         if len(self._dragged):
             drawn = self._dragged_to - state.carried[self._dragged]
@@ -294,6 +294,7 @@ class Simulation:
         """Motion of each bone from rest to now, name -> (4, 4) for column vectors [head units]."""
         anatomy = self._anatomy
         transforms = {
+            "neck": np.eye(4),
             "cranium": self._head.matrix(anatomy.space),
             "mandible": self._head.after(self._mandible).matrix(anatomy.space),
         }

@@ -1,15 +1,19 @@
 """Eyelids: they turn over the eyeball like a visor, meet when closed, and ride with the gaze.
 
-Each lid vertex keeps its distance to the centre of the eyeball and turns about the axis through
-it that runs from corner to corner of the eye. Angles are measured per column of the eye opening
-(between its corners): with the opening's height alpha at a column, the upper lid turns by
+Each lid vertex turns about the axis through the centre of the eyeball that runs from corner to
+corner of the eye. Angles are measured per column of the eye opening (between its corners). Each
+vertex knows the turn that brings it to where the lids meet (`closing`) and the share that it takes
+in the motion of the open lid (`fold`); it turns by
 
-    (1 - close) (raise + gaze) + close (lower lid's angle - alpha) - close^3 overlap
+    close closing + (1 - close) fold (raise + gaze)
 
-so that at close = 1 the lids meet on every eye, however wide, and wherever the lower lid is. They
-overlap as far as their margins are thick: lids that meet with their inner rims alone leave a groove
-between the front ones, out of which the cornea looks.
-A closing lid also slides towards the nose, as the ring of fibres in it is fixed there.
+so that at close = 1 the lids meet on every eye, however wide, and wherever the lower lid is. What
+lies between the front edges of the lids comes to lie in one line: a margin is as thick as skin,
+and lids that meet with a slanted margin leave a groove, out of which the cornea looks.
+The open lid takes the fold under the brow along, as levator palpebrae ends in both; the fold is
+held only while it is moved, so that the brow can come down on it.
+A closing lid slides towards the nose, as the ring of fibres in it is fixed there; a raised one a
+little away from it; and both lids a little to where the eye looks, as the cornea draws them.
 The lids of each eye follow the gaze of that eye alone.
 The turn fades from the margin to the edge of the lid. It moves the tissue springs' far ends, not
 the skin: skin still slides and is still kept off the eyeball.
@@ -34,13 +38,17 @@ from .surface import Surface
 
 COLUMNS = 41  # places along the opening where its height is known
 SMOOTH_COLUMNS = 13  # a third of the opening's width
-COLUMN_REACH = 0.045  # of the opening's width: a column of lid vertices
-MARGIN_REACH = 3.5  # mm around the lid landmarks in which the lid's edge is looked for
-LEAST_OVERLAP = 0.09  # rad (1.1 mm): the upper margin comes to lie in front of the lower one
-GREATEST_OVERLAP = 0.21  # rad (2.6 mm): as thick as a margin is
+MARGIN_REACH = 3.5  # mm from a lid's front edge that are its margin
+OVERLAP = 0.08  # rad (1 mm) by which closed lids are pressed into each other
+EDGE = 1e-3  # rad
+OFF_EDGE = 0.3  # 1/mm nearer to or farther from the eyeball than the landmarks: no front edge
 LEAST_OPENING = 0.05  # rad: at the corners lids do not overlap
 WIDE_OPENING = 0.3  # rad: from here on they do in full
 SLIDE_REACH = 1.9  # x the reach of the turn: skin around the lid slides along with it
+SLIDE_ENDS = (0.1, 1.7)  # x the slide at the outer and the inner corner
+AT_CORNERS = 0.5  # of the motion of the open lid is there: their ligaments give
+STEEPEST = 0.45  # of its way up that the fold goes back: it slides on the orbit, not on the eyeball
+FOLD_FIRM = 0.12  # rad of turn from which the fold is held in full
 LEAST_TURN = 1e-3  # lid vertices that move less are not lid
 
 
@@ -50,18 +58,24 @@ class LidVertices(NamedTuple):
     vertex: npt.NDArray[np.int32]  # (L,)
     eye: npt.NDArray[np.int32]  # (L,) row of the arrays per eye below
     upper: npt.NDArray[np.bool_]  # (L,) upper or lower lid
-    weight: Array  # (L,) share of the margin's turn
-    opening: Array  # (L,) rad, height of the opening at the vertex's column
+    closing: Array  # (L,) rad, turn to where closed lids meet, without overlap
     overlap: Array  # (L,) rad by which closed lids overlap there
+    sink: Array  # (L,) mm nearer to the eyeball when closed
+    fold: Array  # (L,) share of the turn of the open lid
+    opening: Array  # (L,) rad, height of the opening at the vertex's column
+    aperture: Array  # (eyes,) rad, greatest height of the opening
+    along: Array  # (L,) share of the slide: 1 at the middle of the margin .. 0 around the eye
+    fold_hold: Array  # (L,) stiffness that holds the fold while it is moved
     centres: Array  # (eyes, 3)
+    radii: Array  # (eyes,)
     up: Array  # (eyes, 3) unit, across the lid axis
     forward: Array  # (eyes, 3) unit
     inward: Array  # (eyes, 3) unit, from the outer to the inner corner
-    along: Array  # (L,) share of the slide: 1 at the middle of the margin .. 0 around the eye
     slide: tuple[float, float]  # mm inward when closed: upper, lower lid
+    raise_slide: float  # mm inward when raised
     upper_follows: float  # share of the vertical gaze
     lower_follows: float
-    meeting: float  # share of the opening that the lower lid rises in a blink
+    sideways_follow: float  # share of the horizontal gaze
 
 
 class Lids(NamedTuple):
@@ -92,28 +106,48 @@ def place_lids(
         _one_eye(eyes, surface, landmarks, ball, *axis)
         for ball, axis in zip(eyeballs, axes, strict=True)
     ]
-    vertex = np.concatenate([p[0] for p in parts])
-    weight = np.concatenate([p[2] for p in parts])
+    joined = _OneEye(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    areas = rig.tissue.stiffness_scale * surface.areas[joined.vertex]
     vertices = LidVertices(
-        vertex=vertex.astype(np.int32),
-        eye=np.repeat(np.arange(len(parts)), [len(p[0]) for p in parts]).astype(np.int32),
-        upper=np.concatenate([p[1] for p in parts]),
-        weight=weight,
-        opening=np.concatenate([p[3] for p in parts]),
-        overlap=np.concatenate([p[5] for p in parts]),
+        vertex=joined.vertex.astype(np.int32),
+        eye=np.repeat(np.arange(len(parts)), [len(p.vertex) for p in parts]).astype(np.int32),
+        upper=joined.upper,
+        closing=joined.closing,
+        overlap=joined.overlap,
+        sink=joined.sink,
+        fold=joined.fold,
+        opening=joined.opening,
+        aperture=np.array([part.opening.max() for part in parts]),
+        along=joined.along,
+        fold_hold=eyes.fold_stiffness * areas * np.maximum(joined.fold - joined.weight, 0.0),
         centres=np.array([ball.centre for ball in eyeballs]),
+        radii=np.array([ball.radius for ball in eyeballs]),
         up=np.array([up for up, _ in axes]),
         forward=np.array([forward for _, forward in axes]),
         inward=np.array([np.cross(up, forward) for up, forward in axes])
         * np.array([[-ball.side.sign] for ball in eyeballs]),
-        along=np.concatenate([p[4] for p in parts]),
         slide=eyes.blink_slide,
+        raise_slide=eyes.raise_slide,
         upper_follows=eyes.upper_lid_follows,
         lower_follows=eyes.lower_lid_follows,
-        meeting=eyes.blink_meeting,
+        sideways_follow=eyes.lids_follow_sideways,
     )
-    hold = eyes.lid_stiffness * rig.tissue.stiffness_scale * surface.areas[vertex] * weight
+    hold = eyes.lid_stiffness * areas * joined.weight
     return Lids(vertices, hold, _lid_muscles(rig, eyeballs, names))
+
+
+class _OneEye(NamedTuple):
+    """The lid vertices of one eye; see LidVertices. `weight`: share of the margin's turn."""
+
+    vertex: npt.NDArray[np.int64]
+    upper: npt.NDArray[np.bool_]
+    weight: Array
+    closing: Array
+    overlap: Array
+    sink: Array
+    fold: Array
+    opening: Array
+    along: Array
 
 
 def _lid_axes(landmarks: Array, ball: Eyeball) -> tuple[Array, Array]:
@@ -129,9 +163,9 @@ def _lid_axes(landmarks: Array, ball: Eyeball) -> tuple[Array, Array]:
 
 def _one_eye(
     eyes: Eyes, surface: Surface, landmarks: Array, ball: Eyeball, up: Array, forward: Array
-) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_], Array, Array, Array, Array]:
-    """Vertices, upper/lower, weight, opening, share of the slide, overlap of one eye's lids."""
-    outer, upper_outer, upper_inner, inner, lower_outer, lower_inner = EYE_LANDMARKS[ball.side]
+) -> _OneEye:
+    """Find the lids of one eye and what each of their vertices does."""
+    outer, upper_outer, upper_inner, inner, lower_inner, lower_outer = EYE_LANDMARKS[ball.side]
     side = lid_side(surface, landmarks, ball.side)
     x = surface.positions
     corner, axis = landmarks[outer], landmarks[inner] - landmarks[outer]
@@ -146,65 +180,69 @@ def _one_eye(
         return column
 
     column, angle = column_of(x), angle_of(x)
+    depth = np.linalg.norm(x - ball.centre, axis=1)
     rows = {
         True: landmarks[[outer, upper_outer, upper_inner, inner]],
         False: landmarks[[outer, lower_outer, lower_inner, inner]],
     }
     where = np.linspace(0.0, 1.0, COLUMNS)
-    edges, fronts = {}, {}
-    weight, slide = np.zeros(surface.vertex_count), np.zeros(surface.vertex_count)
+    fronts, depths, weights, folds, near = {}, {}, {}, {}, {}
+    slide = np.zeros(surface.vertex_count)
     for upper, line in rows.items():
         on_lid = side > 0.0 if upper else side < 0.0
-        distance = polyline_distance(x, _margin(column_of(line), line))
-        reach = 1.0 - (distance - eyes.lid_plateau) / max(eyes.lid_reach - eyes.lid_plateau, 0.1)
-        weight = np.where(on_lid, smoothstep(reach), weight)
-        slide = np.where(on_lid, smoothstep(1.0 - distance / (SLIDE_REACH * eyes.lid_reach)), slide)
-        near = on_lid & (distance < MARGIN_REACH) & (column > -0.02) & (column < 1.02)
-        arch = np.polynomial.Polynomial.fit(column_of(line), angle_of(line), 3)
-        edges[upper] = _edge(arch, column[near], angle[near], lowest=upper)
-        fronts[upper] = arch(where)
-    thick = fronts[True] - fronts[False] - (edges[True] - edges[False])
-    height = np.maximum(edges[True] - edges[False], 0.0)
-    height = np.convolve(np.pad(height, 1, mode="edge"), np.ones(3) / 3.0, "valid")
-    height[[0, -1]] = 0.0  # lids are joined at the corners
+        reaches, order = np.linalg.norm(line - ball.centre, axis=1), np.argsort(column_of(line))
+        behind = OFF_EDGE * np.abs(
+            depth - np.interp(column, column_of(line)[order], reaches[order])
+        )
+        edge = x[surface.way_through(surface.nearest(line), behind)]
+        distance = polyline_distance(x, edge)
+        weights[upper] = on_lid * _share(distance, eyes.lid_plateau, eyes.lid_reach)
+        ends = (eyes.fold_plateau, eyes.fold_reach) if upper else (eyes.lid_plateau, eyes.lid_reach)
+        folds[upper] = on_lid * _share(distance, *ends)
+        slide = np.where(on_lid, _share(distance, 0.0, SLIDE_REACH * eyes.lid_reach), slide)
+        near[upper] = on_lid & (distance < MARGIN_REACH) & (column > -0.02) & (column < 1.02)
+        edge = edge[np.argsort(column_of(edge), kind="stable")]
+        fronts[upper] = np.interp(where, column_of(edge), angle_of(edge))
+        depths[upper] = np.interp(
+            where, column_of(edge), np.linalg.norm(edge - ball.centre, axis=1)
+        )
+    height = np.maximum(fronts[True] - fronts[False], 0.0)
     # At the corners the opening ends abruptly; skin away from the margin must not crease there.
     wide = np.convolve(np.pad(height, SMOOTH_COLUMNS), np.ones(SMOOTH_COLUMNS) / SMOOTH_COLUMNS)
-    start = SMOOTH_COLUMNS + SMOOTH_COLUMNS // 2
-    exact = np.interp(column, where, height)
-    broad = np.interp(column, where, wide[start : start + COLUMNS])
-    opening = weight * exact + (1.0 - weight) * np.minimum(broad, height.max())
-    weight *= x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is no lid
-    slide *= np.interp(column, where, wide[start : start + COLUMNS], 0.0, 0.0) / max(
-        height.max(), LEAST_OPENING
-    )
-    lid = np.flatnonzero((weight > LEAST_TURN) | (slide > LEAST_TURN))
-    overlap = np.clip(thick.max(), LEAST_OVERLAP, GREATEST_OVERLAP) * smoothstep(
-        (opening - LEAST_OPENING) / (WIDE_OPENING - LEAST_OPENING)
-    )
-    return lid, side[lid] > 0.0, weight[lid], opening[lid], slide[lid], overlap[lid]
+    wide = wide[SMOOTH_COLUMNS + SMOOTH_COLUMNS // 2 :][:COLUMNS]
+    slide *= np.interp(column, where, wide, 0.0, 0.0) / max(height.max(), LEAST_OPENING)
+    slide *= np.interp(column, (0.0, 1.0), SLIDE_ENDS)
+    exact, broad = (np.interp(column, where, h) for h in (height, np.minimum(wide, height.max())))
+    weight = weights[True] + weights[False]
+    opening = weight * exact + (1.0 - weight) * broad
+    share = np.where(side > 0.0, eyes.blink_meeting - 1.0, eyes.blink_meeting)
+    closing = share * weight * opening
+    arrives = column + slide * np.where(side > 0.0, *eyes.blink_slide) / np.linalg.norm(axis)
+    seam = fronts[False] + eyes.blink_meeting * height  # where closed lids meet
+    meeting, rises = (np.interp(c, where, seam) for c in (arrives, column))
+    closing += weight * (meeting - rises)
+    for upper, front in fronts.items():  # the margin itself, up to its front edge
+        within = angle - np.interp(column, where, front)
+        margin = near[upper] & ((within < EDGE) if upper else (within > -EDGE))
+        closing[margin] = (meeting - angle)[margin]
+    before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is no lid
+    middle = np.sin(np.pi * np.clip(column, 0.0, 1.0))
+    fold = before * (folds[True] + folds[False]) * (AT_CORNERS + (1.0 - AT_CORNERS) * middle)
+    weight, closing = before * weight, before * closing
+    sink = (side > 0.0) * weight * np.interp(column, where, depths[True] - depths[False])
+    lid = np.flatnonzero(np.maximum(np.maximum(weight, fold), slide) > LEAST_TURN)
+    overlap = (
+        OVERLAP * weight * smoothstep((opening - LEAST_OPENING) / (WIDE_OPENING - LEAST_OPENING))
+    )[lid]
+    return _OneEye(
+        lid, side[lid] > 0.0, weight[lid], closing[lid], overlap, sink[lid], fold[lid],
+        opening[lid], slide[lid],
+    )  # fmt: skip
 
 
-def _margin(column: Array, line: Array) -> Array:
-    """The lid's margin as a smooth curve through its four landmarks, shape (COLUMNS, 3) [mm]."""
-    where = np.linspace(0.0, 1.0, COLUMNS)
-    curves = [np.polynomial.Polynomial.fit(column, line[:, k], 3)(where) for k in range(3)]
-    return np.stack(curves, axis=1)
-
-
-def _edge(arch: np.polynomial.Polynomial, column: Array, angle: Array, *, lowest: bool) -> Array:
-    """Angle [rad] of a lid's free edge at COLUMNS places between the corners, shape (COLUMNS,).
-
-    The cubic `arch` through its four landmarks gives the shape; how far the lid's outermost
-    vertices lie off that arch, place by place, corrects it.
-    """
-    where = np.linspace(0.0, 1.0, COLUMNS)
-    off = np.clip(angle - arch(column), -0.3, 0.3)
-    edge: Array = arch(where)
-    for n, c in enumerate(where):
-        beside = np.abs(column - c) < COLUMN_REACH
-        if beside.any():
-            edge[n] += off[beside].min() if lowest else off[beside].max()
-    return edge
+def _share(distance: Array, plateau: float, reach: float) -> Array:
+    """1 up to `plateau` mm from the margin, fading to 0 at `reach`."""
+    return smoothstep(1.0 - (distance - plateau) / max(reach - plateau, 0.1))
 
 
 def _lid_muscles(
@@ -224,23 +262,29 @@ def _lid_muscles(
 def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
     """Turn the far ends of the tissue springs of all lid vertices, and their normals.
 
-    drive: of each eye, shape (eyes, 3), see Lids.drive; gaze: vertical angle of each [rad],
-    shape (eyes,).
+    Adds what holds moved folds to `state.hold`. drive: of each eye, shape (eyes, 3), see
+    Lids.drive; gaze: angles of each to the subject's left and up [rad], shape (eyes, 2).
     """
     carried, normals = state.carried, state.normals
     centres, up, forward = lids.centres, lids.up, lids.forward
     for row in range(len(lids.vertex)):
-        i, e, alpha = lids.vertex[row], lids.eye[row], lids.opening[row]
+        i, e, alpha, fold = lids.vertex[row], lids.eye[row], lids.opening[row], lids.fold[row]
         close = min(drive[e, 0], 1.0)
-        lower = (1.0 - close) * (alpha * drive[e, 1] + lids.lower_follows * gaze[e])
-        lower = min(lower + close * lids.meeting * alpha, alpha)
-        angle = lower
+        free = fold * min(alpha * drive[e, 1] + lids.lower_follows * gaze[e, 1], alpha)
+        inward = max(close, drive[e, 1]) * lids.slide[1]
+        angle = lids.closing[row] * close
         if lids.upper[row]:
-            raised = max(alpha * drive[e, 2] + lids.upper_follows * gaze[e], lower - alpha)
-            angle = (1.0 - close) * raised + close * (lower - alpha)
+            low = free - alpha
+            free = max(
+                fold * (lids.aperture[e] * drive[e, 2] + lids.upper_follows * gaze[e, 1]), low
+            )
+            inward = close * lids.slide[0] + (1.0 - close) * drive[e, 2] * lids.raise_slide
             angle -= close**3 * lids.overlap[row]  # late: half a blink is half closed
-        inward = close * lids.along[row] * lids.slide[0 if lids.upper[row] else 1]
-        angle *= lids.weight[row]
+        free *= 1.0 - close
+        angle += free
+        state.hold[i] += lids.fold_hold[row] * min(abs(free) / FOLD_FIRM, 1.0)
+        aside = gaze[e, 0] * lids.inward[e, 0] * lids.radii[e]
+        inward = lids.along[row] * (inward + lids.sideways_follow * aside)
         c, s = np.cos(angle) - 1.0, np.sin(angle)
         high, far, normal_high, normal_far = 0.0, 0.0, 0.0, 0.0
         for k in range(3):
@@ -248,9 +292,14 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
             far += (rest[i, k] - centres[e, k]) * forward[e, k]
             normal_high += normals[i, k] * up[e, k]
             normal_far += normals[i, k] * forward[e, k]
+        if free > 0.0:
+            high = min(high, STEEPEST * far)
+        nearer = close * lids.sink[row] / max(np.sqrt(high * high + far * far), 1.0)
         for k in range(3):
             u, f = up[e, k], forward[e, k]
             carried[i, k] += (high * c + far * s) * u + (far * c - high * s) * f
+            carried[i, k] -= nearer * ((high * (c + 1.0) + far * s) * u)
+            carried[i, k] -= nearer * ((far * (c + 1.0) - high * s) * f)
             normals[i, k] += (normal_high * c + normal_far * s) * u
             normals[i, k] += (normal_far * c - normal_high * s) * f
         if inward != 0.0:

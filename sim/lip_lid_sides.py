@@ -46,7 +46,7 @@ def lip_side(surface: Surface, landmarks: Array) -> Array:
 
 def lid_side(surface: Surface, landmarks: Array, side: Side) -> Array:
     """+1 on the upper lid .. -1 on the lower lid of one eye, 0 at its corners, shape (V,)."""
-    outer, upper_outer, upper_inner, inner, lower_outer, lower_inner = EYE_LANDMARKS[side]
+    outer, upper_outer, upper_inner, inner, lower_inner, lower_outer = EYE_LANDMARKS[side]
     upper = _distance(surface, landmarks, (upper_outer, upper_inner))
     lower = _distance(surface, landmarks, (lower_outer, lower_inner))
     near = np.minimum(upper, lower) < LID_REACH

@@ -21,6 +21,7 @@ import numpy.typing as npt
 from .fibres import FIBRE_POINTS, bent_to_skin, build_fibre, fibre_coordinates
 from .landmarks import Array, Side, smoothstep
 from .rig import Fibre, LinearMuscle, Muscle, Rig, RingMuscle
+from .skull import LATERAL, UP, rotation
 from .surface import Surface
 
 RING_POINTS = 25  # corners of the line drawn for a sphincter
@@ -174,6 +175,9 @@ def attach_to_ring(
     if muscle.opening != (0.0, 0.0):
         pull[:, :2] = _round_mouth(muscle, x, landmarks) - x[:, :2]
     pull += np.array(muscle.push) * (side.sign, 1.0, 1.0)
+    roll, yaw = np.radians(muscle.turn_deg)
+    turn = rotation(UP, side.sign * yaw) @ rotation(LATERAL, roll)
+    pull += (x - centre) @ (turn.T - np.eye(3))
     seam = landmarks[[62, 66], 1].mean()
     # On an ellipse through the mouth's corners, or an open mouth has straight edges.
     corner = MOUTH_ROUND * abs(landmarks[54, 0] - landmarks[48, 0]) / 2.0

@@ -111,6 +111,11 @@ class Eyes:
         0.0, 0.5, default=0.12
     )  # share of the way the lower lid comes up
     blink_slide: tuple[float, float] = _vector(2, -5.0, 5.0, default=(0.0, 0.0))  # mm to the nose
+    raise_slide: float = _number(-10.0, 10.0, default=0.0)  # the same, for each rad of raising
+    lids_follow_sideways: float = _number(0.0, 1.0, default=0.0)  # share of the horizontal gaze
+    fold_plateau: float = _number(0.0, 30.0, default=2.0)  # mm from the upper margin: the skin that
+    fold_reach: float = _number(2.0, 40.0, default=8.0)  # goes with it in full and at all, if open
+    fold_stiffness: float = _number(0.0, 1000.0, default=0.0)  # of what is not lid, while it moves
 
 
 @dataclass(frozen=True)
@@ -187,6 +192,9 @@ class RingMuscle(Muscle):
     push: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, 0.0, 0.0))
     bulge: float = _number(0.0, 40.0, default=0.0)  # mm outward along the skin's normal
     flare: float = _number(-30.0, 30.0, default=0.0)  # mm up for the upper, down for the lower lip
+    turn_deg: tuple[float, float] = _vector(
+        2, -90.0, 90.0, default=(0.0, 0.0)
+    )  # about the centre: what lies above it goes forward, what lies before it to the side
     opening: tuple[float, float] = _vector(
         2, 0.0, 30.0, default=(0.0, 0.0)
     )  # mm, half width and half height of the oval mouth drawn to; both 0: to the centre

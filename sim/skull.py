@@ -26,7 +26,7 @@ from .surface import Surface
 
 EYE_RADIUS = 12.5  # mm in the standard space, where a head brings no eyes (adult eyeball: 12)
 EYE_SETBACK = 5.5  # mm from the line of the eye corners back to the centre (fitted on scans)
-NECK_BELOW_CHIN = 30.0  # mm below the chin landmark the skin no longer belongs to the mandible
+NECK_BELOW_CHIN = 45.0  # mm below the chin landmark the skin no longer belongs to the mandible
 BEHIND_EARS = 20.0  # mm behind the ear landmarks likewise
 HEAD_CONTROLS = ("head_pitch", "head_yaw", "head_roll")
 HEAD_RATE = 30.0  # rad/s: chosen so that nods of 2 Hz keep 85 % of their size, 63 ms late

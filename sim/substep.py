@@ -17,7 +17,7 @@ LIP_PASSES = 5  # averaged projections need a second pass where lips are pressed
 FASTEST = 5000.0  # mm/s per axis; a face never reaches it, a vertex thrown by the caller may
 SHORTEST = 1e-6  # mm: the direction of a shorter edge is noise
 SEAL_AXES = (0.5, 1.0, 0.5)  # the seal's stiffness sideways, up and down, forward (last fitted)
-SLIDES_IN_FRONT = 3.0  # mm the lower lip may come forward before it passes before the upper one
+SLIDES_PAST = 3.0  # mm the lower lip may come forward, or roll in, before it passes the upper one
 SLIDE_FADE = 3.0  # mm over which it then does
 TOOTH_FADE = 3.0  # mm above and below the teeth over which they cease to be felt
 LEAST_SHARE = 0.1  # of an arch: nearer to its axis the way out is uncertain
@@ -143,7 +143,7 @@ def hold_lips(state, skin, tick):  # type: ignore[no-untyped-def]
             apart = x[i, k] - rest[i, k]
             apart -= w * (x[a, k] - rest[a, k]) + (1.0 - w) * (x[b, k] - rest[b, k])
             if k == 1:
-                apart -= grip.overlap
+                apart -= grip.overlap * lips.press[p]
             speed = v[i, k] - w * v[a, k] - (1.0 - w) * v[b, k]
             give = h * inverse * grip.stiffness * lips.seal[p] * SEAL_AXES[k]
             slowed = (speed - give * apart) / (1.0 + h * give)
@@ -182,7 +182,7 @@ def keep_lips_apart(state, skin, overlap):  # type: ignore[no-untyped-def]
             continue
         forward = x[i, 2] - rest[i, 2]
         forward -= w * (x[a, 2] - rest[a, 2]) + (1.0 - w) * (x[b, 2] - rest[b, 2])
-        full = min(max(1.0 - (forward - SLIDES_IN_FRONT) / SLIDE_FADE, 0.0), 1.0)
+        full = min(max(1.0 - (abs(forward) - SLIDES_PAST) / SLIDE_FADE, 0.0), 1.0)
         if full == 0.0:
             continue
         if not crossed:

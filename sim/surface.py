@@ -66,6 +66,24 @@ class Surface:
         distance = csgraph.dijkstra(graph, directed=False, indices=vertices, min_only=True)
         return np.asarray(distance, dtype=np.float64)
 
+    def way_through(self, vertices: npt.ArrayLike, hindrance: Array) -> Indices:
+        """Numbers of the vertices on the shortest way along edges from each vertex to the next.
+
+        hindrance: of each vertex, shape (V,): an edge counts 1 + its mean times its length.
+        """
+        stops = np.asarray(vertices, dtype=np.int64)
+        i, j = self.edges.T
+        lengths = self.lengths * (1.0 + (hindrance[i] + hindrance[j]) / 2.0)
+        graph = sparse.csr_array((lengths, (i, j)), shape=(self.vertex_count,) * 2)
+        found = csgraph.dijkstra(graph, directed=False, indices=stops, return_predecessors=True)[1]
+        way = [int(stops[0])]
+        for n, stop in enumerate(stops[1:]):
+            back = [int(stop)]
+            while back[-1] != stops[n] and found[n, back[-1]] >= 0:
+                back.append(int(found[n, back[-1]]))
+            way += back[-2::-1] if len(back) > 1 else []
+        return np.array(way, dtype=np.int32)
+
     def smoothed(self, field: Array, extent: float) -> Array:
         """A field (V,) without details smaller than about sqrt(`extent`) [mm2]."""
         return _smooth(field, extent, self.areas, self.laplacian)

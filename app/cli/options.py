@@ -15,7 +15,7 @@ from ..errors import UserError
 from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from ..playback import LEAD, Playback
-from .parameters import BackgroundName, FiniteRange, Looks, Refiner, Size
+from .parameters import BackgroundName, FiniteRange, Looks, PersonName, Refiner, Size
 
 if TYPE_CHECKING:
     from risorius import render
@@ -60,7 +60,7 @@ class Subject:
 
     head: Path | None
     landmarks: Path | None
-    person: int | None
+    person: int | str | None
     refiner_settings: tuple[str, ...]
     refiner: str | None
     look: str
@@ -122,9 +122,8 @@ HEAD = (
     click.option("--landmarks", type=PATH, help="The 68 iBug landmarks of --head, as JSON."),
     click.option(
         "--person",
-        type=click.IntRange(0, 2**32 - 1),
-        metavar="NUMBER",
-        help="Another person than the built-in head: for each number one.",
+        type=PersonName(),
+        help="Another person than the built-in head: for each number one, and some by name.",
     ),
 )
 STYLE = (

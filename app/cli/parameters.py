@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 LEAST, MOST = 16, 8192  # [pixels] of a side
 BACKGROUNDS = ("light", "dark", "white", "black")  # of `render`
+PERSON_NAMES = ("ada", "kofi", "maria")  # of `assets.identities`, which is not imported yet
 
 
 class Size(click.ParamType[tuple[int, int]]):
@@ -115,3 +116,20 @@ class Looks(Refiner):
 
 def _beginning(start: str, names: Iterable[str]) -> list[CompletionItem]:
     return [CompletionItem(name) for name in names if name.startswith(start)]
+
+
+class PersonName(click.ParamType[int | str]):
+    """A person's number or name."""
+
+    name = "NUMBER|NAME"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> int | str:
+        """The number, or the name as it is."""
+        if value in PERSON_NAMES:
+            return str(value)
+        if not str(value).isdecimal():
+            names = ", ".join(PERSON_NAMES)
+            self.fail(f"'{value}' is nobody; write a number, 0 or more, or {names}", param, ctx)
+        return click.IntRange(0, 2**32 - 1).convert(value, param, ctx)

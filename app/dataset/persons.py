@@ -8,12 +8,17 @@ from typing import Any
 import numpy as np
 
 from risorius.assets.fitting import FittedHead, fit_head
-from risorius.assets.identities import Person, coloured, make_person, sample_identity
+from risorius.assets.identities import (
+    Features,
+    coloured,
+    drawn_irises,
+    features_of,
+    make_person,
+    sample_identity,
+)
 
 from .request import Request
-from .sampling import chosen
 
-ONLY_BROWN = 28.0  # [degrees] of the tone below which eyes are brown, as nearly all are there
 PERSONS = 1  # sets their seeds apart from those of samples
 
 
@@ -34,18 +39,18 @@ def person_of(request: Request, number: int) -> Somebody:
     seeds = np.random.SeedSequence([request.seed, number, PERSONS])
     random = np.random.default_rng(seeds)
     tone = round(float(random.uniform(*table.persons["tone"])), 2)
-    irises = chosen(random, table.irises)
-    if tone < ONLY_BROWN:
-        irises = "brown"
+    irises = drawn_irises(random, tone, table.irises)
     labels: dict[str, Any] = {"number": number, "tone": tone, "irises": irises}
+    features = Features()
     if request.heads:
         file = request.heads[number]
         head = fit_head(file, file.with_suffix(".json"))
         labels["head"] = file.name
     else:
-        made: Person = make_person(sample_identity(int(seeds.generate_state(1)[0])))
-        assert made.identity is not None
+        made = make_person(sample_identity(int(seeds.generate_state(1)[0])))
         labels["sex"] = made.identity.sex.value
+        labels["age"] = round(made.identity.age, 1)
         labels["measures"] = {code: round(value, 3) for code, value in made.measures.items()}
+        features = features_of(made.identity, tone, random)
         head = made
-    return Somebody(coloured(head, angle=tone, irises=irises), labels)
+    return Somebody(coloured(head, angle=tone, irises=irises, features=features), labels)

@@ -20,6 +20,7 @@ from ..motion import play, scene_of
 from ..refining import refiner_for
 from ..scenes import FaceScene, Scene
 from ..script import Script
+from ..wrinkling import Compression, on_rows, relief_of
 
 Floats = npt.NDArray[np.float64]
 Singles = npt.NDArray[np.float32]
@@ -100,11 +101,18 @@ class Clip:
         Raises UserError for a refiner that has to know where somebody looks from.
         """
         refiner = refiner_for(self.scene, refinement)
+        relief = relief_of(self.scene, refinement)
+        compression = None if relief is None else Compression(self.scene)
         for frame in range(self.frame_count):
             try:
-                mesh = refiner.refine(self.skin.at(frame))
+                positions = self.skin.at(frame)
+                mesh = refiner.refine(positions)
             except ValueError as error:
                 raise UserError(f"refiner {refinement.on(self.scene.name)[0]}: {error}") from None
+            if relief is not None and compression is not None and mesh.uv is not None:
+                rows = on_rows(compression.amounts(positions), refiner)
+                if rows is not None:
+                    relief.carve(mesh, rows)
             yield mesh
 
 

@@ -15,6 +15,7 @@ from scipy.optimize import lsq_linear
 from risorius.assets.topology import vertex_normals
 
 from ..errors import UserError
+from ..growing import Growing
 from ..motion import SETTLING
 from ..scenes import FaceScene
 from .clip import Clip, Surface
@@ -137,18 +138,21 @@ def _measured(scene: FaceScene, names: Sequence[str], title: str) -> Shapes:
 
 
 def _resting(scene: FaceScene, pose: Mapping[str, float]) -> Shapes:
-    """The skin, and what hangs on the jaw, in a pose that has been held for a while, (V, 3)."""
+    """The skin and what moves with it or with the jaw, in a pose that has been held, (V, 3)."""
     scene.reset()
     if pose:
         scene.pose(pose)
         scene.step(SETTLING)
     bones = {name: matrix[None] for name, matrix in scene.bone_transforms().items()}
-    parts = [part for part in scene.parts if part.bone == JAW]
-    shapes = {part.name: in_head(scene, JAW, part.vertices[None], bones)[0] for part in parts}
+    shapes = {
+        part.name: in_head(scene, part.bone, part.vertices[None], bones)[0]
+        for part in scene.parts
+        if part.bone == JAW or isinstance(part, Growing)
+    }
     return {"skin": in_head(scene, None, scene.positions[None], bones)[0], **shapes}
 
 
 def _motion(clip: Clip, surface: Surface, part: Any) -> Floats:
-    """The skin, or what hangs on the jaw, in all frames, shape (N, V, 3)."""
+    """The skin, or what moves with it or with the jaw, in all frames, shape (N, V, 3)."""
     shapes = surface.rest[None] if surface.shapes is None else surface.shapes
     return in_head(clip.scene, None if part is None else part.bone, shapes, clip.bones)

@@ -45,7 +45,7 @@ class Skeleton:
         self._pivots = {NECK: pivots[HEAD], **pivots}
         self.roots = [self._add(NECK, None)]
         head = self._add(HEAD, NECK)
-        for bone in sorted(used - {HEAD}):
+        for bone in sorted(used - {HEAD, NECK}):
             self._add(bone, HEAD)
         to_bone = np.eye(4, dtype=np.float32)
         to_bone[3, :3] = -METRES * pivots[HEAD]  # columns first

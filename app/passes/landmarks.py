@@ -7,7 +7,8 @@ A point is hidden where the depth map has something in front of it everywhere wi
 than that, the surface to which it belongs may rise in front of it: the margin of a lid behind its
 edge, the seam of closed lips. Over 60 random expressions and cameras what remained in front was
 below 1 mm for landmarks whose own triangles were in the picture and, but for 1 in 100, above 3 mm
-for all others; TOLERANCE lies between, and above the thickness of no lid that closes over a pupil.
+for all others; TOLERANCE lies between. Around a pupil the eye is round and smooth, and a lid that
+closes over it is a millimetre thick: PUPIL_TOLERANCE.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from .camera_labels import SIDES, CameraLabels, Floats
 
 COUNT = 70
 REACH = 1.0  # [mm] across
-TOLERANCE = 2.0  # [mm] along the camera's axis
+TOLERANCE, PUPIL_TOLERANCE = 2.0, 0.6  # [mm] along the camera's axis
 
 
 @dataclass(frozen=True)
@@ -60,15 +61,18 @@ def landmarks_in(
     points = points_of(scene)
     pixels, depths = camera.project(points), camera.to_camera(points)[:, 2]
     reaches = np.maximum(np.ceil(REACH * camera.intrinsics[0, 0] / depths), 1.0)
+    nearest = depths - np.where(np.arange(COUNT) < len(scene.landmarks), TOLERANCE, PUPIL_TOLERANCE)
     visible = [
-        _is_visible(depth, x, y, far, int(reach))
-        for (x, y), far, reach in zip(pixels.tolist(), depths, reaches, strict=True)
+        _is_visible(depth, x, y, near, int(reach))
+        for (x, y), near, reach in zip(pixels.tolist(), nearest, reaches, strict=True)
     ]
     return Landmarks(points, pixels, depths, np.array(visible))
 
 
-def _is_visible(depth: npt.NDArray[np.float32], x: float, y: float, far: float, reach: int) -> bool:
-    """Whether a point at a pixel, so far away [mm], is in the picture and not hidden."""
+def _is_visible(
+    depth: npt.NDArray[np.float32], x: float, y: float, nearest: float, reach: int
+) -> bool:
+    """Whether a point at a pixel is in the picture, and not hidden by what is nearer [mm]."""
     height, width = depth.shape
     if not (0.0 <= x < width and 0.0 <= y < height):
         return False
@@ -76,4 +80,4 @@ def _is_visible(depth: npt.NDArray[np.float32], x: float, y: float, far: float, 
     around = depth[
         max(row - reach, 0) : row + reach + 1, max(column - reach, 0) : column + reach + 1
     ]
-    return bool(((around == 0.0) | (around > far - TOLERANCE)).any())
+    return bool(((around == 0.0) | (around > nearest)).any())

@@ -39,7 +39,9 @@ class Passes:
         self.scene = scene = pipeline.scene
         self._pipeline = pipeline
         self._tension = refine.Tension(scene.faces, scene.rest_positions)
-        self._part_classes = np.concatenate([np.zeros(0, np.uint8), *map(_classes, scene.parts)])
+        # Thin hairs are what is behind them, as in pictures that people label.
+        self._parts = [part for part in scene.parts if not getattr(part, "hair", 0.0)]
+        self._part_classes = np.concatenate([np.zeros(0, np.uint8), *map(_classes, self._parts)])
 
     @property
     def size(self) -> tuple[int, int]:
@@ -61,8 +63,16 @@ class Passes:
         if "tension" in wanted:
             stretch, compression, _ = self._tension.measure(scene.positions)
             values = on_rows(np.stack([stretch, compression], axis=1), drawn.refiner)
+        wrinkles = None
+        if pipeline.wrinkling is not None and drawn.has_uv:
+            wrinkles = pipeline.wrinkling.map, drawn.strength
         geometry = pipeline.renderer.draw_geometry(
-            drawn.stream, scene.parts, scene.bone_transforms(), camera, values=values
+            drawn.stream,
+            self._parts,
+            scene.bone_transforms(),
+            camera,
+            values=values,
+            wrinkles=wrinkles,
         )
         # Entry -1, the last one, is that of pixels where nothing is drawn.
         parts = len(self._part_classes)
@@ -99,9 +109,11 @@ class Passes:
 def _classes(part: Any) -> Bytes:
     """The class of each triangle of a part."""
     by_side = {"eye_right": Segment.RIGHT_EYE, "eye_left": Segment.LEFT_EYE}
+    if part.bone == "neck":
+        return np.full(len(part.faces), Segment.CLOTHING, np.uint8)
     if part.bone in by_side:
         return np.full(len(part.faces), by_side[part.bone], np.uint8)
-    if part.name == "eye_corners":
+    if part.name in ("eye_corners", "wet_edges"):
         is_right = part.vertices[part.faces[:, 0], 0] < 0.0
         return np.where(is_right, Segment.RIGHT_EYE, Segment.LEFT_EYE).astype(np.uint8)
     return np.full(len(part.faces), Segment.MOUTH_INTERIOR, np.uint8)

@@ -124,7 +124,7 @@ class Stage:
             with times.timed("refinement"):
                 shot.drawn.refine(self.scene.positions, camera, shot.viewport)
             with times.timed("upload"):
-                shot.drawn.upload(amounts)
+                shot.drawn.upload(amounts, style.wrinkles)
         with times.timed("draw"):
             self.surface.begin()
             overlays = self._overlays(view)

@@ -56,6 +56,7 @@ ONE_PLACE = 1.0  # [mm]
 MOST_SIMULATED = 50_000  # triangles: a step of these takes a good half of a frame of 1/60 s
 ATTEMPTS = 8  # to simplify a mesh and keep it a surface
 MOST_DISORDERED = 3  # groups of landmarks: where more are so, none of them is meant as it stands
+NECK = "neck"  # what hangs there, a shirt, is the built-in head's: another may have its shoulders
 FARTHEST_FROM_A_FACE = 14.0  # [mm] mean distance of landmarks from those of the built-in head
 
 
@@ -150,7 +151,7 @@ def fit(
         landmarks=skin.landmarks,
         bone_depth=nearest.interpolate(known.bone_depth),
         eyes=eyes,
-        parts=place_parts(known, fitted, warp, eyes),
+        parts=tuple(part for part in place_parts(known, fitted, warp, eyes) if part.bone != NECK),
         uv=painted.layout.uv,
         face_uv=painted.layout.face_uv,
         albedo=painted.albedo,

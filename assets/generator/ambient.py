@@ -11,9 +11,9 @@ from .fields import Points, Values, smooth_step
 
 DAYLIGHT, GLOOM = 88.0, 30.0  # z [mm]: at the incisors, at the root of the tongue
 INCISORS = 92.5  # z [mm] of the front of the upper ones
-LEAST = 0.2  # chosen: the throat is dark, not black
+LEAST = 0.34  # chosen: the throat is dark, not black
 REDDENING = (0.92, 1.25, 1.3)  # powers for red, green, blue; chosen
-FALL = 1.35  # chosen: a straight fall leaves the molars too bright
+FALL = 1.1  # chosen: how fast the molars get dark
 BESIDE, BESIDE_SHARE = 30.0, 0.12  # [mm], chosen: the cheeks cover the sides
 
 
@@ -21,7 +21,7 @@ def mouth_light(points: Points) -> Values:
     """Factor on sRGB colours at places within the mouth, LEAST to 1, shape (n,)."""
     inward = np.clip((points[:, 2] - GLOOM) / (DAYLIGHT - GLOOM), 0.0, 1.0) ** FALL
     side = 1.0 - BESIDE_SHARE * smooth_step(0.4 * BESIDE, BESIDE, np.abs(points[:, 0]))
-    return np.maximum(inward * side, LEAST)
+    return LEAST + (1.0 - LEAST) * inward * side
 
 
 def in_mouth_light(points: Points, colours: Points) -> Points:

@@ -18,18 +18,18 @@ MIDLINE_ABOVE_MOUTH = {
     "trichion": 74.0,
     "metopion": 48.0,
     "glabella": 21.0,
-    "nasion": 7.2,
+    "nasion": 6.4,
     "rhinion": -9.0,
     "supratip": -23.0,
-    "pronasale": -35.2,
-    "subnasale": -45.8,
+    "pronasale": -34.6,
+    "subnasale": -45.5,
 }
 MIDLINE_BELOW_MOUTH = {
-    "sublabiale": -85.5,
-    "pogonion": -101.2,
-    "gnathion": -110.5,
-    "menton": -115.5,
-    "cervicale": -129.0,
+    "sublabiale": -84.2,
+    "pogonion": -98.0,
+    "gnathion": -107.4,
+    "menton": -110.2,
+    "cervicale": -126.0,
 }
 # x, y [mm] in front view
 FROM_FRONT = {
@@ -45,16 +45,16 @@ FROM_FRONT = {
 }
 # angle about the axis [deg], height [mm]
 FROM_AXIS = {
-    "jaw_9": (22.0, -112.5),
-    "jaw_10": (43.0, -108.5),
-    "jaw_11": (61.0, -101.0),
-    "jaw_12": (75.0, -90.0),
-    "jaw_13": (84.0, -75.0),
-    "jaw_14": (89.0, -57.0),
-    "jaw_15": (91.0, -37.0),
+    "jaw_9": (20.0, -109.0),
+    "jaw_10": (40.0, -103.5),
+    "jaw_11": (57.0, -95.5),
+    "jaw_12": (70.0, -83.0),
+    "jaw_13": (79.0, -66.0),
+    "jaw_14": (86.0, -48.0),
+    "jaw_15": (90.0, -29.0),
     "tragion": (98.0, -13.0),
     "zygion": (78.0, -17.0),
-    "gonion": (88.0, -84.0),
+    "gonion": (91.0, -84.5),
     "temple": (72.0, 22.0),
 }
 # angle about the axis [deg], height [mm], from the jaw down: inner band, hollow, outer band

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from .fields import Points, Values, project, smooth_step
 from .form import distance, from_front
 
-HAIRS = 620  # of one brow; chosen: skin shows through, but no gap catches the eye
+HAIRS = 520  # of one brow; chosen: skin shows through, but no gap catches the eye
 SEED = 5
 # The spine in front view through the brow landmarks, lowered: they lie near its upper edge [mm].
 SPINE = (
@@ -21,14 +21,14 @@ SPINE = (
 )  # fmt: skip
 # Along the brow 0..1: half the height of the brow [mm], below and above the spine
 ALONG = (0.0, 0.08, 0.3, 0.6, 0.8, 1.0)
-BELOW = (1.6, 3.6, 4.2, 3.6, 2.7, 0.9)
-ABOVE = (1.6, 3.8, 4.2, 3.6, 2.5, 0.8)
+BELOW = (2.2, 4.2, 4.6, 3.9, 2.9, 1.2)
+ABOVE = (2.0, 4.4, 4.9, 4.2, 3.0, 1.0)
 # Direction of the hairs [deg], counter-clockwise from straight outward, at the lower edge and at
 # the upper, and their length [mm]
 LOW_ANGLE = (84.0, 70.0, 42.0, 20.0, -12.0, -32.0)
 HIGH_ANGLE = (66.0, 44.0, 4.0, -14.0, -32.0, -42.0)
 LENGTH = (4.2, 5.6, 7.2, 7.4, 6.4, 4.6)
-WIDTH = (0.14, 0.25)  # [mm] of a hair at its root; thicker than life, as two lie side by side
+WIDTH = (0.13, 0.30)  # [mm] of a hair at its root; thicker than life, as two lie side by side
 STEPS = 6
 REACH = 14.0  # [mm] around the spine in which texels are looked at
 
@@ -48,17 +48,17 @@ def _spine() -> CubicSpline:
     return CubicSpline(np.r_[0.0, np.cumsum(steps)] / steps.sum(), control)
 
 
-def hairs() -> list[Hair]:
-    """The hairs of the left brow, seeded: the same every time."""
-    random = np.random.default_rng(SEED)
+def hairs(side: int = 1) -> list[Hair]:
+    """The hairs of a brow, on the left; side -1: those that are mirrored to the right."""
+    random = np.random.default_rng(SEED + side)
     along = random.beta(1.35, 1.5, HAIRS)  # fewer at both ends: the brow begins and ends softly
-    across = np.clip(random.normal(-0.12, 0.55, HAIRS), -1.15, 1.0)  # -1 lower edge, 1 upper
+    across = np.clip(random.normal(-0.08, 0.62, HAIRS), -1.2, 1.15)  # -1 lower edge, 1 upper
     thickness = np.where(across < 0, np.interp(along, ALONG, BELOW), np.interp(along, ALONG, ABOVE))
     inner_end = smooth_step(0.22, 0.0, along)
     aside = random.normal(0.0, 0.5, HAIRS) * (1.0 + 2.4 * inner_end)
     offset = np.column_stack([aside, across * thickness])
     low, high = np.interp(along, ALONG, LOW_ANGLE), np.interp(along, ALONG, HIGH_ANGLE)
-    angle = np.radians(low + (high - low) * 0.5 * (across + 1.0) + random.normal(0.0, 7.0, HAIRS))
+    angle = np.radians(low + (high - low) * 0.5 * (across + 1.0) + random.normal(0.0, 11.0, HAIRS))
     turn = np.radians(random.normal(-32.0, 18.0, HAIRS)) * (1.0 - 0.4 * along)  # bends outward
     length = np.interp(along, ALONG, LENGTH) * random.uniform(0.55, 1.1, HAIRS)
     length *= 1.0 - 0.35 * np.clip(across, 0.0, 1.0)
@@ -100,12 +100,12 @@ def _coverage(points: Points, hair: Hair, grain: float) -> Values:
     return np.asarray(cover * fade, dtype=np.float64)
 
 
-def brow_cover(points: Points, grain: float) -> tuple[Values, Values, Values]:
+def brow_cover(points: Points, grain: float, side: int) -> tuple[Values, Values, Values]:
     """Cover by hairs, their lightness and the soft tint of the skin between them, each (n,).
 
-    points: of texels [mm], shape (n, 3). grain: size of a texel [mm].
+    points: of texels [mm], shape (n, 3). grain: size of a texel [mm]. side: as of `hairs`.
     """
-    strokes = hairs()
+    strokes = hairs(side)
     cover, lightness, shade = np.zeros((3, len(points)))
     roots = np.array([hair.line[0] for hair in strokes])
     near = np.flatnonzero(cKDTree(roots).query(points, distance_upper_bound=REACH)[0] < REACH)
@@ -124,6 +124,11 @@ def brow_cover(points: Points, grain: float) -> tuple[Values, Values, Values]:
 
 def tint(points: Points) -> Values:
     """How far fine hairs that are not drawn one by one darken the skin, 0 to 1, shape (n,)."""
+    return np.asarray(smooth_step(1.35, 0.2, across_brow(points)), dtype=np.float64)
+
+
+def across_brow(points: Points) -> Values:
+    """How far from the spine of the brow, 1 at its edge, more at both ends, shape (n,)."""
     dense = np.linspace(0.0, 1.0, 200)
     line = _spine()(dense)
     index = cKDTree(line).query(points[:, :2])[1]
@@ -131,5 +136,5 @@ def tint(points: Points) -> Values:
     rise = points[:, 1] - line[index, 1]
     height = np.where(rise > 0, np.interp(along, ALONG, ABOVE), np.interp(along, ALONG, BELOW))
     across = np.hypot(points[:, 0] - line[index, 0], rise) / np.maximum(height, 0.8)
-    ends = smooth_step(0.0, 0.12, along) * smooth_step(1.0, 0.85, along)
-    return np.asarray(smooth_step(1.35, 0.2, across) * ends, dtype=np.float64)
+    ends = smooth_step(0.12, 0.0, along) + smooth_step(0.85, 1.0, along)
+    return np.where(points[:, 2] > 0.0, across + ends, np.inf)

@@ -31,6 +31,7 @@ SLOTS = 2
 EYE_HUB = np.array([37.0, 1.0, 77.0])  # [mm] that crow's feet point to, behind the corner
 MOUTH_HEIGHT = -66.5  # [mm] of what lines around the lips point to
 CHIN_HEIGHT = -101.0
+ROLL = 0.27  # half width of the trough between two rolls of skin, in spacings
 UP, ASIDE = np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])
 
 
@@ -42,6 +43,7 @@ class LineFamily(NamedTuple):
     depth: float  # [mm] of the deepest
     breaks: float  # [mm] along a line over which its depth changes
     fullness: float = 0.6  # share of the depth that a line has in the mean
+    swelling: float = 0.0  # height of the roll between two over the depth
 
 
 class Furrows(NamedTuple):
@@ -49,6 +51,7 @@ class Furrows(NamedTuple):
 
     depth: Values  # (n,) of furrows [mm]
     height: Values  # (n,) of the skin [mm]: 0 between furrows, and raised a little beside them
+    roll: Values | float = 0.0  # (n,) broad height of skin that swells between furrows [mm]
 
 
 class Crease(NamedTuple):
@@ -89,12 +92,15 @@ def furrows_of(
     deepest = lines.depth * smooth_step(0.0, 1.0, share) * window
     off = np.abs(from_middle - shift) / lines.width
     depth = deepest * bump(off, 0.0, 1.0)
-    return Furrows(depth, 0.3 * deepest * bump(off, 2.1, 1.2) - depth)
+    trough = bump(np.abs(from_middle - shift), 0.0, ROLL * lines.spacing)
+    roll = lines.swelling * (0.5 * lines.fullness * lines.depth - deepest * trough)
+    return Furrows(depth, 0.3 * deepest * bump(off, 2.1, 1.2) - depth, roll)
 
 
 def add_furrows(first: Furrows, second: Furrows) -> Furrows:
     """Two families of furrows in one skin."""
-    return Furrows(first.depth + second.depth, first.height + second.height)
+    depth, height, roll = (one + other for one, other in zip(first, second, strict=True))
+    return Furrows(np.asarray(depth), np.asarray(height), roll)
 
 
 def line_wander(points: Points, reach: float, size: float, seed: int) -> Values:
@@ -118,7 +124,9 @@ def forehead(points: Points, seed: int) -> Crease:
     place = y + 0.05 * np.maximum(y - 45.0, 0.0) ** 1.5  # the forehead leans back
     place = place - 2.4 * (bump(x, 27.0, 17.0) + bump(x, -27.0, 17.0))  # arches over the brows
     place = place + line_wander(points, 1.7, 23.0, seed)
-    main = furrows_of(LineFamily(9.0, 1.3, 0.37, 30.0), place, points[:, 0], seed + 10)
+    main = furrows_of(
+        LineFamily(9.0, 1.3, 0.37, 30.0, swelling=1.9), place, points[:, 0], seed + 10
+    )
     fine = furrows_of(LineFamily(4.1, 0.7, 0.11, 15.0, 0.25), place + 2.6, points[:, 0], seed + 20)
     near = smooth_step(16.0, 30.0, y) + 1e-3 * (y > 10.0)
     return Crease(0, near, np.tile(UP, (len(points), 1)), 1.0, cover, add_furrows(main, fine))
@@ -133,7 +141,11 @@ def glabella(points: Points, seed: int) -> Crease:
     wander = line_wander(points, 0.9, 13.0, seed)
     # Two main lines rise from the heads of the brows; fainter ones stand beside.
     main = furrows_of(
-        LineFamily(11.0, 1.1, 0.48, 30.0, 0.85), place - 5.6 + wander, y, seed + 10, side < 0.0
+        LineFamily(11.0, 1.2, 0.55, 30.0, 0.9, swelling=2.2),
+        place - 5.6 + wander,
+        y,
+        seed + 10,
+        side < 0.0,
     )
     fine = furrows_of(LineFamily(3.3, 0.6, 0.09, 12.0, 0.35), side * place + wander, y, seed + 20)
     near = plateau(y, 5.0, 12.0, 36.0, 50.0) * smooth_step(24.0, 14.0, x)
@@ -148,7 +160,9 @@ def nose_root(points: Points, seed: int) -> Crease:
     # Across the root they are level; on the sides they sink toward the cheek.
     place = y + 0.42 * np.maximum(x - 4.0, 0.0) * smooth_step(2.0, -6.0, y)
     place = place + 0.012 * x**2 + line_wander(points, 0.8, 9.0, seed)
-    main = furrows_of(LineFamily(4.4, 0.85, 0.28, 10.0), place, points[:, 0], seed + 10)
+    main = furrows_of(
+        LineFamily(4.4, 0.85, 0.28, 10.0, swelling=1.5), place, points[:, 0], seed + 10
+    )
     fine = furrows_of(LineFamily(2.0, 0.45, 0.06, 6.0, 0.35), place + 1.0, points[:, 0], seed + 20)
     tilt = smooth_step(3.0, 8.0, x) * smooth_step(4.0, -6.0, y)
     across = unit(UP + 0.42 * tilt[:, None] * ASIDE)
@@ -165,7 +179,9 @@ def crows_feet(points: Points, seed: int) -> Crease:
     radius, angle = np.hypot(aside, up), np.arctan2(up, aside)
     cover = plateau(radius, 11.0, 16.0, 20.0, 34.0) * plateau(angle, -1.05, -0.65, 0.50, 0.80)
     place = 17.0 * angle + line_wander(points, 0.9, 12.0, seed)
-    main = furrows_of(LineFamily(3.9, 0.58, 0.26, 11.0), place, radius, seed + 10, is_other)
+    main = furrows_of(
+        LineFamily(3.9, 0.58, 0.26, 11.0, swelling=1.2), place, radius, seed + 10, is_other
+    )
     fine = furrows_of(
         LineFamily(2.0, 0.45, 0.06, 7.0, 0.4), place + 1.3, radius, seed + 20, is_other
     )
@@ -204,16 +220,19 @@ def smile_lines(points: Points, seed: int) -> Crease:
     slope = np.interp(y, heights, np.gradient(sides, heights))
     lean = 1.0 / np.sqrt(1.0 + slope**2)
     place = lean * beside + line_wander(points, 0.6, 16.0, seed)
-    fold = bump(place, -0.4, 1.5) * plateau(y, -80.0, -64.0, -44.0, -38.0)
+    along = plateau(y, -84.0, -74.0, -41.0, -34.5)
+    crease = bump(place, -0.4, 1.7) * along
+    # Lip side hollow, cheek side full: the cheek hangs over the crease.
+    fold = along * (0.95 * bump(place, 5.5, 4.5) - 1.15 * bump(place, -0.6, 2.6))
     bracket = bump(place - 0.08 * (y + 66.0), 7.5, 1.4) * plateau(y, -82.0, -70.0, -57.0, -47.0)
     outer = bump(place - 0.12 * (y + 62.0), 14.5, 1.0) * plateau(y, -76.0, -66.0, -54.0, -44.0)
     ragged = np.clip(0.75 + 0.35 * noise(points, 9.0, seed=seed + 3), 0.0, 1.0)
-    depth = ragged * (0.42 * fold + 0.20 * bracket + 0.12 * outer)
+    depth = 0.35 * crease + ragged * (0.20 * bracket + 0.12 * outer)
     across = np.column_stack([lean, -lean * slope, np.zeros_like(x)])
     near = plateau(beside, -16.0, -8.0, 24.0, 34.0) * plateau(y, -98.0, -88.0, -40.0, -33.0)
-    cover = smooth_step(40.0, 56.0, z) * plateau(place, -6.0, -3.0, 17.0, 20.0)
-    cover = cover * plateau(y, -85.0, -82.0, -38.0, -34.0)
-    return Crease(0, near, across, 1.6, cover, Furrows(depth, -depth))
+    cover = smooth_step(40.0, 56.0, z) * plateau(place, -7.0, -4.0, 17.0, 20.0)
+    cover = cover * plateau(y, -87.0, -84.0, -36.0, -32.0)
+    return Crease(0, near, across, 1.6, cover, Furrows(depth, -depth, fold))
 
 
 def chin(points: Points, seed: int) -> Crease:

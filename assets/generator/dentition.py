@@ -15,12 +15,20 @@ from .fields import Points, Values, smooth_step, unit
 from .solids import Solid, grid_faces, joined, mix
 
 AROUND = 12
-LEVELS = (0.0, 0.4, 0.8, 1.0)  # rings of a crown, from the gum to the edge
-STATIONS = 77  # of the gums along the arch; chosen: five to a tooth
-EDGE_COLOUR, NECK_COLOUR = (0.945, 0.905, 0.86), (0.90, 0.82, 0.73)
+LEVELS = (0.0, 0.4, 0.75, 0.93, 1.0)  # rings of a crown, from the gum to the edge
+STATIONS = 61  # of the gums along the arch; chosen: four to a tooth
+EDGE_COLOUR, NECK_COLOUR = (0.955, 0.94, 0.90), (0.94, 0.885, 0.80)
 FISSURE_COLOUR = (0.70, 0.60, 0.46)
-GUM_COLOUR, MUCOSA_COLOUR, POCKET_COLOUR = (0.76, 0.44, 0.42), (0.62, 0.25, 0.24), (0.34, 0.11, 0.1)
+GUM_COLOUR, MUCOSA_COLOUR, POCKET_COLOUR = (
+    (0.83, 0.53, 0.51),
+    (0.72, 0.34, 0.33),
+    (0.45, 0.16, 0.15),
+)
 TIP, FLAT, BROAD = "tip", "flat", "broad"
+BETWEEN = 0.28  # of the light, lost where neighbours touch
+# How far the edge rises toward the gum at its corners [mm], near to the midline and far from it.
+CORNERS = {FLAT: (0.25, 0.75), TIP: (1.2, 1.8), BROAD: (0.5, 0.7)}
+CORNER_POWERS = {FLAT: 3.0, TIP: 1.2, BROAD: 2.0}
 COVERED, PAPILLA = 0.9, 1.5  # [mm] of the crown that gum hides, and of it more between teeth
 
 # Section of the gums: distance outward from the labial line [mm] (or inward from the lingual one),
@@ -37,24 +45,32 @@ PAD_LENGTH, PAD_DEPTH = 5.0, 8.0  # [mm] the ridge slopes away behind the last m
 
 @dataclass(frozen=True)
 class Tooth:
-    """Crown size [mm]: width along the arch, height, depth at the gum and at the edge, shape."""
+    """Crown size [mm]: width along the arch, height, depth at the gum and at the edge.
+
+    rise: how far its edge stays behind the arch's, toward the gum [mm].
+    lean: sideways of the root for each millimetre of height, away from the midline.
+    """
 
     width: float
     height: float
     neck_depth: float
     edge_depth: float
+    rise: float
+    lean: float
     shape: str = FLAT
 
 
 UPPER = (
-    Tooth(8.5, 10.6, 6.6, 1.5), Tooth(6.6, 9.3, 6.0, 1.4), Tooth(7.6, 10.4, 7.6, 2.0, TIP),
-    Tooth(7.0, 8.6, 8.6, 6.0, BROAD), Tooth(6.8, 7.9, 8.6, 6.4, BROAD),
-    Tooth(10.0, 6.6, 10.0, 8.2, BROAD), Tooth(9.4, 6.2, 10.0, 8.2, BROAD),
+    Tooth(8.5, 10.6, 6.6, 1.5, 0.0, 0.03), Tooth(6.6, 9.3, 6.0, 1.4, 0.7, 0.08),
+    Tooth(7.6, 10.4, 7.6, 2.0, 0.0, 0.10, TIP), Tooth(7.0, 8.6, 8.6, 6.0, 0.4, 0.05, BROAD),
+    Tooth(6.8, 7.9, 8.6, 6.4, 0.7, 0.02, BROAD), Tooth(10.0, 6.6, 10.0, 8.2, 0.9, 0.0, BROAD),
+    Tooth(9.4, 6.2, 10.0, 8.2, 1.1, 0.0, BROAD),
 )  # fmt: skip
 LOWER = (
-    Tooth(5.2, 9.4, 5.6, 1.3), Tooth(5.7, 9.5, 5.8, 1.3), Tooth(6.8, 10.2, 7.2, 1.9, TIP),
-    Tooth(7.0, 8.4, 7.6, 5.4, BROAD), Tooth(7.1, 7.6, 8.0, 6.2, BROAD),
-    Tooth(11.0, 6.0, 9.6, 8.0, BROAD), Tooth(10.4, 5.4, 9.6, 8.0, BROAD),
+    Tooth(5.2, 9.4, 5.6, 1.3, 0.1, 0.0), Tooth(5.7, 9.5, 5.8, 1.3, 0.0, 0.02),
+    Tooth(6.8, 10.2, 7.2, 1.9, -0.3, 0.05, TIP), Tooth(7.0, 8.4, 7.6, 5.4, 0.2, 0.04, BROAD),
+    Tooth(7.1, 7.6, 8.0, 6.2, 0.5, 0.0, BROAD), Tooth(11.0, 6.0, 9.6, 8.0, 0.7, 0.0, BROAD),
+    Tooth(10.4, 5.4, 9.6, 8.0, 0.8, 0.0, BROAD),
 )  # fmt: skip
 
 
@@ -107,21 +123,20 @@ def _crown(tooth: Tooth) -> tuple[Points, npt.NDArray[np.float64]]:
     for level in LEVELS:
         width = tooth.width * (0.76 + 0.22 * np.sin(np.pi * (0.12 + 0.62 * level)))
         depth = tooth.neck_depth + (tooth.edge_depth - tooth.neck_depth) * level**0.8
-        if tooth.shape == TIP:
-            width *= 1.0 - 0.45 * smooth_step(0.6, 1.0, np.array([level]))[0]
-        closing = (0.78 if tooth.shape == BROAD else 0.90) if level == 1.0 else 1.0
+        closing = (0.80 if tooth.shape == BROAD else 0.93) if level == 1.0 else 1.0
         x = np.sign(cosine) * np.abs(cosine) ** 0.62 * width * 0.5 * closing
         z = (np.sign(sine) * np.abs(sine) ** 0.75 * closing - 1.0) * depth * 0.5
         z -= 0.5 * level**2  # the labial face curves in toward the edge
-        y = np.full(AROUND, (1.0 - level) * tooth.height)
-        if level == 1.0 and tooth.shape == BROAD:
-            y += 0.6 * (1.0 - np.abs(np.sin(2.0 * angle)))  # four cusps
-        elif level == 1.0:
-            y += np.where(np.abs(x) > 0.40 * tooth.width, 0.35, 0.0)
-        rows.append(np.column_stack([x, y, z]))
+        near, far = CORNERS[tooth.shape]
+        power = CORNER_POWERS[tooth.shape]
+        corner = np.where(x < 0.0, near, far) * (2.0 * np.abs(x) / tooth.width) ** power
+        y = (1.0 - level) * tooth.height + corner * level**3
+        if tooth.shape == BROAD:
+            y += 0.5 * (1.0 - np.abs(np.sin(2.0 * angle))) * (level == 1.0)  # four cusps
+        rows.append(np.column_stack([x + tooth.lean * y, y + tooth.rise, z]))
         side = smooth_step(0.70, 1.0, np.abs(cosine))
         tint = mix(NECK_COLOUR, EDGE_COLOUR, np.full(AROUND, level**0.6))
-        shades.append(tint * (1.0 - 0.35 * side)[:, None])
+        shades.append(tint * (1.0 - BETWEEN * side)[:, None])
     end = rows[-1].mean(axis=0)
     if tooth.shape == BROAD:
         end[1] += 1.1
@@ -164,7 +179,7 @@ def _gum_section(arch: Arch, from_middle: Values) -> tuple[Values, Values, Point
     """Distance outward and rise [mm], shape (stations, k), and the colours of a section."""
     ends = np.r_[0.0, np.cumsum([tooth.width for tooth in arch.teeth])]
     middles = 0.5 * (ends[1:] + ends[:-1])
-    heights = np.interp(from_middle, middles, [tooth.height for tooth in arch.teeth])
+    heights = np.interp(from_middle, middles, [tooth.height + tooth.rise for tooth in arch.teeth])
     depths = np.interp(from_middle, middles, [tooth.neck_depth for tooth in arch.teeth])
     phase = np.interp(from_middle, ends, np.arange(len(ends)))
     between = np.cos(2.0 * np.pi * phase) * 0.5 + 0.5  # 1 where two teeth meet

@@ -12,13 +12,18 @@ from .fields import Points, Values, normals, project, smooth_maximum, unit
 from .form import EYE_CENTRE, EYE_RADIUS, distance
 
 COLUMNS = 20  # chosen: 3 mm edges along the margin
-INNER_CORNER = np.array([16.4, -1.5])  # [mm] x, y of the commissure
-OUTER_CORNER = np.array([45.6, 1.4])
-UPPER_RISE = 5.2  # [mm] of the upper margin above the line between the corners
-LOWER_DROP = 4.8
-CORNER_DEPTHS = (78.6, 72.6)  # [mm] z of the margin at the inner and the outer corner
+INNER_CORNER = np.array([16.2, -1.9])  # [mm] x, y of the commissure
+OUTER_CORNER = np.array([43.9, 0.9])
+UPPER_RISE = (
+    4.95  # [mm] of the upper margin above the line between the corners: it covers some iris
+)
+LOWER_DROP = 5.2
+CORNER_DEPTHS = (78.6, 73.4)  # [mm] z of the margin at the inner and the outer corner
 MARGIN_CLEARANCE = 0.25  # [mm] between eyeball and inner edge: touching would flicker
 MARGIN_THICKNESS = 1.9  # [mm] inner to outer edge
+# [mm] that the outer edge is away from the inner one in front view: at the corners, and less in the
+# middle of the upper lid, whose margin faces down, and of the lower one.
+MARGIN_WIDTHS = (1.1, 0.8, 1.3)
 # Rows on the lid: distance from the margin in its middle, at its inner and its outer corner [mm],
 # and rounds of smoothing, which draw in the corners: hence the large distances there.
 LID_ROWS = ((2.5, 3.2, 5.6, 1), (5.6, 6.4, 12.0, 2))
@@ -95,8 +100,10 @@ def eye_rows() -> list[Points]:
     parameters = column_parameters()
     curve = margin_curve(parameters)
     outward = _outward(curve)
-    to_corner = np.abs(parameters[:, None] - [0.0, 0.5, 1.0]).min(axis=1)
-    width = MARGIN_THICKNESS - 0.2 * np.exp(-((to_corner / 0.035) ** 2))
+    outer_side = np.where(parameters < 0.5, parameters, 1.0 - parameters) * 2.0
+    middle = np.sin(np.pi * outer_side)
+    at_corner, upper, lower = MARGIN_WIDTHS
+    width = at_corner + (np.where(parameters < 0.5, upper, lower) - at_corner) * middle**0.5
     outer = curve + outward * width[:, None]
     clearance = MARGIN_CLEARANCE + MARGIN_THICKNESS
     rows = [
@@ -104,12 +111,10 @@ def eye_rows() -> list[Points]:
         np.column_stack([curve, margin_depth(curve, MARGIN_CLEARANCE)]),
         np.column_stack([outer, margin_depth(outer, clearance)]),
     ]
-    outer_side = np.where(parameters < 0.5, parameters, 1.0 - parameters) * 2.0
-    middle = np.sin(np.pi * outer_side)
     ahead = np.column_stack([_smoothed(outward), np.zeros(COLUMNS)])
     for at_middle, at_inner, at_outer, rounds in LID_ROWS:
-        at_corner = at_inner + (at_outer - at_inner) * outer_side
-        row = _march(rows[2], ahead, at_corner + (at_middle - at_corner) * middle)
+        beside = at_inner + (at_outer - at_inner) * outer_side
+        row = _march(rows[2], ahead, beside + (at_middle - beside) * middle)
         for _ in range(rounds):
             row = project(distance, _smoothed(row), rounds=2)
         rows.append(row)

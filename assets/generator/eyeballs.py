@@ -19,20 +19,21 @@ IRIS_RADIUS = 5.9  # [mm]
 PUPIL_RADIUS = 1.8  # in the light of a room
 CORNEA_RADIUS, CORNEA_RISE = 6.4, 1.1  # [mm]; less than in anatomy: the lids are thin
 FINE_SEGMENTS, COARSE_SEGMENTS = 60, 30  # as far as the limbus, beyond it
-RING_DISTANCES = (0.0, 1.0, 1.6, 1.95, 2.8, 3.7, 4.5, 5.1, 5.6, 6.0, 6.5)  # [mm] from the axis
-LAST_ANGLE_DEG, COARSE_RINGS = 112.0, 8  # the rest is never seen
+RING_DISTANCES = (0.0, 1.6, 1.95, 2.6, 3.3, 4.0, 4.7, 5.2, 5.6, 6.0, 6.5)  # [mm] from the axis
+LAST_ANGLE_DEG, COARSE_RINGS = 100.0, 5  # the rest is never seen
 
-SCLERA = (0.895, 0.87, 0.845)
+SCLERA = (0.90, 0.885, 0.87)
 LID_SHADOW = 0.30  # of the light, lost on the sclera below the upper lid
+CAUSTIC = 0.45  # of the iris' light, gained below: the cornea gathers there what comes from above
 CANTHUS = (0.80, 0.55, 0.51)
 PUPIL = (0.015, 0.013, 0.013)
-CONJUNCTIVA = (0.79, 0.56, 0.51)
+CONJUNCTIVA = (0.77, 0.53, 0.48)
 
 # The pink flesh in the corners of the left eye: centre and radii [mm]. It closes the gap that the
 # ball leaves there, the inner one being the caruncle.
 CORNERS = (
-    ((19.4, -1.0, 74.9), (4.3, 2.8, 2.9)),
-    ((43.6, 1.2, 69.6), (3.2, 2.8, 2.6)),
+    ((18.7, -1.6, 74.9), (4.2, 3.2, 2.8)),
+    ((42.2, 0.8, 70.6), (3.0, 2.8, 2.6)),
 )
 
 
@@ -45,7 +46,7 @@ class Iris:
     limbus: tuple[float, float, float]
 
 
-IRIS = Iris((0.56, 0.48, 0.33), (0.36, 0.47, 0.50), (0.19, 0.23, 0.26))  # of the shipped eyes
+IRIS = Iris((0.53, 0.47, 0.36), (0.40, 0.475, 0.50), (0.16, 0.18, 0.20))  # of the shipped eyes
 # Chosen by eye: melanin makes an iris brown; without it, it scatters blue light, and green or hazel
 # lies between.
 IRISES = {
@@ -74,16 +75,17 @@ def _iris(beside: Values, around: Values, iris: Iris) -> npt.NDArray[np.float64]
     collar = 1.0 - smooth_step(3.0, 4.4, beside + 0.35 * fibres)
     colour = mix(iris.outer, iris.inner, 0.75 * collar)
     middle = smooth_step(1.9, 2.8, beside) * (1.0 - smooth_step(4.8, 5.8, beside))
-    return colour * (1.0 + 0.22 * fibres * middle)[:, None]
+    below = -np.sin(around) * smooth_step(1.5, 4.5, beside)
+    return colour * (1.0 + 0.20 * fibres * middle + CAUSTIC * below * (0.5 + 0.2 * below))[:, None]
 
 
 def _colours(beside: Values, around: Values, ahead: Points, iris: Iris) -> npt.NDArray[np.float64]:
     toward_corners = smooth_step(0.60, 0.93, np.abs(ahead[:, 0]))
     colour = mix(SCLERA, CANTHUS, 0.75 * toward_corners)
-    in_iris = 1.0 - smooth_step(5.75, 6.35, beside)
+    in_iris = 1.0 - smooth_step(5.6, 6.4, beside)
     colour = colour * (1.0 - in_iris[:, None]) + _iris(beside, around, iris) * in_iris[:, None]
-    ring = smooth_step(4.9, 5.7, beside) * (1.0 - smooth_step(5.9, 6.5, beside))
-    colour = mix(colour, iris.limbus, 0.75 * ring)
+    ring = smooth_step(4.6, 5.7, beside) * (1.0 - smooth_step(5.8, 6.6, beside))
+    colour = mix(colour, iris.limbus, 0.7 * ring)
     colour = mix(colour, PUPIL, 1.0 - smooth_step(PUPIL_RADIUS - 0.2, PUPIL_RADIUS + 0.2, beside))
     return colour * (1.0 - LID_SHADOW * smooth_step(0.05, 0.42, ahead[:, 1]))[:, None]
 

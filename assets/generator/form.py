@@ -1,6 +1,9 @@
 """The whole face as one implicit surface: plain head, relief, lips, nose and lids."""
 
+from functools import cache
+
 import numpy as np
+from scipy.interpolate import RectBivariateSpline
 
 from . import lips, nose
 from .fields import (
@@ -15,7 +18,7 @@ from .fields import (
 )
 from .sections import base_radius, direction_coordinates, rays
 
-EYE_CENTRE = np.array([32.0, 0.2, 70.8])  # [mm] the left eye
+EYE_CENTRE = np.array([31.2, 0.2, 70.8])  # [mm] the left eye
 EYE_RADIUS = 13.0  # [mm] 1 mm above anatomy: fills the fissure between the lids
 LID_RADII = (15.2, 14.7, 15.1)  # [mm] the lids are an ellipsoid around the eyeball
 LID_FILLET = 3.8  # [mm]
@@ -26,30 +29,67 @@ FOLD = (
     (15.6, -36.5), (21.4, -40.8), (26.2, -46.6), (29.9, -52.8), (33.0, -59.2), (35.1, -65.8),
     (35.8, -72.6), (35.0, -79.4),
 )  # fmt: skip
+FOLD_DEPTH = (0.3, 0.8, 1.0, 1.0, 0.8, 0.5, 0.3, 0.1)  # along it, as a share
 # The sternomastoid, from behind the jaw down to the pit of the throat: height [mm], angle [deg].
 NECK_MUSCLE = ((-170, 24), (-156, 33), (-140, 47), (-122, 66), (-104, 84), (-86, 96), (-70, 103))
 RELIEF_BEHIND, RELIEF_IN_FRONT = 40.0, 56.0  # [mm] z: small forms are drawn on the face alone
+FOLD_SIDE = tuple((x + 8.5, y - 1.0) for x, y in FOLD)
+
+Stroke = tuple[float, tuple[tuple[float, float, float], ...]]
+
+# Strokes in the front view, laid over the plain head: half width [mm]; x, y, height [mm] along it.
+IN_FRONT: tuple[Stroke, ...] = (
+    (11.5, ((17, 1, -7.0), (34, 0, -5.6))),  # the orbit
+    (6.0, ((14.5, 4, -2.2),)),  # its inner hollow
+    (6.0, ((6, 16, 0.6), (17, 19, 2.0), (32, 21, 2.2), (45, 18, 2.0), (51, 11, 1.0))),  # brow
+    (4.2, ((28, 14, 0.5), (38, 13, 1.2), (46, 8, 0.8))),  # fullness over the outer lid
+    (10.5, ((31, -26, 2.0), (45, -26, 3.2))),  # cheek
+    (3.6, ((16, -10, -0.2), (23, -15, -0.4), (31, -18, -0.2))),  # below the lower lid
+    (3.0, tuple((x - 0.5, y, -0.55 * w) for (x, y), w in zip(FOLD, FOLD_DEPTH, strict=True))),
+    (7.0, tuple((x, y, 1.0 * w) for (x, y), w in zip(FOLD_SIDE, FOLD_DEPTH, strict=True))),
+    (2.6, ((0, -45, -0.7), (0, -58.0, -0.9))),  # philtrum
+    (1.9, ((3.6, -46, 0.5), (5.2, -57.5, 0.9))),  # its ridges
+    (7.0, ((0, -99, 0.4), (9, -99, 0.5))),  # chin
+    (3.4, ((0, -84.5, -0.6), (13, -83, -0.6))),  # below the lower lip
+    (4.6, ((28.2, -66.3, -1.2),)),  # corner of the mouth
+)
+# Strokes on the side: half width [mm]; angle about the axis [deg], height along it, height [mm].
+BESIDE: tuple[Stroke, ...] = (
+    (9.0, ((34, -23, 1.6), (48, -20, 3.0), (64, -16, 2.2), (80, -15, 0.4))),  # cheekbone
+    (14.0, ((48, -50, -1.0), (64, -52, -1.2))),  # hollow below
+    (13.0, ((56, 20, -1.8), (74, 22, -2.2))),  # temple
+)
+ARC = 1.3  # [mm] of the surface per degree
 
 
-def relief(x: Values, y: Values) -> Values:
-    """Small forms of 0.5 to 1.3 mm on the plain head; x is the distance from the mid-plane."""
-    philtrum_part = np.exp(-(((y + 52.0) / 5.5) ** 4))
-    philtrum = philtrum_part * (-0.9 * bump(x, 0.0, 2.2) + 0.6 * bump(x, 4.2, 1.7))
+@cache
+def _relief() -> tuple[RectBivariateSpline, RectBivariateSpline]:
+    """What the strokes add in front and beside [mm], sampled on grids: quicker to look up."""
+    return _drawn(IN_FRONT, 90.0, 1.0), _drawn(BESIDE, 180.0, ARC)
 
-    sides, heights = np.array(FOLD[::-1]).T
-    beside = x - np.interp(y, heights, sides)
-    fold_part = np.exp(-(((y + 54.0) / 18.0) ** 4))
-    fold = fold_part * (-0.7 * bump(beside, -0.5, 3.0) + 1.1 * bump(beside, 8.0, 7.0))
 
-    brow = 0.6 * bump(x, 38.0, 12.0) * bump(y, 21.0, 5.5)
-    lid_fold = 1.1 * bump(x, 37.0, 11.0) * bump(y, 13.0, 3.6)
-    cheek = 2.5 * bump(x, 42.0, 13.0) * bump(y, -22.0, 11.0)
-    hollows = -1.5 * bump(x, 47.0, 9.0) * bump(y, -58.0, 13.0)
-    hollows -= 1.2 * bump(x, 60.0, 8.0) * bump(y, 22.0, 14.0)
-    chin = 0.6 * bump(x, 7.0, 7.0) * bump(y, -100.0, 8.0)
-    corner = -1.1 * bump(x, 27.3, 3.4) * bump(y, -66.3, 3.6)
-    corner += 0.9 * bump(x, 32.5, 4.6) * bump(y, -68.5, 9.0)
-    return philtrum + fold + brow + lid_fold + cheek + hollows + chin + corner
+def _drawn(table: tuple[Stroke, ...], farthest: float, scale: float) -> RectBivariateSpline:
+    """The strokes of a table up to `farthest` across; scale: [mm] for each unit across."""
+    across, up = np.arange(-6.0, farthest + 6.0), np.arange(-180.0, 160.0)
+    grid = np.meshgrid(across, up, indexing="ij")
+    samples = _strokes(table, scale, grid[0].ravel(), grid[1].ravel())
+    return RectBivariateSpline(across, up, samples.reshape(grid[0].shape))
+
+
+def _strokes(table: tuple[Stroke, ...], scale: float, across: Values, up: Values) -> Values:
+    """All strokes of a table at places on their plane [mm]: bells of even spacing along lines."""
+    total = np.zeros_like(across)
+    for width, line in table:
+        x, y, height = np.array(line, dtype=np.float64).T
+        x = scale * x
+        length = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
+        count = max(1, round(1.6 * length[-1] / width) + 1)
+        along = np.linspace(0.0, length[-1], count)
+        spacing = length[-1] / max(count - 1, 1)
+        share = spacing / (width * np.sqrt(np.pi)) if count > 1 else 1.0
+        for a, b, h in zip(*(np.interp(along, length, v) for v in (x, y, height)), strict=True):
+            total += share * h * np.exp(-((scale * across - a) ** 2 + (up - b) ** 2) / width**2)
+    return total
 
 
 def neck_relief(angle: Values, height: Values, radius: Values) -> Values:
@@ -69,8 +109,10 @@ def head_distance(points: Points) -> Values:
     angle, height, radius = direction_coordinates(points)
     x, y = np.abs(points[:, 0]), points[:, 1]
     surface = base_radius(angle, height)
+    front, beside = _relief()
     in_front = smooth_step(RELIEF_BEHIND, RELIEF_IN_FRONT, points[:, 2])
-    surface = surface + in_front * (relief(x, y) + lips.displacement(x, y))
+    surface = surface + in_front * (front.ev(x, y) + lips.displacement(x, y))
+    surface = surface + beside.ev(np.degrees(np.abs(angle)), height)
     surface = surface + neck_relief(angle, height, surface)
     return (radius - surface) * RADIAL_SLOPE
 
@@ -104,5 +146,5 @@ def from_front(x: Values, y: Values) -> Points:
 
 def from_below(x: Values, z: Values) -> Points:
     """Where rays along +y meet the underside of the nose, shape (n, 3)."""
-    origins = np.stack([x, np.full_like(x, -54.0), z], axis=1)
-    return cast(distance, origins, np.tile([0.0, 1.0, 0.0], (len(x), 1)), reach=26.0, step=0.5)
+    origins = np.stack([x, np.full_like(x, -48.5), z], axis=1)
+    return cast(distance, origins, np.tile([0.0, 1.0, 0.0], (len(x), 1)), reach=20.0, step=0.5)

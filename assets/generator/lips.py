@@ -10,17 +10,16 @@ from scipy.interpolate import PchipInterpolator
 from .fields import Values, bump
 
 HALF_WIDTH = 25.5  # [mm] mid-plane to corner; chosen within one deviation of adult means
-CORNER_LIFT = 0.7  # [mm] corners above the straight line: neither glad nor sad
-SEAM_HEIGHT = -66.6  # [mm]
+SEAM_HEIGHT = -66.0  # [mm]
 
 # (s, outward displacement [mm]): the lip rolls in at s = 0, crests, and ends in a slight ledge.
 _UPPER = PchipInterpolator(
-    [0, 0.07, 0.2, 0.42, 0.68, 0.9, 1, 1.15, 1.5, 2.1, 2.7],
-    [0.9, 1.5, 2.2, 3.0, 3.35, 3.2, 2.85, 1.95, 0.8, 0.15, 0],
+    [0, 0.08, 0.25, 0.5, 0.78, 1, 1.25, 1.7, 2.3, 2.9],
+    [1.0, 1.8, 2.8, 3.4, 3.4, 3.0, 2.25, 1.1, 0.25, 0],
 )
 _LOWER = PchipInterpolator(
-    [0, 0.07, 0.2, 0.4, 0.6, 0.8, 1, 1.28, 1.65, 2.2, 2.7],
-    [0.9, 1.7, 2.7, 3.55, 3.8, 3.4, 2.5, 1.2, 0.4, 0, 0],
+    [0, 0.08, 0.2, 0.4, 0.62, 0.82, 1, 1.3, 1.75, 2.3, 2.9],
+    [1.0, 2.0, 3.0, 3.9, 4.2, 3.9, 3.2, 2.2, 1.0, 0.25, 0],
 )
 
 
@@ -31,20 +30,20 @@ def _relative(x: Values, limit: float = 1.0) -> Values:
 def seam_height(x: Values) -> Values:
     """Height y of the line between the lips [mm]: a dip in the middle, corners lifted."""
     t = _relative(x, 1.3)
-    return SEAM_HEIGHT - 0.6 * bump(t, 0.0, 0.2) + 0.5 * bump(t, 0.42, 0.3) + CORNER_LIFT * t**3
+    return SEAM_HEIGHT - 0.7 * np.exp(-((t / 0.33) ** 4)) + 0.3 * bump(t, 0.62, 0.3) - 0.3 * t**3
 
 
 def upper_border(x: Values) -> Values:
     """Height y of the upper border of the red [mm], with Cupid's bow."""
     t = _relative(x)
-    height = 8.4 * (1 - t**1.75) ** 0.85 + 0.9 * bump(t, 0.2, 0.12) - 1.0 * bump(t, 0.0, 0.10)
+    height = 7.6 * (1 - t**2.0) ** 0.85 + 0.9 * bump(t, 0.2, 0.15) - 0.4 * bump(t, 0.0, 0.12)
     return seam_height(x) + height * (1 - t**9)
 
 
 def lower_border(x: Values) -> Values:
     """Height y of the lower border of the red [mm]."""
     t = _relative(x)
-    return seam_height(x) - 9.8 * (1 - t**2.1) ** 0.9
+    return seam_height(x) - 9.2 * (1 - t**2.2) ** 0.95
 
 
 def displacement(x: Values, y: Values) -> Values:
@@ -53,7 +52,7 @@ def displacement(x: Values, y: Values) -> Values:
     seam = seam_height(x)
     above = (y - seam) / np.maximum(upper_border(x) - seam, 0.6)
     below = (seam - y) / np.maximum(seam - lower_border(x), 0.6)
-    upper = _UPPER(np.clip(above, 0.0, 2.6))
-    lower = _LOWER(np.clip(below, 0.0, 2.6))
+    upper = _UPPER(np.clip(above, 0.0, 2.9))
+    lower = _LOWER(np.clip(below, 0.0, 2.9))
     displaced = np.where(y >= seam, upper * inside**1.3, lower * inside**1.9)
     return np.asarray(displaced, dtype=np.float64)

@@ -54,9 +54,3 @@ def _noise(points: Points, size: float, seed: int) -> Values:
             weight *= part[:, k] if upper[k] else 1.0 - part[:, k]
         total += weight * _mixed(corner)
     return 1.6 * total  # the mean of eight corners is narrower than one of them
-
-
-def speckle(points: Points, size: float, *, seed: int) -> Values:
-    """Noise without smoothing: one value -1..1 for each cube of `size` [mm], shape (n,)."""
-    (x, y, z), _ = _cells(points, size)
-    return _mixed(np.uint32(seed) ^ x ^ y ^ z)

@@ -18,31 +18,41 @@ from .fields import (
 )
 
 
+NEAR = np.array([[-36.0, -64.0, 70.0], [36.0, 24.0, 140.0]])  # [mm] beyond, no fillet reaches
+FAR = 40.0  # [mm]
+
+
 def distance(points: Points) -> Values:
-    """Approximate signed distance to the nose alone [mm], shape (n,)."""
-    half = np.abs(points * [1.0, 0.0, 0.0]) + points * [0.0, 1.0, 1.0]
-    ridge = tapered_capsule(half, (0, 5, 85.9), (0, -17, 100.6), 5.2, 6.2)
-    lower_ridge = tapered_capsule(half, (0, -15, 99.4), (0, -31, 110.6), 6.3, 7.9)
-    side_wall = tapered_capsule(half, (0, 4, 79), (0, -31, 90.8), 8.2, 13.0)
-    tip = sphere(half, (0, -34.6, 113.6), 7.1)
-    lobe = sphere(half, (3.7, -35.6, 113.4), 6.3)
-    wing = ellipsoid(half, (10.9, -39.2, 102.0), (5.4, 6.6, 10.3), turn_deg=22)
-    triangle = ellipsoid(half, (7.6, -38.6, 108.6), (4.3, 4.7, 6.2), turn_deg=30)
-    columella = tapered_capsule(half, (0, -42.2, 101), (0, -41.2, 113.9), 3.0, 3.1)
+    """Approximate signed distance to the nose alone [mm], or FAR; shape (n,)."""
+    near = ((points > NEAR[0]) & (points < NEAR[1])).all(axis=1)
+    result = np.full(len(points), FAR)
+    result[near] = _distance(np.abs(points[near] * [1.0, 0.0, 0.0]) + points[near] * [0.0, 1.0, 1.0])
+    return result
+
+
+def _distance(half: Points) -> Values:
+    ridge = tapered_capsule(half, (0, 6, 87.6), (0, -20, 102.8), 4.5, 5.4)
+    lower_ridge = tapered_capsule(half, (0, -18, 101.6), (0, -31, 109.0), 5.5, 6.9)
+    side_wall = tapered_capsule(half, (0, 2, 81.5), (0, -32, 94.0), 7.2, 12.0)
+    tip = sphere(half, (0, -34.0, 111.0), 7.1)
+    lobe = sphere(half, (3.7, -34.4, 110.6), 6.1)
+    wing = ellipsoid(half, (11.6, -38.6, 101.8), (4.6, 5.8, 8.8), turn_deg=24)
+    triangle = ellipsoid(half, (8.0, -36.6, 106.6), (4.0, 4.2, 6.4), turn_deg=30)
+    columella = tapered_capsule(half, (0, -41.7, 101), (0, -40.2, 110.0), 2.7, 2.8)
 
     result = smooth_minimum(ridge, lower_ridge, 6.0)
     result = smooth_minimum(result, side_wall, 9.0)
     result = smooth_minimum(result, tip, 7.0)
     result = smooth_minimum(result, lobe, 5.0)
     result = smooth_minimum(result, triangle, 5.0)
-    result = smooth_minimum(result, wing, 6.0)
+    result = smooth_minimum(result, wing, 4.6)
     return smooth_minimum(result, columella, 3.0)
 
 
 def nostril_dish(points: Points) -> Values:
     """A shallow hollow in the underside where the nostril rows are laid [mm]."""
     half = np.abs(points * [1.0, 0.0, 0.0]) + points * [0.0, 1.0, 1.0]
-    return ellipsoid(half, (7.3, -47.4, 106.4), (3.5, 3.8, 5.2), turn_deg=-26)
+    return ellipsoid(half, (7.8, -45.8, 106.4), (4.0, 5.8, 6.8), turn_deg=-24)
 
 
 def fillet(points: Points) -> Values:

@@ -13,8 +13,8 @@ from .ambient import in_mouth_light
 from .fields import Points, smooth_step
 from .solids import Solid, grid_faces, joined, mix, welded
 
-PALATE, CHEEK, FLOOR = (0.66, 0.33, 0.31), (0.92, 0.40, 0.36), (0.60, 0.27, 0.25)
-TONGUE, TONGUE_ROOT = (0.80, 0.50, 0.49), (0.62, 0.30, 0.29)
+PALATE, CHEEK, FLOOR = (0.78, 0.44, 0.42), (0.88, 0.45, 0.42), (0.70, 0.36, 0.34)
+TONGUE, TONGUE_ROOT = (0.83, 0.53, 0.52), (0.72, 0.40, 0.39)
 TONGUE_RINGS, TONGUE_AROUND = 24, 28  # fine enough for its rim when it is out
 CENTRE = np.array([0.0, -66.0, 56.0])  # [mm]
 HALF_WIDTH, ROOF, FRONT, BACK = 30.0, 17.0, 29.0, 38.0  # [mm]; FRONT ends inside the gums
@@ -92,12 +92,12 @@ def tongue() -> Solid:
     rows, roots = [], []
     for way in lengthwise:
         swell = np.sqrt(1.0 - (1.0 - min(way / 0.55, 1.0)) ** 2)
-        half_width = 18.5 * swell
+        half_width = 18.5 * (1.0 - (1.0 - min(way / 0.75, 1.0)) ** 2) ** 0.58
         height = 10.0 * swell
         centre_y = -79.5 + 5.0 * np.sin(np.pi * min(way, 0.8)) - 5.0 * max(way - 0.6, 0.0)
         centre_z = 83.0 - 50.0 * way
         x = half_width * np.cos(around)
-        y = height * np.sign(np.sin(around)) * np.abs(np.sin(around)) ** 0.85
+        y = height * np.sign(np.sin(around)) * np.abs(np.sin(around)) ** 1.05
         y = y - 2.2 * np.exp(-((x / 3.0) ** 2)) * (y > 0) * swell  # the groove in the middle
         rows.append(np.column_stack([x, centre_y + y, np.full(len(x), centre_z)]))
         roots.append(np.full(len(x), way))

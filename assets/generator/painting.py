@@ -1,12 +1,12 @@
 """The picture of the skin: pigments by region, lips, lids, brows, stubble, freckles, pores.
 
-The left half is painted and mirrored; only what is as fine as pores and freckles differs.
+Where skin is redder or browner is the same on both sides; patches, pores, freckles and the hairs of
+the brows are not.
 """
 
 import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import distance_transform_edt
-from scipy.spatial import cKDTree
 
 from ..files import Image
 from ..model import Head, Tone
@@ -14,24 +14,23 @@ from . import lips
 from .brows import brow_cover
 from .fields import Points, Values, bump, smooth_step
 from .form import FOLD
-from .noise import noise, speckle
+from .grain import SEED, blotches, crop, freckles, pores
+from .noise import noise
 from .pigments import COMPLEXIONS, MELANIN, Complexion, reflectance, to_linear, to_screen
 from .regions import beard, blood, red, scalp, tan
 from .texels import Texels, left_texels
 
 Cover = tuple[Points, Values]  # a colour in linear light and how much of it lies on each texel
 
-SIZE = 1280  # texels; chosen: more than three lie on a millimetre of the brow, the file < 1 MB
-SCALP_SHADOW, BEARD_SHADOW = 1.35, 0.12  # density of shaved hair
+SIZE = 1280  # texels; chosen: more than three lie on a millimetre of the brow, the file 1.1 MB
+SCALP_SHADOW, BEARD_SHADOW = 0.5, 0.12  # density of shaved hair
+CROP = 0.85  # of the scalp's hair is seen: it is cropped short
 LIP_BLOOD, LIP_MELANIN = 0.61, 0.22  # beside those of the skin
-PORES = 0.016  # density
 MUCOSA, MUCOSA_DEEP = (0.60, 0.27, 0.25), (0.30, 0.09, 0.09)  # sRGB
 WATERLINE = (0.80, 0.57, 0.52)
 LINE_OF_LIPS = (0.34, 0.125, 0.115)
 NOSTRIL = (0.20, 0.085, 0.075)
-FRECKLES, FRECKLE_SEED = 300, 11
 PADDING = 24.0  # texels
-FRECKLE_RADII = (0.3, 0.8)  # [mm]
 
 
 def paint_skin(head: Head, *, tone: Tone, size: int = SIZE) -> Image:
@@ -39,15 +38,16 @@ def paint_skin(head: Head, *, tone: Tone, size: int = SIZE) -> Image:
     texels = left_texels(head, size)
     complexion = COMPLEXIONS[tone]
     melanin, redness, shadow = pigments(texels, complexion)
-    lying = covers(texels, complexion, texel_size(texels))
+    grain = texel_size(texels)
     image = np.zeros((size, size, 3))
     is_painted = np.zeros((size, size), dtype=bool)
     for side in (1, -1):
         points = texels.points * [side, 1.0, 1.0]
-        fine = _pores(points) + _freckles(texels, points, complexion, FRECKLE_SEED + side)
-        grain = 0.12 + 0.10 * smooth_step(-25.0, 45.0, points[:, 2])
-        stubble = shadow * (1.0 + grain * speckle(points, 0.6, seed=31))
-        colours = laid_over(reflectance(melanin + fine, redness, stubble), lying)
+        brown, red_patches = blotches(points)
+        spots = complexion.freckles * freckles(texels, points, SEED + side)
+        fine = (0.6 + complexion.melanin) * brown + pores(points) + spots
+        bare = reflectance(melanin + fine, redness + complexion.blood * red_patches, shadow)
+        colours = laid_over(bare, covers(texels, complexion, grain, side))
         columns = texels.columns if side > 0 else size - 1 - texels.columns
         image[texels.rows, columns] = to_screen(colours)
         is_painted[texels.rows, columns] = True
@@ -84,12 +84,14 @@ def pigments(texels: Texels, complexion: Complexion) -> tuple[Values, Values, Va
     redness = complexion.blood * blood(texels)
 
     # The red: fine lines run across the lips; toward the line between them it is darker.
-    lines = noise(points * [1.0, 0.2, 0.4], 0.75, seed=22)
+    lines = noise(points * [1.0, 0.13, 0.3], 0.62, seed=22) + 0.8 * noise(
+        points * [1.0, 0.16, 0.3], 1.5, seed=24
+    )
     x = np.minimum(np.abs(points[:, 0]), lips.HALF_WIDTH)
     from_line = np.abs(points[:, 1] - lips.seam_height(x))
     deep = smooth_step(6.0, 0.5, from_line)
-    lip_blood = LIP_BLOOD + 0.16 * deep + 0.05 * lines - 0.10 * bump(x, 0.0, 9.0)
-    melanin = melanin + lip * (LIP_MELANIN + 0.12 * deep + 0.05 * lines - 0.14 * complexion.melanin)
+    lip_blood = LIP_BLOOD + 0.16 * deep + 0.085 * lines - 0.10 * bump(x, 0.0, 9.0)
+    melanin = melanin + lip * (LIP_MELANIN + 0.12 * deep + 0.06 * lines - 0.14 * complexion.melanin)
     redness = redness + lip * complexion.blood * lip_blood
     melanin = melanin + 0.06 * lip * (1.0 - texels.is_upper_lip)  # it faces the light
     # The skin just outside the red of the upper lip catches the light.
@@ -120,56 +122,26 @@ def _fold_beside_mouth(points: Points) -> Values:
     return bump(beside, -0.5, 2.6) * along * in_front
 
 
-def _pores(points: Points) -> Values:
-    """Grain as fine as the picture can hold: it lets the eye see skin move."""
-    coarse = noise(points, 1.7, seed=41)
-    seen = smooth_step(-25.0, 45.0, points[:, 2])  # behind, texels are coarser than pores
-    return PORES * seen * (0.6 * noise(points, 0.62, seed=42) + 0.7 * coarse)
-
-
-def _freckles(texels: Texels, points: Points, complexion: Complexion, seed: int) -> Values:
-    """Small brown spots on cheeks, nose and forehead, other ones on either side."""
-    random = np.random.default_rng(seed)
-    x, y, z = np.abs(points[:, 0]), points[:, 1], points[:, 2]
-    likely = bump(y, -20.0, 20.0) * bump(x, 26.0, 26.0) + 0.25 * bump(y, 45.0, 25.0)
-    likely = likely * (z > 50.0) * (texels.eye_row > 4.5) * (texels.mouth_row > 7.0)
-    centres = points[random.choice(len(points), FRECKLES, replace=False, p=likely / likely.sum())]
-    radii = random.uniform(*FRECKLE_RADII, FRECKLES)
-    strengths = (0.03 + 0.2 * random.uniform(0.0, 1.0, FRECKLES) ** 2) * complexion.freckles
-    tree = cKDTree(points)
-    total = np.zeros(len(points))
-    for centre, radius, strength in zip(centres, radii, strengths, strict=True):
-        near = np.array(tree.query_ball_point(centre, 2.0 * radius), dtype=np.int64)
-        away = np.linalg.norm(points[near] - centre, axis=1)
-        total[near] += strength * smooth_step(1.5 * radius, 0.3 * radius, away)
-    return total
-
-
-def covers(texels: Texels, complexion: Complexion, grain: float) -> list[Cover]:
-    """What lies on the skin or is no skin, from below to above."""
+def covers(texels: Texels, complexion: Complexion, grain: float, side: int) -> list[Cover]:
+    """What lies on the skin or is no skin, from below to above; side: 1 the left one, else -1."""
     hair = to_linear(complexion.hair)
     wet = to_linear(WATERLINE) * np.exp(-0.45 * complexion.melanin * MELANIN)
     return [
         *_eye(texels, hair, wet),
         *_mouth(texels),
         *_nostril(texels),
-        *_brow(texels, hair, grain),
+        *_brow(texels, hair, grain, side),
+        (hair, CROP * crop(texels, texels.points * [side, 1.0, 1.0])),
     ]
 
 
 def _eye(texels: Texels, hair: Points, waterline: Points) -> list[Cover]:
-    """The wet rim of the lower lid, and where the lashes stand."""
+    """The moist margins of the lids, and a thin shade where the lashes stand."""
     row, upper = texels.eye_row, texels.is_upper_lid
     inner = smooth_step(18.5, 23.0, texels.points[:, 0])  # lashes begin beside the inner corner
-    wet = smooth_step(2.1, 1.7, row) * (1.0 - 0.75 * upper)
-    line = upper * smooth_step(2.5, 2.0, row) * smooth_step(0.6, 1.3, row) * (0.35 + 0.65 * inner)
-    lower_line = (1.0 - upper) * bump(row, 2.12, 0.32) * inner
-    ragged = 1.0 + 0.15 * noise(texels.points, 0.9, seed=23)
-    return [
-        (waterline, 0.75 * wet),
-        (0.6 * hair, 0.86 * line),
-        (hair, np.clip(0.34 * lower_line * ragged, 0.0, 1.0)),
-    ]
+    wet = smooth_step(2.1, 1.7, row)
+    roots = bump(row, 2.0, 0.16) * inner * (0.15 + 0.45 * upper)
+    return [(waterline, 0.75 * wet), (hair, roots)]
 
 
 def _mouth(texels: Texels) -> list[Cover]:
@@ -191,7 +163,7 @@ def _nostril(texels: Texels) -> list[Cover]:
     return [(to_linear(NOSTRIL), 0.92 * smooth_step(0.02, 0.45, texels.nostril))]
 
 
-def _brow(texels: Texels, hair: Points, grain: float) -> list[Cover]:
-    cover, lightness, tint = brow_cover(texels.points, grain)
+def _brow(texels: Texels, hair: Points, grain: float, side: int) -> list[Cover]:
+    cover, lightness, tint = brow_cover(texels.points, grain, side)
     strands = hair * (0.75 + 0.95 * lightness[:, None])
-    return [(1.25 * hair, 0.34 * tint), (strands, cover)]
+    return [(1.25 * hair, 0.20 * tint), (strands, cover)]

@@ -26,20 +26,21 @@ BEARD_LINE = (
 BEARD_END = -133.0  # [mm] height on the throat
 # Flushed places: centre (x, y, z) and radii [mm], amount of blood.
 FLUSHED = (
-    ((44, -24, 80), (19, 14, 28), 0.25),  # cheek
-    ((28, -22, 90), (14, 11, 16), 0.10),
-    ((0, -35, 121), (11, 9, 12), 0.30),  # tip of the nose
-    ((15, -40, 103), (6.5, 8, 9), 0.34),  # its wing
-    ((0, -17, 105), (8, 14, 9), 0.12),  # its ridge
-    ((0, -103, 99), (13, 9, 14), 0.16),  # chin
+    ((42, -25, 80), (21, 15, 28), 0.24),  # cheek
+    ((28, -24, 90), (15, 12, 16), 0.14),
+    ((0, -35, 121), (11, 9, 12), 0.34),  # tip of the nose
+    ((15, -40, 103), (6.5, 8, 9), 0.40),  # its wing
+    ((0, -17, 105), (8, 14, 9), 0.10),  # its ridge
+    ((0, -103, 99), (12, 8, 14), 0.14),  # chin
     ((68, -14, 0), (12, 26, 14), 0.08),  # in front of the ear
     ((0, 20, 97), (13, 9, 10), 0.08),  # between the brows
 )
 PALER = (
-    ((0, 52, 96), (48, 24, 40), -0.13),  # forehead
+    ((0, 50, 96), (48, 24, 40), -0.16),  # forehead
     ((30, -8.5, 84), (13, 5, 8), -0.06),  # below the eye
     ((12, -58, 100), (14, 8, 12), -0.07),  # around the mouth
-    ((14, -86, 92), (16, 7, 14), -0.06),
+    ((14, -86, 92), (16, 7, 14), -0.08),
+    ((46, -78, 60), (22, 20, 30), -0.09),  # jaw
     ((0, -150, 50), (60, 25, 60), -0.05),  # neck
 )
 # Browner places
@@ -48,7 +49,8 @@ TANNED = (
     ((20, -4, 82), (6, 5, 6), 0.10),  # its inner corner
     ((31, 9.5, 85), (14, 6.5, 10), 0.07),  # upper lid
     ((50, 0, 70), (7, 5, 8), 0.05),  # outer corner
-    ((0, 60, 92), (50, 26, 60), 0.025),
+    ((0, 56, 92), (50, 26, 60), 0.055),
+    ((60, 16, 55), (16, 20, 24), 0.03),  # temple
     ((0, -150, 50), (60, 25, 60), 0.05),
     ((25, -76, 92), (7, 6, 8), 0.05),  # below the corner of the mouth
 )
@@ -77,9 +79,9 @@ def red(texels: Texels) -> Values:
     past_corner = np.maximum(x - lips.HALF_WIDTH, 0.0)
     above = lips.upper_border(inside) - y
     below = y - lips.lower_border(inside)
-    edge = 0.22 * noise(texels.points, 1.3, seed=21)
-    upper = smooth_step(-0.55, 1.0, above + edge - past_corner)
-    lower = smooth_step(-1.1, 1.8, below + edge - past_corner)
+    edge = 0.30 * noise(texels.points, 1.3, seed=21) + 0.2 * noise(texels.points, 0.6, seed=25)
+    upper = smooth_step(-0.9, 1.5, above + edge - past_corner)
+    lower = smooth_step(-1.5, 2.4, below + edge - past_corner)
     toward_corner = smooth_step(lips.HALF_WIDTH + 0.6, lips.HALF_WIDTH - 5.0, x)
     in_front = np.minimum(upper, lower) * toward_corner * (texels.mouth_row < 7.6)
     return np.where(texels.mouth_row < 2.0, 1.0, in_front)
@@ -88,16 +90,15 @@ def red(texels: Texels) -> Values:
 def blood(texels: Texels) -> Values:
     """Blood in the skin, 0.3 on average; the lips are added by the painter."""
     points = texels.points
-    mottling = 0.055 * noise(points, 13.0, seed=1) + 0.045 * noise(points, 4.5, seed=2)
     lid = smooth_step(4.6, 2.6, texels.eye_row)
     rim = bump(texels.ear_row, 1.4, 0.9) * smooth_step(0.3, 0.9, texels.ear_row)
-    ear = 0.08 * smooth_step(0.1, 0.8, texels.ear_row) + 0.24 * rim
+    ear = 0.15 * smooth_step(0.1, 0.8, texels.ear_row) + 0.26 * rim
     ear += 0.06 * smooth_step(-28.0, -38.0, points[:, 1]) * (texels.ear_row > 0.5)  # its lobe
     ear += 0.20 * smooth_step(4.2, 5.0, texels.ear_row)
     fold = bump(texels.points[:, 0] - np.interp(points[:, 1], (-46, -35), (15.2, 16.4)), 0.0, 2.2)
     fold *= bump(points[:, 1], -41.0, 5.5) * (points[:, 2] < 102.0)
     result: Values = (
-        0.32 + _spots(points, FLUSHED) + _spots(points, PALER) + mottling + 0.16 * lid + 0.15 * fold
+        0.32 + _spots(points, FLUSHED) + _spots(points, PALER) + 0.16 * lid + 0.15 * fold
     )
     result += ear
     return np.maximum(result, 0.02)
@@ -106,16 +107,20 @@ def blood(texels: Texels) -> Values:
 def tan(texels: Texels) -> Values:
     """Melanin beside that of the tone."""
     points = texels.points
-    mottling = 0.018 * noise(points, 21.0, seed=3) + 0.014 * noise(points, 6.0, seed=4)
     hollow = 0.20 * bump(texels.ear_row, 3.0, 0.6) + 0.80 * smooth_step(4.05, 5.0, texels.ear_row)
-    return np.asarray(_spots(points, TANNED) + mottling + hollow, dtype=np.float64)
+    return np.asarray(_spots(points, TANNED) + hollow, dtype=np.float64)
+
+
+def behind_hairline(texels: Texels) -> Values:
+    """How far behind the hairline texels lie [mm], which is frayed; below 0 in front of it."""
+    frayed = 2.2 * noise(texels.points, 7.0, seed=5) + 0.7 * noise(texels.points, 1.6, seed=6)
+    return texels.height - line_height(HAIRLINE, texels.angle) + frayed
 
 
 def scalp(texels: Texels) -> Values:
-    """How densely the shaved scalp is haired, 0 to 1; the hairline is frayed."""
-    frayed = 2.6 * noise(texels.points, 5.0, seed=5) + 1.6 * noise(texels.points, 1.6, seed=6)
-    beyond = texels.height - line_height(HAIRLINE, texels.angle) + frayed
-    return smooth_step(-5.0, 30.0, beyond) ** 0.8 * smooth_step(0.35, 0.0, texels.ear_row)
+    """How densely the scalp is haired, 0 to 1."""
+    dense = smooth_step(-5.0, 30.0, behind_hairline(texels)) ** 0.8
+    return dense * smooth_step(0.35, 0.0, texels.ear_row)
 
 
 def beard(texels: Texels) -> Values:

@@ -1,74 +1,64 @@
 """The plain head - without nose, lips and lids - as one smooth radius over a capsule.
 
-Half of the head is given as horizontal sections: at height y, points (x, z) from the mid-plane to
-the side. A thin-plate spline through them gives the radius for every direction; the direction is
-measured from a vertical axis up to CROWN, and from the axis' upper end above it, so that the crown
-of the head is a dome without a pole in the way.
+A direction is measured from a vertical axis up to CROWN, and from the axis' upper end above it, so
+that the crown of the head is a dome without a pole in the way. At every height the head is cut as a
+superellipse (Lamé's curve): how far it reaches forward, sideways and backward, and how square it
+is, are curves over the height. Under the line of the jaw it falls away, onto a neck made likewise.
 The numbers are placed by eye toward adult means of well-known distances (see `assets.report`).
 """
 
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
-from scipy.interpolate import RBFInterpolator, RectBivariateSpline
+from scipy.interpolate import BSpline, RectBivariateSpline, make_smoothing_spline
 
-from .fields import Points, Values
+from .fields import Points, Values, smooth_maximum, smooth_step
 
 AXIS_Z = 15.0  # [mm] the vertical axis stands here, on x = 0
 CROWN = 40.0  # [mm] height of the axis' upper end
-REFERENCE = 70.0  # [mm] radius of the capsule on which the spline lives
-SMOOTHING = 4.0  # chosen: hides +-0.3 mm of unsteady hand, keeps the brow
+REFERENCE = 70.0  # [mm] radius of the capsule on which heights above CROWN are measured
+TOP = CROWN + REFERENCE * np.pi / 2
+SMOOTHING = 12.0  # chosen: hides the unsteady hand, keeps brow and chin
 
-SECTIONS: tuple[tuple[float, tuple[tuple[float, float], ...]], ...] = (
-    (117.5, ((0, 4),)),
-    (114.5, ((0, 33), (14, 28), (23, 13), (25.5, -1), (24, -22))),
-    (108, ((0, 52), (17, 48), (30, 35), (38.5, 17), (41.5, -2), (40, -22))),
-    (96, ((0, 70.5), (20, 67), (36, 56.5), (47.5, 40), (54.5, 21), (57.5, 2), (57, -20))),
-    (86, ((0, 80.7), (20, 77.7), (37.5, 67.5), (51, 49.5), (59.5, 28), (64, 5), (64, -18))),
-    (72, ((0, 89.6), (20, 87), (38.5, 77), (52.5, 60), (61.8, 39), (68, 14), (69.5, -12))),
-    (50, ((0, 97), (20, 95), (38.5, 86.5), (52, 70.5), (61, 52), (68, 32), (72, 8), (73, -14))),
-    (33, ((0, 98.6), (14, 98), (29, 94.3), (43, 86), (53, 72.5), (60, 56), (66.5, 36), (71.5, 12))),
-    (33, ((73, -14),)),
-    (21, ((0, 97.3), (12, 96.8), (26, 94.3), (38, 89.1), (47, 81.6), (53.7, 70), (58.9, 55))),
-    (21, ((65, 36), (70.3, 12), (72, -14))),
-    (16, ((0, 96.6), (9, 95.2), (18, 92.3), (28, 91.0), (38, 87.5), (47, 80.6))),
-    (11, ((0, 94.6), (9, 93.0), (18, 89.5), (28, 87.9), (38, 85.0), (46, 79.3), (52.7, 68))),
-    (11, ((58.3, 54), (64.8, 36), (69.6, 12), (71, -14))),
-    (6, ((0, 91.3), (9, 90), (18, 84.4), (28, 82), (38, 81), (46, 76.8))),
-    (0, ((0, 87), (8, 86.3), (16, 80.5), (30, 79), (43.8, 75.6), (49.3, 71.8), (55.7, 61.8))),
-    (0, ((60.6, 51.5), (65.6, 36), (69.6, 12), (70, -14))),
-    (-8, ((10, 87), (17, 82.2), (26, 82.8), (34, 82.8), (42, 80.3), (47.5, 75.9))),
-    (-14, ((0, 88), (10, 87.5), (18, 84.2), (26, 84.4), (34, 84.4), (43, 81.3), (50.2, 75))),
-    (-14, ((56.6, 65.5), (61.7, 53), (66.8, 36), (69.8, 12), (69, -14))),
-    (-26, ((0, 92), (14, 90.7), (24, 89.8), (35, 88), (45.7, 82), (53.5, 72.3), (60, 59))),
-    (-26, ((65.4, 40), (68.8, 14), (67, -14))),
-    (-40, ((0, 98.3), (16, 96.4), (25, 93.8), (36, 88), (46.6, 78.5), (54.5, 66), (60.2, 50.8))),
-    (-40, ((65, 34), (67, 14), (64, -12))),
-    (-52, ((0, 102.2), (12, 101.2), (22, 98), (32, 91.4), (42.8, 81), (51.5, 67), (57.8, 49.3))),
-    (-52, ((61.8, 32), (63.4, 14), (60, -12))),
-    (-66, ((0, 102.8), (12, 101), (22, 96.5), (28, 92.6), (36, 85.7), (45, 73), (51.6, 57))),
-    (-66, ((55.6, 41.8), (57.8, 28), (58.4, 13), (55.5, -10))),
-    (-85.5, ((0, 96.5), (12, 95.5), (24, 89.6), (34.3, 79.8), (43, 67.6), (49.2, 53))),
-    (-85.5, ((53.2, 38.4), (54.6, 24), (53.6, 11), (50, -8))),
-    (-99, ((0, 99.6), (10, 98.6), (20, 92.8), (30, 82.4), (39.6, 67), (46.6, 50.6), (49.4, 35))),
-    (-99, ((46.8, 20), (45.2, 8), (44, -10))),
-    (-108.5, ((0, 98.3), (10, 96.8), (20, 89.4), (29.5, 78), (37, 63), (37.6, 46), (36.5, 28))),
-    (-108.5, ((41, 9), (44.5, -10))),
-    (-114.5, ((0, 93.8), (11, 91.2), (20, 82.8))),
-    (-113, ((28.5, 69.5), (32, 53), (34.5, 36), (41, 11), (45.5, -10))),
-    (-119.5, ((0, 81.5), (12, 77.5), (22, 67), (29.5, 52))),
-    (-125.5, ((0, 63), (14, 58.5), (25.5, 47), (34.5, 34), (43, 13), (48, -10))),
-    (-138, ((0, 52), (15.5, 48.5), (29, 40), (39.5, 25.5), (46.5, 7), (50.5, -10))),
-    (-155, ((0, 49), (15.5, 46.5), (30, 38.5), (42, 24), (49.5, 6), (53.5, -10))),
-    (-170, ((0, 49), (16, 46.5), (31.5, 38.5), (44, 24), (52, 6), (56, -10))),
-)
-# The back of the head, coarser: its outline is seen from the side.
-BACK_OF_HEAD = (
-    (0, 105, -54), (40, 98, -50), (0, 66, -88), (45, 55, -73), (66, 45, -50), (0, 20, -93),
-    (45, 15, -77), (65, 5, -50), (0, -12, -90), (0, -40, -80), (40, -40, -62), (52, -60, -40),
-    (0, -75, -66), (0, -100, -61), (42, -100, -44), (0, -145, -63), (44, -150, -46),
+Table = tuple[tuple[float, float], ...]
+
+# y, z [mm] of the profile in front; in the face below nose and lips
+FRONT: Table = (
+    (109.0, 15), (107, 34), (101, 51), (91.5, 66), (81, 77.2), (70, 86), (60, 91.4), (50, 94.8),
+    (40, 96.8), (33, 97.8), (26, 98.0), (20, 97.6), (15, 96.4), (10, 94.2), (4, 91.2), (-2, 89.2),
+    (-10, 89.2), (-18, 90.5), (-26, 92.8), (-34, 96.0), (-40, 98.8), (-46, 101.4), (-52, 103.4),
+    (-58, 104.4), (-64, 104.2), (-70, 102.4), (-76, 99.4), (-80, 97.6), (-84, 96.9), (-88, 97.6),
+    (-93, 99.4), (-98, 100.2), (-103, 99.2), (-108, 96.6), (-114, 93.5), (-124, 90), (-140, 86),
+    (-175, 80),
 )  # fmt: skip
+# y, x [mm] of the outline beside the axis, hidden by the neck below the angle of the jaw
+SIDE: Table = (
+    (109.0, 0), (106.5, 24), (101, 39.5), (92, 53.5), (83, 61.8), (72, 68.2), (60, 71.6), (50, 72.8),
+    (33, 73.0), (15, 71.6), (0, 70.8), (-14, 70.2), (-26, 70.2), (-40, 70.2), (-52, 67.2),
+    (-66, 64.2), (-78, 60.2), (-90, 55.0), (-102, 49.0), (-120, 44.0), (-175, 38),
+)  # fmt: skip
+# y, z [mm] of the profile behind
+BACK: Table = (
+    (109.0, 15), (107.0, -18), (100, -46), (86, -68), (64, -85.5), (45, -91.5), (20, -92.5),
+    (-12, -88.5), (-40, -79.5), (-75, -67.5), (-100, -63), (-145, -60), (-175, -58),
+)  # fmt: skip
+# height [mm], exponent of the superellipse: 2 is an ellipse, more is squarer
+SQUARENESS: Table = (
+    (150, 2.0), (90, 2.02), (50, 2.1), (20, 2.22), (0, 2.24), (-26, 2.24), (-46, 2.1), (-66, 1.95),
+    (-85, 1.95), (-110, 2.08), (-175, 2.0),
+)  # fmt: skip
+# angle [deg], height [mm] of the lower border of the jaw, continued around the back of the head
+JAW_LINE: Table = (
+    (0, -108), (14, -107), (28, -104.5), (43, -100), (58, -96), (72, -90), (84, -82), (96, -70),
+    (110, -60), (130, -62), (180, -75),
+)  # fmt: skip
+JAW_SLOPE, SLOPE_BEHIND, JAW_ROUNDING = 2.3, 1.1, 17.0  # how steeply the face falls away under it; [mm]
+# y [mm], radius forward, sideways and backward [mm]
+NECK = (
+    (-60, 50, 46, 77), (-100, 46, 44, 77), (-118, 42.5, 43.5, 76), (-132, 38.5, 44.5, 75.5),
+    (-146, 35, 46.5, 75.5), (-160, 34, 49, 76), (-175, 34, 52, 77),
+)  # fmt: skip
+NECK_FILLET = 11.0  # [mm]
 
 
 def direction_coordinates(points: Points) -> tuple[Values, Values, Values]:
@@ -93,32 +83,66 @@ def rays(angle: Values, height: Values) -> tuple[Points, Points]:
     return origins, directions
 
 
-def _section_points() -> Points:
-    rows = [(x, y, z) for y, section in SECTIONS for x, z in section]
-    half = np.array(rows + list(BACK_OF_HEAD), dtype=np.float64)
-    mirrored = half[half[:, 0] > 0.0] * [-1.0, 1.0, 1.0]
-    return np.vstack([half, mirrored])
+def _curve(heights: Values, values: Values) -> BSpline:
+    order = np.argsort(heights)
+    return make_smoothing_spline(heights[order], values[order], lam=SMOOTHING)
 
 
-def _on_reference(angle: Values, height: Values) -> npt.NDArray[np.float64]:
-    origins, directions = rays(angle, height)
-    return origins + REFERENCE * directions
+def _outline(table: Table, axis: int) -> BSpline:
+    """The radius over the height along a line in one direction from the axis."""
+    points = np.zeros((len(table), 3))
+    points[:, 2] = AXIS_Z
+    points[:, [1, axis]] = table
+    # Mirrored beyond the top, so that the dome is level there.
+    _, height, radius = direction_coordinates(points)
+    beyond = height < TOP - 1.0
+    return _curve(np.r_[height, 2.0 * TOP - height[beyond]], np.r_[radius, radius[beyond]])
 
 
 @cache
-def _radius_spline() -> RectBivariateSpline:
-    """The thin-plate spline sampled on a grid: a hundred times faster to look up."""
-    angle, height, radius = direction_coordinates(_section_points())
-    plate = RBFInterpolator(
-        _on_reference(angle, height), radius, kernel="thin_plate_spline", smoothing=SMOOTHING
+def _curves() -> tuple[BSpline, ...]:
+    """Front, side and back of the head, its squareness, the jaw line, and three of the neck."""
+    tables = [np.array(table, dtype=np.float64).T for table in (SQUARENESS, JAW_LINE, NECK)]
+    squareness, jaw, neck = tables
+    around = np.r_[jaw[0], -jaw[0][1:]]  # the line is level in the mid-plane
+    return (
+        _outline(FRONT, 2),
+        _outline(SIDE, 0),
+        _outline(BACK, 2),
+        _curve(*squareness),
+        _curve(around, np.r_[jaw[1], jaw[1][1:]]),
+        *(_curve(neck[0], radii) for radii in neck[1:]),
     )
-    angles = np.linspace(-0.3, np.pi + 0.3, 121)
-    heights = np.linspace(-175.0, CROWN + REFERENCE * np.pi / 2, 261)
-    grid_angle, grid_height = np.meshgrid(angles, heights, indexing="ij")
-    samples = plate(_on_reference(grid_angle.ravel(), grid_height.ravel()))
-    return RectBivariateSpline(angles, heights, samples.reshape(grid_angle.shape))
+
+
+def _superellipse(angle: Values, ahead: Values, beside: Values, power: Values | float) -> Values:
+    across, along = np.abs(np.sin(angle)) / beside, np.abs(np.cos(angle)) / ahead
+    return np.asarray((across**power + along**power) ** (-1.0 / power), dtype=np.float64)
 
 
 def base_radius(angle: Values, height: Values) -> Values:
     """Radius of the plain head [mm] over capsule coordinates."""
-    return np.asarray(_radius_spline().ev(np.abs(angle), height), dtype=np.float64)
+    return np.asarray(_gridded().ev(np.abs(angle), height), dtype=np.float64)
+
+
+@cache
+def _gridded() -> RectBivariateSpline:
+    """The radius sampled on a grid: ten times faster to look up."""
+    angles, heights = np.linspace(-0.3, np.pi + 0.3, 181), np.linspace(-175.0, TOP, 326)
+    grid = np.meshgrid(angles, heights, indexing="ij")
+    samples = _radius(grid[0].ravel(), grid[1].ravel())
+    return RectBivariateSpline(angles, heights, samples.reshape(grid[0].shape))
+
+
+def _radius(angle: Values, height: Values) -> Values:
+    front, side, back, squareness, jaw, *neck = _curves()
+    is_front = np.abs(angle) < np.pi / 2
+    ahead = np.where(is_front, front(height), back(height))
+    head = _superellipse(angle, ahead, side(height), squareness(height))
+    slope = JAW_SLOPE + (SLOPE_BEHIND - JAW_SLOPE) * smooth_step(1.0, 1.9, np.abs(angle))
+    below = slope * np.maximum(jaw(np.degrees(np.abs(angle))) - height, 0.0)
+    head = head + JAW_ROUNDING - np.hypot(below, JAW_ROUNDING)
+    throat, beside, nape = (curve(np.minimum(height, CROWN)) for curve in neck)
+    column = _superellipse(angle, np.where(is_front, throat, nape), beside, 2.0)
+    column = column - np.maximum(height + 60.0, 0.0)  # nothing of the neck is in the face
+    return smooth_maximum(np.maximum(head, 5.0), column, NECK_FILLET)

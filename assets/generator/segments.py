@@ -14,7 +14,7 @@ from ..model import Head, Segment
 from . import nose
 from .brows import tint
 from .form import head_distance
-from .regions import line_height, red
+from .regions import line_height, red, scalp
 from .texels import Texels, left_texels
 
 # The line around the head above which the neck ends: angle about its axis [deg], height [mm].
@@ -25,7 +25,7 @@ NECK_LINE = (
 EAR = 0.15  # rows from the root of the ear, where it begins
 MOUTH = 1.5  # row behind the line where the lips meet, where the mouth's inside begins
 EYE = 1.0  # row of the lid's inner edge
-HALF = 0.5  # of the red of the lips
+HALF = 0.5  # of the red of the lips, of the hair's density
 SOME_HAIR = 0.25  # of the tint under the brows
 
 
@@ -49,6 +49,7 @@ def _classes(texels: Texels, *, is_left: bool) -> Image:
     is_upper = texels.is_upper_lip > HALF
     regions = (  # what comes later lies on what comes before
         (Segment.NECK, texels.height < line_height(NECK_LINE, texels.angle)),
+        (Segment.HAIR, scalp(texels) > HALF),
         (Segment.LEFT_EAR if is_left else Segment.RIGHT_EAR, texels.ear_row > EAR),
         (Segment.NOSE, (nose.distance(points) < head_distance(points)) | (texels.nostril > 0.0)),
         (Segment.LEFT_BROW if is_left else Segment.RIGHT_BROW, tint(points) > SOME_HAIR),

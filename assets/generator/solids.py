@@ -1,6 +1,6 @@
 """Coloured surfaces for the rigid parts: grids of points that become triangles with normals."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -18,15 +18,23 @@ class Solid:
     vertices: [mm], shape (n, 3).
     faces: counter-clockwise from the visible side, shape (m, 3).
     colours: sRGB 0..1, shape (n, 3).
+    roots: for each vertex the one with which it moves on the skin, shape (n,); -1 for none.
     """
 
     vertices: Points
     faces: Faces
     colours: npt.NDArray[np.float64]
+    roots: npt.NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
+
+    def __post_init__(self) -> None:
+        if not len(self.roots):
+            self.roots = np.full(len(self.vertices), -1, np.int32)
 
     def mirrored(self) -> "Solid":
         """Its mirror image on the other side of x = 0."""
-        return Solid(self.vertices * [-1.0, 1.0, 1.0], self.faces[:, ::-1], self.colours)
+        return Solid(
+            self.vertices * [-1.0, 1.0, 1.0], self.faces[:, ::-1], self.colours, self.roots
+        )
 
 
 def ball(polar: Values, segments: int) -> tuple[Points, Faces, Values]:
@@ -61,6 +69,9 @@ def joined(solids: list[Solid]) -> Solid:
         np.vstack([solid.vertices for solid in solids]),
         np.vstack([solid.faces + start for solid, start in zip(solids, starts, strict=True)]),
         np.vstack([solid.colours for solid in solids]),
+        np.concatenate(
+            [s.roots + (s.roots >= 0) * start for s, start in zip(solids, starts, strict=True)]
+        ).astype(np.int32),
     )
 
 

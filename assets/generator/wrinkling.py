@@ -1,5 +1,8 @@
 """The map of wrinkles over the texture, and the direction of each vertex that makes them show.
 
+What is broad enough for triangles is kept as heights besides, which move the skin itself. The
+slopes are those of both together, so shading takes them from the map alone.
+
 The map is painted where its texels lie on the face, like the picture of the skin. A texel holds
 the slope of the skin's height along u and v, the depth of the furrow, and which of the two
 amounts of wrinkling it follows.
@@ -7,8 +10,9 @@ amounts of wrinkling it follows.
 
 import numpy as np
 import numpy.typing as npt
+from scipy.ndimage import gaussian_filter
 
-from ..model import Head, Wrinkles
+from ..model import HIGHEST_FOLD, Head, Wrinkles
 from .creases import SLOTS, creases
 from .fields import Values, smooth_step
 from .mouth_rows import OUTER_ROW
@@ -17,6 +21,8 @@ from .texels import corner_values, left_texels
 STEEPEST = 1.0  # slope [mm/mm] of a full byte
 DEEPEST = 0.8  # [mm] of a full byte
 NEAR = 1e-3  # of a region, below which a vertex has no direction
+FINEST = 1.1  # [mm] standard deviation of what smooths the map for triangles of about this size
+COARSER = 2  # of so many texels of the map, each way, the relief has one
 SCALE = 400.0  # [mm] of the face on the unit of texture coordinates, about
 
 
@@ -31,7 +37,7 @@ def paint_wrinkles(head: Head, size: int) -> Wrinkles:
         second = np.zeros(len(texels.rows))
         for crease in creases(texels.points * [side, 1.0, 1.0], texels.mouth_row):
             visible = crease.cover * _free(texels.eye_row, texels.ear_row, texels.nostril)
-            height[place] += visible * crease.furrows.height
+            height[place] += visible * (crease.furrows.height + crease.furrows.roll)
             depth[place] += visible * crease.furrows.depth
             covered += visible
             second += visible * crease.slot
@@ -47,7 +53,15 @@ def paint_wrinkles(head: Head, size: int) -> Wrinkles:
         axis=-1,
     )
     image = np.rint(texel).astype(np.uint8)
-    return Wrinkles(image, STEEPEST * SCALE, across(head) * _shows(head, image)[:, None, None])
+    directions = across(head) * _shows(head, image)[:, None, None]
+    return Wrinkles(image, STEEPEST * SCALE, directions, _relief(height, slot, size))
+
+
+def _relief(height: Values, slot: Values, size: int) -> npt.NDArray[np.int8]:
+    """What triangles can show of the height [mm] that follows either slot, (size, size) each."""
+    smooth = np.clip(gaussian_filter(height, FINEST * size / SCALE) / HIGHEST_FOLD, -1.0, 1.0)
+    both = np.stack([smooth * (1.0 - slot), smooth * slot], axis=-1)
+    return np.rint(127.0 * both[::COARSER, ::COARSER]).astype(np.int8)
 
 
 def _free(eye_row: Values, ear_row: Values, nostril: Values) -> Values:

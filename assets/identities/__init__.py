@@ -9,25 +9,34 @@ Any of them goes where the built-in head goes: `sim.create(person)`, `FaceScene(
 from .complexion import (
     DARKEST,
     LIGHTEST,
+    Features,
     coloured,
+    drawn_irises,
+    features_of,
     in_own_colours,
     own_angle,
     recoloured,
     typology_angle,
 )
+from .named import NAMED, person_called
 from .person import Person, make_person
 from .traits import Identity, Sex, sample_identity
 
 __all__ = [
     "DARKEST",
     "LIGHTEST",
+    "NAMED",
+    "Features",
     "Identity",
     "Person",
     "Sex",
     "coloured",
+    "drawn_irises",
+    "features_of",
     "in_own_colours",
     "make_person",
     "own_angle",
+    "person_called",
     "recoloured",
     "sample_identity",
     "typology_angle",

@@ -14,30 +14,63 @@ the 19 at 52 ("Proposed shade guide for human facial skin", IADR 2009, abstract 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
+from scipy.ndimage import uniform_filter
 
 from ..errors import AssetError
 from ..files import Image, read_arrays_of
 from ..fitting.head import FittedHead
 from ..generator.eyeballs import IRISES, eyeball
-from ..generator.pigments import BLOOD, COMPLEXIONS, MELANIN, to_linear, to_screen
+from ..generator.painting import BEARD_SHADOW
+from ..generator.pigments import BLOOD, COMPLEXIONS, MELANIN, SHADOW, to_linear, to_screen
+from ..generator.tints import BEHIND, IN_FRONT
 from ..loading import load
-from ..model import FloatArray, Part, SingleArray, Tone
+from ..model import FloatArray, Part, Segment, SingleArray, Tone
+from .person import Person
+from .traits import Identity, Sex
 
 LIGHTEST, DARKEST = 70.0, -55.0  # ITA [deg]
 LEAST, MOST = 0.05, 3.4  # of melanin, among which a tone is looked for
 DARK_MELANIN = np.array([0.80, 0.88, 0.90])  # beyond the darkest complexion; chosen by eye
+ONLY_BROWN = 28.0  # ITA below which eyes are brown, as nearly all are there
+IRIS_SHARES = {"brown": 0.4, "hazel": 0.15, "green": 0.12, "blue": 0.2, "grey": 0.13}
+FAIR_HAIR, GREY_HAIR = (0.58, 0.44, 0.29), (0.54, 0.52, 0.49)  # sRGB
+GREY_BROWS = 0.25  # of how grey hair on the scalp is; lashes are not told from brows
+FAIR_SKIN = 45.0  # ITA above which hair may be fair
+DETAIL = 9  # [texels] below which relief is told from colour
 AnyHead = TypeVar("AnyHead", bound=FittedHead)
+GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
 LEVELS = 4096  # of the table from light to bytes
 # CIE 1976 L*a*b* of linear sRGB, for the white of a screen (D65).
 TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
 WHITE = TO_XYZ.sum(axis=1)
+
+
+@dataclass(frozen=True)
+class Features:
+    """What sex and age make of the picture of a face; the default is the built-in head's.
+
+    brows: their width, as a share of the widest. beard, lips: density of its shadow, and of blood
+    in them, beside that of the built-in head. relief: of pores and patches, as a share beside its
+    own. fair, grey: shares of such hair. baldness: how far the hairline has receded [mm].
+    """
+
+    brows: float = 1.0
+    beard: float = 0.0
+    lips: float = 0.0
+    relief: float = 0.0
+    fair: float = 0.0
+    grey: float = 0.0
+    baldness: float = 0.0
+
+
+PLAIN = Features()
 
 
 @dataclass(frozen=True)
@@ -48,6 +81,12 @@ class _Tints:
     melanin: SingleArray  # (H, W)
     blood: SingleArray  # (H, W)
     hair: SingleArray  # (H, W)
+    lips: SingleArray  # (H, W)
+    beard: SingleArray  # (H, W)
+    brow: SingleArray  # (H, W)
+    scalp: SingleArray  # (H, W)
+    detail: SingleArray  # what of the picture's lightness is relief, in powers of e (H, W)
+    skin: FloatArray  # (5,)
     melanins: FloatArray  # of the tones in `angles`
     angles: FloatArray  # ITA, rising
     own: Tone
@@ -67,7 +106,7 @@ def typology_angle(light: npt.ArrayLike) -> FloatArray:
     return np.asarray(np.degrees(np.arctan2(found[..., 0] - 50.0, found[..., 2])))
 
 
-def recoloured(angle: float, *, blood: float = 1.0) -> Image:
+def recoloured(angle: float, *, blood: float = 1.0, features: Features = PLAIN) -> Image:
     """The skin of the built-in head in a tone, laid out as its `albedo`, (H, W, 3), uint8.
 
     angle: ITA [deg], DARKEST to LIGHTEST, else ValueError. blood: as a share of what such skin has;
@@ -78,12 +117,34 @@ def recoloured(angle: float, *, blood: float = 1.0) -> Image:
     tints = _tints()
     melanin = float(np.interp(angle, tints.angles, tints.melanins))
     density, redness, hair = _changes(melanin, blood, tints.own)
+    hair = hair + features.fair * (to_linear(np.array(FAIR_HAIR)) - hair)
+    grey = features.grey * np.where(tints.scalp > 0.01, np.float32(1.0), np.float32(GREY_BROWS))
+    skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
+    kept = _kept_hair(tints, features)
     light = np.empty_like(tints.light)
+    relief = features.relief * tints.detail
     for channel in range(3):
-        lost = density[channel] * tints.melanin + redness[channel] * tints.blood
-        light[..., channel] = tints.light[..., channel] * np.exp(-lost) + hair[channel] * tints.hair
+        lost = density[channel] * tints.melanin + redness[channel] * tints.blood - relief
+        lost += features.lips * BLOOD[channel] * tints.lips
+        lost += features.beard * SHADOW[channel] * tints.beard
+        bare = tints.light[..., channel] * np.exp(-lost) + skin[channel] * (tints.hair - kept)
+        own = hair[channel] + grey * (GREY_LIGHT[channel] - hair[channel])
+        light[..., channel] = bare + own * kept
     steps = (np.sqrt(np.clip(light, 0.0, 1.0)) * (LEVELS - 1)).astype(np.int16)
     return _screen_bytes()[steps]
+
+
+def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
+    """How much of hair's colour is left on each texel where brows are thinned, hairlines recede."""
+    kept = tints.hair
+    if features.brows < 1.0:
+        share = np.clip((features.brows + 0.2 - tints.brow) / 0.35, 0.0, 1.0)
+        kept = kept * np.where(tints.brow < 1.6, share, 1.0).astype(np.float32)
+    if features.baldness > 0.0:
+        behind = BEHIND * tints.scalp - IN_FRONT - features.baldness
+        share = np.clip(behind / 14.0, 0.0, 1.0)
+        kept = kept * np.where(tints.scalp > 0.01, share, 1.0).astype(np.float32)
+    return kept
 
 
 def with_irises(parts: Sequence[Part], name: str) -> tuple[Part, ...]:
@@ -101,27 +162,63 @@ def with_irises(parts: Sequence[Part], name: str) -> tuple[Part, ...]:
 
 
 def coloured(
-    head: AnyHead, *, angle: float | None = None, blood: float = 1.0, irises: str | None = None
+    head: AnyHead,
+    *,
+    angle: float | None = None,
+    blood: float = 1.0,
+    irises: str | None = None,
+    features: Features = PLAIN,
 ) -> AnyHead:
     """A head with skin and eyes of other colours; None leaves them as they are."""
-    skin = head.albedo if angle is None else recoloured(angle, blood=blood)
+    skin = head.albedo if angle is None else recoloured(angle, blood=blood, features=features)
     parts = head.parts if irises is None else with_irises(head.parts, irises)
-    return replace(head, albedo=skin, parts=parts)
+    segments = head.segments
+    if features.baldness > 0.0:
+        tints = _tints()
+        is_bald = (segments == Segment.HAIR) & (_kept_hair(tints, features) < 0.5 * tints.hair)
+        segments = np.where(is_bald, np.uint8(Segment.SKIN), segments)
+    return replace(head, albedo=skin, parts=parts, segments=segments)
 
 
-def in_own_colours(head: AnyHead, seed: int) -> AnyHead:
-    """A head with the skin and the eyes of a number's person, the same ones every time.
+def drawn_irises(
+    random: np.random.Generator, angle: float, shares: Mapping[str, float] = IRIS_SHARES
+) -> str:
+    """The colour of somebody's eyes, by how often each is there; dark skin has brown ones."""
+    weights = np.array(list(shares.values()))
+    drawn = list(shares)[int(random.choice(len(weights), p=weights / weights.sum()))]
+    return drawn if angle >= ONLY_BROWN else "brown"
 
-    Tones are as likely as each other; the darker the skin is, the likelier are brown eyes, and
-    beyond tanned skin there are no others.
+
+def features_of(identity: Identity, angle: float, random: np.random.Generator) -> Features:
+    """Brows, beard, lips, hair and relief of somebody of that sex and age, chosen by eye."""
+    is_man = identity.sex is Sex.MAN
+    years = identity.age
+    brows, beard, lips, fair, grey, bald = random.uniform(0.0, 1.0, 6)
+    return Features(
+        brows=0.85 + 0.15 * brows if is_man else 0.50 + 0.25 * brows,
+        beard=0.05 + 0.55 * beard**1.5 if is_man else -BEARD_SHADOW,
+        lips=-0.08 if is_man else 0.08 + 0.22 * lips,
+        relief=(0.15 if is_man else -0.45) + 0.02 * (years - 30.0),
+        fair=fair if angle > FAIR_SKIN else 0.0,
+        grey=float(np.clip((years - 46.0 + 16.0 * grey) / 34.0, 0.0, 0.95)),
+        baldness=0.9 * max(years - 28.0, 0.0) * bald**2 if is_man else 0.0,
+    )
+
+
+def in_own_colours(
+    person: Person, seed: int, *, angle: float | None = None, irises: str | None = None
+) -> Person:
+    """A person with the skin, the eyes and the hair of a number, the same ones every time.
+
+    Tones are as likely as each other. angle, irises: instead of the number's own.
     """
     random = np.random.default_rng([seed, 18])
-    angle = random.uniform(DARKEST, LIGHTEST)
+    own = random.uniform(DARKEST, LIGHTEST)
+    angle = own if angle is None else angle
     blood = float(np.clip(random.normal(1.0, 0.1), 0.75, 1.25))
-    is_brown = random.random() < np.interp(angle, (10.0, LIGHTEST), (1.0, 0.2))
-    others = [name for name in IRISES if name != "brown"]
-    irises = "brown" if is_brown else others[random.integers(len(others))]
-    return coloured(head, angle=angle, blood=blood, irises=irises)
+    drawn = drawn_irises(random, angle)
+    features = features_of(person.identity, angle, random)
+    return coloured(person, angle=angle, blood=blood, irises=irises or drawn, features=features)
 
 
 def own_angle() -> float:
@@ -150,13 +247,14 @@ def _tints() -> _Tints:
     from PIL import Image as Pictures
 
     head = load("head")
-    names = ("melanin", "blood", "hair", "skin", "tone")
+    soft_ones = ("melanin", "blood", "lips", "beard", "brow", "scalp")
+    names = (*soft_ones, "hair", "skin", "tone")
     arrays = read_arrays_of(head.fingerprint, head.tints_file, names)
     height, width = head.albedo.shape[:2]
     if arrays["hair"].shape != (height, width):
         raise AssetError(f"{head.tints_file} is of another size than {head.albedo_file}")
     soft = {}
-    for name in ("melanin", "blood"):
+    for name in soft_ones:
         coarse = Pictures.fromarray(arrays[name].astype(np.float32) / 100.0)
         finer = coarse.resize((width, height), Pictures.Resampling.BILINEAR)
         soft[name] = np.asarray(finer, dtype=np.float32)
@@ -171,7 +269,18 @@ def _tints() -> _Tints:
     for melanin in melanins:
         density, redness, _ = _changes(float(melanin), 1.0, own)
         tones.append(skin * np.exp(-weights[0] * density - weights[1] * redness))
-    return _Tints(bare, **soft, hair=hair, melanins=melanins, angles=typology_angle(tones), own=own)
+    lightness = np.log(np.maximum(bare.mean(axis=2), 1e-3))
+    detail = (lightness - uniform_filter(lightness, DETAIL)) * (hair < 0.02)
+    return _Tints(
+        bare,
+        **soft,
+        hair=hair,
+        detail=detail,
+        skin=arrays["skin"],
+        melanins=melanins,
+        angles=typology_angle(tones),
+        own=own,
+    )
 
 
 @lru_cache(maxsize=1)

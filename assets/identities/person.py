@@ -10,16 +10,20 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..errors import AssetError
 from ..files import Image
 from ..fitting.head import FittedHead
 from ..fitting.organs import EYE_LANDMARKS, FittedSkin, place_parts
 from ..fitting.warp import Similarity
+from ..generator.fields import smooth_step
+from ..generator.regions import HAIRLINE, line_height
+from ..generator.sections import direction_coordinates
 from ..loading import load
 from ..model import Eye, FloatArray, Head, IndexArray
 from ..topology import cross_products, vertex_normals
@@ -27,6 +31,7 @@ from .shaping import Field, Shaper, lids_on_eyes, measures_of
 from .traits import SHAPES, Identity
 
 NEARER = (1.0, 0.85, 0.7, 0.5, 0.0)  # shares of the deviations, tried in turn
+MOST_RESTING = 0.4
 LID_SHARES = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far rows around the eye are laid on it
 
 
@@ -84,6 +89,8 @@ def _made(identity: Identity) -> Person:
     bent = field.points(known.vertices)
     eyes = tuple(_eye(known, eye, field, bent) for eye in known.eyes)
     vertices = lids_on_eyes(known, bent, eyes, LID_SHARES)
+    normals = vertex_normals(vertices, known.faces)
+    vertices = vertices + identity.hair * _hair(known)[:, None] * normals
     turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
     if (turned.sum(axis=1) <= 0.0).any():
         raise AssetError("no head has these measures without turning a triangle")
@@ -101,7 +108,7 @@ def _made(identity: Identity) -> Person:
         face_uv=known.face_uv,
         albedo=known.albedo,
         segments=known.segments,
-        wrinkles=known.wrinkles,
+        wrinkles=replace(known.wrinkles, resting=_resting(identity.age)),
         rig=known.rig,
         layers=known.layers,
         to_millimetres=Similarity(1.0, np.eye(3), np.zeros(3)),
@@ -113,6 +120,21 @@ def _made(identity: Identity) -> Person:
         openness=known.openness,
         identity=identity,
     )
+
+
+def _resting(years: float) -> float:
+    """How far furrows show in a face at rest, 0 to 1."""
+    past = float(np.clip((years - 30.0) / 45.0, 0.0, 1.0))
+    return MOST_RESTING * past * past
+
+
+def _hair(known: Head) -> FloatArray:
+    """Share of the hair's height at each vertex, shape (V,); none around the ears."""
+    angle, height, _ = direction_coordinates(known.vertices)
+    behind = height - line_height(HAIRLINE, np.degrees(np.abs(angle)))
+    ears = np.concatenate([known.rings[f"ear_0_{side}"] for side in ("left", "right")])
+    away = cKDTree(known.vertices[ears]).query(known.vertices)[0]
+    return smooth_step(2.0, 30.0, behind) * smooth_step(6.0, 30.0, away)
 
 
 def _moves(shapes: Mapping[str, float]) -> dict[int, FloatArray]:

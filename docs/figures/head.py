@@ -27,7 +27,7 @@ from risorius.bench.subjects import settled_positions
 CELL = (260, 320)  # [pixels] of one portrait: a contact sheet stays below 600 kB
 VIEWS = ("front", "three-quarter", "profile", "below")
 OPENED = 90  # steps of 1/60 s after which an opened jaw stands still
-AT_REST = dict.fromkeys(("cranium", "mandible", "eye_left", "eye_right"), np.eye(4))
+AT_REST = dict.fromkeys(("neck", "cranium", "mandible", "eye_left", "eye_right"), np.eye(4))
 
 PAINTED = render.Style()
 CLAY = render.Style(textured=False, albedo=render.CLAY)
@@ -45,8 +45,8 @@ WRINKLES = (
     ("AU17", "-20,2,2.8", (0.0, -78.0, 90.0)),
     ("kiss", "-12,2,4.5", (0.0, -64.0, 95.0)),
 )
-# Seeds of persons; and of some more, with what they do, in which light, from where.
-AT_EASE = (19, 40, 13, 43, 47, 27, 9, 10)
+# Persons; and some more, with what they do, in which light, from where.
+AT_EASE: tuple[int | str, ...] = ("ada", "kofi", "maria", 19, 40, 43, 47, 10)
 IN_LIGHT = (
     (30, "joy", "window", "-24,2,1.0"),
     (5, "surprise", "overcast", "0,0,1.0"),
@@ -148,7 +148,7 @@ def persons() -> Image:
         scene.step(SETTLED)
         style = render.Style(light=render.LIGHTS[light])
         with Capture(scene, CaptureOptions(size=CELL, camera=view, style=style)) as capture:
-            name = f"person {seed}" if not pose else f"{seed}: {pose}, {light}"
+            name = str(seed) if not pose else f"{seed}: {pose}, {light}"
             cells.append((name, capture.draw_image()))
     return contact_sheet(cells, columns=4, cell_width=CELL[0])
 

@@ -1,4 +1,11 @@
 // What each pixel shows, as numbers: no light, no blending, one sample.
+// WRINKLES: of the skin, as in surface.glsl.
+
+#if defined(WRINKLES)
+#define SURFACE vec3 normal; float depth; vec2 uv; vec2 values; vec3 position; vec2 wrinkling;
+#else
+#define SURFACE vec3 normal; float depth; vec2 uv; vec2 values;
+#endif
 
 #if defined(VERTEX_STAGE)
 
@@ -6,9 +13,12 @@ in vec3 in_position;
 in vec3 in_normal;
 in vec2 in_uv;      // of the skin; parts have none
 in vec2 in_values;
+#if defined(WRINKLES)
+in vec2 in_wrinkling;
+#endif
 uniform mat4 model_view;
 uniform mat4 projection;
-out Surface { vec3 normal; float depth; vec2 uv; vec2 values; } surface;
+out Surface { SURFACE } surface;
 
 void main() {
     vec4 position = model_view * vec4(in_position, 1.0);
@@ -16,12 +26,19 @@ void main() {
     surface.depth = -position.z;
     surface.uv = in_uv;
     surface.values = in_values;
+#if defined(WRINKLES)
+    surface.position = position.xyz;
+    surface.wrinkling = in_wrinkling;
+#endif
     gl_Position = projection * position;
 }
 
 #elif defined(FRAGMENT_STAGE)
 
-in Surface { vec3 normal; float depth; vec2 uv; vec2 values; } surface;
+#if defined(WRINKLES)
+#include "wrinkles.glsl"
+#endif
+in Surface { SURFACE } surface;
 uniform float first;  // number of the first triangle of this drawing call, counted from 1
 layout(location = 0) out vec4 normal_and_depth;
 layout(location = 1) out vec4 number_side_uv;
@@ -30,7 +47,12 @@ layout(location = 2) out vec2 values;
 void main() {
     float side = gl_FrontFacing ? 1.0 : -1.0;
     // From OpenGL's axes of the camera to those of pictures: x right, y down, z away from the eye.
-    vec3 normal = surface.normal * vec3(side, -side, -side) / max(length(surface.normal), 1e-20);
+    vec3 normal = side * surface.normal / max(length(surface.normal), 1e-20);
+#if defined(WRINKLES)
+    Wrinkle wrinkle = wrinkle_at(surface.uv, gl_FrontFacing ? surface.wrinkling : vec2(0.0));
+    normal = wrinkled(normal, surface.position, surface.uv, wrinkle);
+#endif
+    normal.yz = -normal.yz;
     normal_and_depth = vec4(normal, surface.depth);
     number_side_uv = vec4(first + float(gl_PrimitiveID), side, surface.uv);
     values = surface.values;

@@ -2,7 +2,7 @@
 // One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
 // stage), VALUES (colour by a value per triangle: SPLITS a count, RAMP an amount), COLOURED (vertex colours), TEXTURED (skin's albedo from
 // a picture), SHADOWS (of the key), WRINKLES (of the skin; with PIXEL), FRINGE (fading fringes along
-// contours, see outline.py).
+// contours, see outline.py), HAIR (thin cones, never drawn thinner than a pixel: they fade instead).
 
 #include "lighting.glsl"
 
@@ -43,7 +43,7 @@ uniform float sharpness;
 #else
 #define SHADOW_VARYING
 #endif
-#if defined(FRINGE)
+#if defined(FRINGE) || defined(HAIR)
 #define FRINGE_VARYING float coverage;
 #else
 #define FRINGE_VARYING
@@ -76,11 +76,20 @@ uniform mat4 shadow_matrix;   // view space -> place in the shadow map
 uniform float shadow_offset;
 uniform float shadow_reach;
 #endif
+#if defined(HAIR)
+uniform float half_hair;   // of a hair's thickness
+uniform float least_half;  // of what it is drawn with at least, at distance 1
+#endif
 out Surface { VARYINGS } surface;
 
 void main() {
     vec4 position = model_view * vec4(in_position, 1.0);
     vec3 normal = normalize(mat3(model_view) * in_normal);
+#if defined(HAIR)
+    float seen = max(half_hair, -least_half * position.z);
+    position.xyz += normal * (seen - half_hair);
+    surface.coverage = half_hair / seen;
+#endif
     surface.position = position.xyz;
 #if defined(PIXEL)
     surface.normal = normal;
@@ -306,13 +315,25 @@ void main() {
     // Lips are redder than the skin around, and moist. Chosen by eye: not yet at red cheeks.
     float excess = front.r / (max(front.g, 1e-3) * redness);
     lit.specular *= 1.0 + 1.6 * clamp(5.0 * excess - 6.0, 0.0, 1.0);
+    // Pores and hairs, darker than what is around them, break the highlight; and it lies in hollows
+    // less than on what stands out. On dark skin a plain one would be all that is seen.
+    const vec3 LIGHTNESS = vec3(0.3, 0.6, 0.1);
+    float shown_here = dot(front, LIGHTNESS);
+    float around = dot(texture(albedo_texture, surface.uv, 3.0).rgb, LIGHTNESS);
+    float relief = clamp(shown_here / max(around, 1e-3), 0.5, 1.4);
+    lit.specular *= relief * relief * relief * mix(0.45, 1.0, sqrt(min(around * 2.2, 1.0))) * openness;
 #endif
 #if defined(WRINKLES)
     front *= 1.0 - wrinkle.depth * FURROW;
 #endif
-    vec3 light = lit_colour(lit, front, key_lightness(), subsurface, openness);
+    float lightness = key_lightness();
 #if defined(COLOURED)
-    light *= 0.82;  // parts sit in sockets and mouths, where less light gets in
+    // Lids and lips are thin, and what they shade is small: light of a large lamp gets around them.
+    lightness = mix(0.6, 1.0, lightness);
+#endif
+    vec3 light = lit_colour(lit, front, lightness, subsurface, openness);
+#if defined(COLOURED)
+    light *= 0.96;  // parts sit in sockets and mouths, where less light gets in
 #else
     // Skin that only just turns away is the outline, where front and back have the same depth: it
     // keeps its colour, or dark specks of the inner side would come through there.
@@ -326,7 +347,7 @@ void main() {
     float coverage = clamp(wire_half_width + 0.5 - nearest, 0.0, 1.0);
     shown = mix(shown, wire_colour.rgb, wire_colour.a * surface.wire_strength * coverage);
 #endif
-#if defined(FRINGE)
+#if defined(FRINGE) || defined(HAIR)
     pixel_colour = vec4(shown, surface.coverage);
 #else
     pixel_colour = vec4(shown, 1.0);

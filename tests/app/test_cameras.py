@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from risorius.app.cameras import camera_for, whole_scene
+from risorius.app.cameras import DEFAULT_VIEW, camera_for, whole_scene
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 
@@ -45,7 +45,7 @@ def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene: FaceScene) -> No
 def test_what_no_camera_is(scene: FaceScene, text: str) -> None:
     """Other names and numbers are told with what is allowed; nothing is the usual view."""
     if not text:
-        assert camera_for(scene, text).yaw == camera_for(scene, "three-quarter").yaw
+        assert camera_for(scene, text).yaw == camera_for(scene, DEFAULT_VIEW).yaw
         return
     with pytest.raises(UserError, match=r"allowed are front, .* zoom above 0"):
         camera_for(scene, text)

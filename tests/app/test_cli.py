@@ -345,7 +345,8 @@ def test_a_pose_needs_no_script(tmp_path: Path) -> None:
         (("--head", "no.obj", "--landmarks", "no.json"), "no.obj: no such mesh file"),
         (("--head", "no.obj", "--person", "3"), "goes with neither --head nor --landmarks"),
         (("--person", "3", "--scene", "plane"), "--head and --person go with the scene face"),
-        (("--person", "-1"), "'--person': -1 is not in the range 0<=x<=4294967295"),
+        (("--person", "-1"), "'-1' is nobody; write a number, 0 or more, or ada, kofi, maria"),
+        (("--person", "4294967296"), "4294967296 is not in the range 0<=x<=4294967295"),
         (("--light", "moon"), "'moon' is not one of 'studio', 'side', 'overcast',"),
     ],
 )
@@ -386,7 +387,7 @@ def test_a_head_of_ones_own_is_filmed(tmp_path: Path) -> None:
 def test_persons_and_lights_are_filmed(tmp_path: Path) -> None:
     """`--person` and `--light`: other pictures than without, the same ones every time."""
     seen = set()
-    for words in ((), ("--person", "3"), ("--person", "4"), ("--light", "side")):
+    for words in ((), ("--person", "3"), ("--person", "ada"), ("--light", "side")):
         twice = []
         for name in ("a.png", "b.png"):
             asked = ("--set", "joy", *words, "-o", tmp_path / name, "--size", "96x96", "--quiet")

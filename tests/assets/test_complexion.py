@@ -17,7 +17,9 @@ from risorius.assets.generator.pigments import COMPLEXIONS, to_linear
 from risorius.assets.identities import (
     DARKEST,
     LIGHTEST,
+    Features,
     coloured,
+    drawn_irises,
     in_own_colours,
     make_person,
     own_angle,
@@ -25,7 +27,7 @@ from risorius.assets.identities import (
     sample_identity,
     typology_angle,
 )
-from risorius.assets.model import Head, Tone
+from risorius.assets.model import Head, Segment, Tone
 
 TONES = (70.0, 55.0, 41.0, 28.0, 10.0, -10.0, -30.0, -55.0)
 ANGLES = st.floats(DARKEST, LIGHTEST)
@@ -161,6 +163,34 @@ def test_colours_of_a_number(head: Head) -> None:
             tanned += 1
             assert (one.parts[0].colours == brown).all()
     assert 2 <= tanned <= 10
+
+
+@pytest.mark.parametrize("angle", [60.0, 0.0, -50.0])
+def test_irises_follow_the_shares_where_skin_is_light(angle: float) -> None:
+    """As often as each share says; brown alone below the tone where others are rare."""
+    random = np.random.default_rng(3)
+    drawn = [drawn_irises(random, angle, {"brown": 1.0, "blue": 3.0}) for _ in range(400)]
+    assert (0.68 < drawn.count("blue") / 400 < 0.82) if angle > 28.0 else set(drawn) == {"brown"}
+
+
+def test_features_do_what_their_names_say(head: Head) -> None:
+    """Thin brows show skin, beards darken, lips redden, hair is grey or gone."""
+    plain = recoloured(40.0).astype(int)
+
+    def changed(**features: float) -> Light:
+        """Mean change of the picture in each segment, by its number; shape (16, 3)."""
+        off = recoloured(40.0, features=Features(**features)).astype(int) - plain
+        return np.array([off[head.segments == n].mean(axis=0) for n in range(1, 14)])
+
+    brow, lip = Segment.LEFT_BROW - 1, Segment.TOP_LIP - 1
+    assert changed(brows=0.6)[brow].mean() > 4.0 and not changed(brows=0.6)[lip].any()
+    assert changed(beard=0.5)[Segment.NECK - 1].mean() < changed(beard=0.5)[brow].mean()
+    reddened = changed(lips=0.3)[lip]
+    assert reddened[1] < -8.0 and reddened[0] > -4.0
+    assert changed(grey=0.9)[Segment.HAIR - 1].mean() > 15.0
+    assert changed(baldness=20.0)[Segment.HAIR - 1].mean() > 8.0
+    bald = coloured(make_person(sample_identity(1)), angle=40.0, features=Features(baldness=20.0))
+    assert (bald.segments == Segment.HAIR).sum() < (head.segments == Segment.HAIR).sum()
 
 
 def test_painter_and_maps_agree_on_the_tone() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -10,14 +11,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import assets, sim
+from risorius.app.cli.parameters import PERSON_NAMES
 from risorius.app.scenes import FaceScene
 from risorius.assets.checks import mirror_error, self_intersections
 from risorius.assets.fitting.soundness import SkinPiece, check_manifold, check_openings
 from risorius.assets.identities import (
+    NAMED,
     Identity,
     Person,
     Sex,
     make_person,
+    person_called,
     sample_identity,
 )
 from risorius.assets.identities.traits import LOADINGS, MOST, PRESSED, SHAPES, norms_of
@@ -108,7 +112,9 @@ def test_persons_are_spread_as_published() -> None:
 
 def test_each_shape_does_what_its_name_says(head: Head) -> None:
     """A shape moves its points its way, and leaves all measures as they are."""
-    mean = Identity(Sex.WOMAN, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN)
+    mean = Identity(
+        Sex.WOMAN, 30.0, 0.0, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN
+    )
     plain = make_person(mean)
     for name, pushes in SHAPES.items():
         bent = make_person(replace(mean, shapes={**mean.shapes, name: 1.0}))
@@ -122,9 +128,39 @@ def test_each_shape_does_what_its_name_says(head: Head) -> None:
             assert moved @ np.array(way) / length == pytest.approx(length, abs=0.35), name
 
 
+def test_men_and_women_and_ages_differ() -> None:
+    """Beside measures: brow ridge and chin of men, lips of women, and what sags with age."""
+    numbers = range(300)
+    women, men = ([sample_identity(n, sex=sex).shapes for n in numbers] for sex in Sex)
+    young, old = ([sample_identity(n, age=age).shapes for n in numbers] for age in (25.0, 70.0))
+
+    def more(some: list[Mapping[str, float]], others: list[Mapping[str, float]], name: str) -> bool:
+        """Whether a shape is clearly larger among some than among others."""
+        return np.mean([x[name] for x in some]) > 0.5 + np.mean([x[name] for x in others])
+
+    assert all(more(men, women, name) for name in ("brow ridge", "chin width", "nose bridge"))
+    assert all(more(women, men, name) for name in ("lips", "eye opening", "brow height"))
+    assert all(more(young, old, name) for name in ("cheeks", "mouth corners", "eye opening"))
+    resting = [make_person(sample_identity(4, age=age)).wrinkles.resting for age in (25.0, 70.0)]
+    assert resting[0] == 0.0 < resting[1] < 1.0
+
+
+def test_named_persons_are_different_people(head: Head) -> None:
+    """Of both sexes, in tones and ages far apart, and none has the built-in head's face."""
+    people = [person_called(name) for name in NAMED]
+    assert tuple(NAMED) == PERSON_NAMES
+    assert {each.identity.sex for each in people} == set(Sex)
+    assert np.ptp([each.identity.age for each in people]) > 30.0
+    for i, each in enumerate(people):
+        assert all(abs(score) < 3.0 for score in each.identity.scores.values())
+        for other in (*people[:i], head):
+            assert np.linalg.norm(each.vertices - other.vertices, axis=1).mean() > 1.0
+            assert (each.albedo.astype(int) - other.albedo).std() > 5.0
+
+
 def test_calipers_are_allowed_for() -> None:
     """Widths that were taken with calipers are asked for as a surface has them."""
-    mean = Identity(Sex.MAN, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN)
+    mean = Identity(Sex.MAN, 30.0, 0.0, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN)
     for code, norm in norms_of(Sex.MAN).items():
         assert mean.measures[code] == norm.mean + PRESSED.get(code, 0.0)
 

@@ -12,7 +12,7 @@ import pytest
 
 from risorius import assets
 from risorius.assets.generator import brows, form
-from risorius.assets.generator.noise import noise, speckle
+from risorius.assets.generator.noise import noise
 from risorius.assets.generator.painting import paint_skin
 from risorius.assets.generator.pigments import reflectance, to_linear, to_screen
 from risorius.assets.generator.texels import Texels, corner_values, left_texels, rasterise
@@ -20,7 +20,7 @@ from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import Head, Tone
 
 Colours = npt.NDArray[np.float64]
-LARGEST_IMAGE_FILE = 1_000_000  # bytes
+LARGEST_IMAGE_FILE = 1_250_000  # bytes
 
 
 @pytest.fixture(scope="module")
@@ -92,14 +92,15 @@ def test_inside_of_mouth_and_nostril_is_dark(head: Head, texels: Texels) -> None
     assert painted[texels.nostril > 0.6].mean() < 0.3
 
 
-def test_picture_is_mirrored_but_for_its_grain(head: Head) -> None:
-    """Pores and freckles differ; nothing that could be seen from afar does."""
+def test_picture_is_mirrored_but_for_patches_and_grain(head: Head) -> None:
+    """Patches, pores and freckles differ from side to side; red and dark places do not."""
     image = head.albedo.astype(np.int64)
     difference = np.abs(image - image[:, ::-1])
-    assert 0.0 < difference.mean() < 4.0
+    assert 0.5 < difference.mean() < 6.0
     size = len(image) // 40
     blocks = image[: 40 * size, : 40 * size].reshape(40, size, 40, size, 3).mean(axis=(1, 3))
-    assert np.abs(blocks - blocks[:, ::-1]).max() < 6.0  # a freckle
+    off = np.abs(blocks - blocks[:, ::-1])
+    assert off.mean() < 3.0 and off.max() < 25.0
 
 
 def test_picture_goes_on_outside_the_skin(head: Head) -> None:
@@ -190,9 +191,9 @@ def test_hairs_grow_on_the_brow() -> None:
 def test_noise_is_the_same_for_ever_and_balanced() -> None:
     """Known values guard the shipped picture against a changed hash; smooth noise has no steps."""
     points = np.random.default_rng(2).uniform(-90.0, 90.0, size=(4000, 3))
-    smooth, rough = noise(points, 5.0, seed=1), speckle(points, 5.0, seed=1)
-    assert abs(smooth.mean()) < 0.05 and abs(rough.mean()) < 0.05
-    assert 0.3 < smooth.std() < 0.8 and np.abs(rough).max() <= 1.0
+    smooth = noise(points, 5.0, seed=1)
+    assert abs(smooth.mean()) < 0.05
+    assert 0.3 < smooth.std() < 0.8
     assert np.array_equal(smooth, noise(points, 5.0, seed=1))
     assert not np.allclose(smooth, noise(points, 5.0, seed=2))
     assert np.abs(noise(points + 0.001, 5.0, seed=1) - smooth).max() < 0.01

@@ -15,7 +15,7 @@ MIRRORED = {
     Segment.RIGHT_EAR: Segment.LEFT_EAR,
 }
 PLACES = {
-    "glabella": Segment.SKIN, "trichion": Segment.SKIN, "vertex": Segment.SKIN,
+    "glabella": Segment.SKIN, "trichion": Segment.SKIN, "vertex": Segment.HAIR,
     "cheek_left": Segment.SKIN, "pogonion": Segment.SKIN, "gnathion": Segment.SKIN,
     "temple_right": Segment.SKIN, "zygion_left": Segment.SKIN, "sublabiale": Segment.SKIN,
     "rhinion": Segment.NOSE, "pronasale": Segment.NOSE, "alare_left": Segment.NOSE,
@@ -39,10 +39,10 @@ def at(head: assets.Head, vertices: object) -> list[int]:
 
 
 def test_every_texel_has_a_class(head: assets.Head) -> None:
-    """Of those that skin has: no background, nothing to ignore, no hair on a shaved head."""
+    """Of those that skin has: no background, nothing to ignore, no clothing."""
     assert head.segments.shape == head.albedo.shape[:2]
     assert set(np.unique(head.segments)) == set(Segment) - {
-        Segment.BACKGROUND, Segment.HAIR, Segment.IGNORE,
+        Segment.BACKGROUND, Segment.CLOTHING, Segment.IGNORE,
     }  # fmt: skip
 
 

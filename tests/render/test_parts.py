@@ -106,3 +106,33 @@ def test_part_errors(surface: render.Surface) -> None:
     broken = Ball(shape=Shape(shape.positions, shape.normals[:4], shape.triangles))
     with pytest.raises(ValueError, match=r"part 'ball': vertices \(6, 3\), normals \(4, 3\)"):
         renderer.draw_parts([broken], STILL, facing(), PLAIN)
+
+
+@pytest.mark.parametrize("samples", [0, 4])
+def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples: int) -> None:
+    """However coarse the picture is, a hair takes as much light, and is seen all along."""
+    taken = []
+    for scale in (1, 2, 4):
+        with render.open_offscreen((60 * scale, 60 * scale), samples=samples) as surface:
+            renderer = render.Renderer(surface)
+            ends = np.array([[-20.0, -7.0, 0.0], [20.0, 7.0, 0.0]])
+            side = 0.2 * np.array([[-0.33, 0.94, 0.0], [0.165, -0.47, 0.82], [0.165, -0.47, -0.82]])
+            normals = np.vstack([side, side]).astype(np.float32) / 0.2
+            faces = [[k, 3 + (k + 1) % 3, (k + 1) % 3] for k in range(3)]
+            faces += [[k, 3 + k, 3 + (k + 1) % 3] for k in range(3)]
+            hair = SimpleNamespace(
+                name="hair", bone="cranium", shine=0.0, hair=0.2, normals=normals,
+                vertices=(np.repeat(ends, 3, axis=0) + np.vstack([side, side])).astype(np.float32),
+                colours=np.full((6, 3), 0.05, np.float32),
+                faces=np.array(faces, np.int32),
+            )  # fmt: skip
+            surface.begin()
+            renderer.draw_background(PLAIN)
+            renderer.draw_parts([hair], STILL, facing(), PLAIN)
+            surface.end()
+            darker = 255.0 - surface.read().mean(axis=2)
+        columns = darker.sum(axis=0)
+        middle = columns[int(0.35 * len(columns)) : int(0.65 * len(columns))]
+        assert middle.min() > 0.4 * middle.mean()
+        taken.append(darker.sum() / scale**2)
+    assert max(taken) < 1.35 * min(taken)

@@ -1,0 +1,88 @@
+"""What differs from side to side of a face: pores, blotches, freckles; and hair on the scalp.
+
+A face has no even skin: blood and pigment come in patches of all sizes, which overlap. Pores are
+too small for the picture of a whole head to hold one by one. They are painted as the light that
+falls from above shows them, a dark rim over a light one.
+"""
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from .fields import Points, Values, bump, smooth_step, unit
+from .noise import noise
+from .regions import scalp
+from .texels import Texels
+
+PORES, LINES = 0.13, 0.06  # density
+LIFT = np.array([0.05, 0.42, 0.12])  # [mm] between a pore's dark side and its light one
+# Size of patches [mm], and how much melanin and blood they have.
+PATCHES = ((34.0, 0.020, 0.050), (15.0, 0.022, 0.065), (6.5, 0.022, 0.060), (2.9, 0.018, 0.045))
+FRECKLES, SEED = 300, 11
+FRECKLE_RADII = (0.3, 0.8)  # [mm]
+CENTRE, WHORL = np.array([0.0, 30.0, -5.0]), np.array([5.0, 118.0, -48.0])  # of the hair
+STRAND, LONGER = 0.95, 0.20  # [mm], and how much slower strands change along themselves
+
+
+def pores(points: Points) -> Values:
+    """Melanin of pores and of the fine lines between them, shape (n,)."""
+    x, y, z = np.abs(points[:, 0]), points[:, 1], points[:, 2]
+    seen = smooth_step(-25.0, 45.0, z)  # behind, texels are coarser than pores
+    # Coarsest on the nose and beside it, fine on the lids and toward the jaw.
+    oily = bump(x, 0.0, 26.0) * bump(y, -32.0, 26.0) + 0.5 * bump(y, 48.0, 26.0) * bump(
+        x, 0.0, 40.0
+    )
+    lid = bump(y, 3.0, 11.0) * smooth_step(13.0, 17.0, x)
+    strength = (0.55 + 0.75 * oily) * (1.0 - 0.6 * lid)
+    holes = [
+        smooth_step(0.25, 0.95, noise(points + way, 1.15, seed=41)) for way in (0 * LIFT, LIFT)
+    ]
+    lines = noise(points + LIFT, 1.9, seed=43) - noise(points, 1.9, seed=43)
+    fine = noise(points, 0.62, seed=42)
+    relief = PORES * (1.25 * holes[0] - 0.9 * holes[1]) + LINES * (lines + 0.5 * fine)
+    return np.asarray(seen * strength * relief, dtype=np.float64)
+
+
+def blotches(points: Points) -> tuple[Values, Values]:
+    """Melanin and blood of the patches, each of shape (n,)."""
+    melanin, blood = np.zeros((2, len(points)))
+    for number, (size, brown, red) in enumerate(PATCHES):
+        melanin += brown * noise(points, size, seed=61 + number)
+        blood += red * noise(points, size, seed=71 + number)
+    flushed = bump(np.abs(points[:, 0]), 42.0, 26.0) * bump(points[:, 1], -26.0, 20.0)
+    veined = smooth_step(0.1, 0.9, noise(points, 4.2, seed=81)) * smooth_step(
+        20.0, 60.0, points[:, 2]
+    )
+    return melanin, blood * (1.0 + 0.8 * flushed) + 0.12 * flushed * veined
+
+
+def freckles(texels: Texels, points: Points, seed: int) -> Values:
+    """Small brown spots on cheeks, nose and forehead, other ones on either side."""
+    random = np.random.default_rng(seed)
+    x, y, z = np.abs(points[:, 0]), points[:, 1], points[:, 2]
+    likely = bump(y, -20.0, 20.0) * bump(x, 26.0, 26.0) + 0.25 * bump(y, 45.0, 25.0)
+    likely = likely * (z > 50.0) * (texels.eye_row > 4.5) * (texels.mouth_row > 7.0)
+    centres = points[random.choice(len(points), FRECKLES, replace=False, p=likely / likely.sum())]
+    radii = random.uniform(*FRECKLE_RADII, FRECKLES)
+    strengths = 0.03 + 0.2 * random.uniform(0.0, 1.0, FRECKLES) ** 2
+    tree = cKDTree(points)
+    total = np.zeros(len(points))
+    for centre, radius, strength in zip(centres, radii, strengths, strict=True):
+        near = np.array(tree.query_ball_point(centre, 2.0 * radius), dtype=np.int64)
+        away = np.linalg.norm(points[near] - centre, axis=1)
+        total[near] += strength * smooth_step(1.5 * radius, 0.3 * radius, away)
+    return total
+
+
+def crop(texels: Texels, points: Points) -> Values:
+    """How much of the scalp short hair covers, 0 to 1: strands that leave a whorl on the crown."""
+    axis = unit((WHORL - CENTRE)[None])[0]
+    side = unit(np.cross(axis, [0.0, 0.0, 1.0])[None])[0]
+    away = unit(points - CENTRE)
+    along = np.arccos(np.clip(away @ axis, -1.0, 1.0))
+    turn = np.arctan2(away @ np.cross(axis, side), away @ side) + 0.25 * along
+    place = np.stack([62.0 * np.cos(turn), 62.0 * np.sin(turn), LONGER * 90.0 * along], axis=1)
+    strand = noise(place, STRAND, seed=91) + 0.5 * noise(place, 2.6 * STRAND, seed=92)
+    dense = scalp(texels)
+    ragged = 0.12 * strand * smooth_step(0.0, 0.1, dense) * smooth_step(0.9, 0.5, dense)
+    grown = smooth_step(0.02, 0.75, dense + ragged)
+    return np.asarray(grown * np.clip(0.90 + 0.09 * strand, 0.0, 1.0), dtype=np.float64)

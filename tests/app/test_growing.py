@@ -1,0 +1,96 @@
+"""Lashes and tears stand on the skin, however it moves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
+
+from risorius import assets
+from risorius.app.growing import Growing
+from risorius.app.scenes import FaceScene
+
+POSES = (
+    {"AU43": 1.0},
+    {"wink": 1.0},
+    {"gaze_vertical": 1.0},
+    {"gaze_vertical": -1.0},
+    {"fear": 1.0},
+    {"head_turn": 0.6},
+)
+
+
+@pytest.fixture(scope="module")
+def scene() -> FaceScene:
+    """The built-in head."""
+    return FaceScene()
+
+
+def grown(scene: FaceScene) -> list[Growing]:
+    """What grows from its skin."""
+    return [part for part in scene.parts if isinstance(part, Growing)]
+
+
+def test_at_rest_they_are_as_they_were_made(scene: FaceScene) -> None:
+    """Lashes and wet edges, to rounding."""
+    scene.reset()
+    made = {part.name: part for part in assets.load("head").parts}
+    assert {part.name for part in grown(scene)} == {"lashes", "wet_edges"}
+    for part in grown(scene):
+        part.follow(scene.rest_positions, np.eye(4))
+        assert np.allclose(part.vertices, made[part.name].vertices, atol=1e-4)
+        assert np.allclose(part.normals, made[part.name].normals, atol=1e-4)
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3),
+    st.lists(st.floats(-50.0, 50.0), min_size=3, max_size=3),
+)
+def test_a_skin_that_only_moves_takes_them_along(
+    scene: FaceScene, turn: list[float], shift: list[float]
+) -> None:
+    """Whatever turns and shifts the whole skin does the same to them; with their bone, nothing."""
+    turned = Rotation.from_rotvec(turn)
+    skin = turned.apply(np.array(scene.rest_positions)) + shift
+    bone = np.eye(4)
+    bone[:3, :3], bone[:3, 3] = turned.as_matrix(), shift
+    made = {part.name: part for part in assets.load("head").parts}
+    for part in grown(scene):
+        part.follow(skin, np.eye(4))
+        expected = turned.apply(np.array(made[part.name].vertices, np.float64)) + shift
+        assert np.allclose(part.vertices, expected, atol=1e-3)
+        part.follow(skin, bone)
+        assert np.allclose(part.vertices, made[part.name].vertices, atol=1e-3)
+
+
+@pytest.mark.parametrize("pose", POSES, ids=lambda pose: next(iter(pose)))
+def test_they_stay_on_lids_that_move(scene: FaceScene, pose: dict[str, float]) -> None:
+    """Roots stay within a millimetre of the skin, lashes keep their length and the eye free."""
+    scene.reset()
+    scene.pose({name: value for name, value in pose.items() if name in scene.limits})
+    for _ in range(40):
+        scene.step(1.0 / 60.0)
+    made = {part.name: part for part in assets.load("head").parts}
+    bones = scene.bone_transforms()
+    corners = scene.positions[scene.faces]
+    tree = cKDTree(np.vstack([corners.mean(axis=1), scene.positions]))
+    for part in grown(scene):
+        matrix = bones[part.bone]
+        there = part.vertices @ matrix[:3, :3].T + matrix[:3, 3]
+        roots = made[part.name].roots
+        assert roots is not None
+        assert tree.query(there[roots])[0].max() < 2.5
+        lengths = [
+            np.linalg.norm(points - points[roots], axis=1)
+            for points in (part.vertices, made[part.name].vertices)
+        ]
+        if part.hair:
+            assert np.allclose(*lengths, atol=1e-3)
+            for eye in scene.head.eyes:
+                centre = matrix[:3, :3] @ eye.centre + matrix[:3, 3]
+                assert np.linalg.norm(there - centre, axis=1).min() > eye.radius - 0.5
+    scene.reset()
