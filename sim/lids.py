@@ -39,7 +39,7 @@ from .surface import Surface
 COLUMNS = 41  # places along the opening where its height is known
 SMOOTH_COLUMNS = 13  # a third of the opening's width
 MARGIN_REACH = 3.5  # mm from a lid's front edge that are its margin
-OVERLAP = 0.08  # rad (1 mm) by which closed lids are pressed into each other
+OVERLAP = 0.11  # rad (1.4 mm) by which closed lids are pressed into each other
 EDGE = 1e-3  # rad
 OFF_EDGE = 0.3  # 1/mm nearer to or farther from the eyeball than the landmarks: no front edge
 LEAST_OPENING = 0.05  # rad: at the corners lids do not overlap
