@@ -52,7 +52,11 @@ JAW_LINE: Table = (
     (0, -108), (14, -107), (28, -104.5), (43, -100), (58, -96), (72, -90), (84, -82), (96, -70),
     (110, -60), (130, -62), (180, -75),
 )  # fmt: skip
-JAW_SLOPE, SLOPE_BEHIND, JAW_ROUNDING = 2.3, 1.1, 17.0  # how steeply the face falls away under it; [mm]
+JAW_SLOPE, SLOPE_BEHIND, JAW_ROUNDING = (
+    2.3,
+    1.1,
+    17.0,
+)  # how steeply the face falls away under it; [mm]
 # y [mm], radius forward, sideways and backward [mm]
 NECK = (
     (-60, 50, 46, 77), (-100, 46, 44, 77), (-118, 42.5, 43.5, 76), (-132, 38.5, 44.5, 75.5),
