@@ -5,10 +5,12 @@ import numpy as np
 
 from .camera_view import CameraView
 from .light import Light
+from .parts import Part
 from .programs import write_uniform
 from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Style, linear
 
 SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
+HEAD_BONES = ("cranium", "mandible", "eye_right", "eye_left")
 HAIR_PIXELS = 1.4  # that a hair is drawn wide at least: a triangle seen from its side is narrower
 _PALETTE = np.array([linear(colour) for colour in SPLIT_PALETTE], np.float32)
 _RAMPS = {
@@ -36,11 +38,12 @@ def set_skin(program: moderngl.Program, style: Style) -> None:
     program["sharpness"] = SKIN_SHARPNESS
 
 
-def set_part(program: moderngl.Program, shine: float, light: Light) -> None:
+def set_part(program: moderngl.Program, part: Part, light: Light) -> None:
     """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights."""
     set_light(program, light)
-    if shine > 0.0:  # what is wet lies in the head, through which no light from behind gets
+    if part.bone in HEAD_BONES:  # light from behind does not get through a head
         program["rim_light"] = 0.0, 0.0, 0.0
+    shine = part.shine
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine
     program["sharpness"] = 20.0 * 40.0**shine

@@ -259,13 +259,13 @@ class Renderer:
             self._occluder.choose_parts(placed)
         for buffers, transform in placed:
             if not buffers.hair and self._set_view(program, view, buffers.corners, transform):
-                set_part(program, buffers.part.shine, style.light)
+                set_part(program, buffers.part, style.light)
                 buffers.draw(program, chosen=is_chosen)
         program = self._program("surface.glsl", "PIXEL", "COLOURED", "HAIR")
         for buffers, transform in placed:
             if buffers.hair and self._set_view(program, view, buffers.corners, transform):
                 set_hair(program, buffers.hair, view)
-                set_part(program, buffers.part.shine, style.light)
+                set_part(program, buffers.part, style.light)
                 with self._blending():
                     buffers.draw(program, chosen=is_chosen)
 

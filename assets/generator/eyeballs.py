@@ -32,7 +32,7 @@ CONJUNCTIVA = (0.77, 0.53, 0.48)
 # The pink flesh in the corners of the left eye: centre and radii [mm]. It closes the gap that the
 # ball leaves there, the inner one being the caruncle.
 CORNERS = (
-    ((18.9, -1.6, 75.2), (3.9, 3.0, 2.9)),
+    ((18.7, -1.6, 74.9), (4.2, 3.2, 2.8)),
     ((42.2, 0.8, 70.6), (3.0, 2.8, 2.6)),
 )
 
