@@ -102,8 +102,6 @@ def place_parts(
     for part in known.parts:
         stiffly = balls.get(part.bone) or (mouth if part.name.startswith(STIFF) else None)
         placed = _bent(part, warp) if stiffly is None else _moved(part, stiffly)
-        if part.hair:
-            placed = _standing_out(placed, fitted)
         if part.name.startswith(WALLS) and part.bone == "cranium":
             lips = fitted.landmarks[MOUTH].mean(axis=0)
             walls = _lengthened(placed.vertices.astype(np.float64), lips)
@@ -146,17 +144,6 @@ def _bent(part: Part, warp: Deformation) -> Part:
     ahead = warp.points(part.vertices + part.normals) - vertices
     normals = ahead / np.maximum(np.linalg.norm(ahead, axis=1, keepdims=True), 1e-9)
     return replace(part, vertices=vertices.astype(np.float32), normals=normals.astype(np.float32))
-
-
-def _standing_out(hairs: Part, fitted: FittedSkin) -> Part:
-    """Hairs moved out until none begins below the skin."""
-    assert hairs.roots is not None
-    roots = hairs.vertices[hairs.roots].astype(np.float64)
-    nearest = cKDTree(fitted.vertices).query(roots)[1]
-    normals = fitted.normals[nearest]
-    below = np.maximum(((fitted.vertices[nearest] - roots) * normals).sum(axis=1), 0.0)
-    moved = hairs.vertices + below[:, None] * normals
-    return replace(hairs, vertices=moved.astype(np.float32))
 
 
 def _lengthened(walls: FloatArray, lips: FloatArray) -> FloatArray:
