@@ -151,7 +151,12 @@ def fit(
         landmarks=skin.landmarks,
         bone_depth=nearest.interpolate(known.bone_depth),
         eyes=eyes,
-        parts=tuple(part for part in place_parts(known, fitted, warp, eyes) if part.bone != NECK),
+        parts=tuple(
+            part
+            for part in place_parts(known, fitted, warp, eyes)
+            # Landmarks do not say exactly enough where a lid ends for lashes and tears.
+            if part.bone != NECK and part.roots is None
+        ),
         uv=painted.layout.uv,
         face_uv=painted.layout.face_uv,
         albedo=painted.albedo,

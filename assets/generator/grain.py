@@ -52,7 +52,7 @@ def blotches(points: Points) -> tuple[Values, Values]:
     veined = smooth_step(0.1, 0.9, noise(points, 4.2, seed=81)) * smooth_step(
         20.0, 60.0, points[:, 2]
     )
-    return melanin, blood * (1.0 + 0.8 * flushed) + 0.12 * flushed * veined
+    return melanin, blood * (1.0 + 0.8 * flushed) + 0.07 * flushed * veined
 
 
 def freckles(texels: Texels, points: Points, seed: int) -> Values:

@@ -31,7 +31,7 @@ from .shaping import Field, Shaper, lids_on_eyes, measures_of
 from .traits import SHAPES, Identity
 
 NEARER = (1.0, 0.85, 0.7, 0.5, 0.0)  # shares of the deviations, tried in turn
-MOST_RESTING = 0.4
+MOST_RESTING = 0.65
 LID_SHARES = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far rows around the eye are laid on it
 
 

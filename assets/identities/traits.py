@@ -111,7 +111,7 @@ OF_AGE: Mapping[str, float] = MappingProxyType(
 )  # fmt: skip
 HAIR = MappingProxyType({Sex.WOMAN: (8.0, 15.0), Sex.MAN: (2.0, 8.0)})  # [mm]
 AGES = 20.0, 75.0  # [years]
-UNEVENNESS = 0.2  # of a shape's deviation, by which it is more on the left and less on the right
+UNEVENNESS = 0.15  # of a shape's deviation, by which it is more on the left and less on the right
 
 
 @dataclass(frozen=True)

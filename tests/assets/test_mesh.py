@@ -156,7 +156,7 @@ def test_ears_have_their_size_and_place(head: Head) -> None:
     assert abs(high[1] - head.vertices[head.landmarks[24], 1]) < 8.0
     assert abs(low[1] - at["subnasale"]) < 8.0
     tilt = np.degrees(np.arctan2(low[2] - high[2], high[1] - low[1]))
-    assert 10.0 < tilt < 26.0
+    assert 8.0 < tilt < 26.0
     back = edge[edge[:, 2].argmin()]
     root = head.vertices[head.rings["ear_0_left"]]
     assert 8.0 < back[0] - root[:, 0].max() < 22.0

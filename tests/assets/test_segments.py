@@ -95,7 +95,7 @@ def test_brows_lie_over_the_eyes(head: assets.Head) -> None:
 
 def test_regions_hang_together(head: assets.Head) -> None:
     """One piece each, or two: nothing is speckled."""
-    for segment in set(Segment) - {Segment.BACKGROUND, Segment.HAIR, Segment.IGNORE}:
+    for segment in set(Segment) - {Segment.BACKGROUND, Segment.CLOTHING, Segment.IGNORE}:
         pieces, count = label(head.segments == segment)
         sizes = np.sort(np.bincount(pieces.ravel())[1:])[::-1]
         assert count == 1 or sizes[2:].sum() < 0.01 * sizes.sum(), segment.name

@@ -81,7 +81,7 @@ def test_the_tongue_comes_out_over_the_lip(
     lip = simulation.positions[head.landmarks[LOWER_LIP]]
     assert np.all(np.diff(reach) > 0.3)
     assert reach[-1] > lip[2] + 5.0
-    assert tongue_now(simulation)[tip, 1] < lip[1] - 8.0
+    assert tongue_now(simulation)[tip, 1] < lip[1] - 7.0
 
 
 def test_the_tongue_stays_in_a_shut_mouth(simulation: sim.Simulation, head: Head) -> None:
