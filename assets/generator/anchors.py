@@ -28,7 +28,7 @@ MIDLINE_BELOW_MOUTH = {
     "sublabiale": -84.2,
     "pogonion": -98.0,
     "gnathion": -107.4,
-    "menton": -110.2,
+    "menton": -109.9,
     "cervicale": -126.0,
 }
 # x, y [mm] in front view
@@ -45,14 +45,14 @@ FROM_FRONT = {
 }
 # angle about the axis [deg], height [mm]
 FROM_AXIS = {
-    "jaw_9": (20.0, -109.0),
-    "jaw_10": (40.0, -103.5),
-    "jaw_11": (57.0, -95.5),
+    "jaw_9": (15.0, -109.0),
+    "jaw_10": (31.0, -105.0),
+    "jaw_11": (49.0, -98.0),
     "jaw_12": (70.0, -83.0),
     "jaw_13": (79.0, -66.0),
     "jaw_14": (86.0, -48.0),
     "jaw_15": (90.0, -29.0),
-    "tragion": (98.0, -13.0),
+    "tragion": (95.0, -13.0),
     "zygion": (78.0, -17.0),
     "gonion": (91.0, -84.5),
     "temple": (72.0, 22.0),

@@ -27,7 +27,7 @@ from .skin import SkinMesh
 
 LEVELS = 2
 ON_FORM = 0.03  # [mm] such a vertex lies on the form
-NEAR_FORM = 1.2  # [mm] such a one was made from it and pressed in; the lid's crease: 0.9
+NEAR_FORM = 1.8  # [mm] such a one was made from it and pressed in; the lid's crease: 1.5
 ALONG_FORM, ALONG_NEAR_FORM = 0.5, 0.8  # least cosine between the normals of mesh and form
 RUN_OUT = 0.25  # what a dent keeps halfway to the form: it must not show the coarse triangles
 MISSED = 0.03  # [mm] off the level surface after projection: then the smooth rule holds

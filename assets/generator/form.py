@@ -47,15 +47,15 @@ IN_FRONT: tuple[Stroke, ...] = (
     (3.6, ((16, -10, -0.2), (23, -15, -0.4), (31, -18, -0.2))),  # below the lower lid
     (3.0, tuple((x - 0.5, y, -0.55 * w) for (x, y), w in zip(FOLD, FOLD_DEPTH, strict=True))),
     (7.0, tuple((x, y, 1.0 * w) for (x, y), w in zip(FOLD_SIDE, FOLD_DEPTH, strict=True))),
-    (2.6, ((0, -45, -0.7), (0, -58.0, -0.9))),  # philtrum
-    (1.9, ((3.6, -46, 0.5), (5.2, -57.5, 0.9))),  # its ridges
+    (2.8, ((0, -46, -0.5), (0, -58.0, -1.2))),  # philtrum
+    (2.1, ((3.8, -48, 0.2), (5.4, -58, 1.1))),  # its ridges
     (7.0, ((0, -99, 0.4), (9, -99, 0.5))),  # chin
     (3.4, ((0, -84.5, -0.6), (13, -83, -0.6))),  # below the lower lip
     (4.6, ((28.2, -66.3, -1.2),)),  # corner of the mouth
 )
 # Strokes on the side: half width [mm]; angle about the axis [deg], height along it, height [mm].
 BESIDE: tuple[Stroke, ...] = (
-    (9.0, ((34, -23, 1.6), (48, -20, 3.0), (64, -16, 2.2), (80, -15, 0.4))),  # cheekbone
+    (9.0, ((34, -23, 1.6), (48, -20, 3.0), (62, -16, 2.0), (76, -15, 0.2))),  # cheekbone
     (14.0, ((48, -50, -1.0), (64, -52, -1.2))),  # hollow below
     (13.0, ((56, 20, -1.8), (74, 22, -2.2))),  # temple
 )

@@ -108,12 +108,12 @@ def lashes() -> Solid:
 def wet_edges() -> Solid:
     """The tears along both lower lids; each vertex moves with the skin where it is itself."""
     inner, outer = _edges(upper=False)
-    place = np.linspace(0.12, 0.9, WET_COLUMNS)
-    width: Values = np.sin(np.pi * np.linspace(0.03, 0.97, WET_COLUMNS)) ** 0.5
+    place = np.linspace(0.1, 0.95, WET_COLUMNS)
+    width: Values = np.sin(np.pi * np.linspace(0.01, 0.99, WET_COLUMNS)) ** 0.8
     on_lid = inner(place) + WET_WIDTH * width[:, None] * unit(outer(place) - inner(place))
     up = unit(np.cross(inner(place, 1), inner(place) - EYE_CENTRE))
     up *= np.sign(up[:, 1:2])
-    above = inner(place) + 0.9 * WET_WIDTH * width[:, None] * up
+    above = inner(place) + 0.7 * WET_WIDTH * width[:, None] * up
     on_ball = EYE_CENTRE + (EYE_RADIUS - 0.05) * unit(above - EYE_CENTRE)
     shares = np.repeat(np.linspace(0.0, 1.0, WET_ROWS), WET_COLUMNS)
     share = shares.reshape(WET_ROWS, WET_COLUMNS, 1)

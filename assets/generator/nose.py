@@ -17,7 +17,6 @@ from .fields import (
     tapered_capsule,
 )
 
-
 NEAR = np.array([[-36.0, -64.0, 70.0], [36.0, 24.0, 140.0]])  # [mm] beyond, no fillet reaches
 FAR = 40.0  # [mm]
 
@@ -26,9 +25,8 @@ def distance(points: Points) -> Values:
     """Approximate signed distance to the nose alone [mm], or FAR; shape (n,)."""
     near = ((points > NEAR[0]) & (points < NEAR[1])).all(axis=1)
     result = np.full(len(points), FAR)
-    result[near] = _distance(
-        np.abs(points[near] * [1.0, 0.0, 0.0]) + points[near] * [0.0, 1.0, 1.0]
-    )
+    left = np.column_stack([np.abs(points[near, 0]), points[near, 1:]])
+    result[near] = _distance(left)
     return result
 
 
@@ -38,7 +36,7 @@ def _distance(half: Points) -> Values:
     side_wall = tapered_capsule(half, (0, 2, 81.5), (0, -32, 94.0), 7.2, 12.0)
     tip = sphere(half, (0, -34.0, 111.0), 7.1)
     lobe = sphere(half, (3.7, -34.4, 110.6), 6.1)
-    wing = ellipsoid(half, (11.6, -38.6, 101.8), (4.6, 5.8, 8.8), turn_deg=24)
+    wing = ellipsoid(half, (11.3, -38.4, 102.0), (4.8, 5.5, 8.6), turn_deg=24)
     triangle = ellipsoid(half, (8.0, -36.6, 106.6), (4.0, 4.2, 6.4), turn_deg=30)
     columella = tapered_capsule(half, (0, -41.7, 101), (0, -40.2, 110.0), 2.7, 2.8)
 
@@ -54,7 +52,7 @@ def _distance(half: Points) -> Values:
 def nostril_dish(points: Points) -> Values:
     """A shallow hollow in the underside where the nostril rows are laid [mm]."""
     half = np.abs(points * [1.0, 0.0, 0.0]) + points * [0.0, 1.0, 1.0]
-    return ellipsoid(half, (7.8, -45.8, 106.4), (4.0, 5.8, 6.8), turn_deg=-24)
+    return ellipsoid(half, (7.7, -45.9, 106.0), (3.9, 5.4, 6.2), turn_deg=-24)
 
 
 def fillet(points: Points) -> Values:

@@ -10,7 +10,7 @@ from .fields import Points
 from .form import from_below
 
 COLUMNS = 9
-CENTRE = (7.5, 106.6)  # [mm] x, z
+CENTRE = (7.5, 106.4)  # [mm] x, z
 HALF_WIDTH, HALF_LENGTH = 3.1, 4.7  # [mm]
 TURN_DEG = 26.0  # the nostrils converge toward the tip
 

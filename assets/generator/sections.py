@@ -33,9 +33,9 @@ FRONT: Table = (
 )  # fmt: skip
 # y, x [mm] of the outline beside the axis, hidden by the neck below the angle of the jaw
 SIDE: Table = (
-    (109.0, 0), (106.5, 24), (101, 39.5), (92, 53.5), (83, 61.8), (72, 68.2), (60, 71.6), (50, 72.8),
-    (33, 73.0), (15, 71.6), (0, 70.8), (-14, 70.2), (-26, 70.2), (-40, 70.2), (-52, 67.2),
-    (-66, 64.2), (-78, 60.2), (-90, 55.0), (-102, 49.0), (-120, 44.0), (-175, 38),
+    (109.0, 0), (106.5, 24), (101, 39.5), (92, 53.5), (83, 61.8), (72, 68.2), (60, 71.6),
+    (50, 72.8), (33, 73.0), (15, 71.6), (0, 71.2), (-14, 71.0), (-26, 70.6), (-40, 70.0),
+    (-52, 67.2), (-66, 64.2), (-78, 60.2), (-90, 54.0), (-102, 47.0), (-120, 44.0), (-175, 38),
 )  # fmt: skip
 # y, z [mm] of the profile behind
 BACK: Table = (
@@ -45,18 +45,15 @@ BACK: Table = (
 # height [mm], exponent of the superellipse: 2 is an ellipse, more is squarer
 SQUARENESS: Table = (
     (150, 2.0), (90, 2.02), (50, 2.1), (20, 2.22), (0, 2.24), (-26, 2.24), (-46, 2.1), (-66, 1.95),
-    (-85, 1.95), (-110, 2.08), (-175, 2.0),
+    (-85, 1.9), (-110, 1.9), (-175, 2.0),
 )  # fmt: skip
 # angle [deg], height [mm] of the lower border of the jaw, continued around the back of the head
 JAW_LINE: Table = (
-    (0, -108), (14, -107), (28, -104.5), (43, -100), (58, -96), (72, -90), (84, -82), (96, -70),
+    (0, -108), (14, -107), (28, -104.5), (43, -100), (58, -95), (72, -89), (84, -81), (96, -70),
     (110, -60), (130, -62), (180, -75),
 )  # fmt: skip
-JAW_SLOPE, SLOPE_BEHIND, JAW_ROUNDING = (
-    2.3,
-    1.1,
-    17.0,
-)  # how steeply the face falls away under it; [mm]
+JAW_SLOPE, SLOPE_BEHIND = 2.3, 1.1  # how steeply the face falls away under it
+JAW_ROUNDING = 17.0  # [mm]
 # y [mm], radius forward, sideways and backward [mm]
 NECK = (
     (-60, 50, 46, 77), (-100, 46, 44, 77), (-118, 42.5, 43.5, 76), (-132, 38.5, 44.5, 75.5),
