@@ -48,6 +48,7 @@ LARGEST = 10_000.0  # [mm] from the middle of the face: farther off, a vertex is
 APART = 30.0  # [mm]
 ONE_PLACE = 1.0  # [mm]
 NECK = "neck"  # what hangs there, a shirt, is the built-in head's: another may have its shoulders
+TEARS = "wet_edges"  # half a millimetre wide: landmarks do not say where lids end so exactly
 FARTHEST_FROM_A_FACE = 14.0  # [mm] mean distance of landmarks from those of the built-in head
 
 
@@ -128,7 +129,11 @@ def fit(
         landmarks=skin.landmarks,
         bone_depth=nearest.interpolate(known.bone_depth),
         eyes=eyes,
-        parts=tuple(part for part in place_parts(known, fitted, warp, eyes) if part.bone != NECK),
+        parts=tuple(
+            part
+            for part in place_parts(known, fitted, warp, eyes)
+            if part.bone != NECK and part.name != TEARS
+        ),
         uv=nearest.interpolate(known.uv).astype(np.float32),
         face_uv=skin.faces,
         albedo=known.albedo,

@@ -16,7 +16,7 @@ from .solids import Solid, grid_faces, joined, mix
 
 AROUND = 12
 LEVELS = (0.0, 0.4, 0.75, 0.93, 1.0)  # rings of a crown, from the gum to the edge
-STATIONS = 61  # of the gums along the arch; chosen: four to a tooth
+STATIONS = 57  # of the gums along the arch; chosen: four to a tooth
 EDGE_COLOUR, NECK_COLOUR = (0.955, 0.94, 0.90), (0.94, 0.885, 0.80)
 FISSURE_COLOUR = (0.70, 0.60, 0.46)
 GUM_COLOUR, MUCOSA_COLOUR, POCKET_COLOUR = (

@@ -125,8 +125,8 @@ def test_nothing_parts_and_skin_are_told_apart(studio: Capture) -> None:
     assert (found["segmentation"][~nothing] > 0).all()
     assert (found["triangle"][nothing] == -1).all()
     is_part = ~nothing & (found["triangle"] < 0)
-    inside = (Segment.RIGHT_EYE, Segment.LEFT_EYE, Segment.MOUTH_INTERIOR, Segment.CLOTHING)
-    assert np.isin(found["segmentation"][is_part], inside).all() and is_part.sum() > 1000
+    parts = (Segment.RIGHT_EYE, Segment.LEFT_EYE, Segment.MOUTH_INTERIOR, Segment.CLOTHING)
+    assert np.isin(found["segmentation"][is_part], parts).all() and is_part.sum() > 1000
     assert not found["splits"][is_part].any() and not found["tension"][is_part].any()
     assert found["triangle"].max() < len(studio.scene.faces)
 
