@@ -39,7 +39,7 @@ class OrbitCamera:
     field_of_view: top to bottom [degrees].
     narrowest_aspect: a frame narrower than this (width / height) shows no less of the scene's
         width, but more of its height; framing sets it.
-    scene_centre, scene_radius: a sphere that holds everything drawn; sets the clipping planes.
+    scene_centre, scene_radius: a sphere that holds what is framed; sets the clipping planes.
     """
 
     target: FloatArray
@@ -146,7 +146,7 @@ class OrbitCamera:
     def _depth_range(self) -> tuple[float, float]:
         """Clipping planes just around the scene, for the best use of the depth buffer."""
         depth = float(np.dot(self.eye - self.scene_centre, self.axes()[2]))
-        reach = 1.3 * self.scene_radius  # the scene moves: an open jaw, a stuck-out lip
+        reach = 3.2 * self.scene_radius  # shoulders stand out of the scene that is framed
         near = max(depth - reach, 0.01 * self.scene_radius)
         return near, max(depth + reach, 2.0 * near)
 

@@ -26,9 +26,9 @@ BEARD_LINE = (
 BEARD_END = -133.0  # [mm] height on the throat
 # Flushed places: centre (x, y, z) and radii [mm], amount of blood.
 FLUSHED = (
-    ((42, -25, 80), (21, 15, 28), 0.24),  # cheek
+    ((42, -25, 80), (21, 15, 28), 0.18),  # cheek
     ((28, -24, 90), (15, 12, 16), 0.14),
-    ((0, -35, 121), (11, 9, 12), 0.34),  # tip of the nose
+    ((0, -35, 121), (11, 9, 12), 0.28),  # tip of the nose
     ((15, -40, 103), (6.5, 8, 9), 0.40),  # its wing
     ((0, -17, 105), (8, 14, 9), 0.10),  # its ridge
     ((0, -103, 99), (12, 8, 14), 0.14),  # chin

@@ -41,7 +41,7 @@ DARK_MELANIN = np.array([0.80, 0.88, 0.90])  # beyond the darkest complexion; ch
 ONLY_BROWN = 28.0  # ITA below which eyes are brown, as nearly all are there
 IRIS_SHARES = {"brown": 0.4, "hazel": 0.15, "green": 0.12, "blue": 0.2, "grey": 0.13}
 FAIR_HAIR, GREY_HAIR = (0.58, 0.44, 0.29), (0.54, 0.52, 0.49)  # sRGB
-GREY_BROWS = 0.25  # of how grey hair on the scalp is; lashes are not told from brows
+GREY_BROWS = 0.12  # of how grey hair on the scalp is; lashes are not told from brows
 FAIR_SKIN = 45.0  # ITA above which hair may be fair
 DETAIL = 9  # [texels] below which relief is told from colour
 AnyHead = TypeVar("AnyHead", bound=FittedHead)

@@ -134,7 +134,8 @@ def _hair(known: Head) -> FloatArray:
     behind = height - line_height(HAIRLINE, np.degrees(np.abs(angle)))
     ears = np.concatenate([known.rings[f"ear_0_{side}"] for side in ("left", "right")])
     away = cKDTree(known.vertices[ears]).query(known.vertices)[0]
-    return smooth_step(2.0, 30.0, behind) * smooth_step(6.0, 30.0, away)
+    top = 0.4 + 0.6 * smooth_step(20.0, 95.0, known.vertices[:, 1])
+    return top * smooth_step(2.0, 30.0, behind) * smooth_step(6.0, 30.0, away)
 
 
 def _moves(shapes: Mapping[str, float]) -> dict[int, FloatArray]:

@@ -109,7 +109,7 @@ OF_AGE: Mapping[str, float] = MappingProxyType(
         "lips": -0.35, "mouth corners": -0.4,
     }
 )  # fmt: skip
-HAIR = MappingProxyType({Sex.WOMAN: (8.0, 15.0), Sex.MAN: (2.0, 8.0)})  # [mm]
+HAIR = MappingProxyType({Sex.WOMAN: (7.0, 12.0), Sex.MAN: (2.0, 7.0)})  # [mm]
 AGES = 20.0, 75.0  # [years]
 UNEVENNESS = 0.15  # of a shape's deviation, by which it is more on the left and less on the right
 

@@ -319,7 +319,7 @@ void main() {
     // less than on what stands out. On dark skin a plain one would be all that is seen.
     const vec3 LIGHTNESS = vec3(0.3, 0.6, 0.1);
     float shown_here = dot(front, LIGHTNESS);
-    float around = dot(texture(albedo_texture, surface.uv, 3.0).rgb, LIGHTNESS);
+    float around = dot(textureLod(albedo_texture, surface.uv, 3.0).rgb, LIGHTNESS);
     float relief = clamp(shown_here / max(around, 1e-3), 0.5, 1.4);
     lit.specular *= relief * relief * relief * mix(0.45, 1.0, sqrt(min(around * 2.2, 1.0))) * openness;
 #endif
