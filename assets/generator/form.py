@@ -99,7 +99,7 @@ def neck_relief(angle: Values, height: Values, radius: Values) -> Values:
     from_middle = radius * np.abs(angle)
     muscle = 4.4 * bump(behind, 0.0, 8.5) - 2.0 * bump(behind, -14.0, 9.0)
     larynx = bump(height, -143.0, 8.0) + 0.6 * smooth_step(-143.0, -152.0, height)
-    throat = 4.0 * larynx * bump(from_middle, 0.0, 8.0) * smooth_step(-128.0, -140.0, height)
+    throat = 2.4 * larynx * bump(from_middle, 0.0, 8.0) * smooth_step(-128.0, -140.0, height)
     along = smooth_step(-84.0, -112.0, height) * smooth_step(-166.0, -138.0, height)
     return muscle * along + throat
 
@@ -114,7 +114,8 @@ def head_distance(points: Points) -> Values:
     surface = surface + in_front * (front.ev(x, y) + lips.displacement(x, y))
     surface = surface + beside.ev(np.degrees(np.abs(angle)), height)
     surface = surface + neck_relief(angle, height, surface)
-    return (radius - surface) * RADIAL_SLOPE
+    result: Values = (radius - surface) * RADIAL_SLOPE
+    return result
 
 
 def lid_distance(points: Points) -> Values:

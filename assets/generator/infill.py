@@ -41,14 +41,14 @@ SIZES = (
     ((20, -140, 42), 14.0, 12.0, 0.35),
 )
 LARGEST_IN_FACE, LARGEST_BEHIND, LARGEST_FAR_BEHIND = 13.0, 25.0, 32.0  # [mm]
-LARGEST_ON_CROWN = 17.0  # [mm] the crown is an outline from every side
+LARGEST_ON_CROWN = 14.0  # [mm] the crown is an outline from every side
 
 
 def wanted_length(points: Points) -> Values:
     """Edge length that the mesh should have near the points [mm], before scaling, shape (n,)."""
     half = np.column_stack([np.abs(points[:, 0]), points[:, 1], points[:, 2]])
     back = np.clip((60.0 - points[:, 2]) / 70.0, 0.0, 1.0)
-    high = smooth_step(25.0, 65.0, points[:, 1])
+    high = smooth_step(10.0, 52.0, points[:, 1])
     far = np.clip((5.0 - points[:, 2]) / 50.0, 0.0, 1.0)
     low = np.clip((-112.0 - points[:, 1]) / 25.0, 0.0, 1.0)
     beyond = np.maximum(back, low)
