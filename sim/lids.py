@@ -39,9 +39,10 @@ from .surface import Surface
 COLUMNS = 41  # places along the opening where its height is known
 SMOOTH_COLUMNS = 13  # a third of the opening's width
 MARGIN_REACH = 3.5  # mm from a lid's front edge that are its margin
-OVERLAP = 0.08  # rad (1 mm) by which closed lids are pressed into each other
+OVERLAP = 0.11  # rad (1.4 mm) by which closed lids are pressed into each other
 EDGE = 1e-3  # rad
 OFF_EDGE = 0.3  # 1/mm nearer to or farther from the eyeball than the landmarks: no front edge
+PROUD = 0.7  # mm that the closed upper lid lies in front of the lower one
 LEAST_OPENING = 0.05  # rad: at the corners lids do not overlap
 WIDE_OPENING = 0.3  # rad: from here on they do in full
 SLIDE_REACH = 1.9  # x the reach of the turn: skin around the lid slides along with it
@@ -229,7 +230,8 @@ def _one_eye(
     middle = np.sin(np.pi * np.clip(column, 0.0, 1.0))
     fold = before * (folds[True] + folds[False]) * (AT_CORNERS + (1.0 - AT_CORNERS) * middle)
     weight, closing = before * weight, before * closing
-    sink = (side > 0.0) * weight * np.interp(column, where, depths[True] - depths[False])
+    sink = np.interp(column, where, depths[True] - depths[False]) - PROUD
+    sink *= (side > 0.0) * weight
     lid = np.flatnonzero(np.maximum(np.maximum(weight, fold), slide) > LEAST_TURN)
     overlap = (
         OVERLAP * weight * smoothstep((opening - LEAST_OPENING) / (WIDE_OPENING - LEAST_OPENING))

@@ -1,9 +1,9 @@
 """Eyeballs, teeth, tongue and the mouth's inside of another head.
 
-Eyeballs stay round: each is moved and scaled by its own eye's landmarks, then forward or back until
-the lids lie on it. Teeth, gums and tongue stay stiff: they follow the warp by the similarity that
-comes nearest to it. The walls of the mouth and the corners of the eyes bend with it; the walls are
-pushed back where skin would come to lie behind them when the jaw opens.
+Eyeballs stay round: each is moved and scaled by its own eye's landmarks, then fitted into its
+lids, so that they lie on it all around. Teeth, gums and tongue stay stiff: they follow the warp by
+the similarity that comes nearest to it. The walls of the mouth and the corners of the eyes bend
+with it; the walls are pushed back where skin would come to lie behind them when the jaw opens.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import least_squares
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
@@ -21,6 +22,13 @@ EYE_LANDMARKS = {"right": slice(36, 42), "left": slice(42, 48)}
 STIFF = ("gums", "teeth", "tongue")  # how the names of stiff parts begin
 WALLS = "oral_cavity"  # and those of the mouth's walls
 LID_CLEARANCE = 0.3  # [mm] between eyeball and the skin of the lids
+SECTORS = 12  # around an eye; in each the skin nearest to the eyeball should lie on it
+TOUCHING = (
+    0.5  # [mm] off the lids from which a sector counts less: corners stand away from the ball
+)
+STRAIGHT = 2.0  # [1] that a mm aside costs: an eye looks out of the middle of its opening
+ROUND = 20.0  # [mm] that a sphere twice as large costs in the fit
+SUNK = 3.0  # x that skin in the eyeball costs more than a gap before it
 LID_DEPTH = 5.0  # [mm] from the landmarks on a lid's edge, as far as its inner skin may reach
 MOUTH = slice(48, 68)
 NARROWER = 0.25  # at their lower end: between the sides of the mandible, then of the throat
@@ -64,18 +72,40 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         scale = _extent(target) / _extent(source)
         centre = target.mean(axis=0) + scale * (eye.centre - source.mean(axis=0))
         scale = float(np.sqrt(scale))
-        radius = scale * eye.radius
-        lids = target[[1, 2, 4, 5]]
-        near = cKDTree(lids).query(fitted.vertices)[0] < LID_DEPTH
-        skin = np.vstack([lids, fitted.vertices[near]])
+        near = cKDTree(target).query(fitted.vertices)[0] < LID_DEPTH
+        skin = np.vstack([target, fitted.vertices[near]])
+        centre, radius = _behind_lids(centre, scale * eye.radius, target.mean(axis=0), skin)
         centre[2] += _way_forward(centre, radius + LID_CLEARANCE, skin)
-        eyes.append(Eye(eye.name, centre, radius, scale * eye.iris_radius))
+        eyes.append(Eye(eye.name, centre, radius, radius / eye.radius * eye.iris_radius))
     return tuple(eyes)
 
 
 def _extent(points: FloatArray) -> float:
     """From corner to corner of an eye [mm]."""
     return float(np.linalg.norm(points[3] - points[0]))
+
+
+def _behind_lids(
+    centre: FloatArray, radius: float, middle: FloatArray, skin: FloatArray
+) -> tuple[FloatArray, float]:
+    """Centre and radius [mm] of the sphere that lies behind the lids all around.
+
+    centre, radius: about where and how large it is; middle: of the opening; skin: of the lids.
+    """
+    around = np.arctan2(skin[:, 1] - middle[1], skin[:, 0] - middle[0])
+    sector = np.floor((around / np.pi + 1.0) / 2.0 * SECTORS).astype(int) % SECTORS
+    parts = [skin[sector == k] for k in np.unique(sector)]
+
+    def off(values: FloatArray) -> FloatArray:
+        """How far the sphere is from the lids in each sector, and from its size."""
+        size = radius * np.exp(values[3])
+        gaps = np.array([np.linalg.norm(part - values[:3], axis=1).min() for part in parts])
+        gaps -= size + LID_CLEARANCE
+        aside = STRAIGHT * (values[:2] - centre[:2])
+        return np.concatenate([np.where(gaps < 0.0, SUNK * gaps, gaps), aside, [ROUND * values[3]]])
+
+    found = least_squares(off, np.append(centre, 0.0), loss="soft_l1", f_scale=TOUCHING).x
+    return found[:3], radius * float(np.exp(found[3]))
 
 
 def _way_forward(centre: FloatArray, radius: float, skin: FloatArray) -> float:

@@ -26,7 +26,9 @@ def distance(points: Points) -> Values:
     """Approximate signed distance to the nose alone [mm], or FAR; shape (n,)."""
     near = ((points > NEAR[0]) & (points < NEAR[1])).all(axis=1)
     result = np.full(len(points), FAR)
-    result[near] = _distance(np.abs(points[near] * [1.0, 0.0, 0.0]) + points[near] * [0.0, 1.0, 1.0])
+    result[near] = _distance(
+        np.abs(points[near] * [1.0, 0.0, 0.0]) + points[near] * [0.0, 1.0, 1.0]
+    )
     return result
 
 

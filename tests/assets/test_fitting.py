@@ -78,7 +78,7 @@ def test_the_built_in_head_fits_itself(tmp_path: Path) -> None:
     same = fit_head(mesh, numbers)
     for eye, own in zip(same.eyes, head.eyes, strict=True):
         assert np.abs(eye.centre - own.centre).max() < 0.2
-        assert eye.radius == pytest.approx(own.radius, abs=0.01)
+        assert eye.radius == pytest.approx(own.radius, rel=0.01)
 
 
 def test_teeth_lie_behind_the_skin(fitted: FittedHead) -> None:

@@ -6,9 +6,10 @@ from dataclasses import asdict
 
 import pytest
 
-from risorius import assets
+from risorius import assets, sim
 from risorius.bench.gaps import LIDS_MOST, LIPS_MOST, PoseGaps, measure, report, worst
-from risorius.bench.lines_of_sight import sunk_in_eyeballs
+from risorius.bench.lines_of_sight import eyeballs_of, lid_gaps, sunk_in_eyeballs
+from risorius.bench.subjects import settled_positions
 
 
 @pytest.fixture(scope="module")
@@ -54,3 +55,17 @@ def test_skin_in_an_eyeball_is_found() -> None:
     assert sunk_in_eyeballs(rest, rest, head.faces, eyes) == 0.0
     pushed = sunk_in_eyeballs(rest - (0.0, 0.0, 2.0), rest, head.faces, eyes)
     assert 1.0 < pushed <= 2.0
+
+
+def test_closed_lids_hide_the_eye_from_every_side() -> None:
+    """Nothing shows from the whole front while lids are closed; ajar, they show it from below."""
+    head = assets.load("head")
+    simulation = sim.create(head)
+    gaps = {}
+    for name, closed in (("shut", 1.0), ("ajar", 0.8)):
+        settled_positions(simulation, {"AU43": closed}, 45)
+        landmarks = simulation.positions[head.landmarks]
+        balls = eyeballs_of(head, simulation)
+        gaps[name] = lid_gaps(simulation.positions, simulation.faces, landmarks, balls)
+    assert max(gaps["shut"].values()) < LIDS_MOST
+    assert min(gaps["ajar"].values()) > 1.0

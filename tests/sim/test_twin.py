@@ -100,7 +100,12 @@ def test_seal_is_an_implicit_spring(
         hold_lips(state, skin._replace(lips=alone), Tick(1, h, grip, REST))
         i, (a, b), w = lips.lower[pair], lips.upper[pair], lips.share[pair]
         ends = state.x + h * state.v - rest
-        apart = ends[i] - w * ends[a] - (1.0 - w) * ends[b] - (0.0, grip.overlap, 0.0)
+        apart = (
+            ends[i]
+            - w * ends[a]
+            - (1.0 - w) * ends[b]
+            - (0.0, grip.overlap * lips.press[pair], 0.0)
+        )
         force = grip.stiffness * lips.seal[pair] * apart * SEAL_AXES
         expected = np.zeros_like(rest)
         np.add.at(expected, [i, a, b], [-force, w * force, (1.0 - w) * force])
@@ -123,7 +128,8 @@ def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
     light = inverse[lips.lower] + w**2 * inverse[lips.upper[:, 0]]
     light = light + (1.0 - w) ** 2 * inverse[lips.upper[:, 1]]
     give = h * light * grip.stiffness * lips.seal[:, None] * SEAL_AXES
-    apart, speed = difference(state.x - rest) - (0.0, grip.overlap, 0.0), difference(state.v)
+    apart, speed = difference(state.x - rest), difference(state.v)
+    apart[:, 1] -= grip.overlap * lips.press
     change = (speed - give * apart) / (1.0 + h * give) - speed
     impulse = lips.averaging[:, None] * change / light
     speeds = state.v.copy()
@@ -200,30 +206,46 @@ def test_bones_carry_anchors(stirred: sim.Simulation) -> None:
 
 
 def test_lids_turn_about_the_eyeball(simulation: sim.Simulation) -> None:
-    """Lids keep their distance to the eyeball's centre; closed margins meet in angle."""
+    """Lids keep their distance to the eyeball's centre but for how far they sink; margins meet."""
     anatomy, state = simulation._anatomy, simulation._state
     assert anatomy.lids is not None
     lids, rest = anatomy.lids.vertices, anatomy.surface.positions
-    gaze = np.array([0.3, -0.2])
-    turn_lids(state, rest, lids, np.array([[1.0, 0.4, 0.0]] * len(lids.centres)), gaze)
+    closed = np.array([[1.0, 0.4, 0.0]] * len(lids.centres))
+    gaze = np.array([[0.1, 0.3], [0.0, -0.2]])
     centre = lids.centres[lids.eye]
+    flat = lids._replace(sink=np.zeros_like(lids.sink))
+    turn_lids(state, rest, flat, closed, gaze)
     before = np.linalg.norm(rest[lids.vertex] - centre, axis=1)
     after = np.linalg.norm(state.carried[lids.vertex] - centre, axis=1)
     assert np.allclose(before, after)
     state.carried[:] = rest
-    straight = lids._replace(slide=(0.0, 0.0))
-    turn_lids(state, rest, straight, np.array([[1.0, 0.4, 0.0]] * len(lids.centres)), gaze)
+    straight = flat._replace(along=np.zeros_like(lids.along))
+    turn_lids(state, rest, straight, closed, gaze)
 
     def angle(x: Array) -> Array:
+        """Angle [rad] about the axis of the lids."""
         high = ((x[lids.vertex] - centre) * lids.up[lids.eye]).sum(axis=1)
         far = ((x[lids.vertex] - centre) * lids.forward[lids.eye]).sum(axis=1)
         return np.arctan2(high, far)
 
     turned = angle(state.carried) - angle(rest)
-    margin = (lids.weight == 1.0) & (lids.opening > 0.1)
-    lower, upper = margin & ~lids.upper, margin & lids.upper
-    assert np.allclose(turned[lower], lids.meeting * lids.opening[lower])
-    assert np.all(turned[upper] <= -(1.0 - lids.meeting) * lids.opening[upper])
+    assert np.allclose(turned, lids.closing - np.where(lids.upper, lids.overlap, 0.0), atol=1e-9)
+    assert turned[lids.upper].min() < -0.5 and (lids.sink != 0.0).any()
+
+
+def test_an_open_lid_takes_its_fold_along(simulation: sim.Simulation) -> None:
+    """Raised and looking up, the fold is held and goes up; at rest nothing holds it."""
+    anatomy, state = simulation._anatomy, simulation._state
+    assert anatomy.lids is not None
+    lids, rest = anatomy.lids.vertices, anatomy.surface.positions
+    still, up = np.zeros((len(lids.centres), 2)), np.array([[0.0, 0.3]] * len(lids.centres))
+    drive, held = np.zeros((len(lids.centres), 3)), state.hold.copy()
+    turn_lids(state, rest, lids, drive, still)
+    assert np.array_equal(state.hold, held)
+    turn_lids(state, rest, lids, drive, up)
+    fold = lids.vertex[lids.fold_hold > 0.0]
+    assert len(fold) > 10 and (state.hold[fold] > held[fold]).all()
+    assert (state.carried - rest)[fold, 1].max() > 1.0
 
 
 def test_a_step_is_its_substeps(head: Head) -> None:
