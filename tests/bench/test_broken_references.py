@@ -33,7 +33,7 @@ def arrays() -> dict[str, Any]:
         ("triangles", np.full((9, 3), 10**6), "numbers of them"),
         ("landmarks68", np.arange(3), "landmarks68"),
         ("jawOpen", np.zeros((3, 3)), "jawOpen in face.npz must be finite displacements"),
-        ("jawOpen", None, "holds none of the shapes"),
+        ("jawOpen", None, "holds none of ARKit's shapes"),
     ],
 )
 def test_broken_references_are_named(
