@@ -58,7 +58,7 @@ def test_fresh_import(package: str, banned: set[str]) -> None:
         ("refine", {"numpy"}),
         ("sim", {"numpy", "scipy"}),
         ("render", {"glfw", "moderngl", "numpy", "pyrr"}),
-        ("assets", {"PIL", "numpy", "scipy", "trimesh"}),
+        ("assets", {"PIL", "fast_simplification", "numpy", "scipy", "trimesh"}),
     ],
 )
 def test_packages_import_only_what_they_may(folder: str, allowed: set[str]) -> None:

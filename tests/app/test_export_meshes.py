@@ -84,7 +84,7 @@ def test_the_clip_moves(clip: Clip) -> None:
     """What is compared below is no still."""
     assert clip.frame_count == FRAMES
     for surface in clip.surfaces:
-        if surface.name != "eye_corners":
+        if surface.name not in ("eye_corners", "shirt"):
             assert np.abs(surface.at(FRAMES - 1) - surface.at(0)).max() > 1.0, surface.name
 
 

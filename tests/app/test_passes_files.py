@@ -67,7 +67,7 @@ def test_every_frame_has_its_passes_beside_it(tmp_path: Path) -> None:
     depth, triangle = channels["depth.Z"], channels["triangle.ID"].astype(np.int32)
     assert depth.shape == (120, 160) and 400.0 < depth.max() < 1500.0
     assert triangle.min() == -1 and 1500 < triangle.max() < 2030
-    assert (channels["normal.Z"][depth > 0.0] < 0.0).mean() > 0.99
+    assert (channels["normal.Z"][depth > 0.0] < 0.0).mean() > 0.98  # folds tilt them
     classes = np.asarray(Image.open(f"{stem}_seg.png"))
     assert classes.dtype == np.uint8 and np.array_equal(classes > 0, depth > 0.0)
     colours = np.asarray(Image.open(f"{stem}.png")).astype(int)

@@ -69,7 +69,7 @@ def test_amounts_grow_with_the_muscle_and_never_jump(
     steps = [amounts(scene, wrinkling, **{name: share}) for share in np.linspace(0.0, 1.0, 41)]
     coarse, fine = (np.abs(np.diff(steps[::skip], axis=0)) for skip in (2, 1))
     assert fine.max() < 0.65 * coarse.max() < 0.25  # half a step, half a change: there is no jump
-    assert coarse[0].max() < 0.12  # from nothing
+    assert coarse[0].max() < 0.3  # from nothing
     sums = [step.sum() for step in steps]
     assert sums[-1] > 1.0 and (np.diff(sums) > -0.01 * sums[-1]).all()
 

@@ -20,7 +20,7 @@ def test_a_folded_triangle_is_counted() -> None:
     over = turn @ np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]])
     now = head.vertices @ over.T
     assert tearing._inverted(head.vertices, now, head.faces) == 0
-    tip = head.anatomy["cheek_left"]
+    tip = head.anatomy["cheilion_left"]
     ring = np.unique(head.faces[(head.faces == tip).any(axis=1)])
     away = head.vertices[ring[ring != tip]]
     farthest = away[np.linalg.norm(away - head.vertices[tip], axis=1).argmax()]

@@ -297,7 +297,7 @@ def test_rows_keep_the_mesh_sound(simulation: sim.Simulation, head: Head, title:
 def test_a_funnelled_mouth_is_round(simulation: sim.Simulation, head: Head) -> None:
     """AU22 brings both lips forward; the lower one's outline is nearer to an ellipse than a V."""
     moved = settled_displacement(simulation, {"AU22": 1.0})[head.landmarks]
-    assert min(moved[51, 2], moved[57, 2]) > 8.0
+    assert min(moved[51, 2], moved[57, 2]) > 7.0
     lips = simulation.positions[head.landmarks]
     assert lips[54, 0] < head.vertices[head.landmarks[54], 0] - 4.0
     across = lips[56, 0] / lips[54, 0]

@@ -91,7 +91,7 @@ def test_frame_length_hardly_matters(simulation: sim.Simulation) -> None:
         for _ in range(rate // 4):
             simulation.step(1.0 / rate)
         poses.append(simulation.positions.copy())
-    assert np.abs(poses[0] - poses[2]).max() < 0.2
+    assert np.abs(poses[0] - poses[2]).max() < 0.3
     assert np.abs(poses[1] - poses[2]).max() < 0.2
 
 

