@@ -27,7 +27,7 @@ from .surface import Surface
 
 LIP_EDGE = 5.0  # mm around the mouth line in which lip vertices are looked for
 OWN_SIDE = 0.1  # of the lip side field: nearer to the corner lips are one
-PAIR_GAP = 1.5  # mm: lips further apart at rest are no pair; their red must not fold on the line
+PAIR_GAP = 2.0  # mm: lips further apart at rest are no pair; their red must not fold on the line
 LEAST_SEAL_AREA = 4.0  # mm2: tiny vertices of a lip edge still carry their share
 UNBROKEN_SEAL = 100.0  # x the rig's seal while nothing opens the lips: gaps below 0.1 mm
 FULLY_PRESSED = 0.25  # activity from which they overlap in full
