@@ -27,11 +27,11 @@ from .surface import Surface
 
 LIP_EDGE = 5.0  # mm around the mouth line in which lip vertices are looked for
 OWN_SIDE = 0.1  # of the lip side field: nearer to the corner lips are one
-PAIR_GAP = 3.0  # mm: lips further apart at rest are no pair
+PAIR_GAP = 2.0  # mm: lips further apart at rest are no pair; their red must not fold on the line
 LEAST_SEAL_AREA = 4.0  # mm2: tiny vertices of a lip edge still carry their share
 UNBROKEN_SEAL = 100.0  # x the rig's seal while nothing opens the lips: gaps below 0.1 mm
 FULLY_PRESSED = 0.25  # activity from which they overlap in full
-PRESSED_OVERLAP = 0.65  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
+PRESSED_OVERLAP = 0.8  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
 EYE_REACH = 12.0  # mm around an eyeball in which skin is watched
 EYE_CLEARANCE = 0.3  # mm of lid thickness that stay between a vertex and the eyeball
 
@@ -43,7 +43,6 @@ class LipPairs(NamedTuple):
     upper: npt.NDArray[np.int32]  # (P, 2) ends of an edge-like segment of the upper lip
     share: Array  # (P,) of the first end
     least_gap: Array  # (P,) mm, vertical; small negative where lips overlap at rest
-    press: Array  # (P,) x the overlap of pressed lips; more where they are apart at rest
     seal: Array  # (P,) stiffness
     averaging: Array  # (P,) 1 / number of pairs its vertices are in
     members: npt.NDArray[np.int32]  # (M,) all vertices in pairs
@@ -52,7 +51,7 @@ class LipPairs(NamedTuple):
         """Energy stored in the seal for displacements (V, 3)."""
         apart = moved[self.lower] - self.share[:, None] * moved[self.upper[:, 0]]
         apart -= (1.0 - self.share)[:, None] * moved[self.upper[:, 1]]
-        apart[:, 1] -= grip.overlap * self.press
+        apart[:, 1] -= grip.overlap
         stored = self.seal * (apart**2 @ np.array(SEAL_AXES))
         return float(grip.stiffness * stored.sum() / 2.0)
 
@@ -135,8 +134,7 @@ def _lip_pairs(surface: Surface, pairs: list[tuple[int, int, int, float]], seal:
     most = np.maximum(count[lower], count[upper].max(axis=1, initial=1))
     strength = seal * np.maximum(surface.areas[lower], LEAST_SEAL_AREA)
     members = np.flatnonzero(count).astype(np.int32)
-    least, press = np.minimum(gap, 0.0), 1.0 + np.maximum(gap, 0.0) / PRESSED_OVERLAP
-    return LipPairs(lower, upper, share, least, press, strength, 1.0 / most, members)
+    return LipPairs(lower, upper, share, np.minimum(gap, 0.0), strength, 1.0 / most, members)
 
 
 class EyeContact(NamedTuple):

@@ -143,7 +143,7 @@ def hold_lips(state, skin, tick):  # type: ignore[no-untyped-def]
             apart = x[i, k] - rest[i, k]
             apart -= w * (x[a, k] - rest[a, k]) + (1.0 - w) * (x[b, k] - rest[b, k])
             if k == 1:
-                apart -= grip.overlap * lips.press[p]
+                apart -= grip.overlap
             speed = v[i, k] - w * v[a, k] - (1.0 - w) * v[b, k]
             give = h * inverse * grip.stiffness * lips.seal[p] * SEAL_AXES[k]
             slowed = (speed - give * apart) / (1.0 + h * give)

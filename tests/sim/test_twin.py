@@ -100,12 +100,7 @@ def test_seal_is_an_implicit_spring(
         hold_lips(state, skin._replace(lips=alone), Tick(1, h, grip, REST))
         i, (a, b), w = lips.lower[pair], lips.upper[pair], lips.share[pair]
         ends = state.x + h * state.v - rest
-        apart = (
-            ends[i]
-            - w * ends[a]
-            - (1.0 - w) * ends[b]
-            - (0.0, grip.overlap * lips.press[pair], 0.0)
-        )
+        apart = ends[i] - w * ends[a] - (1.0 - w) * ends[b] - (0.0, grip.overlap, 0.0)
         force = grip.stiffness * lips.seal[pair] * apart * SEAL_AXES
         expected = np.zeros_like(rest)
         np.add.at(expected, [i, a, b], [-force, w * force, (1.0 - w) * force])
@@ -129,7 +124,7 @@ def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
     light = light + (1.0 - w) ** 2 * inverse[lips.upper[:, 1]]
     give = h * light * grip.stiffness * lips.seal[:, None] * SEAL_AXES
     apart, speed = difference(state.x - rest), difference(state.v)
-    apart[:, 1] -= grip.overlap * lips.press
+    apart[:, 1] -= grip.overlap
     change = (speed - give * apart) / (1.0 + h * give) - speed
     impulse = lips.averaging[:, None] * change / light
     speeds = state.v.copy()
