@@ -130,22 +130,13 @@ def open_to_light(positions: Points, faces: Triangles, ends: npt.NDArray[np.intp
     ends: pairs of vertices, (n, 2); twice the same for a vertex itself.
     """
     corners = positions[faces]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals = np.zeros_like(positions)
-    for corner in range(3):
-        np.add.at(normals, faces[:, corner], across)
-    normals = _unit(_unit(normals)[ends].sum(axis=1))
+    normals = vertex_normals(positions, faces)[ends].sum(axis=1)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     middles = corners.mean(axis=1)
     radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
     values = np.empty(len(ends), np.float32)
     _cast(positions[ends].mean(axis=1), normals, corners, middles, radii, _hemisphere(), values)
     return values
-
-
-def _unit(vectors: Points) -> Points:
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    unit: Points = vectors / np.maximum(lengths, 1e-12)
-    return unit
 
 
 def _hemisphere() -> Points:

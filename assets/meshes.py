@@ -20,7 +20,7 @@ import numpy.typing as npt
 from .errors import AssetError
 from .glb_claims import pictures_apart
 from .mesh_claims import CHECKS
-from .pictures import Texture, read_packed, texture_of
+from .pictures import Texture, libraries_missing, read_packed, texture_of
 from .topology import unique_points
 from .user_files import MOST_VERTICES, named, read_file
 from .wavefront import read_obj
@@ -44,6 +44,7 @@ class Mesh:
     texture: how the file itself paints it, where it does.
     colours: of its vertices, sRGB, shape (V, 3), uint8, where the file has such.
     same: of vertices that the file doubles, the one that `faces` name, shape (V,).
+    notes: what its bringer should know, a line each.
     """
 
     vertices: npt.NDArray[np.float64]
@@ -51,6 +52,7 @@ class Mesh:
     texture: Texture | None = None
     colours: npt.NDArray[np.uint8] | None = None
     same: npt.NDArray[np.integer[Any]] | None = None
+    notes: tuple[str, ...] = ()
 
 
 def read_mesh(path: str | Path) -> Mesh:
@@ -73,10 +75,12 @@ def read_mesh(path: str | Path) -> Mesh:
             cure="reduce it in a modelling program, or save it without pictures",
         )
         texture = colours = None
+        notes: tuple[str, ...] = ()
         if suffix == "obj":
             surface = read_obj(content, most=MOST_VERTICES)
             vertices, faces = surface.vertices, surface.faces
             texture = texture_of(surface, Path(path).parent)
+            notes = libraries_missing(surface, Path(path).parent)
         else:
             content = CHECKS[suffix](content)
             pictures: list[bytes | None] = []
@@ -98,7 +102,7 @@ def read_mesh(path: str | Path) -> Mesh:
             faces = same[faces]
     except AssetError as error:
         raise AssetError(f"{named(path)}: {error}") from None
-    return Mesh(vertices.astype(np.float64), faces.astype(np.int32), texture, colours, same)
+    return Mesh(vertices.astype(np.float64), faces.astype(np.int32), texture, colours, same, notes)
 
 
 def _read_by_trimesh(content: bytes, suffix: str) -> list[Any]:

@@ -137,7 +137,7 @@ class Wrinkles:
     across: for each vertex and slot the direction at rest in which skin shortens when it wrinkles;
         its length is how readily it does; zero where it does not; shape (V, 2, 3), float32.
     relief: the shape that triangles can show of it: height of the skin by either slot, 127 is
-        `HIGHEST_FOLD`; covers the same as `map`, coarser; shape (h, w, 2), int8.
+        `HIGHEST_FOLD`; covers the same as `map`; shape (h, w, 2), int8.
     resting: how far it is wrinkled at rest, 0 to 1, as with age.
     """
 

@@ -47,7 +47,7 @@ class Texture:
 def texture_of(surface: ObjSurface, folder: Path) -> Texture | None:
     """What the material libraries beside an OBJ file paint it with; None where they paint nothing.
 
-    A library that is missing paints nothing: many files name one that was never sent along.
+    One that is missing paints nothing; `libraries_missing` names it.
     """
     by_material: dict[str, str] = {}
     for name in surface.libraries:
@@ -70,6 +70,15 @@ def texture_of(surface: ObjSurface, folder: Path) -> Texture | None:
         np.maximum(surface.face_uv, 0).astype(np.int32),
         picture,
         tuple(_reader(beside(folder, name)) for name in names),
+    )
+
+
+def libraries_missing(surface: ObjSurface, folder: Path) -> tuple[str, ...]:
+    """A line for each material library that was never sent along, as with many files."""
+    return tuple(
+        f"its material library {named(name)} is missing: painted without what it names"
+        for name in surface.libraries
+        if not beside(folder, name).exists()
     )
 
 

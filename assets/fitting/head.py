@@ -44,7 +44,7 @@ from .landmark_order import check_counting, check_lips, groups_in_disorder
 from .layouts import Layout, drawn_over, maps_in, own_picture
 from .organs import FittedSkin, place_eyes, place_parts
 from .painting import plain_picture, spread_uv
-from .soundness import SkinPiece, check_manifold, check_openings, skin_of
+from .soundness import SkinPiece, check_manifold, check_openings, skin_of, without_bag
 from .warp import Similarity, Warp, nearest_on
 
 ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere
@@ -129,11 +129,11 @@ def fit(
     skin = _facing_outward(skin)
     check_openings(skin)
     check_lips(skin)
+    skin = without_bag(skin)
     target = similarity.points(points)
-    notes: tuple[str, ...] = ()
-    whole = skin
+    notes, whole = mesh.notes, skin
     if len(skin.faces) > MOST_SIMULATED:
-        notes = (f"its {len(skin.faces)} triangles are too many to move in time; simplified",)
+        notes += (f"its {len(skin.faces)} triangles are too many to move in time; simplified",)
         skin = _simplified(skin, target)
     normals = vertex_normals(skin.vertices, skin.faces)
     warp = Warp(known.vertices[known.landmarks], target)

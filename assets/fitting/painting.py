@@ -120,7 +120,8 @@ def plain_picture(known: Head) -> Image:
     rows, columns = height // BLOCK, width // BLOCK
     inside = slice(0, rows * BLOCK), slice(0, columns * BLOCK)
     blocks = (rows, BLOCK, columns, BLOCK, -1)
-    left = (~is_folded[inside]).astype(np.float64)
+    is_skin = ~is_folded & (known.segments != Segment.HAIR)  # else ears would be grey with it
+    left = is_skin[inside].astype(np.float64)
     share = left.reshape(blocks).mean(axis=(1, 3))
     seen = (known.albedo[inside] * left[..., None]).reshape(blocks).mean(axis=(1, 3))
     filled = np.zeros_like(seen)

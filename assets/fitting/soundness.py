@@ -7,13 +7,15 @@ least slit: where the lips are welded no muscle can part them.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse import csgraph
+from scipy.spatial import cKDTree
 
 from ..errors import AssetError
 from ..model import FloatArray, IndexArray
@@ -22,6 +24,8 @@ MOST_TRIANGLES = 250_000
 FEWEST_TRIANGLES = 300  # below it eyes and mouth have no shape (chosen)
 LIPS = (62, 66)  # inner landmarks in the middle, above and below
 LIP_CORNERS = (60, 64)
+INNER_LIPS = slice(60, 68)
+LIP_RIM, BAG = 4.0, 15.0  # [mm] that lips keep of a bag behind them, and how deep one is at least
 # The two lips join around the corners of the mouth. If the way along the skin from one to the other
 # is less than this share of that way, they are welded; behind them a bag may join them honestly.
 WELDED = 0.6
@@ -127,6 +131,31 @@ def check_openings(skin: SkinPiece) -> None:
             )
 
 
+def without_bag(skin: SkinPiece) -> SkinPiece:
+    """Cut away a bag behind the lips, where the built-in mouth comes; in the face space [mm]."""
+    edge = skin.landmarks[INNER_LIPS]
+    paths = _shortest(skin.vertices, skin.faces, edge, return_predecessors=True)[1]
+    ring = set(edge.tolist())
+    for number, (start, end) in enumerate(pairwise([*edge, edge[0]])):
+        while (end := paths[number, end]) >= 0 and end != start:
+            ring.add(int(end))
+    is_edge = np.isin(np.arange(len(skin.vertices)), list(ring))
+    piece = pieces_of(skin.faces[~is_edge[skin.faces].any(axis=1)], len(skin.vertices))
+    is_behind = ~is_edge & ~np.isin(piece, piece[skin.landmarks[: INNER_LIPS.start]])
+    deepest = skin.vertices[is_behind, 2].min(initial=np.inf)
+    if deepest > skin.vertices[is_edge, 2].mean() - BAG:
+        return skin
+    is_behind &= cKDTree(skin.vertices[is_edge]).query(skin.vertices)[0] > LIP_RIM
+    left = np.flatnonzero(~is_behind[skin.faces].any(axis=1))
+    part = skin_of(skin.vertices, skin.faces[left], skin.landmarks)
+    return replace(
+        part,
+        file_vertices=skin.file_vertices[part.file_vertices],
+        file_faces=skin.file_faces[left[part.file_faces]],
+        is_turned=skin.is_turned,
+    )
+
+
 def _is_covered(corners: FloatArray, point: FloatArray) -> bool:
     """Whether one who looks at a point from the front sees a triangle there, or a little behind."""
     edges = np.roll(corners, -1, axis=1) - corners
@@ -140,10 +169,15 @@ def path_lengths(
     vertices: FloatArray, faces: IndexArray, starts: npt.NDArray[np.integer[Any]]
 ) -> FloatArray:
     """Lengths of the shortest paths along edges from each start to all vertices, shape (n, V)."""
+    return np.asarray(_shortest(vertices, faces, starts))
+
+
+def _shortest(
+    vertices: FloatArray, faces: IndexArray, starts: npt.NDArray[np.integer[Any]], **asked: bool
+) -> Any:
     count = len(vertices)
     links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     links = np.unique(np.sort(links, axis=1), axis=0)
     lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
     graph = sparse.csr_array((np.maximum(lengths, 1e-9), links.T), shape=(count, count))
-    shortest: FloatArray = csgraph.dijkstra(graph, directed=False, indices=starts)
-    return shortest
+    return csgraph.dijkstra(graph, directed=False, indices=starts, **asked)

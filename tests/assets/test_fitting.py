@@ -303,3 +303,14 @@ def test_nearest_point_agrees_with_a_plain_search(generator: np.random.Generator
     assert (found <= sampled + 1e-9).all()
     assert (sampled - found < 0.5).all()
     assert np.allclose(nearest.weights.sum(axis=1), 1.0)
+
+
+def test_a_bag_behind_the_lips_makes_room() -> None:
+    """The built-in mouth comes there; the skin outside, its landmarks and numbers stay."""
+    other = stranger()
+    bagged = closed(other.mesh, other.landmarks[60:68])
+    bagged.vertices[-1, 1] -= 0.04  # back, in the stranger's axes
+    head = fit(bagged, other.landmarks)
+    assert len(other.mesh.vertices) not in head.file_vertices
+    assert len(head.faces) > 0.95 * len(other.mesh.faces)
+    assert np.array_equal(head.file_vertices[head.landmarks], other.landmarks)

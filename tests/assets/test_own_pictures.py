@@ -201,10 +201,12 @@ def test_huge_pictures_are_refused_before_they_unfold(other: Stranger, tmp_path:
 
 
 def test_a_missing_library_paints_nothing(other: Stranger, tmp_path: Path) -> None:
-    """Many files name one that was never sent along."""
-    mesh, _ = _write_obj(tmp_path, other)
+    """Many files name one that was never sent along; it is told in one line."""
+    files = _write_obj(tmp_path, other)
     (tmp_path / "head.mtl").unlink()
-    assert read_mesh(mesh).texture is None
+    assert read_mesh(files[0]).texture is None
+    (note,) = fit_head(*files).notes
+    assert "head.mtl is missing" in note
 
 
 def test_layouts_that_cover_a_picture_many_times_are_refused() -> None:
