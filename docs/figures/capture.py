@@ -36,7 +36,7 @@ Part = tuple[tuple[str, ...], float, tuple[float, float, float, float]]  # see P
 RATE = 60  # frames a second
 SECONDS = 7.0
 CELL = (260, 300)  # [pixels] of a frame
-CAMERA = "0,0,1.1"
+CAMERA = "0,0,0.95"
 MOMENTS = {
     0.5: "at rest",
     1.2: "blink",
@@ -71,8 +71,8 @@ PLAYED: tuple[
     (("eyeLookOutLeft", "eyeLookInRight"), 0.33, (5.2, 5.3, 6.2, 6.5)),
 )
 SMILED: tuple[Part, ...] = (  # from some time on, so that slow machines see it, too
-    (("mouthSmile",), 0.85, (2.9, 3.3, 8.0, 9.0)),
-    (("cheekSquint", "mouthUpperUp", "mouthDimple"), 0.3, (2.9, 3.3, 8.0, 9.0)),
+    (("mouthSmile",), 0.85, (2.9, 3.3, 29.0, 30.0)),
+    (("cheekSquint", "mouthUpperUp", "mouthDimple"), 0.3, (2.9, 3.3, 29.0, 30.0)),
 )
 SYLLABLES = (0.5, 0.68, 0.9, 1.05, 1.3, 1.9, 2.1, 2.26, 2.5, 2.66, 2.9, 3.6, 3.8, 4.05, 4.2, 4.4,
              4.62, 5.3, 5.5, 5.7, 5.95)  # fmt: skip
@@ -91,9 +91,9 @@ PITCH, SOUND_RATE = 120.0, 16_000  # of the voice [Hz], [samples/s]
 TRACKS_WINDOW = (1160, 820)
 
 
-def written(path: Path, played: Sequence[Part] = PLAYED) -> Path:
+def written(path: Path, played: Sequence[Part] = PLAYED, seconds: float = SECONDS) -> Path:
     """The recording, in a file."""
-    times = np.arange(round(SECONDS * RATE) + 1) / RATE
+    times = np.arange(round(seconds * RATE) + 1) / RATE
     columns = [curve(name, times, played) for name in (*ARKIT, *ANGLES)]
     header = [
         "Timecode",
@@ -184,7 +184,7 @@ def tracks(folder: Path) -> Image:
 
 def live(folder: Path) -> Image:
     """A window that follows a recording, sent by another thread as a phone does."""
-    take = written(folder / "live.csv", SMILED)
+    take = written(folder / "live.csv", SMILED, 25.0)
     with Viewer(script_for(None, "face"), TALL_WINDOW) as viewer:
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
         viewer.panel_cache.refresh = 0.0  # panels in every frame

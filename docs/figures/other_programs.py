@@ -44,6 +44,7 @@ SCRIPT = "duration = 3.5\n[[pose]]\ntime = 0.0\n" + "".join(
 )
 FARTHEST = 16.0  # [mm] from rest
 FAR = (-300.0, 20.0, 1000.0)  # where the camera of ParaView's picture stands [mm]
+HEAD, HEAD_ANGLE = (0.0, -15.0, 0.0), 17.0  # what it looks at [mm, degrees]: no more of the shirt
 
 
 def exported(folder: str, name: str) -> tuple[Clip, Path]:
@@ -83,9 +84,9 @@ def in_paraview() -> Image:
             look = {"cmap": "OrRd", "smooth_shading": True, "show_scalar_bar": False}
             mesh = pyvista.wrap(reader.GetOutput())
             plotter.add_mesh(mesh, scalars="displacement", clim=(0.0, FARTHEST), **look)
-            plotter.camera_position = [FAR, (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
-            plotter.reset_camera()
-            plotter.camera.zoom(1.5)
+            plotter.camera_position = [FAR, HEAD, (0.0, 1.0, 0.0)]
+            plotter.camera.view_angle = HEAD_ANGLE
+            plotter.reset_camera_clipping_range()
             cells.append((POSES[frame], plotter.screenshot(return_img=True)))
             plotter.close()
     return contact_sheet(cells, columns=len(cells), cell_width=300)

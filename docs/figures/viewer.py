@@ -84,6 +84,7 @@ def anatomy(viewer: Viewer) -> None:
     viewer.session.set("jaw_open", 0.5)
     viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
     viewer.settings.display = Display(overlays=["skull", "muscles", "landmarks"])
+    viewer.view.camera = camera_for(viewer.session.scene, "three-quarter")
 
 
 def finger(viewer: Viewer) -> None:
@@ -91,7 +92,7 @@ def finger(viewer: Viewer) -> None:
     scene = viewer.session.scene
     corner = scene.positions[scene.head.landmarks[48]]  # type: ignore[attr-defined]
     viewer.mouse.skin_drag = SkinDrag(scene, corner.copy())
-    viewer.mouse.skin_drag.to(corner + np.array([-30.0, 16.0, 12.0]))
+    viewer.mouse.skin_drag.to(corner + np.array([-20.0, 11.0, 8.0]))
     for _ in range(20):
         viewer.frame()
     viewer.painter.level_of_detail.level = 0
