@@ -168,18 +168,6 @@ def test_a_mesh_that_can_be_no_head_is_refused_at_once(tmp_path: Path) -> None:
         Marking(mesh, Files(is_native=False))
 
 
-def test_quarter_turns_turn_the_mesh_alone(marking: Marking) -> None:
-    """Four of them are none; a mark stays where it is on the mesh, whatever is turned."""
-    before = marking.positions
-    mark_first(marking)
-    marks, start = marking.marks, marking.positions
-    for axis in np.eye(3):
-        for _ in range(4):
-            marking.turn(axis)
-        np.testing.assert_allclose(marking.positions, start, atol=1e-6)
-    assert marking.marks == marks and before.shape == start.shape
-
-
 def test_points_are_picked_from_either_side() -> None:
     """The nearest of two walls that a ray meets, whichever way they face."""
     walls = np.array([[-1, -1, z] for z in (0.0, -1.0)] + [[3, -1, z] for z in (0.0, -1.0)]
@@ -223,15 +211,13 @@ class TestInTheWindow:
         return on_screen(viewer, *places_in(room.view.area, room.view.camera, seen)[0])
 
     def face_it(self, viewer: Viewer) -> None:
-        """Tip the mesh, so that z is up no more, and turn the camera to the face."""
+        """Turn the camera to the face, which lies on its back: z is up in its file."""
         room = self.room(viewer)
-        xdotool(viewer, "key", "t")
         front = placing(dict(enumerate(true_places()))).inverse.vectors([0.0, 0.0, 1.0])
         x, y, z = room.marking.placing.vectors(front)
         camera = room.view.camera
         camera.orbit(math.degrees(math.atan2(x, z)) - camera.yaw)
         camera.orbit(0.0, math.degrees(math.atan2(y, math.hypot(x, z))) - camera.pitch)
-        assert abs(camera.pitch) < 30.0
 
     def mark_first(self, viewer: Viewer) -> None:
         """Click the first points."""

@@ -79,12 +79,6 @@ class Marking:
             self._place(upright)
             self.current, self.is_upright = ORDER[0], True
 
-    def turn(self, axis: FloatArray) -> None:
-        """Turn the mesh by a quarter about one of the axes of what is seen."""
-        turn = np.cross(np.eye(3), -axis) + np.outer(axis, axis)
-        old = self.placing
-        self._place(Similarity(old.scale, turn @ old.rotation, turn @ old.shift))
-
     def seen(self, numbers: Iterable[int]) -> tuple[FloatArray, FloatArray]:
         """Where marks are seen, and the normals of the skin there, shape (n, 3) each."""
         chosen = list(numbers)

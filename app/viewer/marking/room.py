@@ -3,29 +3,49 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import Protocol
 
-import numpy as np
+from risorius import render
 
 from ..command import Command
-from ..messages import Message, Task
+from ..export import Exporter
+from ..file_drop import FileDrop
+from ..gui import Gui
+from ..messages import Message, Messages, Task
 from ..painter import Painter
 from ..panels.menu_bar import MenuBar
+from ..question import Question
+from ..session import Session
+from ..settings import Settings
 from .marking import Marking
 from .mouse import MarkingMouse
 from .panel import MarkingPanel
 from .picture import MarkingPicture, MarkingView, yaw_of
 
-if TYPE_CHECKING:
-    from ..parts import Parts
-
 SHARED = ("Quit", "Dark theme", "Larger words", "Smaller words", "Keys and mouse")
+
+
+class Window(Protocol):
+    """What is needed of the window (parts.py)."""
+
+    surface: render.WindowSurface
+    gui: Gui
+    settings: Settings
+    session: Session
+    messages: Messages
+    question: Question
+    exporter: Exporter
+    file_drop: FileDrop
+    commands: tuple[Command, ...]
+
+    def leave_marking(self) -> None:
+        """Back to the face."""
 
 
 class Room:
     """A mesh that is marked, in the window."""
 
-    def __init__(self, marking: Marking, window: Parts) -> None:
+    def __init__(self, marking: Marking, window: Window) -> None:
         self.marking, self._window = marking, window
         surface, messages = window.surface, window.messages
         self.view = MarkingView(marking, window.settings, surface)
@@ -67,13 +87,6 @@ class Room:
         self.marking.go(direction)
         self.view.camera.yaw, self.view.camera.pitch = yaw_of(self.marking.current), 0.0
 
-    def _tip(self) -> None:
-        """Turn the mesh about the axis that is nearest to the picture's width."""
-        across = self.view.camera.axes()[0]
-        nearest = int(np.abs(across).argmax())
-        self.marking.turn(np.sign(across[nearest]) * np.eye(3)[nearest])
-        self.view.fit_scene()
-
     def _commands(self) -> tuple[Command, ...]:
         """All that a key or a menu does here."""
         marking, view = self.marking, self.view
@@ -93,6 +106,5 @@ class Room:
             landmarks("Mirror this group", "M", marking.mirror),
             landmarks("Guess again", "G", marking.guess),
             Command("View", "Frame the face", "F", view.fit_scene),
-            Command("View", "Tip the mesh", "T", self._tip),
             *(command for command in self._window.commands if command.label in SHARED),
         )
