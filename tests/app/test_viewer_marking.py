@@ -27,7 +27,7 @@ from risorius.assets.fitting.landmark_file import read_landmarks
 from risorius.sim.landmarks import MIRRORED
 from tests.heads import METRES, Array, stranger
 
-from .driving import NEEDS_A_SCREEN, click, drop, on_screen, until, write, xdotool
+from .driving import NEEDS_A_SCREEN, click, draw_frames, drop, on_screen, until, write, xdotool
 
 NEAR = 6.0 * METRES  # of the built-in head's own shape, guesses are that good
 
@@ -213,6 +213,7 @@ class TestInTheWindow:
     def face_it(self, viewer: Viewer) -> None:
         """Turn the camera to the face, which lies on its back: z is up in its file."""
         room = self.room(viewer)
+        draw_frames(viewer)  # the mesh gets its place in the window
         front = placing(dict(enumerate(true_places()))).inverse.vectors([0.0, 0.0, 1.0])
         x, y, z = room.marking.placing.vectors(front)
         camera = room.view.camera
