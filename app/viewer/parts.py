@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+from functools import partial
 from pathlib import Path
 
 from risorius import render
@@ -21,7 +22,7 @@ from .gui import Gui, wake_up
 from .idle_life import IdleLife
 from .key_selection import KeySelection
 from .live_commands import LiveCommands
-from .marking import Lent, Marking, Room
+from .marking import Marking, Room
 from .messages import Message, Messages
 from .motion_export import MotionExport
 from .mouse import Mouse
@@ -163,7 +164,7 @@ class Parts:
             self.remember()
         self.live.stop()
         self.exporter.close()
-        self._leave_marking()
+        self.leave_marking()
         self.soundtrack.close()
         self.recovery.close()
         self._resources.close()
@@ -180,7 +181,7 @@ class Parts:
     def show_scene(self, scene: Scene) -> None:
         """Take another scene with the same controls in place of this one."""
         self.session.move_to(scene)
-        self._leave_marking()
+        self.leave_marking()
         display = self.settings.display
         display.remove_missing_overlays(scene)
         refused = remove_refused_options(display, scene)
@@ -201,39 +202,18 @@ class Parts:
             raise UserError("end the film first (F10)")
         marking = Marking(mesh, self.files)
         line = None if landmarks is None else marking.open(landmarks)
+        self.leave_marking()
+        self.session.is_playing = False
+        self.room = Room(marking, self)
+        return line
 
-        def begin() -> Message:
-            """Do so."""
-            self._leave_marking()
-            self.session.is_playing = False
-            self.room = Room(
-                marking,
-                Lent(
-                    self.surface,
-                    self.gui,
-                    self.settings,
-                    self.session,
-                    self.messages,
-                    self.question,
-                    self.exporter,
-                    self.panel_state,
-                ),
-                use=lambda *files: self.file_drop.open([str(file) for file in files]),
-                leave=self._leave_marking,
-                close=self.ask_to_close,
-            )
-            return line
-
-        return begin() if self.room is None else self.room.leave(begin)
-
-    def _leave_marking(self) -> Message:
+    def leave_marking(self) -> None:
         """Back to the face."""
         if self.room is not None:
-            self.room.close()
+            self.room.picture.close()
             self.room = None
             self.mouse.forget()
             self.painter.forget()
-        return None
 
     def select_muscle(self, name: str) -> None:
         """Show a muscle's slider."""
@@ -245,7 +225,8 @@ class Parts:
         """Close the window, unless work would be lost: then ask first."""
         if self.is_leaving:
             return self._close()
-        return self.question.before("Close", self._close)
+        ask = partial(self.question.before, "Close", self._close)
+        return ask() if self.room is None else self.room.leave(ask)
 
     def _close(self) -> str | None:
         self.is_leaving = self.surface.should_close = True

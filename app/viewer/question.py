@@ -9,7 +9,7 @@ from .session import Session
 
 
 class Unsaved(Protocol):
-    """Work beside the session's, which may be lost, too."""
+    """Work that is not the session's."""
 
     @property
     def unsaved(self) -> str:
@@ -26,8 +26,7 @@ class Question:
         self._session = session
         self.task: Task | None = None  # what waits for the answer
         self.verb = ""  # for it, as "Close"
-        self.other: Unsaved | None = None  # what else the window works on
-        self._is_of_other = False  # whether that alone would be lost
+        self.other: Unsaved | None = None  # whose work is in danger, in place of the session's
 
     @property
     def is_open(self) -> bool:
@@ -37,24 +36,11 @@ class Question:
     @property
     def unsaved(self) -> str:
         """What would be lost, in words; "" for nothing."""
-        both = (self.unsaved_session, self.other.unsaved if self.other is not None else "")
-        return " and ".join(filter(None, both))
+        return (self.other or self._session).unsaved
 
-    @property
-    def unsaved_session(self) -> str:
-        """What would be lost of the session."""
-        return "" if self._is_of_other else self._session.unsaved
-
-    def save_other(self, then: Task) -> Message:
-        """Save what is not the session's, and go on."""
-        return then() if self.other is None else self.other.save(then)
-
-    def before(self, verb: str, task: Task, *, is_of_other: bool = False) -> Message:
-        """Go on with `task` at once, or when what is unsaved was saved or given up.
-
-        is_of_other: the session's work is not in danger.
-        """
-        self._is_of_other = is_of_other
+    def before(self, verb: str, task: Task, other: Unsaved | None = None) -> Message:
+        """Go on with `task` at once, or when what is unsaved was saved or given up."""
+        self.other = other
         if not self.unsaved:
             return task()
         self.task, self.verb = task, verb

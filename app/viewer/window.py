@@ -11,12 +11,14 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from functools import partial
+from pathlib import Path
 
 from imgui_bundle import imgui
 
 from ..stopping import cleaned_up_if_stopped
 from .command import run_pressed
 from .export import FRAMES_PER_SECOND
+from .file_drop import LANDMARKS
 from .gui import on_drop, poll_events, wait_for_event
 from .live_commands import PACING
 from .painter import Painter
@@ -240,4 +242,10 @@ class Viewer(Parts):
     def drop(self, paths: Sequence[str]) -> None:
         """Open files that were dropped onto the window."""
         self._awake = FRAMES_AFTER_EVENT
-        self.messages.attempt(partial(self.file_drop.open, paths))
+        open_files = partial(self.file_drop.open, paths)
+        if self.room is None:
+            self.messages.attempt(open_files)
+        elif [Path(path).suffix for path in paths] == [LANDMARKS]:
+            self.messages.attempt(partial(self.room.marking.open, Path(paths[0])))
+        else:
+            self.messages.attempt(partial(self.room.leave, open_files))

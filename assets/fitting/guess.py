@@ -39,14 +39,14 @@ REACH = 18.0  # [mm] beyond which a place on the mesh is not what a point of the
 Known = Mapping[int, npt.ArrayLike]  # points (3,) [unit of the mesh] by the landmark's number
 
 
-def guess(mesh: Mesh, known: Known, *, template: Head | None = None) -> FloatArray:
+def guess(mesh: Mesh, known: Known) -> FloatArray:
     """Where all 68 landmarks lie on a mesh [its unit], shape (68, 3).
 
-    known: those of `FIRST` at least; they stay where they are. template: the built-in head unless
-    told. Raises AssetError where they are no face's.
+    known: those of `FIRST` at least; they stay where they are. Raises AssetError where they are
+    no face's.
     """
-    head = load("head") if template is None else template
-    similarity = placing(known, template=head)
+    head = load("head")
+    similarity = placing(known)
     numbers = sorted(known)
     given = similarity.points(np.array([known[number] for number in numbers]))
     vertices = similarity.points(mesh.vertices)
@@ -67,12 +67,12 @@ def guess(mesh: Mesh, known: Known, *, template: Head | None = None) -> FloatArr
     return similarity.inverse.points(found)
 
 
-def placing(known: Known, *, template: Head | None = None) -> Similarity:
+def placing(known: Known) -> Similarity:
     """The similarity to the face space [mm] by landmarks that are known, four of them at least.
 
     Raises AssetError where they are no face's, or that of a mirror image.
     """
-    head = load("head") if template is None else template
+    head = load("head")
     numbers = sorted(known)
     own = head.vertices[head.landmarks[numbers]]
     given = np.array([known[number] for number in numbers], dtype=np.float64)

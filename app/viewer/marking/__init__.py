@@ -9,6 +9,6 @@ room.py       all of it joined, and its commands
 """
 
 from .marking import Marking
-from .room import Lent, Room
+from .room import Room
 
-__all__ = ["Lent", "Marking", "Room"]
+__all__ = ["Marking", "Room"]

@@ -1,14 +1,14 @@
 """A mesh whose landmarks are being marked: what is done to the marks, undo, its file.
 
 Knows nothing of windows. Places are those of the mesh's own coordinates; `placing` takes them to
-the space that is seen, in which the head is about as large as a head in millimetres, and upright
-as soon as the first points tell how.
+the space that is seen: upright and in millimetres as soon as all marks are there.
 """
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -29,7 +29,7 @@ from ...files import save_text
 from ..files import Files
 from ..history import History
 from ..messages import Message, Task
-from .marks import GROUP_OF, ORDER, Marks, name_of
+from .marks import GROUP_OF, ORDER, Marks, Place, name_of
 
 SEEN_RADIUS = 140.0  # [mm] of the mesh, as long as nobody knows how large a head is in it
 SUFFIX = ".json"
@@ -49,46 +49,35 @@ class Marking:
             self.mesh = mesh = read_mesh(path)
         with _for_users(f"{path.name}: "):
             check_manifold(mesh.faces)
-        middle = 0.5 * (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0))
-        radius = max(float(np.linalg.norm(mesh.vertices - middle, axis=1).max()), 1e-12)
         self.file: Path | None = None  # in which the marks are kept
-        self._saved = Marks({})
-        self.marks = self._saved
-        self._history = History(self.marks, lambda _, after: len(after.places))
+        self.marks = self._saved = Marks({})
+        self.history = History(self.marks, lambda _, after: len(after.places))
         self.current = ORDER[0]
         self.is_upright = False
+        middle = 0.5 * (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0))
+        radius = max(float(np.linalg.norm(mesh.vertices - middle, axis=1).max()), 1e-12)
         scale = SEEN_RADIUS / radius
+        self.faces = mesh.faces
         self._place(Similarity(scale, np.eye(3), -scale * middle))
-        self._ask()
 
     # Where the mesh is seen
 
     def _place(self, placing: Similarity) -> None:
         self.placing = placing
         self.positions = placing.points(self.mesh.vertices)
-        faces = self.mesh.faces
-        normals = vertex_normals(self.positions, faces)
+        self._normals = vertex_normals(self.positions, self.faces)
         off = self.positions - self.positions.mean(axis=0)
-        if float((normals * off).sum()) < 0.0:  # it faces inward throughout
-            faces, normals = np.ascontiguousarray(faces[:, ::-1]), -normals
-        self.faces, self._normals = faces, normals
+        if float((self._normals * off).sum()) < 0.0:  # it faces inward throughout
+            self.faces = np.ascontiguousarray(self.faces[:, ::-1])
+            self._normals = -self._normals
         self._nearest = cKDTree(self.positions)
 
-    def _stand_up(self) -> None:
-        """The first time that all marks are there: upright, looking ahead, as large as a head.
-
-        Those of a file may be no face's; then the mesh stays as it is, and they can be mended.
-        """
+    def _stand_up(self, known: Mapping[int, Place]) -> None:
+        """The first time: upright, looking ahead, as large as a head; AssetError for no face's."""
+        upright = placing(known)
         if not self.is_upright:
-            with contextlib.suppress(AssetError):
-                self._place(placing(self.marks.by_hand))
-                self.current, self.is_upright = ORDER[0], True
-
-    def turn(self, axis: FloatArray) -> None:
-        """Turn the mesh by a quarter about one of the axes of what is seen."""
-        turn = np.cross(np.eye(3), -axis) + np.outer(axis, axis)
-        old = self.placing
-        self._place(Similarity(old.scale, turn @ old.rotation, turn @ old.shift))
+            self._place(upright)
+            self.current, self.is_upright = ORDER[0], True
 
     def seen(self, numbers: Iterable[int]) -> tuple[FloatArray, FloatArray]:
         """Where marks are seen, and the normals of the skin there, shape (n, 3) each."""
@@ -102,86 +91,64 @@ class Marking:
 
     # What is marked
 
-    @property
-    def asked(self) -> int | None:
-        """The first point that is not marked yet, before the others can be guessed."""
-        return self.marks.asked
-
     def put(self, number: int, point: FloatArray) -> None:
         """Place a landmark at a point of what is seen; `note` says when that is done."""
         self.marks = self.marks.placed(number, self.placing.inverse.points(point))
 
     def note(self) -> Message:
-        """A change is complete: it can be undone, and what comes next is asked for, or guessed."""
-        self._history.note(self.marks)
-        self._ask()
-        return self.guess() if self.can_guess and not self.marks.is_complete else None
+        """A change is complete, and can be undone; the rest is guessed if it can be."""
+        can_guess = self.marks.asked is None and not self.marks.is_complete
+        try:
+            return self.guess() if can_guess else None
+        finally:  # marks that are no face's are there to be mended
+            self._show(self.marks)
+            self.history.note(self.marks)
 
-    def _ask(self) -> None:
-        asked = self.asked
-        self.current = self.current if asked is None else asked
-
-    @property
-    def can_guess(self) -> bool:
-        """Whether the first points are there."""
-        return self.asked is None
+    def _show(self, marks: Marks) -> None:
+        self.marks = marks
+        self.current = self.current if marks.asked is None else marks.asked
 
     def guess(self) -> Message:
         """Place all that were not placed by hand; UserError where the marks are no face's."""
         with _for_users(cure="; drag points, or undo"):
-            self.marks = self.marks.with_guessed(guess(self.mesh, self.marks.by_hand))
-        self._stand_up()
-        self.note()
+            found = guess(self.mesh, self.marks.by_hand)
+        self._stand_up(self.marks.by_hand)
+        self.marks = self.marks.with_guessed(found)
+        self.history.note(self.marks)
         return "all points are guessed; drag those that are not where they belong"
 
     def go(self, step: int) -> None:
         """To the next landmark in the order of marking, or with -1 to the one before."""
-        if self.can_guess:
-            self.current = ORDER[(ORDER.index(self.current) + step) % len(ORDER)]
+        self.current = ORDER[(ORDER.index(self.current) + step) % len(ORDER)]
 
-    def mirror(self, *, whole: bool = False) -> Message:
-        """Take the other side from that of the current point: its group, or `whole` sides."""
-        on_side = {n for n in GROUP_OF if name_of(n).split("right")[1:]}
-        is_right = self.current in on_side
-        if int(MIRRORED[self.current]) == self.current:
+    def mirror(self) -> Message:
+        """Take the other side of the current point's group from its own side; all must be there."""
+        right = [number for number in ORDER if "right" in name_of(number)]
+        is_right = self.current in right
+        group = GROUP_OF[self.current].numbers
+        numbers = [n for n in group if MIRRORED[n] != n and (n in right) == is_right]
+        if MIRRORED[self.current] == self.current:
             return "choose a point of the side that is right: this one is in the middle"
-        group = set(ORDER if whole else GROUP_OF[self.current].numbers)
-        numbers = [n for n in group if MIRRORED[n] != n and (n in on_side) == is_right]
         points, normals = self.seen(numbers)
         all_seen, _ = self.seen(range(len(MIRRORED)))
-        across = (all_seen[MIRRORED] - all_seen)[sorted(on_side)].sum(axis=0)
+        across = (all_seen[MIRRORED] - all_seen)[right].sum(axis=0)
         across /= max(float(np.linalg.norm(across)), 1e-12)
+        mirror = np.eye(3) - 2.0 * np.outer(across, across)
         middle = all_seen.mean(axis=0)
-        wanted = points - 2.0 * np.outer((points - middle) @ across, across)
-        facing = normals - 2.0 * np.outer(normals @ across, across)
         skin = skin_around(self.positions, self.faces, all_seen)
-        found = nearest_on(wanted, facing, self.positions, skin).interpolate(self.positions)
-        for number, point in zip(numbers, found, strict=True):
+        wanted = middle + (points - middle) @ mirror
+        feet = nearest_on(wanted, normals @ mirror, self.positions, skin)
+        for number, point in zip(numbers, feet.interpolate(self.positions), strict=True):
             self.put(int(MIRRORED[number]), point)
-        self.note()
-        return None
-
-    # Undo
-
-    @property
-    def can_undo(self) -> bool:
-        """Whether there is something to undo."""
-        return self._history.can_undo
-
-    @property
-    def can_redo(self) -> bool:
-        """Whether there is something to redo."""
-        return self._history.can_redo
+        return self.note()
 
     def undo(self) -> None:
         """Back to before the last change."""
-        self.marks = self._history.undo()
-        self._ask()
+        self._show(self.history.undo())
 
     def redo(self) -> None:
         """Forward again."""
-        self.marks = self._history.redo()
-        self._ask()
+        self._show(self.history.redo())
 
     # Files
 
@@ -197,10 +164,11 @@ class Marking:
         marks = Marks({})
         for number, place in places.items():
             marks = marks.placed(number, place)
+        if marks.is_complete:
+            with _for_users(f"{path.name}: "):
+                self._stand_up(marks.places)
         self.marks = self._saved = Marks(marks.places, guessed)
         self.file = path
-        if self.marks.is_complete:
-            self._stand_up()
         return self.note() or f"{path.name}: {len(places)} landmarks"
 
     def ask_open(self) -> None:
@@ -212,29 +180,23 @@ class Marking:
     def save(self, then: Task = lambda: None) -> Message:
         """Write the marks to their file, all or as many as there are, or ask for one first."""
         if self.file is not None:
-            return self._write(self.file, then)
-        self.save_as(then)
-        return None
-
-    def save_as(self, then: Task = lambda: None) -> None:
-        """Ask for a name, and write the marks."""
-        write: Callable[[Path], Message] = lambda path: self._write(path, then)  # noqa: E731
-        name = self.file or self.path.with_suffix(SUFFIX)
+            return self._write(then, self.file)
+        proposed = str(self.path.with_suffix(SUFFIX).absolute())
         self._files.ask(
             "Save landmarks",
-            write,
+            partial(self._write, then),
             saving=True,
-            proposed=str(name.absolute()),
+            proposed=proposed,
             kind="Landmarks",
             suffixes=(SUFFIX,),
         )
+        return None
 
-    def _write(self, path: Path, then: Task) -> Message:
+    def _write(self, then: Task, path: Path) -> Message:
         save_text(path, landmarks_text(self.marks.places, self.marks.guessed))
         self.file, self._saved = path, self.marks
-        count = len(self.marks.places)
         rest = "" if self.marks.is_complete else "; the others can be marked another time"
-        return then() or f"{path}: {count} landmarks written{rest}"
+        return then() or f"{path}: {len(self.marks.places)} landmarks written{rest}"
 
 
 @contextlib.contextmanager

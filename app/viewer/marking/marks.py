@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -112,16 +112,12 @@ class Marks:
     def placed(self, number: int, place: npt.ArrayLike) -> Marks:
         """The same with one that was placed by hand."""
         x, y, z = np.asarray(place, np.float64).tolist()
-        places = {**self.places, number: (x, y, z)}
-        return replace(self, places=places, guessed=self.guessed - {number})
+        return Marks({**self.places, number: (x, y, z)}, self.guessed - {number})
 
     def with_guessed(self, found: npt.NDArray[np.float64]) -> Marks:
         """The same with all 68 (68, 3) where they were guessed, but those placed by hand."""
-        guessed = frozenset(set(range(LANDMARK_COUNT)) - self.by_hand.keys())
-        marks = self
-        for number in guessed:
-            marks = marks.placed(number, found[number])
-        return replace(marks, guessed=guessed)
+        guessed = {n: (x, y, z) for n, (x, y, z) in enumerate(found.tolist())}
+        return Marks({**guessed, **self.by_hand}, frozenset(guessed.keys() - self.by_hand.keys()))
 
     @property
     def by_hand(self) -> dict[int, Place]:

@@ -9,20 +9,18 @@ from imgui_bundle import imgui
 
 from risorius import render
 
-from ..gui import em
+from ..gui import LEFT, em
 from ..messages import Messages
 from ..mouse import CameraMouse
 from ..picking import Ray, skin_under
 from .marking import Marking
-from .picture import MarkingView
+from .picture import MarkingView, are_facing, places_in
 
 REACH = 0.8  # [em] around a mark in which the mouse takes it
 
 
 class MarkingMouse(CameraMouse):
-    """Follows the mouse; what it is on is `pointed`."""
-
-    pointed: int | None = None  # the mark under the mouse
+    """Follows the mouse from press to release."""
 
     def __init__(
         self,
@@ -32,34 +30,38 @@ class MarkingMouse(CameraMouse):
         messages: Messages,
     ) -> None:
         super().__init__(view, surface)
-        self._marking_view, self._marking, self._messages = view, marking, messages
+        self._marking, self._messages = marking, messages
 
     def _hover(self, io: Any) -> None:
-        self.pointed = self._mark_under(io)
-        if self.pointed is not None:
+        if self._mark_under(io) is not None:
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
 
     def _take(self, io: Any) -> str:
-        if self.pointed is None:
+        pointed = self._mark_under(io)
+        if pointed is None:
             return "orbit"
-        self._marking.current = self.pointed
+        self._marking.current = pointed
         return "mark"
 
     def _drag(self, io: Any) -> None:
+        if not self._has_moved(io):
+            return
         if self._doing == "mark":
             point = self._skin(io)
-            if self._has_moved(io) and point is not None:
+            if point is not None:
                 self._marking.put(self._marking.current, point)
-        elif self._doing != "orbit" or self._has_moved(io):
-            super()._drag(io)
+        super()._drag(io)
 
     def _release(self, io: Any) -> None:
-        is_click = self._doing == "orbit" and imgui.is_mouse_released(0) and not self._has_moved(io)
-        point = self._skin(io) if is_click else None
-        if point is not None:
-            self._marking.put(self._marking.current, point)
-        if point is not None or self._doing == "mark":
+        if self._doing == "mark":
             self._messages.attempt(self._marking.note)
+        elif self._doing == "orbit" and imgui.is_mouse_released(LEFT) and not self._has_moved(io):
+            point = self._skin(io)
+            if point is None:
+                self._messages.say("there is no skin here; click on the mesh")
+            else:
+                self._marking.put(self._marking.current, point)
+                self._messages.attempt(self._marking.note)
         self.forget()
 
     def _skin(self, io: Any) -> Any:
@@ -69,10 +71,11 @@ class MarkingMouse(CameraMouse):
         return skin_under(ray, marking.positions, marking.faces, from_outside=False)
 
     def _mark_under(self, io: Any) -> int | None:
-        marking, view = self._marking, self._marking_view
+        marking, view = self._marking, self._view
         points, normals = marking.seen(marking.marks.places)
-        off = np.linalg.norm(view.on_screen(points) - (io.mouse_pos.x, io.mouse_pos.y), axis=1)
-        off[~view.are_seen(points, normals)] = np.inf
+        places = np.reshape(places_in(view.area, view.camera, points), (-1, 2))
+        off = np.linalg.norm(places - (io.mouse_pos.x, io.mouse_pos.y), axis=1)
+        off[~are_facing(view.camera, points, normals)] = np.inf
         found = dict(zip(marking.marks.places, off.tolist(), strict=True))
         # Of marks in one place, as on lips that touch, the current one is meant.
         nearest = min(found, key=lambda n: found[n] - em(0.3) * (n == marking.current), default=0)

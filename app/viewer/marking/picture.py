@@ -22,20 +22,22 @@ from .marks import GROUP_OF, name_of
 FACING = 0.15  # cosine to the line of sight beyond which a mark is seen
 
 FloatArray = npt.NDArray[np.float64]
+Spot = tuple[float, float]  # [window units]
 
 
 class MeshScene(Scene):
-    """A mesh that nothing moves."""
+    """The mesh where it is placed now."""
 
     name = "face"
     limits: Mapping[str, tuple[float, float]] = {}
 
     def __init__(self, marking: Marking) -> None:
         self.rest_positions, self.faces = marking.positions, marking.faces
+        self._marking = marking
 
     @property
     def positions(self) -> FloatArray:
-        return self.rest_positions
+        return self._marking.positions
 
 
 class MarkingView(View):
@@ -53,11 +55,6 @@ class MarkingView(View):
         if marking.is_upright:  # all of the face, however much there is of hair and shoulders
             self.camera.fit(marking.seen(marking.marks.places)[0], 0.14)
 
-    def look_at(self, number: int) -> None:
-        """Turn to a landmark, whose side may be turned away."""
-        if self._marking.is_upright:
-            self.camera.yaw, self.camera.pitch = yaw_of(number), 0.0
-
     @property
     def display(self) -> Display:
         return Display(skin="clay")
@@ -65,15 +62,7 @@ class MarkingView(View):
     @property
     def state(self) -> object:
         marking = self._marking
-        return super().state, id(marking.positions), marking.current, marking.can_guess
-
-    def on_screen(self, points: FloatArray) -> FloatArray:
-        """Where points (n, 3) are in the window [its units], shape (n, 2)."""
-        return places_in(self.area, self.camera, points)
-
-    def are_seen(self, points: FloatArray, normals: FloatArray) -> npt.NDArray[np.bool_]:
-        """Whether skin at points (n, 3) looks at the camera, shape (n,)."""
-        return are_facing(self.camera, points, normals)
+        return super().state, id(marking.positions), marking.current, marking.marks.is_complete
 
     @property
     def drawn(self) -> None:
@@ -93,32 +82,18 @@ class MarkingPicture:
         self.surface, self.marking = surface, marking
         self._renderer = render.Renderer(surface)
         self._guide = Pipeline(build_scene("face"), self._renderer, [Refinement()])
-        head = assets.load("head")
-        normals = vertex_normals(head.vertices, head.faces)
-        self._guide_marks = head.vertices[head.landmarks], normals[head.landmarks]
-        self.bind_mesh()
-
-    def bind_mesh(self) -> None:
-        """Take the mesh as it is placed now."""
         static = Refinement(refiner=STATIC)
-        self._mesh = Pipeline(MeshScene(self.marking), self._renderer, [static])
-        self._bound = self.marking.positions
+        self._mesh = Pipeline(MeshScene(marking), self._renderer, [static])
+        head = assets.load("head")
+        self.guide_points = head.vertices[head.landmarks]
+        self._guide_normals = vertex_normals(head.vertices, head.faces)[head.landmarks]
 
     def bind(self, display: Display) -> None:
-        """Follow the mesh where it was placed anew."""
-        if self._bound is not self.marking.positions:
-            self.close_mesh()
-            self.bind_mesh()
-
-    def close_mesh(self) -> None:
-        """Let go of the mesh."""
-        for drawn in self._mesh.meshes:
-            drawn.stream.release()
+        """Nothing: the mesh is always drawn alike."""
 
     def close(self) -> None:
         """Let go of everything."""
-        self.close_mesh()
-        for drawn in self._guide.meshes:
+        for drawn in (*self._mesh.meshes, *self._guide.meshes):
             drawn.stream.release()
         if self._guide.texture is not None:
             self._guide.texture.release()
@@ -137,21 +112,15 @@ class MarkingPicture:
         self.surface.target.flush()
         self.surface.gl.finish()
 
-    @property
-    def guide_points(self) -> FloatArray:
-        """The landmarks of the guide, shape (68, 3)."""
-        return self._guide_marks[0]
-
     def guide_seen(self) -> npt.NDArray[np.bool_]:
-        """Which of them look at its camera, shape (68,)."""
-        return are_facing(self.guide_camera(), *self._guide_marks)
+        """Which points of the guide look at its camera, shape (68,)."""
+        return are_facing(self.guide_camera(), self.guide_points, self._guide_normals)
 
     def guide_camera(self) -> render.OrbitCamera:
         """The camera that shows the current landmark best; the whole face for the first ones."""
-        marking, points = self.marking, self.guide_points
+        points, number = self.guide_points, self.marking.current
         camera = render.OrbitCamera.framing(points)
-        number = marking.current
-        if marking.can_guess:
+        if self.marking.marks.is_complete:
             group = GROUP_OF[number]
             line = next(line for line in group.lines if number in line)
             camera.target = points[list(line)].mean(axis=0)
@@ -177,10 +146,11 @@ def are_facing(
 
 def places_in(
     area: tuple[float, float, float, float], camera: render.OrbitCamera, points: FloatArray
-) -> FloatArray:
-    """Where a camera that fills an area of the window sees points (n, 3), shape (n, 2)."""
+) -> list[Spot]:
+    """Where a camera that fills an area of the window sees points (n, 3) [window units]."""
     left, top, width, height = area
     matrix = np.asarray(camera.view_matrix() @ camera.projection_matrix(width / max(height, 1.0)))
     clip = np.column_stack([points, np.ones(len(points))]) @ matrix
     middle = np.array([left + 0.5 * width, top + 0.5 * height])
-    return np.asarray(middle + 0.5 * clip[:, :2] / clip[:, 3:] * (width, -height))
+    places = middle + 0.5 * clip[:, :2] / clip[:, 3:] * (width, -height)
+    return [(x, y) for x, y in places.tolist()]

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
-
-import numpy as np
+from typing import Protocol
 
 from risorius import render
 
 from ..command import Command
 from ..export import Exporter
+from ..file_drop import FileDrop
 from ..gui import Gui
 from ..messages import Message, Messages, Task
 from ..painter import Painter
-from ..panel_state import PanelState
 from ..panels.menu_bar import MenuBar
 from ..question import Question
 from ..session import Session
@@ -24,12 +20,13 @@ from ..settings import Settings
 from .marking import Marking
 from .mouse import MarkingMouse
 from .panel import MarkingPanel
-from .picture import MarkingPicture, MarkingView
+from .picture import MarkingPicture, MarkingView, yaw_of
+
+SHARED = ("Quit", "Dark theme", "Larger words", "Smaller words", "Keys and mouse")
 
 
-@dataclass(frozen=True)
-class Lent:
-    """What the window lends to a room."""
+class Window(Protocol):
+    """What is needed of the window (parts.py)."""
 
     surface: render.WindowSurface
     gui: Gui
@@ -38,33 +35,27 @@ class Lent:
     messages: Messages
     question: Question
     exporter: Exporter
-    panels: PanelState
+    file_drop: FileDrop
+    commands: tuple[Command, ...]
+
+    def leave_marking(self) -> None:
+        """Back to the face."""
 
 
 class Room:
     """A mesh that is marked, in the window."""
 
-    def __init__(
-        self,
-        marking: Marking,
-        lent: Lent,
-        *,
-        use: Callable[[Path, Path], Message],
-        leave: Task,
-        close: Task,
-    ) -> None:
-        """use: called with mesh and landmark file. leave, close: this room, the window."""
-        self.marking = marking
-        self._use, self._leave, self._question = use, leave, lent.question
-        lent.question.other = marking
-        self.view = MarkingView(marking, lent.settings, lent.surface)
-        self.picture = MarkingPicture(marking, lent.surface)
-        self.painter = Painter(self.picture, self.view, lent.exporter, lent.messages)
-        self.mouse = MarkingMouse(self.view, lent.surface, marking, lent.messages)
-        self.commands = self._commands(lent.settings, lent.panels, close)
-        menus = MenuBar(lent.gui, lent.session, lent.messages, self.commands)
-        self.panel = MarkingPanel(lent.gui, lent.messages, self.picture, self.mouse, menus)
-        self.panel.commands = {command.label: command for command in self.commands}
+    def __init__(self, marking: Marking, window: Window) -> None:
+        self.marking, self._window = marking, window
+        surface, messages = window.surface, window.messages
+        self.view = MarkingView(marking, window.settings, surface)
+        self.picture = MarkingPicture(marking, surface)
+        self.painter = Painter(self.picture, self.view, window.exporter, messages)
+        self.mouse = MarkingMouse(self.view, surface, marking, messages)
+        self.commands = self._commands()
+        by_label = {command.label: command for command in self.commands}
+        menus = MenuBar(window.gui, window.session, messages, self.commands)
+        self.panel = MarkingPanel(window.gui, messages, self.picture, menus, by_label)
         self._was_upright = marking.is_upright
 
     def paint(self, elapsed: float) -> bool:
@@ -74,64 +65,46 @@ class Room:
             self.view.fit_scene()
         return self.painter.paint(elapsed, has_moved=False, is_alive=False)
 
-    def close(self) -> None:
-        """Let go of what is on the GPU."""
-        self._question.other = None
-        self.picture.close()
-
     def use(self) -> Message:
         """Save the landmarks, and show the head with them."""
         marking = self.marking
+        if marking.file is None or marking.unsaved:
+            return marking.save(self.use)
+        return self._window.file_drop.open([str(marking.path), str(marking.file)])
 
-        def go_on() -> Message:
-            """Fit it, now that there is a file."""
-            assert marking.file is not None
-            return self._use(marking.path, marking.file)
+    def leave(self, then: Task = lambda: None) -> Message:
+        """Back to the face, and on; if marks would be lost, ask first."""
 
-        return go_on() if marking.file and not marking.unsaved else marking.save(go_on)
+        def go() -> Message:
+            """Do so."""
+            self._window.leave_marking()
+            return then()
 
-    def leave(self, then: Task | None = None) -> Message:
-        """Back to the face, or to what comes `then`; if marks would be lost, ask first."""
-        return self._question.before("Leave", then or self._leave, is_of_other=True)
+        return self._window.question.before("Leave", go, other=self.marking)
 
     def _step(self, direction: int) -> None:
+        """To another landmark, whose side may be turned away."""
         self.marking.go(direction)
-        self.view.look_at(self.marking.current)
+        self.view.camera.yaw, self.view.camera.pitch = yaw_of(self.marking.current), 0.0
 
-    def _turn(self, axis: int) -> None:
-        """Turn the mesh about the axis of the mesh that is nearest to one of the picture's."""
-        direction = self.view.camera.axes()[axis]
-        nearest = int(np.abs(direction).argmax())
-        self.marking.turn(np.sign(direction[nearest]) * np.eye(3)[nearest])
-        self.view.fit_scene()
-
-    def _commands(self, settings: Settings, panels: PanelState, close: Task) -> tuple[Command, ...]:
+    def _commands(self) -> tuple[Command, ...]:
         """All that a key or a menu does here."""
         marking, view = self.marking, self.view
         file, edit = partial(Command, "File"), partial(Command, "Edit")
-        guessed = partial(Command, "Landmarks", can_run=lambda: marking.can_guess)
-        look = partial(Command, "View")
+        complete = partial(Command, can_run=lambda: marking.marks.is_complete)
+        landmarks = partial(complete, "Landmarks")
+        history = marking.history
         return (
             file("Open landmarks ...", "Ctrl+O", marking.ask_open),
             file("Save landmarks", "Ctrl+S", marking.save),
-            file("Save landmarks as ...", "Ctrl+Shift+S", marking.save_as),
-            file(
-                "Use this head", "Ctrl+Enter", self.use, can_run=lambda: marking.marks.is_complete
-            ),
+            complete("File", "Use this head", "Ctrl+Enter", self.use),
             file("Leave", "Ctrl+W", self.leave),
-            file("Quit", "Ctrl+Q", close),
-            edit("Undo", "Ctrl+Z", marking.undo, can_run=lambda: marking.can_undo),
-            edit("Redo", "Ctrl+Shift+Z", marking.redo, can_run=lambda: marking.can_redo),
-            guessed("Next point", "Tab", partial(self._step, 1), other_key="Right"),
-            guessed("Point before", "Shift+Tab", partial(self._step, -1), other_key="Left"),
-            guessed("Mirror this group", "M", marking.mirror),
-            guessed("Mirror the whole side", "Shift+M", partial(marking.mirror, whole=True)),
-            guessed("Guess again", "G", marking.guess),
-            look("Frame the face", "F", view.fit_scene),
-            look("Tip the mesh", "T", partial(self._turn, 0)),
-            look("Roll the mesh", "R", partial(self._turn, 2)),
-            look("Dark theme", "F2", settings.toggle_theme, lambda: settings.theme == "dark"),
-            look("Larger words", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
-            look("Smaller words", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
-            Command("Help", "Keys and mouse", "F1", panels.toggle_help),
+            edit("Undo", "Ctrl+Z", marking.undo, can_run=lambda: history.can_undo),
+            edit("Redo", "Ctrl+Shift+Z", marking.redo, can_run=lambda: history.can_redo),
+            landmarks("Next point", "Tab", partial(self._step, 1), other_key="Right"),
+            landmarks("Point before", "Shift+Tab", partial(self._step, -1), other_key="Left"),
+            landmarks("Mirror this group", "M", marking.mirror),
+            landmarks("Guess again", "G", marking.guess),
+            Command("View", "Frame the face", "F", view.fit_scene),
+            *(command for command in self._window.commands if command.label in SHARED),
         )

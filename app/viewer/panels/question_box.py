@@ -29,24 +29,22 @@ def draw_question(
     if not is_open:
         return None
     imgui.text(f"Not saved: {question.unsaved or 'nothing any more'}.")
-    is_at_stake, other = bool(question.unsaved_session), question.other
-    again = partial(
-        question.before, verb, task, is_of_other=not is_at_stake
-    )  # there may be more to save
-    is_recording = is_at_stake and session.is_recording
-    choices: tuple[tuple[str, bool, Task], ...] = (
-        ("Save landmarks", bool(other and other.unsaved), partial(question.save_other, again)),
-        ("Save recording ...", is_recording, partial(scripts.save_recording, again)),
-        (
-            "Save script" if session.file.path else "Save script ...",
-            is_at_stake and session.script_is_unsaved and not is_recording,
-            partial(scripts.save, again),
-        ),
-        (
-            "Save pose ...",
-            is_at_stake and session.has_unsaved_pose,
-            partial(scripts.save_pose, again),
-        ),
+    again = partial(question.before, verb, task, question.other)  # there may be more to save
+    choices: tuple[tuple[str, bool, Task], ...]
+    if question.other is not None:
+        choices = (("Save landmarks", True, partial(question.other.save, again)),)
+    else:
+        choices = (
+            ("Save recording ...", session.is_recording, partial(scripts.save_recording, again)),
+            (
+                "Save script" if session.file.path else "Save script ...",
+                session.script_is_unsaved and not session.is_recording,
+                partial(scripts.save, again),
+            ),
+            ("Save pose ...", session.has_unsaved_pose, partial(scripts.save_pose, again)),
+        )
+    choices = (
+        *choices,
         (f"{verb} without saving", True, task),
         ("Back", True, lambda: None),
     )
