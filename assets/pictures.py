@@ -14,7 +14,6 @@ from pathlib import Path, PureWindowsPath
 
 import numpy as np
 import numpy.typing as npt
-import PIL.Image
 
 from .errors import AssetError
 from .files import Image
@@ -114,6 +113,8 @@ def read_packed(content: bytes) -> Image:
 
 def read_picture(content: bytes) -> Image:
     """A PNG or JPEG picture, sRGB, shape (H, W, 3), shrunk to LARGEST."""
+    import PIL.Image  # which to load a head takes no time for
+
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Pillow's own limit is near ours

@@ -162,6 +162,26 @@ def _lid_axes(landmarks: Array, ball: Eyeball) -> tuple[Array, Array]:
     return up, forward
 
 
+class _Frame(NamedTuple):
+    """Where a point lies about the line from the outer corner of an eye to the inner one."""
+
+    centre: Array  # of the eyeball
+    up: Array
+    forward: Array
+    corner: Array  # the outer one
+    axis: Array  # from there to the inner one [mm]
+
+    def angle(self, points: Array) -> Array:
+        """Angle [rad] about the axis of the lids, 0 straight forward."""
+        away = points - self.centre
+        return np.arctan2(away @ self.up, away @ self.forward)
+
+    def column(self, points: Array) -> Array:
+        """Place from the outer corner of the eye, 0, to the inner one, 1."""
+        column: Array = ((points - self.corner) @ self.axis) / (self.axis @ self.axis)
+        return column
+
+
 def _one_eye(
     eyes: Eyes, surface: Surface, landmarks: Array, ball: Eyeball, up: Array, forward: Array
 ) -> _OneEye:
@@ -169,48 +189,30 @@ def _one_eye(
     outer, upper_outer, upper_inner, inner, lower_inner, lower_outer = EYE_LANDMARKS[ball.side]
     side = lid_side(surface, landmarks, ball.side)
     x = surface.positions
-    corner, axis = landmarks[outer], landmarks[inner] - landmarks[outer]
-
-    def angle_of(points: Array) -> Array:
-        """Angle [rad] about the axis of the lids, 0 straight forward."""
-        return np.arctan2((points - ball.centre) @ up, (points - ball.centre) @ forward)
-
-    def column_of(points: Array) -> Array:
-        """Place from the outer corner of the eye, 0, to the inner one, 1."""
-        column: Array = ((points - corner) @ axis) / (axis @ axis)
-        return column
-
-    column, angle = column_of(x), angle_of(x)
-    depth = np.linalg.norm(x - ball.centre, axis=1)
-    rows = {
+    frame = _Frame(ball.centre, up, forward, landmarks[outer], landmarks[inner] - landmarks[outer])
+    column, angle = frame.column(x), frame.angle(x)
+    lines = {
         True: landmarks[[outer, upper_outer, upper_inner, inner]],
         False: landmarks[[outer, lower_outer, lower_inner, inner]],
     }
-    where = np.linspace(0.0, 1.0, COLUMNS)
+    where, slide = np.linspace(0.0, 1.0, COLUMNS), np.zeros(surface.vertex_count)
     fronts, depths, weights, folds, near = {}, {}, {}, {}, {}
-    slide = np.zeros(surface.vertex_count)
-    for upper, line in rows.items():
+    for upper, line in lines.items():
         on_lid = side > 0.0 if upper else side < 0.0
-        reaches, order = np.linalg.norm(line - ball.centre, axis=1), np.argsort(column_of(line))
-        behind = OFF_EDGE * np.abs(
-            depth - np.interp(column, column_of(line)[order], reaches[order])
-        )
-        edge = x[surface.way_through(surface.nearest(line), behind)]
+        edge = _front_edge(surface, line, frame)
         distance = polyline_distance(x, edge)
         weights[upper] = on_lid * _share(distance, eyes.lid_plateau, eyes.lid_reach)
         ends = (eyes.fold_plateau, eyes.fold_reach) if upper else (eyes.lid_plateau, eyes.lid_reach)
         folds[upper] = on_lid * _share(distance, *ends)
         slide = np.where(on_lid, _share(distance, 0.0, SLIDE_REACH * eyes.lid_reach), slide)
         near[upper] = on_lid & (distance < MARGIN_REACH) & (column > -0.02) & (column < 1.02)
-        edge = edge[np.argsort(column_of(edge), kind="stable")]
-        fronts[upper] = np.interp(where, column_of(edge), angle_of(edge))
-        depths[upper] = np.interp(
-            where, column_of(edge), np.linalg.norm(edge - ball.centre, axis=1)
+        edge = edge[np.argsort(frame.column(edge), kind="stable")]
+        fronts[upper], depths[upper] = (
+            np.interp(where, frame.column(edge), values)
+            for values in (frame.angle(edge), np.linalg.norm(edge - ball.centre, axis=1))
         )
     height = np.maximum(fronts[True] - fronts[False], 0.0)
-    # At the corners the opening ends abruptly; skin away from the margin must not crease there.
-    wide = np.convolve(np.pad(height, SMOOTH_COLUMNS), np.ones(SMOOTH_COLUMNS) / SMOOTH_COLUMNS)
-    wide = wide[SMOOTH_COLUMNS + SMOOTH_COLUMNS // 2 :][:COLUMNS]
+    wide = _smoothed(height)
     slide *= np.interp(column, where, wide, 0.0, 0.0) / max(height.max(), LEAST_OPENING)
     slide *= np.interp(column, (0.0, 1.0), SLIDE_ENDS)
     exact, broad = (np.interp(column, where, h) for h in (height, np.minimum(wide, height.max())))
@@ -218,7 +220,7 @@ def _one_eye(
     opening = weight * exact + (1.0 - weight) * broad
     share = np.where(side > 0.0, eyes.blink_meeting - 1.0, eyes.blink_meeting)
     closing = share * weight * opening
-    arrives = column + slide * np.where(side > 0.0, *eyes.blink_slide) / np.linalg.norm(axis)
+    arrives = column + slide * np.where(side > 0.0, *eyes.blink_slide) / np.linalg.norm(frame.axis)
     seam = fronts[False] + eyes.blink_meeting * height  # where closed lids meet
     meeting, rises = (np.interp(c, where, seam) for c in (arrives, column))
     closing += weight * (meeting - rises)
@@ -227,8 +229,8 @@ def _one_eye(
         margin = near[upper] & ((within < EDGE) if upper else (within > -EDGE))
         closing[margin] = (meeting - angle)[margin]
     before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is no lid
-    middle = np.sin(np.pi * np.clip(column, 0.0, 1.0))
-    fold = before * (folds[True] + folds[False]) * (AT_CORNERS + (1.0 - AT_CORNERS) * middle)
+    at_middle = AT_CORNERS + (1.0 - AT_CORNERS) * np.sin(np.pi * np.clip(column, 0.0, 1.0))
+    fold = before * (folds[True] + folds[False]) * at_middle
     weight, closing = before * weight, before * closing
     sink = np.interp(column, where, depths[True] - depths[False]) - PROUD
     sink *= (side > 0.0) * weight
@@ -240,6 +242,23 @@ def _one_eye(
         lid, side[lid] > 0.0, weight[lid], closing[lid], overlap, sink[lid], fold[lid],
         opening[lid], slide[lid],
     )  # fmt: skip
+
+
+def _front_edge(surface: Surface, line: Array, frame: _Frame) -> Array:
+    """The way along the mesh that keeps to a lid's line of landmarks (4, 3), points (n, 3)."""
+    x = surface.positions
+    reaches = np.linalg.norm(line - frame.centre, axis=1)
+    order = np.argsort(frame.column(line))
+    expected = np.interp(frame.column(x), frame.column(line)[order], reaches[order])
+    behind = OFF_EDGE * np.abs(np.linalg.norm(x - frame.centre, axis=1) - expected)
+    edge: Array = x[surface.way_through(surface.nearest(line), behind)]
+    return edge
+
+
+def _smoothed(height: Array) -> Array:
+    """The opening by column, ending softly: skin away from the margin must not crease there."""
+    wide = np.convolve(np.pad(height, SMOOTH_COLUMNS), np.ones(SMOOTH_COLUMNS) / SMOOTH_COLUMNS)
+    return np.asarray(wide[SMOOTH_COLUMNS + SMOOTH_COLUMNS // 2 :][:COLUMNS])
 
 
 def _share(distance: Array, plateau: float, reach: float) -> Array:

@@ -116,20 +116,15 @@ def fit(
     landmarks: vertex numbers, shape (68,); points: where they lie exactly [unit of the mesh], shape
     (68, 3), unless at those vertices. Raises AssetError for a mesh that cannot work.
     """
+    known = load("head") if template is None else template
     are_numbers = points is None
     points = mesh.vertices[landmarks] if points is None else points
-    known = load("head") if template is None else template
     skin = skin_of(mesh.vertices, mesh.faces, landmarks)
     check_manifold(mesh.faces)
     if are_numbers:
         check_counting(mesh.vertices, landmarks, known.vertices[known.landmarks])
     similarity = _placed(points, known)
-    skin = replace(skin, vertices=similarity.points(skin.vertices))
-    _check_size(skin)
-    skin = _facing_outward(skin)
-    check_openings(skin)
-    check_lips(skin)
-    skin = without_bag(skin)
+    skin = _sound(replace(skin, vertices=similarity.points(skin.vertices)))
     target = similarity.points(points)
     notes, whole = mesh.notes, skin
     if len(skin.faces) > MOST_SIMULATED:
@@ -168,6 +163,15 @@ def fit(
         file_vertices=skin.file_vertices,
         notes=notes,
     )
+
+
+def _sound(skin: SkinPiece) -> SkinPiece:
+    """The skin [mm] facing outward, without what lies behind its lips; AssetError if unusable."""
+    _check_size(skin)
+    skin = _facing_outward(skin)
+    check_openings(skin)
+    check_lips(skin)
+    return without_bag(skin)
 
 
 @dataclass(frozen=True)

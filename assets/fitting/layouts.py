@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-import PIL.Image
 from scipy import ndimage
 
 from ..errors import AssetError
@@ -153,6 +152,8 @@ def own_picture(
     Several pictures become one, side by side; what has none takes the mean of the others' colours.
     turned: whether the corners of these triangles are to be in the other order.
     """
+    import PIL.Image  # which to load a head takes no time for
+
     numbers = texture.picture[faces]
     used = np.unique(numbers)
     if used.max() < 0:

@@ -11,8 +11,6 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-import PIL.Image
-import PIL.ImageDraw
 from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 from scipy.sparse.linalg import cg
@@ -109,6 +107,9 @@ def plain_picture(known: Head) -> Image:
 
     Another head has them elsewhere, as form, which the light shows.
     """
+    import PIL.Image  # which to load a head takes no time for
+    import PIL.ImageDraw
+
     height, width = known.segments.shape
     is_folded = np.isin(known.segments, EARS)
     drawn = PIL.Image.new("L", (width, height))

@@ -104,7 +104,7 @@ def test_lips_close_when_they_are_heard_to(face: FaceScene) -> None:
         parts += [(lips, 0.07, 0.0), (vowel, 0.12, 0.0)]
     phones = phones_of(parts[1:])
     times, gaps = opening(face, spoken(phones, Path("x.wav"), phones[-1].end + 0.3))
-    shut = gaps[0] + 0.5
+    shut = 0.3
     for phone in phones:
         within = np.interp(np.linspace(phone.start, phone.end, 20), times, gaps)
         if phone.name in ("P", "B", "M"):
