@@ -111,7 +111,7 @@ OF_AGE: Mapping[str, float] = MappingProxyType(
 )  # fmt: skip
 HAIR = MappingProxyType({Sex.WOMAN: (7.0, 12.0), Sex.MAN: (2.0, 7.0)})  # [mm]
 AGES = 20.0, 75.0  # [years]
-UNEVENNESS = 0.15  # of a shape's deviation, by which it is more on the left and less on the right
+UNEVENNESS = 0.08  # of a shape's deviation, by which it is more on the left and less on the right
 
 
 @dataclass(frozen=True)
