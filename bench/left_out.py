@@ -1,10 +1,10 @@
 """How well the rig foretells a shape that its fit did not see: `risorius bench left-out`.
 
 For each shape of a folder of scans (motion.py), the muscles that it uses lose all that was ever
-fitted: strengths, widths, bulges, falls them back to the values that sim/rig.py gives a muscle of
-which nothing is said, and the shares of the shape to 1 for prime movers and 0.3 for helpers. Then
-NUMBERS of those muscles are fitted to the other shapes that use them, with a pull towards where
-they started, and the shape that was left out is posed and scored.
+fitted: strengths, widths and bulges fall back to the values that sim/rig.py gives a muscle of which
+nothing is said, and the shares of the shape to 1 for prime movers and 0.3 for helpers. Then NUMBERS
+of those muscles are fitted to the other shapes that use them, with a pull towards where they
+started, and the shape that was left out is posed and scored.
 
 What remains of it is anatomy, which the rig's file has in millimetres: where a muscle begins and
 ends, where the ring of a sphincter lies and to which point it draws, which lip it moves; and which
