@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, refine, render
+from risorius.assets.model import HIGHEST_FOLD
 
 from .looks import Refinement
 from .scenes import Scene
@@ -70,7 +71,7 @@ class Relief:
 
     def __init__(self, wrinkles: assets.Wrinkles) -> None:
         self._steps = wrinkles.relief
-        self._unit = np.float32(assets.HIGHEST_FOLD / 127.0)
+        self._unit = np.float32(HIGHEST_FOLD / 127.0)
 
     def heights(self, uv: Amounts) -> Amounts:
         """The heights where all of a wrinkle shows [mm], between texels, for uv of (n, 2): same."""

@@ -12,10 +12,9 @@ The programs that generate them are in this package, too: `python -m risorius.as
 from .errors import AssetError
 from .loading import available, load
 from .meshes import Mesh, read_mesh
-from .model import HIGHEST_FOLD, Cloth, Eye, Head, Layer, Part, Plane, Segment, Wrinkles
+from .model import Cloth, Eye, Head, Layer, Part, Plane, Segment, Wrinkles
 
 __all__ = [
-    "HIGHEST_FOLD",
     "AssetError",
     "Cloth",
     "Eye",

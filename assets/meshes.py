@@ -133,7 +133,7 @@ def _read_by_trimesh(content: bytes, suffix: str) -> list[Any]:
 def _joined(pieces: list[Any]) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
     """Vertices and triangles of all pieces, one after the other."""
     starts = np.cumsum([0, *(len(each.vertices) for each in pieces)])
-    faces = [each.faces + start for each, start in zip(pieces, starts, strict=False)]
+    faces = [each.faces.reshape(-1, 3) + start for each, start in zip(pieces, starts, strict=False)]
     vertices = [each.vertices for each in pieces]
     return np.vstack([np.zeros((0, 3)), *vertices]), np.vstack([np.zeros((0, 3), np.int64), *faces])
 

@@ -123,7 +123,8 @@ class Layer:
     rows: Mapping[str, Mapping[str, Any]]
 
 
-HIGHEST_FOLD = 1.0  # [mm] that a wrinkle moves skin at most
+HIGHEST_FOLD = 1.0
+"""[mm] that a wrinkle moves skin at most."""
 
 
 @dataclass(frozen=True)

@@ -153,11 +153,15 @@ def _corners(fields: list[bytes], part: int, what: str, count: int) -> list[int]
         found = [int(word[0]) if word and word[0] else None for word in words]
         if part == 0 and None in found:
             raise ValueError
-    except ValueError:
+        return [-1 if number is None else _counted(number, what, count) for number in found]
+    except (AssetError, ValueError) as error:
+        if part > 0:
+            return [-1] * (len(fields) - 1)  # who needs the form alone loses nothing
+        if isinstance(error, AssetError):
+            raise
         raise AssetError(
             f"'{_excerpt(fields)}' is no face; it must be 'f' and whole vertex numbers"
         ) from None
-    return [-1 if number is None else _counted(number, what, count) for number in found]
 
 
 def _counted(number: int, what: str, count: int) -> int:

@@ -22,6 +22,7 @@ from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.wrinkling import Compression, Relief, on_rows, relief_of
 from risorius.assets.fitting import fit
 from risorius.assets.meshes import Mesh
+from risorius.assets.model import HIGHEST_FOLD
 from risorius.assets.pictures import Texture
 
 JOY = Refinement()
@@ -111,7 +112,7 @@ def test_folds_never_crack(
     before, after = rims(smooth, mesh.triangles), rims(mesh.positions, mesh.triangles)
     assert len(before) == len(after)
     moved = np.linalg.norm(mesh.positions - smooth, axis=1)
-    assert moved.max() <= strength * assets.HIGHEST_FOLD + 1e-5
+    assert moved.max() <= strength * HIGHEST_FOLD + 1e-5
 
 
 def test_the_sheet_has_folds_to_crack() -> None:
@@ -133,7 +134,7 @@ def test_the_simulated_mesh_keeps_its_bytes(joy: FaceScene, scheme: str) -> None
     smooth, mesh = folded(joy, by, joy.positions)
     moved = np.linalg.norm(mesh.positions - smooth, axis=1)
     assert joy.positions.tobytes() == before
-    assert 0.5 < moved.max() <= assets.HIGHEST_FOLD + 1e-5
+    assert 0.5 < moved.max() <= HIGHEST_FOLD + 1e-5
     assert 0.01 < (moved > 0.1).mean() < 0.3
 
 

@@ -38,7 +38,6 @@ GOOD = {
     "corner twice": f"{V}f 1 1 2\n",
     "big polygon": V + "f" + " 1 2 3" * 10_000 + "\n",
     "two materials": f"mtllib a.mtl\n{V}usemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n",
-    "material is a device": f"mtllib /dev/zero\n{V}usemtl a\nf 1 2 3\n",
     "curves and lines": f"{TRIANGLE}l 1 2\np 1\nvp 0 0\ncurv 0 1 1 2\nend\n",
     "unknown words": f"hello world\n{TRIANGLE}\x00".replace("\x00", "") + "call a.obj\ncsh rm\n",
     "exponents": "v 1e-3 +1.5E+2 -.5\nv 1. 0 0\nv 0 1 0\nf 1 2 3\n",
@@ -48,6 +47,10 @@ GOOD = {
 }
 
 BAD = {
+    "material is a device": (
+        f"mtllib /dev/zero\n{V}usemtl a\nf 1 2 3\n",
+        "it must lie in the mesh's folder",
+    ),
     "empty": ("", "is empty; it must be a mesh file"),
     "blank": ("\n\n \n", "holds no triangles"),
     "only vertices": (V, "holds no triangles"),

@@ -109,7 +109,7 @@ def _table() -> list[OddHead]:
         OddHead("picture of 12000", partial(_with_material, _big_image), Kind.MESH),
     )
     pipe = partial(_with_material, lambda folder: os.mkfifo(folder / "a.mtl"))
-    rows.append(OddHead("material is a pipe", pipe, Kind.MESH))
+    rows.append(OddHead("material is a pipe", pipe, Kind.REFUSED, "is a pipe; it must be a"))
     return rows
 
 
