@@ -29,7 +29,7 @@ MOUTH_SHUT = ("sadness", "anger", "contempt", "wink", "kiss", "blink", "viseme_s
 EYES_SHUT = ("yawn",)  # beside those above
 SHUT = 0.99  # of the muscle that closes a lid
 CLOSER = "orbicularis_oculi_palpebral_upper"
-LIPS_MOST, LIDS_MOST = 0.25, 0.2  # mm: what may stay open, less than a pixel of a whole face
+LIPS_MOST, LIDS_MOST = 0.2, 0.2  # mm: what may stay open, less than a pixel of a whole face
 
 
 @dataclass(frozen=True)
