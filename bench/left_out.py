@@ -93,7 +93,7 @@ def typical(muscle: Muscle, others: Sequence[Muscle]) -> Muscle:
 
     others: of its kind, one at least; each number becomes their median.
     """
-    typical_of = {}
+    typical_of: dict[str, Any] = {}
     for rule in fields(muscle):
         if rule.name not in KEPT and rule.metadata["rule"] in ("number", "vector"):
             median = np.median([getattr(each, rule.name) for each in others], axis=0)
