@@ -213,7 +213,7 @@ def test_expressions_work_on_persons(
         assert share < moved[0] / moved[1] < 1.0 / share, pose
     landmarks = simulation.positions[person.landmarks]
     shown = simulation.positions, simulation.faces, landmarks, eyeballs_of(person, simulation)
-    # Past the inner corner of the most unusual person's lids one sees no skin from 40 degrees below,
+    # Past the inner corner of the most unusual person's lids one sees no skin from below,
     # and in a picture no eye: test_passes.py.
     if request.node.callspec.params["person"] != PERSONS[-1]:
         assert max(lid_gaps(*shown).values()) < 0.3
