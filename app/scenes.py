@@ -23,6 +23,7 @@ from risorius.assets.identities import Person, person_called
 from .errors import UserError
 from .growing import Growing
 from .keeping import kept, state_of
+from .mirror import parted
 from .mouth import Tongue, shaded_mouth
 
 CHIN, NECK = 8, 32.0  # landmark, and [mm] below it that a portrait shows
@@ -40,7 +41,7 @@ class Scene:
     groups: Mapping[str, tuple[str, ...]]  # all controls, by the heading that a panel shows
     limits: Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
     actions: Mapping[str, str] = MappingProxyType({})  # what controls do, where that is known
-    expressions: tuple[str, ...] = ()  # controls that a panel shows as buttons
+    expressions: tuple[str, ...] = ()  # whole faces, without those of a side
     parts: tuple[Any, ...] = ()  # what moves with bones: eyes, teeth, ...
     uv: npt.NDArray[np.float32] | None = None  # texture coordinates (U, 2)
     face_uv: npt.NDArray[np.int32] | None = None  # which of them each corner has (F, 3)
@@ -111,7 +112,10 @@ class FaceScene(Scene):
         self.faces, self.rest_positions = simulation.faces, simulation.rest_positions
         self.groups, self.limits = simulation.groups, simulation.limits
         self.actions = simulation.actions
-        self.expressions = simulation.layers.get("Expressions", ())
+        expressions = simulation.layers.get("Expressions", ())
+        self.expressions = tuple(
+            name for name in expressions if parted(name)[0] not in {*expressions} - {name}
+        )
         self.parts = tuple(
             part
             if getattr(part, "roots", None) is None

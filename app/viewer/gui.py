@@ -43,6 +43,7 @@ class Theme:
     field: tuple[float, float, float]
     raised: tuple[float, float, float]
     accent: tuple[float, float, float]
+    text: tuple[float, float, float]
     muted: tuple[float, float, float]
     error: tuple[float, float, float]
 
@@ -55,6 +56,7 @@ THEMES = {
         field=(0.865, 0.87, 0.88),
         raised=(0.82, 0.825, 0.84),
         accent=(0.72, 0.33, 0.22),
+        text=(0.12, 0.12, 0.14),
         muted=(0.40, 0.41, 0.44),
         error=(0.70, 0.10, 0.10),
     ),
@@ -65,6 +67,7 @@ THEMES = {
         field=(0.19, 0.195, 0.215),
         raised=(0.25, 0.26, 0.29),
         accent=(0.93, 0.58, 0.43),
+        text=(0.92, 0.92, 0.94),
         muted=(0.62, 0.64, 0.68),
         error=(1.0, 0.50, 0.45),
     ),
@@ -221,6 +224,7 @@ def _set_colours(style: Any, theme: Theme) -> None:
     style.item_spacing = imgui.ImVec2(7.0, 4.0)
     which = imgui.Col_
     for indices, value in (
+        ((which.text,), theme.text),
         ((which.window_bg, which.menu_bar_bg, which.title_bg, which.title_bg_active), theme.panel),
         ((which.popup_bg, which.tab), theme.panel),
         ((which.frame_bg, which.header, which.tab_hovered), theme.field),

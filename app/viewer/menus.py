@@ -9,8 +9,8 @@ from functools import partial
 
 from ..looks import FIRST_LOOK, PAPERS_LOOK
 from ..script.easing import EASINGS
+from ..vocabulary import readable
 from .command import Command
-from .control_rows import readable
 from .export import Exporter
 from .file_drop import FileDrop
 from .key_selection import KeySelection
@@ -62,6 +62,8 @@ def edit_menu(session: Session) -> Menu:
         command("Redo", "Ctrl+Shift+Z", session.redo, can_run=lambda: session.can_redo),
         command("Neutral", "N", session.neutral),
         command("Mirror", "M", session.mirror),
+        command("Left to right", "Shift+M", partial(session.mirror, "left")),
+        command("Right to left", "Ctrl+M", partial(session.mirror, "right")),
         command("Randomise", "X", session.randomise),
     )
 

@@ -12,12 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
-from ..mirror import twin_of
+from ..mirror import copied, mirrored, twin_of
 from ..motion import SETTLING
 from ..scenes import Scene
 from ..script import Pose, Script, is_pose, pose_script, rounded, save_script
 from . import keyframes
-from .control_rows import mirrored
 from .controls import Controls
 from .document import Document
 from .history import History
@@ -93,9 +92,9 @@ class Session:
         """All controls to zero; the skin swings back by itself."""
         self._set_pose(self.controls.pose({}), is_unsaved=False)
 
-    def mirror(self) -> None:
-        """What is left becomes right."""
-        self._set_pose(mirrored(self.values))
+    def mirror(self, source: str = "") -> None:
+        """What is left becomes right and the reverse, or one side ("left", "right") the other's."""
+        self._set_pose(copied(self.values, source) if source else mirrored(self.values))
 
     def randomise(self, generator: np.random.Generator | None = None) -> None:
         """A few muscles of each group by chance, both sides alike; layers stay at zero."""
