@@ -8,11 +8,14 @@ laid under it again without being drawn again.
 from dataclasses import dataclass
 
 import moderngl
+import numpy as np
+import numpy.typing as npt
 
 from .programs import compile_program
 from .render_target import Rectangle, RenderTarget
 
 _UNIT = 4  # texture unit while enlarging
+Image = npt.NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,18 @@ class Compositor:
             self._triangle.render(moderngl.TRIANGLES, vertices=3)
             gl.enable(moderngl.DEPTH_TEST)
         gl.scissor = None
+
+    def lay(self, image: Image, corner: tuple[int, int]) -> None:
+        """Lay a label on what is bound, from a lower left corner; see `WindowSurface.labels`."""
+        gl, (height, width, _) = self._gl, image.shape
+        texture = gl.texture((width, height), 4, np.ascontiguousarray(image[::-1]))
+        texture.use(_UNIT)
+        gl.viewport = *corner, width, height
+        gl.enable_only(moderngl.BLEND)
+        gl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        self._triangle.render(moderngl.TRIANGLES, vertices=3)
+        gl.enable_only(moderngl.DEPTH_TEST)
+        gl.viewport = 0, 0, *self.size
 
     def copy_to(self, target: moderngl.Framebuffer, around: Rectangle = (0, 0, 0, 0)) -> None:
         """Copy everything, but for an area, to a framebuffer of the same size."""

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from risorius import refine, render
 
+from ..capture.captions import SPLITS_BAR, ColourBar
 from ..pipeline import DrawnMesh, splits_of_source
 from ..scenes import Scene
 
@@ -31,7 +32,7 @@ class Colours:
     """A way to colour triangles: how the renderer takes the values, and what they mean."""
 
     kind: render.ColourBy
-    legend: str
+    bar: ColourBar | None = None
     of_source: Callable[[Scene, refine.Refiner], Amounts] | None = None
 
     def values(self, scene: Scene, drawn: DrawnMesh) -> Amounts | None:
@@ -93,15 +94,22 @@ def _dots(normals: FloatArray, edges: npt.NDArray[np.int32]) -> FloatArray:
     return dots
 
 
+MOST = f"{MOST_STRAIN:.0%}".replace("%", " %")
 COLOURS = {
-    "none": Colours(render.ColourBy.NONE, ""),
-    "splits": Colours(render.ColourBy.SPLITS, "green: one split, to indigo: six"),
+    "none": Colours(render.ColourBy.NONE),
+    "splits": Colours(render.ColourBy.SPLITS, SPLITS_BAR),
     "curvature drop": Colours(
-        render.ColourBy.AMOUNT, f"dark: the dot product fell by {MOST_DROP:g}", curvature_drops
+        render.ColourBy.AMOUNT,
+        ColourBar(
+            "Curvature: drop of n · n at rest",
+            render.AMOUNT_RAMP,
+            ("0", *(f"{share * MOST_DROP:.1f}" for share in (1 / 3, 2 / 3, 1.0))),
+        ),
+        curvature_drops,
     ),
     "tension": Colours(
         render.ColourBy.SIGNED,
-        f"red: {MOST_STRAIN:.0%} stretched, blue: as much compressed",
+        ColourBar("Tension: change of length", render.SIGNED_RAMP, (f"-{MOST}", "0", f"+{MOST}")),
         tensions,
     ),
 }

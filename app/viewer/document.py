@@ -16,6 +16,7 @@ class Document:
     values: Mapping[str, float] | None  # set by hand, what is not 0; None: as the script has it
     script: Script
     file: ScriptFile  # in which the script is kept
+    display: object = None  # how the scene is drawn: never changed, compared by what it says
 
     def new_keys(self, before: Document) -> int:
         """How many keys of tracks it has that the state before does not share with it."""

@@ -23,6 +23,8 @@ from risorius import render
 import glfw  # isort: skip - after imgui_bundle, see above
 
 FONT = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.ttf"
+ICONS = FONT.parents[1] / "Font_Awesome_6_Free-Solid-900.otf"
+BACK = "\uf2ea"  # of the icons: an arrow that turns to the left
 FONT_SIZE = 15.0  # [window units at scale 1]
 LEFT, RIGHT, MIDDLE = 0, 1, 2  # buttons of the mouse
 # Of a window that is a note over the picture: as large as its words, and it takes no keys.
@@ -84,6 +86,10 @@ class Gui:
         io.set_ini_filename("")  # settings.py remembers what is worth it
         if FONT.exists():
             io.fonts.add_font_from_file_ttf(str(FONT), FONT_SIZE)
+        if ICONS.exists():
+            merged = imgui.ImFontConfig()
+            merged.merge_mode = True
+            io.fonts.add_font_from_file_ttf(str(ICONS), 0.8 * FONT_SIZE, merged)
         address = ctypes.cast(window, ctypes.c_void_p).value
         if address is None:
             raise RuntimeError("the window is closed already")

@@ -124,7 +124,12 @@ class Parts:
         self.file_drop = FileDrop(self.files, self.scripts, self.show_scene, self.mark)
         self.commands: tuple[Command, ...] = (
             *menus.file_menu(
-                self.scripts, self.file_drop, self.motion_export, self.exporter, self.ask_to_close
+                session,
+                self.scripts,
+                self.file_drop,
+                self.motion_export,
+                self.exporter,
+                self.ask_to_close,
             ),
             *menus.edit_menu(session),
             *menus.time_menu(session, self.scripts, self.time_axis),
@@ -150,7 +155,7 @@ class Parts:
         )
         self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
         self.face_panel = FacePanel(gui, session, settings, view)
-        mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
+        mechanism = MechanismPanel(gui, settings, self.stage, view, self.times, self.show_person)
         record = next(each for each in commands if each.label == "Record")
         live = LivePanel(gui, settings, self.live, messages, record)
         tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
@@ -192,6 +197,10 @@ class Parts:
         self.painter.forget()
         if refused:
             self.messages.say(refused)
+
+    def show_person(self, who: int | str | None) -> None:
+        """Show another head; see `FileDrop.show_person`."""
+        self.messages.attempt(partial(self.file_drop.show_person, who))
 
     def mark(self, mesh: Path, landmarks: Path | None = None) -> Message:
         """Mark the landmarks of a mesh, or go on with those of a file; the face waits meanwhile.

@@ -7,6 +7,7 @@ up.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +52,7 @@ class Session:
         self._recorder: Recorder | None = None
         self._held: dict[str, float] = {}  # by hand while a recording plays the script
         self.live = Lead()  # a live face, which leaves no trace in what can be undone
+        self.display: object = None  # how the scene is drawn, see `show`
         self._history = History(self._document(), lambda before, after: after.new_keys(before))
 
     def move_to(self, scene: Scene) -> None:
@@ -116,7 +118,15 @@ class Session:
 
     def _document(self) -> Document:
         by_hand = {name: value for name, value in self.values.items() if value}
-        return Document(None if self.is_following else by_hand, self.script, self.file)
+        values = None if self.is_following else by_hand
+        return Document(values, self.script, self.file, self.display)
+
+    def show(self, display: object) -> None:
+        """Draw the scene in another way: what nobody changes any more, and equals its like."""
+        if self.display is None:  # at first: no change
+            self._history.restate(replace(self._history.present, display=display))
+        self.display = display
+        self.note()
 
     def note(self) -> None:
         """A change is complete (a slider let go, a button pressed): it can be undone."""
@@ -142,6 +152,9 @@ class Session:
         self._restore(self._history.redo())
 
     def _restore(self, document: Document) -> None:
+        here, self.display = replace(self._document(), display=document.display), document.display
+        if here == document:  # nothing but that
+            return
         self.is_playing = False
         self.script, self.file = document.script, document.file
         self.time = min(self.time, self.script.duration)

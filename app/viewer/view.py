@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import asdict
 
 import numpy as np
@@ -13,6 +14,7 @@ from ..cameras import whole_scene
 from ..pipeline import Viewport
 from .gui import THEMES, em
 from .session import Session
+from .setting_rules import BACKGROUNDS
 from .settings import Display, Settings
 
 WHITE = (1.0, 1.0, 1.0)
@@ -33,6 +35,7 @@ class View:
         self._session, self._settings, self._surface = session, settings, surface
         self.area = (0.0, 0.0, 1.0, 1.0)
         self.pointed = ()
+        self._noted: object = None  # the display as the session had it last
         self.fit_scene()
         place = settings.cameras.get(session.scene.name)
         if place is not None:  # as it stood when this scene's window was closed
@@ -45,6 +48,29 @@ class View:
     def fit_scene(self) -> None:
         """The camera as at first: all of the scene."""
         self.camera = whole_scene(self._session.scene, self._session.script.camera)
+        self.camera.is_orthographic = self._settings.is_orthographic
+
+    def look_from(self, name: str) -> str:
+        """Turn the camera to a named view, about what it looks at, no nearer and no farther."""
+        self.camera.yaw, self.camera.pitch = render.VIEWS[name]
+        return name.replace("-", " ").capitalize()
+
+    def toggle_orthographic(self) -> None:
+        """Whether what is far away is as large as what is near."""
+        self._settings.is_orthographic = not self._settings.is_orthographic
+        self.camera.is_orthographic = self._settings.is_orthographic
+
+    def follow_history(self, *, is_held: bool) -> None:
+        """Show what undo brought back, or make a change of the display one that can be undone.
+
+        is_held: the user has hold of something, and may not be done with the change.
+        """
+        session, settings = self._session, self._settings
+        if isinstance(session.display, Display) and session.display is not self._noted:
+            settings.display = deepcopy(session.display)
+        elif not is_held and session.display != settings.display:
+            session.show(deepcopy(settings.display))
+        self._noted = session.display
 
     @property
     def display(self) -> Display:
@@ -54,7 +80,8 @@ class View:
     @property
     def background(self) -> render.Background:
         """What is behind it."""
-        return THEMES[self._settings.theme].background
+        chosen = BACKGROUNDS[self.display.background]
+        return chosen or THEMES[self._settings.theme].background
 
     @property
     def viewport(self) -> Viewport:
@@ -86,15 +113,17 @@ class View:
     def state(self) -> object:
         """Everything that the picture depends on, but for the motion of the scene."""
         display = repr(asdict(self.display))
-        return self.camera_place, display, self._settings.theme, self.viewport, self.pointed
+        camera = self.camera_place, self.camera.is_orthographic
+        return camera, display, self._settings.theme, self.viewport, self.pointed
 
     def divider(self) -> list[tuple[Viewport, render.Colour]]:
         """The line between the two halves of a comparison, and what to drag it by."""
-        if self.display.compare == "off":
+        if self.display.compare not in ("wipe", "side by side"):
             return []
         left, bottom, width, height = self.viewport
         unit = max(round(em(0.13) * width / max(self.area[2], 1.0)), 2)
-        x, y = left + round(self.display.divider * width), bottom + height // 2
+        x, y = left + round(self.display.share * width), bottom + height // 2
         line = (x - unit // 2, bottom, unit, height)
         grip = (x - unit // 2 - unit, y - 10 * unit, 3 * unit, 20 * unit)
-        return [(line, WHITE), (grip, THEMES[self._settings.theme].accent)]
+        grips = [(grip, THEMES[self._settings.theme].accent)]
+        return [(line, WHITE), *(grips if self.display.compare == "wipe" else [])]
