@@ -157,8 +157,7 @@ def texture_of(
     """Hand the scene's albedo to the renderer, in a tone [deg] where it has any; None without."""
     if scene.albedo is None:
         return None
-    in_tone = scene.in_tone
-    albedo = scene.albedo if tone is None or in_tone is None else in_tone(tone)
+    albedo = scene.albedo if tone is None or scene.in_tone is None else scene.in_tone(tone)
     return renderer.load_texture(albedo, scene.openness())
 
 

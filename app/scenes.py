@@ -125,10 +125,9 @@ class FaceScene(Scene):
         self.wrinkles = head.wrinkles
         if isinstance(head, assets.Head):
             self.called, self.in_tone = BUILT_IN, recoloured
-        else:
-            self.called, self.in_tone = "own", None
-        if isinstance(head, Person):
-            self.called, self.in_tone = head.called, head.in_tone
+        else:  # of persons alone it is known how they are painted
+            self.called = getattr(head, "called", "") or "own"
+            self.in_tone = getattr(head, "in_tone", None)
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))

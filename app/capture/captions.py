@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -36,13 +35,11 @@ def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
     return ImageFont.load_default(size=size)
 
 
-@dataclass(frozen=True)
-class ColourBar:
+class ColourBar(NamedTuple):
     """What colours of triangles stand for.
 
-    ramp: from the least to the most, sRGB 0..1, and how much of each covers the skin; equally far
-        apart. ticks: numbers, evenly from the first to the last. is_smooth: colours run into each
-        other; else each is a block with a number of its own.
+    ramp: from the least to the most, sRGB 0..1, and how much of each covers the skin. ticks:
+        numbers, evenly from the first to the last. is_smooth: colours run into each other.
     """
 
     title: str
@@ -54,16 +51,13 @@ class ColourBar:
 SPLITS_BAR = ColourBar(
     "Splits of a triangle's edges",
     tuple((colour, 1.0) for colour in render.SPLIT_PALETTE),
-    ("1", "2", "3", "4", "5", "6"),
+    tuple("123456"),
     is_smooth=False,
 )
 
 
 class Label(NamedTuple):
-    """A small picture on a picture: x, y of its lower left corner [pixels from there]; RGBA.
-
-    Colours are multiplied by alpha, as over a transparent background.
-    """
+    """A picture on a picture: x, y of its lower left corner [pixels]; RGBA, premultiplied."""
 
     x: int
     y: int
@@ -72,63 +66,47 @@ class Label(NamedTuple):
 
 @functools.lru_cache(maxsize=64)
 def plate(text: str, size: float) -> Image:
-    """Lines of text on a dark plate, the first one larger; (h, w, 4), premultiplied."""
-    first, _, rest = text.partition("\n")
-    lines = [
-        (first, font(size), INK),
-        *((line, font(0.82 * size), FAINT) for line in [rest] if line),
-    ]
+    """A line of text, and a smaller one below it, on a dark plate; (h, w, 4), premultiplied."""
+    lines = [*zip(text.split("\n"), (font(size), font(0.82 * size)), (INK, FAINT), strict=False)]
     width = max(face.getlength(line) for line, face, _ in lines)
     page, draw = _page(width + 1.3 * size, (1.25 * len(lines) + 0.55) * size, size)
     for index, (line, face, ink) in enumerate(lines):
-        draw.text(
-            (0.65 * size, (0.95 + 1.22 * index) * size), line, font=face, fill=ink, anchor="lm"
-        )
-    return _premultiplied(page)
+        y = (0.95 + 1.22 * index) * size
+        draw.text((0.65 * size, y), line, font=face, fill=ink, anchor="lm")
+    return np.asarray(page.convert("RGBa"))
 
 
 @functools.lru_cache(maxsize=8)
 def colour_bar(bar: ColourBar, albedo: render.Colour, size: float) -> Image:
     """An upright bar with its numbers and its title, on a plate; (h, w, 4), premultiplied."""
-    small = font(0.82 * size)
+    small, count = font(0.82 * size), len(bar.ramp)
     tall, wide, pad = round(13.0 * size), round(0.8 * size), round(0.65 * size)
-    left = pad + round(1.2 * size)
+    left, right = round(1.85 * size), round(3.1 * size)  # of the bar, of its numbers
     numbers = max(small.getlength(tick) for tick in bar.ticks)
-    page, draw = _page(left + wide + 0.45 * size + numbers + pad, tall + 2 * pad, size)
+    page, draw = _page(right + numbers + pad, tall + 2 * pad, size)
     colours = np.array([np.add(albedo, np.subtract(c, albedo) * cover) for c, cover in bar.ramp])
-    rows = (np.arange(tall)[::-1] + 0.5) / tall  # 0 below, 1 above
-    places = rows * (len(colours) - 1) if bar.is_smooth else np.floor(rows * len(colours))
-    shades = np.stack([np.interp(places, np.arange(len(colours)), c) for c in colours.T], axis=1)
-    column = np.repeat(np.rint(255.0 * shades).astype(np.uint8)[:, None], wide, axis=1)
+    rows = np.linspace(1.0, 0.0, tall)
+    places = rows * (count - 1) if bar.is_smooth else np.floor(rows * (count - 1e-6))
+    shades = np.stack([np.interp(places, np.arange(count), each) for each in colours.T], axis=1)
+    column = np.rint(255.0 * shades).astype(np.uint8)[:, None].repeat(wide, axis=1)
     page.paste(PIL.Image.fromarray(column), (left, pad))
-    for index, tick in enumerate(bar.ticks):
-        last = len(bar.ticks) - 1
-        share = index / last if bar.is_smooth else (index + 0.5) / (last + 1)
-        inner = 0.4 * size if bar.is_smooth else 0.0  # lest numbers stand out above and below
-        y = pad + inner + (1.0 - share) * (tall - 2.0 * inner)
-        draw.text((left + wide + 0.45 * size, y), tick, font=small, fill=INK, anchor="lm")
+    inner = 0.4 * size if bar.is_smooth else 0.5 * tall / count
+    for y, tick in zip(np.linspace(tall - inner, inner, len(bar.ticks)), bar.ticks, strict=True):
+        draw.text((right, pad + y), tick, font=small, fill=INK, anchor="lm")
     title = PIL.Image.new("RGBA", (tall, round(1.3 * size)))
-    ImageDraw.Draw(title).text(
-        (0.5 * tall, 0.65 * size), bar.title, font=small, fill=FAINT, anchor="mm"
-    )
-    turned = title.transpose(PIL.Image.Transpose.ROTATE_90)
-    page.alpha_composite(turned, (round(0.45 * size), pad))
-    return _premultiplied(page)
+    middle = 0.5 * tall, 0.65 * size
+    ImageDraw.Draw(title).text(middle, bar.title, font=small, fill=FAINT, anchor="mm")
+    page.alpha_composite(title.rotate(90, expand=True), (round(0.45 * size), pad))
+    return np.asarray(page.convert("RGBa"))
 
 
 def _page(width: float, height: float, size: float) -> tuple[PIL.Image.Image, ImageDraw.ImageDraw]:
     """A dark plate with round corners, as large as that [pixels], and what draws on it."""
     page = PIL.Image.new("RGBA", (math.ceil(width), math.ceil(height)), (*SHADE, 0))
     draw = ImageDraw.Draw(page)
-    edge = page.width - 1, page.height - 1
-    draw.rounded_rectangle([(0, 0), edge], 0.35 * size, fill=(*SHADE, PLATE))
+    corners = (0, 0, page.width - 1, page.height - 1)
+    draw.rounded_rectangle(corners, 0.35 * size, fill=(*SHADE, PLATE))
     return page, draw
-
-
-def _premultiplied(page: PIL.Image.Image) -> Image:
-    pixels = np.asarray(page).astype(np.uint16)
-    pixels[..., :3] = (pixels[..., :3] * pixels[..., 3:] + 127) // 255
-    return pixels.astype(np.uint8)
 
 
 def labels(
@@ -139,18 +117,18 @@ def labels(
     bar: ColourBar | None = None,
     albedo: render.Colour = render.SKIN,
 ) -> list[Label]:
-    """Captions at the foot of viewports, of a letter's height `size` [pixels], and a colour bar.
+    """Captions at the foot of viewports, in letters of `size` [pixels], and a colour bar.
 
-    A caption stands at the left, the last of two at the right: away from the line between them, and
-    from the face. One for which there is no room is left out. The bar is at the upper right.
+    A caption stands at the left, the second of two at the right, away from line and face; without
+    room it is left out. The bar is at the upper right.
     """
     pad, made = round(0.7 * size), []
     for index, (text, (left, bottom, width, _)) in enumerate(zip(texts, viewports, strict=False)):
         image = plate(text, size)
         room = width - image.shape[1] - 2 * pad
         if room >= 0:
-            is_at_right = len(texts) == 2 and index == 1
-            made.append(Label(left + pad + is_at_right * room, bottom + pad, image))
+            aside = room if (index, len(texts)) == (1, 2) else 0
+            made.append(Label(left + pad + aside, bottom + pad, image))
     if bar is not None:
         left, bottom, width, tall = viewports[-1]
         image = colour_bar(bar, albedo, 0.78 * size)

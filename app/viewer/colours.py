@@ -94,22 +94,19 @@ def _dots(normals: FloatArray, edges: npt.NDArray[np.int32]) -> FloatArray:
     return dots
 
 
-MOST = f"{MOST_STRAIN:.0%}".replace("%", " %")
+DROPS = ("0", f"{MOST_DROP / 2.0:g}", f"{MOST_DROP:g}")
+STRAINS = (f"-{100 * MOST_STRAIN:g} %", "0", f"+{100 * MOST_STRAIN:g} %")
 COLOURS = {
     "none": Colours(render.ColourBy.NONE),
     "splits": Colours(render.ColourBy.SPLITS, SPLITS_BAR),
     "curvature drop": Colours(
         render.ColourBy.AMOUNT,
-        ColourBar(
-            "Curvature: drop of n · n at rest",
-            render.AMOUNT_RAMP,
-            ("0", *(f"{share * MOST_DROP:.1f}" for share in (1 / 3, 2 / 3, 1.0))),
-        ),
+        ColourBar("Curvature: drop of n · n at rest", render.AMOUNT_RAMP, DROPS),
         curvature_drops,
     ),
     "tension": Colours(
         render.ColourBy.SIGNED,
-        ColourBar("Tension: change of length", render.SIGNED_RAMP, (f"-{MOST}", "0", f"+{MOST}")),
+        ColourBar("Tension: change of length", render.SIGNED_RAMP, STRAINS),
         tensions,
     ),
 }

@@ -91,6 +91,7 @@ class FileDrop:
         self._files, self._scripts, self._show_scene = files, scripts, show_scene
         self._mark = mark
         self._announced: Callable[[], Message] | None = None
+        self.has_other_head = False  # than the built-in one
 
     @property
     def has_announced(self) -> bool:
@@ -117,7 +118,7 @@ class FileDrop:
             """Do so."""
             self._show_scene(build_scene("face", head_for(None, None, who)))
 
-        self._announced = show
+        self._announced, self.has_other_head = show, who is not None
         return f"making {'the built-in head' if who is None else f'person {who}'} ..."
 
     def _open(self, dropped: DroppedFiles) -> Message:
@@ -132,6 +133,7 @@ class FileDrop:
                 assert dropped.mesh is not None
                 return self._mark(dropped.mesh, dropped.landmarks)
             self._show_scene(scene)
+            self.has_other_head = True
             assert dropped.mesh is not None
             line = f"{dropped.mesh.name}: opened{remark}"
             remark = f" with {dropped.mesh.name}{remark}"

@@ -86,7 +86,6 @@ class Gui:
         io.set_ini_filename("")  # settings.py remembers what is worth it
         if FONT.exists():
             io.fonts.add_font_from_file_ttf(str(FONT), FONT_SIZE)
-        if ICONS.exists():
             merged = imgui.ImFontConfig()
             merged.merge_mode = True
             io.fonts.add_font_from_file_ttf(str(ICONS), 0.8 * FONT_SIZE, merged)

@@ -8,7 +8,6 @@ from __future__ import annotations
 from functools import partial
 
 from ..looks import FIRST_LOOK, PAPERS_LOOK
-from ..scenes import BUILT_IN
 from ..script.easing import EASINGS
 from .command import Command
 from .control_rows import readable
@@ -27,14 +26,13 @@ from .time_axis import TimeAxis
 from .view import View
 
 Menu = tuple[Command, ...]
-VIEW_KEYS = {  # of named views; Ctrl: the other side
-    **{"front": "Keypad1", "three-quarter": "Keypad2", "three-quarter-right": "Ctrl+Keypad2"},
-    **{"profile": "Keypad3", "profile-right": "Ctrl+Keypad3", "top": "Keypad7"},
+VIEW_KEYS = {
+    **{"Front": "Keypad1", "Three-quarter": "Keypad2", "Three-quarter right": "Ctrl+Keypad2"},
+    **{"Profile": "Keypad3", "Profile right": "Ctrl+Keypad3", "Top": "Keypad7"},
 }
 
 
 def file_menu(
-    session: Session,
     scripts: ScriptCommands,
     file_drop: FileDrop,
     motion_export: MotionExport,
@@ -43,17 +41,13 @@ def file_menu(
 ) -> Menu:
     """Files that come and go, and the end."""
     command = partial(Command, "File")
+    other = partial(command, can_run=lambda: file_drop.has_other_head)
     return (
         command("New script", "Ctrl+N", scripts.new),
         command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
         command("Open head ...", "Ctrl+H", file_drop.ask_head),
         command("Mark a head ...", "Ctrl+Shift+H", file_drop.ask_mesh),
-        command(
-            "Built-in head",
-            "",
-            partial(file_drop.show_person, None),
-            can_run=lambda: session.scene.called not in ("", BUILT_IN),
-        ),
+        other("Built-in head", "", partial(file_drop.show_person, None)),
         command("Open sound ...", "Ctrl+U", scripts.ask_sound),
         command("Remove sound", "", scripts.remove_sound, can_run=lambda: scripts.has_sound),
         command("Save script", "Ctrl+S", scripts.save),
@@ -142,13 +136,18 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         return "F11 leaves the full screen" if placement.is_full else None
 
     muscles = partial(command, is_on=lambda: "muscles" in settings.display.overlays)
+    orthographic = partial(command, is_on=lambda: settings.is_orthographic)
+    views = (  # Alt: where there is no number pad
+        command(name, key, partial(view.look_from, name), other_key=key.replace("Keypad", "Alt+"))
+        for name, key in VIEW_KEYS.items()
+    )
     full = partial(command, is_on=lambda: placement.is_full, other_key="Alt+Enter")
     return (
         switch("Refine", "R", "is_refined"),
         command("Paper's look", "P", toggle_look, lambda: settings.display.look == PAPERS_LOOK),
         switch("Compare: wipe", "D", "compare", "wipe", "off"),
         switch("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
-        command("Compare: A or B alone", "B", lambda: settings.display.flip()),
+        switch("Compare: A or B alone", "B", "compare", "B alone", "A alone"),
         switch("Wireframe", "W", "wireframe"),
         switch("Colour by splits", "C", "colours", "splits", "none"),
         command("Next shading", "S", lambda: settings.display.next_shading()),
@@ -156,22 +155,8 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
         command("Idle life", "A", settings.toggle_life, lambda: settings.is_alive),
         command("Frame the face", "F", view.fit_scene),
-        *(
-            command(
-                name.replace("-", " ").capitalize(),
-                key,
-                partial(view.look_from, name),
-                other_key=key.replace("Keypad", "Alt+"),  # where there is no number pad
-            )
-            for name, key in VIEW_KEYS.items()
-        ),
-        command(
-            "Orthographic",
-            "Keypad5",
-            view.toggle_orthographic,
-            lambda: settings.is_orthographic,
-            other_key="Alt+5",
-        ),
+        *views,
+        orthographic("Orthographic", "Keypad5", view.toggle_orthographic, other_key="Alt+5"),
         command("Hide panels", "Tab", panels.toggle_hidden, lambda: panels.are_hidden),
         full("Full screen", "F11", toggle_full),
         command("Dark theme", "F2", settings.toggle_theme, lambda: settings.theme == "dark"),

@@ -10,7 +10,7 @@ from risorius import render
 from risorius.assets.fitting import FittedHead
 
 from ..errors import UserError
-from ..scenes import Scene, build_scene
+from ..scenes import BUILT_IN, Scene, build_scene
 from ..script import Script
 from . import menus
 from .command import Command
@@ -122,14 +122,10 @@ class Parts:
         self.live = LiveCommands(session, self.panel_state, wake_up)
         self.room: Room | None = None  # a mesh whose landmarks are being marked
         self.file_drop = FileDrop(self.files, self.scripts, self.show_scene, self.mark)
+        self.file_drop.has_other_head = session.scene.called not in ("", BUILT_IN)
         self.commands: tuple[Command, ...] = (
             *menus.file_menu(
-                session,
-                self.scripts,
-                self.file_drop,
-                self.motion_export,
-                self.exporter,
-                self.ask_to_close,
+                self.scripts, self.file_drop, self.motion_export, self.exporter, self.ask_to_close
             ),
             *menus.edit_menu(session),
             *menus.time_menu(session, self.scripts, self.time_axis),
@@ -155,7 +151,9 @@ class Parts:
         )
         self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
         self.face_panel = FacePanel(gui, session, settings, view)
-        mechanism = MechanismPanel(gui, settings, self.stage, view, self.times, self.show_person)
+        mechanism = MechanismPanel(
+            gui, settings, self.stage, view, self.times, messages, self.file_drop
+        )
         record = next(each for each in commands if each.label == "Record")
         live = LivePanel(gui, settings, self.live, messages, record)
         tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
@@ -197,10 +195,6 @@ class Parts:
         self.painter.forget()
         if refused:
             self.messages.say(refused)
-
-    def show_person(self, who: int | str | None) -> None:
-        """Show another head; see `FileDrop.show_person`."""
-        self.messages.attempt(partial(self.file_drop.show_person, who))
 
     def mark(self, mesh: Path, landmarks: Path | None = None) -> Message:
         """Mark the landmarks of a mesh, or go on with those of a file; the face waits meanwhile.

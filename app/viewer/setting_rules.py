@@ -26,14 +26,11 @@ SKINS = {  # whether it is textured, and its colour
     "plain": (False, render.SKIN),
     "clay": (False, render.CLAY),
 }
-BACKGROUNDS = {  # None: that of the theme
-    **{"theme": None, "light": render.LIGHT, "dark": render.DARK},
-    **{"white": render.WHITE, "black": render.BLACK},
-}
-TONES = {  # individual typology angle [degrees], see assets/identities/complexion.py; None: own
-    **{"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0},
-    **{"tan": 19.0, "brown": -10.0, "dark": -45.0},
-}
+OF_RENDER = ("light", "dark", "white", "black")
+BACKGROUNDS = {"theme": None, **{name: getattr(render, name.upper()) for name in OF_RENDER}}
+# Individual typology angles [degrees], see assets/identities/complexion.py; None: the person's own.
+TONES = {"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0}
+TONES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
 TABS = ("Face", "Mechanism", "Live")
 
 

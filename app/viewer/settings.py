@@ -81,19 +81,15 @@ class Display:
         options = self.options.get(self.refiner_on(scene), {})
         return Refinement(self.look, self.refiner, dict(options))
 
-    def side_on(self, scene: Scene, name: str) -> Refinement:
-        """How this scene is refined on a side of a comparison that shows what is called so."""
+    def side_on(self, scene: Scene, side: str) -> Refinement:
+        """How this scene is refined on a side of a comparison, "a" or "b"."""
+        name = getattr(self, side)
         return self.refinement_on(scene) if name == rules.CHOSEN else named(name, self.look)
 
     @property
     def share(self) -> float:
         """Of the picture's width, what is at the left of the line in a comparison."""
         return self.divider if self.compare == "wipe" else 0.5
-
-    def flip(self) -> str:
-        """Show the other side of a comparison alone."""
-        self.compare = "A alone" if self.compare == "B alone" else "B alone"
-        return f"Compare: {self.compare}"
 
     def switch(self, name: str, value: object = True, other: object = False) -> None:
         """Give a field this value, or the other if it has it already."""
@@ -247,9 +243,8 @@ def remove_refused_options(display: Display, scene: Scene) -> str:
         refused.append(display.refiner)
         display.refiner = None
     for side in ("a", "b"):
-        name = getattr(display, side)
-        if not suits(display.side_on(scene, name)):
-            refused.append(name)
+        if not suits(display.side_on(scene, side)):
+            refused.append(getattr(display, side))
             setattr(display, side, getattr(Display(), side))
     line = f"of no use and as at first: refiner {', '.join(refused)}"
     return in_one_line(line) if refused else ""

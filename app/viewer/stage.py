@@ -83,7 +83,7 @@ class Stage:
             self.refiner_options = options_of(display.refiner_on(self.scene))
             self.open_choices = open_choices(display.refiner_on(self.scene))
         for side in ("a", "b"):
-            asked = display.side_on(self.scene, getattr(display, side))
+            asked = display.side_on(self.scene, side)
             is_there = display.compare == "off" or asked == chosen
             self._is_rebound(side, Refinement(refiner=STATIC) if is_there else asked)
 
@@ -107,14 +107,7 @@ class Stage:
         if display.compare == "off" or width < 2:  # less than a pixel for each
             drawn = self.refined if display.is_refined else self.static
             return [Shot(drawn, viewport, viewport)]
-        chosen = display.refinement_on(self.scene)
-        a, b = (
-            Shot(self.refined if asked == chosen else drawn, viewport, viewport)
-            for asked, drawn in (
-                (display.side_on(self.scene, display.a), self.a),
-                (display.side_on(self.scene, display.b), self.b),
-            )
-        )
+        a, b = (Shot(self._side(display, side), viewport, viewport) for side in ("a", "b"))
         if display.compare.endswith("alone"):
             return [a if display.compare == "A alone" else b]
         share = min(max(display.share, LEAST_SHARE), 1.0 - LEAST_SHARE)
@@ -124,6 +117,10 @@ class Stage:
         if display.compare == "wipe":
             return [a._replace(clip=first), b._replace(clip=second)]
         return [Shot(a.drawn, first, first), Shot(b.drawn, second, second)]
+
+    def _side(self, display: Display, side: str) -> DrawnMesh:
+        is_chosen = display.side_on(self.scene, side) == display.refinement_on(self.scene)
+        return self.refined if is_chosen else getattr(self, side)
 
     def draw(self, view: View) -> None:
         """Draw the scene as it is now; the surface's `detail` says how finely."""
@@ -162,11 +159,9 @@ class Stage:
 
     def _labels(self, view: View, shots: Sequence[Shot], albedo: render.Colour) -> list[Label]:
         """What each side of a comparison is, and what colours stand for."""
-        display = view.display
-        letters = (
-            "" if display.compare == "off" else display.compare[0] if len(shots) == 1 else "AB"
-        )
+        display, letters = view.display, "AB" if len(shots) == 2 else view.display.compare
         texts = [f"{a}   {shot.drawn.caption}" for a, shot in zip(letters, shots, strict=False)]
+        texts = [] if display.compare == "off" else texts
         size = max(text_size(view.viewport[3]), view.pixels((0.0, 0.0, em(), 1.0))[2])
         places, bar = [shot.clip for shot in shots], COLOURS[display.colours].bar
         return labels(texts, places, size, bar=bar, albedo=albedo)

@@ -50,10 +50,9 @@ class View:
         self.camera = whole_scene(self._session.scene, self._session.script.camera)
         self.camera.is_orthographic = self._settings.is_orthographic
 
-    def look_from(self, name: str) -> str:
-        """Turn the camera to a named view, about what it looks at, no nearer and no farther."""
-        self.camera.yaw, self.camera.pitch = render.VIEWS[name]
-        return name.replace("-", " ").capitalize()
+    def look_from(self, label: str) -> None:
+        """Turn the camera to one of `render.VIEWS`, about what it looks at."""
+        self.camera.yaw, self.camera.pitch = render.VIEWS[label.lower().replace(" ", "-")]
 
     def toggle_orthographic(self) -> None:
         """Whether what is far away is as large as what is near."""
@@ -61,10 +60,7 @@ class View:
         self.camera.is_orthographic = self._settings.is_orthographic
 
     def follow_history(self, *, is_held: bool) -> None:
-        """Show what undo brought back, or make a change of the display one that can be undone.
-
-        is_held: the user has hold of something, and may not be done with the change.
-        """
+        """Show what undo brought back, or let a change be undone that the user is done with."""
         session, settings = self._session, self._settings
         if isinstance(session.display, Display) and session.display is not self._noted:
             settings.display = deepcopy(session.display)
@@ -80,8 +76,7 @@ class View:
     @property
     def background(self) -> render.Background:
         """What is behind it."""
-        chosen = BACKGROUNDS[self.display.background]
-        return chosen or THEMES[self._settings.theme].background
+        return BACKGROUNDS[self.display.background] or THEMES[self._settings.theme].background
 
     @property
     def viewport(self) -> Viewport:
@@ -125,5 +120,5 @@ class View:
         x, y = left + round(self.display.share * width), bottom + height // 2
         line = (x - unit // 2, bottom, unit, height)
         grip = (x - unit // 2 - unit, y - 10 * unit, 3 * unit, 20 * unit)
-        grips = [(grip, THEMES[self._settings.theme].accent)]
-        return [(line, WHITE), *(grips if self.display.compare == "wipe" else [])]
+        rules = [(line, WHITE), (grip, THEMES[self._settings.theme].accent)]
+        return rules if self.display.compare == "wipe" else rules[:1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
 from functools import partial
 from typing import Any
 
@@ -16,8 +17,10 @@ from ...looks import FIRST_LOOK, LOOKS, STATIC, named, words_of_looks
 from ...refining import DETAIL, can_detail
 from ...scenes import BUILT_IN
 from ..colours import COLOURS
+from ..file_drop import FileDrop
 from ..frame_times import PHASES, FrameTimes
 from ..gui import BACK, Gui, colour, em
+from ..messages import Messages
 from ..overlays import overlays_of
 from ..setting_rules import BACKGROUNDS, CHOSEN, COMPARISONS, SKINS, TONES
 from ..settings import Display, Settings
@@ -64,12 +67,8 @@ HINTS = {
     "Landmarks": "the 68 points that the muscles are placed by",
 }
 # Rows of fields of the display, by their labels.
-FIELDS = {
-    **{"Refine": "is_refined", "Refiner": "refiner", "Compare": "compare", "A": "a", "B": "b"},
-    **{"Shading": "shading", "Colours": "colours", "Skin": "skin", "Wrinkles": "wrinkles"},
-    **{"Wireframe": "wireframe", "Occlusion": "occlusion", "Light": "light"},
-    **{"Background": "background", "Skin tone": "tone"},
-}
+FIELDS = {"Refine": "is_refined", "Skin tone": "tone"}
+FIELDS |= {each.name.capitalize(): each.name for each in fields(Display)}
 NUMBERED = "by number"
 THRESHOLDS = "threshold_once", "threshold_twice"  # of this criterion alone:
 PAPERS_CRITERION = "normal"
@@ -87,10 +86,11 @@ class MechanismPanel:
         stage: Stage,
         view: View,
         times: FrameTimes,
-        show_person: Callable[[int | str | None], None],
+        messages: Messages,
+        file_drop: FileDrop,
     ) -> None:
-        """show_person: puts another head in the place of this one, None for the built-in one."""
-        self._gui, self._settings, self._show_person = gui, settings, show_person
+        self._gui, self._settings = gui, settings
+        self._messages, self._file_drop = messages, file_drop
         self._stage, self._view, self._times = stage, view, times
         self._sliders = Sliders(gui)
 
@@ -122,8 +122,9 @@ class MechanismPanel:
         """What sets each row back that is not as at first, by its label."""
         display, first, scene = self._display, Display(), self._stage.scene
         display.options = {name: told for name, told in display.options.items() if told}
-        told = display.options.get(display.refiner_on(scene), {})
+        told, toggle = display.options.get(display.refiner_on(scene), {}), display.toggle_overlay
         resets = {name.replace("_", " "): partial(told.pop, name) for name in told}
+        resets |= {each.capitalize(): partial(toggle, each) for each in display.overlays}
         for label, name in FIELDS.items():
             if getattr(display, name) != getattr(first, name):
                 resets[label] = partial(setattr, display, name, getattr(first, name))
@@ -209,15 +210,16 @@ class MechanismPanel:
         self._pick("Background", tuple(BACKGROUNDS))
         if scene.in_tone is not None:
             self._pick("Skin tone", tuple(TONES))
-        if not scene.called:
-            return
-        is_numbered = scene.called.isdecimal()
-        people: dict[str, int | str | None] = {name: name for name in NAMED}
-        people |= {BUILT_IN: None, NUMBERED: 0}
-        present = NUMBERED if is_numbered else scene.called
-        self._choose("Person", present, list(people), lambda who: self._show_person(people[who]))
+        is_numbered, who = scene.called.isdecimal(), {BUILT_IN: None, NUMBERED: 0}
+        present, names = NUMBERED if is_numbered else scene.called, (*NAMED, *who)
+        if scene.called:
+            show = self._show_person
+            self._choose("Person", present, names, lambda name: show(who.get(name, name)))
         if is_numbered:
             self._count("Number", int(scene.called), self._show_person)
+
+    def _show_person(self, who: int | str | None) -> None:
+        self._messages.attempt(partial(self._file_drop.show_person, who))
 
     def _draw_overlays(self) -> None:
         display = self._display
@@ -252,15 +254,14 @@ class MechanismPanel:
         imgui.align_text_to_frame_padding()
         imgui.text(label)
         hint(HINTS.get(label, ""))
-        imgui.same_line(_label_width() - em(1.5))
-        self._draw_reset(label)
+        self._draw_reset(label, _label_width() - em(1.5))
         imgui.same_line(_label_width())
 
-    def _draw_reset(self, label: str) -> None:
+    def _draw_reset(self, label: str, place: float = 0.0) -> None:
         """The mark of a row that is not as at first; a click sets it back."""
         if label not in self._resets:
-            imgui.dummy((0.0, 0.0))
             return
+        imgui.same_line(place)
         imgui.push_style_color(imgui.Col_.text, colour(self._gui.theme.accent))
         imgui.push_style_color(imgui.Col_.button, colour(self._gui.theme.panel, 0.0))
         is_clicked = imgui.small_button(f"{BACK}##{label}")
@@ -279,9 +280,7 @@ class MechanismPanel:
         is_clicked, _ = imgui.checkbox(label, is_on)
         self._gui.remember(label)
         hint(HINTS.get(label, ""))
-        if label in self._resets:
-            imgui.same_line()
-            self._draw_reset(label)
+        self._draw_reset(label)
         if is_clicked:
             switch()
 
