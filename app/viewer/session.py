@@ -123,10 +123,10 @@ class Session:
 
     def show(self, display: object) -> None:
         """Draw the scene in another way: what nobody changes any more, and equals its like."""
-        if self.display is None:  # at first: no change
-            self._history.restate(replace(self._history.present, display=display))
+        state = replace(self._history.present, display=display)  # the script may move the rest
+        keep = self._history.restate if self.display is None else self._history.note
         self.display = display
-        self.note()
+        keep(state)
 
     def note(self) -> None:
         """A change is complete (a slider let go, a button pressed): it can be undone."""
@@ -144,16 +144,19 @@ class Session:
 
     def undo(self) -> None:
         """Back to before the last change, or to it, if the script has moved the controls since."""
-        is_elsewhere = self._document() != self._history.present
-        self._restore(self._history.present if is_elsewhere else self._history.undo())
+        present, before = self._history.present, self._history.undo()
+        if self._document() != present and not before.differs_in_view(present):
+            before = present if before is present else self._history.redo()
+        self._restore(before, present)
 
     def redo(self) -> None:
         """Forward again."""
-        self._restore(self._history.redo())
+        present = self._history.present
+        self._restore(self._history.redo(), present)
 
-    def _restore(self, document: Document) -> None:
-        here, self.display = replace(self._document(), display=document.display), document.display
-        if here == document:  # nothing but that
+    def _restore(self, document: Document, present: Document) -> None:
+        self.display = document.display
+        if document.differs_in_view(present):
             return
         self.is_playing = False
         self.script, self.file = document.script, document.file

@@ -116,12 +116,13 @@ class MechanismPanel:
         ):
             if heading(self._gui, self._settings, title, label):
                 draw()
+        display = self._display
+        display.options = {name: told for name, told in display.options.items() if told}
         imgui.end_child()
 
     def _find_resets(self) -> Mapping[str, Callable[[], object]]:
         """What sets each row back that is not as at first, by its label."""
         display, first, scene = self._display, Display(), self._stage.scene
-        display.options = {name: told for name, told in display.options.items() if told}
         told, toggle = display.options.get(display.refiner_on(scene), {}), display.toggle_overlay
         resets = {name.replace("_", " "): partial(told.pop, name) for name in told}
         resets |= {each.capitalize(): partial(toggle, each) for each in display.overlays}
