@@ -123,11 +123,9 @@ class FaceScene(Scene):
         )
         self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
         self.wrinkles = head.wrinkles
-        if isinstance(head, assets.Head):
-            self.called, self.in_tone = BUILT_IN, recoloured
-        else:  # of persons alone it is known how they are painted
-            self.called = getattr(head, "called", "") or "own"
-            self.in_tone = getattr(head, "in_tone", None)
+        is_known = isinstance(head, assets.Head)
+        self.called = BUILT_IN if is_known else getattr(head, "called", "") or "own"
+        self.in_tone = recoloured if is_known else getattr(head, "in_tone", None)
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))

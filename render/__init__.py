@@ -27,12 +27,10 @@ from .probe import Finding, probe
 from .renderer import Renderer, Viewport
 from .stream import Stream
 from .style import (
-    AMOUNT_RAMP,
     BLACK,
     CLAY,
     DARK,
     LIGHT,
-    SIGNED_RAMP,
     SKIN,
     SKIN_DARK,
     SKIN_LIGHT,
@@ -49,13 +47,11 @@ from .texture import Texture, WrinkleMap
 from .window import WindowSurface, open_window, size_on_screen
 
 __all__ = [
-    "AMOUNT_RAMP",
     "BLACK",
     "CLAY",
     "DARK",
     "LIGHT",
     "LIGHTS",
-    "SIGNED_RAMP",
     "SKIN",
     "SKIN_DARK",
     "SKIN_LIGHT",

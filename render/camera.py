@@ -43,8 +43,7 @@ class OrbitCamera:
     narrowest_aspect: a frame narrower than this (width / height) shows no less of the scene's
         width, but more of its height; framing sets it.
     scene_centre, scene_radius: a sphere that holds what is framed; sets the clipping planes.
-    is_orthographic: what is far away is as large as what is near: all is as large as perspective
-        shows the target from `distance`, and the eye stands far back.
+    is_orthographic: all is as large as perspective shows the target; the eye stands far back.
     """
 
     target: FloatArray
@@ -152,12 +151,9 @@ class OrbitCamera:
         return Matrix44.perspective_projection(degrees, aspect, near, far, dtype=np.float64)
 
     def focal(self, aspect: float, height: int) -> float:
-        """Pixels that a length of 1 covers at distance 1 from the eye, in `height` pixels.
-
-        An orthographic eye is so far away that all of the scene is at the target's distance.
-        """
-        enlarged = self._eye_distance / self.distance
-        return 0.5 * height * enlarged / self._half_height(aspect)
+        """Pixels that a length of 1 covers at distance 1 from the eye, in `height` pixels."""
+        away = self._eye_distance / self.distance
+        return 0.5 * height * away / self._half_height(aspect)
 
     def _half_height(self, aspect: float) -> float:
         """Half the frame's height at distance 1."""
@@ -177,17 +173,15 @@ class OrbitCamera:
         """Centre `points`, shape (n, 3), in the frame and step as close as the margin allows."""
         usable = (1.0 - 2.0 * margin) * math.tan(math.radians(0.5 * self.field_of_view))
         axes = np.stack(self.axes())
-        nearer = 0.0 if self.is_orthographic else 1.0  # whether what is nearer is larger
+        axes[2] *= not self.is_orthographic  # else what is nearer is larger
         for _ in range(8):  # each round centres better; perspective makes one round inexact
             x, y, z = axes @ (points - self.target).T
-            z *= nearer
             self.distance = float((z + np.abs(y) / usable).max()) or self.scene_radius
             depth = self.distance - z
             across, along = x / depth, y / depth
             middle = 0.5 * np.array([across.min() + across.max(), along.min() + along.max()])
             self.target = self.target + self.distance * (middle @ axes[:2])
         x, y, z = axes @ (points - self.target).T
-        z *= nearer
         self.distance = float((z + np.abs(y) / usable).max()) or self.scene_radius
         self.distance = max(self.distance, float(z.max()) + 0.05 * self.scene_radius)
         widest = float((np.abs(x) / (self.distance - z)).max())

@@ -6,16 +6,14 @@ laid under it again without being drawn again.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import moderngl
-import numpy as np
-import numpy.typing as npt
 
 from .programs import compile_program
 from .render_target import Rectangle, RenderTarget
 
 _UNIT = 4  # texture unit while enlarging
-Image = npt.NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -68,12 +66,11 @@ class Compositor:
             gl.enable(moderngl.DEPTH_TEST)
         gl.scissor = None
 
-    def lay(self, image: Image, corner: tuple[int, int]) -> None:
-        """Lay a label on what is bound, from a lower left corner; see `WindowSurface.labels`."""
+    def lay(self, x: int, y: int, image: Any) -> None:
+        """Lay a label on what is bound; see `WindowSurface.labels`."""
         gl, (height, width, _) = self._gl, image.shape
-        texture = gl.texture((width, height), 4, np.ascontiguousarray(image[::-1]))
-        texture.use(_UNIT)
-        gl.viewport = *corner, width, height
+        gl.texture((width, height), 4, image[::-1].tobytes()).use(_UNIT)
+        gl.viewport = x, y, width, height
         gl.enable_only(moderngl.BLEND)
         gl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
         self._triangle.render(moderngl.TRIANGLES, vertices=3)

@@ -27,8 +27,8 @@ class WindowSurface(Surface):
     handle: the GLFW window, for input and GUI libraries. detail: settable, for the next frames.
     area: the part in which the scene is seen, where panels hide the rest; None: all. Settable.
     rules: plain rectangles over the scene, such as a line between two halves. Settable.
-    labels: small pictures over both, such as captions: x and y of the lower left corner [pixels],
-        and RGBA, colours multiplied by alpha, top row first, shape (h, w, 4), uint8. Settable.
+    labels: pictures over both, such as captions: x and y of the lower left corner [pixels]; RGBA,
+        premultiplied, top row first, shape (h, w, 4), uint8. Settable.
     """
 
     def __init__(self, glfw: ModuleType, handle: Any, gl: moderngl.Context, samples: int) -> None:
@@ -116,8 +116,8 @@ class WindowSurface(Surface):
     def _draw_marks(self, target: moderngl.Framebuffer) -> None:
         for rectangle, colour in self.rules:
             target.clear(*colour, viewport=rectangle)
-        for x, y, image in self.labels:
-            self._compositor.lay(image, (x, y))
+        for label in self.labels:
+            self._compositor.lay(*label)
 
     def read(self) -> Image:
         """Return the frame as it is seen, with the panels; see `Surface.read`."""

@@ -24,11 +24,6 @@ LEAST_CAPTION = 28  # [pixels] below a cell of a contact sheet: text of 15 pixel
 LANCZOS = PIL.Image.Resampling.LANCZOS
 
 
-def text_size(height: int) -> float:
-    """How large letters are in a picture of that height [pixels]."""
-    return max(11.0, height / 36.0)
-
-
 @functools.cache
 def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
     """Pillow's own typeface at a size [pixels]; read once, for that takes longer than writing."""
@@ -36,10 +31,9 @@ def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
 
 
 class ColourBar(NamedTuple):
-    """What colours of triangles stand for.
+    """What colours stand for, from the least to the most: `ticks` are numbers, evenly far apart.
 
-    ramp: from the least to the most, sRGB 0..1, and how much of each covers the skin. ticks:
-        numbers, evenly from the first to the last. is_smooth: colours run into each other.
+    ramp: sRGB 0..1, and how much of it covers the skin. is_smooth: colours run into each other.
     """
 
     title: str
@@ -48,25 +42,17 @@ class ColourBar(NamedTuple):
     is_smooth: bool = True
 
 
-SPLITS_BAR = ColourBar(
-    "Splits of a triangle's edges",
-    tuple((colour, 1.0) for colour in render.SPLIT_PALETTE),
-    tuple("123456"),
-    is_smooth=False,
-)
+PALETTE = tuple((colour, 1.0) for colour in render.SPLIT_PALETTE)
+SPLITS_BAR = ColourBar("Splits of a triangle's edges", PALETTE, tuple("123456"), is_smooth=False)
 
 
-class Label(NamedTuple):
-    """A picture on a picture: x, y of its lower left corner [pixels]; RGBA, premultiplied."""
-
-    x: int
-    y: int
-    image: Image
+# A picture on a picture: x, y of its lower left corner [pixels]; RGBA, premultiplied.
+Label = tuple[int, int, Image]
 
 
 @functools.lru_cache(maxsize=64)
 def plate(text: str, size: float) -> Image:
-    """A line of text, and a smaller one below it, on a dark plate; (h, w, 4), premultiplied."""
+    """A line of text, and a smaller one below it, on a dark plate; see `Label`."""
     lines = [*zip(text.split("\n"), (font(size), font(0.82 * size)), (INK, FAINT), strict=False)]
     width = max(face.getlength(line) for line, face, _ in lines)
     page, draw = _page(width + 1.3 * size, (1.25 * len(lines) + 0.55) * size, size)
@@ -78,33 +64,30 @@ def plate(text: str, size: float) -> Image:
 
 @functools.lru_cache(maxsize=8)
 def colour_bar(bar: ColourBar, albedo: render.Colour, size: float) -> Image:
-    """An upright bar with its numbers and its title, on a plate; (h, w, 4), premultiplied."""
-    small, count = font(0.82 * size), len(bar.ramp)
-    tall, wide, pad = round(13.0 * size), round(0.8 * size), round(0.65 * size)
-    left, right = round(1.85 * size), round(3.1 * size)  # of the bar, of its numbers
-    numbers = max(small.getlength(tick) for tick in bar.ticks)
-    page, draw = _page(right + numbers + pad, tall + 2 * pad, size)
+    """An upright bar over skin of some colour, its numbers and its title, on a plate."""
+    small, count, pad = font(0.82 * size), len(bar.ramp), round(0.65 * size)
+    tall, wide, numbers = round(13.0 * size), round(0.8 * size), round(3.1 * size)
+    ends = numbers + max(map(small.getlength, bar.ticks)) + pad
+    page, draw = _page(ends, tall + 2 * pad, size)
     colours = np.array([np.add(albedo, np.subtract(c, albedo) * cover) for c, cover in bar.ramp])
     rows = np.linspace(1.0, 0.0, tall)
     places = rows * (count - 1) if bar.is_smooth else np.floor(rows * (count - 1e-6))
     shades = np.stack([np.interp(places, np.arange(count), each) for each in colours.T], axis=1)
     column = np.rint(255.0 * shades).astype(np.uint8)[:, None].repeat(wide, axis=1)
-    page.paste(PIL.Image.fromarray(column), (left, pad))
+    page.paste(PIL.Image.fromarray(column), (round(1.85 * size), pad))
     inner = 0.4 * size if bar.is_smooth else 0.5 * tall / count
     for y, tick in zip(np.linspace(tall - inner, inner, len(bar.ticks)), bar.ticks, strict=True):
-        draw.text((right, pad + y), tick, font=small, fill=INK, anchor="lm")
-    title = PIL.Image.new("RGBA", (tall, round(1.3 * size)))
-    middle = 0.5 * tall, 0.65 * size
+        draw.text((numbers, pad + y), tick, font=small, fill=INK, anchor="lm")
+    title, middle = PIL.Image.new("RGBA", (tall, wide + pad)), (0.5 * tall, 0.65 * size)
     ImageDraw.Draw(title).text(middle, bar.title, font=small, fill=FAINT, anchor="mm")
     page.alpha_composite(title.rotate(90, expand=True), (round(0.45 * size), pad))
     return np.asarray(page.convert("RGBa"))
 
 
 def _page(width: float, height: float, size: float) -> tuple[PIL.Image.Image, ImageDraw.ImageDraw]:
-    """A dark plate with round corners, as large as that [pixels], and what draws on it."""
+    """A dark plate with round corners, and what draws on it."""
     page = PIL.Image.new("RGBA", (math.ceil(width), math.ceil(height)), (*SHADE, 0))
-    draw = ImageDraw.Draw(page)
-    corners = (0, 0, page.width - 1, page.height - 1)
+    draw, corners = ImageDraw.Draw(page), (0, 0, page.width - 1, page.height - 1)
     draw.rounded_rectangle(corners, 0.35 * size, fill=(*SHADE, PLATE))
     return page, draw
 
@@ -112,29 +95,27 @@ def _page(width: float, height: float, size: float) -> tuple[PIL.Image.Image, Im
 def labels(
     texts: Sequence[str],
     viewports: Sequence[Viewport],
-    size: float,
-    *,
-    bar: ColourBar | None = None,
-    albedo: render.Colour = render.SKIN,
+    bar: ColourBar | None,
+    style: render.Style,
+    least: float = 11.0,
 ) -> list[Label]:
-    """Captions at the foot of viewports, in letters of `size` [pixels], and a colour bar.
+    """Captions at the foot of viewports, and a colour bar at the upper right.
 
     A caption stands at the left, the second of two at the right, away from line and face; without
-    room it is left out. The bar is at the upper right.
+    room it is left out. least: size of letters [pixels], which are larger in a high picture.
     """
-    pad, made = round(0.7 * size), []
+    size = max(least, viewports[0][3] / 36.0)
+    pad, made = round(0.7 * size), list[Label]()
     for index, (text, (left, bottom, width, _)) in enumerate(zip(texts, viewports, strict=False)):
         image = plate(text, size)
         room = width - image.shape[1] - 2 * pad
-        if room >= 0:
-            aside = room if (index, len(texts)) == (1, 2) else 0
-            made.append(Label(left + pad + aside, bottom + pad, image))
+        aside = room if (index, len(texts)) == (1, 2) else 0
+        made += [(left + pad + aside, bottom + pad, image)] if room >= 0 else []
     if bar is not None:
-        left, bottom, width, tall = viewports[-1]
-        image = colour_bar(bar, albedo, 0.78 * size)
-        x, y = left + width - pad - image.shape[1], bottom + tall - pad - image.shape[0]
-        if x >= left and y >= bottom:
-            made.append(Label(x, y, image))
+        left, bottom, width, height = viewports[-1]
+        image = colour_bar(bar, style.albedo, 0.78 * size)
+        x, y = width - image.shape[1] - pad, height - image.shape[0] - pad
+        made += [(left + x, bottom + y, image)] if min(x, y) >= 0 else []
     return made
 
 
@@ -144,12 +125,10 @@ def captioned(image: Image, shown: Sequence[Label], viewports: Sequence[Viewport
     image: with 3 channels, or 4 and premultiplied.
     """
     page = image.copy()
-    for left, *_ in viewports:
-        if left:
-            page[:, left] = (*INK, 255)[: page.shape[2]]
+    for left in [each[0] for each in viewports if each[0]]:
+        page[:, left] = (*INK, 255)[: page.shape[2]]
     for x, y, label in shown:
-        bottom = len(page) - y
-        under = page[bottom - len(label) : bottom, x : x + label.shape[1]]
+        under = page[len(page) - y - len(label) : len(page) - y, x : x + label.shape[1]]
         kept = under * (255 - label[..., 3:].astype(np.uint16))
         under[:] = label[..., : page.shape[2]] + (kept + 127) // 255
     return page

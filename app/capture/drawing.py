@@ -18,7 +18,7 @@ from ..passes.passes import Passes
 from ..pipeline import Pipeline, side_by_side
 from ..scenes import Scene
 from ..script import Script
-from .captions import SPLITS_BAR, captioned, labels, text_size
+from .captions import SPLITS_BAR, captioned, labels
 from .transparency import straight
 
 
@@ -89,12 +89,9 @@ class Capture:
         self.surface.end()
         image = self.surface.read_scene(4 if self.options.is_transparent else 3)
         if self.options.beside and self.options.captions:
-            texts = [drawn.caption for drawn in self.pipeline.meshes]
-            style = self.options.style
+            texts, style = [drawn.caption for drawn in self.pipeline.meshes], self.options.style
             bar = SPLITS_BAR if style.colour_by is render.ColourBy.SPLITS else None
-            shown = labels(
-                texts, self.viewports, text_size(len(image)), bar=bar, albedo=style.albedo
-            )
+            shown = labels(texts, self.viewports, bar, style)
             image = captioned(image, shown, self.viewports)
         return straight(image) if self.options.is_transparent else image
 

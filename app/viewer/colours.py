@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, render
+from risorius.render.style import AMOUNT_RAMP, SIGNED_RAMP
 
 from ..capture.captions import SPLITS_BAR, ColourBar
 from ..pipeline import DrawnMesh, splits_of_source
@@ -101,12 +102,12 @@ COLOURS = {
     "splits": Colours(render.ColourBy.SPLITS, SPLITS_BAR),
     "curvature drop": Colours(
         render.ColourBy.AMOUNT,
-        ColourBar("Curvature: drop of n · n at rest", render.AMOUNT_RAMP, DROPS),
+        ColourBar("Curvature: drop of n · n at rest", AMOUNT_RAMP, DROPS),
         curvature_drops,
     ),
     "tension": Colours(
         render.ColourBy.SIGNED,
-        ColourBar("Tension: change of length", render.SIGNED_RAMP, STRAINS),
+        ColourBar("Tension: change of length", SIGNED_RAMP, STRAINS),
         tensions,
     ),
 }

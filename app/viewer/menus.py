@@ -5,6 +5,7 @@ Menus, the keyboard and the overview of keys are all made from these tables.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 from ..looks import FIRST_LOOK, PAPERS_LOOK
@@ -136,7 +137,6 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         return "F11 leaves the full screen" if placement.is_full else None
 
     muscles = partial(command, is_on=lambda: "muscles" in settings.display.overlays)
-    orthographic = partial(command, is_on=lambda: settings.is_orthographic)
     views = (  # Alt: where there is no number pad
         command(name, key, partial(view.look_from, name), other_key=key.replace("Keypad", "Alt+"))
         for name, key in VIEW_KEYS.items()
@@ -156,7 +156,7 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         command("Idle life", "A", settings.toggle_life, lambda: settings.is_alive),
         command("Frame the face", "F", view.fit_scene),
         *views,
-        orthographic("Orthographic", "Keypad5", view.toggle_orthographic, other_key="Alt+5"),
+        replace(switch("Orthographic", "Keypad5", "is_orthographic"), other_key="Alt+5"),
         command("Hide panels", "Tab", panels.toggle_hidden, lambda: panels.are_hidden),
         full("Full screen", "F11", toggle_full),
         command("Dark theme", "F2", settings.toggle_theme, lambda: settings.theme == "dark"),

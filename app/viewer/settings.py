@@ -57,6 +57,7 @@ class Display:
     light: Annotated[str, rules.one_of(render.LIGHTS)] = "studio"
     background: Annotated[str, rules.one_of(rules.BACKGROUNDS)] = "theme"
     tone: Annotated[str, rules.one_of(rules.TONES)] = "own"  # of textured skin
+    is_orthographic: Annotated[bool, rules.flag] = False  # the camera
     overlays: Annotated[list[str], rules.several_of(OVERLAYS)] = field(default_factory=list)
 
     def choose_look(self, name: str) -> None:
@@ -119,7 +120,6 @@ class Settings:
     zoom: Annotated[float, rules.number(*rules.ZOOMS)] = 1.0  # of all words and sliders
     is_linked: Annotated[bool, rules.flag] = True  # sliders of both sides
     is_alive: Annotated[bool, rules.flag] = True  # the face, where nobody moves it
-    is_orthographic: Annotated[bool, rules.flag] = False  # the camera
     tab: Annotated[str, rules.one_of(rules.TABS)] = "Face"
     # [letters' heights]; layout.py has the limits of a screen.
     panel_width: Annotated[float, rules.number(0.0, 1000.0)] = 22.5

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from risorius import render
 
-from ..capture.captions import Label, captioned, labels, text_size
+from ..capture.captions import Label, captioned, labels
 from ..files import Image
 from ..looks import STATIC, Refinement
 from ..pipeline import DrawnMesh, Viewport, texture_of
@@ -107,7 +107,11 @@ class Stage:
         if display.compare == "off" or width < 2:  # less than a pixel for each
             drawn = self.refined if display.is_refined else self.static
             return [Shot(drawn, viewport, viewport)]
-        a, b = (Shot(self._side(display, side), viewport, viewport) for side in ("a", "b"))
+        chosen, both = display.refinement_on(self.scene), (viewport, viewport)
+        a, b = (
+            Shot(self.refined if display.side_on(self.scene, side) == chosen else own, *both)
+            for side, own in (("a", self.a), ("b", self.b))
+        )
         if display.compare.endswith("alone"):
             return [a if display.compare == "A alone" else b]
         share = min(max(display.share, LEAST_SHARE), 1.0 - LEAST_SHARE)
@@ -117,10 +121,6 @@ class Stage:
         if display.compare == "wipe":
             return [a._replace(clip=first), b._replace(clip=second)]
         return [Shot(a.drawn, first, first), Shot(b.drawn, second, second)]
-
-    def _side(self, display: Display, side: str) -> DrawnMesh:
-        is_chosen = display.side_on(self.scene, side) == display.refinement_on(self.scene)
-        return self.refined if is_chosen else getattr(self, side)
 
     def draw(self, view: View) -> None:
         """Draw the scene as it is now; the surface's `detail` says how finely."""
@@ -155,16 +155,14 @@ class Stage:
                     )
             self.surface.target.flush()
             self.surface.gl.finish()
-        self.surface.labels = self._labels(view, shots, style.albedo)
+        self.surface.labels = self._labels(view, shots, style)
 
-    def _labels(self, view: View, shots: Sequence[Shot], albedo: render.Colour) -> list[Label]:
+    def _labels(self, view: View, shots: Sequence[Shot], style: render.Style) -> list[Label]:
         """What each side of a comparison is, and what colours stand for."""
-        display, letters = view.display, "AB" if len(shots) == 2 else view.display.compare
+        letters = "AB" if len(shots) == 2 else view.display.compare.removeprefix("off")
         texts = [f"{a}   {shot.drawn.caption}" for a, shot in zip(letters, shots, strict=False)]
-        texts = [] if display.compare == "off" else texts
-        size = max(text_size(view.viewport[3]), view.pixels((0.0, 0.0, em(), 1.0))[2])
-        places, bar = [shot.clip for shot in shots], COLOURS[display.colours].bar
-        return labels(texts, places, size, bar=bar, albedo=albedo)
+        places, bar = [shot.clip for shot in shots], COLOURS[view.display.colours].bar
+        return labels(texts, places, bar, style, least=view.pixels((0.0, 0.0, em(), 1.0))[2])
 
     def _draw_shot(
         self, shot: Shot, camera: render.OrbitCamera, style: render.Style, values: Amounts | None
@@ -200,7 +198,7 @@ class Stage:
         left, bottom, width, height = view.viewport
         top = self.surface.size[1] - bottom - height
         frame = self.surface.read_scene()[top : top + height, left : left + width]
-        shown = [Label(x - left, y - bottom, image) for x, y, image in self.surface.labels]
+        shown = [(x - left, y - bottom, image) for x, y, image in self.surface.labels]
         shots = self.shots(view.display, view.viewport)
         return captioned(frame, shown, [(s.clip[0] - left, *s.clip[1:]) for s in shots])
 

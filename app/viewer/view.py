@@ -48,16 +48,10 @@ class View:
     def fit_scene(self) -> None:
         """The camera as at first: all of the scene."""
         self.camera = whole_scene(self._session.scene, self._session.script.camera)
-        self.camera.is_orthographic = self._settings.is_orthographic
 
     def look_from(self, label: str) -> None:
         """Turn the camera to one of `render.VIEWS`, about what it looks at."""
         self.camera.yaw, self.camera.pitch = render.VIEWS[label.lower().replace(" ", "-")]
-
-    def toggle_orthographic(self) -> None:
-        """Whether what is far away is as large as what is near."""
-        self._settings.is_orthographic = not self._settings.is_orthographic
-        self.camera.is_orthographic = self._settings.is_orthographic
 
     def follow_history(self, *, is_held: bool) -> None:
         """Show what undo brought back, or let a change be undone that the user is done with."""
@@ -67,6 +61,7 @@ class View:
         elif not is_held and session.display != settings.display:
             session.show(deepcopy(settings.display))
         self._noted = session.display
+        self.camera.is_orthographic = settings.display.is_orthographic
 
     @property
     def display(self) -> Display:
@@ -108,8 +103,7 @@ class View:
     def state(self) -> object:
         """Everything that the picture depends on, but for the motion of the scene."""
         display = repr(asdict(self.display))
-        camera = self.camera_place, self.camera.is_orthographic
-        return camera, display, self._settings.theme, self.viewport, self.pointed
+        return self.camera_place, display, self._settings.theme, self.viewport, self.pointed
 
     def divider(self) -> list[tuple[Viewport, render.Colour]]:
         """The line between the two halves of a comparison, and what to drag it by."""

@@ -16,13 +16,14 @@ from risorius.app.capture.captions import (
 )
 from risorius.app.pipeline import side_by_side
 
+STYLE = render.Style()
 GREY = np.full((200, 400, 3), 128, np.uint8)
 
 
 def test_a_caption_for_each_half_and_a_line_between() -> None:
     """Text in both outer corners, the line from top to bottom, the image left as it was."""
     halves = side_by_side((400, 200), 2)
-    made = labels(["static", "kahler"], halves, 11.0)
+    made = labels(["static", "kahler"], halves, None, STYLE)
     with_captions = captioned(GREY, made, halves)
     is_drawn = (with_captions != 128).any(axis=2)
     assert is_drawn[:, 200].all()
@@ -36,14 +37,14 @@ def test_a_caption_for_each_half_and_a_line_between() -> None:
 
 def test_a_caption_without_room_is_left_out() -> None:
     """It would lie over the other side, and over the face."""
-    made = labels(["static", "kahler"], [(0, 0, 30, 200), (30, 0, 370, 200)], 11.0)
-    assert [label.x > 300 for label in made] == [True]
+    made = labels(["static", "kahler"], [(0, 0, 30, 200), (30, 0, 370, 200)], None, STYLE)
+    assert [x > 300 for x, _, _ in made] == [True]
 
 
 def test_a_single_picture_has_no_line() -> None:
     """Nothing is divided where there is one viewport."""
     whole = side_by_side((400, 200), 1)
-    with_captions = captioned(GREY, labels(["x"], whole, 11.0), whole)
+    with_captions = captioned(GREY, labels(["x"], whole, None, STYLE), whole)
     assert (with_captions[:150] == 128).all()
 
 
@@ -51,7 +52,7 @@ def test_labels_lie_on_transparent_pictures() -> None:
     """Where nothing is, a plate is as opaque as it is; colours stay multiplied by alpha."""
     whole = side_by_side((400, 200), 1)
     empty = np.zeros((200, 400, 4), np.uint8)
-    page = captioned(empty, labels(["static\n2030 triangles"], whole, 11.0), whole)
+    page = captioned(empty, labels(["static\n2030 triangles"], whole, None, STYLE), whole)
     assert page[0, 0, 3] == 0 and page[-15, 12, 3] == PLATE and page[..., 3].max() > PLATE
     assert (page[..., :3] <= page[..., 3:]).all()
 

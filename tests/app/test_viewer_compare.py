@@ -213,7 +213,7 @@ def test_orthographic_shows_and_finds_what_is_there(viewer: Viewer) -> None:
     assert until(viewer, lambda: viewer.is_idle)
     assert np.abs(viewer.surface.read().astype(int) - before).mean() > 1.0
     xdotool(viewer, "key", "f")
-    assert viewer.view.camera.is_orthographic and viewer.settings.is_orthographic
+    assert viewer.view.camera.is_orthographic and viewer.settings.display.is_orthographic
     tip = viewer.session.scene.positions[viewer.session.scene.positions[:, 2].argmax()].copy()
     drag(viewer, nose(viewer), (0, 12))
     assert viewer.mouse.skin_drag is not None

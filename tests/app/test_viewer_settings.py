@@ -77,7 +77,7 @@ def test_settings_come_back(tmp_path: Path) -> None:
         ("display.look", "pretty"),
         ("display.background", "pink"),
         ("display.tone", 3),
-        ("is_orthographic", "yes"),
+        ("display.is_orthographic", "yes"),
         ("display.look", ["paper"]),
         ("display.refiner", "none"),
         ("display.refiner", {"a": 1}),

@@ -59,8 +59,7 @@ HINTS = {
     "Wireframe": "the edges of all triangles that are drawn (W)",
     "Occlusion": "less light from all around in folds of the textured skin",
     "Skin tone": "by its typology angle; own: as this person has it",
-    "Person": "another head, on which script and pose go on",
-    "Number": "of a person: each has a head, skin and eyes of its own",
+    "Person": "another head, on which script and pose go on (--person takes any number)",
     "Muscles": "their fibres, redder the more they contract (U)",
     "Springs": "the skin's: stretched red, compressed blue",
     "Skull": "the bone under the skin; the mandible moves with the jaw",
@@ -69,7 +68,7 @@ HINTS = {
 # Rows of fields of the display, by their labels.
 FIELDS = {"Refine": "is_refined", "Skin tone": "tone"}
 FIELDS |= {each.name.capitalize(): each.name for each in fields(Display)}
-NUMBERED = "by number"
+NUMBERED = 20  # persons that are listed by number
 THRESHOLDS = "threshold_once", "threshold_twice"  # of this criterion alone:
 PAPERS_CRITERION = "normal"
 LABEL_SHARE = 0.45  # of a row
@@ -176,7 +175,11 @@ class MechanismPanel:
         if isinstance(default, bool):
             self._check(label, bool(value), partial(put, not value))
         elif isinstance(default, int):
-            self._count(label, int(value), put)
+            self._begin_row(label)
+            is_changed, chosen = imgui.input_int(f"##{label}", int(value))
+            self._gui.remember(label)
+            if is_changed:
+                put(chosen)
         elif isinstance(default, float):
             limits = 0.0, max(HIGHEST, 2.0 * default)
             slid = self._slide(label, name, float(value), limits, default, digits=3)
@@ -211,13 +214,11 @@ class MechanismPanel:
         self._pick("Background", tuple(BACKGROUNDS))
         if scene.in_tone is not None:
             self._pick("Skin tone", tuple(TONES))
-        is_numbered, who = scene.called.isdecimal(), {BUILT_IN: None, NUMBERED: 0}
-        present, names = NUMBERED if is_numbered else scene.called, (*NAMED, *who)
         if scene.called:
+            people: dict[str, int | str | None] = {BUILT_IN: None, **{who: who for who in NAMED}}
+            people |= {f"{number}": number for number in range(NUMBERED)}
             show = self._show_person
-            self._choose("Person", present, names, lambda name: show(who.get(name, name)))
-        if is_numbered:
-            self._count("Number", int(scene.called), self._show_person)
+            self._choose("Person", scene.called, tuple(people), lambda who: show(people[who]))
 
     def _show_person(self, who: int | str | None) -> None:
         self._messages.attempt(partial(self._file_drop.show_person, who))
@@ -284,15 +285,6 @@ class MechanismPanel:
         self._draw_reset(label)
         if is_clicked:
             switch()
-
-    def _count(self, label: str, value: int, put: Callable[[int], None]) -> None:
-        """A row with a whole number."""
-        self._begin_row(label)
-        imgui.set_next_item_width(-1.0)
-        is_changed, chosen = imgui.input_int(f"##{label}", value)
-        self._gui.remember(label)
-        if is_changed and chosen >= 0:
-            put(chosen)
 
     def _slide(
         self,
