@@ -113,7 +113,7 @@ def labels(
         made += [(left + pad + aside, bottom + pad, image)] if room >= 0 else []
     if bar is not None:
         left, bottom, width, height = viewports[-1]
-        image = colour_bar(bar, style.albedo, 0.78 * size)
+        image = colour_bar(bar, style.albedo, min(0.78 * size, height / 26.0))
         x, y = width - image.shape[1] - pad, height - image.shape[0] - pad
         made += [(left + x, bottom + y, image)] if min(x, y) >= 0 else []
     return made

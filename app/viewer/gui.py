@@ -204,7 +204,7 @@ def fixed_panel(
 
 def em(count: float = 1.0) -> float:
     """So many letters' heights [window units]: the measure of all widths."""
-    return float(count * imgui.get_font_size())
+    return count * int(FONT_SIZE * imgui.get_style().font_scale_main + 0.5)  # as imgui in a frame
 
 
 def colour(rgb: tuple[float, float, float], opacity: float = 1.0) -> Any:

@@ -41,7 +41,7 @@ class View:
         if place is not None:  # as it stood when this scene's window was closed
             yaw, pitch, distance, *target = place
             radius = self.camera.scene_radius
-            self.camera.orbit(yaw - self.camera.yaw, pitch - self.camera.pitch)
+            self.camera.yaw, self.camera.pitch = yaw, min(max(pitch, -90.0), 90.0)
             self.camera.target = np.array(target)
             self.camera.distance = min(max(distance, radius), 20.0 * radius)
 
