@@ -113,12 +113,8 @@ class FileDrop:
 
     def show_person(self, who: int | str | None) -> Message:
         """Announce a person by number or name, in place of the head; None: the built-in head."""
-
-        def show() -> None:
-            """Do so."""
-            self._show_scene(build_scene("face", head_for(None, None, who)))
-
-        self._announced, self.has_other_head = show, who is not None
+        self._announced = lambda: self._show_scene(build_scene("face", head_for(None, None, who)))
+        self.has_other_head = who is not None
         return f"making {'the built-in head' if who is None else f'person {who}'} ..."
 
     def _open(self, dropped: DroppedFiles) -> Message:

@@ -44,8 +44,8 @@ class History(Generic[State]):
             del self._states[0]
         self._place = len(self._states) - 1
 
-    def restate(self, state: State) -> None:
-        """The present was this all along."""
+    def amend(self, state: State) -> None:
+        """The present is this now, which nobody would call a step."""
         self._states[self._place] = state
 
     @property

@@ -124,7 +124,7 @@ class Session:
     def show(self, display: object) -> None:
         """Draw the scene in another way: what nobody changes any more, and equals its like."""
         state = replace(self._history.present, display=display)  # the script may move the rest
-        keep = self._history.restate if self.display is None else self._history.note
+        keep = self._history.amend if self.display is None else self._history.note
         self.display = display
         keep(state)
 

@@ -19,7 +19,6 @@ from ..scenes import Scene
 from ..wrinkling import wrinkling_of
 from .colours import COLOURS, Amounts
 from .frame_times import FrameTimes
-from .gui import em
 from .level_of_detail import FULL
 from .overlays import OVERLAYS, Lines, pointed_lines
 from .setting_rules import SKINS, TONES
@@ -162,7 +161,7 @@ class Stage:
         letters = "AB" if len(shots) == 2 else view.display.compare.removeprefix("off")
         texts = [f"{a}   {shot.drawn.caption}" for a, shot in zip(letters, shots, strict=False)]
         places, bar = [shot.clip for shot in shots], COLOURS[view.display.colours].bar
-        return labels(texts, places, bar, style, least=view.pixels((0.0, 0.0, em(), 1.0))[2])
+        return labels(texts, places, bar, style, least=view.letter)
 
     def _draw_shot(
         self, shot: Shot, camera: render.OrbitCamera, style: render.Style, values: Amounts | None

@@ -93,6 +93,11 @@ class View:
         return max(x, 0), max(y, 0), max(round(wide * across), 1), max(round(high * along), 1)
 
     @property
+    def letter(self) -> float:
+        """How large words are in the window [pixels]: captions are no smaller."""
+        return self.pixels((0.0, 0.0, em(), 1.0))[2]
+
+    @property
     def camera_place(self) -> list[float]:
         """Yaw, pitch, distance and target of the camera, to be remembered."""
         camera = self.camera

@@ -37,8 +37,7 @@ HINTS = {
     "Refiner": "any that is registered",
     "Compare": "two meshes under one camera: wipe (D), side by side (Shift+D), or A and B in turn, "
     "in all of the picture (B)",
-    "A": "what is at the left: the simulated mesh (static), a look, a refiner, or what is chosen",
-    "B": "the same at the right",
+    "A": "what is at the left, B at the right: the simulated mesh (static), a look, a refiner ...",
     "threshold once": "an edge splits once where the normals at its ends have turned apart by more "
     "than this since rest (drop of their dot product)",
     "threshold twice": "the same for splitting twice",
@@ -68,7 +67,6 @@ HINTS = {
 # Rows of fields of the display, by their labels.
 FIELDS = {"Refine": "is_refined", "Skin tone": "tone"}
 FIELDS |= {each.name.capitalize(): each.name for each in fields(Display)}
-NUMBERED = 20  # persons that are listed by number
 THRESHOLDS = "threshold_once", "threshold_twice"  # of this criterion alone:
 PAPERS_CRITERION = "normal"
 LABEL_SHARE = 0.45  # of a row
@@ -131,7 +129,7 @@ class MechanismPanel:
         if display.look_as_changed(scene) != FIRST_LOOK:
             resets["Look"] = partial(display.choose_look, FIRST_LOOK)
         if scene.called not in ("", BUILT_IN):
-            resets["Person"] = partial(self._show_person, None)
+            resets["Person"] = partial(self._show_person, BUILT_IN)
         return resets
 
     def _draw_refinement(self) -> None:
@@ -215,12 +213,11 @@ class MechanismPanel:
         if scene.in_tone is not None:
             self._pick("Skin tone", tuple(TONES))
         if scene.called:
-            people: dict[str, int | str | None] = {BUILT_IN: None, **{who: who for who in NAMED}}
-            people |= {f"{number}": number for number in range(NUMBERED)}
-            show = self._show_person
-            self._choose("Person", scene.called, tuple(people), lambda who: show(people[who]))
+            names = (BUILT_IN, *NAMED, *map(str, range(20)))
+            self._choose("Person", scene.called, names, self._show_person)
 
-    def _show_person(self, who: int | str | None) -> None:
+    def _show_person(self, called: str) -> None:
+        who = None if called == BUILT_IN else int(called) if called.isdecimal() else called
         self._messages.attempt(partial(self._file_drop.show_person, who))
 
     def _draw_overlays(self) -> None:
