@@ -152,8 +152,7 @@ class OrbitCamera:
 
     def focal(self, aspect: float, height: int) -> float:
         """Pixels that a length of 1 covers at distance 1 from the eye, in `height` pixels."""
-        away = self._eye_distance / self.distance
-        return 0.5 * height * away / self._half_height(aspect)
+        return 0.5 * height * (self._eye_distance / self.distance) / self._half_height(aspect)
 
     def _half_height(self, aspect: float) -> float:
         """Half the frame's height at distance 1."""
