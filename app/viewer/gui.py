@@ -23,6 +23,8 @@ from risorius import render
 import glfw  # isort: skip - after imgui_bundle, see above
 
 FONT = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.ttf"
+ICONS = FONT.parents[1] / "Font_Awesome_6_Free-Solid-900.otf"
+BACK = "\uf2ea"  # of the icons: an arrow that turns to the left
 FONT_SIZE = 15.0  # [window units at scale 1]
 LEFT, RIGHT, MIDDLE = 0, 1, 2  # buttons of the mouse
 # Of a window that is a note over the picture: as large as its words, and it takes no keys.
@@ -87,6 +89,9 @@ class Gui:
         io.set_ini_filename("")  # settings.py remembers what is worth it
         if FONT.exists():
             io.fonts.add_font_from_file_ttf(str(FONT), FONT_SIZE)
+            merged = imgui.ImFontConfig()
+            merged.merge_mode = True
+            io.fonts.add_font_from_file_ttf(str(ICONS), 0.8 * FONT_SIZE, merged)
         address = ctypes.cast(window, ctypes.c_void_p).value
         if address is None:
             raise RuntimeError("the window is closed already")
@@ -202,7 +207,7 @@ def fixed_panel(
 
 def em(count: float = 1.0) -> float:
     """So many letters' heights [window units]: the measure of all widths."""
-    return float(count * imgui.get_font_size())
+    return count * int(FONT_SIZE * imgui.get_style().font_scale_main + 0.5)  # as imgui in a frame
 
 
 def colour(rgb: tuple[float, float, float], opacity: float = 1.0) -> Any:

@@ -313,9 +313,11 @@ def test_detail_falls_once_and_does_not_flicker() -> None:
     assert chosen.detail == LEVELS[-1]
 
 
-def test_the_point_under_the_mouse(scene: FaceScene) -> None:
+@pytest.mark.parametrize("is_orthographic", [False, True])
+def test_the_point_under_the_mouse(scene: FaceScene, is_orthographic: bool) -> None:
     """The ray through the tip of the nose meets it; one through a corner meets nothing."""
     camera = render.OrbitCamera.framing(scene.rest_positions)
+    camera.is_orthographic = is_orthographic
     viewport = (30, 20, 400, 500)
     tip = scene.rest_positions[scene.rest_positions[:, 2].argmax()]
     clip = np.append(tip, 1.0) @ np.asarray(
