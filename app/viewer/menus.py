@@ -116,7 +116,7 @@ def keys_menu(selection: KeySelection) -> Menu:
 
 def view_menu(settings: Settings, view: View, placement: Placement, panels: PanelState) -> Menu:
     """How the scene is drawn, and what is around it."""
-    command = partial(Command, "View")
+    command, flip = partial(Command, "View"), settings.toggle
 
     def switch(label: str, key: str, field: str, on: object = True, off: object = False) -> Command:
         """A field of the settings of display that has this value or the other."""
@@ -155,7 +155,11 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         command("Next shading", "S", lambda: settings.display.next_shading()),
         switch("Texture", "T", "skin", "textured", "plain"),
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
-        command("Idle life", "A", settings.toggle_life, lambda: settings.is_alive),
+        command("Idle life", "A", partial(flip, "is_alive"), lambda: settings.is_alive),
+        command("Curves", "G", partial(flip, "shows_curves"), lambda: settings.shows_curves),
+        command(
+            "Frame numbers", "", partial(flip, "counts_frames"), lambda: settings.counts_frames
+        ),
         command("Frame the face", "F", view.fit_scene),
         *views,
         replace(switch("Orthographic", "Keypad5", "is_orthographic"), other_key="Alt+5"),

@@ -123,6 +123,9 @@ class Settings:
     tab: Annotated[str, rules.one_of(rules.TABS)] = "Face"
     # [letters' heights]; layout.py has the limits of a screen.
     panel_width: Annotated[float, rules.number(0.0, 1000.0)] = 22.5
+    shows_curves: Annotated[bool, rules.flag] = False  # of keys, instead of rows
+    counts_frames: Annotated[bool, rules.flag] = False  # instead of seconds
+    timeline_height: Annotated[float, rules.number(0.0, 1000.0)] = 0.0  # [letters']; 0: as needed
     folds: dict[str, bool] = field(default_factory=dict)  # which headings are open, by title
     cameras: dict[str, list[float]] = field(default_factory=dict)  # by scene
     display: Display = field(default_factory=Display)
@@ -131,9 +134,9 @@ class Settings:
         """Light or dark."""
         self.theme = "light" if self.theme == "dark" else "dark"
 
-    def toggle_life(self) -> None:
-        """Whether a face that nobody moves lives."""
-        self.is_alive = not self.is_alive
+    def toggle(self, name: str) -> None:
+        """Switch a field on or off."""
+        setattr(self, name, not getattr(self, name))
 
     def enlarge(self, factor: float) -> None:
         """Make words and sliders larger or smaller."""

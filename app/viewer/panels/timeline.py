@@ -15,12 +15,15 @@ from .dope_sheet import DopeSheet
 from .widgets import button, hint, shortened, stay_in_line
 
 BUTTON_WIDTH, SPEED_WIDTH = 4.0, 4.6  # [em]
-MOST_HEIGHT = 0.4  # of the window
+MOST_HEIGHT, MOST_DRAGGED = 0.4, 0.7  # of the window
+LEAST = 7.0  # [em] of its height
+EDGE = 6.0  # [window units] that can be dragged
 # By the label of the command: what the button reads while that is on, and a hint.
 BUTTONS = {
     "Play": ("Pause", "play the script, or pause it (Space)"),
     "Record": ("Stop", "take every movement of every control, until it is stopped (Ctrl+R)"),
     "Loop": ("Loop", "begin again at the end (L)"),
+    "Curves": ("Curves", "keys in rows, or their values as curves (G)"),
     "Set key": ("Set key", "the face as it is becomes a key at the time shown (K)"),
 }
 
@@ -45,18 +48,33 @@ class Timeline:
 
     def height(self) -> float:
         """Of the timeline [window units]; where words are too large for the window, it scrolls."""
-        most = MOST_HEIGHT * imgui.get_io().display_size.y
+        display = imgui.get_io().display_size.y
+        most, dragged = MOST_HEIGHT * display, em(self.dope_sheet.settings.timeline_height)
         buttons = self._rows * imgui.get_frame_height_with_spacing()
         buttons += 2.0 * imgui.get_style().window_padding.y
-        return float(min(buttons + self.dope_sheet.height(most - buttons), most))
+        wanted = min(buttons + self.dope_sheet.height(most - buttons), most)
+        return float(min(dragged or wanted, MOST_DRAGGED * display))
+
+    def _draw_edge(self) -> None:
+        """The upper one, which can be dragged."""
+        (left, top), (width, height) = imgui.get_window_pos(), imgui.get_window_size()
+        self._gui.places["timeline's edge"] = left, top, left + width, top + EDGE
+        edge, name = imgui.internal.ImRect(left, top, left + width, top + 2.0), imgui.get_id("edge")
+        is_dragged, _, wanted = imgui.internal.splitter_behavior(
+            edge, name, imgui.internal.Axis.y, top, height, 0.0, em(LEAST), EDGE
+        )
+        if is_dragged:
+            self.dope_sheet.settings.timeline_height = wanted / em()
 
     def draw(self) -> None:
         """Draw everything, inside its window."""
+        self._draw_edge()
         top = imgui.get_cursor_pos_y()
         for label in ("Play", "Record", "Loop"):
             self._draw_button(label)
         self._draw_speed()
         self._draw_button("Set key")
+        self._draw_button("Curves")
         self._draw_status()
         self._rows = round((imgui.get_cursor_pos_y() - top) / imgui.get_frame_height_with_spacing())
         self.dope_sheet.draw()
@@ -95,9 +113,13 @@ class Timeline:
         if film is not None:
             status, ink = f"filming {film.seconds:.1f} s", theme.error
         imgui.same_line()
-        time = f"{session.time:.2f} s of {session.script.duration:.2f}"
+        told = self.dope_sheet.axis.told
+        time = f"{told(session.time)} of {told(session.script.duration).removeprefix('frame ')}"
         imgui.text(shortened(time, imgui.get_content_region_avail().x))
-        hint("the time shown, and the script's length; drag its end in the ruler")
+        self._gui.remember("time shown")
+        if imgui.is_item_clicked():
+            self.dope_sheet.settings.toggle("counts_frames")
+        hint("the time shown, and the script's length, whose end is in the ruler; a click: frames")
         imgui.same_line(0.0, em(1.2))
         imgui.text_colored(colour(ink), shortened(status, imgui.get_content_region_avail().x))
         where = session.file.path or "not kept in a file yet"
