@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -15,7 +16,7 @@ from ..looks import Refinement
 from ..motion import play
 from ..passes.files import Labelled, labelled
 from ..passes.passes import Passes
-from ..pipeline import Pipeline, side_by_side
+from ..pipeline import Dressing, Pipeline, Viewport, side_by_side
 from ..scenes import Scene
 from ..script import Script
 from .captions import captioned
@@ -31,7 +32,11 @@ class CaptureOptions:
     refinement: Refinement = Refinement()  # noqa: RUF009 - frozen
     beside: tuple[Refinement, ...] = ()  # what it is compared with, on its left
     captions: bool = True  # names and triangle counts under a comparison
-    camera: str | None = None  # a named view, or yaw,pitch[,zoom] in degrees
+    divider: float | None = None  # of the width: a wipe between two meshes; None: side by side
+    camera: str | render.OrbitCamera | None = None  # a view, or yaw,pitch[,zoom] in degrees
+    is_turntable: bool = False  # the camera goes round once, by the last frame
+    span: tuple[float, float] | None = None  # [s] of the script that is seen; None: all of it
+    dressing: Dressing | None = None  # what a window has over the meshes
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in one
@@ -72,8 +77,13 @@ class Capture:
         self.surface.make_current()
         self.pipeline.bind(refinements)
         self._passes = Passes(self.pipeline) if options.passes else None
-        self.viewports = side_by_side(self.surface.size, len(refinements))
-        self.camera = camera_for(scene, options.camera)
+        self.viewports = self.clips = side_by_side(self.surface.size, len(refinements))
+        if options.divider is not None and len(refinements) == 2:
+            self.viewports, self.clips = _wiped(self.surface.size, options.divider)
+        view = options.camera
+        self.camera = (
+            view.copy() if isinstance(view, render.OrbitCamera) else camera_for(scene, view)
+        )
 
     def __enter__(self) -> Capture:
         return self
@@ -85,13 +95,16 @@ class Capture:
     def draw_image(self) -> Image:
         """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""
         self.surface.begin()
-        self.pipeline.draw(self.camera, self.options.style, self.viewports)
+        options = self.options
+        self.pipeline.draw(
+            self.camera, options.style, self.viewports, clips=self.clips, dressing=options.dressing
+        )
         self.surface.end()
         image = self.surface.read_scene(4 if self.options.is_transparent else 3)
         if self.options.beside and self.options.captions:
             meshes = self.pipeline.meshes
             texts = [f"{drawn.label} · {drawn.triangle_count} triangles" for drawn in meshes]
-            image = captioned(image, texts, self.viewports)
+            image = captioned(image, texts, self.clips)
         return straight(image) if self.options.is_transparent else image
 
     def draw_frame(self) -> Frame:
@@ -105,15 +118,34 @@ class Capture:
     def play(
         self, script: Script, *, until: float | None = None, progress: bool = True
     ) -> Iterator[float]:
-        """Play a script and yield the time [s] of each frame, the scene moved to it."""
-        options = self.options
+        """Play a script and yield the time [s] of each frame, the scene moved to it.
+
+        Frames before the options' span are played, too: what is seen then depends on them.
+        """
+        options, yaw = self.options, self.camera.yaw
         viewer = self.camera.eye if options.is_alive else None
-        return play(
+        begin, end = options.span or (0.0, script.duration if until is None else until)
+        frames = max(round((end - begin) * options.frames_per_second), 1)
+        for time in play(
             self.scene,
             script,
             options.frames_per_second,
-            until=until,
+            until=end,
             viewer=viewer,
             step=self.pipeline.step,
             progress=progress,
-        )
+        ):
+            if options.is_turntable:
+                share = (time - begin) * options.frames_per_second / (frames + 1)
+                self.camera.yaw = math.remainder(yaw + 360.0 * share, 360.0)
+            yield time
+
+
+def _wiped(size: tuple[int, int], divider: float) -> tuple[list[Viewport], list[Viewport]]:
+    """The whole frame for each of two meshes, and the part of it in which that is seen."""
+    width, height = size
+    middle = min(max(round(divider * width), 1), width - 1)
+    return [(0, 0, width, height)] * 2, [
+        (0, 0, middle, height),
+        (middle, 0, width - middle, height),
+    ]

@@ -15,7 +15,7 @@ from ..errors import UserError
 from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from ..playback import LEAD, Playback
-from .parameters import BackgroundName, FiniteRange, Looks, PersonName, Refiner, Size
+from .parameters import BackgroundName, FiniteRange, Looks, PersonName, Refiner, Size, Span
 
 if TYPE_CHECKING:
     from risorius import render
@@ -247,8 +247,11 @@ class Filming:
     size: tuple[int, int]
     fps: float
     compare: str | None
+    wipe: float | None
     captions: bool
     camera: str | None
+    turntable: bool
+    span: tuple[float, float] | None
     background: render.Background | None
     passes: str | None
     alive: bool
@@ -271,8 +274,13 @@ with_filming = packed(
         metavar="[NAME,...]",
         help="Looks or refiners to be seen on the left; without a name the mesh as it is.",
     ),
+    click.option(
+        "--wipe", type=FiniteRange(0, 1), help="One picture, divided at this share of its width."
+    ),
     click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
     click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
+    click.option("--turntable", is_flag=True, help="The camera goes round once."),
+    click.option("--range", "span", type=Span(), help="The part of the script that is seen [s]."),
     click.option(
         "--background",
         type=BackgroundName(),

@@ -121,9 +121,10 @@ def record(
     scene: Scene | None = None,
     frames_per_second: float = 30.0,
     *,
+    span: tuple[float, float] | None = None,
     progress: bool = True,
 ) -> Clip:
-    """Play a script on its scene (built unless given) and keep all frames.
+    """Play a script on its scene (built unless given) and keep all frames, or those of `span` [s].
 
     Raises UserError where the scene has not what the script asks for.
     """
@@ -134,7 +135,10 @@ def record(
     simulation = scene.simulation if isinstance(scene, FaceScene) else None
     controls: list[Floats] = []
     activations: list[Floats] = []
-    for _ in play(scene, script, frames_per_second, progress=progress):
+    begin, end = span or (0.0, script.duration)
+    for now in play(scene, script, frames_per_second, until=end, progress=progress):
+        if now < begin - 0.5 / frames_per_second:
+            continue
         positions.append(scene.positions.astype(np.float32))
         bones.append({name: np.array(each) for name, each in scene.bone_transforms().items()})
         for part in scene.parts:

@@ -16,7 +16,6 @@ from .file_drop import FileDrop
 from .key_selection import KeySelection
 from .live_commands import LiveCommands
 from .messages import Message, Task
-from .motion_export import MotionExport
 from .panel_state import PanelState
 from .placement import Placement
 from .script_commands import ScriptCommands
@@ -31,12 +30,12 @@ Menu = tuple[Command, ...]
 def file_menu(
     scripts: ScriptCommands,
     file_drop: FileDrop,
-    motion_export: MotionExport,
     exporter: Exporter,
     close: Task,
 ) -> Menu:
     """Files that come and go, and the end."""
     command = partial(Command, "File")
+    export = partial(command, can_run=lambda: exporter.job is None)
     return (
         command("New script", "Ctrl+N", scripts.new),
         command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
@@ -47,9 +46,8 @@ def file_menu(
         command("Save script", "Ctrl+S", scripts.save),
         command("Save script as ...", "Ctrl+Shift+S", scripts.save_as),
         command("Save pose ...", "Ctrl+P", scripts.save_pose),
-        command("Export motion ...", "Ctrl+E", motion_export.ask),
         command("Screenshot", "F12", exporter.screenshot),
-        command("Film", "F10", exporter.toggle_film, lambda: exporter.film is not None),
+        export("Export ...", "Ctrl+E", exporter.ask, other_key="F10"),
         command("Quit", "Ctrl+Q", close),
     )
 

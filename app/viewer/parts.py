@@ -24,13 +24,13 @@ from .key_selection import KeySelection
 from .live_commands import LiveCommands
 from .marking import Marking, Room
 from .messages import Message, Messages
-from .motion_export import MotionExport
 from .mouse import Mouse
 from .painter import Painter
 from .panel_cache import PanelCache
 from .panel_state import PanelState
 from .panels.chooser import FileChooser
 from .panels.dope_sheet import DopeSheet
+from .panels.export_dialog import ExportDialog
 from .panels.face import FacePanel
 from .panels.layout import Layout
 from .panels.live import LivePanel
@@ -117,15 +117,12 @@ class Parts:
         self.panel_state, self.time_axis = PanelState(wanted_tab=settings.tab), TimeAxis()
         self.selection = KeySelection(session, self.panel_state)
         self.scripts = ScriptCommands(session, self.files, self.question)
-        self.exporter = Exporter(self.stage, self.view)
-        self.motion_export = MotionExport(session, self.files)
+        self.exporter = Exporter(session, settings, self.stage, self.view)
         self.live = LiveCommands(session, self.panel_state, wake_up)
         self.room: Room | None = None  # a mesh whose landmarks are being marked
         self.file_drop = FileDrop(self.files, self.scripts, self.show_scene, self.mark)
         self.commands: tuple[Command, ...] = (
-            *menus.file_menu(
-                self.scripts, self.file_drop, self.motion_export, self.exporter, self.ask_to_close
-            ),
+            *menus.file_menu(self.scripts, self.file_drop, self.exporter, self.ask_to_close),
             *menus.edit_menu(session),
             *menus.time_menu(session, self.scripts, self.time_axis),
             *menus.keys_menu(self.selection),
@@ -136,7 +133,7 @@ class Parts:
         )
         self.life = IdleLife(session, settings, self.view)
         self.physics = Physics(session, self.times)
-        self.painter = Painter(self.stage, self.view, self.exporter, self.messages)
+        self.painter = Painter(self.stage, self.view, self.messages)
         self.panel_cache = PanelCache()
 
     def _join_panels(self) -> None:
@@ -148,7 +145,7 @@ class Parts:
         dope_sheet = DopeSheet(
             gui, session, settings, messages, self.selection, axis, bar, waveform
         )
-        self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
+        self.timeline = Timeline(gui, session, messages, commands, dope_sheet)
         self.face_panel = FacePanel(gui, session, settings, view)
         mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
         record = next(each for each in commands if each.label == "Record")
@@ -156,6 +153,7 @@ class Parts:
         tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
         self.layout = Layout(gui, settings, self.panel_state, bar, tabs, self.timeline)
         self.chooser = FileChooser(gui, self.files)
+        self.export_dialog = ExportDialog(gui, self.exporter, self.files, view)
         self.mouse = Mouse(self.view, self.stage, self.select_muscle)
 
     def close(self) -> None:
@@ -163,7 +161,7 @@ class Parts:
         with contextlib.suppress(UserError):  # a disk that is full must not keep the window open
             self.remember()
         self.live.stop()
-        self.exporter.close()
+        self.exporter.cancel()
         self.leave_marking()
         self.soundtrack.close()
         self.recovery.close()
@@ -198,8 +196,6 @@ class Parts:
 
         UserError where that cannot be.
         """
-        if self.exporter.film is not None:
-            raise UserError("end the film first (F10)")
         marking = Marking(mesh, self.files)
         line = None if landmarks is None else marking.open(landmarks)
         self.leave_marking()
@@ -226,6 +222,8 @@ class Parts:
         if self.is_leaving:
             return self._close()
         ask = partial(self.question.before, "Close", self._close)
+        if self.exporter.job is not None:
+            ask = partial(self.question.before, "Close", ask, self.exporter)
         return ask() if self.room is None else self.room.leave(ask)
 
     def _close(self) -> str | None:

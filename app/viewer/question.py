@@ -9,7 +9,9 @@ from .session import Session
 
 
 class Unsaved(Protocol):
-    """Work that is not the session's."""
+    """Work that is not the session's; what the button reads that saves it."""
+
+    save_label: str
 
     @property
     def unsaved(self) -> str:

@@ -11,11 +11,13 @@ from typing import Any, get_type_hints
 from risorius import refine, render
 
 from ..looks import LOOKS, STATIC
+from .export_kinds import LEAST, MOST
 
 Rule = Callable[[Any], Any]  # gives back a value that is of use; ValueError for one that is not
 
 LONGEST_NUMBER = 15  # [digits] of a whole number; Python refuses to read very long ones
 SIDES = 200, 16384  # [screen units] of the window, least and most
+SIDES_EXPORTED = LEAST, MOST
 MOST_TOLD = 6  # of values that are of no use; a line has room for no more
 FURTHEST = 1e6  # of any number that says where a camera is
 ZOOMS = 0.6, 3.0  # least and most of the size of words
@@ -122,6 +124,19 @@ def size(value: Any) -> tuple[int, int] | None:
     side = number(*SIDES)
     width, height = (int(side(each)) for each in _list(value))
     return width, height
+
+
+def sides(value: Any) -> tuple[int, int]:
+    """Width and height of what is exported [pixels]."""
+    width, height = map(number(*SIDES_EXPORTED), _list(value))
+    return int(width), int(height)
+
+
+def folder(value: Any) -> str:
+    """The name of one; "" for the present one."""
+    if not isinstance(value, str) or "\0" in value:
+        raise ValueError
+    return value
 
 
 def camera(value: Any) -> list[float]:

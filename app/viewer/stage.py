@@ -187,7 +187,7 @@ class Stage:
         return captioned(frame, texts, places)
 
 
-def style_of(display: Display, background: render.Background) -> render.Style:
+def style_of(display: Display, background: render.Background | None) -> render.Style:
     """The renderer's style for what the user wants to see."""
     is_textured, albedo = SKINS[display.skin]
     return render.Style(
