@@ -8,10 +8,9 @@ forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
 from __future__ import annotations
 
 import inspect
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -25,18 +24,6 @@ from .wrinkling import Amounts, Relief, on_rows, relief_of, wrinkling_of
 
 TEXTURED_COLUMNS = 8  # position, normal, u v
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
-
-
-class Dressing(Protocol):
-    """What somebody wants to see over the meshes, beside what a style says; fit to be pickled."""
-
-    def values(self, scene: Scene, drawn: DrawnMesh) -> npt.NDArray[np.uint8] | None:
-        """A value for each drawn triangle, as the style's `colour_by` wants it."""
-
-    def lines(
-        self, scene: Scene, drawn: DrawnMesh, camera: render.OrbitCamera
-    ) -> Iterable[tuple[Sequence[npt.NDArray[np.float64]], npt.NDArray[np.float64], float, float]]:
-        """Sets of polylines with their colours, width and `hidden_opacity`; see `draw_lines`."""
 
 
 @dataclass
@@ -122,36 +109,17 @@ class Pipeline:
             drawn.refine(self.scene.positions, camera, viewport)
 
     def draw(
-        self,
-        camera: render.OrbitCamera,
-        style: render.Style,
-        viewports: Sequence[Viewport],
-        *,
-        clips: Sequence[Viewport] | None = None,
-        dressing: Dressing | None = None,
+        self, camera: render.OrbitCamera, style: render.Style, viewports: Sequence[Viewport]
     ) -> None:
-        """The lower half: refine the mesh by each refiner, and draw it into its viewport.
-
-        clips: the part of each viewport in which that mesh is seen; all of it unless told.
-        """
+        """The lower half: refine the mesh by each refiner, and draw it into its viewport."""
         bones = self.scene.bone_transforms()
         amounts = None
         if self.wrinkling is not None and style.shows_wrinkles:
             amounts = self.wrinkling.amounts(self.scene.positions)
-        for viewport in dict.fromkeys(viewports):
-            self.renderer.draw_background(style, viewport)
-        for drawn, viewport, clip in zip(self.meshes, viewports, clips or viewports, strict=True):
+        for drawn, viewport in zip(self.meshes, viewports, strict=True):
             drawn.refine(self.scene.positions, camera, viewport)
             drawn.upload(amounts, style.wrinkles)
-            values = None if dressing is None else dressing.values(self.scene, drawn)
-            where = {"viewport": viewport, "clip": clip}
-            self._draw(drawn, bones, camera, style, values, where)
-            for lines, colours, width, hidden in (
-                dressing.lines(self.scene, drawn, camera) if dressing else ()
-            ):
-                self.renderer.draw_lines(
-                    lines, colours, camera, width=width, hidden_opacity=hidden, **where
-                )
+            self._draw(drawn, bones, camera, style, viewport)
 
     def _draw(
         self,
@@ -159,22 +127,23 @@ class Pipeline:
         bones: Mapping[str, npt.NDArray[np.float64]],
         camera: render.OrbitCamera,
         style: render.Style,
-        values: npt.NDArray[np.uint8] | None,
-        where: Mapping[str, Viewport],
+        viewport: Viewport,
     ) -> None:
+        values = None
         if style.colour_by is render.ColourBy.SPLITS and drawn.mesh is not None:
             values = splits_of_source(drawn.refiner, drawn.mesh)
+        self.renderer.draw_background(style, viewport)
         self.renderer.draw_mesh(
             drawn.stream,
             camera,
             style,
+            viewport=viewport,
             values=values,
             texture=self.texture if drawn.has_uv else None,
             wrinkles=self.wrinkling.map if self.wrinkling and drawn.has_uv else None,
-            **where,
         )
         # After the mesh: the skin throws its shadow on eyes and teeth.
-        self.renderer.draw_parts(self.scene.parts, bones, camera, style, **where)
+        self.renderer.draw_parts(self.scene.parts, bones, camera, style, viewport=viewport)
 
 
 def texture_of(scene: Scene, renderer: render.Renderer) -> render.Texture | None:

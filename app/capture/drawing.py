@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Protocol
 
 from risorius import render
 from risorius.assets.fitting import FittedHead
@@ -16,11 +17,21 @@ from ..looks import Refinement
 from ..motion import play
 from ..passes.files import Labelled, labelled
 from ..passes.passes import Passes
-from ..pipeline import Dressing, Pipeline, Viewport, side_by_side
+from ..pipeline import Pipeline, side_by_side
 from ..scenes import Scene
 from ..script import Script
 from .captions import captioned
 from .transparency import straight
+
+
+class Painter(Protocol):
+    """Draws a scene onto an offscreen surface in a way of its own, as a window shows it."""
+
+    def refine(self, camera: render.OrbitCamera) -> None:
+        """Refine a frame that nobody draws."""
+
+    def draw_image(self, camera: render.OrbitCamera) -> Image:
+        """Draw it as it is now, (H, W, 3), or (H, W, 4) and premultiplied."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +43,11 @@ class CaptureOptions:
     refinement: Refinement = Refinement()  # noqa: RUF009 - frozen
     beside: tuple[Refinement, ...] = ()  # what it is compared with, on its left
     captions: bool = True  # names and triangle counts under a comparison
-    divider: float | None = None  # of the width: a wipe between two meshes; None: side by side
     camera: str | render.OrbitCamera | None = None  # a view, or yaw,pitch[,zoom] in degrees
     is_turntable: bool = False  # the camera goes round once, by the last frame
     span: tuple[float, float] | None = None  # [s] of the script that is seen; None: all of it
-    dressing: Dressing | None = None  # what a window has over the meshes
+    # What draws it instead of these refinements and this style.
+    painted: Callable[[Scene, render.OffscreenSurface], Painter] | None = None
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in one
@@ -77,9 +88,8 @@ class Capture:
         self.surface.make_current()
         self.pipeline.bind(refinements)
         self._passes = Passes(self.pipeline) if options.passes else None
-        self.viewports = self.clips = side_by_side(self.surface.size, len(refinements))
-        if options.divider is not None and len(refinements) == 2:
-            self.viewports, self.clips = _wiped(self.surface.size, options.divider)
+        self.viewports = side_by_side(self.surface.size, len(refinements))
+        self._painter = None if options.painted is None else options.painted(scene, self.surface)
         view = options.camera
         self.camera = (
             view.copy() if isinstance(view, render.OrbitCamera) else camera_for(scene, view)
@@ -94,18 +104,25 @@ class Capture:
 
     def draw_image(self) -> Image:
         """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""
+        if self._painter is not None:
+            image = self._painter.draw_image(self.camera)
+            return straight(image) if self.options.is_transparent else image
         self.surface.begin()
-        options = self.options
-        self.pipeline.draw(
-            self.camera, options.style, self.viewports, clips=self.clips, dressing=options.dressing
-        )
+        self.pipeline.draw(self.camera, self.options.style, self.viewports)
         self.surface.end()
         image = self.surface.read_scene(4 if self.options.is_transparent else 3)
         if self.options.beside and self.options.captions:
             meshes = self.pipeline.meshes
             texts = [f"{drawn.label} · {drawn.triangle_count} triangles" for drawn in meshes]
-            image = captioned(image, texts, self.clips)
+            image = captioned(image, texts, self.viewports)
         return straight(image) if self.options.is_transparent else image
+
+    def refine(self) -> None:
+        """Refine a frame that nobody draws: a refiner may remember it in the next one."""
+        if self._painter is None:
+            self.pipeline.refine(self.camera, self.viewports)
+        else:
+            self._painter.refine(self.camera)
 
     def draw_frame(self) -> Frame:
         """Draw the scene as it is now, and say what is known of the picture."""
@@ -139,13 +156,3 @@ class Capture:
                 share = (time - begin) * options.frames_per_second / (frames + 1)
                 self.camera.yaw = math.remainder(yaw + 360.0 * share, 360.0)
             yield time
-
-
-def _wiped(size: tuple[int, int], divider: float) -> tuple[list[Viewport], list[Viewport]]:
-    """The whole frame for each of two meshes, and the part of it in which that is seen."""
-    width, height = size
-    middle = min(max(round(divider * width), 1), width - 1)
-    return [(0, 0, width, height)] * 2, [
-        (0, 0, middle, height),
-        (middle, 0, width - middle, height),
-    ]

@@ -161,4 +161,4 @@ def _draw(share: Share, hand_over: Callable[[object], None]) -> None:
             if index >= first and index % share.every == share.first:
                 hand_over(capture.draw_frame())
             else:
-                capture.pipeline.refine(capture.camera, capture.viewports)
+                capture.refine()

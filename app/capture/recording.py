@@ -101,8 +101,6 @@ def _check(
     """Raise UserError, before any work is done, where one of the outputs cannot be."""
     if time is not None and not _is_image(output):
         raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
-    if options.divider is not None and len(options.beside) != 1:
-        raise UserError("--wipe divides two meshes: it goes with --compare and one name at most")
     if options.span is not None:
         begin, end = options.span
         if sheet is not None or _is_image(output):

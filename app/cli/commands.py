@@ -95,7 +95,6 @@ def capture(
         refinement=refinement,
         beside=parse_comparison(filming.compare, refinement),
         captions=filming.captions,
-        divider=filming.wipe,
         camera=filming.camera or performance.camera,
         is_turntable=filming.turntable,
         span=filming.span,

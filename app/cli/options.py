@@ -247,7 +247,6 @@ class Filming:
     size: tuple[int, int]
     fps: float
     compare: str | None
-    wipe: float | None
     captions: bool
     camera: str | None
     turntable: bool
@@ -273,9 +272,6 @@ with_filming = packed(
         flag_value=STATIC,
         metavar="[NAME,...]",
         help="Looks or refiners to be seen on the left; without a name the mesh as it is.",
-    ),
-    click.option(
-        "--wipe", type=FiniteRange(0, 1), help="One picture, divided at this share of its width."
     ),
     click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
     click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),

@@ -1,40 +1,35 @@
 """Pictures of what is displayed, and exports: what `risorius capture` and `export` write.
 
-An export goes on in a process of its own, with the script and the view as they were, and the window
-stays free. The dialog is panels/export_dialog.py.
+An export goes on in a process of its own, with script and view as they were; the window stays free.
 """
 
 from __future__ import annotations
 
-import tempfile
 import time
-from collections.abc import Callable, Iterable
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable
+from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from risorius import render
 from risorius.assets.fitting import FittedHead
 
-from ..capture import CaptureOptions
-from ..capture import capture as film_of
+from ..capture import CaptureOptions, capture
 from ..errors import UserError
 from ..export.formats import Request, check_request, export, format_for
-from ..files import check_file, check_folder, save_png
-from ..looks import STATIC, Refinement, named
-from ..pipeline import DrawnMesh
+from ..files import Image, check_file, check_folder, save_png
+from ..pipeline import Viewport
 from ..scenes import FaceScene, Scene
 from ..script import Script, pose_script
-from ..workers.crew import Crew, Outcome
-from ..workers.telling import telling, told
-from .colours import COLOURS, Amounts
+from ..workers import telling
 from .export_kinds import FRAMES, KINDS, SHEET, Kind
+from .frame_times import FrameTimes
 from .gui import wake_up
 from .messages import Message, Task
-from .overlays import OVERLAYS, Lines
 from .session import Session
-from .settings import ExportChoices, Settings
+from .settings import Display, ExportChoices, Settings
 from .stage import Stage, style_of
 from .view import View
 
@@ -45,39 +40,49 @@ def free_name(folder: Path, stem: str, suffix: str) -> Path:
     return next((folder / each for each in names if not (folder / each).exists()), folder / stem)
 
 
-@dataclass(frozen=True)
-class Overlaid:
-    """What the window draws over the meshes, by names, for a process that draws them, too."""
+@dataclass
+class Shown:
+    """A `View` without a window; and what paints by it, in a process that makes a film."""
 
-    colours: str
-    overlays: tuple[str, ...]
+    display: Display
+    background: render.Background | None
+    has_captions: bool
+    camera: render.OrbitCamera
+    viewport: Viewport
+    pointed: tuple[str, ...] = ()
 
-    def values(self, scene: Scene, drawn: DrawnMesh) -> Amounts | None:
-        """One value for each drawn triangle."""
-        return COLOURS[self.colours].values(scene, drawn)
+    def paint(self, scene: Scene, surface: Any) -> StagePainter:
+        """What paints it, onto any surface."""
+        return StagePainter(self, Stage(surface, scene, self.display, FrameTimes()))
 
-    def lines(self, scene: Scene, drawn: DrawnMesh, camera: render.OrbitCamera) -> Iterable[Lines]:
-        """The overlays' lines."""
-        edges = drawn.refiner.edges
-        return [OVERLAYS[name](scene, edges, camera) for name in self.overlays]
+
+class StagePainter:
+    """Draws as the window does."""
+
+    def __init__(self, shown: Shown, stage: Stage) -> None:
+        self._stage = stage
+        self._shown: Any = shown  # all that a stage asks of a `View`
+
+    def refine(self, camera: render.OrbitCamera) -> None:
+        """Refine a frame that nobody draws."""
+        for shot in self._stage.shots(self._shown.display, self._shown.viewport):
+            shot.drawn.refine(self._stage.scene.positions, camera, shot.viewport)
+
+    def draw_image(self, camera: render.OrbitCamera) -> Image:
+        """The picture; premultiplied, where it is transparent."""
+        self._shown.camera = camera
+        shown = self._shown
+        return self._stage.draw_image(shown, has_captions=shown.has_captions)
 
 
 @dataclass
 class Job:
-    """An export that is being made: what becomes of it, and how far it is."""
+    """An export that is being made."""
 
     target: Path
-    frame_count: int
-    crew: Crew
-    log: Path
-    outcome: Future[Outcome]
+    task: telling.Task
     began: float  # [s]
     then: Task | None = None  # what waits for it
-
-    @property
-    def share(self) -> float:
-        """How much of it is done, 0..1."""
-        return min(told(self.log) / self.frame_count, 1.0)
 
 
 class Exporter:
@@ -90,7 +95,7 @@ class Exporter:
         self.job: Job | None = None
         self.is_asking = False  # the dialog is open
         self.name = ""
-        self.span = (0.0, 0.0)  # [s] of the script
+        self.span = (0.0, 0.0)  # [s] that is exported of a script in part
 
     @property
     def choices(self) -> ExportChoices:
@@ -103,14 +108,9 @@ class Exporter:
         return KINDS[self.choices.kind]
 
     @property
-    def folder(self) -> Path:
-        """Where it goes."""
-        return Path(self.choices.folder).expanduser() if self.choices.folder else Path.cwd()
-
-    @property
     def target(self) -> Path:
         """The file, or folder of frames."""
-        return self.folder / f"{self.name}{self.kind.suffix}"
+        return Path(self.choices.folder or ".").expanduser() / f"{self.name}{self.kind.suffix}"
 
     def screenshot(self) -> Message:
         """Write the picture without panels, in full detail."""
@@ -123,117 +123,88 @@ class Exporter:
         script = self._session.script
         if not (script.posed_names or script.tracks):
             self.choices.source = "pose"
-        self.span = (0.0, script.duration)
-        self.name = Path(self._session.name).stem.replace("/", "-")
+        self.choices.folder = self.choices.folder or str(Path.cwd())
+        self.span, self.name = (0.0, script.duration), Path(self._session.name).stem
         self.propose()
         self.is_asking = True
 
     def propose(self) -> None:
         """Take a name that no file has."""
-        self.name = free_name(self.folder, self.name, self.kind.suffix).name.removesuffix(
-            self.kind.suffix
-        )
+        suffix = self.kind.suffix
+        self.name = free_name(self.target.parent, self.name, suffix).name.removesuffix(suffix)
 
-    @property
-    def script(self) -> Script:
-        """What is played: the script, or the face as it is."""
+    def played(self) -> tuple[Script, tuple[float, float]]:
+        """The script, or the face as it is, and from when to when that is exported [s]."""
         session, choices = self._session, self.choices
-        if choices.source != "pose" or choices.kind == SHEET:
-            return session.script
-        pose = pose_script(session.current, title="pose", scene=session.script.scene)
-        return replace(pose, duration=choices.seconds)
+        if choices.source == "pose" and choices.kind != SHEET:
+            pose = pose_script(session.current, title="pose", scene=session.script.scene)
+            return replace(pose, duration=choices.seconds), (0.0, choices.seconds)
+        is_part = choices.source == "part" and choices.kind != SHEET
+        return session.script, self.span if is_part else (0.0, session.script.duration)
 
-    @property
-    def seconds(self) -> tuple[float, float]:
-        """From when to when that is exported [s]."""
-        is_part = self.choices.source == "part" and self.choices.kind != SHEET
-        return self.span if is_part else (0.0, self.script.duration)
-
-    def options(self) -> CaptureOptions:
+    def _options(self, head: FittedHead | None, span: tuple[float, float]) -> CaptureOptions:
         """How `capture` is told to draw what the window shows."""
-        choices, display, scene = self.choices, self._settings.display, self._session.scene
-        is_compared, is_wiped = display.compare != "off", display.compare == "wipe"
-        refinement = Refinement(refiner=STATIC)
-        if is_compared or display.is_refined:
-            refinement = display.refinement_on(scene)
+        choices, view, is_sheet = self.choices, self._view, self.choices.kind == SHEET
         is_clear = choices.is_transparent and self.kind.can_be_transparent
-        over = Overlaid(display.colours, tuple(display.overlays))
+        background, display = None if is_clear else view.background, deepcopy(view.display)
+        camera, area = view.camera.copy(), (0, 0, *choices.size)
+        shown = Shown(display, background, choices.has_captions, camera, area)
         return CaptureOptions(
-            choices.size,
-            choices.rate,
-            refinement,
-            (named(display.beside, display.look),) if is_compared else (),
-            choices.has_captions,
-            display.divider if is_wiped else None,
-            self._view.camera.copy(),
-            choices.is_turntable and choices.kind != SHEET,
-            self.seconds if choices.kind != SHEET else None,
-            None if over == Overlaid("none", ()) else over,
-            style_of(display, None if is_clear else self._view.background),
-            head=_head_of(scene),
-            is_alive=self._settings.is_alive and isinstance(scene, FaceScene),
+            size=choices.size,
+            frames_per_second=choices.rate,
+            camera=camera,
+            is_turntable=choices.is_turntable and not is_sheet,
+            span=None if is_sheet else span,
+            style=style_of(display, background),
+            painted=shown.paint,
+            head=head,
+            is_alive=self._settings.is_alive,
         )
 
-    def start(self) -> Message:
+    def start(self) -> None:
         """Check what can be checked, and begin; UserError where it cannot be."""
-        choices, target, script = self.choices, self.target, self.script
+        choices, target, (script, span) = self.choices, self.target, self.played()
+        scene = self._session.scene
+        head = scene.head if isinstance(scene, FaceScene) else None
+        head = head if isinstance(head, FittedHead) else None
         work: Callable[[], object]
         if self.kind.is_drawn:
-            (partial(check_folder, overwrite=True) if choices.kind == FRAMES else check_file)(
-                target
-            )
-            filmed = partial(film_of, script, self.options(), overwrite=True, progress=False)
-            work = partial(filmed, output=target)
-            if choices.kind == SHEET:
-                work = partial(filmed, sheet=target)
+            check_folder(target, overwrite=True) if choices.kind == FRAMES else check_file(target)
+            draw = partial(capture, script, self._options(head, span), overwrite=True)
+            name = "sheet" if choices.kind == SHEET else "output"
+            work = partial(draw, progress=False, **{name: target})
         else:
             chosen = format_for(target, choices.kind)
             request = Request(overwrite=target.exists(), progress=False)
             check_request(target, chosen, request)
-            work = partial(
-                export,
-                script,
-                target,
-                chosen,
-                request,
-                head=_head_of(self._session.scene),
-                frames_per_second=choices.rate,
-                span=self.seconds,
-            )
-        count = round(self.seconds[1] * choices.rate) + 1
-        crew, log = Crew(1), Path(tempfile.mkstemp(prefix="risorius-", suffix=".log")[1])
-        thread = ThreadPoolExecutor(1)
-        outcome = thread.submit(crew.do, telling, 0, work, retries=0, log=log)
-        outcome.add_done_callback(lambda _: wake_up())
-        thread.shutdown(wait=False)
-        self.job = Job(target, count, crew, log, outcome, time.monotonic())
-        self.is_asking = False
-        return None
+            rate = choices.rate
+            write = partial(export, head=head, frames_per_second=rate, span=span)
+            work = partial(write, script, target, chosen, request)
+        task = telling.Task(work, round(span[1] * choices.rate) + 1, wake_up)
+        self.job, self.is_asking = Job(target, task, time.monotonic()), False
 
     def poll(self) -> Message:
-        """Look whether it is done, and say so."""
+        """Look whether it is done, and say so; UserError where it failed."""
         job = self.job
-        if job is None or not job.outcome.done():
+        outcome = None if job is None else job.task.outcome
+        if job is None or outcome is None:
             return None
-        error = job.outcome.result().error
         self.cancel()
-        if error is not None:
-            raise UserError(error)
-        line = f"{job.target.name}: written to {job.target.parent}"
-        return line if job.then is None else job.then()
+        if outcome.error is not None:
+            raise UserError(outcome.error)
+        return job.then() if job.then else f"{job.target.name}: written to {job.target.parent}"
 
     def cancel(self) -> None:
         """End it; what is half written goes."""
         job, self.job = self.job, None
         if job is not None:
-            job.crew.stop()
-            job.log.unlink(missing_ok=True)
+            job.task.stop()
 
     @property
     def unsaved(self) -> str:
         """What would be lost by closing now, in words; "" for nothing."""
         job = self.job
-        return "" if job is None else f"{job.target.name}, of which {job.share:.0%} are done"
+        return "" if job is None else f"{job.target.name}, {job.task.share:.0%} of it done"
 
     def save(self, then: Task) -> Message:
         """Go on when it is done."""
@@ -241,9 +212,3 @@ class Exporter:
             return then()
         self.job.then = then
         return f"waiting for {self.job.target.name} ..."
-
-
-def _head_of(scene: Scene) -> FittedHead | None:
-    """The head that a scene like this one is built with."""
-    head = scene.head if isinstance(scene, FaceScene) else None
-    return head if isinstance(head, FittedHead) else None

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from ..capture.formats import FORMATS as FILMS
 from ..export.formats import FORMATS as MOTION
 
 FRAMES, SHEET = "frames", "sheet"  # pictures in a folder, and a contact sheet
 SOURCES = {"script": "The whole script", "part": "A part of it", "pose": "The face as it is"}
-LEAST, MOST = 16, 8192  # [pixels] of a side
+SIDES = 16, 8192  # [pixels], least and most
 
 
-@dataclass(frozen=True)
-class Kind:
+class Kind(NamedTuple):
     """One kind of file. suffix: of its name, "" for a folder. fastest: [frames/s]."""
 
     title: str
@@ -30,12 +29,7 @@ KINDS = {
     },
     FRAMES: Kind("Pictures in a folder (.png)", "", True, True),
     SHEET: Kind("Contact sheet of named poses (.png)", ".png"),
-    **{
-        each.name: Kind(
-            f"Motion: {each.title} ({each.suffixes[0] if each.suffixes else 'folder'})",
-            each.suffixes[0] if each.suffixes else "",
-            is_drawn=False,
-        )
-        for each in MOTION
-    },
 }
+for _each in MOTION:
+    _end = (*_each.suffixes, "")[0]
+    KINDS[_each.name] = Kind(f"Motion: {_each.title} ({_end or 'folder'})", _end, is_drawn=False)

@@ -11,13 +11,12 @@ from typing import Any, get_type_hints
 from risorius import refine, render
 
 from ..looks import LOOKS, STATIC
-from .export_kinds import LEAST, MOST
+from . import export_kinds
 
 Rule = Callable[[Any], Any]  # gives back a value that is of use; ValueError for one that is not
 
 LONGEST_NUMBER = 15  # [digits] of a whole number; Python refuses to read very long ones
 SIDES = 200, 16384  # [screen units] of the window, least and most
-SIDES_EXPORTED = LEAST, MOST
 MOST_TOLD = 6  # of values that are of no use; a line has room for no more
 FURTHEST = 1e6  # of any number that says where a camera is
 ZOOMS = 0.6, 3.0  # least and most of the size of words
@@ -128,7 +127,7 @@ def size(value: Any) -> tuple[int, int] | None:
 
 def sides(value: Any) -> tuple[int, int]:
     """Width and height of what is exported [pixels]."""
-    width, height = map(number(*SIDES_EXPORTED), _list(value))
+    width, height = map(number(*export_kinds.SIDES), _list(value))
     return int(width), int(height)
 
 

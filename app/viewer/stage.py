@@ -172,15 +172,16 @@ class Stage:
         lines = [OVERLAYS[name](self.scene, edges, view.camera) for name in view.display.overlays]
         return [*lines, pointed_lines(self.scene, view.pointed)] if view.pointed else lines
 
-    def draw_image(self, view: View) -> Image:
+    def draw_image(self, view: View, *, has_captions: bool = True) -> Image:
         """The picture without panels, in full detail, with captions where two meshes are seen."""
         self.surface.detail = FULL
         self.draw(view)
         left, bottom, width, height = view.viewport
         top = self.surface.size[1] - bottom - height
-        frame = self.surface.read_scene()[top : top + height, left : left + width]
+        channels = 3 if view.background else 4  # premultiplied
+        frame = self.surface.read_scene(channels)[top : top + height, left : left + width]
         shots = self.shots(view.display, view.viewport)
-        if len(shots) == 1:
+        if len(shots) == 1 or not has_captions:
             return np.ascontiguousarray(frame)
         texts = [f"{shot.drawn.label} · {shot.drawn.triangle_count} triangles" for shot in shots]
         places = [(shot.clip[0] - left, shot.clip[1] - bottom, *shot.clip[2:]) for shot in shots]
