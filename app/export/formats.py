@@ -20,7 +20,6 @@ from ..files import (
     folder_atomically,
     written_atomically,
 )
-from ..motion import scene_of
 from ..stopping import cleaned_up_if_stopped
 
 if TYPE_CHECKING:
@@ -188,6 +187,7 @@ def export(
     span: tuple[float, float] | None = None,
 ) -> tuple[str, str | None]:
     """Play a script, or a span of it [s], and write it; a line on that, and a remark, if any."""
+    from ..motion import scene_of
     from .clip import record
 
     progress = request.progress

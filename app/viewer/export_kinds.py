@@ -9,7 +9,6 @@ from ..export.formats import FORMATS as MOTION
 
 FRAMES, SHEET = "frames", "sheet"  # pictures in a folder, and a contact sheet
 SOURCES = {"script": "The whole script", "part": "A part of it", "pose": "The face as it is"}
-SIDES = 16, 8192  # [pixels], least and most
 
 
 class Kind(NamedTuple):

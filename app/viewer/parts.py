@@ -6,10 +6,13 @@ import contextlib
 from functools import partial
 from pathlib import Path
 
-from risorius import render
+import numpy as np
+
+from risorius import refine
 from risorius.assets.fitting import FittedHead
 
 from ..errors import UserError
+from ..refining import refiner_for
 from ..scenes import Scene, build_scene
 from ..script import Script
 from . import menus
@@ -25,6 +28,7 @@ from .live_commands import LiveCommands
 from .marking import Marking, Room
 from .messages import Message, Messages
 from .mouse import Mouse
+from .opening import Opening
 from .painter import Painter
 from .panel_cache import PanelCache
 from .panel_state import PanelState
@@ -39,7 +43,7 @@ from .panels.menu_bar import MenuBar
 from .panels.timeline import Timeline
 from .panels.waveform import Waveform
 from .physics import Physics
-from .placement import Placement, first_size
+from .placement import Placement
 from .question import Question
 from .recovery import Recovery
 from .script_commands import ScriptCommands
@@ -69,10 +73,12 @@ class Parts:
         *,
         head: FittedHead | None = None,
         settings_path: Path | None = None,
+        opening: Opening | None = None,
     ) -> None:
         """Open the window.
 
         head: a user's own, None for the built-in one. size, display: None takes what is remembered.
+        opening: the window, where it is open already.
         settings_path: where that is kept, and beside it what is not saved; None for nowhere.
         Raises UserError for a script that names what the scene has not.
         """
@@ -80,24 +86,25 @@ class Parts:
         self.settings, complaint = Settings(), ""
         if settings_path is not None:
             self.settings, complaint = load_settings(settings_path)
-        scene = build_scene(script.scene, head)
-        self.session = Session(scene, script)
-        self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
-        self.recovery.find(self.session)
-        self.soundtrack = Soundtrack(self.session)
-        if display is None:
-            refused = remove_refused_options(self.settings.display, scene)
-            if refused and settings_path is not None and not complaint:
-                refused = f"{settings_path}: {refused}; {rename_unusable(settings_path)}"
-            complaint = "; ".join(filter(None, (complaint, refused)))
-        else:
-            self.settings.display = display
-        self.settings.display.remove_missing_overlays(scene)
-        self.times = FrameTimes()
+        is_own = script.scene != "face" or head is not None
         with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
-            title = f"Risorius: {self.session.name}"
-            self.surface = render.open_window(size or first_size(self.settings.size), title)
-            stack.callback(self.surface.close)
+            opening = opening or Opening(size, settings_path, is_own=is_own)
+            stack.enter_context(opening)
+            shown = display or self.settings.display
+            scene = opening.during(partial(_ready_scene, script.scene, head, shown))
+            self.session = Session(scene, script)
+            self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
+            self.recovery.find(self.session)
+            self.soundtrack = Soundtrack(self.session)
+            if display is None:
+                refused = remove_refused_options(self.settings.display, scene)
+                if refused and settings_path is not None and not complaint:
+                    refused = f"{settings_path}: {refused}; {rename_unusable(settings_path)}"
+                complaint = "; ".join(filter(None, (complaint, refused)))
+            else:
+                self.settings.display = display
+            self.settings.display.remove_missing_overlays(scene)
+            self.times, self.surface = FrameTimes(), opening.surface
             self.gui = Gui(self.surface.handle)
             stack.callback(self.gui.close)
             self.stage = Stage(self.surface, scene, self.settings.display, self.times)
@@ -229,3 +236,14 @@ class Parts:
     def _close(self) -> str | None:
         self.is_leaving = self.surface.should_close = True
         return None
+
+
+def _ready_scene(name: str, head: FittedHead | None, display: Display) -> Scene:
+    """The scene, at rest; all that its first frames run was run once, and is compiled."""
+    scene = build_scene(name, head)
+    scene.step(1.0 / 60.0)
+    scene.reset()
+    with contextlib.suppress(UserError, TypeError):  # a stage tells what it refuses
+        refiner = refiner_for(scene, display.refinement_on(scene))
+        refiner.refine(scene.positions, view=refine.View(scene.focus + np.array([0.0, 0.0, 400.0])))
+    return scene

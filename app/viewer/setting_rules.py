@@ -8,15 +8,15 @@ import sys
 from collections.abc import Callable, Collection
 from typing import Any, get_type_hints
 
-from risorius import refine, render
+from risorius import render
 
 from ..looks import LOOKS, STATIC
-from . import export_kinds
 
 Rule = Callable[[Any], Any]  # gives back a value that is of use; ValueError for one that is not
 
 LONGEST_NUMBER = 15  # [digits] of a whole number; Python refuses to read very long ones
 SIDES = 200, 16384  # [screen units] of the window, least and most
+SIDES_EXPORTED = 16, 8192  # [pixels] of what is exported
 MOST_TOLD = 6  # of values that are of no use; a line has room for no more
 FURTHEST = 1e6  # of any number that says where a camera is
 ZOOMS = 0.6, 3.0  # least and most of the size of words
@@ -127,7 +127,7 @@ def size(value: Any) -> tuple[int, int] | None:
 
 def sides(value: Any) -> tuple[int, int]:
     """Width and height of what is exported [pixels]."""
-    width, height = map(number(*export_kinds.SIDES), _list(value))
+    width, height = map(number(*SIDES_EXPORTED), _list(value))
     return int(width), int(height)
 
 
@@ -154,20 +154,27 @@ def option(value: Any) -> Any:
     return value if isinstance(value, int) else finite
 
 
+def refiners() -> Collection[str]:
+    """Names of refiners; they are imported when somebody asks for them."""
+    from risorius import refine
+
+    return refine.available()
+
+
 def refiner(value: Any) -> str | None:
     """The name of one, which is not the one that does nothing; None for that of the look."""
     if value is None:
         return None
     if value == STATIC:
         raise ValueError
-    return one_of(refine.available())(value)  # type: ignore[no-any-return]
+    return one_of(refiners())(value)  # type: ignore[no-any-return]
 
 
 def look_or_refiner(value: Any) -> str:
     """The name of either."""
-    return one_of((*LOOKS, *refine.available()))(value)  # type: ignore[no-any-return]
+    return one_of((*LOOKS, *refiners()))(value)  # type: ignore[no-any-return]
 
 
 def table_of_refiner(name: str) -> Rule | None:
     """The options of a refiner, where there is one of this name."""
-    return anything if name in refine.available() else None
+    return anything if name in refiners() else None

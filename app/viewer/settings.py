@@ -9,9 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import reprlib
-import sys
 import time
 from dataclasses import asdict, dataclass, field
 from functools import partial
@@ -31,7 +29,6 @@ from .export_kinds import KINDS, SOURCES
 from .gui import THEMES
 from .overlays import OVERLAYS, overlays_of
 
-FILE_NAME = "viewer.json"
 LONGEST_FILE = 2**20  # [bytes]; those that we write have two thousand
 
 
@@ -167,18 +164,6 @@ def display_of(
     if refinement.options:
         display.options[refinement.on(scene)[0]] = dict(refinement.options)
     return display
-
-
-def settings_path() -> Path:
-    """Where this system keeps a user's settings."""
-    home = Path.home()
-    if sys.platform == "win32":
-        folder = Path(os.environ.get("APPDATA", home / "AppData" / "Roaming"))
-    elif sys.platform == "darwin":
-        folder = home / "Library" / "Application Support"
-    else:
-        folder = Path(os.environ.get("XDG_CONFIG_HOME") or home / ".config")
-    return folder / "risorius" / FILE_NAME
 
 
 def load_settings(path: Path) -> tuple[Settings, str]:

@@ -10,10 +10,11 @@ from typing import TypeVar
 from imgui_bundle import imgui
 
 from ..export import Exporter
-from ..export_kinds import KINDS, SHEET, SIDES, SOURCES
+from ..export_kinds import KINDS, SHEET, SOURCES
 from ..files import Files
 from ..gui import NOTE_FLAGS, Gui, colour, em
 from ..messages import Message
+from ..setting_rules import SIDES_EXPORTED
 from ..settings import ExportChoices
 from ..view import View
 from .widgets import button, muted, shortened
@@ -106,7 +107,7 @@ class ExportDialog:
             choices.size = self._pick("Size", choices.size, {s: f"{s[0]} x {s[1]}" for s in sizes})
             _, sides = imgui.input_int2(self._row("", em(11.0)), [*choices.size])
             self._gui.remember("export: sides")
-            width, height = (min(max(side, SIDES[0]), SIDES[1]) for side in sides)
+            width, height = (min(max(side, SIDES_EXPORTED[0]), SIDES_EXPORTED[1]) for side in sides)
             choices.size = width, height
         choices.rate = min(choices.rate, kind.fastest)
         rates = [choices.rate, *(float(rate) for rate in RATES if rate <= kind.fastest)]
