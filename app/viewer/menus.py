@@ -174,7 +174,10 @@ def live_menu(live: LiveCommands) -> Menu:
     )
 
 
-def help_menu(panels: PanelState) -> Menu:
-    """The overview of keys."""
+def help_menu(panels: PanelState, begin_steps: Task) -> Menu:
+    """The overview of keys, and how to begin."""
     is_open = partial(getattr, panels, "is_help_open")
-    return (Command("Help", "Keys and mouse", "F1", panels.toggle_help, is_open),)
+    return (
+        Command("Help", "First steps", "", begin_steps),
+        Command("Help", "Keys and mouse", "F1", panels.toggle_help, is_open),
+    )

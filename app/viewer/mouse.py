@@ -152,6 +152,11 @@ class Mouse(CameraMouse):
         """Whether the skin is being dragged."""
         return self.skin_drag is not None and bool(self.skin_drag.offset.any())
 
+    @property
+    def is_dragging_divider(self) -> bool:
+        """Whether the line between two halves is being dragged."""
+        return self._doing == "divider" and self._has_moved(imgui.get_io())
+
     def _hover(self, io: Any) -> None:
         if self._is_at_divider(io.mouse_pos.x):
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)

@@ -36,6 +36,7 @@ from .panels.chooser import FileChooser
 from .panels.dope_sheet import DopeSheet
 from .panels.export_dialog import ExportDialog
 from .panels.face import FacePanel
+from .panels.first_steps import FirstSteps
 from .panels.layout import Layout
 from .panels.live import LivePanel
 from .panels.mechanism import MechanismPanel
@@ -136,7 +137,7 @@ class Parts:
             *menus.view_menu(settings, self.view, self.placement, self.panel_state),
             *menus.expression_menu(session),
             *menus.live_menu(self.live),
-            *menus.help_menu(self.panel_state),
+            *menus.help_menu(self.panel_state, lambda: self.first_steps.begin()),
         )
         self.life = IdleLife(session, settings, self.view)
         self.physics = Physics(session, self.times)
@@ -162,6 +163,11 @@ class Parts:
         self.chooser = FileChooser(gui, self.files)
         self.export_dialog = ExportDialog(gui, self.exporter, self.files, view)
         self.mouse = Mouse(self.view, self.stage, self.select_muscle)
+        self.first_steps = FirstSteps(gui, session, view, self.mouse)
+        if self._settings_path is not None and session.scene.name == "face":
+            if not settings.knows_first_steps:
+                self.first_steps.begin()
+            settings.knows_first_steps = True
 
     def close(self) -> None:
         """Remember the settings, and let go of everything."""

@@ -125,6 +125,7 @@ class Settings:
     folds: dict[str, bool] = field(default_factory=dict)  # which headings are open, by title
     cameras: dict[str, list[float]] = field(default_factory=dict)  # by scene
     display: Display = field(default_factory=Display)
+    knows_first_steps: Annotated[bool, rules.flag] = False
     export: ExportChoices = field(default_factory=ExportChoices)
 
     def toggle_theme(self) -> None:

@@ -215,6 +215,7 @@ class Viewer(Parts):
             gui.set_theme(self.settings.theme, self.settings.zoom)
             if room is None:
                 self.layout.draw(view)
+                self.first_steps.draw()
             else:
                 room.panel.draw(room.view)
             messages.age(imgui.get_io().delta_time)
