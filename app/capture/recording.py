@@ -107,7 +107,7 @@ def _check(
             raise UserError("--range is for a film or a folder of frames")
         if not 0.0 <= begin < end <= script.duration:
             raise UserError(
-                f"--range {begin:g},{end:g}: take two times from 0 to {script.duration:g} s"
+                f"--range {begin:g} {end:g}: take two times from 0 to {script.duration:g} s"
             )
     if output is None and sheet is None:
         raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")

@@ -15,7 +15,7 @@ from ..errors import UserError
 from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from ..playback import LEAD, Playback
-from .parameters import BackgroundName, FiniteRange, Looks, PersonName, Refiner, Size, Span
+from .parameters import BackgroundName, FiniteRange, Looks, PersonName, Refiner, Size
 
 if TYPE_CHECKING:
     from risorius import render
@@ -276,7 +276,14 @@ with_filming = packed(
     click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
     click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
     click.option("--turntable", is_flag=True, help="The camera goes round once."),
-    click.option("--range", "span", type=Span(), help="The part of the script that is seen [s]."),
+    click.option(
+        "--range",
+        "span",
+        type=FiniteRange(0, 86_400),
+        nargs=2,
+        metavar="FROM TO",
+        help="The part of the script that is seen [s].",
+    ),
     click.option(
         "--background",
         type=BackgroundName(),

@@ -41,22 +41,6 @@ class Size(click.ParamType[tuple[int, int]]):
         )
 
 
-class Span(click.ParamType[tuple[float, float]]):
-    """Two times in seconds, written 1.5,3."""
-
-    name = "FROM,TO"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, float]:
-        """Turn the text into two numbers, or fail with what is allowed."""
-        try:
-            begin, end = map(float, str(value).split(","))
-        except ValueError:
-            self.fail(f"'{value}' is no range; write two times in seconds, as in 1.5,3")
-        return begin, end
-
-
 class BackgroundName(click.ParamType["render.Background | None"]):
     """What is behind the scene, by name or as a colour; None where nothing is."""
 

@@ -19,7 +19,7 @@ from risorius.assets.fitting import FittedHead
 from ..capture import CaptureOptions, capture
 from ..errors import UserError
 from ..export.formats import Request, check_request, export, format_for
-from ..files import Image, check_file, check_folder, save_png
+from ..files import Image, check_file, save_png
 from ..pipeline import Viewport
 from ..scenes import FaceScene, Scene
 from ..script import Script, pose_script
@@ -27,7 +27,7 @@ from ..workers import telling
 from .export_kinds import FRAMES, KINDS, SHEET, Kind
 from .frame_times import FrameTimes
 from .gui import wake_up
-from .messages import Message, Task
+from .messages import Message
 from .session import Session
 from .settings import Display, ExportChoices, Settings
 from .stage import Stage, style_of
@@ -41,38 +41,32 @@ def free_name(folder: Path, stem: str, suffix: str) -> Path:
 
 
 @dataclass
-class Shown:
-    """A `View` without a window; and what paints by it, in a process that makes a film."""
+class StagePainter:
+    """Draws as the window does, in a process that makes a film; stands for a `View` there."""
 
     display: Display
     background: render.Background | None
-    has_captions: bool
-    camera: render.OrbitCamera
     viewport: Viewport
+    has_captions: bool
+    camera: Any = None
     pointed: tuple[str, ...] = ()
+    stage: Any = None
 
-    def paint(self, scene: Scene, surface: Any) -> StagePainter:
-        """What paints it, onto any surface."""
-        return StagePainter(self, Stage(surface, scene, self.display, FrameTimes()))
-
-
-class StagePainter:
-    """Draws as the window does."""
-
-    def __init__(self, shown: Shown, stage: Stage) -> None:
-        self._stage = stage
-        self._shown: Any = shown  # all that a stage asks of a `View`
+    def on(self, scene: Scene, surface: Any) -> StagePainter:
+        """Draw this scene onto that surface."""
+        self.stage = Stage(surface, scene, self.display, FrameTimes())
+        return self
 
     def refine(self, camera: render.OrbitCamera) -> None:
         """Refine a frame that nobody draws."""
-        for shot in self._stage.shots(self._shown.display, self._shown.viewport):
-            shot.drawn.refine(self._stage.scene.positions, camera, shot.viewport)
+        for shot in self.stage.shots(self.display, self.viewport):
+            shot.drawn.refine(self.stage.scene.positions, camera, shot.viewport)
 
     def draw_image(self, camera: render.OrbitCamera) -> Image:
         """The picture; premultiplied, where it is transparent."""
-        self._shown.camera = camera
-        shown = self._shown
-        return self._stage.draw_image(shown, has_captions=shown.has_captions)
+        self.camera = camera
+        image: Image = self.stage.draw_image(self, has_captions=self.has_captions)
+        return image
 
 
 @dataclass
@@ -82,13 +76,10 @@ class Job:
     target: Path
     task: telling.Task
     began: float  # [s]
-    then: Task | None = None  # what waits for it
 
 
 class Exporter:
     """Screenshots of a stage; films and files of a session, one at a time."""
-
-    save_label = "Wait for it"
 
     def __init__(self, session: Session, settings: Settings, stage: Stage, view: View) -> None:
         self._session, self._settings, self._stage, self._view = session, settings, stage, view
@@ -147,16 +138,15 @@ class Exporter:
         choices, view, is_sheet = self.choices, self._view, self.choices.kind == SHEET
         is_clear = choices.is_transparent and self.kind.can_be_transparent
         background, display = None if is_clear else view.background, deepcopy(view.display)
-        camera, area = view.camera.copy(), (0, 0, *choices.size)
-        shown = Shown(display, background, choices.has_captions, camera, area)
+        area = (0, 0, *choices.size)
         return CaptureOptions(
-            size=choices.size,
-            frames_per_second=choices.rate,
-            camera=camera,
+            choices.size,
+            choices.rate,
+            camera=view.camera.copy(),
             is_turntable=choices.is_turntable and not is_sheet,
             span=None if is_sheet else span,
+            painted=StagePainter(display, background, area, choices.has_captions).on,
             style=style_of(display, background),
-            painted=shown.paint,
             head=head,
             is_alive=self._settings.is_alive,
         )
@@ -169,7 +159,7 @@ class Exporter:
         head = head if isinstance(head, FittedHead) else None
         work: Callable[[], object]
         if self.kind.is_drawn:
-            check_folder(target, overwrite=True) if choices.kind == FRAMES else check_file(target)
+            check_file(target / "frame.png" if choices.kind == FRAMES else target)
             draw = partial(capture, script, self._options(head, span), overwrite=True)
             name = "sheet" if choices.kind == SHEET else "output"
             work = partial(draw, progress=False, **{name: target})
@@ -192,23 +182,10 @@ class Exporter:
         self.cancel()
         if outcome.error is not None:
             raise UserError(outcome.error)
-        return job.then() if job.then else f"{job.target.name}: written to {job.target.parent}"
+        return f"{job.target.name}: written to {job.target.parent}"
 
     def cancel(self) -> None:
         """End it; what is half written goes."""
         job, self.job = self.job, None
         if job is not None:
             job.task.stop()
-
-    @property
-    def unsaved(self) -> str:
-        """What would be lost by closing now, in words; "" for nothing."""
-        job = self.job
-        return "" if job is None else f"{job.target.name}, {job.task.share:.0%} of it done"
-
-    def save(self, then: Task) -> Message:
-        """Go on when it is done."""
-        if self.job is None:
-            return then()
-        self.job.then = then
-        return f"waiting for {self.job.target.name} ..."

@@ -22,13 +22,11 @@ class Kind(NamedTuple):
 
 
 KINDS = {
-    **{
-        end[1:]: Kind(f"Film ({end})", end, True, bool(each.transparent), each.fastest)
-        for end, each in FILMS.items()
-    },
-    FRAMES: Kind("Pictures in a folder (.png)", "", True, True),
-    SHEET: Kind("Contact sheet of named poses (.png)", ".png"),
+    end[1:]: Kind(f"Film ({end})", end, True, bool(each.transparent), each.fastest)
+    for end, each in FILMS.items()
 }
+KINDS[FRAMES] = Kind("Pictures in a folder (.png)", "", True, True)
+KINDS[SHEET] = Kind("Contact sheet of named poses (.png)", ".png")
 for _each in MOTION:
     _end = (*_each.suffixes, "")[0]
     KINDS[_each.name] = Kind(f"Motion: {_each.title} ({_end or 'folder'})", _end, is_drawn=False)

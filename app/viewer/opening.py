@@ -6,6 +6,7 @@ Imports little, so that it comes quickly; what takes long is done in a thread me
 from __future__ import annotations
 
 import contextlib
+import functools
 import json
 import logging
 import os
@@ -29,6 +30,7 @@ from .placement import first_size
 LOADING, COMPILING = "Loading the face ...", "Compiling, this once: half a minute ..."
 PANEL, TOP, BELOW = 22.5, 1.4, 7.9  # [em] that panels, menus and the timeline take at first
 PAUSE, REDRAWN = 0.05, 10  # [s] between two looks at what the user does; so many of them
+LOG = logging.getLogger("risorius.jit")  # where it is told what is compiled
 Result = TypeVar("Result")
 
 
@@ -38,17 +40,17 @@ class Opening(logging.Handler):
     def __init__(self, size: tuple[int, int] | None, path: Path | None, *, is_own: bool) -> None:
         """path: of the settings. is_own: it is not the built-in face that will be seen."""
         super().__init__()
-        glance: dict[str, Any] = {"theme": rules.one_of(THEMES), "size": rules.size}
-        glance["zoom"] = rules.number(*rules.ZOOMS)
-        found: Any = {}
-        with contextlib.suppress(OSError, ValueError, RecursionError, TypeError):
-            found = json.loads(path.read_text(encoding="utf-8")) if path is not None else {}
-        found = rules.Refused().table("", found, glance.get)
+        known = {"theme": rules.one_of(THEMES), "size": rules.size}
+        known["zoom"] = rules.number(*rules.ZOOMS)
+        stored: Any = {}
+        with contextlib.suppress(OSError, ValueError, RecursionError):  # load_settings tells
+            stored = json.loads(path.read_text(encoding="utf-8")) if path is not None else {}
+        found = rules.Refused().table("", stored, known.get)
         self._theme, self._is_own = THEMES[found.get("theme", "light")], is_own
-        self._text, self._drawn, self._image = LOADING, object(), np.zeros((1, 1, 3), np.uint8)
+        self._text, self._drawn = LOADING, ((0, 0), "")
         self.surface = render.open_window(size or first_size(found.get("size")), "Risorius")
         self._em = FONT_SIZE * found.get("zoom", 1.0) * self.surface.pixel_scale
-        logging.getLogger("risorius.jit").addHandler(self)
+        LOG.addHandler(self)
         self._show()
 
     def emit(self, record: logging.LogRecord) -> None:
@@ -59,32 +61,31 @@ class Opening(logging.Handler):
         return self
 
     def __exit__(self, *_: object) -> None:
-        logging.getLogger("risorius.jit").removeHandler(self)
+        LOG.removeHandler(self)
         self.surface.close()
 
     def during(self, work: Callable[[], Result]) -> Result:
-        """Do what takes long, while the window answers; its closing ends the process."""
+        """Do what takes long, while the window answers; where it fails, the window closes."""
         thread = ThreadPoolExecutor(1)
-        outcome = thread.submit(work)
+        outcome, looks = thread.submit(work), 0
         thread.shutdown(wait=False)
-        looks = 0
         while not outcome.done():
             wait_for_event(PAUSE)
             looks += 1
-            if self._drawn != (self.surface.frame_size, self._text) or not looks % REDRAWN:
+            if looks % REDRAWN == 0 or self._drawn != (self.surface.frame_size, self._text):
                 self._show()
             if self.surface.should_close:  # there is nothing yet that could be lost
                 os._exit(0)
+        if outcome.exception() is not None:
+            self.__exit__()
         return outcome.result()
 
     def _show(self) -> None:
-        size = self.surface.frame_size
-        if self._drawn != (size, self._text):
-            self._drawn = size, self._text
-            self._image = picture(size, self._em, self._theme, self._text, is_own=self._is_own)
-        self.surface.show(self._image)
+        self._drawn = size, text = self.surface.frame_size, self._text
+        self.surface.show(picture(size, self._em, self._theme, text, is_own=self._is_own))
 
 
+@functools.lru_cache(maxsize=1)
 def picture(
     size: tuple[int, int], em: float, theme: Theme, text: str, *, is_own: bool
 ) -> render.Image:

@@ -6,8 +6,6 @@ import contextlib
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-
 from risorius import refine
 from risorius.assets.fitting import FittedHead
 
@@ -88,24 +86,25 @@ class Parts:
         if settings_path is not None:
             self.settings, complaint = load_settings(settings_path)
         is_own = script.scene != "face" or head is not None
+        opening = opening or Opening(size, settings_path, is_own=is_own)
+        shown = display or self.settings.display
+        scene = opening.during(partial(_ready_scene, script, head, shown))
+        self.session = Session(scene, script)
+        self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
+        self.recovery.find(self.session)
+        self.soundtrack = Soundtrack(self.session)
+        if display is None:
+            refused = remove_refused_options(self.settings.display, scene)
+            if refused and settings_path is not None and not complaint:
+                refused = f"{settings_path}: {refused}; {rename_unusable(settings_path)}"
+            complaint = "; ".join(filter(None, (complaint, refused)))
+        else:
+            self.settings.display = display
+        self.settings.display.remove_missing_overlays(scene)
+        self.times = FrameTimes()
         with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
-            opening = opening or Opening(size, settings_path, is_own=is_own)
-            stack.enter_context(opening)
-            shown = display or self.settings.display
-            scene = opening.during(partial(_ready_scene, script.scene, head, shown))
-            self.session = Session(scene, script)
-            self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
-            self.recovery.find(self.session)
-            self.soundtrack = Soundtrack(self.session)
-            if display is None:
-                refused = remove_refused_options(self.settings.display, scene)
-                if refused and settings_path is not None and not complaint:
-                    refused = f"{settings_path}: {refused}; {rename_unusable(settings_path)}"
-                complaint = "; ".join(filter(None, (complaint, refused)))
-            else:
-                self.settings.display = display
-            self.settings.display.remove_missing_overlays(scene)
-            self.times, self.surface = FrameTimes(), opening.surface
+            stack.push(opening)
+            self.surface = opening.surface
             self.gui = Gui(self.surface.handle)
             stack.callback(self.gui.close)
             self.stage = Stage(self.surface, scene, self.settings.display, self.times)
@@ -232,11 +231,13 @@ class Parts:
 
     def ask_to_close(self) -> str | None:
         """Close the window, unless work would be lost: then ask first."""
+        if self.exporter.job is not None:
+            name = self.exporter.job.target.name
+            self.messages.say(f"{name} is being written: wait, or cancel it first", error=True)
+            return None
         if self.is_leaving:
             return self._close()
         ask = partial(self.question.before, "Close", self._close)
-        if self.exporter.job is not None:
-            ask = partial(self.question.before, "Close", ask, self.exporter)
         return ask() if self.room is None else self.room.leave(ask)
 
     def _close(self) -> str | None:
@@ -244,12 +245,13 @@ class Parts:
         return None
 
 
-def _ready_scene(name: str, head: FittedHead | None, display: Display) -> Scene:
-    """The scene, at rest; all that its first frames run was run once, and is compiled."""
-    scene = build_scene(name, head)
+def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> Scene:
+    """The scene, at rest; what its first frames run was run once, and is compiled."""
+    scene = build_scene(script.scene, head)
+    script.check(scene.limits)
     scene.step(1.0 / 60.0)
     scene.reset()
     with contextlib.suppress(UserError, TypeError):  # a stage tells what it refuses
         refiner = refiner_for(scene, display.refinement_on(scene))
-        refiner.refine(scene.positions, view=refine.View(scene.focus + np.array([0.0, 0.0, 400.0])))
+        refiner.refine(scene.positions, view=refine.View(scene.focus + 400.0))
     return scene

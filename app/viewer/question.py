@@ -9,9 +9,7 @@ from .session import Session
 
 
 class Unsaved(Protocol):
-    """Work that is not the session's; what the button reads that saves it."""
-
-    save_label: str
+    """Work that is not the session's."""
 
     @property
     def unsaved(self) -> str:

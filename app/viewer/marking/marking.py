@@ -42,8 +42,6 @@ FloatArray = npt.NDArray[np.float64]
 class Marking:
     """Marks on one mesh. `current` is the landmark that is asked for, or was chosen."""
 
-    save_label = "Save landmarks"
-
     def __init__(self, path: Path, files: Files) -> None:
         """Read a mesh; UserError where no head can be made of it, whatever is marked."""
         self.path, self._files = path, files

@@ -32,7 +32,7 @@ def draw_question(
     again = partial(question.before, verb, task, question.other)  # there may be more to save
     choices: tuple[tuple[str, bool, Task], ...]
     if question.other is not None:
-        choices = ((question.other.save_label, True, partial(question.other.save, again)),)
+        choices = (("Save landmarks", True, partial(question.other.save, again)),)
     else:
         choices = (
             ("Save recording ...", session.is_recording, partial(scripts.save_recording, again)),
