@@ -162,7 +162,7 @@ class Parts:
         self.chooser = FileChooser(gui, self.files)
         self.export_dialog = ExportDialog(gui, self.exporter, self.files, view)
         self.mouse = Mouse(self.view, self.stage, self.select_muscle)
-        self.first_steps = FirstSteps(gui, session, view, self.mouse)
+        self.first_steps = FirstSteps(gui, view, lambda: (*self.mouse.gestures, session.is_playing))
         if self._settings_path is not None and session.scene.name == "face":
             if not settings.knows_first_steps:
                 self.first_steps.begin()

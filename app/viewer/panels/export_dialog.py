@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -68,9 +69,8 @@ class ExportDialog:
 
     def _pick(self, label: str, now: Value, choices: Mapping[Value, str]) -> Value:
         """A list to choose from; what is chosen."""
-        if imgui.begin_combo(
-            self._row(label), choices.get(now, ""), imgui.ComboFlags_.height_largest
-        ):
+        name, flags = self._row(label), imgui.ComboFlags_.height_largest
+        if imgui.begin_combo(name, choices[now], flags):
             for value, text in choices.items():
                 if imgui.selectable(text, value == now)[0]:
                     now = value
@@ -89,19 +89,7 @@ class ExportDialog:
         kind, is_sheet = exporter.kind, choices.kind == SHEET
         if not is_sheet:
             choices.source = self._pick("What", choices.source, SOURCES)
-        if choices.source == "pose" and not is_sheet:
-            _, seconds = imgui.drag_float(
-                self._row("Length"), choices.seconds, 0.05, 0.1, 600.0, "%.2f s"
-            )
-            choices.seconds = min(max(seconds, 0.1), 600.0)
-        elif choices.source == "part" and not is_sheet:
-            end = exporter.played()[0].duration
-            _, (first, last) = imgui.drag_float2(
-                self._row("From, to"), [*exporter.span], 0.02, 0.0, end, "%.2f s"
-            )
-            self._gui.remember("export: From, to")
-            first = min(max(first, 0.0), end - 0.01)
-            exporter.span = first, min(max(last, first + 0.01), end)
+            self._draw_time(choices)
         if kind.is_drawn:
             sizes = (self._view.viewport[2:], choices.size, *PICTURES)
             choices.size = self._pick("Size", choices.size, {s: f"{s[0]} x {s[1]}" for s in sizes})
@@ -111,9 +99,8 @@ class ExportDialog:
             choices.size = width, height
         choices.rate = min(choices.rate, kind.fastest)
         rates = [choices.rate, *(float(rate) for rate in RATES if rate <= kind.fastest)]
-        choices.rate = self._pick(
-            "Frames a second", choices.rate, {r: f"{r:g}" for r in sorted(rates)}
-        )
+        shown = {rate: f"{rate:g}" for rate in sorted(rates)}
+        choices.rate = self._pick("Frames a second", choices.rate, shown)
         can = (
             kind.can_be_transparent,
             kind.is_drawn and self._view.display.compare != "off",
@@ -125,6 +112,20 @@ class ExportDialog:
                 setattr(choices, field, imgui.checkbox(label, getattr(choices, field))[1])
                 self._gui.remember(f"export: {label}")
 
+    def _draw_time(self, choices: ExportChoices) -> None:
+        """How long the face is held, or from when to when the script is played."""
+        exporter, always = self._exporter, imgui.SliderFlags_.always_clamp
+        if choices.source == "pose":
+            name, most = self._row("Length"), 600.0
+            now = imgui.drag_float(name, choices.seconds, 0.05, 0.1, most, "%.2f s", always)
+            choices.seconds = now[1]
+        elif choices.source == "part":
+            name, end = self._row("From, to"), exporter.played()[0].duration
+            _, span = imgui.drag_float2(name, [*exporter.span], 0.02, 0.0, end, "%.2f s", always)
+            self._gui.remember("export: From, to")
+            first = min(span[0], end - 0.01)
+            exporter.span = first, min(max(span[1], first + 0.01), end)  # imgui's are singles
+
     def _draw_place(self, choices: ExportChoices) -> None:
         """Name and folder."""
         exporter = self._exporter
@@ -134,31 +135,20 @@ class ExportDialog:
         self._gui.remember("export: Folder")
         imgui.same_line()
         if button(self._gui, "Browse ...", name="export: Browse", width=-1.0):
-            ask = self._files.ask
-            title, name = exporter.kind.title, exporter.target.name
-            ask(
-                TITLE,
-                self._take,
-                saving=True,
-                proposed=name,
-                kind=title,
-                suffixes=(exporter.kind.suffix,),
-            )
+            ask, kind = partial(self._files.ask, TITLE, self._take, saving=True), exporter.kind
+            ask(proposed=exporter.target.name, kind=kind.title, suffixes=(kind.suffix,))
 
     def _draw_end(self, choices: ExportChoices) -> None:
         """What will be written, or why not; and the buttons."""
         exporter, (_, (begin, end)) = self._exporter, self._exporter.played()
-        text, ink = (
-            f"{end - begin:.2f} s, {round((end - begin) * choices.rate) + 1} frames",
-            self._gui.theme.muted,
-        )
-        is_there = exporter.target.exists()
-        if is_there:
-            text, ink = f"{exporter.target.name} is there already", self._gui.theme.error
+        text = f"{end - begin:.2f} s, {round((end - begin) * choices.rate) + 1} frames"
+        is_there, theme = exporter.target.exists(), self._gui.theme
+        text = f"{exporter.target.name} is there already" if is_there else text
         imgui.separator()
         imgui.align_text_to_frame_padding()
         left = imgui.get_content_region_avail().x - em(2.0 * BUTTON)
-        imgui.text_colored(colour(ink), shortened(text, left - em()))
+        ink = colour(theme.error if is_there else theme.muted)
+        imgui.text_colored(ink, shortened(text, left - em()))
         imgui.same_line(left)
         label = "Replace" if is_there else "Export"
         is_begun = button(self._gui, label, name="export: begin", width=em(BUTTON))

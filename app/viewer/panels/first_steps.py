@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from itertools import pairwise
 
 from imgui_bundle import imgui
 
 from ..gui import NOTE_FLAGS, Gui, colour, em
-from ..mouse import Mouse
-from ..session import Session
 from ..view import View
 from .widgets import muted
 
@@ -25,8 +24,9 @@ FAREWELL = 4.0  # [s] that it stays when all is done
 class FirstSteps:
     """Draws the steps, and ticks off what the user does."""
 
-    def __init__(self, gui: Gui, session: Session, view: View, mouse: Mouse) -> None:
-        self._gui, self._session, self._view, self._mouse = gui, session, view, mouse
+    def __init__(self, gui: Gui, view: View, doing: Callable[[], Iterable[bool]]) -> None:
+        """doing: whether the user does now what each of the steps asks for."""
+        self._gui, self._view, self._doing = gui, view, doing
         self.done: list[bool] = []  # of each step; empty: nothing is shown
         self._seconds_left = FAREWELL
 
@@ -38,9 +38,8 @@ class FirstSteps:
         """Draw them beside the face; where there is no room, below it."""
         if not self.done:
             return
-        mouse, (left, top, width, height) = self._mouse, self._view.area
-        doing = (mouse.is_dragging_skin, mouse.is_dragging_divider, self._session.is_playing)
-        self.done = [was or now for was, now in zip(self.done, doing, strict=True)]
+        left, top, width, height = self._view.area
+        self.done = [was or now for was, now in zip(self.done, self._doing(), strict=True)]
         is_below = 0.5 * width - FACE * height < em(WIDTH + 2.0 * MARGIN)
         y = top + height - em(MARGIN) if is_below else top + em(MARGIN)
         imgui.set_next_window_pos((left + width - em(MARGIN), y), 0, (1.0, float(is_below)))
