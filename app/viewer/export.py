@@ -76,6 +76,7 @@ class Job:
     target: Path
     task: telling.Task
     began: float  # [s]
+    told: float = 0.0  # how much of it was done when the user was told
 
 
 class Exporter:
@@ -101,7 +102,9 @@ class Exporter:
     @property
     def target(self) -> Path:
         """The file, or folder of frames."""
-        return Path(self.choices.folder or ".").expanduser() / f"{self.name}{self.kind.suffix}"
+        name, suffix = self.name, self.kind.suffix
+        folder = Path(self.choices.folder or ".").expanduser()
+        return folder / f"{name.removesuffix(suffix)}{suffix}"
 
     def screenshot(self) -> Message:
         """Write the picture without panels, in full detail."""
@@ -153,6 +156,8 @@ class Exporter:
 
     def start(self) -> None:
         """Check what can be checked, and begin; UserError where it cannot be."""
+        if not self.name:
+            raise UserError("give the file a name")
         choices, target, (script, span) = self.choices, self.target, self.played()
         scene = self._session.scene
         head = scene.head if isinstance(scene, FaceScene) else None
@@ -172,6 +177,15 @@ class Exporter:
             work = partial(write, script, target, chosen, request)
         task = telling.Task(work, round(span[1] * choices.rate) + 1, wake_up)
         self.job, self.is_asking = Job(target, task, time.monotonic()), False
+
+    @property
+    def has_news(self) -> bool:
+        """Whether there is more to be told of it than a moment ago."""
+        job = self.job
+        if job is None or (job.told == job.task.share and job.task.outcome is None):
+            return False
+        job.told = job.task.share
+        return True
 
     def poll(self) -> Message:
         """Look whether it is done, and say so; UserError where it failed."""

@@ -85,6 +85,8 @@ class Viewer(Parts):
         if self.gui.has_events:
             self._awake = FRAMES_AFTER_EVENT
             self.life.note_input()
+        if self.exporter.has_news:
+            self._awake = max(self._awake, 1)
         announced = [self.file_drop.do_announced] if self.file_drop.has_announced else []
         now = time.perf_counter()
         elapsed, self._last = now - self._last, now
@@ -153,7 +155,6 @@ class Viewer(Parts):
             and self._awake == 0
             and not self.messages.is_fading
             and not self.files.is_waiting
-            and self.exporter.job is None
         )
 
     def pause(self) -> None:

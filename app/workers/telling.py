@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 import threading
 from collections.abc import Callable
@@ -47,6 +48,8 @@ class Task:
 def told(work: Callable[[], object]) -> None:
     """In that process: do it, and print again and again how many frames were played."""
     before, is_done = tally.frames, threading.Event()
+    if hasattr(os, "nice"):
+        os.nice(5)  # whoever waits goes first
 
     def tell() -> None:
         while not is_done.wait(PAUSE):

@@ -116,7 +116,11 @@ def test_motion_is_exported_by_the_same_dialog(viewer: Viewer, tmp_path: Path) -
     click(viewer, "export: Motion: numpy arrays (.npz)")
     click(viewer, "export: Name")
     xdotool(viewer, "key", "ctrl+a")
-    write(viewer, "moved")
+    xdotool(viewer, "key", "BackSpace", "Return")
+    assert viewer.exporter.is_asking and "a name" in viewer.messages.text
+    viewer.messages.text = ""
+    click(viewer, "export: Name")
+    write(viewer, "moved.npz")
     click(viewer, "export: begin")
     assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
     assert until(viewer, lambda: viewer.exporter.job is None, LONG)

@@ -37,6 +37,7 @@ class ExportDialog:
 
     def __init__(self, gui: Gui, exporter: Exporter, files: Files, view: View) -> None:
         self._gui, self._exporter, self._files, self._view = gui, exporter, files, view
+        self._was_focused = False  # in the frame before: no list was open over it
 
     def draw(self) -> Message:
         """Draw what there is to be seen."""
@@ -154,9 +155,10 @@ class ExportDialog:
         is_begun = button(self._gui, label, name="export: begin", width=em(BUTTON))
         imgui.same_line()
         is_over = button(self._gui, "Cancel", name="export: Cancel", width=em(BUTTON))
-        if is_over or imgui.is_key_pressed(imgui.Key.escape):
+        was_focused, self._was_focused = self._was_focused, imgui.is_window_focused()
+        if is_over or (was_focused and imgui.is_key_pressed(imgui.Key.escape)):
             exporter.is_asking = False
-        elif (is_begun or imgui.is_key_pressed(imgui.Key.enter)) and exporter.name:
+        elif is_begun or (was_focused and imgui.is_key_pressed(imgui.Key.enter)):
             exporter.start()
 
     def _take(self, path: Path) -> Message:
