@@ -80,18 +80,14 @@ def capture(
     from ..capture.formats import HEARD
     from ..files import check_apart
     from ..passes.files import beside
-    from ..performances import script_for
     from ..refining import parse_comparison
-    from ..sound import with_sound
 
     written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
     check_apart(written, (script, sound, drawing.head, drawing.landmarks, playback.mapping))
     if sound is not None and (output is None or output.suffix.lower() not in HEARD):
         allowed = ", ".join(HEARD)
         raise UserError(f"--sound {sound}: only a film is heard; give -o a name in {allowed}")
-    tell = None if filming.quiet else told
-    performance = script_for(script, scene, settings, playback=playback, tell=tell)
-    performance = with_sound(performance, sound)
+    performance = _played(script, scene, sound, playback, settings, quiet=filming.quiet)
     refinement = drawing.refinement()
     options = CaptureOptions(
         size=filming.size,
@@ -237,14 +233,21 @@ def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> N
 
 
 def _played(
-    script: Path | None, scene: str | None, sound: Path | None, playback: Playback, *, quiet: bool
+    script: Path | None,
+    scene: str | None,
+    sound: Path | None,
+    playback: Playback,
+    settings: tuple[str, ...] = (),
+    *,
+    quiet: bool,
 ) -> Script:
-    """What a window plays."""
+    """What is played, with its sound; what there is to say of it is said, unless `quiet`."""
     from ..performances import script_for
     from ..sound import with_sound
 
     tell = None if quiet else told
-    return with_sound(script_for(script, scene, playback=playback, tell=tell), sound)
+    performance = script_for(script, scene, settings, playback=playback, tell=tell)
+    return with_sound(performance, sound)
 
 
 def open_window(

@@ -133,8 +133,7 @@ def record(
     bones: list[Mapping[str, Floats]] = []
     shapes: dict[str, list[Singles]] = {part.name: [] for part in scene.parts}
     simulation = scene.simulation if isinstance(scene, FaceScene) else None
-    controls: list[Floats] = []
-    activations: list[Floats] = []
+    controls, activations = list[Floats](), list[Floats]()
     begin, end = span or (0.0, script.duration)
     for now in play(scene, script, frames_per_second, until=end, progress=progress):
         if now < begin - 0.5 / frames_per_second:
@@ -173,9 +172,9 @@ def record(
         (skin, *parts),
         matrices,
         dict(zip(scene.values, np.stack(controls, axis=1), strict=True)),
-        dict(zip(simulation.sums, np.stack(activations, axis=1), strict=True))
-        if simulation
-        else {},
+        dict(
+            zip(simulation.sums if simulation else (), np.stack(activations, axis=1), strict=True)
+        ),
     )
 
 

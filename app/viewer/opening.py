@@ -23,6 +23,8 @@ from PIL import ImageDraw, ImageFont
 
 from risorius import render
 
+from ..errors import UserError
+from ..files import read_text
 from . import setting_rules as rules
 from .gui import FONT, FONT_SIZE, THEMES, Theme, wait_for_event
 from .placement import first_size
@@ -43,8 +45,9 @@ class Opening(logging.Handler):
         known = {"theme": rules.one_of(THEMES), "size": rules.size}
         known["zoom"] = rules.number(*rules.ZOOMS)
         stored: Any = {}
-        with contextlib.suppress(OSError, ValueError, RecursionError):  # load_settings tells
-            stored = json.loads(path.read_text(encoding="utf-8")) if path is not None else {}
+        with contextlib.suppress(UserError, OSError, ValueError, RecursionError):
+            if path is not None:  # what is wrong with it, load_settings tells
+                stored = json.loads(read_text(path, what="file of settings", longest=2**20))
         found = rules.Refused().table("", stored, known.get)
         self._theme, self._is_own = THEMES[found.get("theme", "light")], is_own
         self._text, self._drawn = LOADING, ((0, 0), "")
