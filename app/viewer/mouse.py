@@ -152,6 +152,12 @@ class Mouse(CameraMouse):
         """Whether the skin is being dragged."""
         return self.skin_drag is not None and bool(self.skin_drag.offset.any())
 
+    @property
+    def gestures(self) -> tuple[bool, bool]:
+        """Whether the skin, and whether the line between two halves, is being dragged."""
+        is_line = self._doing == "divider" and self._has_moved(imgui.get_io())
+        return self.is_dragging_skin, is_line
+
     def _hover(self, io: Any) -> None:
         if self._is_at_divider(io.mouse_pos.x):
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)

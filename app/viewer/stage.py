@@ -190,19 +190,21 @@ class Stage:
         lines = [OVERLAYS[name](self.scene, edges, view.camera) for name in view.display.overlays]
         return [*lines, pointed_lines(self.scene, view.pointed)] if view.pointed else lines
 
-    def draw_image(self, view: View) -> Image:
+    def draw_image(self, view: View, *, has_captions: bool = True) -> Image:
         """The picture without panels, in full detail, with captions and a colour bar."""
         self.surface.detail = FULL
         self.draw(view)
         left, bottom, width, height = view.viewport
         top = self.surface.size[1] - bottom - height
-        frame = self.surface.read_scene()[top : top + height, left : left + width]
-        shown = [(x - left, y - bottom, image) for x, y, image in self.surface.labels]
+        channels = 3 if view.background else 4  # premultiplied
+        frame = self.surface.read_scene(channels)[top : top + height, left : left + width]
+        labels = self.surface.labels if has_captions else ()
+        shown = [(x - left, y - bottom, image) for x, y, image in labels]
         shots = self.shots(view.display, view.viewport)
         return captioned(frame, shown, [(s.clip[0] - left, *s.clip[1:]) for s in shots])
 
 
-def style_of(display: Display, background: render.Background) -> render.Style:
+def style_of(display: Display, background: render.Background | None) -> render.Style:
     """The renderer's style for what the user wants to see."""
     is_textured, albedo = SKINS[display.skin]
     return render.Style(

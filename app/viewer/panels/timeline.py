@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from imgui_bundle import imgui
 
 from ..command import Command
-from ..export import Exporter
 from ..gui import Gui, colour, em
 from ..messages import Messages
 from ..session import SPEEDS, Session
@@ -37,13 +36,12 @@ class Timeline:
         session: Session,
         messages: Messages,
         commands: Iterable[Command],
-        exporter: Exporter,
         dope_sheet: DopeSheet,
     ) -> None:
         """commands: those of the buttons must be among them."""
         self._gui, self._session, self._messages = gui, session, messages
         self._commands = {command.label: command for command in commands}
-        self._exporter, self.dope_sheet = exporter, dope_sheet
+        self.dope_sheet = dope_sheet
         self._rows = 1  # of buttons, which go on in a second one where the window is narrow
 
     def height(self) -> float:
@@ -104,14 +102,12 @@ class Timeline:
 
     def _draw_status(self) -> None:
         """The time, and what is being made now, else the script's name."""
-        session, theme, film = self._session, self._gui.theme, self._exporter.film
+        session, theme = self._session, self._gui.theme
         status, ink = session.name, theme.muted
         if session.script_is_unsaved:
             status += " *"
         if session.is_recording:
             status, ink = f"recording {session.recorded_seconds:.1f} s", theme.error
-        if film is not None:
-            status, ink = f"filming {film.seconds:.1f} s", theme.error
         imgui.same_line()
         told = self.dope_sheet.axis.told
         time = f"{told(session.time)} of {told(session.script.duration).removeprefix('frame ')}"
