@@ -1,212 +1,264 @@
 """Pull to pose: which muscles hold the skin where a finger draws it to, an inverse problem.
 
-The skin under the finger shall lie at its targets once the finger is gone, with few muscles at work
-and the rest of the face left alone: minimise over what changes of the controls, within their limits
+The skin under the finger shall lie at its targets when the finger has gone, with few controls at
+work and the rest of the face left alone. Over the controls u, within their limits, minimise
 
-    sum_i s_i |A (t_i - p_i)|^2  +  REST sum_j a_j |p_j - p_j(0)|^2 / sum_i a_i  +  sum_c price_c |u_c|
+    sum_i s_i |A (t_i - p_i)|^2 + REST sum_j a_j |p_j - p_j(0)|^2 + PRICE d^2 sum_c |u_c - u_c(0)|
 
-i runs over the vertices under the finger, with shares s that add up to 1, j over all others, with
-areas a; A counts less what lies along the line of sight, which a mouse does not tell.
+i runs over the vertices under the finger, with shares s that add up to 1 and targets t, drawn by d
+on average; j over all others, with areas a against that under the finger. A counts less what lies
+along the line of sight, of which a mouse says nothing.
 
-Gauss and Newton: p is a twin of the face at rest, and its slope is measured, on a second twin, by
-moving each control a little and letting the skin come to rest. That takes six steps, since a twin's
-muscles have no lag, and it knows what no linear model of the springs does: lips that stick and
-part, lids on their eyeballs, muscles that stiffen the skin. Each step solves the bounded problem
-exactly enough by going down along one control after the other.
+Solved by Gauss and Newton. p is a twin of the face, at rest; its slopes are measured on a second
+twin, by moving one control a little and letting the skin come to rest. A twin's muscles have no
+lag, so that takes six steps, and it knows what springs alone do not: lips that stick and part, lids
+on their eyeballs, muscles that stiffen the skin.
 
-Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers; the price per
-control is the lasso of Tibshirani 1996, solved as by Friedman et al. 2007.
+Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. The price makes it
+the lasso of Tibshirani 1996, solved along one control after the other (Friedman et al. 2007).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from ..jit import njit
 from .face import Simulation
 from .landmarks import Array
 
 STEP = 1.0 / 60.0  # [s] of a twin
-STEPS_TO_REST = 6  # of a twin after a small change; what is left is a few hundredths of it
-MOST = 20  # controls that are looked at: those that move the finger's skin most
+STEPS_TO_REST = 6  # of a twin after a small change; less than a twentieth of it is left
+MOST = 16  # controls that are looked at: those that move the finger's skin most
 PROBE = 0.25  # of a control's range, to measure its slope
-ALONG = 0.15  # what a distance along the line of sight counts
-REST = 0.02  # what the rest of the face counts, against as large an area under the finger
-PRICE = 0.04  # mm2 for a control at its limit, under a finger that draws by REACH
-DULL = 1e-3  # mm2: a control that moves the finger's skin by less has no slope
-SWEEPS = 60
-ROUNDS = 6  # of Gauss and Newton for a final answer
-LEAST = 0.03  # of a control's range: what is less is left away
+ALONG = 0.05  # what a distance along the line of sight counts
+REST = 0.1  # what the rest of the face counts, against as large an area under the finger
+PRICE = 0.08  # of a control at its limit, against skin that does not come along at all
+FINAL = 0.05  # of both when it is known which controls: these come as near as they can
+RIDGE = 1e-4  # of the same: two controls that do the same share it
+SWEEPS, STILL = 60, 1e-4  # through all controls at most, and a change that is none
+ROUNDS, NEAR = 6, 0.01  # of Gauss and Newton at most, and a change that is none
+LEAST = 0.04  # of a control's range: what changes by less is left alone
+WORTH = 0.01  # of the squared distances: what mends less beside others is left alone
+ALIKE = 0.2  # of that: whose worth differs by less stay or go together, as both sides of a muscle
+MEAGRE = 0.25  # of the squared distances: who mends less does not pull that way at all
+Names = tuple[str, ...]
 
 
 class Pull:
     """A finger on the skin, and the controls that do what it does."""
+
+    targets: Array  # where the finger draws each of its vertices [head units], shape (n, 3)
 
     def __init__(
         self,
         face: Simulation,
         vertices: npt.ArrayLike,
         firmness: npt.ArrayLike,
-        *,
-        candidates: Sequence[tuple[str, ...]],
+        candidates: Sequence[Names],
         sight: npt.ArrayLike = (0.0, 0.0, 1.0),
     ) -> None:
-        """Begin at a face as it is.
+        """Begin at a face as it is, which stays as it is.
 
-        vertices, firmness: of the finger, as for `Simulation.drag`. candidates: controls that may
-        be used, those in one tuple together, such as both sides of a muscle. sight: direction in
-        which the finger is seen, (3,).
+        vertices, firmness: of the finger, shapes (n,), as for `Simulation.drag`. candidates:
+        controls that may be used, in one tuple those that go together, as both sides of a muscle
+        do. sight: direction in which the finger is seen, shape (3,).
         """
         self._base, self._probe = face.twin(), face.twin()
-        self._vertices = np.asarray(vertices)
+        self._vertices = np.asarray(vertices, np.int64)
         share = np.asarray(firmness, np.float64)
         self._share = share / share.sum()
-        axis = np.asarray(sight, np.float64)
-        axis = axis / np.linalg.norm(axis)
+        axis = np.asarray(sight, np.float64) / np.linalg.norm(sight)
         self._seen = np.eye(3) - (1.0 - ALONG) * np.outer(axis, axis)
-        values = face.values
-        self._base.jump({})
-        self._rest(self._base)
+        self._pose({})
         self._from = self._base.positions.copy()
-        areas = face.areas
-        self._area = REST * areas / areas[self._vertices].sum()
+        self.targets = self._from[self._vertices]
+        self._area = face.areas / face.areas[self._vertices].sum()
         self._area[self._vertices] = 0.0
-        near = self._near(candidates)
-        self.candidates = [candidates[n] for n in near]
-        self._start = np.array([values[names[0]] for names in self.candidates])
+        self.candidates = self._near(candidates)
         limits = [face.limits[names[0]] for names in self.candidates]
         self._low, self._high = np.array(limits, np.float64).reshape(-1, 2).T
+        values = face.values
+        self._start = np.array([values[names[0]] for names in self.candidates], np.float64)
         self._value = self._start.copy()
         self._slope = np.zeros((len(self.candidates), *self._from.shape))
-        self.targets = self._from[self._vertices]
-        for n in range(len(self.candidates)):
-            self._measure(n)
-        self._next = 0
+        self._measure(np.arange(len(self._value)))
+        self._first, self._turn = self._slope.copy(), 0
 
     @property
-    def changes(self) -> dict[str, float]:
-        """The new values of all controls that are not where they were."""
-        moved = np.flatnonzero(self._value != self._start)
-        return {name: float(self._value[n]) for n in moved for name in self.candidates[n]}
+    def values(self) -> dict[str, float]:
+        """The value of each control that was looked at; as it was where none mends enough."""
+        value = self._value if self.mends else self._start
+        return {name: float(value[n]) for n, names in enumerate(self.candidates) for name in names}
+
+    @property
+    def changes(self) -> dict[Names, float]:
+        """The new values of controls that are not where they were, greatest change first."""
+        moved = np.abs(self._value - self._start) * self.mends
+        order = sorted(np.flatnonzero(moved), key=lambda n: -round(moved[n], 3))
+        return {self.candidates[n]: float(self._value[n]) for n in order}
+
+    @property
+    def mends(self) -> bool:
+        """Whether what was found comes nearer by more than a trace."""
+        return self._off(self._base.positions) < (1.0 - MEAGRE) * self._off(self._from)
 
     @property
     def short(self) -> float:
-        """How far the skin is from where it was drawn to, on average and as seen [mm]."""
-        off = (self.targets - self._base.positions[self._vertices]) @ self._seen
-        return float(self._share @ np.linalg.norm(off, axis=1))
+        """How far the skin stays from its targets, as seen, on average [head units]."""
+        return float(np.sqrt(self._off(self._base.positions if self.mends else self._from)))
 
     def follow(self, count: int = 4) -> None:
-        """A step of Gauss and Newton from where it is, with `count` slopes measured anew."""
-        for _ in range(min(count, len(self.candidates))):
-            self._measure(self._next)
-            self._next = (self._next + 1) % len(self.candidates)
-        self._improve(np.ones(len(self._value), bool), 1.0)
+        """A step of Gauss and Newton from where it is, after `count` slopes were measured anew."""
+        every = len(self._value)
+        self._measure([(self._turn + n) % every for n in range(min(count, every))])
+        self._turn += count
+        self._improve(np.ones(every, np.bool_), 1.0)
 
     def solve(self) -> None:
         """The answer for these targets, whatever the finger did on its way."""
+        self._slope[:] = self._first
         self._go(self._start)
-        every = np.ones(len(self._start), bool)
-        for n in range(len(self._start)):
-            self._measure(n)
-        for _ in range(ROUNDS):
-            self._improve(every, 1.0)
-            for n in np.flatnonzero(self._value != self._start):
-                self._measure(n)
-        few = np.abs(self._value - self._start) > LEAST * (self._high - self._low)
-        self._go(np.where(few, self._value, self._start))
-        for _ in range(ROUNDS // 2):
-            self._improve(few, 0.0)
-            for n in np.flatnonzero(few):
-                self._measure(n)
+        self._improve_all(np.ones(len(self._start), np.bool_), 1.0)
+        needed = self._needed()
+        self._go(np.where(needed, self._value, self._start))
+        self._improve_all(needed, FINAL)
 
-    def _near(self, candidates: Sequence[tuple[str, ...]]) -> list[int]:
-        """The candidates that move the finger's skin most, in the order of the candidates."""
+    def _near(self, candidates: Sequence[Names]) -> list[Names]:
+        """The candidates that move the finger's skin most within a step."""
         moved = []
         for names in candidates:
             self._probe.copy_from(self._base)
             self._probe.jump(self._towards(names, 1.0))
             self._probe.step(STEP)
-            off = (self._probe.positions - self._from)[self._vertices] @ self._seen
-            moved.append(float(self._share @ (off**2).sum(axis=1)))
-        order = sorted(range(len(candidates)), key=lambda n: -round(moved[n], 6))[:MOST]
-        return sorted(n for n in order if moved[n] > DULL)
+            moved.append(self._moved(self._probe.positions - self._from))
+        least = 0.99 * sorted([0.0, *moved])[-MOST:][0]  # of two that are alike none stays away
+        return [c for c, far in zip(candidates, moved, strict=True) if far > least]
 
-    def _towards(self, names: tuple[str, ...], share: float) -> dict[str, float]:
-        """Controls moved by a share of their range, back where there is no more room."""
+    def _moved(self, by: Array) -> float:
+        """Mean square of how far vertices (V, 3) under the finger move, as seen."""
+        return float(self._share @ ((by[self._vertices] @ self._seen) ** 2).sum(axis=1))
+
+    def _off(self, positions: Array) -> float:
+        """Mean square of how far vertices (V, 3) under the finger are from their targets."""
+        off = (self.targets - positions[self._vertices]) @ self._seen
+        return float(self._share @ (off**2).sum(axis=1))
+
+    def _towards(self, names: Names, share: float) -> dict[str, float]:
+        """Controls moved by a share of their range, the other way where there is no room."""
         low, high = self._base.limits[names[0]]
         value = self._base.values[names[0]]
         step = share * (high - low)
         moved = value + step if value + step <= high else max(value - step, low)
         return dict.fromkeys(names, moved)
 
-    def _measure(self, n: int) -> None:
-        """The slope of the skin in one control, here."""
-        names = self.candidates[n]
-        moved = self._towards(names, PROBE)
-        self._probe.copy_from(self._base)
-        self._probe.jump(moved)
-        self._rest(self._probe)
-        self._slope[n] = self._probe.positions - self._base.positions
-        self._slope[n] /= moved[names[0]] - self._value[n]
+    def _measure(self, which: npt.ArrayLike) -> None:
+        """The slopes of the skin in some controls, by number, here."""
+        for n in np.asarray(which, np.int64):
+            moved = self._towards(self.candidates[n], PROBE)
+            self._probe.copy_from(self._base)
+            self._probe.jump(moved)
+            _come_to_rest(self._probe)
+            by = next(iter(moved.values())) - self._value[n]
+            self._slope[n] = (self._probe.positions - self._base.positions) / by
 
-    def _rest(self, twin: Simulation) -> None:
-        for _ in range(STEPS_TO_REST):
-            twin.step(STEP)
+    def _pose(self, values: dict[str, float]) -> None:
+        self._base.jump(values)
+        _come_to_rest(self._base)
 
     def _go(self, value: Array) -> None:
-        self._value = value
-        self._base.jump({name: float(value[n]) for n, c in enumerate(self.candidates) for name in c})
-        self._rest(self._base)
+        self._value = value.copy()
+        self._pose({name: float(value[n]) for n, c in enumerate(self.candidates) for name in c})
+
+    def _improve_all(self, usable: npt.NDArray[np.bool_], thrift: float) -> None:
+        """Until nothing changes much."""
+        for _ in range(ROUNDS):
+            before = self._value
+            self._improve(usable, thrift)
+            if np.abs(self._value - before).max(initial=0.0) < NEAR:
+                break
+            self._measure(np.flatnonzero(self._value != self._start))
 
     def _improve(self, usable: npt.NDArray[np.bool_], thrift: float) -> None:
-        """One step of Gauss and Newton over the usable controls; thrift: 0 spares nothing."""
-        now = self._base.positions
-        under = self._slope[:, self._vertices] @ self._seen
-        root = np.sqrt(self._share)[None, :, None]
-        a = (under * root).reshape(len(under), -1)
-        b = (((self.targets - now[self._vertices]) @ self._seen) * root[0]).ravel()
-        gram, right = a @ a.T, a @ b
-        if thrift:
-            weight = thrift * self._area
-            flat = (self._slope * weight[None, :, None]).reshape(len(a), -1)
-            gram = gram + flat @ self._slope.reshape(len(a), -1).T
-            right = right + flat @ (self._from - now).ravel()
-        gram[np.diag_indices_from(gram)] += DULL
-        right = right + DULL * (self._start - self._value)
-        drawn = (self.targets - self._from[self._vertices]) @ self._seen
-        worth = float(self._share @ (drawn**2).sum(axis=1))
-        price = np.full(len(a), thrift * PRICE * worth) / (self._high - self._low)
-        value = self._value.copy()
-        descend(gram, right, price, self._start, np.where(usable, self._low, value),
-                np.where(usable, self._high, value), value)
-        self._go(value)
+        """One step of Gauss and Newton over usable controls (C,); thrift: of REST and PRICE."""
+        self._go(self._value + self._system(thrift).least(usable))
+
+    def _needed(self) -> npt.NDArray[np.bool_]:
+        """The controls that changed, without those whom the others can do without, (C,)."""
+        needed = np.abs(self._value - self._start) > LEAST * (self._high - self._low)
+        system = self._system(FINAL)
+        worth = WORTH * self._off(self._from)
+        while needed.any():
+            best = system.cost(needed)
+            loss = np.full(len(needed), np.inf)
+            for c in np.flatnonzero(needed):
+                loss[c] = system.cost(needed & (np.arange(len(needed)) != c)) - best
+            spared = loss <= loss.min() + ALIKE * worth
+            if system.cost(needed & ~spared) - best > worth * spared.sum():
+                break
+            needed &= ~spared
+        return needed
+
+    def _system(self, thrift: float) -> _Lasso:
+        """The problem as it looks from here."""
+        now, count = self._base.positions, len(self._value)
+        root = np.sqrt(self._share)[:, None]
+        under = ((self._slope[:, self._vertices] @ self._seen) * root).reshape(count, -1)
+        off = (((self.targets - now[self._vertices]) @ self._seen) * root).ravel()
+        slope = self._slope.reshape(count, -1)
+        others = slope * np.repeat(thrift * REST * self._area, 3)
+        drawn = max(self._off(self._from), 1e-12)
+        changed = self._value - self._start
+        return _Lasso(
+            under @ under.T + others @ slope.T + RIDGE * drawn * np.eye(count),
+            under @ off + others @ (self._from - now).ravel() - RIDGE * drawn * changed,
+            0.5 * thrift * PRICE * drawn / np.maximum(self._high, -self._low),
+            changed, self._low - self._start, self._high - self._start,
+        )  # fmt: skip
 
 
-@njit
-def descend(gram, right, price, start, low, high, value):  # type: ignore[no-untyped-def]
-    """Minimise x G x / 2 - r x + price |u - start|, x = u - value, low <= u <= high, into `value`.
+def _come_to_rest(twin: Simulation) -> None:
+    for _ in range(STEPS_TO_REST):
+        twin.step(STEP)
 
-    One control after the other, each to its minimum, SWEEPS times.
-    """
-    count = len(value)
-    moved = np.zeros(count)
-    first = value.copy()
-    for _ in range(SWEEPS):
-        for c in range(count):
-            pull = right[c] + gram[c, c] * moved[c]
-            for d in range(count):
-                pull -= gram[c, d] * moved[d]
-            away = first[c] + pull / gram[c, c] - start[c]
-            thresh = price[c] / gram[c, c]
-            if away > thresh:
-                away -= thresh
-            elif away < -thresh:
-                away += thresh
-            else:
-                away = 0.0
-            moved[c] = min(max(start[c] + away, low[c]), high[c]) - first[c]
-    for c in range(count):
-        value[c] = first[c] + moved[c]
+
+class _Lasso(NamedTuple):
+    """Find x with low <= changed + x <= high and least x G x - 2 r x + 2 price |changed + x|."""
+
+    gram: Array  # (C, C)
+    right: Array  # (C,)
+    price: Array  # (C,)
+    changed: Array  # (C,) so far
+    low: Array  # (C,)
+    high: Array  # (C,)
+
+    def least(self, usable: npt.NDArray[np.bool_]) -> Array:
+        """One control after the other goes to its minimum, until none moves any more, (C,).
+
+        usable: the others go back to where they were, shape (C,).
+        """
+        total, downhill = self.changed.copy(), self.right.copy()
+        downhill += self.gram[:, ~usable] @ total[~usable]
+        total[~usable] = 0.0
+        for _ in range(SWEEPS):
+            farthest = 0.0
+            for c in np.flatnonzero(usable):
+                slope = self.gram[c, c]
+                to = total[c] + downhill[c] / slope
+                to = np.sign(to) * max(abs(to) - self.price[c] / slope, 0.0)
+                by = min(max(to, self.low[c]), self.high[c]) - total[c]
+                if by:
+                    total[c] += by
+                    downhill -= by * self.gram[c]
+                    farthest = max(farthest, abs(by))
+            if farthest < STILL:
+                break
+        return total - self.changed
+
+    def cost(self, usable: npt.NDArray[np.bool_]) -> float:
+        """What is least with these controls alone, but for a constant."""
+        x = self.least(usable)
+        spent = self.price @ np.abs(self.changed + x)
+        return float(x @ self.gram @ x - 2.0 * self.right @ x + 2.0 * spent)

@@ -101,10 +101,10 @@ def overlays_of(scene: Scene) -> tuple[str, ...]:
 
 
 def pointed_lines(scene: Any, names: Collection[str]) -> Lines:
-    """The fibres of some muscles, for whoever points at their sliders."""
+    """The fibres of some muscles, faint, for whoever points at their sliders."""
     fibres = scene.simulation.fibres() if hasattr(scene, "simulation") else {}
     lines = [line for name in names for line in fibres.get(name, ())]
-    return Lines(lines, np.tile(POINTED_AT, (len(lines), 1)), width=3.0, hidden_opacity=1.0)
+    return Lines(lines, np.tile(POINTED_AT, (len(lines), 1)), width=2.0, hidden_opacity=0.3)
 
 
 def _rows(colours: Sequence[FloatArray]) -> FloatArray:

@@ -36,6 +36,7 @@ from .panels.layout import Layout
 from .panels.live import LivePanel
 from .panels.mechanism import MechanismPanel
 from .panels.menu_bar import MenuBar
+from .panels.muscle_note import MuscleNote
 from .panels.timeline import Timeline
 from .panels.waveform import Waveform
 from .physics import Physics
@@ -156,7 +157,8 @@ class Parts:
         tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
         self.layout = Layout(gui, settings, self.panel_state, bar, tabs, self.timeline)
         self.chooser = FileChooser(gui, self.files)
-        self.mouse = Mouse(self.view, self.stage, self.select_muscle)
+        self.muscle_note = MuscleNote(gui, session, settings, view)
+        self.mouse = Mouse(view, self.stage, session, settings, messages, self.select_muscle)
 
     def close(self) -> None:
         """Remember the settings, and let go of everything."""
@@ -216,10 +218,10 @@ class Parts:
             self.painter.forget()
 
     def select_muscle(self, name: str) -> None:
-        """Show a muscle's slider."""
+        """Show a muscle's slider, in the panel and beside the mouse."""
         self.panel_state.wanted_tab = "Face"
         self.face_panel.select(name)
-        self.messages.say(name.replace("_", " "))
+        self.muscle_note.show(name)
 
     def ask_to_close(self) -> str | None:
         """Close the window, unless work would be lost: then ask first."""

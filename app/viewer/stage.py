@@ -111,8 +111,11 @@ class Stage:
             refined._replace(viewport=second, clip=second),
         ]
 
-    def draw(self, view: View) -> None:
-        """Draw the scene as it is now; the surface's `detail` says how finely."""
+    def draw(self, view: View, *, is_photo: bool = False) -> None:
+        """Draw the scene as it is now; the surface's `detail` says how finely.
+
+        is_photo: without what belongs to the mouse.
+        """
         camera, display, viewport, times = view.camera, view.display, view.viewport, self._times
         shots = self.shots(display, viewport)
         style = style_of(display, view.background)
@@ -127,7 +130,7 @@ class Stage:
                 shot.drawn.upload(amounts, style.wrinkles)
         with times.timed("draw"):
             self.surface.begin()
-            overlays = self._overlays(view)
+            overlays = self._overlays(view, () if is_photo else view.pointed)
             self.renderer.draw_background(style, viewport)
             for shot in shots:
                 values = COLOURS[display.colours].values(self.scene, shot.drawn)
@@ -167,15 +170,15 @@ class Stage:
         if not self.surface.samples:
             self.renderer.draw_outline(shot.drawn.stream, camera, style, texture=texture, **where)
 
-    def _overlays(self, view: View) -> list[Lines]:
+    def _overlays(self, view: View, pointed: tuple[str, ...]) -> list[Lines]:
         edges = self.static.refiner.edges
         lines = [OVERLAYS[name](self.scene, edges, view.camera) for name in view.display.overlays]
-        return [*lines, pointed_lines(self.scene, view.pointed)] if view.pointed else lines
+        return [*lines, pointed_lines(self.scene, pointed)] if pointed else lines
 
     def draw_image(self, view: View) -> Image:
         """The picture without panels, in full detail, with captions where two meshes are seen."""
         self.surface.detail = FULL
-        self.draw(view)
+        self.draw(view, is_photo=True)
         left, bottom, width, height = view.viewport
         top = self.surface.size[1] - bottom - height
         frame = self.surface.read_scene()[top : top + height, left : left + width]

@@ -226,6 +226,10 @@ class Viewer(Parts):
                 room.panel.draw(room.view)
             messages.age(imgui.get_io().delta_time)
             draw_message(gui, messages, view)
+            if room is None:
+                self.muscle_note.draw()
+            if imgui.is_any_mouse_down():
+                view.pointed = ()
             for draw in (
                 partial(draw_recovery, gui, self.recovery, self.session, self.question, view),
                 self.files.poll,

@@ -1,0 +1,66 @@
+"""The slider of the muscle that was clicked, beside the mouse."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from ...mirror import parted, twin_of
+from ..control_rows import readable
+from ..gui import LEFT, NOTE_FLAGS, Gui, em
+from ..session import Session
+from ..settings import Settings
+from ..view import View
+from .sliders import Sliders
+from .widgets import muted
+
+WIDTH = 15.0  # [em] of the slider
+
+
+class MuscleNote:
+    """A note that a click elsewhere or Escape takes away."""
+
+    def __init__(self, gui: Gui, session: Session, settings: Settings, view: View) -> None:
+        self._gui, self._session, self._settings, self._view = gui, session, settings, view
+        self._sliders = Sliders(gui)
+        self.name = ""  # of the muscle, "" for none
+        self._is_new = False
+
+    def show(self, name: str) -> None:
+        """Show the slider of a muscle, where the mouse is."""
+        self.name, self._is_new = name, True
+
+    def draw(self) -> None:
+        """Draw the note, if there is one."""
+        session, name, twin = self._session, self.name, twin_of(self.name)
+        if name not in session.values:
+            return
+        if self._is_new:
+            mouse, display = imgui.get_mouse_pos(), imgui.get_io().display_size
+            is_right = mouse.x + em(WIDTH + 4.0) > display.x
+            place = mouse.x + em(-1.0 if is_right else 1.0), mouse.y
+            imgui.set_next_window_pos(place, 0, (float(is_right), 0.5))
+        imgui.begin("##muscle", None, NOTE_FLAGS)
+        values = session.current
+        is_linked = self._settings.is_linked and twin != name and values[name] == values[twin]
+        title = f"{readable(parted(name)[0])}, both sides" if is_linked else readable(name)
+        imgui.text_unformatted(title.capitalize())
+        slid = self._sliders.draw(
+            name, values[name], session.controls.limits[name], width=em(WIDTH)
+        )
+        self._gui.places["note"] = self._gui.places[name]
+        if slid.is_changed:
+            session.set(name, slid.value, linked=is_linked)
+        if slid.is_done:
+            session.note()
+        imgui.push_text_wrap_pos(em(WIDTH + 0.5))
+        muted(self._gui, session.scene.actions.get(name, ""))
+        imgui.pop_text_wrap_pos()
+        is_on = imgui.is_window_hovered(imgui.HoveredFlags_.allow_when_blocked_by_active_item)
+        imgui.end()
+        if is_on:
+            self._view.pointed = (name, twin) if is_linked else (name,)
+        is_elsewhere = imgui.is_mouse_clicked(LEFT) and not (is_on or self._is_new)
+        is_typing = imgui.get_io().want_text_input
+        if is_elsewhere or (imgui.is_key_pressed(imgui.Key.escape) and not is_typing):
+            self.name = ""
+        self._is_new = False
