@@ -11,8 +11,9 @@ along the line of sight, of which a mouse says nothing.
 
 Solved by Gauss and Newton. p is a twin of the face, at rest; its slopes are measured on a second
 twin, by moving one control a little and letting the skin come to rest. A twin's muscles have no
-lag, so that takes six steps, and it knows what springs alone do not: lips that stick and part, lids
-on their eyeballs, muscles that stiffen the skin.
+lag, so that takes six steps of 0.3 ms, and it knows what the tangent of the springs does not: lips
+that stick and part, lids on their eyeballs, muscles that stiffen the skin. Six steps are off by 2 %.
+Slopes by the implicit function theorem were off by 5 to 60 % and no faster (50 ms to factorise).
 
 Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. The price makes it
 the lasso of Tibshirani 1996, solved along one control after the other (Friedman et al. 2007).
@@ -73,7 +74,7 @@ class Pull:
         axis = np.asarray(sight, np.float64) / np.linalg.norm(sight)
         self._seen = np.eye(3) - (1.0 - ALONG) * np.outer(axis, axis)
         self._pose({})
-        self._from = self._base.positions.copy()
+        self._home, self._from = self._base.twin(), self._base.positions.copy()
         self.targets = self._from[self._vertices]
         self._area = face.areas / face.areas[self._vertices].sum()
         self._area[self._vertices] = 0.0
@@ -88,16 +89,10 @@ class Pull:
         self._first, self._turn = self._slope.copy(), 0
 
     @property
-    def values(self) -> dict[str, float]:
-        """The value of each control that was looked at; as it was where none mends enough."""
-        value = self._value if self.mends else self._start
-        return {name: float(value[n]) for n, names in enumerate(self.candidates) for name in names}
-
-    @property
     def changes(self) -> dict[Names, float]:
         """The new values of controls that are not where they were, greatest change first."""
         moved = np.abs(self._value - self._start) * self.mends
-        order = sorted(np.flatnonzero(moved), key=lambda n: -round(moved[n], 3))
+        order = sorted(np.flatnonzero(moved > NEAR), key=lambda n: -round(moved[n], 3))
         return {self.candidates[n]: float(self._value[n]) for n in order}
 
     @property
@@ -119,8 +114,8 @@ class Pull:
 
     def solve(self) -> None:
         """The answer for these targets, whatever the finger did on its way."""
-        self._slope[:] = self._first
-        self._go(self._start)
+        self._base.copy_from(self._home)
+        self._slope[:], self._value = self._first, self._start.copy()
         self._improve_all(np.ones(len(self._start), np.bool_), 1.0)
         needed = self._needed()
         self._go(np.where(needed, self._value, self._start))

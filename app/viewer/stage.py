@@ -143,6 +143,7 @@ class Stage:
                         viewport=shot.viewport,
                         clip=shot.clip,
                         width=lines.width,
+                        opacity=lines.opacity,
                         hidden_opacity=lines.hidden_opacity,
                     )
             self.surface.target.flush()
