@@ -12,8 +12,8 @@ along the line of sight, of which a mouse says nothing.
 Solved by Gauss and Newton. p is a twin of the face, at rest; its slopes are measured on a second
 twin, by moving one control a little and letting the skin come to rest. A twin's muscles have no
 lag, so that takes six steps of 0.3 ms, and it knows what the tangent of the springs does not: lips
-that stick and part, lids on their eyeballs, muscles that stiffen the skin. Six steps are off by 2 %.
-Slopes by the implicit function theorem were off by 5 to 60 % and no faster (50 ms to factorise).
+that stick and part, lids on their eyeballs, muscles that stiffen the skin. Such slopes are off by
+2 %; those of the implicit function theorem were by 5 to 60 %, and no faster (60 ms to factorise).
 
 Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. The price makes it
 the lasso of Tibshirani 1996, solved along one control after the other (Friedman et al. 2007).
