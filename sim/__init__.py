@@ -20,16 +20,8 @@ from .rig import Rig
 from .rig_reader import read_rig
 from .trial import Trial
 
-__all__ = [
-    "Cloth",
-    "Pull",
-    "Rig",
-    "Simulation",
-    "SimulationUnstable",
-    "Trial",
-    "create",
-    "read_rig",
-]
+__all__ = ["Cloth", "Pull", "Rig", "Simulation", "SimulationUnstable", "Trial"]
+__all__ += ["create", "read_rig"]
 
 
 def create(head: Any, *, gravity: bool = False, inertia: bool = False) -> Simulation:

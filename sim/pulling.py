@@ -92,7 +92,7 @@ class Pull:
     def changes(self) -> dict[Names, float]:
         """The new values of controls that are not where they were, greatest change first."""
         moved = np.abs(self._value - self._start) * self.mends
-        order = sorted(np.flatnonzero(moved > NEAR), key=lambda n: -round(moved[n], 3))
+        order = sorted(np.flatnonzero(moved > NEAR), key=lambda n: -round(float(moved[n]), 3))
         return {self.candidates[n]: float(self._value[n]) for n in order}
 
     @property

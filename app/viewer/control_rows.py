@@ -24,6 +24,11 @@ def readable(name: str) -> str:
     return name.replace("_", " ")
 
 
+def called(name: str, *twin: str) -> str:
+    """A control in words, or with its twin both sides of it."""
+    return f"{readable(parted(name)[0])}, both sides" if twin else readable(name)
+
+
 def mirrored(values: Mapping[str, float]) -> dict[str, float]:
     """What is left becomes right; the middle turns round."""
     result = dict(values)

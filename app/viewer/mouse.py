@@ -16,11 +16,12 @@ from risorius import render
 from .gui import LEFT, MIDDLE, RIGHT, em
 from .messages import Messages
 from .picking import Ray, skin_under
-from .session import Session
-from .settings import Settings
 from .skin_drag import SkinDrag
 from .stage import Stage
 from .view import View
+
+Grab = Callable[..., SkinDrag]
+Select = Callable[[str], None]
 
 DEGREES_PER_EM = 5.5
 ZOOM_PER_NOTCH = 1.1
@@ -104,18 +105,12 @@ class Mouse(CameraMouse):
     """The mouse on a face: it drags the skin, and the line between two halves."""
 
     def __init__(
-        self,
-        view: View,
-        stage: Stage,
-        session: Session,
-        settings: Settings,
-        messages: Messages,
-        select_muscle: Callable[[str], None],
+        self, view: View, stage: Stage, messages: Messages, grab: Grab, select_muscle: Select
     ) -> None:
-        """select_muscle: called with the name of one that was clicked."""
+        """grab: makes a finger. select_muscle: called with the name of one that was clicked."""
         super().__init__(view, stage.surface)
-        self._stage, self._session, self._settings = stage, session, settings
-        self._messages, self._select_muscle = messages, select_muscle
+        self._stage, self._messages = stage, messages
+        self._grab, self._select_muscle = grab, select_muscle
 
     def forget(self) -> None:
         super().forget()
@@ -140,10 +135,7 @@ class Mouse(CameraMouse):
         point = skin_under(ray, scene.positions, scene.faces)
         if point is None:
             return "orbit"
-        linked, ctrl = self._settings.is_linked, io.key_ctrl
-        self.skin_drag = SkinDrag(
-            self._session, point, ray.direction, linked=linked, is_only_pulled=ctrl
-        )
+        self.skin_drag = self._grab(point, ray.direction, poses=not io.key_ctrl)
         return "skin"
 
     def _drag(self, io: Any) -> None:

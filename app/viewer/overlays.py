@@ -106,9 +106,7 @@ def pointed_lines(scene: Any, names: Collection[str]) -> Lines:
     """The fibres of some muscles, faint, for whoever points at their sliders."""
     fibres = scene.simulation.fibres() if hasattr(scene, "simulation") else {}
     lines = [line for name in names for line in fibres.get(name, ())]
-    return Lines(
-        lines, np.tile(POINTED_AT, (len(lines), 1)), width=2.0, hidden_opacity=FAINT, opacity=FAINT
-    )
+    return Lines(lines, np.tile(POINTED_AT, (len(lines), 1)), 2.0, FAINT, FAINT)
 
 
 def _rows(colours: Sequence[FloatArray]) -> FloatArray:

@@ -53,6 +53,7 @@ from .settings import (
     rename_unusable,
     save_settings,
 )
+from .skin_drag import SkinDrag
 from .soundtrack import Soundtrack
 from .stage import Stage
 from .time_axis import TimeAxis
@@ -158,7 +159,8 @@ class Parts:
         self.layout = Layout(gui, settings, self.panel_state, bar, tabs, self.timeline)
         self.chooser = FileChooser(gui, self.files)
         self.muscle_note = MuscleNote(gui, session, settings, view)
-        self.mouse = Mouse(view, self.stage, session, settings, messages, self.select_muscle)
+        grab = partial(SkinDrag, session, settings)
+        self.mouse = Mouse(view, self.stage, messages, grab, self.select_muscle)
 
     def close(self) -> None:
         """Remember the settings, and let go of everything."""
@@ -221,7 +223,7 @@ class Parts:
         """Show a muscle's slider, in the panel and beside the mouse."""
         self.panel_state.wanted_tab = "Face"
         self.face_panel.select(name)
-        self.muscle_note.show(name)
+        self.muscle_note.name = name
 
     def ask_to_close(self) -> str | None:
         """Close the window, unless work would be lost: then ask first."""

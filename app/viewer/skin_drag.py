@@ -14,65 +14,52 @@ import numpy.typing as npt
 from risorius import sim
 
 from ..mirror import parted, twin_of
-from .control_rows import OPPOSITE, readable
+from .control_rows import OPPOSITE, called
 from .messages import Message
 from .picking import muscle_at
 from .session import Session
+from .settings import Settings
 
 FINGER = 16.0  # [mm] the finger's radius
 FARTHEST = 45.0  # [mm] that a finger drags, lest the skin turns inside out
 NOT_PULLED = ("gaze_", "head_", "tongue_", "lips_closed")  # controls that no finger on skin means
-MOST_TOLD = 4  # controls in a message
 
-FloatArray = npt.NDArray[np.float64]
+Array = npt.NDArray[np.float64]
 
 
 class SkinDrag:
     """A finger that holds on to the skin."""
 
     def __init__(
-        self,
-        session: Session,
-        point: FloatArray,
-        sight: FloatArray,
-        *,
-        linked: bool = False,
-        is_only_pulled: bool = False,
+        self, session: Session, settings: Settings, point: Array, sight: Array, poses: bool
     ) -> None:
-        """sight: direction in which the point is seen. linked: both sides of a muscle obey.
-
-        is_only_pulled: no muscle shall hold the skin; nor may one while a live face leads.
-        """
-        self._session, self._sight = session, sight
-        self._scene: Any = session.scene
-        self.point = point
-        positions = self._scene.positions
+        """sight: direction in which the point is seen. poses: whether muscles shall hold it."""
+        self._session, self._sight, self.point = session, sight, point
+        self._simulation: Any = session.scene.simulation  # type: ignore[attr-defined]
+        positions = self._simulation.positions
         distance = np.linalg.norm(positions - point, axis=1)
         self._vertices = np.flatnonzero(distance < FINGER)
         if not len(self._vertices):
             self._vertices = distance.argmin(keepdims=True)
         self._from = positions[self._vertices].copy()
-        near = distance[self._vertices] / FINGER
-        self._firmness = (
-            np.maximum((1.0 - near**2) ** 2, 0.02) if near.max() < 1.0 else near * 0 + 1
-        )
+        near = np.minimum(distance[self._vertices] / FINGER, 1.0)
+        self._firmness = np.maximum((1.0 - near**2) ** 2, 0.02 if near.max() < 1.0 else 1.0)
         self.offset = np.zeros(3)
-        poses = not (is_only_pulled or session.live.is_on)
-        self._candidates = _candidates(session, linked=linked) if poses else []
+        poses = poses and not session.live.is_on  # which leads where it wants
+        self._candidates = _candidates(session, linked=settings.is_linked) if poses else []
         self._own = {name: session.values[name] for names in self._candidates for name in names}
         self._pull: sim.Pull | None = None  # from the first motion on: a click need not wait
 
-    def to(self, point: FloatArray) -> None:
+    def to(self, point: Array) -> None:
         """Drag to a point, or toward it if that is too far; once in each frame."""
-        simulation = self._scene.simulation
         if self._pull is None and self._candidates:
             finger = self._vertices, self._firmness
-            self._pull = sim.Pull(simulation, *finger, self._candidates, self._sight)
+            self._pull = sim.Pull(self._simulation, *finger, self._candidates, self._sight)
             self._at_rest = self._pull.targets
         offset = point - self.point
         length = float(np.linalg.norm(offset))
         self.offset = offset * (FARTHEST * np.tanh(length / FARTHEST) / max(length, 1e-9))
-        simulation.drag(self._vertices, self._from + self.offset, self._firmness)
+        self._simulation.drag(self._vertices, self._from + self.offset, self._firmness)
         if self._pull is not None:
             self._pull.targets = self._at_rest + self.offset
             self._pull.follow()
@@ -80,48 +67,41 @@ class SkinDrag:
 
     def muscle(self) -> str | None:
         """The one under the finger, if any."""
-        return muscle_at(self.point, self._scene.simulation.fibres())
+        return muscle_at(self.point, self._simulation.fibres())
 
     def let_go(self) -> Message:
-        """The skin stays where muscles hold it, and swings back else; what was solved."""
-        self._scene.simulation.end_drag()
+        """The skin stays where muscles hold it, and else swings back; what was solved."""
+        self._simulation.end_drag()
         pull = self._pull
-        if pull is None or not self.offset.any():
+        if pull is None:
             return None
         pull.solve()
         self._obey(pull)
         self._session.note()
         if not pull.changes:
             return "No muscle draws the skin this way: it swings back"
-        told = [f"{_called(names)} {value:.2f}" for names, value in pull.changes.items()]
-        more = [f"{len(told) - MOST_TOLD} more"] if len(told) > MOST_TOLD else []
-        line = ", ".join([*told[:MOST_TOLD], *more])
-        return f"{line[0].upper()}{line[1:]}; {pull.short:.1f} mm short"
+        told = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
+        return f"{', '.join(told).capitalize()}; {pull.short:.1f} mm short"
 
     def _obey(self, pull: sim.Pull) -> None:
         """Set what was solved, and put back what was set before and is needed no more."""
         solved = {name: value for names, value in pull.changes.items() for name in names}
-        for name, own in self._own.items():
-            if solved.get(name, own) != self._session.values[name]:
-                self._session.set(name, solved.get(name, own))
+        for name, value in {**self._own, **solved}.items():
+            if value != self._session.values[name]:
+                self._session.set(name, value)
 
 
 def _candidates(session: Session, *, linked: bool) -> list[tuple[str, ...]]:
     """The controls that a finger on the skin may move, in one tuple those that go together."""
-    found: list[tuple[str, ...]] = []
-    controls = session.scene.simulation.controls  # type: ignore[attr-defined]
-    for name in controls:
-        twin = twin_of(name)
-        is_whole = f"{name}_left" in controls
+    found, values = list[tuple[str, ...]](), session.values
+    lowest = session.scene.simulation.controls  # type: ignore[attr-defined]
+    for name in lowest:
+        twin, is_whole = twin_of(name), f"{name}_left" in lowest
         if is_whole or name.startswith(NOT_PULLED):
             continue
-        is_pair = linked and twin != name and session.values[name] == session.values[twin]
+        is_pair = linked and twin != name and values[name] == values[twin]
         if not is_pair or parted(name)[0] in OPPOSITE:
             found.append((name,))
         elif name < twin:
             found.append((name, twin))
     return found
-
-
-def _called(names: tuple[str, ...]) -> str:
-    return readable(names[0]) if len(names) == 1 else f"{readable(parted(names[0])[0])} (both)"

@@ -112,10 +112,7 @@ class Stage:
         ]
 
     def draw(self, view: View, *, is_photo: bool = False) -> None:
-        """Draw the scene as it is now; the surface's `detail` says how finely.
-
-        is_photo: without what belongs to the mouse.
-        """
+        """Draw the scene as finely as the surface's `detail` says; a photo without the mouse's."""
         camera, display, viewport, times = view.camera, view.display, view.viewport, self._times
         shots = self.shots(display, viewport)
         style = style_of(display, view.background)

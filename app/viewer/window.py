@@ -222,12 +222,11 @@ class Viewer(Parts):
             gui.set_theme(self.settings.theme, self.settings.zoom)
             if room is None:
                 self.layout.draw(view)
+                self.muscle_note.draw()
             else:
                 room.panel.draw(room.view)
             messages.age(imgui.get_io().delta_time)
             draw_message(gui, messages, view)
-            if room is None:
-                self.muscle_note.draw()
             if imgui.is_any_mouse_down():
                 view.pointed = ()
             for draw in (

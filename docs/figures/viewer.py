@@ -92,7 +92,7 @@ def finger(viewer: Viewer) -> None:
     scene = viewer.session.scene
     corner = scene.positions[scene.head.landmarks[48]]  # type: ignore[attr-defined]
     sight = np.array([0.0, 0.0, -1.0])
-    viewer.mouse.skin_drag = SkinDrag(viewer.session, corner.copy(), sight, is_only_pulled=True)
+    viewer.mouse.skin_drag = SkinDrag(viewer.session, viewer.settings, corner.copy(), sight, True)
     viewer.mouse.skin_drag.to(corner + np.array([-20.0, 11.0, 8.0]))
     for _ in range(20):
         viewer.frame()

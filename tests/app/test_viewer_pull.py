@@ -128,7 +128,7 @@ def test_linked_sides_are_pulled_together(viewer: Viewer) -> None:
     xdotool(viewer, "mouseup", 1)
     values = viewer.session.values
     assert values[f"{MAJOR}_right"] == values[f"{MAJOR}_left"] > 0.3
-    assert viewer.messages.text.startswith("Zygomaticus major (both) 0.")
+    assert viewer.messages.text.startswith("Zygomaticus major, both sides 0.")
 
 
 def test_a_click_shows_the_slider_beside_the_mouse(viewer: Viewer) -> None:

@@ -11,7 +11,8 @@ from ..gui import Gui, colour, em
 from .widgets import muted
 
 MOUSE = (
-    ("left on the skin", "pull; click: its muscle"),
+    ("left on the skin", "pose; click: its muscle"),
+    ("Ctrl and left on it", "pull, it swings back"),
     ("left beside, or right", "orbit"),
     ("middle, or Shift", "pan"),
     ("wheel", "zoom"),

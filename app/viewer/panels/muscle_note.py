@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from ...mirror import parted, twin_of
-from ..control_rows import readable
+from ...mirror import twin_of
+from ..control_rows import called
 from ..gui import LEFT, NOTE_FLAGS, Gui, em
 from ..session import Session
 from ..settings import Settings
@@ -23,30 +23,22 @@ class MuscleNote:
         self._gui, self._session, self._settings, self._view = gui, session, settings, view
         self._sliders = Sliders(gui)
         self.name = ""  # of the muscle, "" for none
-        self._is_new = False
-
-    def show(self, name: str) -> None:
-        """Show the slider of a muscle, where the mouse is."""
-        self.name, self._is_new = name, True
 
     def draw(self) -> None:
-        """Draw the note, if there is one."""
+        """Draw the note, if there is one; it comes up where the mouse is."""
         session, name, twin = self._session, self.name, twin_of(self.name)
         if name not in session.values:
             return
-        if self._is_new:
-            mouse, display = imgui.get_mouse_pos(), imgui.get_io().display_size
-            is_right = mouse.x + em(WIDTH + 4.0) > display.x
-            place = mouse.x + em(-1.0 if is_right else 1.0), mouse.y
-            imgui.set_next_window_pos(place, 0, (float(is_right), 0.5))
+        mouse, display = imgui.get_mouse_pos(), imgui.get_io().display_size
+        is_right = mouse.x + em(WIDTH + 4.0) > display.x
+        place = mouse.x + em(-1.0 if is_right else 1.0), mouse.y
+        imgui.set_next_window_pos(place, imgui.Cond_.appearing, (float(is_right), 0.5))
         imgui.begin("##muscle", None, NOTE_FLAGS)
-        values = session.current
+        values, limits = session.current, session.controls.limits[name]
         is_linked = self._settings.is_linked and twin != name and values[name] == values[twin]
-        title = f"{readable(parted(name)[0])}, both sides" if is_linked else readable(name)
-        imgui.text_unformatted(title.capitalize())
-        slid = self._sliders.draw(
-            name, values[name], session.controls.limits[name], width=em(WIDTH)
-        )
+        names = (name, twin) if is_linked else (name,)
+        imgui.text_unformatted(called(*names).capitalize())
+        slid = self._sliders.draw(name, values[name], limits, width=em(WIDTH))
         self._gui.places["note"] = self._gui.places[name]
         if slid.is_changed:
             session.set(name, slid.value, linked=is_linked)
@@ -58,9 +50,8 @@ class MuscleNote:
         is_on = imgui.is_window_hovered(imgui.HoveredFlags_.allow_when_blocked_by_active_item)
         imgui.end()
         if is_on:
-            self._view.pointed = (name, twin) if is_linked else (name,)
-        is_elsewhere = imgui.is_mouse_clicked(LEFT) and not (is_on or self._is_new)
+            self._view.pointed = names
+        is_left = imgui.is_mouse_clicked(LEFT) and not is_on
         is_typing = imgui.get_io().want_text_input
-        if is_elsewhere or (imgui.is_key_pressed(imgui.Key.escape) and not is_typing):
+        if is_left or (imgui.is_key_pressed(imgui.Key.escape) and not is_typing):
             self.name = ""
-        self._is_new = False
