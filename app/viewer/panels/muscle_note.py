@@ -13,7 +13,7 @@ from ..view import View
 from .sliders import Sliders
 from .widgets import muted
 
-WIDTH = 15.0  # [em] of the slider
+WIDTH = 12.0  # [em] of the slider
 
 
 class MuscleNote:
@@ -25,14 +25,13 @@ class MuscleNote:
         self.name = ""  # of the muscle, "" for none
 
     def draw(self) -> None:
-        """Draw the note, if there is one; it comes up where the mouse is."""
+        """Draw the note, if there is one; it comes up below the mouse."""
         session, name, twin = self._session, self.name, twin_of(self.name)
         if name not in session.values:
             return
         mouse, display = imgui.get_mouse_pos(), imgui.get_io().display_size
-        is_right = mouse.x + em(WIDTH + 4.0) > display.x
-        place = mouse.x + em(-1.0 if is_right else 1.0), mouse.y
-        imgui.set_next_window_pos(place, imgui.Cond_.appearing, (float(is_right), 0.5))
+        place = min(mouse.x + em(), display.x - em(WIDTH + 2.0)), mouse.y + em()
+        imgui.set_next_window_pos(place, imgui.Cond_.appearing)
         imgui.begin("##muscle", None, NOTE_FLAGS)
         values, limits = session.current, session.controls.limits[name]
         is_linked = self._settings.is_linked and twin != name and values[name] == values[twin]
