@@ -73,20 +73,26 @@ class Pull:
         self._share = share / share.sum()
         axis = np.asarray(sight, np.float64) / np.linalg.norm(sight)
         self._seen = np.eye(3) - (1.0 - ALONG) * np.outer(axis, axis)
-        self._pose({})
+        _rest(self._base, {})
         self._home, self._from = self._base.twin(), self._base.positions.copy()
         self.targets = self._from[self._vertices]
         self._area = face.areas / face.areas[self._vertices].sum()
         self._area[self._vertices] = 0.0
-        self.candidates = self._near(candidates)
-        limits = [face.limits[names[0]] for names in self.candidates]
-        self._low, self._high = np.array(limits, np.float64).reshape(-1, 2).T
-        values = face.values
-        self._start = np.array([values[names[0]] for names in self.candidates], np.float64)
-        self._value = self._start.copy()
-        self._slope = np.zeros((len(self.candidates), *self._from.shape))
-        self._measure(np.arange(len(self._value)))
-        self._first, self._turn = self._slope.copy(), 0
+        self._given, self.candidates = candidates, list[Names]()
+        self._value = self._start = np.zeros(0)
+
+    def _look(self) -> bool:
+        """Before the first answer, find the controls that matter, and slopes; whether any does."""
+        if self._given:
+            self.candidates, self._given = self._near(self._given), ()
+            firsts, values = [names[0] for names in self.candidates], self._home.values
+            limits = [self._home.limits[first] for first in firsts]
+            self._low, self._high = np.array(limits, np.float64).reshape(-1, 2).T
+            self._value = self._start = np.array([values[first] for first in firsts], np.float64)
+            self._slope = np.zeros((len(firsts), *self._from.shape))
+            self._measure(np.arange(len(firsts)))
+            self._first, self._turn = self._slope.copy(), 0
+        return bool(self.candidates)
 
     @property
     def changes(self) -> dict[Names, float]:
@@ -107,6 +113,8 @@ class Pull:
 
     def follow(self, count: int = 4) -> None:
         """A step of Gauss and Newton from where it is, after `count` slopes were measured anew."""
+        if not self._look():
+            return
         every = len(self._value)
         self._measure([(self._turn + n) % every for n in range(min(count, every))])
         self._turn += count
@@ -114,6 +122,8 @@ class Pull:
 
     def solve(self) -> None:
         """The answer for these targets, whatever the finger did on its way."""
+        if not self._look():
+            return
         self._base.copy_from(self._home)
         self._slope[:], self._value = self._first, self._start.copy()
         self._improve_all(np.ones(len(self._start), np.bool_), 1.0)
@@ -128,18 +138,17 @@ class Pull:
             self._probe.copy_from(self._base)
             self._probe.jump(self._towards(names, 1.0))
             self._probe.step(STEP)
-            moved.append(self._moved(self._probe.positions - self._from))
+            moved.append(self._square((self._probe.positions - self._from)[self._vertices]))
         least = 0.99 * sorted([0.0, *moved])[-MOST:][0]  # of two that are alike none stays away
         return [c for c, far in zip(candidates, moved, strict=True) if far > least]
 
-    def _moved(self, by: Array) -> float:
-        """Mean square of how far vertices (V, 3) under the finger move, as seen."""
-        return float(self._share @ ((by[self._vertices] @ self._seen) ** 2).sum(axis=1))
+    def _square(self, by: Array) -> float:
+        """Mean square of distances (n, 3) under the finger, as seen."""
+        return float(self._share @ ((by @ self._seen) ** 2).sum(axis=1))
 
     def _off(self, positions: Array) -> float:
         """Mean square of how far vertices (V, 3) under the finger are from their targets."""
-        off = (self.targets - positions[self._vertices]) @ self._seen
-        return float(self._share @ (off**2).sum(axis=1))
+        return self._square(self.targets - positions[self._vertices])
 
     def _towards(self, names: Names, share: float) -> dict[str, float]:
         """Controls moved by a share of their range, the other way where there is no room."""
@@ -154,18 +163,14 @@ class Pull:
         for n in np.asarray(which, np.int64):
             moved = self._towards(self.candidates[n], PROBE)
             self._probe.copy_from(self._base)
-            self._probe.jump(moved)
-            _come_to_rest(self._probe)
+            _rest(self._probe, moved)
             by = next(iter(moved.values())) - self._value[n]
             self._slope[n] = (self._probe.positions - self._base.positions) / by
 
-    def _pose(self, values: dict[str, float]) -> None:
-        self._base.jump(values)
-        _come_to_rest(self._base)
-
     def _go(self, value: Array) -> None:
         self._value = value.copy()
-        self._pose({name: float(value[n]) for n, c in enumerate(self.candidates) for name in c})
+        values = zip(value.tolist(), self.candidates, strict=True)
+        _rest(self._base, {name: each for each, names in values for name in names})
 
     def _improve_all(self, usable: npt.NDArray[np.bool_], thrift: float) -> None:
         """Until nothing changes much."""
@@ -214,7 +219,8 @@ class Pull:
         )  # fmt: skip
 
 
-def _come_to_rest(twin: Simulation) -> None:
+def _rest(twin: Simulation, values: dict[str, float]) -> None:
+    twin.jump(values)
     for _ in range(STEPS_TO_REST):
         twin.step(STEP)
 

@@ -22,6 +22,7 @@ from .settings import Settings
 
 FINGER = 16.0  # [mm] the finger's radius
 FARTHEST = 45.0  # [mm] that a finger drags, lest the skin turns inside out
+DENSE = 10_000  # triangles of a head whose muscles are solved only when it is let go
 NOT_PULLED = ("gaze_", "head_", "tongue_", "lips_closed")  # controls that no finger on skin means
 
 Array = npt.NDArray[np.float64]
@@ -62,8 +63,9 @@ class SkinDrag:
         self._simulation.drag(self._vertices, self._from + self.offset, self._firmness)
         if self._pull is not None:
             self._pull.targets = self._at_rest + self.offset
-            self._pull.follow()
-            self._obey(self._pull)
+            if len(self._simulation.faces) < DENSE:
+                self._pull.follow()
+                self._obey(self._pull)
 
     def muscle(self) -> str | None:
         """The one under the finger, if any."""

@@ -95,12 +95,19 @@ def test_skin_is_held_by_what_moves_it_in_life(
 
 
 def test_what_no_muscle_can_do_is_not_done(simulation: sim.Simulation, head: Head) -> None:
-    """The tip of the nose, drawn forward, is left where it was."""
+    """The tip of the nose, drawn forward, is left where it was, and so is the crown."""
     pull, before = pull_at(
         simulation, head.landmarks[NOSE], (0.0, 0.0, 10.0), sight=(1.0, 0.0, 0.0)
     )
     assert not pull.changes
     assert pull.short == pytest.approx(before)
+    crown = int(simulation.rest_positions[:, 1].argmax())
+    for candidates_there in (candidates(simulation), []):
+        pull = sim.Pull(simulation, [crown], [1.0], candidates_there)
+        pull.targets = pull.targets + 5.0
+        pull.follow()
+        pull.solve()
+        assert not pull.changes
 
 
 def test_mirrored_pulls_are_mirrored(simulation: sim.Simulation, head: Head) -> None:

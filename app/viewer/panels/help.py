@@ -11,8 +11,7 @@ from ..gui import Gui, colour, em
 from .widgets import muted
 
 MOUSE = (
-    ("left on the skin", "pose; click: its muscle"),
-    ("Ctrl and left on it", "pull, it swings back"),
+    ("left on the skin", "pose; Ctrl: pull; click: muscle"),
     ("left beside, or right", "orbit"),
     ("middle, or Shift", "pan"),
     ("wheel", "zoom"),
