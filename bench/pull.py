@@ -61,7 +61,11 @@ def measure(count: int, seed: int = 20030214) -> list[Pulled]:
 
 
 def _pulled(
-    face: sim.Simulation, usable: list[tuple[str, ...]], chosen: set[str], moved: Array, middle: int
+    face: sim.Simulation,
+    usable: Sequence[tuple[str, ...]],
+    chosen: set[str],
+    moved: Array,
+    middle: int,
 ) -> Pulled:
     """Pull by a motion (V, 3) around a vertex."""
     face.reset()
