@@ -39,6 +39,7 @@ from .panels.layout import Layout
 from .panels.live import LivePanel
 from .panels.mechanism import MechanismPanel
 from .panels.menu_bar import MenuBar
+from .panels.muscle_note import MuscleNote
 from .panels.timeline import Timeline
 from .panels.waveform import Waveform
 from .physics import Physics
@@ -55,6 +56,7 @@ from .settings import (
     rename_unusable,
     save_settings,
 )
+from .skin_drag import SkinDrag
 from .soundtrack import Soundtrack
 from .stage import Stage
 from .time_axis import TimeAxis
@@ -164,7 +166,9 @@ class Parts:
         self.layout = Layout(gui, settings, self.panel_state, bar, tabs, self.timeline)
         self.chooser = FileChooser(gui, self.files)
         self.export_dialog = ExportDialog(gui, self.exporter, self.files, view)
-        self.mouse = Mouse(self.view, self.stage, self.select_muscle)
+        self.muscle_note = MuscleNote(gui, session, settings, view)
+        grab = partial(SkinDrag, session, settings)
+        self.mouse = Mouse(view, self.stage, messages, grab, self.select_muscle)
         self.first_steps = FirstSteps(gui, view, lambda: (*self.mouse.gestures, session.is_playing))
         if self._settings_path is not None and session.scene.name == "face":
             if not settings.knows_first_steps:
@@ -227,10 +231,10 @@ class Parts:
             self.painter.forget()
 
     def select_muscle(self, name: str) -> None:
-        """Show a muscle's slider."""
+        """Show a muscle's slider, in the panel and beside the mouse."""
         self.panel_state.wanted_tab = "Face"
         self.face_panel.select(name)
-        self.messages.say(name.replace("_", " "))
+        self.muscle_note.name = name
 
     def ask_to_close(self) -> str | None:
         """Close the window, unless work would be lost: then ask first."""

@@ -219,10 +219,13 @@ class Viewer(Parts):
             if room is None:
                 self.layout.draw(view)
                 self.first_steps.draw()
+                self.muscle_note.draw()
             else:
                 room.panel.draw(room.view)
             messages.age(imgui.get_io().delta_time)
             draw_message(gui, messages, view)
+            if imgui.is_any_mouse_down():
+                view.pointed = ()
             for draw in (
                 partial(draw_recovery, gui, self.recovery, self.session, self.question, view),
                 self.files.poll,
