@@ -22,7 +22,7 @@ from .camera_view import CameraView, box_corners
 from .geometry import checked_values, line_segments, value_texture
 from .geometry_buffer import Geometry, GeometryBuffer
 from .hidden import Occluder, draw_sides
-from .materials import COLOUR_DEFINES, set_hair, set_palette, set_part, set_skin
+from .materials import COLOUR_DEFINES, set_hair, set_palette, set_part, set_skin, set_translucency
 from .outline import draw_fringes, fringes
 from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
@@ -108,6 +108,7 @@ class Renderer:
         values: npt.NDArray[np.uint8] | None = None,
         texture: Texture | None = None,
         wrinkles: WrinkleMap | None = None,
+        cut: tuple[float, float, float, float] | None = None,
     ) -> None:
         """Draw what `stream` last uploaded.
 
@@ -117,6 +118,9 @@ class Renderer:
             8 columns, ValueError else.
         wrinkles: furrows of the skin, as far as the style and the amounts of wrinkling that were
             uploaded let them show; per-pixel shading alone has them. Needs 8 columns, too.
+        cut: a plane (a, b, c, d), in front of which, a x + b y + c z + d > 0, the skin is opaque
+            whatever the style's opacity is. Where that is below 1, draw what is to be seen through
+            the skin, the parts too, before it.
         """
         columns = stream.vertices.shape[1]
         if columns != 8 and (texture is not None or wrinkles is not None):
@@ -145,7 +149,12 @@ class Renderer:
             if not self._set_view(program, view, stream.corners, np.eye(4)):
                 return
             self._set_surface(program, view, style, texture, share_wrinkles)
+            if style.opacity < 1.0:
+                set_translucency(program, style, view, cut)
             drawn.append((program, share))
+        if style.opacity < 1.0:
+            self._draw_translucent(stream, drawn)
+            return
         if not self.surface.is_software:
             for each, share in drawn:
                 stream.draw(each, share)
@@ -154,6 +163,38 @@ class Renderer:
         if target.samples and (self._occluder is None or self._occluder.target is not target):
             self._occluder = Occluder(self._gl, target)
         draw_sides(self._gl, stream, drawn, None if is_coloured else view, self._occluder)
+
+    def _draw_translucent(
+        self, stream: Stream, drawn: Sequence[tuple[moderngl.Program, Share]]
+    ) -> None:
+        """The nearest layer of the skin alone: its depth first, then what lies at that depth."""
+        gl = self._gl
+        gl.enable(moderngl.CULL_FACE)
+        gl.enable(moderngl.BLEND)
+        gl.blend_func = moderngl.ZERO, moderngl.ONE
+        for program, share in drawn:
+            stream.draw(program, share)
+        with self._blending():
+            for program, share in drawn:
+                stream.draw(program, share)
+        gl.disable(moderngl.CULL_FACE)
+
+    def cast_shadows(
+        self,
+        parts: Iterable[Part],
+        transforms: Mapping[str, npt.NDArray[np.float64]],
+        camera: OrbitCamera,
+        style: Style,
+        *,
+        viewport: Viewport | None = None,
+        clip: Viewport | None = None,
+    ) -> None:
+        """Let parts, not the skin, throw the shadow on parts that are drawn next."""
+        view = self._camera_view(camera, viewport, clip)
+        if self._shadow is None:
+            self._shadow = ShadowMap(self._gl)
+        placed = self._parts.placed(parts, transforms)
+        self._shadow.draw(placed, view, self.surface.target.frame_number, style.light.to_key)
 
     def draw_outline(
         self,
@@ -194,6 +235,7 @@ class Renderer:
             *(["WIREFRAME"] if style.wireframe else []),
             *COLOUR_DEFINES[style.colour_by],
             *(["TEXTURED"] if texture is not None else []),
+            *(["TRANSLUCENT"] if style.opacity < 1.0 else []),
             *(["SHADOWS"] if style.shadows else []),
             *(["WRINKLES"] if wrinkles is not None else []),
             *more,
@@ -247,15 +289,20 @@ class Renderer:
         shadow = self._shadow if style.shadows else None
         if shadow is not None and not shadow.is_of(view, self.surface.target.frame_number):
             shadow = None
-        program = self._program("surface.glsl", "PIXEL", "COLOURED", *(["SHADOWS"] * bool(shadow)))
-        if shadow is not None:
-            shadow.set_uniforms(program, view, _SHADOW_UNIT)
         placed = self._parts.placed(parts, transforms)
         is_chosen = self._occluder is not None and self._occluder.is_of(view, self.surface.target)
         if is_chosen and self._occluder is not None:
             self._occluder.choose_parts(placed)
         for buffers, transform in placed:
-            if not buffers.hair and self._set_view(program, view, buffers.corners, transform):
+            if buffers.hair:
+                continue
+            program = self._program(
+                "surface.glsl", "PIXEL", "COLOURED", *(["SHADOWS"] * bool(shadow)),
+                *(["FIBRES"] * (buffers.fibres is not None)),
+            )
+            if shadow is not None:
+                shadow.set_uniforms(program, view, _SHADOW_UNIT)
+            if self._set_view(program, view, buffers.corners, transform):
                 set_part(program, buffers.part, style.light)
                 buffers.draw(program, chosen=is_chosen)
         program = self._program("surface.glsl", "PIXEL", "COLOURED", "HAIR")

@@ -1,0 +1,387 @@
+"""Muscles as an atlas draws them: bands that lie between skin and bone, and bulge as they shorten.
+
+The fibres of the simulation say where linear muscles run now. Sphincters are rings between the edge
+of lids or lips and an ellipse around them, both carried by the skin. Temporal muscle and masseter
+belong to no control of the face; they run from bone to bone. Each band has an elliptic cross
+section, laid under the skin that is there now, thicker the shorter the fibre: its volume stays.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
+
+
+Floats = npt.NDArray[np.float64]
+ROWS, AROUND = 22, 16  # places along a band, and around its cross section
+EYES = 90.0  # [mm] from one outer corner of the eyes to the other, for which all measures hold
+NEIGHBOURS = 8  # vertices that say where the skin is
+SPARE = 0.7  # [mm] of skin over a muscle, at least
+# sRGB
+RELAXED, CONTRACTED = np.array([0.74, 0.36, 0.31]), np.array([0.60, 0.07, 0.07])
+TENDON = np.array([0.93, 0.87, 0.77])
+
+
+class Linear(NamedTuple):
+    """How a muscle of fibres is drawn."""
+
+    width: tuple[float, float, float]  # [mm] at the origin, in the belly, at the insertion
+    thickness: float  # [mm] of the belly at rest
+    depth: float = 3.0  # [mm] of its middle below the skin at the insertion
+    origin: float | None = None  # [mm] the same at the origin; None: on the bone
+    tendon: tuple[float, float] = (0.12, 0.06)  # share of its length at both ends
+    fibres: tuple[int, ...] | None = None  # which of the rig's; None: all
+
+
+LINEAR = {
+    "frontalis_medial": Linear((13, 13, 11), 2.4, 2.6, 3.6, (0.16, 0.0), (0, 1, 2)),
+    "frontalis_lateral": Linear((14, 13, 12), 2.4, 2.6, 3.6, (0.16, 0.0)),
+    "corrugator_supercilii": Linear((4, 7, 5), 3.0, 3.6),
+    "procerus": Linear((5, 7, 8), 2.2, 2.2, 2.4),
+    "depressor_supercilii": Linear((4, 6, 5), 2.4, 2.8, None, (0.12, 0.06), (0,)),
+    "levator_labii_superioris_alaeque_nasi": Linear((4, 6, 7), 2.6, 3.0, 3.4),
+    "nasalis": Linear((5, 7, 5), 2.0, 2.2, 5.0),
+    "nasalis_transverse": Linear((4, 7, 8), 1.8, 2.0, 2.0, (0.3, 0.1), (0,)),
+    "levator_labii_superioris": Linear((9, 9, 7), 3.0, 4.2),
+    "zygomaticus_minor": Linear((5, 6, 5), 3.2, 3.4),
+    "zygomaticus_major": Linear((6, 8, 6), 4.0, 3.4, None, (0.14, 0.06), (0, 1, 2)),
+    "levator_anguli_oris": Linear((10, 9, 7), 3.0, 6.0),
+    "buccinator": Linear((12, 13, 10), 3.0, 7.0, 18.0),
+    "risorius": Linear((4, 6, 5), 2.2, 2.8, 2.6, (0.3, 0.06), (0, 1)),
+    "depressor_anguli_oris": Linear((9, 8, 6), 3.0, 3.0, 5.0, (0.1, 0.04), (0, 2, 3)),
+    "depressor_labii_inferioris": Linear((10, 9, 9), 2.8, 4.6, 7.0),
+    "mentalis": Linear((6, 9, 9), 3.6, 3.4, None, (0.1, 0.05), (0, 1)),
+    "platysma": Linear((15, 14, 9), 1.8, 2.0, 2.4, (0.0, 0.1)),
+    "platysma_bands": Linear((8, 8, 8), 1.8, 2.0, 2.4, (0.0, 0.1)),
+}
+
+
+class Rigid(NamedTuple):
+    """A muscle from bone to bone, which is no control: ends (x, y, z) [mm off the condyles]."""
+
+    origin: tuple[float, float, float]
+    insertion: tuple[float, float, float]
+    bones: tuple[str, str]
+    form: Linear
+
+
+_CHEWING = ("cranium", "mandible")
+RIGID = (
+    *(
+        Rigid((62, y, z), (50, -6, 24), _CHEWING, Linear((w, 15, 7), 6.0, 15.0, 7.5, (0.05, 0.3)))
+        for y, z, w in (
+            (24, -44, 16), (44, -36, 18), (58, -18, 18), (62, 2, 18), (56, 22, 17), (40, 34, 15),
+        )
+    ),
+    Rigid((56, -9, 40), (50, -62, 20), _CHEWING, Linear((15, 17, 14), 8.0, 8.0, 9.5, (0.3, 0.08))),
+    Rigid((58, -7, 24), (50, -58, 8), _CHEWING, Linear((14, 16, 13), 7.0, 9.0, 10.5, (0.2, 0.08))),
+    Rigid((54, -26, -20), (14, -158, 26), ("cranium", "neck"), Linear((16, 19, 12), 9.0, 7.0, 8.0)),
+)  # fmt: skip
+# Sphincters: the shares of the way outward that their bands cover, thickness and depth [mm].
+EYE_BANDS = ((0.02, 0.40, 1.5, 1.9), (0.34, 0.70, 2.0, 2.2), (0.64, 1.0, 2.2, 2.6))
+MOUTH_BANDS = ((0.0, 0.50, 4.2, 3.4), (0.42, 1.0, 3.4, 3.8))
+EYE_REACH = (27.0, 19.0, 24.0, 26.0)  # [mm] of the ring from the eye: aside, to the nose, up, down
+MOUTH_REACH = (38.0, 38.0, 17.0, 22.0)
+UPPER_LIP, LOWER_LIP = (48, 49, 50, 51, 52, 53, 54), (54, 55, 56, 57, 58, 59, 48)
+UPPER_INNER, LOWER_INNER = (60, 61, 62, 63, 64), (64, 65, 66, 67, 60)
+EYE_LIDS = {1.0: ((45, 44, 43, 42), (42, 47, 46, 45)), -1.0: ((36, 37, 38, 39), (39, 40, 41, 36))}
+
+
+class _Skin(NamedTuple):
+    """The skin near places (n, 3): how far outside they are, which way out is, how deep bone is."""
+
+    outside: Floats  # (n,)
+    normal: Floats  # (n, 3)
+    bone: Floats  # (n,)
+
+
+class _Bound(NamedTuple):
+    """Places that vertices carry: of vertex (n, k) by weight (n, k), off them by shift (n, 3)."""
+
+    vertex: npt.NDArray[np.int64]
+    weight: Floats
+    shift: Floats
+
+    def at(self, x: Floats) -> Floats:
+        carried: Floats = np.einsum("nk,nkc->nc", self.weight, x[self.vertex]) + self.shift
+        return carried
+
+
+@dataclass(eq=False)
+class Muscles:
+    """All bands of a face as one part that changes its shape (see render/parts.py).
+
+    fibres: place across and along of each vertex, (n, 2) [mm at rest]: where its striation is.
+    """
+
+    vertices: npt.NDArray[np.float32]
+    normals: npt.NDArray[np.float32]
+    colours: npt.NDArray[np.float32]
+    faces: npt.NDArray[np.int32]
+    fibres: npt.NDArray[np.float32]
+    name: str = "muscles"
+    bone: str = "neck"  # stands still: vertices are where they are
+    shine: float = 0.42
+
+    @classmethod
+    def of(cls, scene: Any) -> Muscles:
+        """The muscles of a face, as they are now."""
+        none = np.zeros((0, 3), np.float32)
+        made = cls(none, none, none, none.astype(np.int32), none[:, :2])
+        made._build(scene)
+        made.follow(scene)
+        return made
+
+    def _build(self, scene: Any) -> None:
+        head, x = scene.head, scene.rest_positions
+        marks = x[head.landmarks]
+        self.scale = scale = float(np.linalg.norm(marks[45] - marks[36])) / EYES
+        self._bone_depth = np.asarray(head.bone_depth)
+        self._middle = np.array([marks[27:31, 0].mean(), *np.mean(head.jaw_axis, axis=0)[1:]])
+        self._axis = self._middle + (0.0, 0.0, 0.0)
+        self._names, forms = [], []
+        for name, lines in scene.simulation.fibres().items():
+            form = LINEAR.get(name.removesuffix("_left").removesuffix("_right"))
+            for number in range(len(lines)) if form else ():
+                if form.fibres is None or number in form.fibres:
+                    self._names.append((name, number))
+                    forms.append(form)
+        self._rigid = []
+        for each in RIGID:
+            for side in (-1.0, 1.0):
+                ends = self._middle + scale * np.array([each.origin, each.insertion]) * (side, 1, 1)
+                self._rigid.append((ends, each.bones))
+                forms.append(each.form)
+        self._forms = forms
+        self._rings = self._bind_rings(scene, marks)
+        self._rest: tuple[Floats, Floats] | None = None
+
+    def _bind_rings(self, scene: Any, marks: Floats) -> list[tuple[list[str], Any, _Bound, _Bound]]:
+        """Each sphincter: its controls, its bands, inner and outer edge."""
+        x, numbers = scene.rest_positions, np.asarray(scene.head.landmarks)
+        names, rings = list(scene.simulation.sums), []
+        eyes = {np.sign(eye.centre[0] - self._middle[0]): eye for eye in scene.head.eyes}
+        for side, eye in eyes.items():
+            inner = _along_marks(numbers, *EYE_LIDS[side])
+            centre = np.append(eye.centre[:2], marks[36:48, 2].mean())
+            outer = self._ellipse(scene, centre, EYE_REACH, side)
+            word = "left" if side > 0 else "right"
+            own = [n for n in names if n.startswith("orbicularis_oculi_") and n.endswith(word)]
+            rings.append((own, EYE_BANDS, inner, outer))
+        lips = _along_marks(numbers, UPPER_LIP, LOWER_LIP)
+        edge = _along_marks(numbers, UPPER_INNER, LOWER_INNER)
+        inner = _Bound(
+            np.hstack([lips.vertex, edge.vertex]),
+            np.hstack([0.4 * lips.weight, 0.6 * edge.weight]),
+            lips.shift,
+        )
+        outer = self._ellipse(scene, marks[[48, 54, 51, 57]].mean(axis=0), MOUTH_REACH, -1.0)
+        own = [n for n in names if n.startswith(("orbicularis_oris_", "incisivus_"))]
+        rings.append((own, MOUTH_BANDS, inner, outer))
+        return rings
+
+    def _ellipse(self, scene: Any, centre: Floats, reach: Any, side: float) -> _Bound:
+        """Places on the skin around a point, from its `side` over its top, carried by the skin."""
+        x = scene.rest_positions
+        angle = 2.0 * np.pi * np.arange(2 * ROWS) / (2 * ROWS)
+        aside, up = np.cos(angle), np.sin(angle)
+        across = np.where(aside > 0.0, reach[0], reach[1]) * aside * side
+        height = np.where(up > 0.0, reach[2], reach[3]) * up
+        points = centre + self.scale * np.stack([across, height, 0.0 * up], axis=1)
+        for _ in range(4):
+            skin = self._skin(points, x, scene.faces)
+            points = points - skin.outside[:, None] * skin.normal
+        distance, vertex = cKDTree(x).query(points, k=5)
+        weight = 1.0 / (distance + 2.0 * self.scale) ** 2
+        weight /= weight.sum(axis=1, keepdims=True)
+        carried = _Bound(vertex, weight, np.zeros_like(points))
+        return carried._replace(shift=points - carried.at(x))
+
+    def _skin(self, points: Floats, x: Floats, faces: npt.NDArray[np.int32]) -> _Skin:
+        """What the skin at x is like near points (n, 3)."""
+        normals = self._normals(x, faces)
+        distance, near = cKDTree(x).query(points, k=NEIGHBOURS)
+        away = points - self._axis
+        away /= np.linalg.norm(away, axis=1, keepdims=True)
+        faced = np.einsum("nkc,nc->nk", normals[near], away)
+        weight = np.exp(-((distance / (0.7 * distance[:, -1:])) ** 2)) * np.clip(faced, 0, 1) ** 2
+        weight += 1e-9
+        weight /= weight.sum(axis=1, keepdims=True)
+        normal = np.einsum("nk,nkc->nc", weight, normals[near])
+        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
+        off = np.einsum("nkc,nkc->nk", points[:, None] - x[near], normals[near])
+        return _Skin((weight * off).sum(1), normal, (weight * self._bone_depth[near]).sum(1))
+
+    def _normals(self, x: Floats, faces: npt.NDArray[np.int32]) -> Floats:
+        a, b, c = (x[faces[:, k]] for k in range(3))
+        cross, normals = np.cross(b - a, c - a), np.zeros_like(x)
+        for k in range(3):
+            for axis in range(3):
+                normals[:, axis] += np.bincount(faces[:, k], cross[:, axis], minlength=len(x))
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
+        return normals
+
+    def follow(self, scene: Any) -> None:
+        """Take the shape and the colours of now."""
+        x, faces, sums = scene.positions, scene.faces, scene.simulation.sums
+        found, bones = scene.simulation.fibres(), scene.bone_transforms()
+        self._axis = bones["cranium"][:3, :3] @ self._middle + bones["cranium"][:3, 3]
+        lines = [_resampled(found[name][number]) for name, number in self._names]
+        share = np.linspace(0.0, 1.0, ROWS)[:, None]
+        for ends, names in self._rigid:
+            first, last = (bones[n][:3, :3] @ p + bones[n][:3, 3] for n, p in zip(names, ends))
+            lines.append(first + share * (last - first))
+        active = [sums.get(name, 0.0) for name, _ in self._names] + [0.0] * len(self._rigid)
+        groups = [self._open(np.array(lines), x, faces), self._closed(x, faces)]
+        for own, bands, _, _ in self._rings:
+            active += [max((sums.get(n, 0.0) for n in own), default=0.0)] * len(bands)
+        if self._rest is None:
+            self._rest = groups[0][1], groups[1][1]
+            self._lay_out(groups)
+        vertices, normals, colours = [], [], []
+        for (sweep, lengths, tendon), rest, is_closed in zip(groups, self._rest, (False, True)):
+            grid, light = sweep(np.clip(rest / lengths, 0.75, 2.2))
+            vertices.append(grid.reshape(-1, 3))
+            normals.append(_grid_normals(grid, is_closed).reshape(-1, 3))
+            own = np.clip(active[: len(grid)], 0.0, 1.0)[:, None, None, None]
+            del active[: len(grid)]
+            red = RELAXED + own * (CONTRACTED - RELAXED)
+            colour = red + tendon[:, :, None, None] * (TENDON - red)
+            colours.append((colour * light[None, None, :, None]).reshape(-1, 3))
+        self.normals = np.concatenate(normals).astype(np.float32)
+        self.colours = np.concatenate(colours).astype(np.float32)
+        self.vertices = np.concatenate(vertices).astype(np.float32)
+
+    def _open(self, lines: Floats, x: Floats, faces: npt.NDArray[np.int32]) -> Any:
+        forms, scale = self._forms, self.scale
+        u = np.linspace(0.0, 1.0, ROWS)
+        widths = np.array([np.interp(u, (0.0, 0.5, 1.0), f.width) for f in forms]) * scale
+        # Round ends, and a belly in the middle.
+        end = np.sqrt(np.clip(1.0 - (2.0 * u - 1.0) ** 8, 0.0, 1.0))
+        belly = 0.45 + 0.55 * np.sin(np.pi * u) ** 0.8
+        thick = np.array([f.thickness for f in forms])[:, None] * belly * scale
+        tendon = np.array(
+            [
+                np.clip(1.4 - u / max(f.tendon[0], 1e-3), 0, 1)
+                + np.clip(1.4 - (1.0 - u) / max(f.tendon[1], 1e-3), 0, 1)
+                for f in forms
+            ]
+        )
+        lengths = np.linalg.norm(np.diff(lines, axis=1), axis=2).sum(axis=1)
+        skin = self._skin(lines.reshape(-1, 3), x, faces)
+        bone = skin.bone.reshape(lines.shape[:2])
+        normal = skin.normal.reshape(lines.shape)
+        side = np.cross(np.gradient(lines, axis=1), normal)
+        side /= np.maximum(np.linalg.norm(side, axis=2, keepdims=True), 1e-9)
+        origin = np.array([np.nan if f.origin is None else f.origin for f in forms]) * scale
+        origin = np.where(np.isnan(origin), bone[:, 0] - 0.5 * thick[:, 0], origin)
+        insertion = np.array([f.depth for f in forms]) * scale
+        depth = origin[:, None] + (insertion - origin)[:, None] * (u * u * (3.0 - 2.0 * u)) ** 0.8
+
+        def sweep(bulging: Floats) -> tuple[Floats, Floats]:
+            swollen = 1.0 + (bulging[:, None] - 1.0) * np.sin(np.pi * u)
+            half = 0.5 * widths * swollen**0.35 * end
+            return self._swept(lines, side * half[:, :, None], 0.5 * thick * swollen**0.65 * end, depth, x, faces)
+
+        return sweep, lengths, np.clip(tendon, 0.0, 1.0) * 0.92
+
+    def _closed(self, x: Floats, faces: npt.NDArray[np.int32]) -> Any:
+        middles, halves, thick, depth = [], [], [], []
+        for _, bands, inner, outer in self._rings:
+            first, last = inner.at(x), outer.at(x)
+            for low, high, thickness, deep in bands:
+                middles.append(first + 0.5 * (low + high) * (last - first))
+                halves.append(0.5 * (high - low) * (last - first))
+                thick.append(thickness * self.scale)
+                depth.append(deep * self.scale)
+        lines, half = np.array(middles), np.array(halves)
+        lengths = np.linalg.norm(lines - np.roll(lines, 1, axis=1), axis=2).sum(axis=1)
+        skin = self._skin(lines.reshape(-1, 3), x, faces)
+        along = np.roll(lines, -1, axis=1) - np.roll(lines, 1, axis=1)
+        side = np.cross(along, skin.normal.reshape(lines.shape))
+        half *= np.sign((half * side).sum(axis=(1, 2)))[:, None, None]
+        rows = np.ones(lines.shape[:2])
+
+        def sweep(bulging: Floats) -> tuple[Floats, Floats]:
+            swollen = 0.5 * np.array(thick)[:, None] * bulging[:, None] * rows
+            return self._swept(lines, half, swollen, np.array(depth)[:, None] * rows, x, faces)
+
+        return sweep, lengths, 0.0 * rows
+
+    def _swept(
+        self, lines: Floats, half: Floats, thick: Floats, depth: Floats, x: Floats, faces: Any
+    ) -> tuple[Floats, Floats]:
+        """Cross sections along lines (b, rows, 3), and how light is around each, (AROUND,)."""
+        rails = np.stack([lines - half, lines, lines + half])
+        skin = self._skin(rails.reshape(-1, 3), x, faces)
+        outside, bone = (each.reshape(rails.shape[:3]) for each in (skin.outside, skin.bone))
+        normal = skin.normal.reshape(rails.shape)
+        deep = np.minimum(depth, np.maximum(bone - thick, 0.0))
+        deep = np.maximum(deep, thick + SPARE * self.scale)
+        rails = rails - (outside + deep)[..., None] * normal
+        angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+        a = np.cos(angle)
+        blend = np.stack([0.5 * a * (a - 1.0), 1.0 - a * a, 0.5 * a * (a + 1.0)])
+        grid = np.einsum("rbnc,rk->bnkc", rails, blend)
+        grid += np.einsum("rbnc,rk->bnkc", normal, blend) * (thick[:, :, None] * np.sin(angle))[..., None]
+        return grid, 0.42 + 0.58 * np.clip(0.5 + 0.75 * np.sin(angle), 0.0, 1.0)
+
+    def _lay_out(self, groups: Any) -> None:
+        """Faces and places of striation, which never change."""
+        faces, fibres, first = [], [], 0
+        a = np.cos(2.0 * np.pi * np.arange(AROUND) / AROUND)
+        for (sweep, lengths, _), is_closed in zip(groups, (False, True)):
+            grid, _ = sweep(np.ones(len(lengths)))
+            count, rows = grid.shape[:2]
+            number = first + np.arange(count * rows * AROUND).reshape(count, rows, AROUND)
+            first += number.size
+            ahead = np.roll(number, -1, axis=1) if is_closed else number[:, 1:]
+            here = number if is_closed else number[:, :-1]
+            quads = [here, ahead, np.roll(ahead, -1, axis=2), np.roll(here, -1, axis=2)]
+            faces += [np.stack([quads[k] for k in ks], -1).reshape(-1, 3) for ks in ((0, 1, 2), (0, 2, 3))]
+            wide = 0.5 * np.linalg.norm(grid[:, :, 0] - grid[:, :, AROUND // 2], axis=2)
+            wide = np.broadcast_to(wide.mean(axis=1)[:, None, None] * a, number.shape)
+            along = np.broadcast_to(lengths[:, None, None] * np.linspace(0, 1, rows)[:, None], number.shape)
+            offset = 40.0 * np.arange(count)[:, None, None]
+            fibres.append(np.stack([wide + offset, along], axis=-1).reshape(-1, 2))
+        self.faces = np.concatenate(faces).astype(np.int32)
+        self.fibres = (np.concatenate(fibres) / self.scale).astype(np.float32)
+
+
+def _along_marks(numbers: Any, upper: Any, lower: Any) -> _Bound:
+    """Places along a closed row of landmarks, as many over the upper as over the lower half."""
+    vertex, weight = [], []
+    for row in (upper, lower):
+        at = np.linspace(0.0, len(row) - 1.0, ROWS, endpoint=False)
+        low = np.minimum(at.astype(int), len(row) - 2)
+        row_numbers = numbers[list(row)]
+        vertex.append(np.stack([row_numbers[low], row_numbers[low + 1]], axis=1))
+        weight.append(np.stack([1.0 - (at - low), at - low], axis=1))
+    return _Bound(np.vstack(vertex), np.vstack(weight), np.zeros((2 * ROWS, 3)))
+
+
+def _resampled(line: Floats) -> Floats:
+    """ROWS points along a polyline, rounded where it bends."""
+    at = np.linspace(0.0, len(line) - 1.0, ROWS)
+    points = np.stack([np.interp(at, np.arange(len(line)), c) for c in line.T], axis=1)
+    for _ in range(3):
+        points[1:-1] = 0.25 * points[:-2] + 0.5 * points[1:-1] + 0.25 * points[2:]
+    return points
+
+
+def _grid_normals(grid: Floats, is_closed: bool) -> Floats:
+    """Unit normals of swept cross sections (b, rows, AROUND, 3)."""
+    if is_closed:
+        along = np.roll(grid, -1, axis=1) - np.roll(grid, 1, axis=1)
+    else:
+        along = np.gradient(grid, axis=1)
+    normals = np.cross(along, np.roll(grid, -1, axis=2) - np.roll(grid, 1, axis=2))
+    if not is_closed:  # the ends are points
+        normals[:, 0], normals[:, -1] = normals[:, 1], normals[:, -2]
+    length = np.linalg.norm(normals, axis=-1, keepdims=True)
+    unit: Floats = normals / np.maximum(length, 1e-12)
+    return unit
