@@ -1,7 +1,7 @@
 """What lies under the skin, drawn through it: muscles and skull, as solids.
 
 `Dissection` says what is asked for; `Solids` has the parts of one face, made when they are first
-asked for; `draw` takes the place of drawing the skin and its parts.
+asked for, and draws them, the face's own parts, and the skin over them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .scenes import Scene
 
 SOLIDS = ("muscles", "skull")
 SIDES = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's, whose skin is translucent
-OPACITY = 0.35  # of the skin unless told
+OPACITY = 0.25  # of the skin unless told
 SOFT = ("oral_cavity", "gums")  # parts that hide muscles and skull, by how their names begin
 
 
@@ -61,7 +61,7 @@ class Solids:
         shown += [nose, self._muscles] if "muscles" in wanted else []
         self.parts = stay + shown
 
-    def cut(self, dissection: Dissection) -> tuple[float, float, float, float] | None:
+    def _cut(self, dissection: Dissection) -> tuple[float, float, float, float] | None:
         """The plane in front of which the skin is whole; None: there is none."""
         side = SIDES[dissection.side]
         if not side:
@@ -72,24 +72,25 @@ class Solids:
         return (*normal, -float(normal @ at))
 
 
-def draw(
-    renderer: render.Renderer,
-    stream: render.Stream,
-    solids: Solids,
-    dissection: Dissection,
-    camera: render.OrbitCamera,
-    style: render.Style,
-    *,
-    transforms: Mapping[str, Any],
-    where: Mapping[str, Any],
-    skin: Mapping[str, Any],
-) -> None:
-    """Draw solids and parts, lit as without skin, and the skin over them.
+    def draw(
+        self,
+        renderer: render.Renderer,
+        stream: render.Stream,
+        camera: render.OrbitCamera,
+        style: render.Style,
+        dissection: Dissection,
+        *,
+        where: Mapping[str, Any],
+        skin: Mapping[str, Any],
+    ) -> None:
+        """Draw what `follow` took, lit as if there were no skin, and the skin over it.
 
-    where: viewport and clip; skin: what else `Renderer.draw_mesh` is told.
-    """
-    parts = solids.parts
-    renderer.cast_shadows([p for p in parts if not getattr(p, "hair", 0)], transforms, camera, style, **where)
-    renderer.draw_parts(parts, transforms, camera, style, **where)
-    over = replace(style, opacity=dissection.opacity)
-    renderer.draw_mesh(stream, camera, over, cut=solids.cut(dissection), **skin, **where)
+        where: viewport and clip; skin: what else `Renderer.draw_mesh` is told.
+        """
+        bones = self._scene.bone_transforms()
+        if style.shadows:
+            solid = [part for part in self.parts if not getattr(part, "hair", 0.0)]
+            renderer.cast_shadows(solid, bones, camera, style, **where)
+        renderer.draw_parts(self.parts, bones, camera, style, **where)
+        over = replace(style, opacity=dissection.opacity)
+        renderer.draw_mesh(stream, camera, over, cut=self._cut(dissection), **skin, **where)

@@ -22,7 +22,7 @@ EYES = 90.0  # [mm] from one outer corner of the eyes to the other, for which al
 NEIGHBOURS = 8  # vertices that say where the skin is
 SPARE = 0.7  # [mm] of skin over a muscle, at least
 # sRGB
-RELAXED, CONTRACTED = np.array([0.74, 0.36, 0.31]), np.array([0.60, 0.07, 0.07])
+RELAXED, CONTRACTED = np.array([0.68, 0.29, 0.245]), np.array([0.50, 0.035, 0.045])
 TENDON = np.array([0.93, 0.87, 0.77])
 
 
@@ -38,25 +38,23 @@ class Linear(NamedTuple):
 
 
 LINEAR = {
-    "frontalis_medial": Linear((13, 13, 11), 2.4, 2.6, 3.6, (0.16, 0.0), (0, 1, 2)),
-    "frontalis_lateral": Linear((14, 13, 12), 2.4, 2.6, 3.6, (0.16, 0.0)),
+    "frontalis_medial": Linear((17, 17, 13), 2.4, 2.6, 3.2, (0.34, 0.0), (0, 1, 2)),
+    "frontalis_lateral": Linear((17, 17, 14), 2.4, 2.6, 3.2, (0.34, 0.0)),
     "corrugator_supercilii": Linear((4, 7, 5), 3.0, 3.6),
     "procerus": Linear((5, 7, 8), 2.2, 2.2, 2.4),
     "depressor_supercilii": Linear((4, 6, 5), 2.4, 2.8, None, (0.12, 0.06), (0,)),
     "levator_labii_superioris_alaeque_nasi": Linear((4, 6, 7), 2.6, 3.0, 3.4),
     "nasalis": Linear((5, 7, 5), 2.0, 2.2, 5.0),
-    "nasalis_transverse": Linear((4, 7, 8), 1.8, 2.0, 2.0, (0.3, 0.1), (0,)),
+    "nasalis_transverse": Linear((5, 9, 8), 1.6, 1.8, 1.8, (0.3, 0.1), (0,)),
     "levator_labii_superioris": Linear((9, 9, 7), 3.0, 4.2),
     "zygomaticus_minor": Linear((5, 6, 5), 3.2, 3.4),
     "zygomaticus_major": Linear((6, 8, 6), 4.0, 3.4, None, (0.14, 0.06), (0, 1, 2)),
     "levator_anguli_oris": Linear((10, 9, 7), 3.0, 6.0),
-    "buccinator": Linear((12, 13, 10), 3.0, 7.0, 18.0),
+    "buccinator": Linear((16, 18, 11), 3.0, 7.0, 18.0),
     "risorius": Linear((4, 6, 5), 2.2, 2.8, 2.6, (0.3, 0.06), (0, 1)),
     "depressor_anguli_oris": Linear((9, 8, 6), 3.0, 3.0, 5.0, (0.1, 0.04), (0, 2, 3)),
     "depressor_labii_inferioris": Linear((10, 9, 9), 2.8, 4.6, 7.0),
     "mentalis": Linear((6, 9, 9), 3.6, 3.4, None, (0.1, 0.05), (0, 1)),
-    "platysma": Linear((15, 14, 9), 1.8, 2.0, 2.4, (0.0, 0.1)),
-    "platysma_bands": Linear((8, 8, 8), 1.8, 2.0, 2.4, (0.0, 0.1)),
 }
 
 
@@ -67,36 +65,75 @@ class Rigid(NamedTuple):
     insertion: tuple[float, float, float]
     bones: tuple[str, str]
     form: Linear
+    control: str = ""  # without its side
 
 
 _CHEWING = ("cranium", "mandible")
 RIGID = (
     *(
-        Rigid((62, y, z), (50, -6, 24), _CHEWING, Linear((w, 15, 7), 6.0, 15.0, 7.5, (0.05, 0.3)))
+        Rigid((62, y, z), (50, -14, 23), _CHEWING, Linear((w, 17, 8), 5.5, 15.0, 6.5, (0.1, 0.36)))
         for y, z, w in (
-            (24, -44, 16), (44, -36, 18), (58, -18, 18), (62, 2, 18), (56, 22, 17), (40, 34, 15),
+            (20, -46, 20), (42, -40, 24), (58, -24, 26), (65, -2, 26), (60, 19, 24), (46, 33, 20),
+            (28, 40, 14),
         )
     ),
-    Rigid((56, -9, 40), (50, -62, 20), _CHEWING, Linear((15, 17, 14), 8.0, 8.0, 9.5, (0.3, 0.08))),
-    Rigid((58, -7, 24), (50, -58, 8), _CHEWING, Linear((14, 16, 13), 7.0, 9.0, 10.5, (0.2, 0.08))),
-    Rigid((54, -26, -20), (14, -158, 26), ("cranium", "neck"), Linear((16, 19, 12), 9.0, 7.0, 8.0)),
+    Rigid((56, -9, 40), (50, -62, 20), _CHEWING, Linear((17, 20, 16), 8.0, 8.0, 9.5, (0.26, 0.08))),
+    Rigid((58, -7, 24), (50, -58, 8), _CHEWING, Linear((17, 20, 15), 7.0, 9.5, 11.0, (0.16, 0.08))),
+    *(
+        Rigid(top, low, ("cranium", "neck"), Linear((w, 1.2 * w, w), thick, 9.0, 9.0, (0.1, 0.02)))
+        for top, low, w, thick in (
+            ((54, -26, -20), (12, -165, 24), 17, 10), ((48, -34, -34), (54, -165, -24), 20, 10),
+            ((36, -30, -62), (52, -165, -44), 24, 10), ((11, -24, -88), (34, -165, -66), 26, 10),
+            ((7, -92, 44), (9, -165, 26), 13, 6), ((22, -92, 36), (24, -165, 22), 14, 6),
+        )
+    ),
+    *(
+        Rigid(top, low, ("mandible", "neck"), Linear((w, 17, 19), 1.6, 1.9, 2.2, (0.12, 0)), "platysma")
+        for top, low, w in (
+            ((21, -92, 68), (10, -160, 32), 8), ((31, -84, 58), (24, -160, 28), 11),
+            ((40, -76, 46), (38, -160, 18), 12), ((49, -70, 32), (48, -160, 2), 12),
+            ((56, -60, 14), (56, -160, -16), 10),
+        )
+    ),
 )  # fmt: skip
 # Sphincters: the shares of the way outward that their bands cover, thickness and depth [mm].
 EYE_BANDS = ((0.02, 0.40, 1.5, 1.9), (0.34, 0.70, 2.0, 2.2), (0.64, 1.0, 2.2, 2.6))
-MOUTH_BANDS = ((0.0, 0.50, 4.2, 3.4), (0.42, 1.0, 3.4, 3.8))
-EYE_REACH = (27.0, 19.0, 24.0, 26.0)  # [mm] of the ring from the eye: aside, to the nose, up, down
+MOUTH_BANDS = ((-0.03, 0.50, 4.4, 3.4), (0.42, 1.0, 3.4, 3.8))
+EYE_REACH = (30.0, 19.0, 25.0, 29.0)  # [mm] of the ring from the eye: aside, to the nose, up, down
 MOUTH_REACH = (38.0, 38.0, 17.0, 22.0)
 UPPER_LIP, LOWER_LIP = (48, 49, 50, 51, 52, 53, 54), (54, 55, 56, 57, 58, 59, 48)
 UPPER_INNER, LOWER_INNER = (60, 61, 62, 63, 64), (64, 65, 66, 67, 60)
 EYE_LIDS = {1.0: ((45, 44, 43, 42), (42, 47, 46, 45)), -1.0: ((36, 37, 38, 39), (39, 40, 41, 36))}
 
 
-class _Skin(NamedTuple):
-    """The skin near places (n, 3): how far outside they are, which way out is, how deep bone is."""
+class _Skin:
+    """The skin as it is now, near places."""
 
-    outside: Floats  # (n,)
-    normal: Floats  # (n, 3)
-    bone: Floats  # (n,)
+    def __init__(self, x: Floats, faces: npt.NDArray[np.int32], bone: Floats, middle: Floats) -> None:
+        """x: vertices; bone: how deep it is below each; middle: from where the face looks outward."""
+        self.x, self.bone, self.middle = x, bone, middle
+        a, b, c = (x[faces[:, k]] for k in range(3))
+        cross = np.cross(b - a, c - a)
+        normals = np.stack([np.bincount(faces.T.ravel(), np.tile(each, 3), len(x)) for each in cross.T], 1)
+        self.normals = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
+        self._tree = cKDTree(x)
+
+    def near(self, points: Floats) -> npt.NDArray[np.int64]:
+        """Numbers of the vertices near points (..., 3), shape (..., NEIGHBOURS)."""
+        return np.asarray(self._tree.query(points, k=NEIGHBOURS)[1])
+
+    def at(self, points: Floats, near: npt.NDArray[np.int64]) -> tuple[Floats, Floats, Floats]:
+        """How far outside points (..., 3) are, which way is out, and how deep the bone is there."""
+        off, normals = points[..., None, :] - self.x[near], self.normals[near]
+        square = np.einsum("...kc,...kc->...k", off, off)
+        # What turns away, as the inner side of lips, lids and nostrils does, is not meant.
+        faced = np.einsum("...kc,...c->...k", normals, points - self.middle)
+        weight = np.exp(-square / (0.35 * square.max(axis=-1, keepdims=True))) * (faced > 0.0) + 1e-9
+        weight /= weight.sum(axis=-1, keepdims=True)
+        normal = np.einsum("...k,...kc->...c", weight, normals)
+        normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-9)
+        outside = (weight * np.einsum("...kc,...kc->...k", off, normals)).sum(axis=-1)
+        return outside, normal, (weight * self.bone[near]).sum(axis=-1)
 
 
 class _Bound(NamedTuple):
@@ -142,7 +179,6 @@ class Muscles:
         self.scale = scale = float(np.linalg.norm(marks[45] - marks[36])) / EYES
         self._bone_depth = np.asarray(head.bone_depth)
         self._middle = np.array([marks[27:31, 0].mean(), *np.mean(head.jaw_axis, axis=0)[1:]])
-        self._axis = self._middle + (0.0, 0.0, 0.0)
         self._names, forms = [], []
         for name, lines in scene.simulation.fibres().items():
             form = LINEAR.get(name.removesuffix("_left").removesuffix("_right"))
@@ -154,7 +190,8 @@ class Muscles:
         for each in RIGID:
             for side in (-1.0, 1.0):
                 ends = self._middle + scale * np.array([each.origin, each.insertion]) * (side, 1, 1)
-                self._rigid.append((ends, each.bones))
+                control = f"{each.control}_{'left' if side > 0 else 'right'}"
+                self._rigid.append((ends, each.bones, control))
                 forms.append(each.form)
         self._forms = forms
         self._rings = self._bind_rings(scene, marks)
@@ -176,7 +213,7 @@ class Muscles:
         edge = _along_marks(numbers, UPPER_INNER, LOWER_INNER)
         inner = _Bound(
             np.hstack([lips.vertex, edge.vertex]),
-            np.hstack([0.4 * lips.weight, 0.6 * edge.weight]),
+            np.hstack([0.1 * lips.weight, 0.9 * edge.weight]),
             lips.shift,
         )
         outer = self._ellipse(scene, marks[[48, 54, 51, 57]].mean(axis=0), MOUTH_REACH, -1.0)
@@ -192,51 +229,30 @@ class Muscles:
         across = np.where(aside > 0.0, reach[0], reach[1]) * aside * side
         height = np.where(up > 0.0, reach[2], reach[3]) * up
         points = centre + self.scale * np.stack([across, height, 0.0 * up], axis=1)
+        skin = _Skin(x, scene.faces, self._bone_depth, self._middle)
         for _ in range(4):
-            skin = self._skin(points, x, scene.faces)
-            points = points - skin.outside[:, None] * skin.normal
+            outside, normal, _ = skin.at(points, skin.near(points))
+            points = points - outside[:, None] * normal
         distance, vertex = cKDTree(x).query(points, k=5)
         weight = 1.0 / (distance + 2.0 * self.scale) ** 2
         weight /= weight.sum(axis=1, keepdims=True)
         carried = _Bound(vertex, weight, np.zeros_like(points))
         return carried._replace(shift=points - carried.at(x))
 
-    def _skin(self, points: Floats, x: Floats, faces: npt.NDArray[np.int32]) -> _Skin:
-        """What the skin at x is like near points (n, 3)."""
-        normals = self._normals(x, faces)
-        distance, near = cKDTree(x).query(points, k=NEIGHBOURS)
-        away = points - self._axis
-        away /= np.linalg.norm(away, axis=1, keepdims=True)
-        faced = np.einsum("nkc,nc->nk", normals[near], away)
-        weight = np.exp(-((distance / (0.7 * distance[:, -1:])) ** 2)) * np.clip(faced, 0, 1) ** 2
-        weight += 1e-9
-        weight /= weight.sum(axis=1, keepdims=True)
-        normal = np.einsum("nk,nkc->nc", weight, normals[near])
-        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
-        off = np.einsum("nkc,nkc->nk", points[:, None] - x[near], normals[near])
-        return _Skin((weight * off).sum(1), normal, (weight * self._bone_depth[near]).sum(1))
-
-    def _normals(self, x: Floats, faces: npt.NDArray[np.int32]) -> Floats:
-        a, b, c = (x[faces[:, k]] for k in range(3))
-        cross, normals = np.cross(b - a, c - a), np.zeros_like(x)
-        for k in range(3):
-            for axis in range(3):
-                normals[:, axis] += np.bincount(faces[:, k], cross[:, axis], minlength=len(x))
-        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
-        return normals
-
     def follow(self, scene: Any) -> None:
         """Take the shape and the colours of now."""
-        x, faces, sums = scene.positions, scene.faces, scene.simulation.sums
+        sums = scene.simulation.sums
         found, bones = scene.simulation.fibres(), scene.bone_transforms()
-        self._axis = bones["cranium"][:3, :3] @ self._middle + bones["cranium"][:3, 3]
+        middle = bones["cranium"][:3, :3] @ self._middle + bones["cranium"][:3, 3]
+        skin = _Skin(scene.positions, scene.faces, self._bone_depth, middle)
         lines = [_resampled(found[name][number]) for name, number in self._names]
         share = np.linspace(0.0, 1.0, ROWS)[:, None]
-        for ends, names in self._rigid:
+        for ends, names, _ in self._rigid:
             first, last = (bones[n][:3, :3] @ p + bones[n][:3, 3] for n, p in zip(names, ends))
             lines.append(first + share * (last - first))
-        active = [sums.get(name, 0.0) for name, _ in self._names] + [0.0] * len(self._rigid)
-        groups = [self._open(np.array(lines), x, faces), self._closed(x, faces)]
+        controls = [name for name, _ in self._names] + [name for *_, name in self._rigid]
+        active = [sums.get(name, 0.0) for name in controls]
+        groups = [self._open(np.array(lines), skin), self._closed(skin)]
         for own, bands, _, _ in self._rings:
             active += [max((sums.get(n, 0.0) for n in own), default=0.0)] * len(bands)
         if self._rest is None:
@@ -256,7 +272,7 @@ class Muscles:
         self.colours = np.concatenate(colours).astype(np.float32)
         self.vertices = np.concatenate(vertices).astype(np.float32)
 
-    def _open(self, lines: Floats, x: Floats, faces: npt.NDArray[np.int32]) -> Any:
+    def _open(self, lines: Floats, skin: _Skin) -> Any:
         forms, scale = self._forms, self.scale
         u = np.linspace(0.0, 1.0, ROWS)
         widths = np.array([np.interp(u, (0.0, 0.5, 1.0), f.width) for f in forms]) * scale
@@ -272,9 +288,8 @@ class Muscles:
             ]
         )
         lengths = np.linalg.norm(np.diff(lines, axis=1), axis=2).sum(axis=1)
-        skin = self._skin(lines.reshape(-1, 3), x, faces)
-        bone = skin.bone.reshape(lines.shape[:2])
-        normal = skin.normal.reshape(lines.shape)
+        near = skin.near(lines)
+        _, normal, bone = skin.at(lines, near)
         side = np.cross(np.gradient(lines, axis=1), normal)
         side /= np.maximum(np.linalg.norm(side, axis=2, keepdims=True), 1e-9)
         origin = np.array([np.nan if f.origin is None else f.origin for f in forms]) * scale
@@ -285,14 +300,15 @@ class Muscles:
         def sweep(bulging: Floats) -> tuple[Floats, Floats]:
             swollen = 1.0 + (bulging[:, None] - 1.0) * np.sin(np.pi * u)
             half = 0.5 * widths * swollen**0.35 * end
-            return self._swept(lines, side * half[:, :, None], 0.5 * thick * swollen**0.65 * end, depth, x, faces)
+            thickness = 0.5 * thick * swollen**0.65 * end
+            return self._swept(lines, side * half[:, :, None], thickness, depth, skin, near)
 
         return sweep, lengths, np.clip(tendon, 0.0, 1.0) * 0.92
 
-    def _closed(self, x: Floats, faces: npt.NDArray[np.int32]) -> Any:
+    def _closed(self, skin: _Skin) -> Any:
         middles, halves, thick, depth = [], [], [], []
         for _, bands, inner, outer in self._rings:
-            first, last = inner.at(x), outer.at(x)
+            first, last = inner.at(skin.x), outer.at(skin.x)
             for low, high, thickness, deep in bands:
                 middles.append(first + 0.5 * (low + high) * (last - first))
                 halves.append(0.5 * (high - low) * (last - first))
@@ -300,29 +316,28 @@ class Muscles:
                 depth.append(deep * self.scale)
         lines, half = np.array(middles), np.array(halves)
         lengths = np.linalg.norm(lines - np.roll(lines, 1, axis=1), axis=2).sum(axis=1)
-        skin = self._skin(lines.reshape(-1, 3), x, faces)
+        near = skin.near(lines)
         along = np.roll(lines, -1, axis=1) - np.roll(lines, 1, axis=1)
-        side = np.cross(along, skin.normal.reshape(lines.shape))
+        side = np.cross(along, skin.at(lines, near)[1])
         half *= np.sign((half * side).sum(axis=(1, 2)))[:, None, None]
         rows = np.ones(lines.shape[:2])
 
         def sweep(bulging: Floats) -> tuple[Floats, Floats]:
             swollen = 0.5 * np.array(thick)[:, None] * bulging[:, None] * rows
-            return self._swept(lines, half, swollen, np.array(depth)[:, None] * rows, x, faces)
+            return self._swept(lines, half, swollen, np.array(depth)[:, None] * rows, skin, near)
 
         return sweep, lengths, 0.0 * rows
 
     def _swept(
-        self, lines: Floats, half: Floats, thick: Floats, depth: Floats, x: Floats, faces: Any
+        self, lines: Floats, half: Floats, thick: Floats, depth: Floats, skin: _Skin, near: Any
     ) -> tuple[Floats, Floats]:
         """Cross sections along lines (b, rows, 3), and how light is around each, (AROUND,)."""
         rails = np.stack([lines - half, lines, lines + half])
-        skin = self._skin(rails.reshape(-1, 3), x, faces)
-        outside, bone = (each.reshape(rails.shape[:3]) for each in (skin.outside, skin.bone))
-        normal = skin.normal.reshape(rails.shape)
-        deep = np.minimum(depth, np.maximum(bone - thick, 0.0))
-        deep = np.maximum(deep, thick + SPARE * self.scale)
-        rails = rails - (outside + deep)[..., None] * normal
+        for _ in range(2):
+            outside, normal, bone = skin.at(rails, near)
+            deep = np.minimum(depth, np.maximum(bone - thick, 0.0))
+            deep = np.maximum(deep, thick + SPARE * self.scale)
+            rails = rails - (outside + deep)[..., None] * normal
         angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
         a = np.cos(angle)
         blend = np.stack([0.5 * a * (a - 1.0), 1.0 - a * a, 0.5 * a * (a + 1.0)])

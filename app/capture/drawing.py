@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from risorius import render
 from risorius.assets.fitting import FittedHead
 
+from ..anatomy import Dissection
 from ..cameras import camera_for
 from ..files import Image
 from ..keeping import is_keeping, kept
@@ -33,6 +34,7 @@ class CaptureOptions:
     captions: bool = True  # names and triangle counts under a comparison
     camera: str | None = None  # a named view, or yaw,pitch[,zoom] in degrees
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
+    dissection: Dissection = Dissection()  # noqa: RUF009 - frozen
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in one
     is_alive: bool = False  # what the script leaves alone moves by itself
@@ -85,7 +87,8 @@ class Capture:
     def draw_image(self) -> Image:
         """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""
         self.surface.begin()
-        self.pipeline.draw(self.camera, self.options.style, self.viewports)
+        options = self.options
+        self.pipeline.draw(self.camera, options.style, self.viewports, options.dissection)
         self.surface.end()
         image = self.surface.read_scene(4 if self.options.is_transparent else 3)
         if self.options.beside and self.options.captions:

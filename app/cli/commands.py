@@ -97,6 +97,7 @@ def capture(
         captions=filming.captions,
         camera=filming.camera or performance.camera,
         style=replace(drawing.style(), background=filming.background),
+        dissection=drawing.dissection(),
         samples=filming.samples,
         head=drawing.fitted_head(),
         is_alive=filming.alive,
@@ -257,7 +258,9 @@ def open_window(
         check_scene(script.scene)
     display = None  # as it was last
     if drawing.is_told:
-        display = display_of(drawing.refinement(), script.scene, **drawing.style_options)
+        display = display_of(
+            drawing.refinement(), script.scene, drawing.dissection(), **drawing.style_options
+        )
     with Viewer(script, size, display, head=head, settings_path=settings_path()) as viewer:
         if listening is not None:
             line = viewer.live.start(listening)

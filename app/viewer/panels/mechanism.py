@@ -11,6 +11,7 @@ from imgui_bundle import imgui
 
 from risorius import refine, render
 
+from ...anatomy import OPACITY, SIDES
 from ...looks import LOOKS, STATIC, named, words_of_looks
 from ...refining import DETAIL, can_detail
 from ..colours import COLOURS
@@ -51,9 +52,11 @@ HINTS = {
     "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
     "Wireframe": "the edges of all triangles that are drawn (W)",
     "Occlusion": "less light from all around in folds of the textured skin",
-    "Muscles": "their fibres, redder the more they contract (U)",
+    "Muscles": "under translucent skin; they bulge and redden as they contract (U)",
     "Springs": "the skin's: stretched red, compressed blue",
-    "Skull": "the bone under the skin; the mandible moves with the jaw",
+    "Skull": "under translucent skin, as far as the head tells it; the mandible moves with the jaw",
+    "Skin opacity": "over muscles and skull; 0: no skin",
+    "Dissect": "the side of the face whose skin is translucent",
     "Landmarks": "the 68 points that the muscles are placed by",
 }
 THRESHOLDS = "threshold_once", "threshold_twice"  # of this criterion alone:
@@ -181,6 +184,11 @@ class MechanismPanel:
                 imgui.same_line(_label_width())
             is_on = name in display.overlays
             self._check(name.capitalize(), is_on, partial(display.toggle_overlay, name))
+        if display.dissection.solids:
+            now = display.skin_opacity
+            slid = self._slide("Skin opacity", "skin_opacity", now, (0.0, 1.0), OPACITY)
+            display.skin_opacity = now if slid is None else slid
+            self._choose("Dissect", display.dissect, tuple(SIDES), partial(setattr, display, "dissect"))
 
     def _draw_times(self) -> None:
         """A scrolling plot for each phase of the paper's Figure 1, and the median of a second."""
