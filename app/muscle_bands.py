@@ -9,18 +9,21 @@ section, laid under the skin that is there now, thicker the shorter the fibre: i
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+from risorius import sim
+
 
 Floats = npt.NDArray[np.float64]
 ROWS, AROUND = 22, 16  # places along a band, and around its cross section
 EYES = 90.0  # [mm] from one outer corner of the eyes to the other, for which all measures hold
 NEIGHBOURS = 8  # vertices that say where the skin is
-SPARE = 0.7  # [mm] of skin over a muscle, at least
+SPARE = 1.0  # [mm] of skin over a muscle, at least
 # sRGB
 RELAXED, CONTRACTED = np.array([0.68, 0.29, 0.245]), np.array([0.50, 0.035, 0.045])
 TENDON = np.array([0.93, 0.87, 0.77])
@@ -48,13 +51,13 @@ LINEAR = {
     "nasalis_transverse": Linear((5, 9, 8), 1.6, 1.8, 1.8, (0.3, 0.1), (0,)),
     "levator_labii_superioris": Linear((9, 9, 7), 3.0, 4.2),
     "zygomaticus_minor": Linear((5, 6, 5), 3.2, 3.4),
-    "zygomaticus_major": Linear((6, 8, 6), 4.0, 3.4, None, (0.14, 0.06), (0, 1, 2)),
+    "zygomaticus_major": Linear((7, 9, 7), 4.2, 3.4, None, (0.14, 0.06), (0, 1)),
     "levator_anguli_oris": Linear((10, 9, 7), 3.0, 6.0),
     "buccinator": Linear((16, 18, 11), 3.0, 7.0, 18.0),
-    "risorius": Linear((4, 6, 5), 2.2, 2.8, 2.6, (0.3, 0.06), (0, 1)),
+    "risorius": Linear((4, 6, 5), 2.2, 2.8, 2.6, (0.3, 0.06), (0,)),
     "depressor_anguli_oris": Linear((9, 8, 6), 3.0, 3.0, 5.0, (0.1, 0.04), (0, 2, 3)),
     "depressor_labii_inferioris": Linear((10, 9, 9), 2.8, 4.6, 7.0),
-    "mentalis": Linear((6, 9, 9), 3.6, 3.4, None, (0.1, 0.05), (0, 1)),
+    "mentalis": Linear((6, 9, 9), 3.6, 3.4, None, (0.1, 0.05), (0, 2)),
 }
 
 
@@ -80,25 +83,25 @@ RIGID = (
     Rigid((56, -9, 40), (50, -62, 20), _CHEWING, Linear((17, 20, 16), 8.0, 8.0, 9.5, (0.26, 0.08))),
     Rigid((58, -7, 24), (50, -58, 8), _CHEWING, Linear((17, 20, 15), 7.0, 9.5, 11.0, (0.16, 0.08))),
     *(
-        Rigid(top, low, ("cranium", "neck"), Linear((w, 1.2 * w, w), thick, 9.0, 9.0, (0.1, 0.02)))
+        Rigid(top, low, ("cranium", "neck"), Linear((w, 1.2 * w, w), thick, 10.5, 9.5, (0.1, 0.02)))
         for top, low, w, thick in (
-            ((54, -26, -20), (12, -165, 24), 17, 10), ((48, -34, -34), (54, -165, -24), 20, 10),
-            ((36, -30, -62), (52, -165, -44), 24, 10), ((11, -24, -88), (34, -165, -66), 26, 10),
-            ((7, -92, 44), (9, -165, 26), 13, 6), ((22, -92, 36), (24, -165, 22), 14, 6),
+            ((54, -26, -20), (12, -150, 24), 17, 9), ((48, -34, -34), (50, -150, -24), 20, 9),
+            ((36, -30, -62), (48, -150, -44), 24, 9), ((11, -24, -88), (32, -150, -66), 26, 9),
+            ((7, -92, 44), (9, -150, 26), 13, 6), ((22, -92, 36), (24, -150, 22), 14, 6),
         )
     ),
     *(
-        Rigid(top, low, ("mandible", "neck"), Linear((w, 17, 19), 1.6, 1.9, 2.2, (0.12, 0)), "platysma")
+        Rigid(top, low, ("mandible", "neck"), Linear((w, 15, 15), 1.5, 4.2, 2.6, (0.12, 0)), "platysma")
         for top, low, w in (
-            ((21, -92, 68), (10, -160, 32), 8), ((31, -84, 58), (24, -160, 28), 11),
-            ((40, -76, 46), (38, -160, 18), 12), ((49, -70, 32), (48, -160, 2), 12),
-            ((56, -60, 14), (56, -160, -16), 10),
+            ((21, -92, 68), (8, -146, 30), 8), ((31, -84, 58), (20, -146, 26), 11),
+            ((40, -76, 46), (32, -146, 18), 12), ((49, -70, 32), (42, -146, 4), 12),
+            ((56, -60, 14), (50, -146, -14), 10),
         )
     ),
 )  # fmt: skip
 # Sphincters: the shares of the way outward that their bands cover, thickness and depth [mm].
 EYE_BANDS = ((0.02, 0.40, 1.5, 1.9), (0.34, 0.70, 2.0, 2.2), (0.64, 1.0, 2.2, 2.6))
-MOUTH_BANDS = ((-0.03, 0.50, 4.4, 3.4), (0.42, 1.0, 3.4, 3.8))
+MOUTH_BANDS = ((0.0, 0.50, 4.4, 3.4), (0.42, 1.0, 3.4, 3.8))
 EYE_REACH = (30.0, 19.0, 25.0, 29.0)  # [mm] of the ring from the eye: aside, to the nose, up, down
 MOUTH_REACH = (38.0, 38.0, 17.0, 22.0)
 UPPER_LIP, LOWER_LIP = (48, 49, 50, 51, 52, 53, 54), (54, 55, 56, 57, 58, 59, 48)
@@ -127,7 +130,7 @@ class _Skin:
         off, normals = points[..., None, :] - self.x[near], self.normals[near]
         square = np.einsum("...kc,...kc->...k", off, off)
         # What turns away, as the inner side of lips, lids and nostrils does, is not meant.
-        faced = np.einsum("...kc,...c->...k", normals, points - self.middle)
+        faced = np.einsum("...kc,...c->...k", normals, (points - self.middle) * (1.0, 0.25, 1.0))
         weight = np.exp(-square / (0.35 * square.max(axis=-1, keepdims=True))) * (faced > 0.0) + 1e-9
         weight /= weight.sum(axis=-1, keepdims=True)
         normal = np.einsum("...k,...kc->...c", weight, normals)
@@ -169,7 +172,17 @@ class Muscles:
         """The muscles of a face, as they are now."""
         none = np.zeros((0, 3), np.float32)
         made = cls(none, none, none, none.astype(np.int32), none[:, :2])
+        simulation = scene.simulation
+        if any(scene.values.values()) or not np.array_equal(scene.positions, scene.rest_positions):
+            simulation = sim.create(scene.head)  # lengths and ends are those at rest
+        rest = SimpleNamespace(
+            positions=scene.rest_positions,
+            faces=scene.faces,
+            simulation=simulation,
+            bone_transforms=simulation.bone_transforms,
+        )
         made._build(scene)
+        made.follow(rest)
         made.follow(scene)
         return made
 
@@ -196,6 +209,7 @@ class Muscles:
         self._forms = forms
         self._rings = self._bind_rings(scene, marks)
         self._rest: tuple[Floats, Floats] | None = None
+        self._ends: _Bound | None = None
 
     def _bind_rings(self, scene: Any, marks: Floats) -> list[tuple[list[str], Any, _Bound, _Bound]]:
         """Each sphincter: its controls, its bands, inner and outer edge."""
@@ -213,7 +227,7 @@ class Muscles:
         edge = _along_marks(numbers, UPPER_INNER, LOWER_INNER)
         inner = _Bound(
             np.hstack([lips.vertex, edge.vertex]),
-            np.hstack([0.1 * lips.weight, 0.9 * edge.weight]),
+            np.hstack([0.16 * lips.weight, 0.84 * edge.weight]),
             lips.shift,
         )
         outer = self._ellipse(scene, marks[[48, 54, 51, 57]].mean(axis=0), MOUTH_REACH, -1.0)
@@ -233,11 +247,7 @@ class Muscles:
         for _ in range(4):
             outside, normal, _ = skin.at(points, skin.near(points))
             points = points - outside[:, None] * normal
-        distance, vertex = cKDTree(x).query(points, k=5)
-        weight = 1.0 / (distance + 2.0 * self.scale) ** 2
-        weight /= weight.sum(axis=1, keepdims=True)
-        carried = _Bound(vertex, weight, np.zeros_like(points))
-        return carried._replace(shift=points - carried.at(x))
+        return _bound(points, x)
 
     def follow(self, scene: Any) -> None:
         """Take the shape and the colours of now."""
@@ -245,14 +255,16 @@ class Muscles:
         found, bones = scene.simulation.fibres(), scene.bone_transforms()
         middle = bones["cranium"][:3, :3] @ self._middle + bones["cranium"][:3, 3]
         skin = _Skin(scene.positions, scene.faces, self._bone_depth, middle)
-        lines = [_resampled(found[name][number]) for name, number in self._names]
+        fibres = np.array([found[name][number] for name, number in self._names])
+        short = np.linalg.norm(np.diff(fibres, axis=1), axis=2).sum(axis=1)
+        lines = list(self._held(_resampled(fibres), skin))
         share = np.linspace(0.0, 1.0, ROWS)[:, None]
         for ends, names, _ in self._rigid:
             first, last = (bones[n][:3, :3] @ p + bones[n][:3, 3] for n, p in zip(names, ends))
             lines.append(first + share * (last - first))
         controls = [name for name, _ in self._names] + [name for *_, name in self._rigid]
         active = [sums.get(name, 0.0) for name in controls]
-        groups = [self._open(np.array(lines), skin), self._closed(skin)]
+        groups = [self._open(np.array(lines), short, skin), self._closed(skin)]
         for own, bands, _, _ in self._rings:
             active += [max((sums.get(n, 0.0) for n in own), default=0.0)] * len(bands)
         if self._rest is None:
@@ -272,7 +284,18 @@ class Muscles:
         self.colours = np.concatenate(colours).astype(np.float32)
         self.vertices = np.concatenate(vertices).astype(np.float32)
 
-    def _open(self, lines: Floats, skin: _Skin) -> Any:
+    def _held(self, lines: Floats, skin: _Skin) -> Floats:
+        """Fibres whose ends stay where they are in the skin, both where no bone holds the first."""
+        ends = lines[:, [0, -1]].reshape(-1, 3)
+        if self._ends is None:
+            self._ends = _bound(ends, skin.x)
+        off = (self._ends.at(skin.x) - ends).reshape(-1, 2, 1, 3)
+        off[:, 0] *= np.array([f.origin is not None for f in self._forms[: len(lines)]])[:, None, None]
+        share = np.linspace(0.0, 1.0, ROWS)[:, None]
+        held: Floats = lines + off[:, 0] * (1.0 - share) + off[:, 1] * share
+        return held
+
+    def _open(self, lines: Floats, short: Floats, skin: _Skin) -> Any:
         forms, scale = self._forms, self.scale
         u = np.linspace(0.0, 1.0, ROWS)
         widths = np.array([np.interp(u, (0.0, 0.5, 1.0), f.width) for f in forms]) * scale
@@ -287,9 +310,13 @@ class Muscles:
                 for f in forms
             ]
         )
+        # A belly is as short as the fibre; where skin holds its end back, the tendon gives.
         lengths = np.linalg.norm(np.diff(lines, axis=1), axis=2).sum(axis=1)
-        near = skin.near(lines)
-        _, normal, bone = skin.at(lines, near)
+        lengths[: len(short)] = short
+        for _ in range(2):
+            near = skin.near(lines)
+            outside, normal, bone = skin.at(lines, near)
+            lines = lines - outside[:, :, None] * normal
         side = np.cross(np.gradient(lines, axis=1), normal)
         side /= np.maximum(np.linalg.norm(side, axis=2, keepdims=True), 1e-9)
         origin = np.array([np.nan if f.origin is None else f.origin for f in forms]) * scale
@@ -367,6 +394,15 @@ class Muscles:
         self.fibres = (np.concatenate(fibres) / self.scale).astype(np.float32)
 
 
+def _bound(points: Floats, x: Floats) -> _Bound:
+    """Places (n, 3) carried by the vertices near them."""
+    distance, vertex = cKDTree(x).query(points, k=5)
+    weight = 1.0 / (distance + distance.mean()) ** 2
+    weight /= weight.sum(axis=1, keepdims=True)
+    carried = _Bound(vertex, weight, np.zeros_like(points))
+    return carried._replace(shift=points - carried.at(x))
+
+
 def _along_marks(numbers: Any, upper: Any, lower: Any) -> _Bound:
     """Places along a closed row of landmarks, as many over the upper as over the lower half."""
     vertex, weight = [], []
@@ -379,12 +415,14 @@ def _along_marks(numbers: Any, upper: Any, lower: Any) -> _Bound:
     return _Bound(np.vstack(vertex), np.vstack(weight), np.zeros((2 * ROWS, 3)))
 
 
-def _resampled(line: Floats) -> Floats:
-    """ROWS points along a polyline, rounded where it bends."""
-    at = np.linspace(0.0, len(line) - 1.0, ROWS)
-    points = np.stack([np.interp(at, np.arange(len(line)), c) for c in line.T], axis=1)
+def _resampled(lines: Floats) -> Floats:
+    """ROWS points along each polyline (b, n, 3), rounded where it bends."""
+    at = np.linspace(0.0, lines.shape[1] - 1.0, ROWS)
+    low = np.minimum(at.astype(int), lines.shape[1] - 2)
+    share = (at - low)[:, None]
+    points: Floats = lines[:, low] * (1.0 - share) + lines[:, low + 1] * share
     for _ in range(3):
-        points[1:-1] = 0.25 * points[:-2] + 0.5 * points[1:-1] + 0.25 * points[2:]
+        points[:, 1:-1] = 0.25 * points[:, :-2] + 0.5 * points[:, 1:-1] + 0.25 * points[:, 2:]
     return points
 
 

@@ -98,7 +98,7 @@ def _outer_form(
         np.add.at(normals, faces[:, corner], cross)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
     across = np.abs(x[:, 0])
-    is_bone = ((np.stack([across - 74.0, x[:, 1] - 8.0, x[:, 2] + 12.0], 1) / (30, 42, 26)) ** 2).sum(1) > 1
+    is_bone = ((np.stack([across - 76.0, x[:, 1] - 8.0, x[:, 2] + 30.0], 1) / (27, 44, 37)) ** 2).sum(1) > 1
     for eye in eyes:
         off = (x - eye)[:, :2]
         is_bone &= (np.hypot(*(off / (17.0, 12.0)).T) > 1.0) | (x[:, 2] < eye[2] - 20.0)

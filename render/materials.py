@@ -12,7 +12,7 @@ from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Style, lin
 SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
 HEAD_BONES = ("cranium", "mandible", "eye_right", "eye_left")
 Plane = tuple[float, float, float, float]
-CUT_WIDTH = 0.011  # of the scene's radius: how thick skin looks where it is cut
+CUT_WIDTH = 0.008  # of the scene's radius: how thick skin looks where it is cut
 HAIR_PIXELS = 1.4  # that a hair is drawn wide at least: a triangle seen from its side is narrower
 _PALETTE = np.array([linear(colour) for colour in SPLIT_PALETTE], np.float32)
 _RAMPS = {

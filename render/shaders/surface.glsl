@@ -233,7 +233,7 @@ uniform sampler2DShadow shadow_map;
 uniform float opacity;
 uniform vec4 cut;  // plane, view space; in front of it the skin is whole
 uniform float cut_width;
-const vec3 FAT = vec3(0.80, 0.42, 0.25);
+const vec3 FAT = vec3(0.78, 0.50, 0.34);  // linear light
 #endif
 #if defined(FRINGE)
 #define IS_FRONT true
