@@ -10,8 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from risorius import render
 from risorius.assets.skull import build_skull
 
@@ -50,7 +48,7 @@ class Solids:
         """Take what is asked for as it is now, and the head's parts that do not hide it."""
         scene, wanted = self._scene, dissection.solids
         if not self._skull:
-            self._skull = build_skull(scene.head)
+            self._skull = build_skull(scene.head, scene.simulation.pivots())
         if "muscles" in wanted and self._muscles is None:
             self._muscles = Muscles.of(scene)
         elif "muscles" in wanted and self._muscles is not None:
@@ -70,7 +68,6 @@ class Solids:
         at = bone[:3, :3] @ self._scene.rest_positions[self._scene.head.landmarks[27]] + bone[:3, 3]
         normal = bone[:3, :3] @ (-side, 0.0, 0.0)
         return (*normal, -float(normal @ at))
-
 
     def draw(
         self,

@@ -18,10 +18,11 @@ from scipy.spatial import cKDTree
 
 from risorius import sim
 
+from . import muscle_forms as shape
 
 Floats = npt.NDArray[np.float64]
 ROWS, AROUND = 22, 16  # places along a band, and around its cross section
-EYES = 90.0  # [mm] from one outer corner of the eyes to the other, for which all measures hold
+EYES = 90.0  # [mm] from one outer corner of the eyes to the other, for which muscle_forms.py holds
 NEIGHBOURS = 8  # vertices that say where the skin is
 SPARE = 1.0  # [mm] of skin over a muscle, at least
 # sRGB
@@ -29,95 +30,19 @@ RELAXED, CONTRACTED = np.array([0.68, 0.29, 0.245]), np.array([0.50, 0.035, 0.04
 TENDON = np.array([0.93, 0.87, 0.77])
 
 
-class Linear(NamedTuple):
-    """How a muscle of fibres is drawn."""
-
-    width: tuple[float, float, float]  # [mm] at the origin, in the belly, at the insertion
-    thickness: float  # [mm] of the belly at rest
-    depth: float = 3.0  # [mm] of its middle below the skin at the insertion
-    origin: float | None = None  # [mm] the same at the origin; None: on the bone
-    tendon: tuple[float, float] = (0.12, 0.06)  # share of its length at both ends
-    fibres: tuple[int, ...] | None = None  # which of the rig's; None: all
-
-
-LINEAR = {
-    "frontalis_medial": Linear((17, 17, 13), 2.4, 2.6, 3.2, (0.34, 0.0), (0, 1, 2)),
-    "frontalis_lateral": Linear((17, 17, 14), 2.4, 2.6, 3.2, (0.34, 0.0)),
-    "corrugator_supercilii": Linear((4, 7, 5), 3.0, 3.6),
-    "procerus": Linear((5, 7, 8), 2.2, 2.2, 2.4),
-    "depressor_supercilii": Linear((4, 6, 5), 2.4, 2.8, None, (0.12, 0.06), (0,)),
-    "levator_labii_superioris_alaeque_nasi": Linear((4, 6, 7), 2.6, 3.0, 3.4),
-    "nasalis": Linear((5, 7, 5), 2.0, 2.2, 5.0),
-    "nasalis_transverse": Linear((5, 9, 8), 1.6, 1.8, 1.8, (0.3, 0.1), (0,)),
-    "levator_labii_superioris": Linear((9, 9, 7), 3.0, 4.2),
-    "zygomaticus_minor": Linear((5, 6, 5), 3.2, 3.4),
-    "zygomaticus_major": Linear((7, 9, 7), 4.2, 3.4, None, (0.14, 0.06), (0, 1)),
-    "levator_anguli_oris": Linear((10, 9, 7), 3.0, 6.0),
-    "buccinator": Linear((16, 18, 11), 3.0, 7.0, 18.0),
-    "risorius": Linear((4, 6, 5), 2.2, 2.8, 2.6, (0.3, 0.06), (0,)),
-    "depressor_anguli_oris": Linear((9, 8, 6), 3.0, 3.0, 5.0, (0.1, 0.04), (0, 2, 3)),
-    "depressor_labii_inferioris": Linear((10, 9, 9), 2.8, 4.6, 7.0),
-    "mentalis": Linear((6, 9, 9), 3.6, 3.4, None, (0.1, 0.05), (0, 2)),
-}
-
-
-class Rigid(NamedTuple):
-    """A muscle from bone to bone, which is no control: ends (x, y, z) [mm off the condyles]."""
-
-    origin: tuple[float, float, float]
-    insertion: tuple[float, float, float]
-    bones: tuple[str, str]
-    form: Linear
-    control: str = ""  # without its side
-
-
-_CHEWING = ("cranium", "mandible")
-RIGID = (
-    *(
-        Rigid((62, y, z), (50, -14, 23), _CHEWING, Linear((w, 17, 8), 5.5, 15.0, 6.5, (0.1, 0.36)))
-        for y, z, w in (
-            (20, -46, 20), (42, -40, 24), (58, -24, 26), (65, -2, 26), (60, 19, 24), (46, 33, 20),
-            (28, 40, 14),
-        )
-    ),
-    Rigid((56, -9, 40), (50, -62, 20), _CHEWING, Linear((17, 20, 16), 8.0, 8.0, 9.5, (0.26, 0.08))),
-    Rigid((58, -7, 24), (50, -58, 8), _CHEWING, Linear((17, 20, 15), 7.0, 9.5, 11.0, (0.16, 0.08))),
-    *(
-        Rigid(top, low, ("cranium", "neck"), Linear((w, 1.2 * w, w), thick, 10.5, 9.5, (0.1, 0.02)))
-        for top, low, w, thick in (
-            ((54, -26, -20), (12, -150, 24), 17, 9), ((48, -34, -34), (50, -150, -24), 20, 9),
-            ((36, -30, -62), (48, -150, -44), 24, 9), ((11, -24, -88), (32, -150, -66), 26, 9),
-            ((7, -92, 44), (9, -150, 26), 13, 6), ((22, -92, 36), (24, -150, 22), 14, 6),
-        )
-    ),
-    *(
-        Rigid(top, low, ("mandible", "neck"), Linear((w, 15, 15), 1.5, 4.2, 2.6, (0.12, 0)), "platysma")
-        for top, low, w in (
-            ((21, -92, 68), (8, -146, 30), 8), ((31, -84, 58), (20, -146, 26), 11),
-            ((40, -76, 46), (32, -146, 18), 12), ((49, -70, 32), (42, -146, 4), 12),
-            ((56, -60, 14), (50, -146, -14), 10),
-        )
-    ),
-)  # fmt: skip
-# Sphincters: the shares of the way outward that their bands cover, thickness and depth [mm].
-EYE_BANDS = ((0.02, 0.40, 1.5, 1.9), (0.34, 0.70, 2.0, 2.2), (0.64, 1.0, 2.2, 2.6))
-MOUTH_BANDS = ((0.0, 0.50, 4.4, 3.4), (0.42, 1.0, 3.4, 3.8))
-EYE_REACH = (30.0, 19.0, 25.0, 29.0)  # [mm] of the ring from the eye: aside, to the nose, up, down
-MOUTH_REACH = (38.0, 38.0, 17.0, 22.0)
-UPPER_LIP, LOWER_LIP = (48, 49, 50, 51, 52, 53, 54), (54, 55, 56, 57, 58, 59, 48)
-UPPER_INNER, LOWER_INNER = (60, 61, 62, 63, 64), (64, 65, 66, 67, 60)
-EYE_LIDS = {1.0: ((45, 44, 43, 42), (42, 47, 46, 45)), -1.0: ((36, 37, 38, 39), (39, 40, 41, 36))}
-
-
 class _Skin:
     """The skin as it is now, near places."""
 
-    def __init__(self, x: Floats, faces: npt.NDArray[np.int32], bone: Floats, middle: Floats) -> None:
-        """x: vertices; bone: how deep it is below each; middle: from where the face looks outward."""
+    def __init__(
+        self, x: Floats, faces: npt.NDArray[np.int32], bone: Floats, middle: Floats
+    ) -> None:
+        """bone: how deep it is below each vertex of x; middle: from where a face looks outward."""
         self.x, self.bone, self.middle = x, bone, middle
         a, b, c = (x[faces[:, k]] for k in range(3))
         cross = np.cross(b - a, c - a)
-        normals = np.stack([np.bincount(faces.T.ravel(), np.tile(each, 3), len(x)) for each in cross.T], 1)
+        normals = np.stack(
+            [np.bincount(faces.T.ravel(), np.tile(each, 3), len(x)) for each in cross.T], 1
+        )
         self.normals = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
         self._tree = cKDTree(x)
 
@@ -131,7 +56,9 @@ class _Skin:
         square = np.einsum("...kc,...kc->...k", off, off)
         # What turns away, as the inner side of lips, lids and nostrils does, is not meant.
         faced = np.einsum("...kc,...c->...k", normals, (points - self.middle) * (1.0, 0.25, 1.0))
-        weight = np.exp(-square / (0.35 * square.max(axis=-1, keepdims=True))) * (faced > 0.0) + 1e-9
+        weight = (
+            np.exp(-square / (0.35 * square.max(axis=-1, keepdims=True))) * (faced > 0.0) + 1e-9
+        )
         weight /= weight.sum(axis=-1, keepdims=True)
         normal = np.einsum("...k,...kc->...c", weight, normals)
         normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-9)
@@ -187,20 +114,21 @@ class Muscles:
         return made
 
     def _build(self, scene: Any) -> None:
-        head, x = scene.head, scene.rest_positions
-        marks = x[head.landmarks]
+        head = scene.head
+        marks, pivots = scene.rest_positions[head.landmarks], scene.simulation.pivots()
         self.scale = scale = float(np.linalg.norm(marks[45] - marks[36])) / EYES
         self._bone_depth = np.asarray(head.bone_depth)
-        self._middle = np.array([marks[27:31, 0].mean(), *np.mean(head.jaw_axis, axis=0)[1:]])
-        self._names, forms = [], []
+        self._middle = np.array([marks[27:31, 0].mean(), *pivots["mandible"][1:]])
+        self.names: list[tuple[str, int]] = []
+        forms: list[shape.Linear] = []
         for name, lines in scene.simulation.fibres().items():
-            form = LINEAR.get(name.removesuffix("_left").removesuffix("_right"))
-            for number in range(len(lines)) if form else ():
-                if form.fibres is None or number in form.fibres:
-                    self._names.append((name, number))
+            form = shape.LINEAR.get(name.removesuffix("_left").removesuffix("_right"))
+            for number in range(len(lines)):
+                if form and (form.fibres is None or number in form.fibres):
+                    self.names.append((name, number))
                     forms.append(form)
         self._rigid = []
-        for each in RIGID:
+        for each in shape.RIGID:
             for side in (-1.0, 1.0):
                 ends = self._middle + scale * np.array([each.origin, each.insertion]) * (side, 1, 1)
                 control = f"{each.control}_{'left' if side > 0 else 'right'}"
@@ -213,26 +141,28 @@ class Muscles:
 
     def _bind_rings(self, scene: Any, marks: Floats) -> list[tuple[list[str], Any, _Bound, _Bound]]:
         """Each sphincter: its controls, its bands, inner and outer edge."""
-        x, numbers = scene.rest_positions, np.asarray(scene.head.landmarks)
-        names, rings = list(scene.simulation.sums), []
-        eyes = {np.sign(eye.centre[0] - self._middle[0]): eye for eye in scene.head.eyes}
-        for side, eye in eyes.items():
-            inner = _along_marks(numbers, *EYE_LIDS[side])
-            centre = np.append(eye.centre[:2], marks[36:48, 2].mean())
-            outer = self._ellipse(scene, centre, EYE_REACH, side)
+        numbers = np.asarray(scene.head.landmarks)
+        names = list(scene.simulation.sums)
+        rings: list[tuple[list[str], Any, _Bound, _Bound]] = []
+        pivots = scene.simulation.pivots()
+        for eye in (at for name, at in pivots.items() if name.startswith("eye")):
+            side = float(np.sign(eye[0] - self._middle[0]))
+            inner = _along_marks(numbers, *shape.EYE_LIDS[side])
+            centre = np.append(eye[:2], marks[36:48, 2].mean())
+            outer = self._ellipse(scene, centre, shape.EYE_REACH, side)
             word = "left" if side > 0 else "right"
             own = [n for n in names if n.startswith("orbicularis_oculi_") and n.endswith(word)]
-            rings.append((own, EYE_BANDS, inner, outer))
-        lips = _along_marks(numbers, UPPER_LIP, LOWER_LIP)
-        edge = _along_marks(numbers, UPPER_INNER, LOWER_INNER)
+            rings.append((own, shape.EYE_BANDS, inner, outer))
+        lips = _along_marks(numbers, shape.UPPER_LIP, shape.LOWER_LIP)
+        edge = _along_marks(numbers, shape.UPPER_INNER, shape.LOWER_INNER)
         inner = _Bound(
             np.hstack([lips.vertex, edge.vertex]),
             np.hstack([0.16 * lips.weight, 0.84 * edge.weight]),
             lips.shift,
         )
-        outer = self._ellipse(scene, marks[[48, 54, 51, 57]].mean(axis=0), MOUTH_REACH, -1.0)
+        outer = self._ellipse(scene, marks[[48, 54, 51, 57]].mean(axis=0), shape.MOUTH_REACH, -1.0)
         own = [n for n in names if n.startswith(("orbicularis_oris_", "incisivus_"))]
-        rings.append((own, MOUTH_BANDS, inner, outer))
+        rings.append((own, shape.MOUTH_BANDS, inner, outer))
         return rings
 
     def _ellipse(self, scene: Any, centre: Floats, reach: Any, side: float) -> _Bound:
@@ -255,14 +185,16 @@ class Muscles:
         found, bones = scene.simulation.fibres(), scene.bone_transforms()
         middle = bones["cranium"][:3, :3] @ self._middle + bones["cranium"][:3, 3]
         skin = _Skin(scene.positions, scene.faces, self._bone_depth, middle)
-        fibres = np.array([found[name][number] for name, number in self._names])
+        fibres = np.array([found[name][number] for name, number in self.names])
         short = np.linalg.norm(np.diff(fibres, axis=1), axis=2).sum(axis=1)
         lines = list(self._held(_resampled(fibres), skin))
         share = np.linspace(0.0, 1.0, ROWS)[:, None]
         for ends, names, _ in self._rigid:
-            first, last = (bones[n][:3, :3] @ p + bones[n][:3, 3] for n, p in zip(names, ends))
+            first, last = (
+                bones[n][:3, :3] @ p + bones[n][:3, 3] for n, p in zip(names, ends, strict=True)
+            )
             lines.append(first + share * (last - first))
-        controls = [name for name, _ in self._names] + [name for *_, name in self._rigid]
+        controls = [name for name, _ in self.names] + [name for *_, name in self._rigid]
         active = [sums.get(name, 0.0) for name in controls]
         groups = [self._open(np.array(lines), short, skin), self._closed(skin)]
         for own, bands, _, _ in self._rings:
@@ -271,7 +203,9 @@ class Muscles:
             self._rest = groups[0][1], groups[1][1]
             self._lay_out(groups)
         vertices, normals, colours = [], [], []
-        for (sweep, lengths, tendon), rest, is_closed in zip(groups, self._rest, (False, True)):
+        for (sweep, lengths, tendon), rest, is_closed in zip(
+            groups, self._rest, (False, True), strict=True
+        ):
             grid, light = sweep(np.clip(rest / lengths, 0.75, 2.2))
             vertices.append(grid.reshape(-1, 3))
             normals.append(_grid_normals(grid, is_closed).reshape(-1, 3))
@@ -290,7 +224,9 @@ class Muscles:
         if self._ends is None:
             self._ends = _bound(ends, skin.x)
         off = (self._ends.at(skin.x) - ends).reshape(-1, 2, 1, 3)
-        off[:, 0] *= np.array([f.origin is not None for f in self._forms[: len(lines)]])[:, None, None]
+        off[:, 0] *= np.array([f.origin is not None for f in self._forms[: len(lines)]])[
+            :, None, None
+        ]
         share = np.linspace(0.0, 1.0, ROWS)[:, None]
         held: Floats = lines + off[:, 0] * (1.0 - share) + off[:, 1] * share
         return held
@@ -369,14 +305,17 @@ class Muscles:
         a = np.cos(angle)
         blend = np.stack([0.5 * a * (a - 1.0), 1.0 - a * a, 0.5 * a * (a + 1.0)])
         grid = np.einsum("rbnc,rk->bnkc", rails, blend)
-        grid += np.einsum("rbnc,rk->bnkc", normal, blend) * (thick[:, :, None] * np.sin(angle))[..., None]
+        grid += (
+            np.einsum("rbnc,rk->bnkc", normal, blend)
+            * (thick[:, :, None] * np.sin(angle))[..., None]
+        )
         return grid, 0.42 + 0.58 * np.clip(0.5 + 0.75 * np.sin(angle), 0.0, 1.0)
 
     def _lay_out(self, groups: Any) -> None:
         """Faces and places of striation, which never change."""
         faces, fibres, first = [], [], 0
         a = np.cos(2.0 * np.pi * np.arange(AROUND) / AROUND)
-        for (sweep, lengths, _), is_closed in zip(groups, (False, True)):
+        for (sweep, lengths, _), is_closed in zip(groups, (False, True), strict=True):
             grid, _ = sweep(np.ones(len(lengths)))
             count, rows = grid.shape[:2]
             number = first + np.arange(count * rows * AROUND).reshape(count, rows, AROUND)
@@ -384,10 +323,14 @@ class Muscles:
             ahead = np.roll(number, -1, axis=1) if is_closed else number[:, 1:]
             here = number if is_closed else number[:, :-1]
             quads = [here, ahead, np.roll(ahead, -1, axis=2), np.roll(here, -1, axis=2)]
-            faces += [np.stack([quads[k] for k in ks], -1).reshape(-1, 3) for ks in ((0, 1, 2), (0, 2, 3))]
+            faces += [
+                np.stack([quads[k] for k in ks], -1).reshape(-1, 3) for ks in ((0, 1, 2), (0, 2, 3))
+            ]
             wide = 0.5 * np.linalg.norm(grid[:, :, 0] - grid[:, :, AROUND // 2], axis=2)
             wide = np.broadcast_to(wide.mean(axis=1)[:, None, None] * a, number.shape)
-            along = np.broadcast_to(lengths[:, None, None] * np.linspace(0, 1, rows)[:, None], number.shape)
+            along = np.broadcast_to(
+                lengths[:, None, None] * np.linspace(0, 1, rows)[:, None], number.shape
+            )
             offset = 40.0 * np.arange(count)[:, None, None]
             fibres.append(np.stack([wide + offset, along], axis=-1).reshape(-1, 2))
         self.faces = np.concatenate(faces).astype(np.int32)

@@ -146,7 +146,8 @@ class Pipeline:
             "texture": self.texture if drawn.has_uv else None,
             "wrinkles": self.wrinkling.map if self.wrinkling and drawn.has_uv else None,
         }
-        where, stream = {"viewport": viewport}, drawn.stream
+        where: dict[str, Any] = {"viewport": viewport}
+        stream = drawn.stream
         if dissection.is_on(self.scene):
             self.solids.draw(
                 self.renderer, stream, camera, style, dissection, where=where, skin=skin

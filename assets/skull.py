@@ -1,20 +1,22 @@
 """A solid skull for a head, made of what the head knows of it: depth to the bone, eyes, jaw.
 
 It is a proxy. The skin, moved inward by the tissue's depth, is the outer form; sockets, nose
-opening, temporal hollows, cheekbone's arch and the outline of the mandible are put in by measures of
-an adult skull, scaled by the distance of the eyes' outer corners and placed by landmarks. All is one
-signed field on a grid, whose zero is meshed.
+opening, temporal hollows, cheekbone's arch and the outline of the mandible are put in by measures
+of an adult skull, scaled by the distance of the eyes' outer corners and placed by landmarks. All is
+one signed field on a grid, whose zero is meshed.
 Source: Kolluri 2008, "Provably good moving least squares" (the form through points with normals);
 Gibson 1998, "Constrained elastic surface nets" (the mesh of a field's zero). Measures: chosen.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from scipy import ndimage
+from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from .model import Part
@@ -34,11 +36,22 @@ BASE = (
     (-130, 140), (-130, -16), (-72, -22), (-24, -14), (-18, -27), (-10, -27), (-4, -8), (8, -7),
     (30, -30), (36, -45), (88, -46), (120, -30), (130, 140),
 )  # fmt: skip
-ARCH = ((-8, 2), (-4, 10), (14, 9), (34, 8), (52, 16), (60, 2), (56, -18), (44, -14), (30, -1), (4, 0))
+ARCH = (
+    (-8, 2),
+    (-4, 10),
+    (14, 9),
+    (34, 8),
+    (52, 16),
+    (60, 2),
+    (56, -18),
+    (44, -14),
+    (30, -1),
+    (4, 0),
+)
 
 
 class _Field(NamedTuple):
-    """Where a head's bone is looked for: places on a grid [mm of EYES, off the condyles' middle]."""
+    """Where a head's bone is looked for: a grid [mm of EYES off the condyles' middle]."""
 
     low: Floats
     places: Floats  # (3, nx, ny, nz)
@@ -46,17 +59,17 @@ class _Field(NamedTuple):
     nose: Floats  # distance from the cartilage of the nose, likewise
 
 
-def build_skull(head: Any) -> tuple[Part, ...]:
+def build_skull(head: Any, pivots: Mapping[str, Floats]) -> tuple[Part, ...]:
     """Cranium, mandible, and the nose's cartilage at rest, as parts that move with their bones.
 
-    head: with vertices, faces, landmarks, bone_depth, jaw_axis and eyes.
+    head: with vertices, faces, landmarks, bone_depth and parts. pivots: what "mandible" and the
+        eyes turn about, by the names of bones, each (3,).
     """
     marks = head.vertices[head.landmarks]
     scale = float(np.linalg.norm(marks[45] - marks[36])) / EYES
-    origin = np.asarray(head.jaw_axis).mean(axis=0)
-    origin = np.array([marks[27:31, 0].mean(), *origin[1:]])
+    origin = np.array([marks[27:31, 0].mean(), *pivots["mandible"][1:]])
     marks = (marks - origin) / scale
-    eyes = [(np.asarray(eye.centre) - origin) / scale for eye in head.eyes]
+    eyes = [(at - origin) / scale for name, at in pivots.items() if name.startswith("eye")]
     field = _outer_form(head, origin, scale, marks, eyes)
     parts = []
     for name, carve in (("cranium", _cranium), ("mandible", _mandible), ("nose", _nose)):
@@ -70,7 +83,9 @@ def build_skull(head: Any) -> tuple[Part, ...]:
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
         open_ = np.zeros(len(points))
         for reach in (2.0, 4.0, 7.0):  # [cells]
-            open_ += np.clip(_sampled([shape], points + reach * normals)[:, 0] / (reach * CELL), 0, 1)
+            open_ += np.clip(
+                _sampled([shape], points + reach * normals)[:, 0] / (reach * CELL), 0, 1
+            )
         bright, dark = (CARTILAGE, SHADED) if name == "nose" else (BONE, HOLLOW)
         light = np.clip(open_ / 3.0, 0.0, 1.0)[:, None] ** 1.3
         parts.append(
@@ -98,18 +113,25 @@ def _outer_form(
         np.add.at(normals, faces[:, corner], cross)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
     across = np.abs(x[:, 0])
-    is_bone = ((np.stack([across - 76.0, x[:, 1] - 8.0, x[:, 2] + 30.0], 1) / (27, 44, 37)) ** 2).sum(1) > 1
+    is_bone = (
+        (np.stack([across - 76.0, x[:, 1] - 8.0, x[:, 2] + 30.0], 1) / (27, 44, 37)) ** 2
+    ).sum(1) > 1
     for eye in eyes:
         off = (x - eye)[:, :2]
         is_bone &= (np.hypot(*(off / (17.0, 12.0)).T) > 1.0) | (x[:, 2] < eye[2] - 20.0)
     mouth = marks[[48, 54, 51, 57]].mean(axis=0)
     is_bone &= np.linalg.norm((x - mouth) / (33.0, 15.0, 40.0), axis=1) > 1.0
-    is_bone &= ~((across < 19.0) & (x[:, 1] > marks[33, 1] - 3.0) & (x[:, 1] < marks[28, 1] - 2.0) & (x[:, 2] > 60.0))
+    is_bone &= ~(
+        (across < 19.0)
+        & (x[:, 1] > marks[33, 1] - 3.0)
+        & (x[:, 1] < marks[28, 1] - 2.0)
+        & (x[:, 2] > 60.0)
+    )
     away = x - (0.0, marks[30, 1], eyes[0][2])
     is_nose = (across < 30.0) & (np.abs(x[:, 1] - marks[29, 1]) < 45.0) & (x[:, 2] > 50.0)
     is_nose &= (normals * away).sum(axis=1) > 0.3 * np.linalg.norm(away, axis=1)
-    low = np.array([-74.0, marks[8, 1] - 14.0, x[is_bone, 2].min() - 4.0])
-    high = np.array([74.0, x[:, 1].max() + 4.0, marks[30, 2] + 2.0])
+    low = np.array([-13.0 * CELL * COARSE, marks[8, 1] - 14.0, x[is_bone, 2].min() - 4.0])
+    high = np.array([12.9 * CELL * COARSE, x[:, 1].max() + 4.0, marks[30, 2] + 2.0])
     counts = np.ceil((high - low) / (CELL * COARSE)).astype(int) + 1
     fine = [np.arange(COARSE * (n - 1) + 1) / COARSE for n in counts]
     grid = np.meshgrid(*fine, indexing="ij")
@@ -123,7 +145,9 @@ def _outer_form(
         weight = np.exp(-((distance / np.maximum(0.6 * distance[:, -1:], least)) ** 2)) + 1e-12
         off = ((at[:, None] - points[near]) * normals[is_used][near]).sum(axis=2)
         known = ((weight * off).sum(axis=1) / weight.sum(axis=1)).reshape(counts)
-        return ndimage.map_coordinates(known, grid, order=3, mode="nearest")
+        finer = [CubicSpline(np.arange(n), np.eye(n))(at) for n, at in zip(counts, fine, strict=True)]
+        found: Floats = np.einsum("ai,bj,ck,ijk->abc", *finer, known, optimize=True)
+        return found
 
     places = low[:, None, None, None] + CELL * COARSE * np.stack(grid)
     return _Field(
@@ -147,12 +171,16 @@ def _cranium(field: _Field, marks: Floats, eyes: list[Floats]) -> Floats:
     across = np.abs(x)
     # Ears leave a gap in the form, which is wide there; behind it the mastoid.
     form = _within(field.outside, across - 61.0 - 0.35 * np.maximum(y - 12.0, 0.0), 8.0)
-    mastoid = (np.sqrt(((across - 47) / 10) ** 2 + ((y + 14) / 18) ** 2 + ((z + 20) / 12) ** 2) - 1) * 11
+    mastoid = (
+        np.sqrt(((across - 47) / 10) ** 2 + ((y + 14) / 18) ** 2 + ((z + 20) / 12) ** 2) - 1
+    ) * 11
     form = _with(form, mastoid, 6.0)
     # The hollow for the temporal muscle, deepest behind the eye, and the arch that spans it.
     fossa = np.exp(-(((z - 26.0) / 24.0) ** 2) - ((y - 26.0) / 26.0) ** 2) * (across > 25.0)
     solid = np.maximum(form + 9.5 * fossa, np.minimum(_polygon(z, y, BASE), mastoid))
-    below = _polygon(z, y, ((2, -90), (2, 2), (20, 6), (34, 4), (40, -10), (46, -34), (40, -60), (36, -90)))
+    below = _polygon(
+        z, y, ((2, -90), (2, 2), (20, 6), (34, 4), (40, -10), (46, -34), (40, -60), (36, -90))
+    )
     solid = _without(solid, np.maximum(below, 41.0 - across), 4.0)
     arch = np.maximum(np.maximum(form - 0.5, -6.5 - form), _polygon(z, y, ARCH))
     solid = _with(solid, arch, 4.0)
@@ -162,7 +190,9 @@ def _cranium(field: _Field, marks: Floats, eyes: list[Floats]) -> Floats:
         u = side * (x - eye[0]) - 1.0 + 0.30 * np.maximum(back, 0.0)
         v = y - eye[1] - 1.0 + 0.10 * u
         narrow = 1.0 - 0.0165 * np.clip(back, 0.0, 50.0)
-        socket = ((np.abs(u) / (19.5 * narrow)) ** 2.7 + (np.abs(v) / (17.0 * narrow)) ** 2.7) ** (1 / 2.7)
+        socket = ((np.abs(u) / (19.5 * narrow)) ** 2.7 + (np.abs(v) / (17.0 * narrow)) ** 2.7) ** (
+            1 / 2.7
+        )
         solid = _without(solid, np.maximum((socket - 1.0) * 16.0, back - 46.0), 3.0)
     # The pear-shaped opening below the nasal bones.
     top, bottom = marks[29, 1] + 1.0, marks[33, 1] - 1.0
@@ -192,7 +222,8 @@ def _around(field: _Field, points: Floats) -> Floats:
     result = np.full(field.outside.shape, 20.0)
     places = np.moveaxis(field.places[(slice(None), *box)], 0, -1)
     result[box] = cKDTree(points).query(places, distance_upper_bound=20.0, workers=-1)[0] - 0.8
-    return np.minimum(result, 20.0)
+    near: Floats = np.minimum(result, 20.0)
+    return near
 
 
 def _polygon(u: Floats, v: Floats, corners: Any) -> Floats:
@@ -213,7 +244,8 @@ def _polygon(u: Floats, v: Floats, corners: Any) -> Floats:
 def _with(a: Floats, b: Floats, round_: float) -> Floats:
     """Both solids, with a fillet."""
     blend = np.maximum(round_ - np.abs(a - b), 0.0) / round_
-    return np.minimum(a, b) - 0.25 * round_ * blend**2
+    both: Floats = np.minimum(a, b) - 0.25 * round_ * blend**2
+    return both
 
 
 def _within(a: Floats, b: Floats, round_: float) -> Floats:
@@ -229,7 +261,8 @@ def _without(a: Floats, b: Floats, round_: float) -> Floats:
 def _sampled(fields: Any, points: Floats) -> Floats:
     """Fields at places [cells], shape (n, len(fields))."""
     return np.stack(
-        [ndimage.map_coordinates(each, points.T, order=1, mode="nearest") for each in fields], axis=1
+        [ndimage.map_coordinates(each, points.T, order=1, mode="nearest") for each in fields],
+        axis=1,
     )
 
 
@@ -262,8 +295,8 @@ def _mesh(shape: Floats) -> tuple[Floats, npt.NDArray[np.int32]]:
     number = np.full(counts, -1, np.int64)
     number[is_point] = np.arange(is_point.sum())
     faces = []
-    for cells, turned in crossings:
-        quads = number[tuple(np.moveaxis(cells, 2, 0))]
+    for around, turned in crossings:
+        quads = number[tuple(np.moveaxis(around, 2, 0))]
         quads[~turned] = quads[~turned][:, ::-1]
         faces += [quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]
     points = total[is_point] / hits[is_point][:, None] - 1.0

@@ -11,8 +11,6 @@ from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Style, lin
 
 SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
 HEAD_BONES = ("cranium", "mandible", "eye_right", "eye_left")
-Plane = tuple[float, float, float, float]
-CUT_WIDTH = 0.008  # of the scene's radius: how thick skin looks where it is cut
 HAIR_PIXELS = 1.4  # that a hair is drawn wide at least: a triangle seen from its side is narrower
 _PALETTE = np.array([linear(colour) for colour in SPLIT_PALETTE], np.float32)
 _RAMPS = {
@@ -43,7 +41,9 @@ def set_skin(program: moderngl.Program, style: Style) -> None:
 def set_part(program: moderngl.Program, part: Part, light: Light) -> None:
     """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights."""
     set_light(program, light)
-    if part.bone in HEAD_BONES or hasattr(part, "fibres"):  # light from behind does not get through a head
+    if part.bone in HEAD_BONES or hasattr(
+        part, "fibres"
+    ):  # light from behind does not get through a head
         program["rim_light"] = 0.0, 0.0, 0.0
     shine = part.shine
     program["subsurface"] = 0.3
@@ -70,13 +70,3 @@ def set_palette(program: moderngl.Program, kind: ColourBy) -> None:
         write_uniform(program, "split_palette", _PALETTE)
     else:
         write_uniform(program, "ramp", _RAMPS[kind])
-
-
-def set_translucency(
-    program: moderngl.Program, style: Style, view: CameraView, cut: Plane | None
-) -> None:
-    """How far skin lets what is under it show, and behind which plane; None: everywhere."""
-    program["opacity"] = style.opacity
-    there = (0.0, 0.0, 0.0, -1.0) if cut is None else np.linalg.inv(view.world_to_view) @ cut
-    program["cut"] = tuple(there)
-    program["cut_width"] = CUT_WIDTH * view.camera.scene_radius

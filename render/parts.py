@@ -68,7 +68,12 @@ class PartBuffers:
             return
         self.corners = box_corners(vertices)
         rows = np.hstack(
-            [vertices, part.normals, linear(part.colours), *([] if self.fibres is None else [self.fibres])]
+            [
+                vertices,
+                part.normals,
+                linear(part.colours),
+                *([] if self.fibres is None else [self.fibres]),
+            ]
         ).astype(np.float32)
         self._vertices.write(rows.tobytes())
         self._uploaded = vertices
@@ -95,7 +100,14 @@ class PartBuffers:
                 [
                     (self._vertices, "3f 3f 3f", "in_position", "in_normal", "in_colour")
                     if self.fibres is None
-                    else (self._vertices, "3f 3f 3f 2f", "in_position", "in_normal", "in_colour", "in_fibre")
+                    else (
+                        self._vertices,
+                        "3f 3f 3f 2f",
+                        "in_position",
+                        "in_normal",
+                        "in_colour",
+                        "in_fibre",
+                    )
                 ],
                 index_buffer=indices,
                 index_element_size=4,

@@ -18,6 +18,7 @@ from ..looks import STATIC, Refinement
 from ..playback import Playback
 from .batch import batch
 from .dataset import dataset
+from .dissecting import dissection_of
 from .export import export
 from .options import (
     PATH,
@@ -97,7 +98,7 @@ def capture(
         captions=filming.captions,
         camera=filming.camera or performance.camera,
         style=replace(drawing.style(), background=filming.background),
-        dissection=drawing.dissection(),
+        dissection=dissection_of(drawing),
         samples=filming.samples,
         head=drawing.fitted_head(),
         is_alive=filming.alive,
@@ -259,7 +260,7 @@ def open_window(
     display = None  # as it was last
     if drawing.is_told:
         display = display_of(
-            drawing.refinement(), script.scene, drawing.dissection(), **drawing.style_options
+            drawing.refinement(), script.scene, dissection_of(drawing), **drawing.style_options
         )
     with Viewer(script, size, display, head=head, settings_path=settings_path()) as viewer:
         if listening is not None:

@@ -15,13 +15,13 @@ from ..errors import UserError
 from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from ..playback import LEAD, Playback
+from .dissecting import DISSECTING, DISSECTION_OPTIONS
 from .parameters import BackgroundName, FiniteRange, Looks, PersonName, Refiner, Size
 
 if TYPE_CHECKING:
     from risorius import render
     from risorius.assets.fitting import FittedHead
 
-    from ..anatomy import Dissection
     from ..capture import CaptureOptions
     from ..recordings.report import Report
 
@@ -32,8 +32,6 @@ SOUND = click.option(
     "--sound", type=PATH, help="What is heard: a WAV, MP3, ..., or a film with sound."
 )
 LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard")  # render.LIGHTS, not imported yet
-ANATOMY = ("muscles", "skull")  # anatomy.SOLIDS, likewise
-DISSECTION_OPTIONS = ("anatomy", "skin_opacity", "dissect")
 STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "wrinkles", "light")
 
 
@@ -86,7 +84,7 @@ class Subject:
 class Drawing(Subject):
     """What view, replay and capture are told alike: whose head, how refined, in what style."""
 
-    dissect: str
+    dissect: str | None
     skin_opacity: float | None
     anatomy: str | None
     light: str
@@ -107,22 +105,6 @@ class Drawing(Subject):
         source = click.get_current_context().get_parameter_source
         names = ("look", "refiner", "refiner_settings", *STYLE_OPTIONS, *DISSECTION_OPTIONS)
         return any(source(name) is not ParameterSource.DEFAULT for name in names)
-
-    def dissection(self) -> Dissection:
-        """What is seen under the skin; UserError for what is not there."""
-        from ..anatomy import OPACITY, Dissection
-
-        source = click.get_current_context().get_parameter_source
-        for name in DISSECTION_OPTIONS[1:]:
-            if self.anatomy is None and source(name) is not ParameterSource.DEFAULT:
-                option = name.replace("_", "-")
-                raise UserError(f"--{option} goes with --anatomy, which says what is under the skin")
-        names = [] if self.anatomy is None else self.anatomy.split(",")
-        for name in names:
-            if name not in ANATOMY:
-                raise UserError(f"--anatomy: '{name}' is none of {', '.join(ANATOMY)}")
-        opacity = OPACITY if self.skin_opacity is None else self.skin_opacity
-        return Dissection(tuple(names), opacity, self.dissect)
 
     def style(self) -> render.Style:
         """The style that these options ask for."""
@@ -149,25 +131,6 @@ HEAD = (
     ),
 )
 STYLE = (
-    click.option(
-        "--dissect",
-        type=click.Choice(["both", "left", "right"]),
-        default="both",
-        show_default=True,
-        help="With --anatomy: the subject's side whose skin is translucent.",
-    ),
-    click.option(
-        "--skin-opacity",
-        type=FiniteRange(0, 1),
-        help="With --anatomy: how much of the skin is seen, 0.25 unless told; 0: none.",
-    ),
-    click.option(
-        "--anatomy",
-        is_flag=False,
-        flag_value=",".join(ANATOMY),
-        metavar="[NAME,...]",
-        help="Draw muscles, skull or both under translucent skin.",
-    ),
     click.option(
         "--light",
         type=click.Choice(LIGHT_NAMES),
@@ -222,7 +185,7 @@ REFINING = (
     ),
 )
 with_subject = packed("subject", Subject, *HEAD, *REFINING)
-with_drawing = packed("drawing", Drawing, *HEAD, *STYLE, *REFINING)
+with_drawing = packed("drawing", Drawing, *HEAD, *DISSECTING, *STYLE, *REFINING)
 
 
 @dataclass(frozen=True)

@@ -188,7 +188,9 @@ class MechanismPanel:
             now = display.skin_opacity
             slid = self._slide("Skin opacity", "skin_opacity", now, (0.0, 1.0), OPACITY)
             display.skin_opacity = now if slid is None else slid
-            self._choose("Dissect", display.dissect, tuple(SIDES), partial(setattr, display, "dissect"))
+            self._choose(
+                "Dissect", display.dissect, tuple(SIDES), partial(setattr, display, "dissect")
+            )
 
     def _draw_times(self) -> None:
         """A scrolling plot for each phase of the paper's Figure 1, and the median of a second."""
