@@ -127,10 +127,12 @@ class Muscles:
                 if form and (form.fibres is None or number in form.fibres):
                     self.names.append((name, number))
                     forms.append(form)
-        self._rigid = []
+        self._rigid: list[tuple[Floats, tuple[str, str], str]] = []
+        lowest = scene.rest_positions[:, 1].min() + 6.0 * scale
         for each in shape.RIGID:
             for side in (-1.0, 1.0):
                 ends = self._middle + scale * np.array([each.origin, each.insertion]) * (side, 1, 1)
+                ends[:, 1] = np.maximum(ends[:, 1], lowest)  # a head may end with a short neck
                 control = f"{each.control}_{'left' if side > 0 else 'right'}"
                 self._rigid.append((ends, each.bones, control))
                 forms.append(each.form)
