@@ -128,7 +128,7 @@ class Muscles:
                     self.names.append((name, number))
                     forms.append(form)
         self._rigid: list[tuple[Floats, tuple[str, str], str]] = []
-        lowest = scene.rest_positions[:, 1].min() + 6.0 * scale
+        lowest = scene.rest_positions[:, 1].min() - 4.0 * scale
         for each in shape.RIGID:
             for side in (-1.0, 1.0):
                 ends = self._middle + scale * np.array([each.origin, each.insertion]) * (side, 1, 1)
@@ -159,7 +159,7 @@ class Muscles:
         edge = _along_marks(numbers, shape.UPPER_INNER, shape.LOWER_INNER)
         inner = _Bound(
             np.hstack([lips.vertex, edge.vertex]),
-            np.hstack([0.16 * lips.weight, 0.84 * edge.weight]),
+            np.hstack([0.1 * lips.weight, 0.9 * edge.weight]),
             lips.shift,
         )
         outer = self._ellipse(scene, marks[[48, 54, 51, 57]].mean(axis=0), shape.MOUTH_REACH, -1.0)

@@ -145,7 +145,9 @@ def _outer_form(
         weight = np.exp(-((distance / np.maximum(0.6 * distance[:, -1:], least)) ** 2)) + 1e-12
         off = ((at[:, None] - points[near]) * normals[is_used][near]).sum(axis=2)
         known = ((weight * off).sum(axis=1) / weight.sum(axis=1)).reshape(counts)
-        finer = [CubicSpline(np.arange(n), np.eye(n))(at) for n, at in zip(counts, fine, strict=True)]
+        finer = [
+            CubicSpline(np.arange(n), np.eye(n))(at) for n, at in zip(counts, fine, strict=True)
+        ]
         found: Floats = np.einsum("ai,bj,ck,ijk->abc", *finer, known, optimize=True)
         return found
 

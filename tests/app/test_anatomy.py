@@ -1,4 +1,4 @@
-"""Muscles and skull as solids: sound surfaces that follow the face, and skin that lets them show."""
+"""Muscles and skull: sound surfaces that follow the face, and skin that lets them show."""
 
 from __future__ import annotations
 

@@ -347,7 +347,7 @@ def test_the_page_shows_every_picture_of_the_tour() -> None:
 
 
 def test_a_head_that_somebody_brings_has_every_overlay(tmp_path: Path) -> None:
-    """Springs and landmarks of a fitted head are lines; tests/app/test_anatomy.py has the solids."""
+    """Springs and landmarks of a fitted head are lines; test_anatomy.py has the solids."""
     fitted = FaceScene(fit_head(*stranger().write(tmp_path)))
     assert overlays_of(fitted) == ("muscles", "springs", "skull", "landmarks")
     edges, camera = fitted.faces[:, :2], render.OrbitCamera.framing(fitted.rest_positions)
