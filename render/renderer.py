@@ -22,7 +22,7 @@ from .geometry_buffer import Geometry, GeometryBuffer
 from .hidden import Occluder, draw_sides
 from .materials import COLOUR_DEFINES, set_hair, set_palette, set_part, set_skin
 from .outline import draw_fringes, fringes
-from .parts import Part, PartStore
+from .parts import Part, PartStore, PlacedPart
 from .programs import compile_program, write_uniform
 from .render_target import scaled
 from .shadow import ShadowMap
@@ -111,8 +111,7 @@ class Renderer:
             8 columns, ValueError else.
         wrinkles: furrows of the skin, as far as the style and the amounts of wrinkling that were
             uploaded let them show; per-pixel shading alone has them. Needs 8 columns, too.
-        cut: in front of it skin is opaque. Where the style's opacity is below 1, draw what is to be
-            seen through the skin before it, parts too.
+        cut: in front of it skin is opaque. Draw before it what is to be seen through the skin.
         """
         columns = stream.vertices.shape[1]
         if columns != 8 and (texture is not None or wrinkles is not None):
@@ -127,12 +126,9 @@ class Renderer:
         is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
         view = self._camera_view(camera, viewport, clip)
         if is_coloured:
-            checked = checked_values(values, stream.triangle_count)
-            self._values = value_texture(self._gl, checked)
+            self._values = value_texture(self._gl, checked_values(values, stream.triangle_count))
         if style.shadows:
-            if self._shadow is None:
-                self._shadow = ShadowMap(self._gl)
-            self._shadow.draw(stream, view, self.surface.target.frame_number, style.light.to_key)
+            self._cast(stream, view, style)
         shares = [Share.ALL] if wrinkles is None or is_coloured else [Share.WRINKLED, Share.SMOOTH]
         drawn = []
         for share in shares:
@@ -141,20 +137,19 @@ class Renderer:
             if not self._set_view(program, view, stream.corners, np.eye(4)):
                 return
             self._set_surface(program, view, style, texture, share_wrinkles)
-            if style.opacity < 1.0:
-                set_translucency(program, style, view, cut)
             drawn.append((program, share))
         if style.opacity < 1.0:
+            for program, _ in drawn:
+                set_translucency(program, style, view, cut)
             draw_nearest(self._gl, stream, drawn)
-            return
-        if not self.surface.is_software:
+        elif not self.surface.is_software:
             for each, share in drawn:
                 stream.draw(each, share)
-            return
-        target = self.surface.target
-        if target.samples and (self._occluder is None or self._occluder.target is not target):
-            self._occluder = Occluder(self._gl, target)
-        draw_sides(self._gl, stream, drawn, None if is_coloured else view, self._occluder)
+        else:
+            target = self.surface.target
+            if target.samples and (self._occluder is None or self._occluder.target is not target):
+                self._occluder = Occluder(self._gl, target)
+            draw_sides(self._gl, stream, drawn, None if is_coloured else view, self._occluder)
 
     def cast_shadows(
         self,
@@ -168,10 +163,12 @@ class Renderer:
     ) -> None:
         """Let parts, not the skin, throw the shadow on parts that are drawn next."""
         view = self._camera_view(camera, viewport, clip)
+        self._cast(self._parts.placed(parts, transforms), view, style)
+
+    def _cast(self, thrower: Stream | list[PlacedPart], view: CameraView, style: Style) -> None:
         if self._shadow is None:
             self._shadow = ShadowMap(self._gl)
-        placed = self._parts.placed(parts, transforms)
-        self._shadow.draw(placed, view, self.surface.target.frame_number, style.light.to_key)
+        self._shadow.draw(thrower, view, self.surface.target.frame_number, style.light.to_key)
 
     def draw_outline(
         self,

@@ -84,8 +84,7 @@ def capture(
     written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
     check_apart(written, (script, sound, drawing.head, drawing.landmarks, playback.mapping))
     if sound is not None and (output is None or output.suffix.lower() not in HEARD):
-        allowed = ", ".join(HEARD)
-        raise UserError(f"--sound {sound}: only a film is heard; give -o a name in {allowed}")
+        raise UserError(f"--sound {sound}: only a film is heard; end -o in {', '.join(HEARD)}")
     tell = None if filming.quiet else told
     performance = script_for(script, scene, settings, playback=playback, tell=tell)
     performance = with_sound(performance, sound)
