@@ -7,17 +7,17 @@ up.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import UserError
-from ..mirror import twin_of
+from ..mirror import copied, mirrored, twin_of
 from ..motion import SETTLING
 from ..scenes import Scene
 from ..script import Pose, Script, is_pose, pose_script, rounded, save_script
 from . import keyframes
-from .control_rows import mirrored
 from .controls import Controls
 from .document import Document
 from .history import History
@@ -51,6 +51,7 @@ class Session:
         self._recorder: Recorder | None = None
         self._held: dict[str, float] = {}  # by hand while a recording plays the script
         self.live = Lead()  # a live face, which leaves no trace in what can be undone
+        self.display: object = None  # how the scene is drawn, see `show`
         self._history = History(self._document(), lambda before, after: after.new_keys(before))
 
     def move_to(self, scene: Scene) -> None:
@@ -93,9 +94,9 @@ class Session:
         """All controls to zero; the skin swings back by itself."""
         self._set_pose(self.controls.pose({}), is_unsaved=False)
 
-    def mirror(self) -> None:
-        """What is left becomes right."""
-        self._set_pose(mirrored(self.values))
+    def mirror(self, source: str = "") -> None:
+        """What is left becomes right and the reverse, or one side ("left", "right") the other's."""
+        self._set_pose(copied(self.values, source) if source else mirrored(self.values))
 
     def randomise(self, generator: np.random.Generator | None = None) -> None:
         """A few muscles of each group by chance, both sides alike; layers stay at zero."""
@@ -116,7 +117,15 @@ class Session:
 
     def _document(self) -> Document:
         by_hand = {name: value for name, value in self.values.items() if value}
-        return Document(None if self.is_following else by_hand, self.script, self.file)
+        values = None if self.is_following else by_hand
+        return Document(values, self.script, self.file, self.display)
+
+    def show(self, display: object) -> None:
+        """Draw the scene in another way: what nobody changes any more, and equals its like."""
+        state = replace(self._history.present, display=display)  # the script may move the rest
+        keep = self._history.amend if self.display is None else self._history.note
+        self.display = display
+        keep(state)
 
     def note(self) -> None:
         """A change is complete (a slider let go, a button pressed): it can be undone."""
@@ -134,14 +143,20 @@ class Session:
 
     def undo(self) -> None:
         """Back to before the last change, or to it, if the script has moved the controls since."""
-        is_elsewhere = self._document() != self._history.present
-        self._restore(self._history.present if is_elsewhere else self._history.undo())
+        present, before = self._history.present, self._history.undo()
+        if self._document() != present and not before.differs_in_view(present):
+            before = present if before is present else self._history.redo()
+        self._restore(before, present)
 
     def redo(self) -> None:
         """Forward again."""
-        self._restore(self._history.redo())
+        present = self._history.present
+        self._restore(self._history.redo(), present)
 
-    def _restore(self, document: Document) -> None:
+    def _restore(self, document: Document, present: Document) -> None:
+        self.display = document.display
+        if document.differs_in_view(present):
+            return
         self.is_playing = False
         self.script, self.file = document.script, document.file
         self.time = min(self.time, self.script.duration)
