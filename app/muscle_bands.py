@@ -132,7 +132,8 @@ class Muscles:
         for each in shape.RIGID:
             for side in (-1.0, 1.0):
                 ends = self._middle + scale * np.array([each.origin, each.insertion]) * (side, 1, 1)
-                ends[:, 1] = np.maximum(ends[:, 1], lowest)  # a head may end with a short neck
+                if each.bones[1] == "neck":
+                    ends[1, 1] = lowest  # necks are short or long
                 control = f"{each.control}_{'left' if side > 0 else 'right'}"
                 self._rigid.append((ends, each.bones, control))
                 forms.append(each.form)
