@@ -8,15 +8,17 @@ forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, render
 
+from .anatomy import Dissection, Solids
 from .looks import Refinement
 from .refining import refiner_for
 from .scenes import Scene
@@ -98,6 +100,7 @@ class Pipeline:
         self.renderer = renderer
         self.texture = texture_of(scene, renderer)
         self.wrinkling = wrinkling_of(scene, renderer)
+        self.solids = Solids(scene)
         self.bind(refinements)
 
     def bind(self, refinements: Sequence[Refinement]) -> None:
@@ -114,40 +117,50 @@ class Pipeline:
             drawn.refine(self.scene.positions, camera, viewport)
 
     def draw(
-        self, camera: render.OrbitCamera, style: render.Style, viewports: Sequence[Viewport]
+        self,
+        camera: render.OrbitCamera,
+        style: render.Style,
+        viewports: Sequence[Viewport],
+        dissection: Dissection = Dissection(),  # noqa: B008 - frozen
     ) -> None:
         """The lower half: refine the mesh by each refiner, and draw it into its viewport."""
-        bones = self.scene.bone_transforms()
+        if dissection.is_on(self.scene):
+            self.solids.follow(dissection)
         amounts = None
         if self.wrinkling is not None and style.shows_wrinkles:
             amounts = self.wrinkling.amounts(self.scene.positions)
         for drawn, viewport in zip(self.meshes, viewports, strict=True):
             drawn.refine(self.scene.positions, camera, viewport)
             drawn.upload(amounts, style.wrinkles)
-            self._draw(drawn, bones, camera, style, viewport)
+            self._draw(drawn, camera, style, viewport, dissection)
 
     def _draw(
         self,
         drawn: DrawnMesh,
-        bones: Mapping[str, npt.NDArray[np.float64]],
         camera: render.OrbitCamera,
         style: render.Style,
         viewport: Viewport,
+        dissection: Dissection,
     ) -> None:
         values = None
         if style.colour_by is render.ColourBy.SPLITS and drawn.mesh is not None:
             values = splits_of_source(drawn.refiner, drawn.mesh)
         self.renderer.draw_background(style, viewport)
-        self.renderer.draw_mesh(
-            drawn.stream,
-            camera,
-            style,
-            viewport=viewport,
-            values=values,
-            texture=self.texture if drawn.has_uv else None,
-            wrinkles=self.wrinkling.map if self.wrinkling and drawn.has_uv else None,
-        )
+        skin: dict[str, Any] = {
+            "values": values,
+            "texture": self.texture if drawn.has_uv else None,
+            "wrinkles": self.wrinkling.map if self.wrinkling and drawn.has_uv else None,
+        }
+        where: dict[str, Any] = {"viewport": viewport}
+        stream = drawn.stream
+        if dissection.is_on(self.scene):
+            self.solids.draw(
+                self.renderer, stream, camera, style, dissection, where=where, skin=skin
+            )
+            return
+        self.renderer.draw_mesh(stream, camera, style, **skin, **where)
         # After the mesh: the skin throws its shadow on eyes and teeth.
+        bones = self.scene.bone_transforms()
         self.renderer.draw_parts(self.scene.parts, bones, camera, style, viewport=viewport)
 
 

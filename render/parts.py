@@ -19,7 +19,7 @@ class Part(Protocol):
     faces: counter-clockwise from the side that is seen, shape (m, 3), int32; the other side is not
         drawn. colours: sRGB 0..1, shape (n, 3), float32.
     bone: whose transform moves it. shine: 0 dull, 1 wet. Hairs have `hair`, half their thickness,
-        too.
+        too; muscles `fibres`, the place of each vertex across and along them [mm], (n, 2).
     """
 
     @property
@@ -50,7 +50,9 @@ class PartBuffers:
                 f"{np.shape(part.normals)} and colours {np.shape(part.colours)} must all be (n, 3)"
             )
         self._gl = gl
-        self._vertices = gl.buffer(reserve=36 * len(part.vertices))
+        self.fibres = getattr(part, "fibres", None)
+        width = 36 if self.fibres is None else 44
+        self._vertices = gl.buffer(reserve=width * len(part.vertices))
         self._uploaded: npt.NDArray[np.float32] | None = None
         self.hair = getattr(part, "hair", 0.0)
         self.upload()
@@ -65,7 +67,14 @@ class PartBuffers:
         if vertices is self._uploaded:
             return
         self.corners = box_corners(vertices)
-        rows = np.hstack([vertices, part.normals, linear(part.colours)]).astype(np.float32)
+        rows = np.hstack(
+            [
+                vertices,
+                part.normals,
+                linear(part.colours),
+                *([] if self.fibres is None else [self.fibres]),
+            ]
+        ).astype(np.float32)
         self._vertices.write(rows.tobytes())
         self._uploaded = vertices
 
@@ -88,7 +97,18 @@ class PartBuffers:
         if (program, indices) not in self._arrays:
             self._arrays[program, indices] = self._gl.vertex_array(
                 program,
-                [(self._vertices, "3f 3f 3f", "in_position", "in_normal", "in_colour")],
+                [
+                    (self._vertices, "3f 3f 3f", "in_position", "in_normal", "in_colour")
+                    if self.fibres is None
+                    else (
+                        self._vertices,
+                        "3f 3f 3f 2f",
+                        "in_position",
+                        "in_normal",
+                        "in_colour",
+                        "in_fibre",
+                    )
+                ],
                 index_buffer=indices,
                 index_element_size=4,
                 skip_errors=True,  # not every program has a use for colours

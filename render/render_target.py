@@ -8,6 +8,8 @@ wiped just before it is drawn on, when software OpenGL does both tile by tile in
 Invariant: unless `_is_stale`, the layer is transparent and its depth is 1 outside `_drawn_on`.
 """
 
+import math
+
 import moderngl
 
 from .errors import GLError
@@ -107,6 +109,20 @@ class RenderTarget:
         """The frame, bottom row first, three bytes per pixel, or four."""
         self.flush()
         return bytes(self.frame.read(components=components, alignment=1))
+
+
+def scaled(viewport: Rectangle, scale: float) -> Rectangle:
+    """The pixels of a viewport on a target of another scale; ValueError for one without any."""
+    left, bottom, width, height = viewport
+    if width < 1 or height < 1:
+        raise ValueError(
+            f"viewport is {viewport}; it must be (x, y, width, height) of 1 pixel or more"
+        )
+    if scale == 1.0:
+        return viewport
+    x, y = math.floor(scale * left), math.floor(scale * bottom)
+    right, top = math.ceil(scale * (left + width)), math.ceil(scale * (bottom + height))
+    return x, y, right - x, top - y
 
 
 def overlap(first: Rectangle, second: Rectangle) -> bool:

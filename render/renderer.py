@@ -7,9 +7,7 @@ Programs are compiled on first use, one per combination of shading and options.
 Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the figures are shaded).
 """
 
-import contextlib
-import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import moderngl
@@ -24,24 +22,19 @@ from .geometry_buffer import Geometry, GeometryBuffer
 from .hidden import Occluder, draw_sides
 from .materials import COLOUR_DEFINES, set_hair, set_palette, set_part, set_skin
 from .outline import draw_fringes, fringes
-from .parts import Part, PartStore
+from .parts import Part, PartStore, PlacedPart
 from .programs import compile_program, write_uniform
+from .render_target import scaled
 from .shadow import ShadowMap
 from .stream import Share, Stream
 from .style import Colour, ColourBy, Shading, Style
 from .surface import Image, Surface
 from .texture import Texture, WrinkleMap
+from .translucency import Plane, blending, draw_nearest, set_translucency
 
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 
 _VALUE_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the target uses 1
-# Colour as usual; the layer starts out transparent and collects premultiplied colour.
-_PREMULTIPLYING_BLEND: Any = (
-    moderngl.SRC_ALPHA,
-    moderngl.ONE_MINUS_SRC_ALPHA,
-    moderngl.ONE,
-    moderngl.ONE_MINUS_SRC_ALPHA,
-)
 
 
 class Renderer:
@@ -108,6 +101,7 @@ class Renderer:
         values: npt.NDArray[np.uint8] | None = None,
         texture: Texture | None = None,
         wrinkles: WrinkleMap | None = None,
+        cut: Plane | None = None,
     ) -> None:
         """Draw what `stream` last uploaded.
 
@@ -117,6 +111,7 @@ class Renderer:
             8 columns, ValueError else.
         wrinkles: furrows of the skin, as far as the style and the amounts of wrinkling that were
             uploaded let them show; per-pixel shading alone has them. Needs 8 columns, too.
+        cut: in front of it skin is opaque. Draw before it what is to be seen through the skin.
         """
         columns = stream.vertices.shape[1]
         if columns != 8 and (texture is not None or wrinkles is not None):
@@ -131,12 +126,9 @@ class Renderer:
         is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
         view = self._camera_view(camera, viewport, clip)
         if is_coloured:
-            checked = checked_values(values, stream.triangle_count)
-            self._values = value_texture(self._gl, checked)
+            self._values = value_texture(self._gl, checked_values(values, stream.triangle_count))
         if style.shadows:
-            if self._shadow is None:
-                self._shadow = ShadowMap(self._gl)
-            self._shadow.draw(stream, view, self.surface.target.frame_number, style.light.to_key)
+            self._cast(stream, view, style)
         shares = [Share.ALL] if wrinkles is None or is_coloured else [Share.WRINKLED, Share.SMOOTH]
         drawn = []
         for share in shares:
@@ -146,14 +138,37 @@ class Renderer:
                 return
             self._set_surface(program, view, style, texture, share_wrinkles)
             drawn.append((program, share))
-        if not self.surface.is_software:
+        if style.opacity < 1.0:
+            for program, _ in drawn:
+                set_translucency(program, style, view, cut)
+            draw_nearest(self._gl, stream, drawn)
+        elif not self.surface.is_software:
             for each, share in drawn:
                 stream.draw(each, share)
-            return
-        target = self.surface.target
-        if target.samples and (self._occluder is None or self._occluder.target is not target):
-            self._occluder = Occluder(self._gl, target)
-        draw_sides(self._gl, stream, drawn, None if is_coloured else view, self._occluder)
+        else:
+            target = self.surface.target
+            if target.samples and (self._occluder is None or self._occluder.target is not target):
+                self._occluder = Occluder(self._gl, target)
+            draw_sides(self._gl, stream, drawn, None if is_coloured else view, self._occluder)
+
+    def cast_shadows(
+        self,
+        parts: Iterable[Part],
+        transforms: Mapping[str, npt.NDArray[np.float64]],
+        camera: OrbitCamera,
+        style: Style,
+        *,
+        viewport: Viewport | None = None,
+        clip: Viewport | None = None,
+    ) -> None:
+        """Let parts, not the skin, throw the shadow on parts that are drawn next."""
+        view = self._camera_view(camera, viewport, clip)
+        self._cast(self._parts.placed(parts, transforms), view, style)
+
+    def _cast(self, thrower: Stream | list[PlacedPart], view: CameraView, style: Style) -> None:
+        if self._shadow is None:
+            self._shadow = ShadowMap(self._gl)
+        self._shadow.draw(thrower, view, self.surface.target.frame_number, style.light.to_key)
 
     def draw_outline(
         self,
@@ -182,7 +197,7 @@ class Renderer:
         program = self._surface_program(style, texture, None, "FRINGE")
         if self._set_view(program, view, stream.corners, np.eye(4)):
             self._set_surface(program, view, style, texture, None)
-            with self._blending():
+            with blending(self._gl):
                 draw_fringes(self._gl, program, rows)
 
     def _surface_program(
@@ -194,6 +209,7 @@ class Renderer:
             *(["WIREFRAME"] if style.wireframe else []),
             *COLOUR_DEFINES[style.colour_by],
             *(["TEXTURED"] if texture is not None else []),
+            *(["TRANSLUCENT"] if style.opacity < 1.0 else []),
             *(["SHADOWS"] if style.shadows else []),
             *(["WRINKLES"] if wrinkles is not None else []),
             *more,
@@ -247,14 +263,18 @@ class Renderer:
         shadow = self._shadow if style.shadows else None
         if shadow is not None and not shadow.is_of(view, self.surface.target.frame_number):
             shadow = None
-        program = self._program("surface.glsl", "PIXEL", "COLOURED", *(["SHADOWS"] * bool(shadow)))
-        if shadow is not None:
-            shadow.set_uniforms(program, view, _SHADOW_UNIT)
         placed = self._parts.placed(parts, transforms)
         is_chosen = self._occluder is not None and self._occluder.is_of(view, self.surface.target)
         if is_chosen and self._occluder is not None:
             self._occluder.choose_parts(placed)
+        programs = {}
+        for has_fibres in {buffers.fibres is not None for buffers, _ in placed}:
+            defines = "PIXEL", "COLOURED", *["SHADOWS"] * bool(shadow), *["FIBRES"] * has_fibres
+            programs[has_fibres] = self._program("surface.glsl", *defines)
+            if shadow is not None:
+                shadow.set_uniforms(programs[has_fibres], view, _SHADOW_UNIT)
         for buffers, transform in placed:
+            program = programs[buffers.fibres is not None]
             if not buffers.hair and self._set_view(program, view, buffers.corners, transform):
                 set_part(program, buffers.part, style.light)
                 buffers.draw(program, chosen=is_chosen)
@@ -263,7 +283,7 @@ class Renderer:
             if buffers.hair and self._set_view(program, view, buffers.corners, transform):
                 set_hair(program, buffers.hair, view)
                 set_part(program, buffers.part, style.light)
-                with self._blending():
+                with blending(self._gl):
                     buffers.draw(program, chosen=is_chosen)
 
     def draw_geometry(
@@ -326,26 +346,12 @@ class Renderer:
         self.surface.target.use_layer(view.viewport, covered)
         content = [(self._gl.buffer(rows), "3f 3f", "in_position", "in_colour")]
         lines = self._gl.vertex_array(program, content, self._gl.buffer(segments))
-        with self._blending():
+        with blending(self._gl):
             for depth_func, share in ((">", hidden_opacity), ("<=", opacity)):
                 if share > 0.0:
                     self._gl.depth_func = depth_func
                     program["opacity"] = share
                     lines.render(moderngl.LINES)
-
-    @contextlib.contextmanager
-    def _blending(self) -> Iterator[None]:
-        """What this block draws lies over what is there, by its opacity, and hides nothing."""
-        gl = self._gl
-        gl.enable(moderngl.BLEND)
-        gl.blend_func = _PREMULTIPLYING_BLEND
-        gl.fbo.depth_mask = False
-        try:
-            yield
-        finally:
-            gl.fbo.depth_mask = True
-            gl.depth_func = "<="
-            gl.disable(moderngl.BLEND)
 
     def _camera_view(
         self, camera: OrbitCamera, viewport: Viewport | None, clip: Viewport | None
@@ -355,19 +361,9 @@ class Renderer:
 
     def _viewport(self, viewport: Viewport | None) -> Viewport:
         self.surface.make_current()
-        scale = self.surface.scale
         if viewport is None:
             return (0, 0, *self.surface.target.size)
-        if viewport[2] < 1 or viewport[3] < 1:
-            raise ValueError(
-                f"viewport is {viewport}; it must be (x, y, width, height) of 1 pixel or more"
-            )
-        if scale == 1.0:
-            return viewport
-        left, bottom, width, height = viewport
-        x, y = math.floor(scale * left), math.floor(scale * bottom)
-        right, top = math.ceil(scale * (left + width)), math.ceil(scale * (bottom + height))
-        return x, y, right - x, top - y
+        return scaled(viewport, self.surface.scale)
 
     @property
     def _line_scale(self) -> float:

@@ -8,12 +8,15 @@ Source: Williams 1978, "Casting curved shadows on curved surfaces"; filtering of
 Reeves et al. 1987.
 """
 
+from collections.abc import Iterable
+
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
 from .camera_view import CameraView
 from .light import Vector
+from .parts import PlacedPart
 from .programs import compile_program, write_uniform
 from .stream import Stream
 
@@ -43,18 +46,30 @@ class ShadowMap:
         self._target = gl.framebuffer(depth_attachment=self._depth)
         self._drawn_for: tuple[int, bytes] = (0, b"")
 
-    def draw(self, stream: Stream, view: CameraView, frame_number: int, to_key: Vector) -> None:
-        """Take the depth map of what `stream` uploaded, in the frame of that number.
+    def draw(
+        self,
+        thrower: Stream | Iterable[PlacedPart],
+        view: CameraView,
+        frame_number: int,
+        to_key: Vector,
+    ) -> None:
+        """Take the depth map of what a stream uploaded, or of parts, in the frame of that number.
 
         to_key: unit vector toward the key light, in view space.
         """
         gl = self._gl
         self._basis = _basis(np.array(to_key))
-        write_uniform(self._program, "light_matrix", view.world_to_view @ self._view_to_light(view))
+        to_light = view.world_to_view @ self._view_to_light(view)
+        write_uniform(self._program, "light_matrix", to_light)
         self._target.use()
         gl.viewport, gl.scissor = (0, 0, RESOLUTION, RESOLUTION), None
         self._target.clear(depth=1.0)
-        stream.draw(self._program)
+        if isinstance(thrower, Stream):
+            thrower.draw(self._program)
+        else:
+            for buffers, transform in thrower:
+                write_uniform(self._program, "light_matrix", transform.T @ to_light)
+                buffers.draw(self._program)
         self._drawn_for = frame_number, view.fingerprint
 
     def is_of(self, view: CameraView, frame_number: int) -> bool:

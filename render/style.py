@@ -94,6 +94,7 @@ class Style:
     wireframe: bool = False
     colour_by: ColourBy = ColourBy.NONE
     albedo: Colour = SKIN  # of the front side
+    opacity: float = 1.0  # of the skin, over what was drawn before it
     textured: bool = True  # a texture, where there is one, takes the place of the albedo
     # How far light bleeds past the terminator, 0 .. 1 (skin); None: by how warm the albedo is
     subsurface: float | None = None

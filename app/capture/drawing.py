@@ -10,6 +10,7 @@ from typing import Protocol
 from risorius import render
 from risorius.assets.fitting import FittedHead
 
+from ..anatomy import Dissection
 from ..cameras import camera_for
 from ..files import Image
 from ..keeping import is_keeping, kept
@@ -49,6 +50,7 @@ class CaptureOptions:
     # What draws it instead of these refinements and this style.
     painted: Callable[[Scene, render.OffscreenSurface], Painter] | None = None
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
+    dissection: Dissection = Dissection()  # noqa: RUF009 - frozen
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in one
     is_alive: bool = False  # what the script leaves alone moves by itself
@@ -108,7 +110,8 @@ class Capture:
             image = self._painter.draw_image(self.camera)
             return straight(image) if self.options.is_transparent else image
         self.surface.begin()
-        self.pipeline.draw(self.camera, self.options.style, self.viewports)
+        options = self.options
+        self.pipeline.draw(self.camera, options.style, self.viewports, options.dissection)
         self.surface.end()
         image = self.surface.read_scene(4 if self.options.is_transparent else 3)
         if self.options.beside and self.options.captions:

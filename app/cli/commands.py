@@ -20,6 +20,7 @@ from ..looks import STATIC, Refinement
 from ..playback import Playback
 from .batch import batch
 from .dataset import dataset
+from .dissecting import dissection_of
 from .export import export
 from .options import (
     PATH,
@@ -85,8 +86,7 @@ def capture(
     written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
     check_apart(written, (script, sound, drawing.head, drawing.landmarks, playback.mapping))
     if sound is not None and (output is None or output.suffix.lower() not in HEARD):
-        allowed = ", ".join(HEARD)
-        raise UserError(f"--sound {sound}: only a film is heard; give -o a name in {allowed}")
+        raise UserError(f"--sound {sound}: only a film is heard; end -o in {', '.join(HEARD)}")
     performance = _played(script, scene, sound, playback, settings, quiet=filming.quiet)
     refinement = drawing.refinement()
     options = CaptureOptions(
@@ -99,6 +99,7 @@ def capture(
         is_turntable=filming.turntable,
         span=filming.span,
         style=replace(drawing.style(), background=filming.background),
+        dissection=dissection_of(drawing),
         samples=filming.samples,
         head=drawing.fitted_head(),
         is_alive=filming.alive,
@@ -288,7 +289,9 @@ def open_window(
 
         display = None  # as it was last
         if drawing.is_told:
-            display = display_of(drawing.refinement(), script.scene, **drawing.style_options)
+            display = display_of(
+                drawing.refinement(), script.scene, dissection_of(drawing), **drawing.style_options
+            )
         viewer = Viewer(script, size, display, head=head, settings_path=path, opening=opening)
         with viewer:
             if listening is not None:

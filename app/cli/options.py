@@ -15,6 +15,7 @@ from ..errors import UserError
 from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from ..playback import LEAD, Playback
+from .dissecting import DISSECTING, DISSECTION_OPTIONS
 from .parameters import BackgroundName, FiniteRange, Looks, PersonName, Refiner, Size
 
 if TYPE_CHECKING:
@@ -83,6 +84,9 @@ class Subject:
 class Drawing(Subject):
     """What view, replay and capture are told alike: whose head, how refined, in what style."""
 
+    dissect: str | None
+    skin_opacity: float | None
+    anatomy: str | None
     light: str
     wrinkles: float
     skin: str
@@ -99,7 +103,7 @@ class Drawing(Subject):
     def is_told(self) -> bool:
         """Whether the command that runs was told anything of how the mesh is to be drawn."""
         source = click.get_current_context().get_parameter_source
-        names = ("look", "refiner", "refiner_settings", *STYLE_OPTIONS)
+        names = ("look", "refiner", "refiner_settings", *STYLE_OPTIONS, *DISSECTION_OPTIONS)
         return any(source(name) is not ParameterSource.DEFAULT for name in names)
 
     def style(self) -> render.Style:
@@ -181,7 +185,7 @@ REFINING = (
     ),
 )
 with_subject = packed("subject", Subject, *HEAD, *REFINING)
-with_drawing = packed("drawing", Drawing, *HEAD, *STYLE, *REFINING)
+with_drawing = packed("drawing", Drawing, *HEAD, *DISSECTING, *STYLE, *REFINING)
 
 
 @dataclass(frozen=True)

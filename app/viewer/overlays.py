@@ -1,4 +1,4 @@
-"""Lines over the face that show what moves it: muscles, springs, the skull, landmarks."""
+"""What shows how the face moves: lines over it (springs, landmarks), solids under its skin."""
 
 from __future__ import annotations
 
@@ -11,16 +11,13 @@ import numpy.typing as npt
 from risorius import render
 
 from ..scenes import Scene
-from .colours import edge_strains, vertex_normals
+from .colours import edge_strains
 
 FloatArray = npt.NDArray[np.float64]
 
 # sRGB
-RELAXED, CONTRACTED = np.array([0.80, 0.55, 0.50]), np.array([0.78, 0.05, 0.08])
 POINTED_AT = np.array([1.0, 0.66, 0.10])
 FAINT = 0.3  # opacity of what is pointed at
-BONE = np.array([0.93, 0.89, 0.74])
-MANDIBLE = np.array([0.80, 0.87, 0.93])
 SLACK, STRETCHED, SQUEEZED = (
     np.array([0.45, 0.47, 0.50]),
     np.array([0.80, 0.15, 0.12]),
@@ -41,39 +38,12 @@ class Lines(NamedTuple):
     opacity: float = 1.0
 
 
-def muscle_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.OrbitCamera) -> Lines:
-    """All fibres now, redder the more they contract."""
-    lines, colours = [], []
-    sums = scene.simulation.sums
-    for name, fibres in scene.simulation.fibres().items():
-        share = min(max(sums.get(name, 0.0), 0.0), 1.0)
-        lines += fibres
-        colours += [RELAXED + share * (CONTRACTED - RELAXED)] * len(fibres)
-    return Lines(lines, _rows(colours), width=2.2, hidden_opacity=0.75)
-
-
 def spring_lines(scene: Scene, edges: npt.NDArray[np.int32], camera: render.OrbitCamera) -> Lines:
     """The skin's edge springs: stretched red, compressed blue."""
     strain = np.clip(edge_strains(scene, edges) / MOST_STRAIN, -1.0, 1.0)[:, None]
     colours = SLACK + np.maximum(strain, 0.0) * (STRETCHED - SLACK)
     colours += np.maximum(-strain, 0.0) * (SQUEEZED - SLACK)
     return Lines(list(scene.positions[edges]), colours, width=1.3, hidden_opacity=0.08)
-
-
-def skull_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.OrbitCamera) -> Lines:
-    """The skull under the skin, as deep as the tissue is thick; the mandible moves with the jaw."""
-    head = scene.head
-    rest = scene.rest_positions
-    bone = rest - head.bone_depth[:, None] * vertex_normals(rest, scene)
-    bones = scene.bone_transforms()
-    fixed, turned = (
-        bone @ bones[name][:3, :3].T + bones[name][:3, 3] for name in ("cranium", "mandible")
-    )
-    weight = scene.simulation.mandible_weight[:, None]
-    bone = fixed + weight * (turned - fixed)
-    share = weight[edges].mean(axis=1)
-    colours = BONE + (share > 0.5) * (MANDIBLE - BONE)
-    return Lines(list(bone[edges]), colours, width=1.2, hidden_opacity=0.6)
 
 
 def landmark_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.OrbitCamera) -> Lines:
@@ -89,17 +59,13 @@ def landmark_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.Orbi
 
 
 OverlayMaker = Callable[[Any, npt.NDArray[np.int32], render.OrbitCamera], Lines]
-OVERLAYS: dict[str, OverlayMaker] = {
-    "muscles": muscle_lines,
-    "springs": spring_lines,
-    "skull": skull_lines,
-    "landmarks": landmark_lines,
-}
+LINES: dict[str, OverlayMaker] = {"springs": spring_lines, "landmarks": landmark_lines}
+OVERLAYS = ("muscles", "springs", "skull", "landmarks")  # lines, and SOLIDS of anatomy.py
 
 
 def overlays_of(scene: Scene) -> tuple[str, ...]:
     """The overlays that this scene has the data for: a mesh alone has springs."""
-    return tuple(OVERLAYS) if hasattr(scene, "simulation") else ("springs",)
+    return OVERLAYS if hasattr(scene, "simulation") else ("springs",)
 
 
 def pointed_lines(scene: Any, names: Collection[str]) -> Lines:
@@ -107,7 +73,3 @@ def pointed_lines(scene: Any, names: Collection[str]) -> Lines:
     fibres = scene.simulation.fibres() if hasattr(scene, "simulation") else {}
     lines = [line for name in names for line in fibres.get(name, ())]
     return Lines(lines, np.tile(POINTED_AT, (len(lines), 1)), 2.0, FAINT, FAINT)
-
-
-def _rows(colours: Sequence[FloatArray]) -> FloatArray:
-    return np.array(colours).reshape(-1, 3)

@@ -18,6 +18,7 @@ from typing import Annotated, Any
 
 from risorius import render
 
+from ..anatomy import OPACITY, SIDES, SOLIDS, Dissection
 from ..errors import UserError, in_one_line
 from ..files import read_text, written_atomically
 from ..looks import CHANGED, FIRST_LOOK, LOOKS, STATIC, Refinement, named
@@ -57,6 +58,15 @@ class Display:
     tone: Annotated[str, rules.one_of(rules.TONES)] = "own"  # of textured skin
     is_orthographic: Annotated[bool, rules.flag] = False  # the camera
     overlays: Annotated[list[str], rules.several_of(OVERLAYS)] = field(default_factory=list)
+    # Of the skin over muscles and skull, and on which side of the face it lets them show.
+    skin_opacity: Annotated[float, rules.number(0.0, 1.0)] = OPACITY
+    dissect: Annotated[str, rules.one_of(SIDES)] = "both"
+
+    @property
+    def dissection(self) -> Dissection:
+        """What is seen under the skin."""
+        solids = tuple(name for name in SOLIDS if name in self.overlays)
+        return Dissection(solids, self.skin_opacity, self.dissect)
 
     def choose_look(self, name: str) -> None:
         """Refine by a look, and by nothing but it."""
@@ -162,6 +172,7 @@ class Settings:
 def display_of(
     refinement: Refinement,
     scene: str,
+    dissection: Dissection = Dissection(),  # noqa: B008 - frozen
     *,
     shading: str,
     wireframe: bool,
@@ -174,6 +185,8 @@ def display_of(
     display = Display(
         shading=shading, wireframe=wireframe, skin=skin, wrinkles=wrinkles, light=light
     )
+    display.overlays, display.dissect = list(dissection.solids), dissection.side
+    display.skin_opacity = dissection.opacity
     display.look, display.colours = refinement.look, "splits" if splits else "none"
     if refinement.refiner == STATIC:
         display.is_refined = False

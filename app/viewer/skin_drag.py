@@ -13,9 +13,8 @@ import numpy.typing as npt
 
 from risorius import sim
 
-from ..mirror import parted, twin_of
+from ..mirror import OPPOSITE, parted, twin_of
 from ..vocabulary import called
-from .control_rows import OPPOSITE
 from .messages import Message
 from .picking import muscle_at
 from .session import Session

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from risorius import render
 
+from ..anatomy import Solids
 from ..capture.captions import Label, captioned, labels
 from ..files import Image
 from ..looks import STATIC, Refinement
@@ -20,7 +21,7 @@ from ..wrinkling import wrinkling_of
 from .colours import COLOURS, Amounts
 from .frame_times import FrameTimes
 from .level_of_detail import FULL
-from .overlays import OVERLAYS, Lines, pointed_lines
+from .overlays import LINES, Lines, pointed_lines
 from .setting_rules import SKINS, TONES
 from .settings import Display
 from .view import View
@@ -52,6 +53,7 @@ class Stage:
         self._texture = texture_of(scene, self.renderer)
         self._tone: float | None = None
         self._wrinkling = wrinkling_of(scene, self.renderer)
+        self._solids = Solids(scene)
         self.static = DrawnMesh.of(scene, self.renderer, Refinement(refiner=STATIC))
         self.refined = self.a = self.b = self.static  # what is chosen, what else is compared
         self.refiner_options: dict[str, Any] = {}  # of `refined`, with their defaults
@@ -138,10 +140,12 @@ class Stage:
         with times.timed("draw"):
             self.surface.begin()
             overlays = self._overlays(view, () if is_photo else view.pointed)
+            if display.dissection.is_on(self.scene):
+                self._solids.follow(display.dissection)
             self.renderer.draw_background(style, viewport)
             for shot in shots:
                 values = COLOURS[display.colours].values(self.scene, shot.drawn)
-                self._draw_shot(shot, camera, style, values)
+                self._draw_shot(shot, view, style, values)
                 for lines in overlays:
                     self.renderer.draw_lines(
                         lines.polylines,
@@ -165,30 +169,31 @@ class Stage:
         return labels(texts, places, bar, style, least=view.letter)
 
     def _draw_shot(
-        self, shot: Shot, camera: render.OrbitCamera, style: render.Style, values: Amounts | None
+        self, shot: Shot, view: View, style: render.Style, values: Amounts | None
     ) -> None:
+        camera, dissection, stream = view.camera, view.display.dissection, shot.drawn.stream
         where: dict[str, Any] = {"viewport": shot.viewport, "clip": shot.clip}
         has_uv = shot.drawn.has_uv
         texture = self._texture if has_uv else None
-        self.renderer.draw_mesh(
-            shot.drawn.stream,
-            camera,
-            style,
-            values=values,
-            texture=texture,
-            wrinkles=self._wrinkling.map if self._wrinkling and has_uv else None,
-            **where,
-        )
+        wrinkles = self._wrinkling.map if self._wrinkling and has_uv else None
+        skin: dict[str, Any] = {"values": values, "texture": texture, "wrinkles": wrinkles}
+        if dissection.is_on(self.scene):
+            self._solids.draw(
+                self.renderer, stream, camera, style, dissection, where=where, skin=skin
+            )
+            return
+        self.renderer.draw_mesh(stream, camera, style, **skin, **where)
         # After the mesh: the skin throws its shadow on eyes and teeth.
         self.renderer.draw_parts(
             self.scene.parts, self.scene.bone_transforms(), camera, style, **where
         )
         if not self.surface.samples:
-            self.renderer.draw_outline(shot.drawn.stream, camera, style, texture=texture, **where)
+            self.renderer.draw_outline(stream, camera, style, texture=texture, **where)
 
     def _overlays(self, view: View, pointed: tuple[str, ...]) -> list[Lines]:
         edges = self.static.refiner.edges
-        lines = [OVERLAYS[name](self.scene, edges, view.camera) for name in view.display.overlays]
+        names = [name for name in view.display.overlays if name in LINES]
+        lines = [LINES[name](self.scene, edges, view.camera) for name in names]
         return [*lines, pointed_lines(self.scene, pointed)] if pointed else lines
 
     def draw_image(self, view: View, *, has_captions: bool = True) -> Image:

@@ -83,7 +83,7 @@ def anatomy(viewer: Viewer) -> None:
     """Skull, muscles and landmarks."""
     viewer.session.set("jaw_open", 0.5)
     viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
-    viewer.settings.display = Display(overlays=["skull", "muscles", "landmarks"])
+    viewer.settings.display = Display(overlays=["skull", "muscles"], dissect="left")
     viewer.view.camera = camera_for(viewer.session.scene, "three-quarter")
 
 

@@ -2,7 +2,8 @@
 // One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
 // stage), VALUES (colour by a value per triangle: SPLITS a count, RAMP an amount), COLOURED (vertex colours), TEXTURED (skin's albedo from
 // a picture), SHADOWS (of the key), WRINKLES (of the skin; with PIXEL), FRINGE (fading fringes along
-// contours, see outline.py), HAIR (thin cones, never drawn thinner than a pixel: they fade instead).
+// contours, see outline.py), HAIR (thin cones, never drawn thinner than a pixel: they fade instead),
+// FIBRES (striation of muscle), TRANSLUCENT (skin that shows what is under it).
 
 #include "lighting.glsl"
 
@@ -48,8 +49,13 @@ uniform float sharpness;
 #else
 #define FRINGE_VARYING
 #endif
+#if defined(FIBRES)
+#define FIBRE_VARYING vec2 fibre;
+#else
+#define FIBRE_VARYING
+#endif
 #define VARYINGS vec3 position; NORMAL_VARYING LIT_VARYING COLOUR_VARYING TEXTURE_VARYING \
-    SHADOW_VARYING WRINKLE_VARYING FRINGE_VARYING
+    SHADOW_VARYING WRINKLE_VARYING FRINGE_VARYING FIBRE_VARYING
 
 #if defined(VERTEX_STAGE)
 
@@ -63,6 +69,9 @@ in vec2 in_uv;
 #endif
 #if defined(WRINKLES)
 in vec2 in_wrinkling;
+#endif
+#if defined(FIBRES)
+in vec2 in_fibre;  // across and along the fibres [mm]
 #endif
 #if defined(FRINGE)
 in vec3 in_fringe;  // how far aside in clip space, coverage
@@ -105,6 +114,9 @@ void main() {
 #endif
 #if defined(COLOURED)
     surface.colour = in_colour;
+#endif
+#if defined(FIBRES)
+    surface.fibre = in_fibre;
 #endif
 #if defined(HAS_UV)
     surface.uv = in_uv;
@@ -214,6 +226,15 @@ uniform sampler2DShadow shadow_map;
 #if defined(WRINKLES)
 #include "wrinkles.glsl"
 #endif
+#if defined(FIBRES)
+#include "fibres.glsl"
+#endif
+#if defined(TRANSLUCENT)
+uniform float opacity;
+uniform vec4 cut;  // plane, view space; in front of it the skin is whole
+uniform float cut_width;
+const vec3 FAT = vec3(0.78, 0.50, 0.34);  // linear light
+#endif
 #if defined(FRINGE)
 #define IS_FRONT true
 #else
@@ -306,6 +327,10 @@ void main() {
     Wrinkle wrinkle = wrinkle_at(surface.uv, IS_FRONT ? surface.wrinkling : vec2(0.0));
     normal = wrinkled(normal, surface.position, surface.uv, wrinkle);
 #endif
+#if defined(FIBRES)
+    Strand strand = strand_at(surface.fibre);
+    normal = stranded(normal, surface.position, surface.fibre.x, strand.slope);
+#endif
     Lit lit = studio(normal, to_eye, subsurface, gloss, sharpness);
     vec3 inner = inside(normal);
     float facing = dot(normal, to_eye);
@@ -325,6 +350,9 @@ void main() {
 #endif
 #if defined(WRINKLES)
     front *= 1.0 - wrinkle.depth * FURROW;
+#endif
+#if defined(FIBRES)
+    front *= strand.tone;
 #endif
     float lightness = key_lightness();
 #if defined(COLOURED)
@@ -349,6 +377,15 @@ void main() {
 #endif
 #if defined(FRINGE) || defined(HAIR)
     pixel_colour = vec4(shown, surface.coverage);
+#elif defined(TRANSLUCENT)
+    // Where it is seen from the side there is more of it: so the outline of the face reads.
+    float from_cut = dot(cut, vec4(surface.position, 1.0));
+    float grazing = 1.0 - clamp(facing, 0.0, 1.0);
+    float veil = grazing * grazing * min(3.0 * opacity, 1.0);
+    float shown_share = from_cut > 0.0 ? 1.0 : mix(opacity, 1.0, veil);
+    // The edge of the cut is as thick as skin.
+    if (from_cut > 0.0) shown = mix(display(FAT * (0.35 + 0.65 * light)), shown, smoothstep(0.7, 1.0, from_cut / cut_width));
+    pixel_colour = vec4(shown, shown_share);
 #else
     pixel_colour = vec4(shown, 1.0);
 #endif

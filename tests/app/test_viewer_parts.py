@@ -29,7 +29,7 @@ from risorius.app.viewer.control_rows import rows_of, search_rows
 from risorius.app.viewer.document import Document
 from risorius.app.viewer.history import MOST_GROWTH, History
 from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
-from risorius.app.viewer.overlays import OVERLAYS, overlays_of
+from risorius.app.viewer.overlays import LINES, overlays_of
 from risorius.app.viewer.physics import EARLIEST, MOST_STEPS, STEP, Clock
 from risorius.app.viewer.places import Places
 from risorius.app.viewer.recorder import Recorder
@@ -352,16 +352,12 @@ def test_the_page_shows_every_picture_of_the_tour() -> None:
 
 
 def test_a_head_that_somebody_brings_has_every_overlay(tmp_path: Path) -> None:
-    """The skull of a fitted head lies under its skin, and the mandible goes down with the jaw."""
+    """Springs and landmarks of a fitted head are lines; test_anatomy.py has the solids."""
     fitted = FaceScene(fit_head(*stranger().write(tmp_path)))
     assert overlays_of(fitted) == ("muscles", "springs", "skull", "landmarks")
     edges, camera = fitted.faces[:, :2], render.OrbitCamera.framing(fitted.rest_positions)
-    rest = np.array(OVERLAYS["skull"](fitted, edges, camera).polylines)
-    assert np.isfinite(rest).all()
-    fitted.pose({"jaw_open": 1.0})
-    fitted.step(1.0)
-    lower = np.array(OVERLAYS["skull"](fitted, edges, camera).polylines)[..., 1] - rest[..., 1]
-    assert lower.min() < -15.0 and abs(np.median(lower)) < 1.0
+    for lines in LINES.values():
+        assert np.isfinite(np.array(lines(fitted, edges, camera).polylines)).all()
 
 
 def test_what_a_live_face_sends_is_stepped_at_once_and_time_keeps_its_pace() -> None:

@@ -13,6 +13,7 @@ from imgui_bundle import imgui
 from risorius import refine, render
 from risorius.assets.identities import NAMED
 
+from ...anatomy import OPACITY, SIDES
 from ...looks import FIRST_LOOK, LOOKS, STATIC, named, words_of_looks
 from ...refining import DETAIL, can_detail
 from ...scenes import BUILT_IN
@@ -59,14 +60,16 @@ HINTS = {
     "Occlusion": "less light from all around in folds of the textured skin",
     "Skin tone": "by its typology angle; own: as this person has it",
     "Person": "another head, on which script and pose go on (--person takes any number)",
-    "Muscles": "their fibres, redder the more they contract (U)",
+    "Muscles": "under translucent skin; they bulge and redden as they contract (U)",
     "Springs": "the skin's: stretched red, compressed blue",
-    "Skull": "the bone under the skin; the mandible moves with the jaw",
+    "Skull": "under translucent skin, as far as the head tells it; the mandible moves with the jaw",
+    "Skin opacity": "over muscles and skull; 0: no skin",
+    "Dissect": "the side of the face whose skin is translucent",
     "Landmarks": "the 68 points that the muscles are placed by",
 }
 # Rows of fields of the display, by their labels.
 FIELDS = {"Refine": "is_refined", "Skin tone": "tone"}
-FIELDS |= {each.name.capitalize(): each.name for each in fields(Display)}
+FIELDS |= {each.name.capitalize().replace("_", " "): each.name for each in fields(Display)}
 THRESHOLDS = "threshold_once", "threshold_twice"  # of this criterion alone:
 PAPERS_CRITERION = "normal"
 LABEL_SHARE = 0.45  # of a row
@@ -227,6 +230,11 @@ class MechanismPanel:
                 imgui.same_line(_label_width())
             is_on = name in display.overlays
             self._check(name.capitalize(), is_on, partial(display.toggle_overlay, name))
+        if display.dissection.solids:
+            now = display.skin_opacity
+            slid = self._slide("Skin opacity", "skin_opacity", now, (0.0, 1.0), OPACITY)
+            display.skin_opacity = now if slid is None else slid
+            self._pick("Dissect", tuple(SIDES))
 
     def _draw_times(self) -> None:
         """A scrolling plot for each phase of the paper's Figure 1, and the median of a second."""

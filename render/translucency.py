@@ -1,0 +1,61 @@
+"""What lies over other things and lets them show: its nearest layer, blended over what is there."""
+
+import contextlib
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import moderngl
+import numpy as np
+
+from .camera_view import CameraView
+from .stream import Share, Stream
+from .style import Style
+
+Plane = tuple[float, float, float, float]  # (a, b, c, d): in front is a x + b y + c z + d > 0
+CUT_WIDTH = 0.008  # of the scene's radius: how thick skin looks where it is cut
+# Colour as usual; the layer starts out transparent and collects premultiplied colour.
+_PREMULTIPLYING_BLEND: Any = (
+    moderngl.SRC_ALPHA,
+    moderngl.ONE_MINUS_SRC_ALPHA,
+    moderngl.ONE,
+    moderngl.ONE_MINUS_SRC_ALPHA,
+)
+
+
+@contextlib.contextmanager
+def blending(gl: moderngl.Context) -> Iterator[None]:
+    """What this block draws lies over what is there, by its opacity, and hides nothing."""
+    gl.enable(moderngl.BLEND)
+    gl.blend_func = _PREMULTIPLYING_BLEND
+    gl.fbo.depth_mask = False
+    try:
+        yield
+    finally:
+        gl.fbo.depth_mask = True
+        gl.depth_func = "<="
+        gl.disable(moderngl.BLEND)
+
+
+def draw_nearest(
+    gl: moderngl.Context, stream: Stream, shares: Sequence[tuple[moderngl.Program, Share]]
+) -> None:
+    """Blend the nearest layer of a mesh alone: its depths first, then what lies at them."""
+    gl.enable(moderngl.CULL_FACE)
+    gl.enable(moderngl.BLEND)
+    gl.blend_func = moderngl.ZERO, moderngl.ONE  # leaves all colours
+    for program, share in shares:
+        stream.draw(program, share)
+    with blending(gl):
+        for program, share in shares:
+            stream.draw(program, share)
+    gl.disable(moderngl.CULL_FACE)
+
+
+def set_translucency(
+    program: moderngl.Program, style: Style, view: CameraView, cut: Plane | None
+) -> None:
+    """How far skin lets what is under it show, and behind which plane; None: everywhere."""
+    program["opacity"] = style.opacity
+    there = (0.0, 0.0, 0.0, -1.0) if cut is None else np.linalg.inv(view.world_to_view) @ cut
+    program["cut"] = tuple(there)
+    program["cut_width"] = CUT_WIDTH * view.camera.scene_radius

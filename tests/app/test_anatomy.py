@@ -1,0 +1,183 @@
+"""Muscles and skull: sound surfaces that follow the face, and skin that lets them show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from PIL import Image
+from scipy.spatial import cKDTree
+
+from risorius import render
+from risorius.__main__ import command
+from risorius.app.anatomy import SOLIDS, Dissection, Solids
+from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.muscle_bands import AROUND, ROWS, Muscles
+from risorius.app.scenes import FaceScene
+from risorius.assets.fitting import fit_head
+from tests.heads import stranger
+
+SIZE = (150, 170)
+BOTH = Dissection(SOLIDS)
+
+
+@pytest.fixture(scope="module")
+def studio() -> Iterator[Capture]:
+    """A small picture of the built-in face, multisampled."""
+    with Capture(FaceScene(), CaptureOptions(size=SIZE)) as opened:
+        yield opened
+
+
+def picture(studio: Capture, dissection: Dissection, **style: Any) -> Any:
+    """What is seen of the face as it is now."""
+    options = replace(studio.options, dissection=dissection)
+    studio.options = replace(options, style=render.Style(**style))
+    return studio.draw_image().astype(int)
+
+
+def posed(scene: FaceScene, **pose: float) -> FaceScene:
+    """The face a second after it was told a pose."""
+    scene.reset()
+    scene.pose(pose)
+    for _ in range(60):
+        scene.step(1.0 / 60.0)
+    return scene
+
+
+def solids_of(studio: Capture, **pose: float) -> list[Any]:
+    """Muscles and skull of the face in a pose."""
+    posed(studio.scene, **pose)  # type: ignore[arg-type]
+    studio.pipeline.solids.follow(BOTH)
+    parts = studio.pipeline.solids.parts
+    return [part for part in parts if part.name.startswith(("skull", "muscles"))]
+
+
+def check_surface(part: Any) -> None:
+    """Finite, with unit normals, and closed: each edge is used as often in either direction."""
+    assert np.isfinite(part.vertices).all() and np.isfinite(part.colours).all()
+    assert 0.0 <= part.colours.min() and part.colours.max() <= 1.0
+    assert np.abs(np.linalg.norm(part.normals, axis=1) - 1.0).max() < 1e-3
+    edges = np.concatenate([part.faces[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
+    known, count = np.unique(edges, axis=0, return_counts=True)
+    often = dict(zip(map(tuple, known.tolist()), count.tolist(), strict=True))
+    unpaired = [edge for edge, times in often.items() if often.get(edge[::-1]) != times]
+    ends = part.vertices[np.array(unpaired, int).reshape(-1, 2)]  # of bands: drawn together
+    assert np.abs(ends[:, 0] - ends[:, 1]).max(initial=0.0) < 1e-3
+
+
+def test_skin_that_hides_everything_is_drawn_as_ever(studio: Capture) -> None:
+    """At opacity 1, and without anything beneath, every byte is that of the usual picture."""
+    posed(studio.scene)  # type: ignore[arg-type]
+    usual = picture(studio, Dissection())
+    assert np.array_equal(picture(studio, Dissection(SOLIDS, 1.0)), usual)
+    assert np.array_equal(picture(studio, Dissection((), 0.2)), usual)
+    assert (picture(studio, BOTH) != usual).mean() > 0.3
+    assert np.array_equal(picture(studio, Dissection()), usual)  # and it leaves nothing behind
+
+
+def test_no_skin_is_seen_at_opacity_0_and_one_side_alone_is_opened(studio: Capture) -> None:
+    """What skin is like makes no difference then; the side that is not opened stays as it is."""
+    posed(studio.scene)  # type: ignore[arg-type]
+    bare = Dissection(SOLIDS, 0.0)
+    assert np.array_equal(picture(studio, bare), picture(studio, bare, textured=False))
+    usual, left = picture(studio, Dissection()), picture(studio, replace(bare, side="left"))
+    middle = SIZE[0] // 2
+    shown = np.abs(left - usual).max(axis=2) > 24  # eyes lie in another shadow
+    assert shown[:, : middle - 3].mean() < 0.01 < 0.2 < shown[:, middle + 3 :].mean()
+
+
+def test_more_skin_hides_more(studio: Capture) -> None:
+    """From 0 to 1 the picture goes evenly to the usual one."""
+    posed(studio.scene)  # type: ignore[arg-type]
+    usual = picture(studio, Dissection())
+    opacities = (0.0, 0.3, 0.6, 0.9)
+    shown = [picture(studio, Dissection(SOLIDS, opacity)) for opacity in opacities]
+    off = [float(np.abs(each - usual).mean()) for each in shown]
+    assert off == sorted(off, reverse=True) and off[0] > 5.0 * off[3]
+
+
+@pytest.mark.parametrize("pose", [{}, {"joy": 1.0}, {"jaw_open": 1.0, "head_yaw": 0.6}])
+def test_surfaces_are_sound(studio: Capture, pose: dict[str, float]) -> None:
+    """At rest, in a smile, in a turned head that yawns."""
+    made = solids_of(studio, **pose)
+    assert len(made) == 4
+    for part in made:
+        check_surface(part)
+
+
+def test_muscles_swell_and_redden_as_they_contract() -> None:
+    """The zygomaticus of a smile is thicker in the middle, and redder, on both sides alike."""
+    scene = posed(FaceScene())
+    muscles = Muscles.of(scene)
+    names = [name for name, _ in muscles.names]
+
+    def belly(name: str) -> tuple[float, float]:
+        """Area of the cross section in the middle [mm2], and how red it is there."""
+        first = names.index(name) * ROWS * AROUND + ROWS // 2 * AROUND
+        ring = muscles.vertices[first : first + AROUND].astype(float)
+        middle = ring - ring.mean(axis=0)
+        area = np.linalg.norm(np.cross(middle, np.roll(middle, -1, axis=0)).sum(axis=0))
+        red, green, _ = muscles.colours[first + AROUND // 4]
+        return 0.5 * float(area), float(red / green)
+
+    at_rest = belly("zygomaticus_major_left")
+    muscles.follow(posed(scene, joy=1.0))
+    left, right = belly("zygomaticus_major_left"), belly("zygomaticus_major_right")
+    assert left[0] > 1.15 * at_rest[0] and left[1] > 1.5 * at_rest[1]
+    assert right == pytest.approx(left, rel=0.02)
+    late = Muscles.of(scene)  # made in the middle of a smile, they are the same
+    assert np.abs(late.vertices - muscles.vertices).max() < 0.05
+    muscles.follow(posed(scene))
+    assert belly("zygomaticus_major_left") == pytest.approx(at_rest, rel=0.01)
+
+
+@pytest.mark.parametrize("pose", [{}, {"joy": 1.0}])
+def test_a_symmetric_face_has_symmetric_solids(studio: Capture, pose: dict[str, float]) -> None:
+    """Left and right are mirror images."""
+    for part in solids_of(studio, **pose):
+        mirrored = part.vertices * np.array([-1.0, 1.0, 1.0], np.float32)
+        off = cKDTree(part.vertices).query(mirrored)[0]
+        assert np.percentile(off, 99) < 0.4, part.name
+
+
+def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path: Path) -> None:
+    """They lie in it, and the mandible goes down with the jaw."""
+    scene = FaceScene(fit_head(*stranger().write(tmp_path)))
+    solids = Solids(scene)
+    solids.follow(BOTH)
+    low, high = scene.rest_positions.min(axis=0), scene.rest_positions.max(axis=0)
+    parts = {part.name: part for part in solids.parts}
+    for name in ("skull_cranium", "skull_mandible", "skull_nose", "muscles"):
+        points = parts[name].vertices
+        assert np.isfinite(points).all() and len(points) > 300
+        assert (points.max(axis=0) < high + 2.0).all() and (points.min(axis=0) > low - 12.0).all()
+    before = parts["muscles"].vertices
+    posed(scene, jaw_open=1.0)
+    solids.follow(BOTH)
+    assert (before[:, 1] - parts["muscles"].vertices[:, 1]).max() > 8.0
+
+
+def test_the_command_draws_anatomy(tmp_path: Path) -> None:
+    """`--anatomy` opens the side that is told; what is not there is told in one line."""
+    always = ["capture", "--set", "AU12=1", "--size", "120x120", "--quiet"]
+    plain, opened = tmp_path / "plain.png", tmp_path / "opened.png"
+
+    def run(*more: str) -> Any:
+        """The command in this process."""
+        return CliRunner().invoke(command(), [*always, *more])
+
+    assert run("-o", str(plain)).exit_code == 0
+    told = ("--anatomy", "--dissect", "left", "--skin-opacity", "0.1")
+    assert run(*told, "-o", str(opened)).exit_code == 0
+    first, second = (np.array(Image.open(path)).astype(int) for path in (plain, opened))
+    off = np.abs(first - second).max(axis=2) > 24
+    assert off[:, 63:].mean() > 5.0 * off[:, :57].mean()
+    wrong = run("--anatomy", "muscles,bones", "-o", str(plain))
+    assert wrong.exit_code == 2 and "muscles, skull" in wrong.output
+    lonely = run("--skin-opacity", "0.5", "-o", str(plain))
+    assert lonely.exit_code == 2 and "--anatomy" in lonely.output

@@ -1,0 +1,40 @@
+"""Anatomy in the window: a key shows it, and it is the picture that `capture` draws."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from risorius.app.viewer import Viewer  # before render, see app/viewer/gui.py
+from risorius.app.viewer.setting_rules import SKINS
+
+from risorius import render  # isort: skip
+from risorius.app.anatomy import Dissection
+from risorius.app.capture import Capture, CaptureOptions
+
+from .driving import draw_frames, xdotool
+
+pytestmark = pytest.mark.window
+
+
+@pytest.mark.usefixtures("calm")
+def test_a_key_shows_the_muscles_as_capture_draws_them(viewer: Viewer) -> None:
+    """U switches them on and off; nothing stays behind."""
+    draw_frames(viewer)
+    usual = viewer.stage.draw_image(viewer.view).astype(int)
+    xdotool(viewer, "key", "u")
+    draw_frames(viewer)
+    assert viewer.settings.display.overlays == ["muscles"]
+    shown = viewer.stage.draw_image(viewer.view).astype(int)
+    assert (np.abs(shown - usual).max(axis=2) > 16).mean() > 0.05
+    size = shown.shape[1], shown.shape[0]
+    style = render.Style(albedo=SKINS["textured"][1], background=viewer.view.background)
+    options = CaptureOptions(size=size, style=style, dissection=Dissection(("muscles",)))
+    with Capture(viewer.session.scene, options) as capture:
+        capture.camera = viewer.view.camera
+        off = np.abs(capture.draw_image().astype(int) - shown)
+    assert np.percentile(off, 99) <= 2.0
+    viewer.surface.make_current()
+    xdotool(viewer, "key", "u")
+    draw_frames(viewer)
+    assert np.array_equal(viewer.stage.draw_image(viewer.view), usual)
