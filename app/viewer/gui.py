@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +27,10 @@ import glfw  # isort: skip - after imgui_bundle, see above
 FONT = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.ttf"
 FONT_SIZE = 15.0  # [window units at scale 1]
 LEFT, RIGHT, MIDDLE = 0, 1, 2  # buttons of the mouse
+DOUBLE_CLICK = 0.3  # [s] in which the second press of one comes
+PANEL = "Controls"  # the window that the keyboard begins in
+SETTLING = 3  # turns of the GUI in which what a press has opened gets the focus
+MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
 # Of a window that is a note over the picture: as large as its words, and it takes no keys.
 NOTE_FLAGS = (
     imgui.WindowFlags_.always_auto_resize
@@ -72,11 +78,23 @@ THEMES = {
 
 
 class Gui:
-    """The Dear ImGui context of one window; `places` says where each item is, for who drives it."""
+    """The Dear ImGui context of one window; `places` says where each item is, for who drives it.
+
+    However slowly the window draws, it answers what the user did in the order in which that was
+    done, each press in a turn of its own (`turns`), and by the time at which it was taken in.
+    """
 
     def __init__(self, window: Any) -> None:
         self._window = window
         self._context = imgui.create_context()
+        self.double_click_time = DOUBLE_CLICK
+        self.has_popup = False  # a menu, a list or a dialog, as the turn began
+        self.owns_keys = False  # Tab, arrows, Space ... are for widgets: they walk through these
+        self._is_walking = False
+        self._presses: list[tuple[int, int | None]] = []  # how many events before, and which key
+        self._looked = time.perf_counter()  # when events were taken in last [s]
+        self._shown = self._looked - 1.0 / 60.0  # when that was for the last frame [s]
+        self._blind = 0.0  # [s] for which nobody looked before: an event may be as old as that
         self.places: dict[str, tuple[float, float, float, float]] = {}
         self.theme = THEMES["light"]
         self._dressed: object = None
@@ -87,6 +105,8 @@ class Gui:
         address = ctypes.cast(window, ctypes.c_void_p).value
         if address is None:
             raise RuntimeError("the window is closed already")
+        glfw.set_key_callback(window, self._note_key)  # which ImGui calls before its own
+        glfw.set_mouse_button_callback(window, self._note_button)
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330")
 
@@ -113,10 +133,63 @@ class Gui:
             max(glfw.get_window_content_scale(self._window)) / max(pixels_per_unit, 1.0), 1.0
         )
 
+    def look(self, seconds: float | None = None) -> None:
+        """Take in what the user did since the last call, or wait so long for something."""
+        self._blind = time.perf_counter() - self._looked
+        if seconds is None:
+            glfw.poll_events()
+        else:
+            glfw.wait_events_timeout(seconds)
+        self._looked = time.perf_counter()
+
     @property
     def has_events(self) -> bool:
         """Whether the user did something since the last frame."""
-        return imgui.get_current_context().input_events_queue.size() > 0
+        return bool(_queue().size() > 0)
+
+    def _note_key(self, _: Any, key: int, code: int, action: int, modifiers: int) -> None:
+        """Events are cut before a press, and before a modifier is let go, lest it misses its key."""
+        is_modifier = key in MODIFIERS
+        if action == glfw.PRESS or (is_modifier and action == glfw.RELEASE):
+            self._presses.append((_queue().size(), None if is_modifier else key))
+
+    def _note_button(self, _: Any, button: int, action: int, modifiers: int) -> None:
+        """The mouse has to be there before it is pressed; a press is old when it is taken in."""
+        if action == glfw.PRESS:
+            self._presses.append((_queue().size(), -1 - button))
+            io, longest = imgui.get_io(), self.double_click_time + self._blind
+            io.mouse_double_click_time, io.mouse_single_click_delay = longest, 2.0 * longest + 0.1
+
+    def turns(self) -> Iterator[None]:
+        """Turns of the GUI, a `frame` each, until all that the user did is answered."""
+        queue, io = _queue(), imgui.get_io()
+        waiting = type(queue)()
+        for event in queue:
+            waiting.push_back(event)
+        queue.clear()
+        cuts, self._presses = [(0, None), *self._presses, (waiting.size(), 0)], []
+        for (start, pressed), (end, following) in pairwise(cuts):
+            if pressed is not None:
+                self._walk(pressed)
+            for index in range(start, end):
+                queue.push_back(waiting[index])
+            while queue.size():
+                yield
+            # A press may open a line to type in; keys that follow wait until it has the focus.
+            is_settling = pressed is not None and following is not None and following >= 0
+            for _ in range(SETTLING if is_settling else 0):
+                if not io.want_text_input:
+                    yield
+
+    def _walk(self, pressed: int) -> None:
+        """Tab lets the keyboard walk through the widgets; a click or Escape ends it."""
+        context = imgui.get_current_context()
+        if pressed == glfw.KEY_TAB and context.nav_window is None:
+            imgui.set_window_focus(PANEL)
+        if pressed == glfw.KEY_TAB:
+            self._is_walking = True
+        elif pressed < 0 or (pressed == glfw.KEY_ESCAPE and not self.has_popup):
+            self._is_walking = False
 
     def covers(self, area: tuple[float, float, float, float]) -> bool:
         """Whether a window of the last frame reaches into an area (left, top, width, height)."""
@@ -137,6 +210,14 @@ class Gui:
         """
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
+        io = imgui.get_io()
+        # Events count by when they were taken in, not by when there is time to answer them.
+        io.delta_time = max(self._looked - self._shown, 1e-6)
+        self._shown = self._looked
+        self.has_popup = imgui.get_current_context().open_popup_stack.size() > 0
+        self.owns_keys = self._is_walking or self.has_popup
+        walks = imgui.ConfigFlags_.nav_enable_keyboard
+        io.config_flags = io.config_flags | walks if self.owns_keys else io.config_flags & ~walks
         imgui.new_frame()
         self.places.clear()
         try:
@@ -158,18 +239,13 @@ class Gui:
         imgui.destroy_context(self._context)
 
 
-def poll_events() -> None:
-    """Take in what the user did since the last call."""
-    glfw.poll_events()
-
-
-def wait_for_event(seconds: float) -> None:
-    """Sleep until the user does something, or so long."""
-    glfw.wait_events_timeout(seconds)
+def _queue() -> Any:
+    """What ImGui was told and has not answered."""
+    return imgui.get_current_context().input_events_queue
 
 
 def wake_up() -> None:
-    """End a `wait_for_event`, from any thread."""
+    """End a wait for events, from any thread."""
     glfw.post_empty_event()
 
 

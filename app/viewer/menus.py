@@ -59,7 +59,7 @@ def edit_menu(session: Session) -> Menu:
     command = partial(Command, "Edit")
     return (
         command("Undo", "Ctrl+Z", session.undo, can_run=lambda: session.can_undo),
-        command("Redo", "Ctrl+Shift+Z", session.redo, can_run=lambda: session.can_redo),
+        command("Redo", "Ctrl+Y", session.redo, None, lambda: session.can_redo, "Ctrl+Shift+Z"),
         command("Neutral", "N", session.neutral),
         command("Mirror", "M", session.mirror),
         command("Randomise", "X", session.randomise),
@@ -143,11 +143,12 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
         command("Idle life", "A", settings.toggle_life, lambda: settings.is_alive),
         command("Frame the face", "F", view.fit_scene),
-        command("Hide panels", "Tab", panels.toggle_hidden, lambda: panels.are_hidden),
+        command("Hide panels", "H", panels.toggle_hidden, lambda: panels.are_hidden),
         full("Full screen", "F11", toggle_full),
         command("Dark theme", "F2", settings.toggle_theme, lambda: settings.theme == "dark"),
-        command("Larger words", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
-        command("Smaller words", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
+        command("Larger text", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
+        command("Smaller text", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
+        command("Usual size", "Ctrl+0", partial(settings.enlarge, 0.0)),
     )
 
 

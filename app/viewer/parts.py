@@ -13,7 +13,7 @@ from ..errors import UserError
 from ..scenes import Scene, build_scene
 from ..script import Script
 from . import menus
-from .command import Command
+from .command import Command, set_keys
 from .export import Exporter
 from .file_drop import FileDrop
 from .files import Files
@@ -32,6 +32,7 @@ from .panel_state import PanelState
 from .panels.chooser import FileChooser
 from .panels.dope_sheet import DopeSheet
 from .panels.face import FacePanel
+from .panels.help import Help
 from .panels.layout import Layout
 from .panels.live import LivePanel
 from .panels.mechanism import MechanismPanel
@@ -134,6 +135,7 @@ class Parts:
             *menus.live_menu(self.live),
             *menus.help_menu(self.panel_state),
         )
+        set_keys(self.commands, settings.keys)
         self.life = IdleLife(session, settings, self.view)
         self.physics = Physics(session, self.times)
         self.painter = Painter(self.stage, self.view, self.exporter, self.messages)
@@ -155,7 +157,7 @@ class Parts:
         live = LivePanel(gui, settings, self.live, messages, record)
         tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
         self.layout = Layout(gui, settings, self.panel_state, bar, tabs, self.timeline)
-        self.chooser = FileChooser(gui, self.files)
+        self.chooser, self.help = FileChooser(gui, self.files), Help(gui, self.panel_state, settings.keys)
         self.mouse = Mouse(self.view, self.stage, self.select_muscle)
 
     def close(self) -> None:

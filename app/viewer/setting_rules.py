@@ -11,6 +11,7 @@ from typing import Any, get_type_hints
 from risorius import refine, render
 
 from ..looks import LOOKS, STATIC
+from .command import chord
 
 Rule = Callable[[Any], Any]  # gives back a value that is of use; ValueError for one that is not
 
@@ -122,6 +123,21 @@ def size(value: Any) -> tuple[int, int] | None:
     side = number(*SIDES)
     width, height = (int(side(each)) for each in _list(value))
     return width, height
+
+
+def shortcut(value: Any) -> str:
+    """A key of the keyboard, with its modifiers."""
+    if not isinstance(value, str):
+        raise ValueError
+    chord(value)
+    return value
+
+
+def paths(value: Any) -> list[str]:
+    """Of files, as text."""
+    if not all(isinstance(each, str) for each in _list(value)):
+        raise ValueError
+    return list(value)
 
 
 def camera(value: Any) -> list[float]:

@@ -31,6 +31,7 @@ from .gui import THEMES
 from .overlays import OVERLAYS, overlays_of
 
 FILE_NAME = "viewer.json"
+TABLES = {"folds": rules.flag, "cameras": rules.camera, "keys": rules.shortcut}  # of any names
 LONGEST_FILE = 2**20  # [bytes]; those that we write have two thousand
 
 
@@ -111,6 +112,8 @@ class Settings:
     panel_width: Annotated[float, rules.number(0.0, 1000.0)] = 22.5
     folds: dict[str, bool] = field(default_factory=dict)  # which headings are open, by title
     cameras: dict[str, list[float]] = field(default_factory=dict)  # by scene
+    keys: dict[str, str] = field(default_factory=dict)  # that were changed, by command
+    recent: Annotated[list[str], rules.paths] = field(default_factory=list)  # files, latest first
     display: Display = field(default_factory=Display)
 
     def toggle_theme(self) -> None:
@@ -122,9 +125,9 @@ class Settings:
         self.is_alive = not self.is_alive
 
     def enlarge(self, factor: float) -> None:
-        """Make words and sliders larger or smaller."""
+        """Make words and sliders larger or smaller; by 0, as they are at first."""
         least, most = rules.ZOOMS
-        self.zoom = min(max(self.zoom * factor, least), most)
+        self.zoom = min(max(self.zoom * factor, least), most) if factor else 1.0
 
 
 def display_of(
@@ -189,9 +192,9 @@ def load_settings(path: Path) -> tuple[Settings, str]:
         name: refused.table(f"display.options.{name}.", found, lambda _: rules.option)
         for name, found in options.items()
     }
-    folds, cameras = accepted.pop("folds", {}), accepted.pop("cameras", {})
-    accepted["folds"] = refused.table("folds.", folds, lambda _: rules.flag)
-    accepted["cameras"] = refused.table("cameras.", cameras, lambda _: rules.camera)
+    for name, rule in TABLES.items():
+        found = accepted.pop(name, {})
+        accepted[name] = refused.table(f"{name}.", found, lambda _, rule=rule: rule)
     settings, told = Settings(**accepted, display=Display(**display)), str(refused)
     if not told:
         return settings, ""

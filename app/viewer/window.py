@@ -19,10 +19,9 @@ from ..stopping import cleaned_up_if_stopped
 from .command import run_pressed
 from .export import FRAMES_PER_SECOND
 from .file_drop import LANDMARKS
-from .gui import on_drop, poll_events, wait_for_event
+from .gui import on_drop
 from .live_commands import PACING
 from .painter import Painter
-from .panels.help import draw_help
 from .panels.message_line import draw_message
 from .panels.question_box import draw_question
 from .panels.recovery_banner import draw_recovery
@@ -82,10 +81,12 @@ class Viewer(Parts):
 
     def frame(self) -> None:
         """Input, time, picture, panels."""
-        poll_events()
+        self.gui.look()
         if self.gui.has_events:
             self._awake = FRAMES_AFTER_EVENT
             self.life.note_input()
+        for _ in self.gui.turns():
+            self._draw_gui(is_visible=False)
         slow = (self.file_drop, self.motion_export)
         announced = [each.do_announced for each in slow if each.has_announced]
         now = time.perf_counter()
@@ -173,9 +174,9 @@ class Viewer(Parts):
             self._wait()
         elif self.is_left_alone:
             spent = time.perf_counter() - self._last
-            wait_for_event(max(LIFE_WAIT - spent, spent))
+            self.gui.look(max(LIFE_WAIT - spent, spent))
         elif self.live.is_receiving and not self.live.has_frame:
-            wait_for_event(PACING)
+            self.gui.look(PACING)
 
     def _wait(self) -> None:
         """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
@@ -185,7 +186,7 @@ class Viewer(Parts):
         patience = min(patience, max(due_in, 0.0))
         self.soundtrack.rest()
         begin = time.perf_counter()
-        wait_for_event(patience)
+        self.gui.look(patience)
         self._last = time.perf_counter()
         if self._last - begin < patience and not self.live.has_frame:
             self._awake = FRAMES_AFTER_EVENT
@@ -214,7 +215,7 @@ class Viewer(Parts):
 
     def _draw_gui(self, *, is_visible: bool) -> None:
         """Panels, and what the user does to them and to the face; is_visible: see Gui.frame."""
-        messages, gui, state = self.messages, self.gui, self.panel_state
+        messages, gui = self.messages, self.gui
         room, view, commands = self.room, self.view, self.commands
         if room is not None:
             view, commands = room.view, room.commands
@@ -233,10 +234,9 @@ class Viewer(Parts):
                 partial(draw_question, gui, self.question, self.session, self.scripts),
             ):
                 messages.attempt(draw)
-            if state.is_help_open:
-                state.is_help_open = draw_help(gui, commands, is_marking=room is not None)
+            self.help.draw(commands, is_marking=room is not None)
             if not (self.files.is_waiting or self.question.is_open):
-                run_pressed(commands, messages)
+                run_pressed(commands, messages, gui)
                 (self if room is None else room).mouse.follow()
 
     def drop(self, paths: Sequence[str]) -> None:
