@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
@@ -11,18 +11,14 @@ from .gui import Gui
 from .messages import Messages, Task
 
 _MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Shift": imgui.Key.mod_shift, "Alt": imgui.Key.mod_alt}
-# All others, by their names.
-_KEYS = {
-    imgui.get_key_name(key).removesuffix("Arrow"): key
-    for key in imgui.Key
-    if imgui.Key.tab <= key < imgui.Key.gamepad_start
-}
-_SIGNS = {"Equal": "=", "Minus": "-"}  # as people know them
-# What no command may be given: they change others, or have a use everywhere.
+# All others by their names, but those that change others or have a use everywhere.
 _RESERVED = ("Escape", "Tab", "Lock", "Ctrl", "Shift", "Alt", "Super")
+_KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
+         if imgui.Key.tab <= key < imgui.Key.gamepad_start
+         and not imgui.get_key_name(key).endswith(_RESERVED)}  # fmt: skip
 # Ctrl keys that a line of text takes for itself while one writes.
 _WRITING = ("Ctrl+A", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
-_WALKING = ("Space", "Enter", "Left", "Right", "Home")  # used where the keyboard walks
+_WALKING = ("Space", "Enter", "Left", "Right", "Up", "Down", "Home", "End", "PageUp", "PageDown")
 
 
 @dataclass
@@ -37,21 +33,12 @@ class Command:
     can_run: Callable[[], bool] = lambda: True
     other_key: str = ""
     submenu: Callable[[], Iterable[Command]] | None = None  # in place of doing something
-    usual_key: str = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.usual_key = self.key
+    usual_key: str = ""  # where another one is set
 
     @property
-    def name(self) -> str:
-        """By which settings know it."""
-        return f"{self.menu}: {self.label}"
-
-    @property
-    def displayed_key(self) -> str:
-        """The key as people know it."""
-        *modifiers, last = self.key.split("+")
-        return "+".join((*modifiers, _SIGNS.get(last, last)))
+    def displayed_keys(self) -> str:
+        """All keys as people know them."""
+        return ", ".join(self.keys).replace("Equal", "=").replace("Minus", "-")
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -60,9 +47,10 @@ class Command:
 
 
 def set_keys(commands: Iterable[Command], changed: Mapping[str, str]) -> None:
-    """Give the commands that are named other keys, all others their usual ones."""
-    for command in commands:
-        command.key = changed.get(command.name, command.usual_key)
+    """Give commands that have keys other ones, by their labels; all others their usual ones."""
+    for command in filter(lambda each: each.key, commands):
+        command.usual_key = command.usual_key or command.key
+        command.key = changed.get(command.label, command.usual_key)
 
 
 def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> None:
@@ -79,20 +67,15 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
 
 
 def chord(key: str) -> int:
-    """A key as imgui counts it; ValueError for none."""
+    """A key as imgui counts it; KeyError for none."""
     *modifiers, last = key.split("+")
-    try:
-        return sum((int(_MODIFIERS[each]) for each in modifiers), start=int(_KEYS[last]))
-    except KeyError:
-        raise ValueError(f"no such key: {key}") from None
+    return sum((int(_MODIFIERS[each]) for each in modifiers), start=int(_KEYS[last]))
 
 
 def pressed_key() -> str:
     """The key that was pressed in this frame and may be a command's, "" for none."""
-    io = imgui.get_io()
-    is_held = {"Ctrl": io.key_ctrl, "Shift": io.key_shift, "Alt": io.key_alt}
-    modifiers = [name for name, is_down in is_held.items() if is_down]
+    held = [name for name, key in _MODIFIERS.items() if imgui.get_io().key_mods & key]
     for name, key in _KEYS.items():
-        if not name.endswith(_RESERVED) and imgui.is_key_pressed(key, repeat=False):
-            return "+".join((*modifiers, name))
+        if imgui.is_key_pressed(key, repeat=False):
+            return "+".join((*held, name))
     return ""

@@ -27,8 +27,8 @@ import glfw  # isort: skip - after imgui_bundle, see above
 FONT = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.ttf"
 FONT_SIZE = 15.0  # [window units at scale 1]
 LEFT, RIGHT, MIDDLE = 0, 1, 2  # buttons of the mouse
-DOUBLE_CLICK = 0.3  # [s] in which the second press of one comes
-PANEL = "Controls"  # the window that the keyboard begins in
+BUTTON = -1  # in place of a key: one of the mouse was pressed
+PANEL = "Controls"  # the window in which the keyboard begins
 SETTLING = 3  # turns of the GUI in which what a press has opened gets the focus
 MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
 # Of a window that is a note over the picture: as large as its words, and it takes no keys.
@@ -78,16 +78,12 @@ THEMES = {
 
 
 class Gui:
-    """The Dear ImGui context of one window; `places` says where each item is, for who drives it.
-
-    However slowly the window draws, it answers what the user did in the order in which that was
-    done, each press in a turn of its own (`turns`), and by the time at which it was taken in.
-    """
+    """The Dear ImGui context of one window; `places` says where each item is, for who drives it."""
 
     def __init__(self, window: Any) -> None:
         self._window = window
         self._context = imgui.create_context()
-        self.double_click_time = DOUBLE_CLICK
+        self.double_click_time = 0.3  # [s] in which the second press comes
         self.has_popup = False  # a menu, a list or a dialog, as the turn began
         self.owns_keys = False  # Tab, arrows, Space ... are for widgets: they walk through these
         self._is_walking = False
@@ -133,63 +129,51 @@ class Gui:
             max(glfw.get_window_content_scale(self._window)) / max(pixels_per_unit, 1.0), 1.0
         )
 
-    def look(self, seconds: float | None = None) -> None:
-        """Take in what the user did since the last call, or wait so long for something."""
+    def look(self, seconds: float = 0.0) -> bool:
+        """Take in what the user does, and wait so long for something; whether there is any."""
         self._blind = time.perf_counter() - self._looked
-        if seconds is None:
-            glfw.poll_events()
-        else:
-            glfw.wait_events_timeout(seconds)
+        glfw.wait_events_timeout(seconds)
         self._looked = time.perf_counter()
-
-    @property
-    def has_events(self) -> bool:
-        """Whether the user did something since the last frame."""
-        return bool(_queue().size() > 0)
+        return bool(self._context.input_events_queue.size() > 0)
 
     def _note_key(self, _: Any, key: int, code: int, action: int, modifiers: int) -> None:
-        """Events are cut before a press, and before a modifier is let go, lest it misses its key."""
+        """Cut before a press, and before a modifier is let go, which its key must not miss."""
         is_modifier = key in MODIFIERS
         if action == glfw.PRESS or (is_modifier and action == glfw.RELEASE):
-            self._presses.append((_queue().size(), None if is_modifier else key))
+            count = self._context.input_events_queue.size()
+            self._presses.append((count, None if is_modifier else key))
 
     def _note_button(self, _: Any, button: int, action: int, modifiers: int) -> None:
-        """The mouse has to be there before it is pressed; a press is old when it is taken in."""
+        """Cut before a press: the mouse has to be there before. It may be as old as the last."""
         if action == glfw.PRESS:
-            self._presses.append((_queue().size(), -1 - button))
+            self._presses.append((self._context.input_events_queue.size(), BUTTON))
             io, longest = imgui.get_io(), self.double_click_time + self._blind
-            io.mouse_double_click_time, io.mouse_single_click_delay = longest, 2.0 * longest + 0.1
+            io.mouse_double_click_time, io.mouse_single_click_delay = longest, longest + 0.1
 
     def turns(self) -> Iterator[None]:
         """Turns of the GUI, a `frame` each, until all that the user did is answered."""
-        queue, io = _queue(), imgui.get_io()
+        io, queue = imgui.get_io(), self._context.input_events_queue
         waiting = type(queue)()
         for event in queue:
             waiting.push_back(event)
         queue.clear()
         cuts, self._presses = [(0, None), *self._presses, (waiting.size(), 0)], []
         for (start, pressed), (end, following) in pairwise(cuts):
-            if pressed is not None:
-                self._walk(pressed)
+            if pressed == glfw.KEY_TAB:
+                self._is_walking = True
+                if self._context.nav_window is None:
+                    imgui.set_window_focus(PANEL)
+            elif pressed == BUTTON or (pressed == glfw.KEY_ESCAPE and not self.has_popup):
+                self._is_walking = False
             for index in range(start, end):
                 queue.push_back(waiting[index])
             while queue.size():
                 yield
             # A press may open a line to type in; keys that follow wait until it has the focus.
-            is_settling = pressed is not None and following is not None and following >= 0
-            for _ in range(SETTLING if is_settling else 0):
+            is_settling = pressed is not None and following not in (None, BUTTON)
+            for _ in range(SETTLING * is_settling):
                 if not io.want_text_input:
                     yield
-
-    def _walk(self, pressed: int) -> None:
-        """Tab lets the keyboard walk through the widgets; a click or Escape ends it."""
-        context = imgui.get_current_context()
-        if pressed == glfw.KEY_TAB and context.nav_window is None:
-            imgui.set_window_focus(PANEL)
-        if pressed == glfw.KEY_TAB:
-            self._is_walking = True
-        elif pressed < 0 or (pressed == glfw.KEY_ESCAPE and not self.has_popup):
-            self._is_walking = False
 
     def covers(self, area: tuple[float, float, float, float]) -> bool:
         """Whether a window of the last frame reaches into an area (left, top, width, height)."""
@@ -214,7 +198,7 @@ class Gui:
         # Events count by when they were taken in, not by when there is time to answer them.
         io.delta_time = max(self._looked - self._shown, 1e-6)
         self._shown = self._looked
-        self.has_popup = imgui.get_current_context().open_popup_stack.size() > 0
+        self.has_popup = self._context.open_popup_stack.size() > 0
         self.owns_keys = self._is_walking or self.has_popup
         walks = imgui.ConfigFlags_.nav_enable_keyboard
         io.config_flags = io.config_flags | walks if self.owns_keys else io.config_flags & ~walks
@@ -237,11 +221,6 @@ class Gui:
         imgui.backends.opengl3_shutdown()
         imgui.backends.glfw_shutdown()
         imgui.destroy_context(self._context)
-
-
-def _queue() -> Any:
-    """What ImGui was told and has not answered."""
-    return imgui.get_current_context().input_events_queue
 
 
 def wake_up() -> None:
@@ -283,6 +262,11 @@ def colour(rgb: tuple[float, float, float], opacity: float = 1.0) -> Any:
     return imgui.ImVec4(*rgb, opacity)
 
 
+def ink(rgb: tuple[float, float, float], opacity: float = 1.0) -> int:
+    """A colour as imgui's lines want it."""
+    return int(imgui.get_color_u32(colour(rgb, opacity)))
+
+
 def _set_colours(style: Any, theme: Theme) -> None:
     """Quiet panels: the face is what is looked at."""
     fresh = imgui.Style()
@@ -302,13 +286,14 @@ def _set_colours(style: Any, theme: Theme) -> None:
         ((which.frame_bg, which.header, which.tab_hovered), theme.field),
         ((which.frame_bg_hovered, which.frame_bg_active, which.header_hovered), theme.raised),
         ((which.header_active, which.button, which.tab_selected), theme.raised),
-        ((which.slider_grab, which.slider_grab_active, which.check_mark), theme.accent),
+        ((which.nav_cursor, which.check_mark), theme.accent),
         ((which.plot_lines, which.plot_histogram, which.tab_selected_overline), theme.accent),
     ):
         for index in indices:
             style.set_color_(index, colour(value))
-    for index in (which.button_hovered, which.button_active):
+    for index in (which.button_hovered, which.button_active, which.slider_grab_active):
         style.set_color_(index, colour(theme.accent, 0.55))
+    style.set_color_(which.slider_grab, colour(theme.accent, 0.45))  # its number stands over it
     for index in (which.resize_grip, which.resize_grip_hovered, which.resize_grip_active):
         style.set_color_(index, colour(theme.panel, 0.0))  # an edge tells it, too
     style.set_color_(which.modal_window_dim_bg, colour((0.0, 0.0, 0.0), 0.3))

@@ -40,6 +40,7 @@ def file_menu(
     return (
         command("New script", "Ctrl+N", scripts.new),
         command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
+        command("Recent", "", lambda: None, submenu=scripts.recent),
         command("Open head ...", "Ctrl+H", file_drop.ask_head),
         command("Mark a head ...", "Ctrl+Shift+H", file_drop.ask_mesh),
         command("Open sound ...", "Ctrl+U", scripts.ask_sound),
@@ -148,7 +149,7 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         command("Dark theme", "F2", settings.toggle_theme, lambda: settings.theme == "dark"),
         command("Larger text", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
         command("Smaller text", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
-        command("Usual size", "Ctrl+0", partial(settings.enlarge, 0.0)),
+        command("Usual size", "Ctrl+0", partial(setattr, settings, "zoom", 1.0)),
     )
 
 

@@ -14,6 +14,7 @@ from ..scenes import Scene, build_scene
 from ..script import Script
 from . import menus
 from .command import Command, set_keys
+from .control_rows import readable
 from .export import Exporter
 from .file_drop import FileDrop
 from .files import Files
@@ -117,7 +118,7 @@ class Parts:
         self.messages, self.files, self.question = Messages(), Files(), Question(session)
         self.panel_state, self.time_axis = PanelState(wanted_tab=settings.tab), TimeAxis()
         self.selection = KeySelection(session, self.panel_state)
-        self.scripts = ScriptCommands(session, self.files, self.question)
+        self.scripts = ScriptCommands(session, self.files, self.question, settings.recent)
         self.exporter = Exporter(self.stage, self.view)
         self.motion_export = MotionExport(session, self.files)
         self.live = LiveCommands(session, self.panel_state, wake_up)
@@ -155,9 +156,11 @@ class Parts:
         mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
         record = next(each for each in commands if each.label == "Record")
         live = LivePanel(gui, settings, self.live, messages, record)
-        tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
+        first = "Face" if session.scene.name == "face" else f"{readable(session.scene.name)}###Face"
+        tabs = {first: self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
         self.layout = Layout(gui, settings, self.panel_state, bar, tabs, self.timeline)
-        self.chooser, self.help = FileChooser(gui, self.files), Help(gui, self.panel_state, settings.keys)
+        self.chooser = FileChooser(gui, self.files)
+        self.help = Help(gui, self.panel_state, settings.keys)
         self.mouse = Mouse(self.view, self.stage, self.select_muscle)
 
     def close(self) -> None:

@@ -13,7 +13,7 @@ from risorius import refine, render
 from ..looks import LOOKS, STATIC
 from .command import chord
 
-Rule = Callable[[Any], Any]  # gives back a value that is of use; ValueError for one that is not
+Rule = Callable[[Any], Any]  # gives back a value that is of use; ValueError or KeyError if not
 
 LONGEST_NUMBER = 15  # [digits] of a whole number; Python refuses to read very long ones
 SIDES = 200, 16384  # [screen units] of the window, least and most
@@ -51,7 +51,7 @@ class Refused:
                 continue
             try:
                 accepted[name] = rule(value)
-            except ValueError:
+            except (ValueError, KeyError):
                 self._found.append(f"{where}{name} = {reprlib.repr(value)}")
         return accepted
 
@@ -127,17 +127,13 @@ def size(value: Any) -> tuple[int, int] | None:
 
 def shortcut(value: Any) -> str:
     """A key of the keyboard, with its modifiers."""
-    if not isinstance(value, str):
-        raise ValueError
-    chord(value)
-    return value
+    chord(str(value))
+    return str(value)
 
 
-def paths(value: Any) -> list[str]:
-    """Of files, as text."""
-    if not all(isinstance(each, str) for each in _list(value)):
-        raise ValueError
-    return list(value)
+def texts(value: Any) -> list[str]:
+    """A list of any words."""
+    return [str(each) for each in _list(value)]
 
 
 def camera(value: Any) -> list[float]:

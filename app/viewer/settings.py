@@ -31,7 +31,6 @@ from .gui import THEMES
 from .overlays import OVERLAYS, overlays_of
 
 FILE_NAME = "viewer.json"
-TABLES = {"folds": rules.flag, "cameras": rules.camera, "keys": rules.shortcut}  # of any names
 LONGEST_FILE = 2**20  # [bytes]; those that we write have two thousand
 
 
@@ -113,7 +112,7 @@ class Settings:
     folds: dict[str, bool] = field(default_factory=dict)  # which headings are open, by title
     cameras: dict[str, list[float]] = field(default_factory=dict)  # by scene
     keys: dict[str, str] = field(default_factory=dict)  # that were changed, by command
-    recent: Annotated[list[str], rules.paths] = field(default_factory=list)  # files, latest first
+    recent: Annotated[list[str], rules.texts] = field(default_factory=list)  # files, latest first
     display: Display = field(default_factory=Display)
 
     def toggle_theme(self) -> None:
@@ -125,9 +124,9 @@ class Settings:
         self.is_alive = not self.is_alive
 
     def enlarge(self, factor: float) -> None:
-        """Make words and sliders larger or smaller; by 0, as they are at first."""
+        """Make words and sliders larger or smaller."""
         least, most = rules.ZOOMS
-        self.zoom = min(max(self.zoom * factor, least), most) if factor else 1.0
+        self.zoom = min(max(self.zoom * factor, least), most)
 
 
 def display_of(
@@ -192,9 +191,10 @@ def load_settings(path: Path) -> tuple[Settings, str]:
         name: refused.table(f"display.options.{name}.", found, lambda _: rules.option)
         for name, found in options.items()
     }
-    for name, rule in TABLES.items():
-        found = accepted.pop(name, {})
-        accepted[name] = refused.table(f"{name}.", found, lambda _, rule=rule: rule)
+    folds, cameras, keys = (accepted.pop(name, {}) for name in ("folds", "cameras", "keys"))
+    accepted["folds"] = refused.table("folds.", folds, lambda _: rules.flag)
+    accepted["cameras"] = refused.table("cameras.", cameras, lambda _: rules.camera)
+    accepted["keys"] = refused.table("keys.", keys, lambda _: rules.shortcut)
     settings, told = Settings(**accepted, display=Display(**display)), str(refused)
     if not told:
         return settings, ""

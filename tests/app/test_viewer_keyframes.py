@@ -253,7 +253,7 @@ def test_rows_of_the_timeline(hello: Script) -> None:
     poses, tracks = visible_tracks(hello, is_open=False)
     assert [place.time for place in poses.places] == [0.0, 1.0, 3.0, 4.0]
     assert poses.names == ((1.0, "joy"),) and tracks.is_sum
-    assert [track.label for track in visible_tracks(hello, is_open=True)][2:] == ["blink"]
+    assert [track.label for track in visible_tracks(hello, is_open=True)][2:] == ["Blink"]
     assert visible_tracks(hello, is_open=True)[2].channel == hello.tracks["blink"]
     assert poses.places.near(1.2, 0.3) == {JOY} and not poses.places.near(2.0, 0.3)
     assert described(hello, Places.of(JOY)) == "joy, 1.00 s, ease-out\njoy 1.00\njaw open 0.10"

@@ -10,7 +10,8 @@ from imgui_bundle import imgui
 from risorius.assets.fitting.guess import FIRST
 
 from ..command import Command
-from ..gui import Gui, colour, em, fixed_panel
+from ..gui import PANEL, Gui, colour, em, fixed_panel
+from ..gui import ink as _ink
 from ..messages import Messages
 from ..panels.menu_bar import MenuBar
 from ..panels.widgets import button, muted
@@ -62,7 +63,7 @@ class MarkingPanel:
         below = round(top + min(0.9 * left, GUIDE_SHARE * display.y))
         view.guide_area = (0.0, top, left, below - top)
         view.area = (left, top, max(display.x - left, 1.0), max(display.y - top, 1.0))
-        with fixed_panel("Marking", (0.0, below), (left, display.y - below)):
+        with fixed_panel(PANEL, (0.0, below), (left, display.y - below)):
             imgui.push_text_wrap_pos(0.0)
             self._draw_task()
             for row in (*(ROWS if self._marking.marks.is_complete else FIRST_ROWS), *LAST_ROWS):
@@ -165,7 +166,3 @@ def _word(pen: imgui.ImDrawList, place: Spot, text: str) -> None:
     x, y = place
     pen.add_text((x + em(0.07), y + em(0.07)), _ink(DARK), text)
     pen.add_text(place, _ink(WHITE), text)
-
-
-def _ink(rgb: Colour, opacity: float = 1.0) -> int:
-    return int(imgui.get_color_u32(colour(rgb, opacity)))

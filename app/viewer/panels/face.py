@@ -38,7 +38,7 @@ class FacePanel:
         """Draw everything, inside the window's panel."""
         self._current = self._session.current
         self._draw_buttons()
-        imgui.begin_child("controls", (0.0, 0.0))
+        imgui.begin_child("controls", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
         for title, names in self._session.controls.groups.items():
             self._draw_group(title, names)
         imgui.end_child()

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from imgui_bundle import imgui
 
 from ..command import Command, pressed_key, set_keys
+from ..control_rows import readable
 from ..gui import Gui, colour, em
 from ..panel_state import PanelState
-from .widgets import button, hint, muted
+from .widgets import button, muted
 
 MOUSE = (
     ("left on the skin", "pull; click: its muscle"),
@@ -51,26 +52,21 @@ NARROW_COLUMNS = (
     ("Keys", "View", "Landmarks"),
     ("Mouse", "Timeline", "Expression"),
 )
+ASK = "Click a key to change it."
 WIDE = 63.0  # [em] that the wide ones take
-
-
-CHANGE = "Other key"  # the title of what asks for one
 
 
 class Help:
     """Draws the list, in which each key can be changed."""
 
     def __init__(self, gui: Gui, state: PanelState, changed: dict[str, str]) -> None:
-        """changed: the keys of commands that have not their usual ones, by the commands' names."""
+        """changed: the keys of commands that have not their usual ones, by the commands' labels."""
         self._gui, self._state, self._changed = gui, state, changed
         self._asked: Command | None = None  # for which a key is to be pressed
-        self._complaint = ""
+        self._line = ASK
 
-    def draw(self, commands: Sequence[Command], *, is_marking: bool = False) -> None:
-        """Draw the list while it is open, scrolled where the window is small.
-
-        is_marking: the commands are those for marking landmarks.
-        """
+    def draw(self, commands: Sequence[Command]) -> None:
+        """Draw the list while it is open, scrolled where the window is small."""
         gui, display = self._gui, imgui.get_io().display_size
         if not self._state.is_help_open:
             return
@@ -78,79 +74,60 @@ class Help:
         imgui.set_next_window_size_constraints((0.0, 0.0), display)
         flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_collapse
         flags |= imgui.WindowFlags_.horizontal_scrollbar
-        _, stays = imgui.begin("Keys and mouse", True, flags)
-        asked = None
+        _, stays = imgui.begin("Keys and mouse (F1)", True, flags)
+        is_left = imgui.is_key_pressed(imgui.Key.escape) and not (gui.has_popup or self._asked)
+        self._state.is_help_open = bool(stays) and not is_left
+        self._take_key(commands)
+        is_marking = any(command.menu == "Landmarks" for command in commands)
+        others = {"Mouse": MARKING} if is_marking else {"Mouse": MOUSE, "Timeline": TIMELINE}
         for index, titles in enumerate(COLUMNS if display.x > em(WIDE) else NARROW_COLUMNS):
             if index:
                 imgui.same_line(0.0, em(1.5))
             imgui.begin_group()
             for title in titles:
-                rows = [each for each in commands if each.menu == title and each.key]
-                lines = {"Mouse": MARKING if is_marking else MOUSE, "Timeline": TIMELINE}
-                if rows or (title in lines and not (is_marking and title == "Timeline")):
-                    muted(gui, title)
-                    asked = self._draw_lines(title, rows or lines[title]) or asked
+                keys = [each for each in commands if each.menu == title and each.key]
+                self._draw_lines(title, keys or others.get(title, ()))
             imgui.end_group()
-        self._draw_foot(commands)
-        if asked is not None:
-            self._asked, self._complaint = asked, ""
-            imgui.open_popup(CHANGE)
-        if imgui.begin_popup(CHANGE):
-            self._ask(commands)
-            imgui.end_popup()
         place, size = imgui.get_window_pos(), imgui.get_window_size()
         gui.places["help"] = (place.x, place.y, place.x + size.x, place.y + size.y)
         imgui.end()
-        is_left = imgui.is_key_pressed(imgui.Key.escape) and not gui.has_popup
-        self._state.is_help_open = bool(stays) and not is_left
 
-    def _draw_lines(
-        self, title: str, lines: Iterable[Command | tuple[str, str]]
-    ) -> Command | None:
-        """What to press in one column, what it does in another; of which command a key is asked."""
-        asked = None
-        flags = imgui.TableFlags_.sizing_fixed_fit | imgui.TableFlags_.no_host_extend_x
-        if imgui.begin_table(title, 2, flags):
-            imgui.push_style_color(imgui.Col_.text, colour(self._gui.theme.accent))
-            for line in lines:
-                imgui.table_next_column()
-                if isinstance(line, Command):
-                    keys = ", ".join(filter(None, (line.displayed_key, line.other_key)))
-                    if imgui.selectable(f"{keys}##{line.name}", False)[0]:
-                        asked = line
-                    self._gui.remember(f"key {line.name}")
-                    hint("another key ...")
-                else:
-                    imgui.text(line[0])
-                imgui.table_next_column()
-                words = line.label if isinstance(line, Command) else line[1]
-                imgui.text_colored(imgui.get_style_color_vec4(imgui.Col_.text_disabled), words)
-            imgui.pop_style_color()
-            imgui.end_table()
-        return asked
-
-    def _draw_foot(self, commands: Sequence[Command]) -> None:
-        muted(self._gui, "Click a key to change it.")
-        if self._changed:
-            imgui.same_line()
-            if button(self._gui, "Back to the usual keys"):
-                self._changed.clear()
-                set_keys(commands, self._changed)
-
-    def _ask(self, commands: Sequence[Command]) -> None:
-        """Give the command that asks the keys that are pressed, unless another has them."""
+    def _take_key(self, commands: Sequence[Command]) -> None:
+        """Give the command that asks for one the key that is pressed, unless another has it."""
         asked, key = self._asked, pressed_key()
-        assert asked is not None
-        imgui.text(f"{asked.label}: press the new key. Escape leaves it as it is.")
-        self._gui.remember("key asked")
-        if self._complaint:
-            imgui.text_colored(colour(self._gui.theme.error), self._complaint)
-        others = [each for each in commands if key in each.keys and each is not asked]
-        if others:
-            self._complaint = f"{key} is taken: {others[0].label}. Press another."
-        elif key:
-            self._changed[asked.name] = key
-            if key == asked.usual_key:
-                del self._changed[asked.name]
-            set_keys(commands, self._changed)
-            imgui.close_current_popup()
+        taken = [each.label for each in commands if each is not asked and key in each.keys]
+        imgui.text(self._line)
+        if asked is not None:
+            self._gui.has_popup = True  # no key is for commands now
+            if taken:
+                self._line = f"{key} is taken: {taken[0]}. Press another, or Escape."
+            elif key:
+                self._changed[asked.label] = key
+            if imgui.is_key_pressed(imgui.Key.escape) or (key and not taken):
+                self._asked, self._line = None, ASK
+        elif self._changed:
+            imgui.same_line()
+            if button(self._gui, "Usual keys"):
+                self._changed.clear()
+        set_keys(commands, self._changed)
+
+    def _draw_lines(self, name: str, lines: Sequence[Command | tuple[str, str]]) -> None:
+        """What to press in one column, what it does in another."""
+        flags = imgui.TableFlags_.sizing_fixed_fit | imgui.TableFlags_.no_host_extend_x
+        if lines:
+            muted(self._gui, name)
+        if not lines or not imgui.begin_table(name, 2, flags):
+            return
+        for line in lines:
+            imgui.table_next_column()
+            keys, meaning = line if isinstance(line, tuple) else (line.displayed_keys, line.label)
+            imgui.push_style_color(imgui.Col_.text, colour(self._gui.theme.accent))
+            if isinstance(line, tuple):
+                imgui.text(readable(keys))
+            elif imgui.selectable(f"{keys}##{meaning}", self._asked is line)[0]:
+                self._asked, self._line = line, f"{meaning}: press a key for it, or Escape."
+            self._gui.remember(f"key {meaning}")
+            imgui.pop_style_color()
+            imgui.table_next_column()
+            imgui.text(readable(meaning))
+        imgui.end_table()

@@ -8,7 +8,8 @@ import numpy as np
 from imgui_bundle import imgui
 
 from ...script import Channel, Floats
-from ..gui import Theme, colour, em
+from ..gui import Theme, em
+from ..gui import ink as _ink
 from ..places import Places
 from ..time_axis import TimeAxis
 from ..tracks import Track
@@ -22,10 +23,6 @@ CLOSEST = 2.0  # [window units] keys nearer than that are drawn as one
 MOST_COVERED = 0.5  # of a row by keys that are drawn one by one
 
 Point = tuple[float, float]
-
-
-def _ink(rgb: tuple[float, float, float], opacity: float = 1.0) -> int:
-    return int(imgui.get_color_u32(colour(rgb, opacity)))
 
 
 def _text_ink() -> int:

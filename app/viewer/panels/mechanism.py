@@ -14,6 +14,7 @@ from risorius import refine, render
 from ...looks import LOOKS, STATIC, named, words_of_looks
 from ...refining import DETAIL, can_detail
 from ..colours import COLOURS
+from ..control_rows import readable
 from ..frame_times import PHASES, FrameTimes
 from ..gui import Gui, em
 from ..overlays import overlays_of
@@ -22,7 +23,7 @@ from ..settings import Display, Settings
 from ..stage import Stage
 from ..view import View
 from .sliders import Sliders
-from .widgets import heading, hint, muted
+from .widgets import begin_row, choose, heading, hint, muted
 
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
@@ -78,8 +79,9 @@ class MechanismPanel:
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
-        imgui.begin_child("mechanism", (0.0, 0.0))
-        times_label = f"Milliseconds, {self._times.frames_per_second:.0f} frames a second"
+        imgui.begin_child("mechanism", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
+        rate = self._times.frames_per_second
+        times_label = f"Milliseconds, {rate:.0f} frames a second" if rate else "Milliseconds"
         for title, label, draw in (
             ("Refinement", "", self._draw_refinement),
             ("Style", "", self._draw_style),
@@ -138,7 +140,7 @@ class MechanismPanel:
         if isinstance(default, bool):
             self._check(label, bool(value), partial(put, not value))
         elif isinstance(default, int):
-            is_changed, chosen = imgui.input_int(label, int(value))
+            is_changed, chosen = imgui.input_int(readable(label), int(value))
             self._gui.remember(label)
             if is_changed:
                 put(chosen)
@@ -195,22 +197,15 @@ class MechanismPanel:
             imgui.plot_lines(
                 f"##{name}",
                 times,
-                overlay_text=f"{name}  {median:.2f}",
+                overlay_text=f"{readable(name)}  {median:.2f}",
                 scale_min=0.0,
                 scale_max=max(float(times.max()), 0.1) * 1.3,
                 graph_size=(width, em(2.2)),
             )
         self._gui.remember("plot")
 
-    def _begin_row(self, label: str) -> None:
-        """A label in the first column; what comes next is in the second."""
-        imgui.align_text_to_frame_padding()
-        imgui.text(label)
-        hint(HINTS.get(label, ""))
-        imgui.same_line(_label_width())
-
     def _check(self, label: str, is_on: bool, switch: Callable[[], None]) -> None:
-        is_clicked, _ = imgui.checkbox(label, is_on)
+        is_clicked, _ = imgui.checkbox(readable(label), is_on)
         self._gui.remember(label)
         hint(HINTS.get(label, ""))
         if is_clicked:
@@ -227,7 +222,7 @@ class MechanismPanel:
         digits: int = 2,
     ) -> float | None:
         """A row with a slider; what it was moved to, None if it was not."""
-        self._begin_row(label)
+        begin_row(label, HINTS.get(label, ""), LABEL_SHARE)
         slid = self._sliders.draw(name, value, limits, width=-1.0, neutral=neutral, digits=digits)
         return slid.value if slid.is_changed else None
 
@@ -235,18 +230,10 @@ class MechanismPanel:
         self, label: str, present: str, choices: Sequence[str], put: Callable[[str], None]
     ) -> None:
         """A row with a list to choose from."""
-        self._begin_row(label)
-        imgui.set_next_item_width(-1.0)
-        is_open = imgui.begin_combo(f"##{label}", present)
-        self._gui.remember(label)
-        if not is_open:
-            return
-        for choice in choices:
-            is_clicked, _ = imgui.selectable(choice, choice == present)
-            self._gui.remember(f"{label}: {choice}")
-            if is_clicked:
-                put(choice)
-        imgui.end_combo()
+        begin_row(label, HINTS.get(label, ""), LABEL_SHARE)
+        chosen = choose(self._gui, label, present, choices)
+        if chosen is not None:
+            put(chosen)
 
 
 def _label_width() -> float:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from ...sound.peaks import Peaks
-from ..gui import Gui, colour, em
+from ..gui import Gui, em
+from ..gui import ink as _ink
 from ..soundtrack import Soundtrack
 from ..time_axis import TimeAxis
 from . import key_marks
@@ -62,7 +63,3 @@ class Waveform:
         if self._known[0] is not sound:
             self._known = sound, Peaks(sound) if sound is not None else None
         return self._known[1]
-
-
-def _ink(rgb: tuple[float, float, float], opacity: float = 1.0) -> int:
-    return int(imgui.get_color_u32(colour(rgb, opacity)))
