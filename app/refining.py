@@ -18,7 +18,7 @@ from .wrinkling import FoldCriterion
 
 LARGEST = 1e30  # of a number in an option: in single precision it is still one
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
-AS_IT_SUITS = "as it suits"  # what an option is called that is left open
+AS_IT_SUITS = "automatic"  # what an option is called that is left open
 SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 

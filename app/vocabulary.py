@@ -32,8 +32,9 @@ class Pad(NamedTuple):
 
 
 def readable(name: str) -> str:
-    """A control's name in words."""
-    return name.replace("_", " ")
+    """A name in words, in sentence case; codes such as jawOpen stay as they are."""
+    is_word = name.partition("_")[0].partition(" ")[0].islower()
+    return (name[:1].upper() + name[1:] if is_word else name).replace("_", " ")
 
 
 def called(name: str, *twin: str) -> str:

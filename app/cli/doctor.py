@@ -38,16 +38,20 @@ def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
     ]
     if not offscreen_only:
         works["films"], answer = _films()
-        lines += [f"films: {answer}", f"sound: {_sound()}", *_names()]
-    lines = [in_one_line(line) for line in lines + _verdicts(works)]
+        sound = _sound()
+        lines += [f"films: {answer}", f"sound: {sound}", *_names()]
+        rest = "but a device for sound" if sound.startswith("no") else ""
+    else:
+        rest = "for offscreen frames; nothing else was looked at"
+    lines = [in_one_line(line) for line in lines + _verdicts(works, rest)]
     if all(works.values()):
         return Health.WHOLE, lines
     draws = works["offscreen"] or works.get("window", False)
     return Health.PARTLY if draws else Health.NOTHING, lines
 
 
-def _verdicts(works: dict[str, bool]) -> list[str]:
-    """A line for each command: whether it works."""
+def _verdicts(works: dict[str, bool], rest: str) -> list[str]:
+    """A line for each command: whether it works; rest: what "everything" leaves out."""
     if not works["offscreen"]:
         frames = "no: needs offscreen"
     elif works.get("films", True):
@@ -61,7 +65,7 @@ def _verdicts(works: dict[str, bool]) -> list[str]:
     verdicts.append(
         f"Missing: {', '.join(missing)}; the cure is in its line above."
         if missing
-        else "Everything is there."
+        else f"Everything is there {rest}".rstrip() + "."
     )
     return verdicts
 

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from imgui_bundle import imgui
 
+from .gui import Gui
 from .messages import Messages, Task
 
 _MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Shift": imgui.Key.mod_shift, "Alt": imgui.Key.mod_alt}
-_KEY_NAMES = {"Left": "left_arrow", "Right": "right_arrow"}
+# All others by their names, but those that change others or have a use everywhere.
+_RESERVED = ("Escape", "Tab", "Lock", "Ctrl", "Shift", "Alt", "Super")
+_KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
+         if imgui.Key.tab <= key < imgui.Key.gamepad_start
+         and not imgui.get_key_name(key).endswith(_RESERVED)}  # fmt: skip
 # Ctrl keys that a line of text takes for itself while one writes.
-_WRITING = ("Ctrl+A", "Ctrl+Z", "Ctrl+Shift+Z")
+_WRITING = ("Ctrl+A", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
+_WALKING = ("Space", "Enter", "Left", "Right", "Up", "Down", "Home", "End", "PageUp", "PageDown")
 
 
-@dataclass(frozen=True)
+@dataclass
 class Command:
     """One thing to do: where it stands, its key, what it does, and whether it is switched on."""
 
@@ -27,11 +32,17 @@ class Command:
     is_on: Callable[[], bool] | None = None
     can_run: Callable[[], bool] = lambda: True
     other_key: str = ""
+    submenu: Callable[[], Iterable[Command]] | None = None  # in place of doing something
+    usual_key: str = ""  # where another one is set
 
     @property
-    def displayed_key(self) -> str:
-        """The key as people know it."""
-        return self.key.replace("Equal", "=").replace("Minus", "-").replace("Keypad", "Num ")
+    def displayed_keys(self) -> str:
+        """All keys as people know them."""
+        words = {"Equal": "=", "Minus": "-", "Keypad": "Num "}
+        keys = ", ".join(self.keys)
+        for name, word in words.items():
+            keys = keys.replace(name, word)
+        return keys
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -39,19 +50,36 @@ class Command:
         return tuple(key for key in (self.key, self.other_key) if key)
 
 
-def run_pressed(commands: Iterable[Command], messages: Messages) -> None:
+def set_keys(commands: Iterable[Command], changed: Mapping[str, str]) -> None:
+    """Give commands that have keys other ones, by their labels; all others their usual ones."""
+    for command in filter(lambda each: each.key, commands):
+        command.usual_key = command.usual_key or command.key
+        command.key = changed.get(command.label, command.usual_key)
+
+
+def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> None:
     """Carry out the commands whose keys were pressed in this frame."""
+    if gui.has_popup:  # whose keys they are
+        return
     is_writing = imgui.get_io().want_text_input
     for command in commands:
         for key in command.keys:
             is_for_text = is_writing and ("Ctrl" not in key or key in _WRITING)
-            if not is_for_text and imgui.is_key_chord_pressed(_chord(key)) and command.can_run():
+            is_taken = is_for_text or (gui.owns_keys and key in _WALKING)
+            if not is_taken and imgui.is_key_chord_pressed(chord(key)) and command.can_run():
                 messages.attempt(command.run)
 
 
-def _chord(key: str) -> int:
-    """A key as imgui counts it."""
+def chord(key: str) -> int:
+    """A key as imgui counts it; KeyError for none."""
     *modifiers, last = key.split("+")
-    name = _KEY_NAMES.get(last, last.lower())
-    code: Any = getattr(imgui.Key, f"_{name}" if name.isdigit() else name)
-    return sum((int(_MODIFIERS[modifier]) for modifier in modifiers), start=int(code))
+    return sum((int(_MODIFIERS[each]) for each in modifiers), start=int(_KEYS[last]))
+
+
+def pressed_key() -> str:
+    """The key that was pressed in this frame and may be a command's, "" for none."""
+    held = [name for name, key in _MODIFIERS.items() if imgui.get_io().key_mods & key]
+    for name, key in _KEYS.items():
+        if imgui.is_key_pressed(key, repeat=False):
+            return "+".join((*held, name))
+    return ""

@@ -32,8 +32,8 @@ class FrameTimes:
             column.append(0.0)
 
     def note_frame(self, elapsed: float) -> None:
-        """A frame has begun `elapsed` seconds after the one before it."""
-        if elapsed > 0.0:
-            # The mean of times, not of rates: a few quick frames must not outweigh the slow ones.
-            mean = 1.0 / self.frames_per_second if self.frames_per_second else elapsed
-            self.frames_per_second = 1.0 / (SMOOTHING * mean + (1.0 - SMOOTHING) * elapsed)
+        """A frame has begun `elapsed` seconds after the one before it; 0 where nothing moves."""
+        # The mean of times, not of rates: a few quick frames must not outweigh the slow ones.
+        mean = 1.0 / self.frames_per_second if self.frames_per_second else elapsed
+        smooth = SMOOTHING * mean + (1.0 - SMOOTHING) * elapsed
+        self.frames_per_second = 1.0 / smooth if elapsed > 0.0 else 0.0

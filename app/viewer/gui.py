@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +29,10 @@ ICONS = FONT.parents[1] / "Font_Awesome_6_Free-Solid-900.otf"
 BACK = "\uf2ea"  # of the icons: an arrow that turns to the left
 FONT_SIZE = 15.0  # [window units at scale 1]
 LEFT, RIGHT, MIDDLE = 0, 1, 2  # buttons of the mouse
+BUTTON = -1  # in place of a key: one of the mouse was pressed
+PANEL = "Controls"  # the window in which the keyboard begins
+SETTLING = 3  # turns of the GUI in which what a press has opened gets the focus
+MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
 # Of a window that is a note over the picture: as large as its words, and it takes no keys.
 NOTE_FLAGS = (
     imgui.WindowFlags_.always_auto_resize
@@ -82,6 +88,14 @@ class Gui:
     def __init__(self, window: Any) -> None:
         self._window = window
         self._context = imgui.create_context()
+        self.double_click_time = 0.3  # [s] in which the second press comes
+        self.has_popup = False  # a menu, a list or a dialog, as the turn began
+        self.owns_keys = False  # Tab, arrows, Space ... are for widgets: they walk through these
+        self._is_walking = False
+        self._presses: list[tuple[int, int | None]] = []  # how many events before, and which key
+        self._looked = time.perf_counter()  # when events were taken in last [s]
+        self._shown = self._looked - 1.0 / 60.0  # when that was for the last frame [s]
+        self._blind = 0.0  # [s] for which nobody looked before: an event may be as old as that
         self.places: dict[str, tuple[float, float, float, float]] = {}
         self.theme = THEMES["light"]
         self._dressed: object = None
@@ -95,6 +109,8 @@ class Gui:
         address = ctypes.cast(window, ctypes.c_void_p).value
         if address is None:
             raise RuntimeError("the window is closed already")
+        glfw.set_key_callback(window, self._note_key)  # which ImGui calls before its own
+        glfw.set_mouse_button_callback(window, self._note_button)
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330")
 
@@ -121,10 +137,51 @@ class Gui:
             max(glfw.get_window_content_scale(self._window)) / max(pixels_per_unit, 1.0), 1.0
         )
 
-    @property
-    def has_events(self) -> bool:
-        """Whether the user did something since the last frame."""
-        return imgui.get_current_context().input_events_queue.size() > 0
+    def look(self, seconds: float = 0.0) -> bool:
+        """Take in what the user does, and wait so long for something; whether there is any."""
+        self._blind = time.perf_counter() - self._looked
+        glfw.wait_events_timeout(seconds)
+        self._looked = time.perf_counter()
+        return bool(self._context.input_events_queue.size() > 0)
+
+    def _note_key(self, _: Any, key: int, code: int, action: int, modifiers: int) -> None:
+        """Cut before a press, and before a modifier is let go, which its key must not miss."""
+        is_modifier = key in MODIFIERS
+        if action == glfw.PRESS or (is_modifier and action == glfw.RELEASE):
+            count = self._context.input_events_queue.size()
+            self._presses.append((count, None if is_modifier else key))
+
+    def _note_button(self, _: Any, button: int, action: int, modifiers: int) -> None:
+        """Cut before a press: the mouse has to be there before. It may be as old as the last."""
+        if action == glfw.PRESS:
+            self._presses.append((self._context.input_events_queue.size(), BUTTON))
+            io, longest = imgui.get_io(), self.double_click_time + self._blind
+            io.mouse_double_click_time, io.mouse_single_click_delay = longest, longest + 0.1
+
+    def turns(self) -> Iterator[None]:
+        """Turns of the GUI, a `frame` each, until all that the user did is answered."""
+        io, queue = imgui.get_io(), self._context.input_events_queue
+        waiting = type(queue)()
+        for event in queue:
+            waiting.push_back(event)
+        queue.clear()
+        cuts, self._presses = [(0, None), *self._presses, (waiting.size(), 0)], []
+        for (start, pressed), (end, following) in pairwise(cuts):
+            if pressed == glfw.KEY_TAB:
+                self._is_walking = True
+                if self._context.nav_window is None:
+                    imgui.set_window_focus(PANEL)
+            elif pressed == BUTTON or (pressed == glfw.KEY_ESCAPE and not self.has_popup):
+                self._is_walking = False
+            for index in range(start, end):
+                queue.push_back(waiting[index])
+            while queue.size():
+                yield
+            # A press may open a line to type in; keys that follow wait until it has the focus.
+            is_settling = pressed is not None and following not in (None, BUTTON)
+            for _ in range(SETTLING * is_settling):
+                if not io.want_text_input:
+                    yield
 
     def covers(self, area: tuple[float, float, float, float]) -> bool:
         """Whether a window of the last frame reaches into an area (left, top, width, height)."""
@@ -145,6 +202,14 @@ class Gui:
         """
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
+        io = imgui.get_io()
+        # Events count by when they were taken in, not by when there is time to answer them.
+        io.delta_time = max(self._looked - self._shown, 1e-6)
+        self._shown = self._looked
+        self.has_popup = self._context.open_popup_stack.size() > 0
+        self.owns_keys = self._is_walking or self.has_popup
+        walks = imgui.ConfigFlags_.nav_enable_keyboard
+        io.config_flags = io.config_flags | walks if self.owns_keys else io.config_flags & ~walks
         imgui.new_frame()
         self.places.clear()
         try:
@@ -166,18 +231,13 @@ class Gui:
         imgui.destroy_context(self._context)
 
 
-def poll_events() -> None:
-    """Take in what the user did since the last call."""
-    glfw.poll_events()
-
-
 def wait_for_event(seconds: float) -> None:
-    """Sleep until the user does something, or so long."""
+    """Sleep until the user does something, or so long, in a window that has no GUI yet."""
     glfw.wait_events_timeout(seconds)
 
 
 def wake_up() -> None:
-    """End a `wait_for_event`, from any thread."""
+    """End a wait for events, from any thread."""
     glfw.post_empty_event()
 
 
@@ -215,6 +275,11 @@ def colour(rgb: tuple[float, float, float], opacity: float = 1.0) -> Any:
     return imgui.ImVec4(*rgb, opacity)
 
 
+def ink_of(rgb: tuple[float, float, float], opacity: float = 1.0) -> int:
+    """A colour as imgui's lines want it."""
+    return int(imgui.get_color_u32(colour(rgb, opacity)))
+
+
 def _set_colours(style: Any, theme: Theme) -> None:
     """Quiet panels: the face is what is looked at."""
     fresh = imgui.Style()
@@ -235,13 +300,14 @@ def _set_colours(style: Any, theme: Theme) -> None:
         ((which.frame_bg, which.header, which.tab_hovered), theme.field),
         ((which.frame_bg_hovered, which.frame_bg_active, which.header_hovered), theme.raised),
         ((which.header_active, which.button, which.tab_selected), theme.raised),
-        ((which.slider_grab, which.slider_grab_active, which.check_mark), theme.accent),
+        ((which.nav_cursor, which.check_mark), theme.accent),
         ((which.plot_lines, which.plot_histogram, which.tab_selected_overline), theme.accent),
     ):
         for index in indices:
             style.set_color_(index, colour(value))
-    for index in (which.button_hovered, which.button_active):
+    for index in (which.button_hovered, which.button_active, which.slider_grab_active):
         style.set_color_(index, colour(theme.accent, 0.55))
+    style.set_color_(which.slider_grab, colour(theme.accent, 0.45))  # its number stands over it
     for index in (which.resize_grip, which.resize_grip_hovered, which.resize_grip_active):
         style.set_color_(index, colour(theme.panel, 0.0))  # an edge tells it, too
     style.set_color_(which.modal_window_dim_bg, colour((0.0, 0.0, 0.0), 0.3))

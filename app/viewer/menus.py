@@ -45,6 +45,7 @@ def file_menu(
     return (
         command("New script", "Ctrl+N", scripts.new),
         command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
+        command("Recent", "", lambda: None, submenu=scripts.recent),
         command("Open head ...", "Ctrl+H", file_drop.ask_head),
         command("Mark a head ...", "Ctrl+Shift+H", file_drop.ask_mesh),
         other("Built-in head", "", partial(file_drop.show_person, None)),
@@ -64,7 +65,7 @@ def edit_menu(session: Session) -> Menu:
     command = partial(Command, "Edit")
     return (
         command("Undo", "Ctrl+Z", session.undo, can_run=lambda: session.can_undo),
-        command("Redo", "Ctrl+Shift+Z", session.redo, can_run=lambda: session.can_redo),
+        command("Redo", "Ctrl+Y", session.redo, None, lambda: session.can_redo, "Ctrl+Shift+Z"),
         command("Neutral", "N", session.neutral),
         command("Mirror", "M", session.mirror),
         command("Left to right", "Shift+M", partial(session.mirror, "left")),
@@ -161,11 +162,12 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         command("Frame the face", "F", view.fit_scene),
         *views,
         replace(switch("Orthographic", "Keypad5", "is_orthographic"), other_key="Alt+5"),
-        command("Hide panels", "Tab", panels.toggle_hidden, lambda: panels.are_hidden),
+        command("Hide panels", "H", panels.toggle_hidden, lambda: panels.are_hidden),
         full("Full screen", "F11", toggle_full),
         command("Dark theme", "F2", settings.toggle_theme, lambda: settings.theme == "dark"),
-        command("Larger words", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
-        command("Smaller words", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
+        command("Larger text", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
+        command("Smaller text", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
+        command("Usual size", "Ctrl+0", partial(setattr, settings, "zoom", 1.0)),
     )
 
 

@@ -16,7 +16,7 @@ class PanelState:
     def toggle_hidden(self) -> str | None:
         """Hide all but the picture, or show it again."""
         self.are_hidden = not self.are_hidden
-        return "Tab brings the panels back" if self.are_hidden else None
+        return "menus are at the upper edge" if self.are_hidden else None
 
     def toggle_help(self) -> None:
         """Show the overview of keys or hide it."""

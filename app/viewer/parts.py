@@ -13,8 +13,9 @@ from ..errors import UserError
 from ..refining import refiner_for
 from ..scenes import BUILT_IN, Scene, build_scene
 from ..script import Script
+from ..vocabulary import readable
 from . import menus
-from .command import Command
+from .command import Command, set_keys
 from .export import Exporter
 from .file_drop import FileDrop
 from .files import Files
@@ -35,6 +36,7 @@ from .panels.dope_sheet import DopeSheet
 from .panels.export_dialog import ExportDialog
 from .panels.face import FacePanel
 from .panels.first_steps import FirstSteps
+from .panels.help import Help
 from .panels.layout import Layout
 from .panels.live import LivePanel
 from .panels.mechanism import MechanismPanel
@@ -125,7 +127,7 @@ class Parts:
         self.messages, self.files, self.question = Messages(), Files(), Question(session)
         self.panel_state, self.time_axis = PanelState(wanted_tab=settings.tab), TimeAxis()
         self.selection = KeySelection(session, self.panel_state)
-        self.scripts = ScriptCommands(session, self.files, self.question)
+        self.scripts = ScriptCommands(session, self.files, self.question, settings.recent)
         self.exporter = Exporter(session, settings, self.stage, self.view)
         self.live = LiveCommands(session, self.panel_state, wake_up)
         self.room: Room | None = None  # a mesh whose landmarks are being marked
@@ -141,6 +143,7 @@ class Parts:
             *menus.live_menu(self.live),
             *menus.help_menu(self.panel_state, lambda: self.first_steps.begin()),
         )
+        set_keys(self.commands, settings.keys)
         self.life = IdleLife(session, settings, self.view)
         self.physics = Physics(session, self.times)
         self.painter = Painter(self.stage, self.view, self.messages)
@@ -162,9 +165,11 @@ class Parts:
         )
         record = next(each for each in commands if each.label == "Record")
         live = LivePanel(gui, settings, self.live, messages, record)
-        tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
+        first = "Face" if session.scene.name == "face" else f"{readable(session.scene.name)}###Face"
+        tabs = {first: self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
         self.layout = Layout(gui, settings, self.panel_state, bar, tabs, self.timeline)
         self.chooser = FileChooser(gui, self.files)
+        self.help = Help(gui, self.panel_state, settings.keys)
         self.export_dialog = ExportDialog(gui, self.exporter, self.files, view)
         self.muscle_note = MuscleNote(gui, session, settings, view)
         grab = partial(SkinDrag, session, settings)

@@ -11,8 +11,9 @@ from typing import Any, get_type_hints
 from risorius import render
 
 from ..looks import LOOKS, STATIC
+from .command import chord
 
-Rule = Callable[[Any], Any]  # gives back a value that is of use; ValueError for one that is not
+Rule = Callable[[Any], Any]  # gives back a value that is of use; ValueError or KeyError if not
 
 LONGEST_NUMBER = 15  # [digits] of a whole number; Python refuses to read very long ones
 SIDES = 200, 16384  # [screen units] of the window, least and most
@@ -57,7 +58,7 @@ class Refused:
                 continue
             try:
                 accepted[name] = rule(value)
-            except ValueError:
+            except (ValueError, KeyError):
                 self._found.append(f"{where}{name} = {reprlib.repr(value)}")
         return accepted
 
@@ -142,6 +143,17 @@ def folder(value: Any) -> str:
     if not isinstance(value, str) or "\0" in value:
         raise ValueError
     return value
+
+
+def shortcut(value: Any) -> str:
+    """A key of the keyboard, with its modifiers."""
+    chord(str(value))
+    return str(value)
+
+
+def texts(value: Any) -> list[str]:
+    """A list of any words."""
+    return [str(each) for each in _list(value)]
 
 
 def camera(value: Any) -> list[float]:

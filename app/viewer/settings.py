@@ -151,6 +151,8 @@ class Settings:
     timeline_height: Annotated[float, rules.number(0.0, 1000.0)] = 0.0  # [letters']; 0: as needed
     folds: dict[str, bool] = field(default_factory=dict)  # which headings are open, by title
     cameras: dict[str, list[float]] = field(default_factory=dict)  # by scene
+    keys: dict[str, str] = field(default_factory=dict)  # that were changed, by command
+    recent: Annotated[list[str], rules.texts] = field(default_factory=list)  # files, latest first
     display: Display = field(default_factory=Display)
     knows_first_steps: Annotated[bool, rules.flag] = False
     export: ExportChoices = field(default_factory=ExportChoices)
@@ -224,9 +226,10 @@ def load_settings(path: Path) -> tuple[Settings, str]:
     }
     export = refused.table("export.", accepted.pop("export", {}), rules.rules_of(ExportChoices).get)
     accepted["export"] = ExportChoices(**export)
-    folds, cameras = accepted.pop("folds", {}), accepted.pop("cameras", {})
+    folds, cameras, keys = (accepted.pop(name, {}) for name in ("folds", "cameras", "keys"))
     accepted["folds"] = refused.table("folds.", folds, lambda _: rules.flag)
     accepted["cameras"] = refused.table("cameras.", cameras, lambda _: rules.camera)
+    accepted["keys"] = refused.table("keys.", keys, lambda _: rules.shortcut)
     settings, told = Settings(**accepted, display=Display(**display)), str(refused)
     if not told:
         return settings, ""

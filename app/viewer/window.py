@@ -18,10 +18,9 @@ from imgui_bundle import imgui
 from ..stopping import cleaned_up_if_stopped
 from .command import run_pressed
 from .file_drop import LANDMARKS
-from .gui import on_drop, poll_events, wait_for_event
+from .gui import on_drop
 from .live_commands import PACING
 from .painter import Painter
-from .panels.help import draw_help
 from .panels.message_line import draw_message
 from .panels.question_box import draw_question
 from .panels.recovery_banner import draw_recovery
@@ -81,21 +80,23 @@ class Viewer(Parts):
 
     def frame(self) -> None:
         """Input, time, picture, panels."""
-        poll_events()
-        if self.gui.has_events:
+        if self.gui.look():
             self._awake = FRAMES_AFTER_EVENT
             self.life.note_input()
+        for _ in self.gui.turns():
+            self._draw_gui(is_visible=False)
         if self.exporter.has_news:
             self._awake = max(self._awake, 1)
         announced = [self.file_drop.do_announced] if self.file_drop.has_announced else []
         now = time.perf_counter()
         elapsed, self._last = now - self._last, now
-        self.times.note_frame(elapsed)
         room = self.room
         name = self.session.name if room is None else room.marking.path.name
         is_unsaved = self.session.unsaved if room is None else room.marking.unsaved
         self.placement.set_title(f"Risorius: {name}{' *' if is_unsaved else ''}")
         is_moving = self._move_face(elapsed) if room is None else room.paint(elapsed)
+        is_calm = self.physics.is_at_rest or self.physics.is_left_alone
+        self.times.note_frame(elapsed if is_moving or not is_calm else 0.0)
         if self.is_left_alone and not (is_moving or imgui.get_io().want_text_input):
             return  # what is shown stays as it is; of a line of text the cursor blinks
         self._show_panels(elapsed, is_moving=is_moving)
@@ -169,9 +170,9 @@ class Viewer(Parts):
             self._wait()
         elif self.is_left_alone:
             spent = time.perf_counter() - self._last
-            wait_for_event(max(LIFE_WAIT - spent, spent))
+            self.gui.look(max(LIFE_WAIT - spent, spent))
         elif self.live.is_receiving and not self.live.has_frame:
-            wait_for_event(PACING)
+            self.gui.look(PACING)
 
     def _wait(self) -> None:
         """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
@@ -181,36 +182,33 @@ class Viewer(Parts):
         patience = min(patience, max(due_in, 0.0))
         self.soundtrack.rest()
         begin = time.perf_counter()
-        wait_for_event(patience)
+        self.gui.look(patience)
         self._last = time.perf_counter()
         if self._last - begin < patience and not self.live.has_frame:
             self._awake = FRAMES_AFTER_EVENT
 
     def _show_panels(self, elapsed: float, *, is_moving: bool) -> None:
-        """Answer the user, and draw the panels around the scene where their image is not stored."""
+        """Draw the panels around the scene where their image is not stored."""
         size, is_answering = self.surface.size, self._awake > 0 or imgui.is_any_item_active()
         if not self.is_left_alone:  # what the face does by itself moves no slider
             self.panel_cache.age(elapsed)
         # What is dragged in the scene moves no slider.
         has_input = self.room is not None or (is_answering and not self.mouse.is_dragging)
-        is_visible = self.panel_cache.are_due(size, is_moving=is_moving, has_input=has_input)
-        if not (is_visible or is_answering):
+        if not self.panel_cache.are_due(size, is_moving=is_moving, has_input=has_input):
             return
-        if is_visible:
-            self.surface.resolve()
-            if self.room is not None:
-                self.surface.fill(self.room.view.panel, self.gui.theme.panel)
-            elif not self.panel_state.are_hidden:
-                left, bottom, width, _ = self.view.viewport
-                self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
-                self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
-        self._draw_gui(is_visible=is_visible)
-        if is_visible:
-            self.panel_cache.note_drawn(size, is_over_scene=self.gui.covers(self.view.area))
+        self.surface.resolve()
+        if self.room is not None:
+            self.surface.fill(self.room.view.panel, self.gui.theme.panel)
+        elif not self.panel_state.are_hidden:
+            left, bottom, width, _ = self.view.viewport
+            self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
+            self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
+        self._draw_gui(is_visible=True)
+        self.panel_cache.note_drawn(size, is_over_scene=self.gui.covers(self.view.area))
 
     def _draw_gui(self, *, is_visible: bool) -> None:
         """Panels, and what the user does to them and to the face; is_visible: see Gui.frame."""
-        messages, gui, state = self.messages, self.gui, self.panel_state
+        messages, gui = self.messages, self.gui
         room, view, commands = self.room, self.view, self.commands
         if room is not None:
             view, commands = room.view, room.commands
@@ -234,10 +232,9 @@ class Viewer(Parts):
                 partial(draw_question, gui, self.question, self.session, self.scripts),
             ):
                 messages.attempt(draw)
-            if state.is_help_open:
-                state.is_help_open = draw_help(gui, commands, is_marking=room is not None)
+            self.help.draw(commands)
             if not (self.files.is_waiting or self.question.is_open or self.exporter.is_asking):
-                run_pressed(commands, messages)
+                run_pressed(commands, messages, gui)
                 (self if room is None else room).mouse.follow()
 
     def drop(self, paths: Sequence[str]) -> None:

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from imgui_bundle import imgui
 
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
@@ -25,8 +24,6 @@ def viewer() -> Iterator[Viewer]:
     script = replace(script_for(None, "face"), duration=0.5)
     with Viewer(script, SIZE) as opened:
         opened.settings.is_alive = False  # what is compared stands still
-        io = imgui.get_io()  # slower than people, for a machine that is busy [s]
-        io.mouse_single_click_delay, io.mouse_double_click_time = 1.5, 1.0
         draw_frames(opened)
         yield opened
 

@@ -71,8 +71,8 @@ def test_options_of_the_papers_refiner() -> None:
 def test_what_may_be_left_open_is_a_choice() -> None:
     """Words stand for values; another value, or a number in place of a switch, is refused."""
     assert open_choices("kahler") == {
-        "blend": {"as it suits": None, "on": True, "off": False},
-        "normals": {"as it suits": None, "linear": "linear", "refined": "refined"},
+        "blend": {"automatic": None, "on": True, "off": False},
+        "normals": {"automatic": None, "linear": "linear", "refined": "refined"},
     }
     plane = PlaneScene()
     for value in (None, "linear", "refined"):

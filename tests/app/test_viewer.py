@@ -252,13 +252,13 @@ def test_normals_are_chosen(viewer: Viewer) -> None:
     click(viewer, "tab Mechanism")
     assert until(viewer, lambda: viewer.is_idle)
     shown = {}
-    for words in ("as it suits", "linear", "refined", "as it suits"):
+    for words in ("automatic", "linear", "refined", "automatic"):
         click(viewer, "normals")
         click(viewer, f"normals: {words}")
         assert not viewer.messages.is_error
         shown[words] = viewer.stage.refined.triangle_count
     assert viewer.stage.refined.label == "smooth, changed"
-    assert shown["linear"] != shown["refined"] == shown["as it suits"]
+    assert shown["linear"] != shown["refined"] == shown["automatic"]
     click(viewer, "Look")
     click(viewer, "Look: smooth")
     assert viewer.stage.refined.label == "smooth"

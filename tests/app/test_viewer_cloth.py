@@ -19,6 +19,7 @@ def test_the_cloth_falls_in_the_window(tmp_path: Path) -> None:
     with Viewer(script_for(None, "cloth"), (480, 360), settings_path=tmp_path / "s.json") as viewer:
         draw_frames(viewer)
         assert {"drop", "turn"} <= viewer.gui.places.keys()  # sliders are there at once
+        assert next(iter(viewer.layout._tabs)) == "Cloth###Face"  # it has none
         scene = viewer.session.scene
         viewer.session.set("turn", 0.25)
         assert until(viewer, lambda: bool(np.isclose(scene.bone_transforms()["ball"][0, 2], 1.0)))

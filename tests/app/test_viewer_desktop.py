@@ -93,10 +93,10 @@ def test_full_screen_and_back(viewer: Viewer, key: str) -> None:
 
 
 def test_panels_hide_and_come_back(viewer: Viewer) -> None:
-    """Tab leaves the picture alone; menus come up at its edge; Tab brings all back."""
+    """H leaves the picture alone; menus come up at its edge; they bring all back."""
     around = viewer.view.area
     xdotool(viewer, "mousemove", *nose(viewer))
-    xdotool(viewer, "key", "Tab")
+    xdotool(viewer, "key", "h")
     assert viewer.view.viewport == (0, 0, *SIZE) and "play" not in viewer.gui.places
     assert until(viewer, lambda: viewer.is_idle or viewer.messages.is_fading)
     image = viewer.surface.read()
@@ -109,7 +109,7 @@ def test_panels_hide_and_come_back(viewer: Viewer) -> None:
     click(viewer, "menu View: Hide panels")
     assert viewer.view.area == around and "play" in viewer.gui.places
     show_controls(viewer, "jaw")
-    xdotool(viewer, "key", "Tab")  # which belongs to whoever writes
+    xdotool(viewer, "key", "h")  # which belongs to whoever writes
     assert not viewer.panel_state.are_hidden
     xdotool(viewer, "key", "Escape")
 
@@ -118,13 +118,13 @@ def test_full_screen_without_panels_still_acts(viewer: Viewer) -> None:
     """Keys act on the bare image, and both ways back work in any order."""
     xdotool(viewer, "mousemove", *nose(viewer))
     viewer.face_panel.search = ""
-    xdotool(viewer, "key", "F11", "Tab")
+    xdotool(viewer, "key", "F11", "h")
     assert until(viewer, lambda: viewer.view.viewport == (0, 0, *screen_size()), 5.0)
     xdotool(viewer, "key", "3")
     assert viewer.session.is_alone(viewer.session.scene.expressions[2])
     xdotool(viewer, "key", "F11")
     assert until(viewer, lambda: viewer.view.viewport == (0, 0, *SIZE), 5.0)
-    xdotool(viewer, "key", "3", "Tab")
+    xdotool(viewer, "key", "3", "h")
     assert "play" in viewer.gui.places
 
 

@@ -253,7 +253,7 @@ class TestInTheWindow:
         assert marking.marks.places[44] == before.places[44] and number in marking.marks.by_hand
         xdotool(viewer, "key", "ctrl+z")
         assert marking.marks == before
-        xdotool(viewer, "key", "Tab")
+        xdotool(viewer, "key", "Right")
         assert marking.current == ORDER[ORDER.index(number) + 1]
         click(viewer, "Use this head")
         assert viewer.files.is_waiting
@@ -321,7 +321,7 @@ class TestInTheWindow:
             xdotool(viewer, "mousemove", *self.place(viewer, true_places()[number]))
             xdotool(viewer, "click", 1)
         assert viewer.messages.is_error and len(marking.marks.places) == len(FIRST)
-        xdotool(viewer, "key", "m", "Tab", "g", "ctrl+Return")
+        xdotool(viewer, "key", "m", "Right", "g", "ctrl+Return")
         assert viewer.room is not None and marking.current == FIRST[-1]
         left, top, _, _ = self.room(viewer).view.area
         xdotool(viewer, "mousemove", *on_screen(viewer, left + 5, top + 5))

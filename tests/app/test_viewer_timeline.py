@@ -66,8 +66,7 @@ def at(viewer: Viewer, place: KeyPlace) -> tuple[int, int]:
 
 def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -> None:
     """Click somewhere, with keys held down; never the second half of a double click."""
-    io = imgui.get_io()
-    usual, io.mouse_double_click_time = io.mouse_double_click_time, 0.0
+    usual, viewer.gui.double_click_time = viewer.gui.double_click_time, 0.0
     xdotool(viewer, "mousemove", *place)
     for key in keys:
         xdotool(viewer, "keydown", key)
@@ -75,7 +74,7 @@ def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -
     xdotool(viewer, "mouseup", button)
     for key in keys:
         xdotool(viewer, "keyup", key)
-    io.mouse_double_click_time = usual
+    viewer.gui.double_click_time = usual
 
 
 def pose_times(viewer: Viewer) -> list[float]:

@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 from risorius.assets.fitting.guess import FIRST
 
 from ..command import Command
-from ..gui import Gui, colour, em, fixed_panel
+from ..gui import PANEL, Gui, colour, em, fixed_panel, ink_of
 from ..messages import Messages
 from ..panels.menu_bar import MenuBar
 from ..panels.widgets import button, muted
@@ -62,7 +62,7 @@ class MarkingPanel:
         below = round(top + min(0.9 * left, GUIDE_SHARE * display.y))
         view.guide_area = (0.0, top, left, below - top)
         view.area = (left, top, max(display.x - left, 1.0), max(display.y - top, 1.0))
-        with fixed_panel("Marking", (0.0, below), (left, display.y - below)):
+        with fixed_panel(PANEL, (0.0, below), (left, display.y - below)):
             imgui.push_text_wrap_pos(0.0)
             self._draw_task()
             for row in (*(ROWS if self._marking.marks.is_complete else FIRST_ROWS), *LAST_ROWS):
@@ -118,9 +118,9 @@ class MarkingPanel:
             is_current = number == marking.current
             _dot(pen, (x, y), em(0.34 if is_current else 0.24), GROUP_OF[number].colour)
             if number in marking.marks.guessed:
-                pen.add_circle_filled((x, y), em(0.12), _ink(WHITE))
+                pen.add_circle_filled((x, y), em(0.12), ink_of(WHITE))
             if is_current:
-                pen.add_circle((x, y), em(0.62), _ink(WHITE), 0, em(0.12))
+                pen.add_circle((x, y), em(0.62), ink_of(WHITE), 0, em(0.12))
             if GROUP_OF[number] is GROUP_OF[marking.current]:
                 _word(pen, (x + em(0.45), y - em(0.95)), str(number))
         pen.pop_clip_rect()
@@ -139,7 +139,7 @@ class MarkingPanel:
             _join(pen, at)
         for number, spot in at.items():
             _dot(pen, spot, em(0.2), GROUP_OF[number].colour)
-        pen.add_circle(spots[current], em(0.75), _ink(WHITE), 0, em(0.2))
+        pen.add_circle(spots[current], em(0.75), ink_of(WHITE), 0, em(0.2))
         _dot(pen, spots[current], em(0.38), GROUP_OF[current].colour)
         pen.pop_clip_rect()
         _word(pen, (left + em(0.6), top + em(0.4)), "guide: where it belongs")
@@ -151,21 +151,17 @@ def _join(pen: imgui.ImDrawList, at: Mapping[int, Spot]) -> None:
         for line in group.lines:
             for a, b in pairwise(line):
                 if a in at and b in at:
-                    pen.add_line(at[a], at[b], _ink(group.colour, 0.75), em(0.1))
+                    pen.add_line(at[a], at[b], ink_of(group.colour, 0.75), em(0.1))
 
 
 def _dot(pen: imgui.ImDrawList, place: Spot, radius: float, ink: Colour) -> None:
     """A point with a dark border."""
-    pen.add_circle_filled(place, radius + em(0.08), _ink(DARK))
-    pen.add_circle_filled(place, radius, _ink(ink))
+    pen.add_circle_filled(place, radius + em(0.08), ink_of(DARK))
+    pen.add_circle_filled(place, radius, ink_of(ink))
 
 
 def _word(pen: imgui.ImDrawList, place: Spot, text: str) -> None:
     """White letters on any ground."""
     x, y = place
-    pen.add_text((x + em(0.07), y + em(0.07)), _ink(DARK), text)
-    pen.add_text(place, _ink(WHITE), text)
-
-
-def _ink(rgb: Colour, opacity: float = 1.0) -> int:
-    return int(imgui.get_color_u32(colour(rgb, opacity)))
+    pen.add_text((x + em(0.07), y + em(0.07)), ink_of(DARK), text)
+    pen.add_text(place, ink_of(WHITE), text)

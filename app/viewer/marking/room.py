@@ -7,7 +7,7 @@ from typing import Protocol
 
 from risorius import render
 
-from ..command import Command
+from ..command import Command, set_keys
 from ..file_drop import FileDrop
 from ..gui import Gui
 from ..messages import Message, Messages, Task
@@ -21,7 +21,7 @@ from .mouse import MarkingMouse
 from .panel import MarkingPanel
 from .picture import MarkingPicture, MarkingView, yaw_of
 
-SHARED = ("Quit", "Dark theme", "Larger words", "Smaller words", "Keys and mouse")
+SHARED = ("Quit", "Dark theme", "Larger text", "Smaller text", "Usual size", "Keys and mouse")
 
 
 class Window(Protocol):
@@ -51,6 +51,7 @@ class Room:
         self.painter = Painter(self.picture, self.view, messages)
         self.mouse = MarkingMouse(self.view, surface, marking, messages)
         self.commands = self._commands()
+        set_keys(self.commands, window.settings.keys)
         by_label = {command.label: command for command in self.commands}
         menus = MenuBar(window.gui, window.session, messages, self.commands)
         self.panel = MarkingPanel(window.gui, messages, self.picture, menus, by_label)
@@ -99,8 +100,8 @@ class Room:
             file("Leave", "Ctrl+W", self.leave),
             edit("Undo", "Ctrl+Z", marking.undo, can_run=lambda: history.can_undo),
             edit("Redo", "Ctrl+Shift+Z", marking.redo, can_run=lambda: history.can_redo),
-            landmarks("Next point", "Tab", partial(self._step, 1), other_key="Right"),
-            landmarks("Point before", "Shift+Tab", partial(self._step, -1), other_key="Left"),
+            landmarks("Next point", "Right", partial(self._step, 1)),
+            landmarks("Point before", "Left", partial(self._step, -1)),
             landmarks("Mirror this group", "M", marking.mirror),
             landmarks("Guess again", "G", marking.guess),
             Command("View", "Frame the face", "F", view.fit_scene),

@@ -99,7 +99,8 @@ class FileChooser:
         """What is in the folder; the file that was clicked twice, if any."""
         chosen = None
         room = 2.2 * imgui.get_frame_height_with_spacing()
-        imgui.begin_child("listing", (0.0, -room), imgui.ChildFlags_.borders)
+        borders = imgui.ChildFlags_.borders | imgui.ChildFlags_.nav_flattened
+        imgui.begin_child("listing", (0.0, -room), borders)
         for name in self._folders:
             is_clicked, _ = imgui.selectable(f"{_label(name)}/###folder {name}", False)
             self._gui.remember(f"folder {name}")

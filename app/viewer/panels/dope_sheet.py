@@ -19,7 +19,7 @@ from imgui_bundle import imgui
 from ...errors import counted
 from ...script import Script
 from .. import keyframes
-from ..gui import LEFT, MIDDLE, RIGHT, Gui, em
+from ..gui import LEFT, MIDDLE, RIGHT, Gui, em, ink_of
 from ..key_selection import KeySelection
 from ..messages import Message, Messages
 from ..places import NOWHERE, Places
@@ -180,7 +180,7 @@ class DopeSheet:
         room = min(room, self._gutter) - indent - arrow - em(0.3)
         label = shortened(track.label, room, keeps_end=not track.is_sum)  # which tells the side
         is_curve, muted = self.settings.shows_curves and track.control, self._gui.theme.muted
-        ink = self.graph.colour(track) if is_curve else key_marks.ink_of(muted)
+        ink = self.graph.colour(track) if is_curve else ink_of(muted)
         key_marks.draw_label(label, (x, y), ink, arrow, is_open=self._is_open(track.name))
 
     def _draw_over(self, io: Any, edges: tuple[float, float]) -> None:

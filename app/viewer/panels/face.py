@@ -45,7 +45,7 @@ class FacePanel:
         has_room = imgui.get_content_region_avail().y > em(LEAST_ROOM)
         if has_room:
             self._draw_filters()
-        imgui.begin_child("controls", (0.0, 0.0))
+        imgui.begin_child("controls", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
         if not has_room:  # they scroll
             self._draw_filters()
         groups = self._session.controls.groups

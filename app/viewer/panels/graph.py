@@ -12,13 +12,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from imgui_bundle import imgui
 
-from ..gui import Gui, em
+from ..gui import Gui, em, ink_of
 from ..key_selection import KeySelection
 from ..keyframes import SAME
 from ..places import NOWHERE, KeyPlace, Places, among
 from ..time_axis import TimeAxis
 from ..tracks import Track
-from .key_marks import Point, draw_line, ink_of
+from .key_marks import Point, draw_line
 
 PADDING = 0.8  # [em] between the highest value and the edge
 LABEL_ROOM = 1.6  # [em] between two labels of values

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from imgui_bundle import imgui
 
-from ..command import Command
+from ...vocabulary import readable
+from ..command import Command, pressed_key, set_keys
 from ..gui import Gui, colour, em
-from .widgets import muted
+from ..panel_state import PanelState
+from .widgets import button, muted
 
 MOUSE = (
     ("left on the skin", "pose; Ctrl: pull; click: muscle"),
@@ -50,47 +52,82 @@ NARROW_COLUMNS = (
     ("Keys", "View", "Landmarks"),
     ("Mouse", "Timeline", "Expression"),
 )
+ASK = "Click a key to change it."
 WIDE = 63.0  # [em] that the wide ones take
 
 
-def draw_help(gui: Gui, commands: Sequence[Command], *, is_marking: bool = False) -> bool:
-    """Draw the list, scrolled where the window is small; whether it stays open.
+class Help:
+    """Draws the list, in which each key can be changed."""
 
-    is_marking: the commands are those for marking landmarks.
-    """
-    display = imgui.get_io().display_size
-    imgui.set_next_window_pos((0.5 * display.x, 0.5 * display.y), 0, (0.5, 0.5))
-    imgui.set_next_window_size_constraints((0.0, 0.0), display)
-    flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_collapse
-    flags |= imgui.WindowFlags_.horizontal_scrollbar
-    _, stays = imgui.begin("Keys and mouse (F1)", True, flags)
-    lines: dict[str, list[tuple[str, str]]]
-    lines = {"Mouse": [*MARKING]} if is_marking else {"Mouse": [*MOUSE], "Timeline": [*TIMELINE]}
-    for command in commands:
-        if command.key:
-            keys = ", ".join(filter(None, (command.displayed_key, command.other_key)))
-            lines.setdefault(command.menu, []).append((keys, command.label))
-    for index, titles in enumerate(COLUMNS if display.x > em(WIDE) else NARROW_COLUMNS):
-        if index:
-            imgui.same_line(0.0, em(1.5))
-        imgui.begin_group()
-        for title in filter(lines.get, titles):
-            muted(gui, title)
-            _draw_lines(gui, title, lines[title])
-        imgui.end_group()
-    place, size = imgui.get_window_pos(), imgui.get_window_size()
-    gui.places["help"] = (place.x, place.y, place.x + size.x, place.y + size.y)
-    imgui.end()
-    return bool(stays) and not imgui.is_key_pressed(imgui.Key.escape)
+    def __init__(self, gui: Gui, state: PanelState, changed: dict[str, str]) -> None:
+        """changed: the keys of commands that have not their usual ones, by the commands' labels."""
+        self._gui, self._state, self._changed = gui, state, changed
+        self._asked: Command | None = None  # for which a key is to be pressed
+        self._line = ASK
 
+    def draw(self, commands: Sequence[Command]) -> None:
+        """Draw the list while it is open, scrolled where the window is small."""
+        gui, display = self._gui, imgui.get_io().display_size
+        if not self._state.is_help_open:
+            return
+        imgui.set_next_window_pos((0.5 * display.x, 0.5 * display.y), 0, (0.5, 0.5))
+        imgui.set_next_window_size_constraints((0.0, 0.0), display)
+        flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_collapse
+        flags |= imgui.WindowFlags_.horizontal_scrollbar
+        _, stays = imgui.begin("Keys and mouse (F1)", True, flags)
+        is_left = imgui.is_key_pressed(imgui.Key.escape) and not (gui.has_popup or self._asked)
+        self._state.is_help_open = bool(stays) and not is_left
+        self._take_key(commands)
+        is_marking = any(command.menu == "Landmarks" for command in commands)
+        others = {"Mouse": MARKING} if is_marking else {"Mouse": MOUSE, "Timeline": TIMELINE}
+        for index, titles in enumerate(COLUMNS if display.x > em(WIDE) else NARROW_COLUMNS):
+            if index:
+                imgui.same_line(0.0, em(1.5))
+            imgui.begin_group()
+            for title in titles:
+                keys = [each for each in commands if each.menu == title and each.key]
+                self._draw_lines(title, keys or others.get(title, ()))
+            imgui.end_group()
+        place, size = imgui.get_window_pos(), imgui.get_window_size()
+        gui.places["help"] = (place.x, place.y, place.x + size.x, place.y + size.y)
+        imgui.end()
 
-def _draw_lines(gui: Gui, name: str, lines: Iterable[tuple[str, str]]) -> None:
-    """What to press in one column, what it does in another."""
-    flags = imgui.TableFlags_.sizing_fixed_fit | imgui.TableFlags_.no_host_extend_x
-    if imgui.begin_table(name, 2, flags):
-        for keys, meaning in lines:
+    def _take_key(self, commands: Sequence[Command]) -> None:
+        """Give the command that asks for one the key that is pressed, unless another has it."""
+        asked, key = self._asked, pressed_key()
+        taken = [each.label for each in commands if each is not asked and key in each.keys]
+        imgui.text(self._line)
+        if asked is not None:
+            self._gui.has_popup = True  # no key is for commands now
+            if taken:
+                self._line = f"{key} is taken: {taken[0]}. Press another, or Escape."
+            elif key:
+                self._changed[asked.label] = key
+            if imgui.is_key_pressed(imgui.Key.escape) or (key and not taken):
+                self._asked, self._line = None, ASK
+        elif self._changed:
+            imgui.same_line()
+            if button(self._gui, "Usual keys"):
+                self._changed.clear()
+        set_keys(commands, self._changed)
+
+    def _draw_lines(self, name: str, lines: Sequence[Command | tuple[str, str]]) -> None:
+        """What to press in one column, what it does in another."""
+        flags = imgui.TableFlags_.sizing_fixed_fit | imgui.TableFlags_.no_host_extend_x
+        if lines:
+            muted(self._gui, name)
+        if not lines or not imgui.begin_table(name, 2, flags):
+            return
+        for line in lines:
             imgui.table_next_column()
-            imgui.text_colored(colour(gui.theme.accent), keys)
+            keys, meaning = line if isinstance(line, tuple) else (line.displayed_keys, line.label)
+            imgui.push_style_color(imgui.Col_.text, colour(self._gui.theme.accent))
+            if isinstance(line, tuple):
+                imgui.text(readable(keys))
+            elif imgui.selectable(f"{keys}##{meaning}", self._asked is line)[0]:
+                self._asked, self._line = line, f"{meaning}: press a key for it, or Escape."
+            self._gui.remember(f"key {meaning}")
+            imgui.pop_style_color()
             imgui.table_next_column()
-            imgui.text(meaning)
+            imgui.text(readable(meaning))
         imgui.end_table()

@@ -8,7 +8,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from ...script import Floats
-from ..gui import Theme, colour, em
+from ..gui import Theme, em, ink_of
 from ..keyframes import FRAME
 from ..places import Places
 from ..time_axis import TimeAxis
@@ -23,10 +23,6 @@ CLOSEST = 2.0  # [window units] keys nearer than that are drawn as one
 MOST_COVERED = 0.5  # of a row by keys that are drawn one by one
 
 Point = tuple[float, float]
-
-
-def ink_of(rgb: tuple[float, float, float], opacity: float = 1.0) -> int:
-    return int(imgui.get_color_u32(colour(rgb, opacity)))
 
 
 def draw_ruler(

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 
 from imgui_bundle import imgui
 
-from ..gui import Gui, em, fixed_panel
+from ..gui import PANEL, Gui, em, fixed_panel
 from ..panel_state import PanelState
 from ..settings import Settings
 from ..view import View
@@ -33,7 +33,7 @@ class Layout:
         tabs: Mapping[str, Callable[[], None]],
         timeline: Timeline,
     ) -> None:
-        """tabs: what draws the panels at the left, by their titles."""
+        """tabs: what draws the panels at the left, by their titles, or label###title."""
         self._gui, self._settings, self._state = gui, settings, state
         self._menus, self._tabs, self._timeline = menus, tabs, timeline
 
@@ -47,8 +47,7 @@ class Layout:
 
     def _draw_bare(self) -> tuple[float, float, float, float]:
         io = imgui.get_io()
-        is_in_menu = imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
-        if 0.0 <= io.mouse_pos.y < em(EDGE) or is_in_menu:
+        if 0.0 <= io.mouse_pos.y < em(EDGE) or self._gui.owns_keys:
             self._menus.draw()
         return 0.0, 0.0, max(io.display_size.x, 1.0), max(io.display_size.y, 1.0)
 
@@ -59,7 +58,7 @@ class Layout:
         wanted = em(min(max(self._settings.panel_width, least), most))
         left = round(min(wanted, PANEL_SHARE * display.x))
         below = round(self._timeline.height())
-        with fixed_panel("Controls", (0.0, top), (left, display.y - top), resizes=True):
+        with fixed_panel(PANEL, (0.0, top), (left, display.y - top), resizes=True):
             if round(imgui.get_window_width()) != left:  # its edge is being dragged
                 self._settings.panel_width = imgui.get_window_width() / em()
             self._draw_tabs()
@@ -71,9 +70,10 @@ class Layout:
         state = self._state
         if not imgui.begin_tab_bar("tabs"):
             return
-        for title, draw_panel in self._tabs.items():
+        for label, draw_panel in self._tabs.items():
+            title = label.rpartition("###")[2]
             flags = imgui.TabItemFlags_.set_selected if state.wanted_tab == title else 0
-            is_open, _ = imgui.begin_tab_item(title, None, flags)
+            is_open, _ = imgui.begin_tab_item(label, None, flags)
             self._gui.remember(f"tab {title}")
             if is_open:
                 if state.wanted_tab in ("", title):

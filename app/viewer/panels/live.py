@@ -16,7 +16,7 @@ from ..live_commands import LiveCommands
 from ..messages import Messages
 from ..settings import Settings
 from .sliders import Sliders
-from .widgets import button, button_width, heading, hint, muted, stay_in_line
+from .widgets import begin_row, button, button_width, choose, heading, hint, muted, stay_in_line
 
 LABEL_SHARE = 0.38  # of a row
 MOST_GAIN = min(3.0, HIGHEST_GAIN)
@@ -56,7 +56,7 @@ class LivePanel:
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
-        imgui.begin_child("live", (0.0, 0.0))
+        imgui.begin_child("live", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
         face = self._live.face
         self._draw_listening()
         self._draw_state(face)
@@ -85,8 +85,7 @@ class LivePanel:
         chosen = self._choose("Listen to", here, tuple(by_name))
         if chosen is not None:
             wanted = replace(wanted, address=by_name[chosen])
-        self._begin_row("Port")
-        imgui.set_next_item_width(-1.0)
+        begin_row("Port", HINTS["Port"], LABEL_SHARE)
         is_changed, port = imgui.input_int("##port", wanted.chosen_port, 0)
         self._gui.remember("Port")
         if is_changed:
@@ -177,14 +176,8 @@ class LivePanel:
 
     # Rows
 
-    def _begin_row(self, label: str) -> None:
-        imgui.align_text_to_frame_padding()
-        imgui.text(label)
-        hint(HINTS[label])
-        imgui.same_line(LABEL_SHARE * imgui.get_window_width())
-
     def _slide(self, label: str, value: float, neutral: float) -> float | None:
-        self._begin_row(label)
+        begin_row(label, HINTS[label], LABEL_SHARE)
         slid = self._sliders.draw(
             f"live {label}", value, (0.0, MOST_GAIN), width=-1.0, neutral=neutral
         )
@@ -192,18 +185,8 @@ class LivePanel:
 
     def _choose(self, label: str, present: str, choices: tuple[str, ...]) -> str | None:
         """A row with a list; what was chosen in it now."""
-        self._begin_row(label)
-        imgui.set_next_item_width(-1.0)
-        chosen = None
-        is_open = imgui.begin_combo(f"##{label}", present)
-        self._gui.remember(label)
-        if is_open:
-            for choice in choices:
-                if imgui.selectable(choice, choice == present)[0]:
-                    chosen = choice
-                self._gui.remember(f"{label}: {choice}")
-            imgui.end_combo()
-        return chosen
+        begin_row(label, HINTS[label], LABEL_SHARE)
+        return choose(self._gui, label, present, choices)
 
 
 def shown_of(face: LiveFace) -> dict[str, float]:

@@ -17,6 +17,7 @@ from ...anatomy import OPACITY, SIDES
 from ...looks import FIRST_LOOK, LOOKS, STATIC, named, words_of_looks
 from ...refining import DETAIL, can_detail
 from ...scenes import BUILT_IN
+from ...vocabulary import readable
 from ..colours import COLOURS
 from ..file_drop import FileDrop
 from ..frame_times import PHASES, FrameTimes
@@ -28,7 +29,7 @@ from ..settings import Display, Settings
 from ..stage import Stage
 from ..view import View
 from .sliders import Sliders
-from .widgets import button, heading, hint, muted
+from .widgets import button, choose, heading, hint, muted
 
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
@@ -100,13 +101,14 @@ class MechanismPanel:
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
-        imgui.begin_child("mechanism", (0.0, 0.0))
+        imgui.begin_child("mechanism", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
         self._resets = self._find_resets()
         imgui.begin_disabled(self._display == Display())
         if button(self._gui, "Reset all", meaning="all of this as at first, but for the person"):
             self._settings.display = Display()
         imgui.end_disabled()
-        times_label = f"Milliseconds, {self._times.frames_per_second:.0f} frames a second"
+        rate = self._times.frames_per_second
+        times_label = f"Milliseconds, {rate:.0f} frames a second" if rate else "Milliseconds"
         for title, label, draw in (
             ("Refinement", "", self._draw_refinement),
             ("Style", "", self._draw_style),
@@ -249,7 +251,7 @@ class MechanismPanel:
             imgui.plot_lines(
                 f"##{name}",
                 times,
-                overlay_text=f"{name}  {median:.2f}",
+                overlay_text=f"{readable(name)}  {median:.2f}",
                 scale_min=0.0,
                 scale_max=max(float(times.max()), 0.1) * 1.3,
                 graph_size=(width, em(2.2)),
@@ -259,10 +261,11 @@ class MechanismPanel:
     def _begin_row(self, label: str) -> None:
         """A label in the first column; what comes next is in the second."""
         imgui.align_text_to_frame_padding()
-        imgui.text(label)
+        imgui.text(readable(label))
         hint(HINTS.get(label, ""))
         self._draw_reset(label, _label_width() - em(1.5))
         imgui.same_line(_label_width())
+        imgui.set_next_item_width(-1.0)
 
     def _draw_reset(self, label: str, place: float = 0.0) -> None:
         """The mark of a row that is not as at first; a click sets it back."""
@@ -284,7 +287,7 @@ class MechanismPanel:
         self._check(label, getattr(self._display, name), partial(self._display.switch, name))
 
     def _check(self, label: str, is_on: bool, switch: Callable[[], None]) -> None:
-        is_clicked, _ = imgui.checkbox(label, is_on)
+        is_clicked, _ = imgui.checkbox(readable(label), is_on)
         self._gui.remember(label)
         hint(HINTS.get(label, ""))
         self._draw_reset(label)
@@ -318,17 +321,9 @@ class MechanismPanel:
     ) -> None:
         """A row with a list to choose from."""
         self._begin_row(label)
-        imgui.set_next_item_width(-1.0)
-        is_open = imgui.begin_combo(f"##{label}", present)
-        self._gui.remember(label)
-        if not is_open:
-            return
-        for choice in choices:
-            is_clicked, _ = imgui.selectable(choice, choice == present)
-            self._gui.remember(f"{label}: {choice}")
-            if is_clicked:
-                put(choice)
-        imgui.end_combo()
+        chosen = choose(self._gui, label, present, choices)
+        if chosen is not None:
+            put(chosen)
 
 
 def _label_width() -> float:

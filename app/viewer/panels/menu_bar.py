@@ -34,7 +34,7 @@ class MenuBar:
                 self.draw_menu(title)
                 imgui.end_menu()
         if self._session.unsaved:
-            muted(self._gui, f"   unsaved: {self._session.unsaved}")
+            muted(self._gui, f"   Unsaved: {self._session.unsaved}")
         imgui.end_main_menu_bar()
         return height
 
@@ -43,9 +43,16 @@ class MenuBar:
         for command in self._commands:
             if command.menu != title:
                 continue
+            if command.submenu is not None:
+                rows = tuple(command.submenu())
+                if imgui.begin_menu(command.label, bool(rows)):
+                    MenuBar(self._gui, self._session, self._messages, rows).draw_menu(title)
+                    imgui.end_menu()
+                self._gui.remember(f"menu {title}: {command.label}")
+                continue
             is_on = command.is_on is not None and command.is_on()
             is_clicked, _ = imgui.menu_item(
-                command.label, command.displayed_key, is_on, command.can_run()
+                command.label, command.displayed_keys, is_on, command.can_run()
             )
             self._gui.remember(f"menu {title}: {command.label}")
             if is_clicked:

@@ -10,7 +10,7 @@ from ..view import View
 
 
 def draw_message(gui: Gui, messages: Messages, view: View) -> None:
-    """Draw the line, if there is one; a click takes it away."""
+    """Draw the line, if there is one; a click or Escape takes it away."""
     if not messages.text:
         return
     left, top, width, height = view.area
@@ -23,7 +23,8 @@ def draw_message(gui: Gui, messages: Messages, view: View) -> None:
     else:
         imgui.text_unformatted(messages.text)
     imgui.pop_text_wrap_pos()
-    if imgui.is_window_hovered() and imgui.is_mouse_clicked(0):
+    is_clicked = imgui.is_window_hovered() and imgui.is_mouse_clicked(0)
+    if is_clicked or (imgui.is_key_pressed(imgui.Key.escape) and not gui.has_popup):
         messages.text = ""
     imgui.end()
     gui.places["message"] = (left, top, left + width, top + height)

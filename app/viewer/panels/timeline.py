@@ -11,7 +11,7 @@ from ..gui import Gui, colour, em
 from ..messages import Messages
 from ..session import SPEEDS, Session
 from .dope_sheet import DopeSheet
-from .widgets import button, hint, shortened, stay_in_line
+from .widgets import button, choose, hint, shortened, stay_in_line
 
 BUTTON_WIDTH, SPEED_WIDTH = 4.0, 4.6  # [em]
 MOST_HEIGHT, MOST_DRAGGED = 0.4, 0.7  # of the window
@@ -91,14 +91,11 @@ class Timeline:
     def _draw_speed(self) -> None:
         stay_in_line(em(SPEED_WIDTH))
         imgui.set_next_item_width(em(SPEED_WIDTH))
-        if imgui.begin_combo("##speed", f"{self._session.speed:g} x"):
-            for speed in SPEEDS:
-                if imgui.selectable(f"{speed:g} x", speed == self._session.speed)[0]:
-                    self._session.speed = speed
-                self._gui.remember(f"speed {speed:g}")
-            imgui.end_combo()
-        self._gui.remember("speed")
-        hint("of playing")
+        speeds = {f"{speed:g} x": speed for speed in SPEEDS}
+        chosen = choose(self._gui, "speed", f"{self._session.speed:g} x", speeds)
+        if chosen is not None:
+            self._session.speed = speeds[chosen]
+        hint("speed of the script")
 
     def _draw_status(self) -> None:
         """The time, and what is being made now, else the script's name."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from ...sound.peaks import Peaks
-from ..gui import Gui, em
+from ..gui import Gui, em, ink_of
 from ..soundtrack import Soundtrack
 from ..time_axis import TimeAxis
 from . import key_marks
-from .key_marks import ink_of as _ink
 
 HEIGHT = 2.6  # [em]
 LEAST = 0.5  # [window units] from the middle: silence is a thin line
@@ -45,12 +44,12 @@ class Waveform:
         bottom = top + self.height - 1.0
         first, last = round(axis.x(axis.start)), round(axis.x(axis.end))
         lines.add_rect_filled(
-            (first - em(0.5), top + 1.0), (last + em(0.5), bottom), _ink(theme.field), em(0.2)
+            (first - em(0.5), top + 1.0), (last + em(0.5), bottom), ink_of(theme.field), em(0.2)
         )
-        key_marks.draw_label("Sound", (left, top + 0.5 * (self.height - em())), _ink(theme.muted))
+        key_marks.draw_label("Sound", (left, top + 0.5 * (self.height - em())), ink_of(theme.muted))
         low, high = peaks.between(axis.time(first), axis.time(last), max(last - first, 1))
         middle, reach = 0.5 * (top + bottom), 0.5 * (bottom - top) - em(0.2)
-        inside, outside = _ink(theme.muted), _ink(theme.muted, 0.35)
+        inside, outside = ink_of(theme.muted), ink_of(theme.muted, 0.35)
         ends = axis.x(duration)
         uppers = (middle - LEAST - reach * high).tolist()
         lowers = (middle + LEAST - reach * low).tolist()

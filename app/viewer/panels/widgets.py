@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 from imgui_bundle import imgui
 
+from ...vocabulary import readable
 from ..gui import Gui, colour, em
 from ..settings import Settings
 
@@ -54,6 +56,29 @@ def button(
     gui.remember(name or label)
     hint(meaning)
     return bool(is_clicked)
+
+
+def choose(gui: Gui, label: str, present: str, choices: Iterable[str]) -> str | None:
+    """Draw a list to choose from, as wide as was asked for; what was chosen in it now."""
+    chosen = None
+    is_open = imgui.begin_combo(f"##{label}", readable(present))
+    gui.remember(label)
+    if is_open:
+        for choice in choices:
+            if imgui.selectable(readable(choice), choice == present)[0]:
+                chosen = choice
+            gui.remember(f"{label}: {choice}")
+        imgui.end_combo()
+    return chosen
+
+
+def begin_row(label: str, meaning: str, share: float) -> None:
+    """A label that takes a share of the panel; what comes next takes the rest of the row."""
+    imgui.align_text_to_frame_padding()
+    imgui.text(readable(label))
+    hint(meaning)
+    imgui.same_line(share * imgui.get_window_width())
+    imgui.set_next_item_width(-1.0)
 
 
 def button_width(label: str) -> float:

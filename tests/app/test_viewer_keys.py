@@ -1,0 +1,247 @@
+"""Clicks, keys and words as they come to a window that draws slowly: each does what it is for."""
+
+from __future__ import annotations
+
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from imgui_bundle import imgui
+
+from risorius.app.script import load_script
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.keyframes import POSES
+from risorius.app.viewer.places import KeyPlace
+from risorius.app.viewer.settings import load_settings, save_settings
+
+from .driving import (
+    NEEDS_A_SCREEN,
+    clear_search,
+    click,
+    draw_frames,
+    middle,
+    on_screen,
+    show_controls,
+    until,
+    xdotool,
+)
+
+pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
+
+SLOW = 0.15  # [s] beside what it takes to draw a frame
+
+
+def slowly(viewer: Viewer, *words: object, frames: int = 3) -> None:
+    """Send real events while the window draws a few frames a second, and some frames more."""
+    events = subprocess.Popen(["xdotool", *map(str, words)])
+    while events.poll() is None:
+        viewer.frame()
+        time.sleep(SLOW)
+    assert events.returncode == 0
+    for _ in range(frames):
+        viewer.frame()
+        time.sleep(SLOW)
+
+
+def typed(words: object) -> tuple[object, ...]:
+    """Events of words that are written at once, and entered."""
+    return "type", "--delay", 2, "--args", 1, words, "key", "Return"
+
+
+def test_a_number_is_typed_into_a_slow_window(viewer: Viewer) -> None:
+    """A double click and the number after it go to the slider, and to nothing else."""
+    show_controls(viewer, "jaw open")
+    xdotool(viewer, "mousemove", *middle(viewer, "jaw_open"))
+    for number, delay in ((0.3, 100), (0.85, 220)):
+        double = ("click", "--repeat", 2, "--delay", delay, 1)
+        slowly(viewer, *double, *typed(number))
+        assert until(viewer, lambda: viewer.session.values["jaw_open"] == number, 2.0), number  # noqa: B023
+        assert [name for name, value in viewer.session.values.items() if value] == ["jaw_open"]
+    slowly(viewer, "click", 1, "sleep", 2, "click", 1)
+    assert not imgui.get_io().want_text_input  # two clicks, no double click
+    clear_search(viewer)
+
+
+def test_a_pose_is_named_in_a_slow_window(viewer: Viewer) -> None:
+    """Words typed right after the double click are the name; none of them is a shortcut."""
+    viewer.session.open(load_script(Path(__file__).parents[2] / "docs" / "hello.toml"))
+    draw_frames(viewer)
+    place = on_screen(viewer, *viewer.timeline.dope_sheet.where(KeyPlace(POSES, 1.0)))
+    xdotool(viewer, "mousemove", *place)
+    double = ("click", "--repeat", 2, "--delay", 100, 1)
+    slowly(viewer, *double, *typed("big smile"))
+    names = [pose.name for pose in viewer.session.script.poses]
+    assert "big smile" in names
+    assert not viewer.session.is_playing and not viewer.session.has_unsaved_pose
+
+
+def test_chords_keep_their_modifier(viewer: Viewer) -> None:
+    """Ctrl let go with the key, in one frame with it, counts as held."""
+    for _ in range(6):
+        viewer.session.toggle_alone("joy")
+        slowly(viewer, "key", "--delay", 2, "ctrl+z", frames=1)
+        assert not viewer.session.is_alone("joy")
+        viewer.session.neutral()
+
+
+def test_tabs_are_clicked_while_a_script_plays(viewer: Viewer) -> None:
+    """Mouse there, and pressed at once: the tab comes up, in each of many times."""
+    tabs = {title: middle(viewer, f"tab {title}") for title in ("Mechanism", "Live", "Face")}
+    viewer.session.is_looping = True
+    viewer.session.toggle_playing()
+    for title in (*tabs, *tabs):
+        slowly(viewer, "mousemove", *tabs[title], "click", 1)
+        assert viewer.settings.tab == title
+
+
+def test_escape_closes_one_thing_after_another(viewer: Viewer) -> None:
+    """Menus, lists, the menu of the timeline, a line to type in, dialogs, the overview of keys."""
+    click(viewer, "tab Mechanism")
+    x, y = middle(viewer, "keys")
+    places, context = viewer.gui.places, imgui.get_current_context()
+    for opens, shown in (
+        (lambda: click(viewer, "menu File"), "menu File: Quit"),
+        (lambda: click(viewer, "Refiner"), "Refiner: loop"),
+        (lambda: click(viewer, "speed"), "speed: 2 x"),
+        (lambda: xdotool(viewer, "mousemove", x, y, "click", 3), "menu Keys: Set key"),
+        (lambda: xdotool(viewer, "key", "shift+k"), "pose name"),
+        (lambda: xdotool(viewer, "key", "ctrl+o"), "path"),
+    ):
+        opens()
+        assert until(viewer, lambda: shown in places, 3.0), shown  # noqa: B023
+        xdotool(viewer, "mousemove", 2, 2, "key", "Escape")
+        assert shown not in places and not context.open_popup_stack.size(), shown
+    xdotool(viewer, "key", "F1")
+    click(viewer, "menu View")
+    for is_open in (True, False):
+        xdotool(viewer, "mousemove", 2, 2, "key", "Escape")
+        assert viewer.panel_state.is_help_open == is_open
+    click(viewer, "tab Face")
+
+
+def test_the_keyboard_reaches_everything(viewer: Viewer) -> None:
+    """Tab goes from widget to widget, arrows move, Space presses; Ctrl+Tab goes to other panels."""
+    click(viewer, "tab Face")
+    before = viewer.surface.read().astype(int)
+    xdotool(viewer, "key", "Tab")
+    assert imgui.get_io().nav_visible
+    assert np.abs(viewer.surface.read().astype(int) - before).max() > 60  # the frame around it
+    for _ in range(8):
+        if not imgui.get_io().want_text_input:  # in the search line
+            xdotool(viewer, "key", "Tab")
+    xdotool(viewer, "key", "Tab", "Tab", "space")  # its heading, and the first expression
+    assert viewer.session.is_alone(viewer.session.scene.expressions[0])
+    assert not viewer.session.is_playing
+    xdotool(viewer, "key", "Down", "Right")
+    assert viewer.session.time == 0.0  # arrows walk, and go to no key of the script
+    context = imgui.get_current_context()
+    for count in (1, 2):  # by which panel was used last
+        if context.nav_window.name != "##MainMenuBar":
+            tabs = ("key", "Tab") * count
+            xdotool(viewer, "keydown", "ctrl", *tabs, "keyup", "ctrl")
+    xdotool(viewer, "key", "Down", "Down", "Right", "Down", "Return")
+    assert not any(viewer.session.values.values())  # Edit, Undo
+    xdotool(viewer, "key", "Escape", "Escape")
+    assert not viewer.gui.owns_keys
+
+
+def test_keys_are_changed_in_their_overview(viewer: Viewer, tmp_path: Path) -> None:
+    """Click a key, press another: what is taken is told; settings keep it; a button undoes it."""
+    xdotool(viewer, "key", "F1")
+    click(viewer, "key Neutral")
+    xdotool(viewer, "key", "m")
+    assert "M is taken: Mirror" in viewer.help._line
+    xdotool(viewer, "key", "shift+j")
+    assert viewer.settings.keys == {"Neutral": "Shift+J"}
+    xdotool(viewer, "key", "Escape")
+    assert not viewer.panel_state.is_help_open
+    viewer.session.toggle_alone("joy")
+    xdotool(viewer, "key", "n")
+    assert viewer.session.is_alone("joy")
+    xdotool(viewer, "key", "shift+j")
+    assert not viewer.session.is_alone("joy")
+    path = tmp_path / "viewer.json"
+    save_settings(path, viewer.settings)
+    assert load_settings(path)[0].keys == {"Neutral": "Shift+J"}
+    path.write_text('{"keys": {"Neutral": "Shift+Nonsense", "Undo": [], "Redo": "F7"}}')
+    loaded, told = load_settings(path)
+    assert loaded.keys == {"Redo": "F7"} and "keys.Neutral" in told and "keys.Undo" in told
+    xdotool(viewer, "key", "F1")
+    click(viewer, "Usual keys")
+    xdotool(viewer, "key", "Escape")
+    viewer.session.toggle_alone("joy")
+    xdotool(viewer, "key", "n")
+    assert not viewer.session.is_alone("joy") and viewer.settings.keys == {}
+
+
+def test_redo_and_size_have_their_usual_keys(viewer: Viewer) -> None:
+    """Ctrl+Y does again what Ctrl+Z undid; Ctrl+0 brings all back to its first size."""
+    xdotool(viewer, "key", "1", "ctrl+z", "ctrl+y")
+    assert viewer.session.is_alone(viewer.session.scene.expressions[0])
+    xdotool(viewer, "key", "ctrl+equal", "ctrl+equal")
+    assert viewer.settings.zoom > 1.2
+    xdotool(viewer, "key", "ctrl+0")
+    assert viewer.settings.zoom == 1.0
+
+
+def test_recent_files_are_opened_again(viewer: Viewer, tmp_path: Path) -> None:
+    """The latest comes first; settings keep them; one that is gone is told in one line."""
+    paths = [tmp_path / f"{name}.toml" for name in ("first", "second")]
+    for path in paths:
+        path.write_text("duration = 1.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")
+        viewer.drop([str(path)])
+    assert viewer.settings.recent[:2] == [str(path) for path in reversed(paths)]
+    saved = tmp_path / "viewer.json"
+    save_settings(saved, viewer.settings)
+    assert load_settings(saved)[0].recent == viewer.settings.recent
+
+    def choose(path: Path) -> None:
+        """Open a file by the menu."""
+        click(viewer, "menu File")
+        click(viewer, "menu File: Recent")
+        click(viewer, f"menu File: {path.name}   {path.parent}")
+
+    choose(paths[0])
+    assert viewer.session.script.source == str(paths[0]) and not viewer.messages.is_error
+    paths[1].unlink()
+    choose(paths[1])
+    assert viewer.messages.is_error and "no such script" in viewer.messages.text
+    assert "\n" not in viewer.messages.text and viewer.session.script.source == str(paths[0])
+    xdotool(viewer, "key", "Escape")
+    assert not viewer.messages.text
+
+
+def test_numbers_can_be_read_over_handles(viewer: Viewer) -> None:
+    """In both themes the text stands out from a slider's handle beneath it (WCAG: 4.5 to 1)."""
+    for theme in ("light", "dark"):
+        viewer.settings.theme = theme
+        draw_frames(viewer, 1)
+        text, field, grab = (
+            np.array([*imgui.get_style().color_(which)])
+            for which in (imgui.Col_.text, imgui.Col_.frame_bg, imgui.Col_.slider_grab)
+        )
+        ground = grab[3] * grab[:3] + (1.0 - grab[3]) * field[:3]
+        levels = sorted(
+            float((((rgb + 0.055) / 1.055) ** 2.4) @ (0.2126, 0.7152, 0.0722))
+            for rgb in (text[:3], ground)
+        )
+        assert (levels[1] + 0.05) / (levels[0] + 0.05) > 4.5, theme
+    viewer.settings.theme = "light"
+
+
+def test_a_window_at_rest_claims_no_frames(viewer: Viewer) -> None:
+    """Frames a second are told while something moves, and only then."""
+    assert until(viewer, lambda: viewer.is_idle)
+    assert viewer.times.frames_per_second == 0.0
+    viewer.session.toggle_alone("joy")
+    draw_frames(viewer)
+    assert viewer.times.frames_per_second > 0.0
+
+
+def test_words_begin_with_capitals(viewer: Viewer) -> None:
+    """Menus and tabs in sentence case."""
+    shown = [*(each.label for each in viewer.commands), *viewer.layout._tabs]
+    assert all(word[0].isupper() or word[0].isdigit() for word in shown), shown
+    assert not any(word.istitle() and " " in word for word in shown), shown
