@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +13,7 @@ from .messages import Messages, Task
 _MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Shift": imgui.Key.mod_shift, "Alt": imgui.Key.mod_alt}
 _KEY_NAMES = {"Left": "left_arrow", "Right": "right_arrow"}
 # Ctrl keys that a line of text takes for itself while one writes.
-_WRITING = ("Ctrl+A", "Ctrl+Z", "Ctrl+Shift+Z")
+_WRITING = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Z", "Ctrl+Shift+Z")
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,10 @@ class Command:
     is_on: Callable[[], bool] | None = None
     can_run: Callable[[], bool] = lambda: True
     other_key: str = ""
+    reads: Callable[[], str] | None = None  # its label now, where that changes
+    by_key: Task | None = None  # what its key does, where that is not the same
+    # The rows of a menu of its own, in place of `run`: what each reads, is it on, what it does.
+    choices: Callable[[], Sequence[tuple[str, bool, Task]]] | None = None
 
     @property
     def displayed_key(self) -> str:
@@ -46,7 +50,7 @@ def run_pressed(commands: Iterable[Command], messages: Messages) -> None:
         for key in command.keys:
             is_for_text = is_writing and ("Ctrl" not in key or key in _WRITING)
             if not is_for_text and imgui.is_key_chord_pressed(_chord(key)) and command.can_run():
-                messages.attempt(command.run)
+                messages.attempt(command.by_key or command.run)
 
 
 def _chord(key: str) -> int:

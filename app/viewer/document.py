@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from ..errors import counted
+from ..mirror import parted
 from ..script import Script
+from .control_rows import readable
 from .script_file import ScriptFile
 
 
@@ -16,8 +19,18 @@ class Document:
     values: Mapping[str, float] | None  # set by hand, what is not 0; None: as the script has it
     script: Script
     file: ScriptFile  # in which the script is kept
+    time: float = field(default=0.0, compare=False)  # [s] at which the pose was made
 
     def new_keys(self, before: Document) -> int:
         """How many keys of tracks it has that the state before does not share with it."""
         known = {id(track) for track in before.script.tracks.values()}
         return sum(len(track) for track in self.script.tracks.values() if id(track) not in known)
+
+
+def change_of(before: Mapping[str, float], after: Mapping[str, float]) -> str:
+    """What was set by hand, in words; what is not in `before` was 0."""
+    names = sorted(name for name, value in after.items() if value != before.get(name, 0.0))
+    labels = {readable(name if len(names) == 1 else parted(name)[0]) for name in names}
+    if len(labels) != 1:
+        return f"Set {counted(len(names), 'control')}"
+    return f"Set {labels.pop()} to {after[names[0]]:.2f}"

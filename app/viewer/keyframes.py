@@ -25,6 +25,7 @@ SAME = 1e-6  # of a value or a time [s]: no difference
 
 # The keys of a track, an entry each in arrays: times [s], then values and easings, or the poses.
 Columns = tuple[npt.NDArray[Any], ...]
+Values = Mapping[str, float]
 
 
 def places_of(script: Script) -> Places:
@@ -64,12 +65,17 @@ def pose_at(script: Script, time: float) -> Pose | None:
 
 def moved(script: Script, places: Places, seconds: float) -> tuple[Script, Places]:
     """The script with keys later by `seconds` (none before 0), and where they are then."""
-    return _placed(script, places, seconds, are_copies=False)
+    return _placed(script, places, seconds)
 
 
-def copied(script: Script, places: Places, seconds: float) -> tuple[Script, Places]:
-    """The script with copies of keys later by `seconds` (none before 0), and where these are."""
-    return _placed(script, places, seconds, are_copies=True)
+def copied(
+    script: Script, places: Places, seconds: float, source: Script | None = None
+) -> tuple[Script, Places]:
+    """The script with copies of keys later by `seconds` (none before 0), and where these are.
+
+    source: the script that has the keys, where it is another one.
+    """
+    return _placed(script, places, seconds, source or script)
 
 
 def without(script: Script, places: Places) -> Script:
@@ -116,26 +122,35 @@ def lasting(script: Script, seconds: float) -> Script:
     return replace(script, duration=min(max(on_frame(seconds), FRAME, *ends), LARGEST))
 
 
-def keyed(script: Script, time: float, values: Mapping[str, float], limits: Limits) -> Script:
+def differing(script: Script, time: float, values: Values, limits: Limits) -> list[str]:
+    """The controls whose values are not what the script makes of them at `time` [s]."""
+    told = clamped(limits, script.at(time))
+    return [name for name, value in values.items() if abs(value - told.get(name, 0.0)) > SAME]
+
+
+def keyed(
+    script: Script, time: float, values: Values, limits: Limits, *, is_whole: bool = False
+) -> Script:
     """The script with a key that shows these values at `time` [s].
 
     The key is a pose, which holds what the tracks do not add; where a pose cannot (a track closes
     the eye, and it shall be open) the track gets a key, too. In a script of tracks alone, as
     recordings are, those get keys that differ; all of them where nothing does.
+    is_whole: every track gets a key, too, whether it differs or not.
     """
     time = rounded(time)
     plain = script.posed(time)
     added = {name: track.value(time) for name, track in script.tracks.items()}
-    before = clamped(limits, script.at(time))
-    changed = [name for name in values if abs(values[name] - before.get(name, 0.0)) > SAME]
+    changed = differing(script, time, values, limits)
     if script.tracks and not script.poses:
-        return _with_track_keys(
-            _reaching(script, time), time, {name: values[name] for name in changed or script.tracks}
-        )
+        names = {*changed, *script.tracks} if is_whole or not changed else changed
+        keys = {name: values[name] for name in sorted(names)}
+        return _with_track_keys(_reaching(script, time), time, keys)
     wanted = plain | {name: values[name] - added.get(name, 0.0) for name in changed}
     posed = {name: rounded(value) for name, value in clamped(limits, wanted).items()}
     rest = {name: values[name] - posed[name] for name in changed if name in script.tracks}
-    differing = {name: value for name, value in rest.items() if abs(value - added[name]) > SAME}
+    keys = {name: value for name, value in rest.items() if abs(value - added[name]) > SAME}
+    keys = added | keys if is_whole else keys
     present = pose_at(script, time)
     pose = Pose(
         present.time if present else time,
@@ -144,10 +159,10 @@ def keyed(script: Script, time: float, values: Mapping[str, float], limits: Limi
         present.name if present else None,
     )
     with_pose = _with(script, {POSES: _joined(_pose_columns(script.poses), _pose_columns([pose]))})
-    return _reaching(_with_track_keys(with_pose, time, differing), time)
+    return _reaching(_with_track_keys(with_pose, time, keys), time)
 
 
-def _with_track_keys(script: Script, time: float, values: Mapping[str, float]) -> Script:
+def _with_track_keys(script: Script, time: float, values: Values) -> Script:
     """The script with a key in each of these tracks, which are made where they are not there."""
     changed = {}
     for name, value in values.items():
@@ -170,12 +185,15 @@ def _easing_at(poses: Iterable[Pose], time: float) -> str:
 
 def _columns(script: Script, places: Places) -> dict[str, Columns]:
     """All keys of the tracks that any of these places is in."""
-    columns = {POSES: _pose_columns(script.poses)} if POSES in places.times else {}
-    return columns | {
-        name: _channel_columns(track)
-        for name, track in script.tracks.items()
-        if name in places.times
-    }
+    known = {POSES, *script.tracks}
+    return {name: _track_columns(script, name) for name in places.times if name in known}
+
+
+def _track_columns(script: Script, name: str) -> Columns:
+    """All keys of a track, none where there is no such track."""
+    if name == POSES:
+        return _pose_columns(script.poses)
+    return _channel_columns(script.tracks.get(name, Channel([], [])))
 
 
 def _channel_columns(track: Channel) -> Columns:
@@ -189,16 +207,19 @@ def _pose_columns(poses: Sequence[Pose]) -> Columns:
 
 
 def _placed(
-    script: Script, places: Places, seconds: float, *, are_copies: bool
+    script: Script, places: Places, seconds: float, source: Script | None = None
 ) -> tuple[Script, Places]:
-    """The script with the keys at these places later by `seconds`, and where they are then."""
+    """The script with the keys at these places later by `seconds`, and where they are then.
+
+    source: in which the keys stay, and of which the script gets copies.
+    """
     shift = max(seconds, -places.first) if places else 0.0
     changed, arrived = {}, {}
-    for name, columns in _columns(script, places).items():
+    for name, columns in _columns(source or script, places).items():
         is_chosen = among(columns[0], places.times[name])
         times, *rest = _picked(columns, is_chosen)
         arrived[name] = np.round(times + shift, DECIMALS)
-        there = columns if are_copies else _picked(columns, ~is_chosen)
+        there = _track_columns(script, name) if source else _picked(columns, ~is_chosen)
         changed[name] = _joined(there, (arrived[name], *rest))
     ends = [float(times[-1]) for times in arrived.values() if len(times)]
     return _reaching(_with(script, changed), *ends), Places(arrived)

@@ -57,9 +57,24 @@ def file_menu(
 def edit_menu(session: Session) -> Menu:
     """Undo, and whole faces."""
     command = partial(Command, "Edit")
+
+    def states() -> list[tuple[str, bool, Task]]:
+        """What was done, the latest first, and the way there."""
+        now, rows = session.history.place, list(enumerate(session.history.labels))[::-1]
+        return [(label, i == now, partial(session.go_to, i)) for i, label in rows]
+
+    def named(verb: str, further: int) -> str:
+        """The command, with what it takes back or does again."""
+        place = session.history.place + further
+        label = "".join(session.history.labels[max(place, 1) : place + 1])
+        return f"{verb} {label[:1].lower()}{label[1:]}".rstrip()
+
+    undo = partial(command, reads=partial(named, "Undo", 0))
+    redo = partial(command, reads=partial(named, "Redo", 1))
     return (
-        command("Undo", "Ctrl+Z", session.undo, can_run=lambda: session.can_undo),
-        command("Redo", "Ctrl+Shift+Z", session.redo, can_run=lambda: session.can_redo),
+        undo("Undo", "Ctrl+Z", session.undo, can_run=lambda: session.can_undo),
+        redo("Redo", "Ctrl+Shift+Z", session.redo, can_run=lambda: session.can_redo),
+        command("History", "", lambda: None, choices=states),
         command("Neutral", "N", session.neutral),
         command("Mirror", "M", session.mirror),
         command("Randomise", "X", session.randomise),
@@ -72,7 +87,7 @@ def time_menu(session: Session, scripts: ScriptCommands, axis: TimeAxis) -> Menu
     return (
         command("Play", "Space", session.toggle_playing, lambda: session.is_playing),
         command("Record", "Ctrl+R", scripts.toggle_recording, lambda: session.is_recording),
-        command("Loop", "L", session.toggle_looping, lambda: session.is_looping),
+        command("Loop", "L", partial(flip, session, "is_looping"), lambda: session.is_looping),
         command("To the start", "Home", partial(session.seek, 0.0)),
         command("To the key before", "Left", partial(session.seek_key, -1)),
         command("To the next key", "Right", partial(session.seek_key, 1)),
@@ -80,16 +95,29 @@ def time_menu(session: Session, scripts: ScriptCommands, axis: TimeAxis) -> Menu
     )
 
 
-def keys_menu(selection: KeySelection) -> Menu:
+def flip(part: object, field: str) -> None:
+    """Switch a field on or off."""
+    setattr(part, field, not getattr(part, field))
+
+
+def keys_menu(session: Session, selection: KeySelection) -> Menu:
     """What is done with the keys that are selected in the timeline."""
     command = partial(Command, "Keys")
+    edit = partial(command, can_run=lambda: selection.can_edit)
+    paste = partial(command, can_run=lambda: selection.can_paste)
     change = partial(command, can_run=lambda: selection.can_change)
+    field = "is_auto_keying"
     name = partial(command, can_run=lambda: selection.can_rename)
     return (
-        command("Set key", "K", selection.set_key, can_run=lambda: selection.can_edit),
-        name("Name of the pose ...", "Shift+K", selection.rename),
+        edit("Set key", "K", selection.set_key),
+        edit("Set key of all", "Shift+K", partial(selection.set_key, is_whole=True)),
+        command("Let go", "", session.let_go, can_run=lambda: bool(session.differing)),
+        command("Auto-key", "", partial(flip, session, field), partial(getattr, session, field)),
+        name("Name of the pose ...", "Ctrl+K", selection.rename),
+        change("Copy", "Ctrl+C", selection.copy),
+        paste("Paste", "Ctrl+V", selection.paste),
         change("Duplicate", "Ctrl+D", selection.duplicate),
-        change("Delete", "Delete", selection.delete, other_key="Backspace"),
+        change("Delete", "Delete", selection.delete, by_key=selection.delete_if_meant),
         change("A frame earlier", "Shift+Left", partial(selection.nudge, -1)),
         change("A frame later", "Shift+Right", partial(selection.nudge, 1)),
         command("Select all keys", "Ctrl+A", selection.select_all),
@@ -141,7 +169,7 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         command("Next shading", "S", lambda: settings.display.next_shading()),
         switch("Texture", "T", "skin", "textured", "plain"),
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
-        command("Idle life", "A", settings.toggle_life, lambda: settings.is_alive),
+        command("Idle life", "A", partial(flip, settings, "is_alive"), lambda: settings.is_alive),
         command("Frame the face", "F", view.fit_scene),
         command("Hide panels", "Tab", panels.toggle_hidden, lambda: panels.are_hidden),
         full("Full screen", "F11", toggle_full),
@@ -179,4 +207,6 @@ def live_menu(live: LiveCommands) -> Menu:
 def help_menu(panels: PanelState) -> Menu:
     """The overview of keys."""
     is_open = partial(getattr, panels, "is_help_open")
-    return (Command("Help", "Keys and mouse", "F1", panels.toggle_help, is_open),)
+    return (
+        Command("Help", "Keys and mouse", "F1", partial(flip, panels, "is_help_open"), is_open),
+    )

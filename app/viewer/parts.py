@@ -128,7 +128,7 @@ class Parts:
             ),
             *menus.edit_menu(session),
             *menus.time_menu(session, self.scripts, self.time_axis),
-            *menus.keys_menu(self.selection),
+            *menus.keys_menu(session, self.selection),
             *menus.view_menu(settings, self.view, self.placement, self.panel_state),
             *menus.expression_menu(session),
             *menus.live_menu(self.live),
@@ -148,7 +148,9 @@ class Parts:
         dope_sheet = DopeSheet(
             gui, session, settings, messages, self.selection, axis, bar, waveform
         )
-        self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
+        self.timeline = Timeline(
+            gui, session, messages, commands, self.exporter, self.selection, dope_sheet
+        )
         self.face_panel = FacePanel(gui, session, settings, view)
         mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
         record = next(each for each in commands if each.label == "Record")

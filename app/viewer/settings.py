@@ -117,10 +117,6 @@ class Settings:
         """Light or dark."""
         self.theme = "light" if self.theme == "dark" else "dark"
 
-    def toggle_life(self) -> None:
-        """Whether a face that nobody moves lives."""
-        self.is_alive = not self.is_alive
-
     def enlarge(self, factor: float) -> None:
         """Make words and sliders larger or smaller."""
         least, most = rules.ZOOMS

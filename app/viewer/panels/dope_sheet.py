@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import bisect
 import itertools
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +19,7 @@ from ...script import Script
 from .. import keyframes
 from ..gui import LEFT, MIDDLE, RIGHT, Gui, em
 from ..key_selection import KeySelection
-from ..messages import Message, Messages
+from ..messages import Message, Messages, Task
 from ..places import NOWHERE, KeyPlace, Places
 from ..session import Session
 from ..settings import Settings
@@ -119,7 +118,14 @@ class DopeSheet:
         duration = session.script.duration
         if self._drag is None:
             axis.fit(
-                max([duration, self._waveform.duration, *(track.end for track in self._tracks)])
+                max(
+                    [
+                        duration,
+                        session.time,
+                        self._waveform.duration,
+                        *(track.end for track in self._tracks),
+                    ]
+                )
             )
             if session.is_playing:
                 axis.follow(session.time)
@@ -168,6 +174,13 @@ class DopeSheet:
                 corner = place.x, bottom - em(ROW)
                 key_marks.draw_label(theme, label, corner, em(ROW), arrow, is_open=self._is_open)
         key_marks.draw_playhead(theme, self._axis, session.time, (place.y, self._tops[-1]))
+        differing, poses = session.differing, session.script.poses
+        for track, bottom in zip(self._tracks, self._tops[1:], strict=True):
+            is_meant = (
+                track.is_whole if poses else track.is_sum or differing & set(track.places.times)
+            )
+            if differing and is_meant:
+                key_marks.draw_unkeyed(theme, self._axis.x(session.time), bottom - 0.5 * em(ROW))
         if self._drag is not None and self._drag.doing == "box" and self._drag.has_moved:
             key_marks.draw_box(theme, self._drag.began, (io.mouse_pos.x, io.mouse_pos.y))
         if is_hovered and self._drag is None:
@@ -252,7 +265,7 @@ class DopeSheet:
         axis, session = self._axis, self._session
         distance = abs(x - drag.began[0]) + abs(y - drag.began[1])
         drag.has_moved = drag.has_moved or distance > CLICK
-        act: dict[str, Callable[[], None]] = {
+        act: dict[str, Task] = {
             "keys": lambda: self._move_keys(io, drag),
             "box": lambda: self._select_box(io, drag),
             "scrub": lambda: session.seek(self._snapped(axis.time(x), io)),
@@ -265,7 +278,7 @@ class DopeSheet:
             self._messages.attempt(act[drag.doing])
         if imgui.is_key_pressed(imgui.Key.escape) and drag.doing in ("keys", "end"):
             self._drag = None
-            self._messages.attempt(lambda: session.edit(drag.script))
+            self._messages.attempt(lambda: session.edit(drag.script, is_done=False))
             self._selection.places = drag.selected
         elif not imgui.is_mouse_down(drag.button):
             self._drag = None
@@ -306,9 +319,10 @@ class DopeSheet:
             if self._grabbed and not io.key_shift:
                 self._selection.places = self._grabbed
                 session.is_playing = False
-                session.seek(self._grabbed.first)
-        if drag.doing != "pan":
-            session.note()
+                line = session.seek(self._grabbed.first)
+        if drag.doing in ("keys", "end") and drag.has_moved:
+            keys = counted(len(drag.selected), "key")
+            session.note(f"Move {keys if drag.doing == 'keys' else 'the end'}")
         return line
 
 
@@ -341,7 +355,7 @@ class PoseNameLine:
         self._gui.remember("pose name")
         if is_entered:
             script = keyframes.renamed(self._session.script, self._time, self._name)
-            self._messages.attempt(lambda: self._session.edit(script))
+            self._messages.attempt(lambda: self._session.edit(script, "Name a pose"))
         if is_entered or imgui.is_key_pressed(imgui.Key.escape):
             imgui.close_current_popup()
         imgui.end_popup()

@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 
 from ..command import Command
 from ..gui import Gui
-from ..messages import Messages
+from ..messages import Messages, Task
 from ..session import Session
 from .widgets import muted
 
@@ -44,9 +44,22 @@ class MenuBar:
             if command.menu != title:
                 continue
             is_on = command.is_on is not None and command.is_on()
-            is_clicked, _ = imgui.menu_item(
-                command.label, command.displayed_key, is_on, command.can_run()
-            )
-            self._gui.remember(f"menu {title}: {command.label}")
+            name = f"menu {title}: {command.label}"
+            label = f"{command.reads()}###{name}" if command.reads else command.label
+            if command.choices is not None:
+                is_open = imgui.begin_menu(label)
+                self._gui.remember(name)
+                if is_open:
+                    self._draw_choices(name, command.choices())
+                    imgui.end_menu()
+                continue
+            is_clicked, _ = imgui.menu_item(label, command.displayed_key, is_on, command.can_run())
+            self._gui.remember(name)
             if is_clicked:
                 self._messages.attempt(command.run)
+
+    def _draw_choices(self, name: str, choices: Sequence[tuple[str, bool, Task]]) -> None:
+        for number, (text, is_on, run) in enumerate(choices):
+            if imgui.menu_item(f"{text}##{number}", "", is_on)[0]:
+                self._messages.attempt(run)
+            self._gui.remember(f"{name}: {number}")

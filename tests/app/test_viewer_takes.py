@@ -1,0 +1,383 @@
+"""What hands do to a script, without a window: letting go, auto-key, punching in, the undo list."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from risorius.app.errors import UserError
+from risorius.app.scenes import FaceScene
+from risorius.app.script import Channel, Script, load_script, parse_script
+from risorius.app.viewer.control_rows import readable
+from risorius.app.viewer.document import change_of
+from risorius.app.viewer.key_selection import KeySelection
+from risorius.app.viewer.keyframes import POSES, places_of
+from risorius.app.viewer.panel_state import PanelState
+from risorius.app.viewer.physics import STEP
+from risorius.app.viewer.places import KeyPlace, Places
+from risorius.app.viewer.recorder import Recorder
+from risorius.app.viewer.session import Session
+
+HELLO = Path("docs/hello.toml")
+TAKE = "[tracks]\njoy=[{time=0,value=0},{time=2,value=1}]\njaw_open=[{time=0,value=0.5}]"
+
+
+@pytest.fixture(scope="module")
+def scene() -> FaceScene:
+    """One face for all tests of this file."""
+    return FaceScene()
+
+
+@pytest.fixture
+def session(scene: FaceScene) -> Session:
+    """A session that plays a script of poses and a blink."""
+    scene.reset()
+    return Session(scene, load_script(HELLO))
+
+
+def run(session: Session, steps: int) -> None:
+    """Let so many steps of time pass."""
+    for _ in range(steps):
+        session.advance(STEP)
+
+
+def set_by_hand(session: Session, **values: float) -> None:
+    """Move sliders, and let them go."""
+    for name, value in values.items():
+        session.set(name, value)
+    session.note()
+
+
+# Letting go
+
+
+@pytest.mark.parametrize("how", ["seek", "key", "play", "button"])
+def test_a_pose_that_is_let_go_is_told_and_comes_back(session: Session, how: str) -> None:
+    """Whatever takes it away says so in a line; one undo brings it back to where it was made."""
+    session.seek(2.0)
+    set_by_hand(session, jaw_open=0.6)
+    assert session.differing == {"jaw_open"}
+    does = {
+        "seek": lambda: session.seek(3.5),
+        "key": lambda: session.seek_key(1),
+        "play": session.toggle_playing,
+        "button": session.let_go,
+    }
+    line = does[how]()
+    assert line is not None and "jaw open" in line and "Ctrl+Z" in line
+    run(session, 10)
+    assert not session.differing and session.values["jaw_open"] < 0.6
+    session.undo()
+    assert session.values["jaw_open"] == 0.6 and session.time == 2.0 and session.has_unsaved_pose
+    session.redo()
+    assert session.values["jaw_open"] < 0.6
+
+
+def test_what_is_keyed_or_was_never_moved_is_let_go_in_silence(session: Session) -> None:
+    """No word and no step where nothing is lost; scrubbing on is silent, too."""
+    assert session.seek(1.0) is None and not session.can_undo
+    set_by_hand(session, jaw_open=0.6)
+    session.set_key()
+    assert session.seek(2.0) is None and session.history.labels[-1] == "Key at 1.00 s"
+    set_by_hand(session, jaw_open=0.7)
+    assert session.seek(2.5) and session.seek(3.0) is None
+
+
+def test_a_slider_that_is_still_held_comes_back_too(session: Session) -> None:
+    """The key of a menu may be pressed while a slider is dragged."""
+    session.set("jaw_open", 0.6)
+    session.seek(1.0)
+    session.undo()
+    assert session.values["jaw_open"] == 0.6
+
+
+def test_auto_key_keys_what_is_changed(session: Session) -> None:
+    """Each change is a key at the time shown and one step, and nothing is left to be let go."""
+    session.is_auto_keying = True
+    session.seek(2.0)
+    before = session.script
+    set_by_hand(session, jaw_open=0.6)
+    assert session.script.at(2.0)["jaw_open"] == pytest.approx(0.6) and not session.differing
+    assert session.seek(1.0) is None
+    session.neutral()
+    assert not any(session.script.at(1.0).values())
+    assert session.history.labels[1:] == [
+        "Set jaw open to 0.60, key at 2.00 s", "Neutral, key at 1.00 s"
+    ]  # fmt: skip
+    session.undo()
+    session.undo()
+    assert session.script == before
+
+
+def test_a_key_in_tracks_is_of_what_changed_or_of_all(scene: FaceScene) -> None:
+    """K keys the tracks that differ, Shift+K all of them."""
+    session = Session(scene, parse_script(TAKE, source="take.toml"))
+    session.seek(1.0)
+    set_by_hand(session, jaw_open=0.2)
+    session.set_key()
+    assert [len(track) for track in session.script.tracks.values()] == [2, 2]
+    session.seek(1.5)
+    set_by_hand(session, jaw_open=0.3)
+    session.set_key(is_whole=True)
+    assert [len(track) for track in session.script.tracks.values()] == [3, 3]
+
+
+# Punching in
+
+
+def test_recording_begins_at_the_playhead_and_keeps_the_rest(session: Session) -> None:
+    """The script plays on; only what was moved is replaced, and only where; one undo is enough."""
+    before = session.script
+    session.seek(1.5)
+    line = session.toggle_recording()
+    assert line is not None and "1.50 s" in line and session.is_playing
+    run(session, 6)
+    session.set("jaw_open", 0.7)
+    run(session, 30)
+    with pytest.raises(UserError, match="stop the recording"):
+        session.seek(0.0)
+    line = session.toggle_recording()
+    after = session.script
+    assert line == "1 control recorded from 1.50 to 2.10 s"
+    assert after.poses == before.poses and after.duration == before.duration
+    assert set(after.tracks) == {"blink", "jaw_open"} and after.file_is_same if False else True
+    assert after.at(1.9)["jaw_open"] == pytest.approx(0.7, abs=2e-3)
+    for time in (0.0, 1.0, 1.6, 2.1, 3.0, 4.0):
+        assert after.at(time) == before.at(time) | {"jaw_open": before.at(time)["jaw_open"]}
+    session.undo()
+    assert session.script == before and not session.script_is_unsaved
+
+
+def test_a_pose_by_hand_is_where_a_recording_begins(session: Session) -> None:
+    """What was set before is recorded, not dropped; buttons do not pause the recording."""
+    session.seek(1.5)
+    set_by_hand(session, jaw_open=0.7)
+    session.toggle_recording()
+    run(session, 20)
+    session.toggle_alone("anger")
+    run(session, 20)
+    assert session.is_playing
+    session.toggle_recording()
+    assert session.script.at(1.7)["jaw_open"] == pytest.approx(0.7, abs=2e-3)
+    assert session.script.at(2.0) | {"blink": 0.0} == pytest.approx(
+        {"anger": 1.0, "jaw_open": 0.0, "joy": 0.0, "blink": 0.0}, abs=2e-3
+    )
+
+
+def test_a_recording_makes_the_script_longer(session: Session) -> None:
+    """At the script's end it goes on, and what was held then stays."""
+    session.seek(3.8)
+    session.toggle_recording()
+    session.set("jaw_open", 0.7)
+    run(session, 60)
+    session.toggle_recording()
+    assert session.script.duration == pytest.approx(4.8, abs=1e-5)
+    assert session.script.at(4.8)["jaw_open"] == pytest.approx(0.7, abs=2e-3)
+
+
+LIMITS = dict.fromkeys(("a", "b", "c"), (0.0, 1.0))
+TIMES = st.integers(0, 120).map(lambda frame: round(frame / 30.0, 6))
+SHARES = st.integers(0, 100).map(lambda percent: percent / 100.0)
+EASINGS = st.sampled_from(["linear", "smooth", "hold", "ease-in", "ease-out"])
+
+
+@st.composite
+def scripts(draw: st.DrawFn) -> Script:
+    """Poses, tracks, or both, of three controls."""
+    text = ["duration = 4.0"]
+    for time in sorted(draw(st.sets(TIMES, max_size=4))):
+        pose = draw(st.dictionaries(st.sampled_from("abc"), SHARES))
+        lines = [f"{name} = {value}" for name, value in pose.items()]
+        text += ["[[pose]]", f"time = {time}", f"easing = '{draw(EASINGS)}'", *lines]
+    tracks = draw(st.dictionaries(st.sampled_from("abc"), st.sets(TIMES, min_size=1, max_size=5)))
+    if not tracks and len(text) == 1:
+        tracks = {"a": {0.0}}
+    for name, times in tracks.items():
+        keys = ", ".join(
+            f"{{ time = {t}, value = {draw(SHARES)}, easing = '{draw(EASINGS)}' }}"
+            for t in sorted(times)
+        )
+        text.append(f"{'' if '[tracks]' in text else '[tracks]'}\n{name} = [{keys}]")
+        text[-1:] = text[-1].split("\n") if text[-1].startswith("[") else [text[-1].strip()]
+    return parse_script("\n".join(text), source="property")
+
+
+@given(
+    scripts(),
+    st.integers(0, 200),
+    st.lists(st.tuples(st.sampled_from("ab"), SHARES), min_size=1, max_size=30),
+)
+@settings(max_examples=150, deadline=None)
+def test_punching_in_changes_nothing_else(
+    played: Script, begin: int, moves: list[tuple[str, float]]
+) -> None:
+    """Outside of the recording every key, and every control untouched, is the same to the bit."""
+    start = round(begin / 60.0, 6)
+    recorder, held, time = Recorder(played, start, LIMITS), dict[str, float](), start
+    wanted = {}
+    for name, value in moves:
+        held[name] = value
+        time += STEP
+        told = {each: min(max(v, 0.0), 1.0) for each, v in played.at(time).items()}
+        wanted[time] = {**dict.fromkeys(LIMITS, 0.0), **told, **held}
+        recorder.add(time, wanted[time])
+    end = round(time, 6)
+    script = recorder.script(is_over=True)
+    if script is None:
+        return
+    assert "c" not in recorder.names and script.poses == played.poses
+    script.check(LIMITS)
+    touched = set(recorder.names)
+    cut = (_reach(played, start), _reach(played, end))
+    for moment in np.linspace(0.0, 4.0, 481).tolist():
+        old, new = played.at(moment), script.at(moment)
+        for name in LIMITS:
+            before, after = old.get(name, 0.0), new.get(name, 0.0)
+            if name not in touched:
+                assert after == before
+            elif moment < start or (moment > end and end < 4.0):
+                is_whole = not any(
+                    low < moment < high for low, high in (span.get(name, (9, 9)) for span in cut)
+                )
+                assert after == before if is_whole else after == pytest.approx(before, abs=3e-3)
+    for name, track in script.tracks.items():
+        assert (np.diff(track.times) > 0.0).all()
+        kept = played.tracks.get(name, Channel([], []))
+        outside = (kept.times < start) | (kept.times > end)
+        assert set(kept.times[outside]) <= set(track.times)
+    for moment, values in wanted.items():
+        if moment < end - 0.101 and 0.5 * (moment + start) < end - 0.101 and end >= 4.0:
+            now = script.at(moment)
+            for name in touched:
+                value = min(max(now.get(name, 0.0), 0.0), 1.0)
+                assert value == pytest.approx(values[name], abs=3e-3)
+
+
+def _reach(script: Script, time: float) -> dict[str, tuple[float, float]]:
+    """Of each track, the keys before and after a time [s]."""
+    spans = {}
+    for name, track in script.tracks.items():
+        before, after = track.times[track.times < time], track.times[track.times > time]
+        if len(before) and len(after) and time not in track.times:
+            spans[name] = float(before[-1]), float(after[0])
+    return spans
+
+
+# Undo
+
+
+COMMANDS = {
+    "slide": lambda s, x: set_by_hand(s, jaw_open=x),
+    "link": lambda s, x: (s.set("AU12_left", x, linked=True), s.note()),
+    "joy": lambda s, x: s.toggle_alone("joy"),
+    "mirror": lambda s, x: s.mirror(),
+    "neutral": lambda s, x: s.neutral(),
+    "seek": lambda s, x: s.seek(4.0 * x),
+    "next": lambda s, x: s.seek_key(1),
+    "key": lambda s, x: s.set_key(),
+    "whole": lambda s, x: s.set_key(is_whole=True),
+    "let go": lambda s, x: s.let_go(),
+    "auto": lambda s, x: setattr(s, "is_auto_keying", x > 0.5),
+    "new": lambda s, x: s.begin_script(),
+    "undo": lambda s, x: s.undo(),
+    "redo": lambda s, x: s.redo(),
+}
+
+
+class Still(FaceScene):
+    """A face that takes no time."""
+
+    def step(self, seconds: float) -> None:
+        """Stay."""
+
+
+@given(st.lists(st.tuples(st.sampled_from(sorted(COMMANDS)), SHARES), max_size=12))
+@settings(max_examples=60, deadline=None)
+def test_undo_gives_the_state_before(steps: list[tuple[str, float]]) -> None:
+    """After any commands: back through all that was, and forward again to where it ended."""
+    session = Session(SHARED, load_script(HELLO))
+
+    def state() -> tuple[object, ...]:
+        by_hand = None if session.is_following else dict(session.values)
+        return session.script, session.file, by_hand
+
+    for command, share in steps:
+        before, place = state(), session.history.place
+        COMMANDS[command](session, share)
+        moved = session.history.place - place
+        assert state() == before or moved or command in ("seek", "next", "let go", "redo", "undo")
+        if moved == 1 and command != "redo":
+            after = state()
+            session.undo()
+            if command not in ("seek", "next"):  # which first note what was still held
+                assert state() == before or before[2] is None or not any(before[2].values())
+            session.redo()
+            assert state() == after
+    last, count = state(), session.history.place
+    for _ in range(count):
+        session.undo()
+    assert not session.history.can_undo
+    for _ in range(count):
+        session.redo()
+    assert state()[:2] == last[:2]
+
+
+SHARED = Still()
+
+
+def test_the_undo_list_has_names(session: Session) -> None:
+    """Each state is called as what led to it, and can be gone to at once."""
+    session.seek(1.2)
+    set_by_hand(session, AU12_left=0.6)
+    session.mirror()
+    session.set("AU12_left", 0.3, linked=True)
+    session.note()
+    session.set_key()
+    selection = KeySelection(session, PanelState())
+    selection.places = Places.of(KeyPlace(POSES, 1.0), KeyPlace(POSES, 3.0))
+    selection.nudge(1)
+    selection.delete()
+    assert session.history.labels == [
+        "Beginning", "Set AU12 left to 0.60", "Mirror", "Set AU12 to 0.30", "Key at 1.20 s",
+        "Move 2 keys", "Delete 2 keys",
+    ]  # fmt: skip
+    session.go_to(2)
+    assert session.values["AU12_right"] == 0.6 and session.script_is_unsaved is False
+    session.go_to(6)
+    assert [pose.time for pose in session.script.poses] == [0.0, 1.2, 4.0]
+    assert change_of({}, {"jaw_open": 0.1, "joy": 0.2}) == "Set 2 controls"
+    assert readable("AU12_left") == "AU12 left"
+
+
+# Copies
+
+
+def test_keys_are_pasted_in_another_script(session: Session, scene: FaceScene) -> None:
+    """What was copied stays as it was, whatever became of its script; it comes at the playhead."""
+    selection = KeySelection(session, PanelState())
+    assert not selection.can_paste
+    selection.places = Places.of(KeyPlace(POSES, 1.0), KeyPlace("blink", 2.12))
+    assert "2 keys copied" in str(selection.copy())
+    selection.delete()
+    session.begin_script()
+    session.seek(0.5)
+    assert selection.can_paste and selection.paste() == "2 keys copied to 0.50 s"
+    assert selection.places == {KeyPlace(POSES, 0.5), KeyPlace("blink", 1.62)}
+    assert places_of(session.script) == selection.places | {KeyPlace(POSES, 0.0)}
+    assert session.script.poses[1].name == "joy"
+    session.undo()
+    assert places_of(session.script) == {KeyPlace(POSES, 0.0)}
+
+
+def test_delete_needs_the_timeline(session: Session) -> None:
+    """The key takes nothing away where something else was touched last; the menu does."""
+    selection = KeySelection(session, PanelState())
+    selection.places = Places.of(KeyPlace(POSES, 1.0))
+    before = session.script
+    assert "timeline" in str(selection.delete_if_meant()) and session.script is before
+    selection.is_touched = True
+    assert "1 key deleted" in str(selection.delete_if_meant()) and len(session.script.poses) == 3
