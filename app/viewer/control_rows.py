@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from ..errors import counted
 from ..mirror import TURNED, parted, twin_of
 
 # Sides of a motion, not of the face: both at once stand still.
@@ -31,6 +32,15 @@ def mirrored(values: Mapping[str, float]) -> dict[str, float]:
         if twin_of(name) in values:
             result[twin_of(name)] = -value if name in TURNED else value
     return result
+
+
+def change_of(before: Mapping[str, float], after: Mapping[str, float]) -> str:
+    """What was set by hand, in words; what is not in `before` was 0."""
+    names = sorted(name for name, value in after.items() if value != before.get(name, 0.0))
+    labels = {readable(name if len(names) == 1 else parted(name)[0]) for name in names}
+    if len(labels) != 1:
+        return f"Set {counted(len(names), 'control')}"
+    return f"Set {labels.pop()} to {after[names[0]]:.2f}"
 
 
 def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) -> list[Row]:

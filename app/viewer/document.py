@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ..errors import counted
-from ..mirror import parted
 from ..script import Script
-from .control_rows import readable
 from .script_file import ScriptFile
 
 
@@ -25,12 +22,3 @@ class Document:
         """How many keys of tracks it has that the state before does not share with it."""
         known = {id(track) for track in before.script.tracks.values()}
         return sum(len(track) for track in self.script.tracks.values() if id(track) not in known)
-
-
-def change_of(before: Mapping[str, float], after: Mapping[str, float]) -> str:
-    """What was set by hand, in words; what is not in `before` was 0."""
-    names = sorted(name for name, value in after.items() if value != before.get(name, 0.0))
-    labels = {readable(name if len(names) == 1 else parted(name)[0]) for name in names}
-    if len(labels) != 1:
-        return f"Set {counted(len(names), 'control')}"
-    return f"Set {labels.pop()} to {after[names[0]]:.2f}"

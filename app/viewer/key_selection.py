@@ -21,7 +21,7 @@ class KeySelection:
         self._session, self._panels = session, panels
         self.places = NOWHERE
         self.is_touched = False  # the timeline was clicked last, so that its keys are meant
-        self._copied: tuple[Script, Places] | None = None
+        self.copied: tuple[Script, Places] | None = None  # which can be pasted
         self.pose_to_name: Pose | None = None  # for which the timeline is to ask a name
 
     @property
@@ -33,11 +33,6 @@ class KeySelection:
     def can_change(self) -> bool:
         """Whether there are keys that something could be done with."""
         return bool(self.places) and self.can_edit
-
-    @property
-    def can_paste(self) -> bool:
-        """Whether keys were copied, of this script or of one before."""
-        return self._copied is not None and self.can_edit
 
     def set_key(self, *, is_whole: bool = False) -> Message:
         """The face as it is becomes a key at the time shown; is_whole: of every track."""
@@ -60,26 +55,26 @@ class KeySelection:
     def duplicate(self) -> Message:
         """Copies of the selected keys at the time shown, or a little later if they are there."""
         offset = keyframes.key_time(self._session.script, self._session.time) - self.places.first
-        is_there = abs(offset) < 0.5 * keyframes.FRAME
-        return self._copy_from(
-            self._session.script, self.places, COPY_OFFSET * keyframes.FRAME if is_there else offset
-        )
+        if abs(offset) < 0.5 * keyframes.FRAME:
+            offset = COPY_OFFSET * keyframes.FRAME
+        return self._copy_from(self._session.script, self.places, offset)
 
     def copy(self) -> Message:
         """Keep the selected keys, to be pasted elsewhere."""
-        self._copied = self._session.script, self.places
+        self.copied = self._session.script, self.places
         return f"{counted(len(self.places), 'key')} copied; Ctrl+V pastes at the time shown"
 
     def paste(self) -> Message:
         """The keys that were copied, from the time shown on; also those of another script."""
-        assert self._copied is not None
+        assert self.copied is not None
         time = keyframes.key_time(self._session.script, self._session.time)
-        return self._copy_from(*self._copied, time - self._copied[1].first)
+        return self._copy_from(*self.copied, time - self.copied[1].first)
 
     def _copy_from(self, source: Script, places: Places, offset: float) -> Message:
-        script, self.places = keyframes.copied(self._session.script, places, offset, source)
-        what, self.is_touched = counted(len(places), "key"), True
+        script, copies = keyframes.copied(self._session.script, places, offset, source)
+        what = counted(len(places), "key")
         self._session.edit(script, f"Copy {what}")
+        self.places, self.is_touched = copies, True
         return f"{what} copied to {places.first + offset:.2f} s"
 
     def nudge(self, frames: int) -> None:

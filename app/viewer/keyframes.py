@@ -26,6 +26,7 @@ SAME = 1e-6  # of a value or a time [s]: no difference
 # The keys of a track, an entry each in arrays: times [s], then values and easings, or the poses.
 Columns = tuple[npt.NDArray[Any], ...]
 Values = Mapping[str, float]
+Placed = tuple[Script, Places]  # a script, and where some of its keys are now
 
 
 def places_of(script: Script) -> Places:
@@ -63,18 +64,13 @@ def pose_at(script: Script, time: float) -> Pose | None:
 # Changes
 
 
-def moved(script: Script, places: Places, seconds: float) -> tuple[Script, Places]:
+def moved(script: Script, places: Places, seconds: float) -> Placed:
     """The script with keys later by `seconds` (none before 0), and where they are then."""
     return _placed(script, places, seconds)
 
 
-def copied(
-    script: Script, places: Places, seconds: float, source: Script | None = None
-) -> tuple[Script, Places]:
-    """The script with copies of keys later by `seconds` (none before 0), and where these are.
-
-    source: the script that has the keys, where it is another one.
-    """
+def copied(script: Script, places: Places, seconds: float, source: Script | None = None) -> Placed:
+    """The script with copies of keys (its own or a source's), `seconds` later, and their places."""
     return _placed(script, places, seconds, source or script)
 
 
@@ -185,15 +181,12 @@ def _easing_at(poses: Iterable[Pose], time: float) -> str:
 
 def _columns(script: Script, places: Places) -> dict[str, Columns]:
     """All keys of the tracks that any of these places is in."""
-    known = {POSES, *script.tracks}
-    return {name: _track_columns(script, name) for name in places.times if name in known}
-
-
-def _track_columns(script: Script, name: str) -> Columns:
-    """All keys of a track, none where there is no such track."""
-    if name == POSES:
-        return _pose_columns(script.poses)
-    return _channel_columns(script.tracks.get(name, Channel([], [])))
+    columns = {POSES: _pose_columns(script.poses)} if POSES in places.times else {}
+    return columns | {
+        name: _channel_columns(track)
+        for name, track in script.tracks.items()
+        if name in places.times
+    }
 
 
 def _channel_columns(track: Channel) -> Columns:
@@ -206,20 +199,16 @@ def _pose_columns(poses: Sequence[Pose]) -> Columns:
     return np.array([pose.time for pose in poses]), column
 
 
-def _placed(
-    script: Script, places: Places, seconds: float, source: Script | None = None
-) -> tuple[Script, Places]:
-    """The script with the keys at these places later by `seconds`, and where they are then.
-
-    source: in which the keys stay, and of which the script gets copies.
-    """
+def _placed(script: Script, places: Places, seconds: float, source: Script | None = None) -> Placed:
+    """The script with keys (copies of a source's) later by `seconds`, and where they are then."""
     shift = max(seconds, -places.first) if places else 0.0
-    changed, arrived = {}, {}
+    changed, arrived, before = {}, {}, _columns(script, places)
     for name, columns in _columns(source or script, places).items():
         is_chosen = among(columns[0], places.times[name])
         times, *rest = _picked(columns, is_chosen)
         arrived[name] = np.round(times + shift, DECIMALS)
-        there = _track_columns(script, name) if source else _picked(columns, ~is_chosen)
+        nothing = _picked(columns, np.arange(0))
+        there = before.get(name, nothing) if source else _picked(columns, ~is_chosen)
         changed[name] = _joined(there, (arrived[name], *rest))
     ends = [float(times[-1]) for times in arrived.values() if len(times)]
     return _reaching(_with(script, changed), *ends), Places(arrived)

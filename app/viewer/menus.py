@@ -104,18 +104,16 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
     """What is done with the keys that are selected in the timeline."""
     command = partial(Command, "Keys")
     edit = partial(command, can_run=lambda: selection.can_edit)
-    paste = partial(command, can_run=lambda: selection.can_paste)
     change = partial(command, can_run=lambda: selection.can_change)
-    field = "is_auto_keying"
     name = partial(command, can_run=lambda: selection.can_rename)
     return (
         edit("Set key", "K", selection.set_key),
         edit("Set key of all", "Shift+K", partial(selection.set_key, is_whole=True)),
         command("Let go", "", session.let_go, can_run=lambda: bool(session.differing)),
-        command("Auto-key", "", partial(flip, session, field), partial(getattr, session, field)),
+        command("Auto-key", "", partial(flip, session, "is_keying"), lambda: session.is_keying),
         name("Name of the pose ...", "Ctrl+K", selection.rename),
         change("Copy", "Ctrl+C", selection.copy),
-        paste("Paste", "Ctrl+V", selection.paste),
+        command("Paste", "Ctrl+V", selection.paste, can_run=lambda: bool(selection.copied)),
         change("Duplicate", "Ctrl+D", selection.duplicate),
         change("Delete", "Delete", selection.delete, by_key=selection.delete_if_meant),
         change("A frame earlier", "Shift+Left", partial(selection.nudge, -1)),
@@ -207,6 +205,5 @@ def live_menu(live: LiveCommands) -> Menu:
 def help_menu(panels: PanelState) -> Menu:
     """The overview of keys."""
     is_open = partial(getattr, panels, "is_help_open")
-    return (
-        Command("Help", "Keys and mouse", "F1", partial(flip, panels, "is_help_open"), is_open),
-    )
+    toggle = partial(flip, panels, "is_help_open")
+    return (Command("Help", "Keys and mouse", "F1", toggle, is_open),)

@@ -148,9 +148,7 @@ class Parts:
         dope_sheet = DopeSheet(
             gui, session, settings, messages, self.selection, axis, bar, waveform
         )
-        self.timeline = Timeline(
-            gui, session, messages, commands, self.exporter, self.selection, dope_sheet
-        )
+        self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
         self.face_panel = FacePanel(gui, session, settings, view)
         mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
         record = next(each for each in commands if each.label == "Record")

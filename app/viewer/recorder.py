@@ -27,29 +27,21 @@ class Recorder:
         self._played, self._limits = played, limits
         self.start = self.time = rounded(start)
         # Of each control that has moved: times [s] and what its track has, from the last key on.
-        self._samples: dict[str, tuple[array[float], array[float]]] = {}
+        self.samples: dict[str, tuple[array[float], array[float]]] = {}
         self._taken: dict[str, Channel] = {}
         thinned([0.0, 1.0], [0.0, 1.0])  # if this must be compiled, then before anything moves
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The controls that have moved."""
-        return tuple(self._samples)
-
     def add(self, time: float, values: Mapping[str, float]) -> None:
-        """The controls are at `values` at a time of the script [s].
-
-        Nothing is taken at a time that is recorded already.
-        """
+        """The controls are at `values` at a time [s], unless that is recorded already."""
         if time <= self.time:
             return
         before, self.time = self.time, time
         posed = self._played.posed(time)
         for name in differing(self._played, time, values, self._limits):
-            if name not in self._samples:
+            if name not in self.samples:
                 first = self._told(name, before) if before else values[name] - posed.get(name, 0.0)
-                self._samples[name] = array("d", [before]), array("d", [first])
-        for name, (times, track) in self._samples.items():
+                self.samples[name] = array("d", [before]), array("d", [first])
+        for name, (times, track) in self.samples.items():
             value = values[name] - posed.get(name, 0.0)  # a track adds to the poses
             if value != track[-1]:
                 if times[-1] < before:
@@ -58,13 +50,12 @@ class Recorder:
                 times.append(time)
                 track.append(value)
 
-    def script(self, *, is_over: bool = False) -> Script | None:
+    def script(self) -> Script | None:
         """The script with what was recorded so far, or None where nothing was.
 
         Only what is new since the last call is thinned, so that a long recording does not stutter.
-        is_over: at its end the controls go back to what the script goes on with.
         """
-        for name, (times, values) in self._samples.items():
+        for name, (times, values) in self.samples.items():
             if name not in self._taken:
                 self._taken[name] = thinned(times, values)
             elif len(times) > 1:
@@ -72,10 +63,7 @@ class Recorder:
             del times[:-1], values[:-1]
         if not self._taken:
             return None
-        tracks = {
-            name: self._joined(name, taken) if is_over or name in self._played.tracks else taken
-            for name, taken in sorted(self._taken.items())
-        }
+        tracks = {name: self._joined(name, taken) for name, taken in sorted(self._taken.items())}
         end = max(self._played.duration, rounded(self.time))
         return replace(self._played, duration=end, tracks={**self._played.tracks, **tracks})
 
@@ -85,13 +73,16 @@ class Recorder:
         return track.value(time) if track is not None else 0.0
 
     def _joined(self, name: str, taken: Channel) -> Channel:
-        """The script's track with what was taken of it in the place of what was there."""
+        """The script's track with what was taken of it, from which it goes back at its end."""
         old = self._played.tracks.get(name, Channel([], []))
         start, end = rounded(taken.times[0]), rounded(self.time)
+        is_last = end >= self._played.duration - FRAME
+        if is_last and not len(old):
+            return taken  # with the lines of text that it has made
         head = [key for key in old.keys if key.time < start]
         tail = [key for key in old.keys if key.time > end]
         keys = list(taken.keys)
-        if tail or end < self._played.duration - FRAME:
+        if tail or not is_last:
             free = rounded(max(end - RELEASE, 0.5 * (start + end)))
             keys = [key for key in keys if key.time < free]
             keys.append(Key(free, taken.value(free), "linear"))

@@ -17,9 +17,9 @@ from ..motion import SETTLING
 from ..scenes import Scene
 from ..script import Pose, Script, is_pose, pose_script, rounded, save_script
 from . import keyframes
-from .control_rows import mirrored, readable
+from .control_rows import change_of, mirrored, readable
 from .controls import Controls
-from .document import Document, change_of
+from .document import Document
 from .history import History
 from .lead import Lead
 from .messages import Message
@@ -50,7 +50,7 @@ class Session:
         self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
         # The controls are where the script has them; a neutral face need not follow it yet.
         self.is_following = any(self.values.values())
-        self.is_auto_keying = False  # what is changed by hand becomes a key at once
+        self.is_keying = False  # what is changed by hand becomes a key at once
         self._is_touched = False  # by hand, since something was noted
         self._recorder: Recorder | None = None
         self._held: dict[str, float] = {}  # by hand while a recording plays the script
@@ -131,22 +131,20 @@ class Session:
 
     def _document(self) -> Document:
         by_hand = {name: value for name, value in self.values.items() if value}
-        values = None if self.is_following else by_hand
-        return Document(values, self.script, self.file, time=self.time)
+        return Document(None if self.is_following else by_hand, self.script, self.file, self.time)
 
     def note(self, label: str = "") -> None:
         """A change is complete (a slider let go, a button pressed): it can be undone.
 
-        label: what was done, as "Mirror"; "" for controls that were set, which are told. What is
-        done while recording is one change, when that ends.
+        label: what was done, as "Mirror"; "" for controls that were set, which are told.
         """
         if self.is_recording:
-            return
+            return  # that is one change, when it ends
         if not label:
             before = self.history.present.values
             label = change_of(self.script.at(self.time) if before is None else before, self.values)
         is_touched, self._is_touched = self._is_touched, False
-        if is_touched and self.is_auto_keying and self.differing:
+        if is_touched and self.is_keying and self.differing:
             label = f"{label}, key at {self._key(self.values):.2f} s"
         self.history.note(self._document(), label)
 
@@ -186,12 +184,10 @@ class Session:
     def toggle_playing(self) -> Message:
         """Play or pause; at the end of the script, play it again."""
         self.is_playing = not self.is_playing
-        if not self.is_playing:
-            return None
-        line = self.let_go()
-        if self.time >= self.script.duration and not self.is_recording:
+        line = self.let_go() if self.is_playing else None
+        if self.is_playing and self.time >= self.script.duration and not self.is_recording:
             self.time = 0.0
-        if self.time == 0.0:
+        if self.is_playing and self.time == 0.0:
             self.start_over()
         return line
 
@@ -229,7 +225,7 @@ class Session:
             return None
         what = readable(min(names)) if len(names) == 1 else counted(len(names), "control")
         self.note(f"Let go of {what}")
-        return f"{what} let go, since there was no key; Ctrl+Z brings the pose back"
+        return f"{what} not keyed, so let go; Ctrl+Z brings the pose back"
 
     def seek_key(self, direction: int) -> Message:
         """Pause at the next time at which the script has a key, or with -1 at the one before."""
@@ -242,8 +238,7 @@ class Session:
     def edit(self, script: Script, label: str = "Edit", *, is_done: bool = True) -> None:
         """Take the script as it was changed; a face that follows it follows the change.
 
-        label: what was done. is_done: the change is complete and can be undone; False while
-        something is dragged.
+        label: what was done. is_done: False while something is dragged, which is no step yet.
         """
         self._refuse_while_recording()
         self.script = script
@@ -258,13 +253,9 @@ class Session:
             raise UserError("stop the recording first (Ctrl+R): it goes into the script as it is")
 
     def set_key(self, *, is_whole: bool = False) -> float:
-        """The face as it is becomes a key of the script; its time [s].
-
-        is_whole: in a script of tracks every track gets one, not only what differs.
-        """
+        """The face as it is becomes a key, is_whole: of all tracks, whatever differs; its time."""
         self._refuse_while_recording()
         time = self._key(self.current, is_whole=is_whole)
-        self._is_touched = False
         self.note(f"Key at {time:.2f} s")
         return time
 
@@ -283,8 +274,8 @@ class Session:
         """
         if self.is_playing:
             self.time += self.speed * seconds
-            is_longer = self.is_recording and not self.is_looping  # which makes the script longer
-            if self.time >= self.script.duration and not is_longer:
+            goes_on = self.is_recording and not self.is_looping  # and makes the script longer
+            if self.time >= self.script.duration and not goes_on:
                 self.time = 0.0 if self.is_looping else self.script.duration
                 self.is_playing = self.is_looping
             self._follow_script()
@@ -306,8 +297,8 @@ class Session:
     def toggle_recording(self) -> Message:
         """Record the controls into the script from the time shown on, or end that.
 
-        The script plays meanwhile; while it is paused, or goes through a part again, nothing is
-        recorded. What was moved takes the place of what the script had there, and nothing else.
+        The script plays meanwhile, and what is moved takes the place of what it has there; nothing
+        is recorded while it is paused, or goes through a part again.
         """
         if self._recorder is None:
             held = {name: self.values[name] for name in self.differing}
@@ -318,12 +309,12 @@ class Session:
             return f"recording from {self.time:.2f} s: what you move replaces the script there"
         recorder, self._recorder, self._held = self._recorder, None, {}
         self.is_playing = False
-        recording = recorder.script(is_over=True)
+        recording = recorder.script()
         if recording is None:
             raise UserError("nothing was recorded: no control moved")
         self.script = recording
         self._go_to(self.time)
-        what = counted(len(recorder.names), "control")
+        what = counted(len(recorder.samples), "control")
         self.note(f"Record {what}")
         return f"{what} recorded from {recorder.start:.2f} to {recorder.time:.2f} s"
 

@@ -152,7 +152,7 @@ def test_recordings_keep_corners_only() -> None:
     wave = 0.5 - 0.5 * np.cos(3.0 * times)
     for time, value in zip(times, wave, strict=True):
         recorder.add(time, {"wave": value, "ramp": time / 4.0, "rest": 0.0})
-    script = recorder.script(is_over=True)
+    script = recorder.script()
     assert script is not None and set(script.tracks) == {"wave", "ramp"}
     assert len(script.tracks["ramp"].keys) <= 3
     assert len(script.tracks["wave"].keys) < 100

@@ -59,7 +59,7 @@ def test_a_pose_that_was_scrubbed_away_is_told_and_comes_back(viewer: Viewer) ->
         viewer.messages.text = ""
         away()
         assert viewer.session.values["jaw_open"] < value
-        assert "jaw open let go" in viewer.messages.text and "Ctrl+Z" in viewer.messages.text
+        assert "jaw open not keyed" in viewer.messages.text and "Ctrl+Z" in viewer.messages.text
         xdotool(viewer, "key", "ctrl+z")
         assert viewer.session.values["jaw_open"] == value and viewer.session.time == time
 
@@ -136,6 +136,7 @@ def test_keys_are_copied_and_pasted(viewer: Viewer, own: Path, tmp_path: Path) -
 
 def test_keys_are_deleted_only_when_somebody_means_it(viewer: Viewer) -> None:
     """Never by Backspace; by Delete when the timeline was touched last, not after other work."""
+    draw_frames(viewer)
     press(viewer, at(viewer, JOY))
     assert viewer.selection.places == {JOY}
     xdotool(viewer, "key", "BackSpace")
@@ -161,7 +162,8 @@ def test_a_name_leaves_the_strip_where_it_is(viewer: Viewer) -> None:
     draw_frames(viewer)
     first = KeyPlace(POSES, 0.0)
     before = viewer.timeline.height(), viewer.timeline.dope_sheet.where(first)
-    xdotool(viewer, "key", "ctrl+k")
+    viewer.selection.rename()
+    assert until(viewer, lambda: "pose name" in viewer.gui.places)
     write(viewer, "rest")
     xdotool(viewer, "key", "Return")
     assert viewer.session.script.key_poses

@@ -117,16 +117,8 @@ class DopeSheet:
         axis.place(place.x + self._gutter + inset, room.x - self._gutter - 2.0 * inset - em(0.6))
         duration = session.script.duration
         if self._drag is None:
-            axis.fit(
-                max(
-                    [
-                        duration,
-                        session.time,
-                        self._waveform.duration,
-                        *(track.end for track in self._tracks),
-                    ]
-                )
-            )
+            ends = (track.end for track in self._tracks)
+            axis.fit(max(duration, session.time, self._waveform.duration, *ends))
             if session.is_playing:
                 axis.follow(session.time)
         imgui.set_cursor_screen_pos((place.x + self._gutter, place.y))
@@ -149,6 +141,12 @@ class DopeSheet:
             self._menus.draw_menu("Keys")
             imgui.end_popup()
         self._name_line.draw()
+        if any(map(imgui.is_mouse_clicked, (LEFT, MIDDLE, RIGHT))):
+            flags = imgui.HoveredFlags_.child_windows
+            flags |= imgui.HoveredFlags_.allow_when_blocked_by_active_item
+            self._selection.is_touched = imgui.is_window_hovered(flags)
+        elif io.want_text_input and not imgui.is_any_mouse_down():
+            self._selection.is_touched = False
 
     def _draw_rows(self, io: Any) -> None:
         flags = imgui.WindowFlags_.no_scroll_with_mouse | imgui.WindowFlags_.no_background
@@ -174,13 +172,8 @@ class DopeSheet:
                 corner = place.x, bottom - em(ROW)
                 key_marks.draw_label(theme, label, corner, em(ROW), arrow, is_open=self._is_open)
         key_marks.draw_playhead(theme, self._axis, session.time, (place.y, self._tops[-1]))
-        differing, poses = session.differing, session.script.poses
-        for track, bottom in zip(self._tracks, self._tops[1:], strict=True):
-            is_meant = (
-                track.is_whole if poses else track.is_sum or differing & set(track.places.times)
-            )
-            if differing and is_meant:
-                key_marks.draw_unkeyed(theme, self._axis.x(session.time), bottom - 0.5 * em(ROW))
+        if session.differing:
+            key_marks.draw_unkeyed(theme, self._axis, session.time, self._tops[1] - 0.5 * em(ROW))
         if self._drag is not None and self._drag.doing == "box" and self._drag.has_moved:
             key_marks.draw_box(theme, self._drag.began, (io.mouse_pos.x, io.mouse_pos.y))
         if is_hovered and self._drag is None:

@@ -76,10 +76,10 @@ def draw_playhead(theme: Theme, axis: TimeAxis, time: float, edges: tuple[float,
         lines.add_line((x, edges[0]), (x, edges[1]), _ink(theme.accent), width)
 
 
-def draw_unkeyed(theme: Theme, x: float, middle: float) -> None:
-    """A hollow key, where one would be set for what differs from the script."""
-    lines, size = imgui.get_window_draw_list(), em(1.2 * KEY)
-    corners = (x - size, middle), (x, middle - size), (x + size, middle), (x, middle + size)
+def draw_unkeyed(theme: Theme, axis: TimeAxis, time: float, y: float) -> None:
+    """A hollow key at a time [s], where one would be set for what differs from the script."""
+    lines, size, x = imgui.get_window_draw_list(), em(1.2 * KEY), axis.x(time)
+    corners = (x - size, y), (x, y - size), (x + size, y), (x, y + size)
     lines.add_quad_filled(*corners, _ink(theme.panel))
     lines.add_quad(*corners, _ink(theme.accent), em(0.12))
 

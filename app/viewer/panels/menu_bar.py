@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 
 from ..command import Command
 from ..gui import Gui
-from ..messages import Messages, Task
+from ..messages import Messages
 from ..session import Session
 from .widgets import muted
 
@@ -49,17 +49,14 @@ class MenuBar:
             if command.choices is not None:
                 is_open = imgui.begin_menu(label)
                 self._gui.remember(name)
+                for number, (text, is_now, run) in enumerate(command.choices() if is_open else ()):
+                    if imgui.menu_item(f"{text}##{number}", "", is_now)[0]:
+                        self._messages.attempt(run)
+                    self._gui.remember(f"{name}: {number}")
                 if is_open:
-                    self._draw_choices(name, command.choices())
                     imgui.end_menu()
                 continue
             is_clicked, _ = imgui.menu_item(label, command.displayed_key, is_on, command.can_run())
             self._gui.remember(name)
             if is_clicked:
                 self._messages.attempt(command.run)
-
-    def _draw_choices(self, name: str, choices: Sequence[tuple[str, bool, Task]]) -> None:
-        for number, (text, is_on, run) in enumerate(choices):
-            if imgui.menu_item(f"{text}##{number}", "", is_on)[0]:
-                self._messages.attempt(run)
-            self._gui.remember(f"{name}: {number}")

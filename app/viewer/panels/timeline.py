@@ -9,8 +9,7 @@ from imgui_bundle import imgui
 from ...errors import counted
 from ..command import Command
 from ..export import Exporter
-from ..gui import LEFT, MIDDLE, RIGHT, Gui, colour, em
-from ..key_selection import KeySelection
+from ..gui import Gui, colour, em
 from ..messages import Messages
 from ..session import SPEEDS, Session
 from .dope_sheet import DopeSheet
@@ -39,13 +38,12 @@ class Timeline:
         messages: Messages,
         commands: Iterable[Command],
         exporter: Exporter,
-        selection: KeySelection,
         dope_sheet: DopeSheet,
     ) -> None:
         """commands: those of the buttons must be among them."""
         self._gui, self._session, self._messages = gui, session, messages
         self._commands = {command.label: command for command in commands}
-        self._exporter, self._selection, self.dope_sheet = exporter, selection, dope_sheet
+        self._exporter, self.dope_sheet = exporter, dope_sheet
         self._rows = 1  # of buttons, which go on in a second one where the window is narrow
 
     def height(self) -> float:
@@ -68,11 +66,6 @@ class Timeline:
         self._draw_status(len(differing))
         self._rows = round((imgui.get_cursor_pos_y() - top) / imgui.get_frame_height_with_spacing())
         self.dope_sheet.draw()
-        if any(map(imgui.is_mouse_clicked, (LEFT, MIDDLE, RIGHT))):
-            is_here = imgui.is_window_hovered(imgui.HoveredFlags_.child_windows)
-            self._selection.is_touched = is_here
-        elif imgui.get_io().want_text_input and not imgui.is_any_mouse_down():
-            self._selection.is_touched = False
 
     def _draw_button(self, label: str, *, is_wanted: bool = False) -> None:
         command, (label_on, meaning) = self._commands[label], BUTTONS[label]
