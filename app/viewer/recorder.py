@@ -36,10 +36,10 @@ class Recorder:
         if time <= self.time:
             return
         before, self.time = self.time, time
-        posed = self._played.posed(time)
+        posed, at_first = self._played.posed(time), self._played.posed(before)
         for name in differing(self._played, time, values, self._limits):
             if name not in self.samples:
-                first = self._told(name, before) if before else values[name] - posed.get(name, 0.0)
+                first = self._told(name, before) if before else values[name] - at_first.get(name, 0)
                 self.samples[name] = array("d", [before]), array("d", [first])
         for name, (times, track) in self.samples.items():
             value = values[name] - posed.get(name, 0.0)  # a track adds to the poses

@@ -302,13 +302,13 @@ class Session:
         """
         if self._recorder is None:
             held = {name: self.values[name] for name in self.differing}
-            self._recorder = Recorder(self.script, self.time, self.controls.limits)
+            start = self.time % self.script.duration if self.is_looping else self.time
+            self._recorder = Recorder(self.script, start, self.controls.limits)
             self._held, self.time, self.pose_is_unsaved = held, self._recorder.start, False
             if not self.is_playing:
                 self.toggle_playing()
             return f"recording from {self.time:.2f} s: what you move replaces the script there"
-        recorder, self._recorder, self._held = self._recorder, None, {}
-        self.is_playing = False
+        recorder, self._recorder, self._held, self.is_playing = self._recorder, None, {}, False
         recording = recorder.script()
         if recording is None:
             raise UserError("nothing was recorded: no control moved")

@@ -179,6 +179,21 @@ def test_a_recording_makes_the_script_longer(session: Session) -> None:
     assert session.script.at(4.8)["jaw_open"] == pytest.approx(0.7, abs=2e-3)
 
 
+def test_a_loop_is_recorded_once(session: Session) -> None:
+    """Begun at the script's end it goes on at the start, and the second time round is not taken."""
+    session.seek(4.0)
+    session.is_looping = True
+    session.toggle_recording()
+    session.set("jaw_open", 0.7)
+    run(session, 245)
+    session.set("jaw_open", 0.1)
+    run(session, 10)
+    session.toggle_recording()
+    assert session.script.duration == 4.0
+    for time in (0.0, 1.0, 3.9):
+        assert session.script.at(time)["jaw_open"] == pytest.approx(0.7, abs=2e-3)
+
+
 LIMITS = dict.fromkeys(("a", "b", "c"), (0.0, 1.0))
 TIMES = st.integers(0, 120).map(lambda frame: round(frame / 30.0, 6))
 SHARES = st.integers(0, 100).map(lambda percent: percent / 100.0)
