@@ -313,7 +313,7 @@ class Session:
         if recording is None:
             raise UserError("nothing was recorded: no control moved")
         self.script = recording
-        self._go_to(self.time)
+        self._go_to(rounded(self.time))  # which is the end, where the recording is the last
         what = counted(len(recorder.samples), "control")
         self.note(f"Record {what}")
         return f"{what} recorded from {recorder.start:.2f} to {recorder.time:.2f} s"

@@ -170,13 +170,18 @@ def test_a_pose_by_hand_is_where_a_recording_begins(session: Session) -> None:
 
 def test_a_recording_makes_the_script_longer(session: Session) -> None:
     """At the script's end it goes on, and what was held then stays."""
-    session.seek(3.8)
-    session.toggle_recording()
-    session.set("jaw_open", 0.7)
-    run(session, 60)
-    session.toggle_recording()
-    assert session.script.duration == pytest.approx(4.8, abs=1e-5)
-    assert session.script.at(4.8)["jaw_open"] == pytest.approx(0.7, abs=2e-3)
+    for step in range(5):  # lengths that are rounded up and down
+        session.seek(3.8 + 0.001 * step)
+        session.toggle_recording()
+        session.set("jaw_open", 0.3 + 0.1 * step)
+        run(session, 60)
+        session.toggle_recording()
+        assert session.time == session.script.duration
+        assert session.script.duration == pytest.approx(4.8 + 0.001 * step, abs=1e-5)
+    session.toggle_playing()
+    assert session.time == 0.0 and session.script.at(4.8)["jaw_open"] == pytest.approx(
+        0.7, abs=2e-3
+    )
 
 
 def test_a_loop_is_recorded_once(session: Session) -> None:
