@@ -78,6 +78,11 @@ class DrawnMesh:
         """How many triangles the last frame drew."""
         return self.stream.triangle_count
 
+    @property
+    def caption(self) -> str:
+        """What a picture of it says: what it is, and how many triangles that takes."""
+        return f"{self.label}\n{self.triangle_count} triangles"
+
 
 class Pipeline:
     """A scene, its mesh as each refiner has it drawn, and the renderer that draws."""
@@ -146,11 +151,14 @@ class Pipeline:
         self.renderer.draw_parts(self.scene.parts, bones, camera, style, viewport=viewport)
 
 
-def texture_of(scene: Scene, renderer: render.Renderer) -> render.Texture | None:
-    """Hand the scene's albedo to the renderer; None where it has none."""
+def texture_of(
+    scene: Scene, renderer: render.Renderer, tone: float | None = None
+) -> render.Texture | None:
+    """Hand the scene's albedo to the renderer, in a tone [deg] where it has any; None without."""
     if scene.albedo is None:
         return None
-    return renderer.load_texture(scene.albedo, scene.openness())
+    albedo = scene.albedo if tone is None or scene.in_tone is None else scene.in_tone(tone)
+    return renderer.load_texture(albedo, scene.openness())
 
 
 def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> npt.NDArray[np.uint8]:

@@ -18,13 +18,15 @@ import numpy.typing as npt
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
-from risorius.assets.identities import Person, person_called
+from risorius.assets.identities import Person, person_called, recoloured
 
 from .errors import UserError
 from .growing import Growing
 from .keeping import kept, state_of
+from .mirror import parted
 from .mouth import Tongue, shaded_mouth
 
+BUILT_IN = "built-in"  # what the head is called that comes along
 CHIN, NECK = 8, 32.0  # landmark, and [mm] below it that a portrait shows
 LOG = logging.getLogger("risorius.heads")  # what was done to a head that somebody brings
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
@@ -40,12 +42,14 @@ class Scene:
     groups: Mapping[str, tuple[str, ...]]  # all controls, by the heading that a panel shows
     limits: Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
     actions: Mapping[str, str] = MappingProxyType({})  # what controls do, where that is known
-    expressions: tuple[str, ...] = ()  # controls that a panel shows as buttons
+    called: str = ""  # whose head it is, if it is one
+    expressions: tuple[str, ...] = ()  # whole faces, without those of a side
     parts: tuple[Any, ...] = ()  # what moves with bones: eyes, teeth, ...
     uv: npt.NDArray[np.float32] | None = None  # texture coordinates (U, 2)
     face_uv: npt.NDArray[np.int32] | None = None  # which of them each corner has (F, 3)
     albedo: npt.NDArray[np.uint8] | None = None  # the texture (H, W, 3), sRGB
     wrinkles: assets.Wrinkles | None = None  # where skin wrinkles
+    in_tone: Callable[[float], npt.NDArray[np.uint8]] | None = None  # the texture by ITA [deg]
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
@@ -111,7 +115,10 @@ class FaceScene(Scene):
         self.faces, self.rest_positions = simulation.faces, simulation.rest_positions
         self.groups, self.limits = simulation.groups, simulation.limits
         self.actions = simulation.actions
-        self.expressions = simulation.layers.get("Expressions", ())
+        expressions = simulation.layers.get("Expressions", ())
+        self.expressions = tuple(
+            name for name in expressions if parted(name)[0] not in {*expressions} - {name}
+        )
         self.parts = tuple(
             part
             if getattr(part, "roots", None) is None
@@ -120,6 +127,9 @@ class FaceScene(Scene):
         )
         self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
         self.wrinkles = head.wrinkles
+        is_known = isinstance(head, assets.Head)
+        self.called = BUILT_IN if is_known else getattr(head, "called", "") or "own"
+        self.in_tone = recoloured if is_known else getattr(head, "in_tone", None)
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))

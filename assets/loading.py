@@ -2,7 +2,8 @@
 
 The head's numbers lie in `data/head.npz`, written by `python -m risorius.assets.build`; its rig and
 the layers of controls above the muscles are text files, written by hand (`rigs/face.toml`,
-`action_units.toml`, `expressions.toml`, `visemes.toml`, `arkit.toml`).
+`action_units.toml`, `expressions.toml`, `visemes.toml`, `arkit.toml`), and so are the plain words
+for controls (`words.toml`).
 """
 
 from collections.abc import Mapping
@@ -22,6 +23,7 @@ from .plane import make_plane
 FOLDER = Path(__file__).parent
 HEAD_FILE = FOLDER / "data" / "head.npz"
 RIG_FILE = FOLDER / "rigs" / "face.toml"
+WORDS_FILE = FOLDER / "words.toml"
 LAYER_FILES = MappingProxyType(  # title -> file, from the lowest layer up
     {
         "Action units": FOLDER / "action_units.toml",
@@ -90,6 +92,14 @@ def read_layers(files: Mapping[str, Path] = LAYER_FILES) -> tuple[Layer, ...]:
     """
     found = ((title, path, read_toml(path)) for title, path in files.items())
     return tuple(Layer(title, path.name, rows) for title, path, rows in found if rows)
+
+
+def read_words() -> Mapping[str, Any]:
+    """Plain words for controls: the tables `names`, `filters`, `pads` and `synonyms`.
+
+    Raises AssetError when the file is not TOML.
+    """
+    return read_toml(WORDS_FILE)
 
 
 def _assemble(

@@ -117,7 +117,7 @@ class Layer:
         sim/layers.py says what they mean.
     """
 
-    NOT_SHARES: ClassVar[tuple[str, ...]] = ("action", "pair", "share_of", "at_least")
+    NOT_SHARES: ClassVar[tuple[str, ...]] = ("action", "pair", "mirror", "share_of", "at_least")
     title: str
     source: str
     rows: Mapping[str, Mapping[str, Any]]

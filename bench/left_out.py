@@ -1,16 +1,16 @@
 """How well the rig foretells a shape that its fit did not see: `risorius bench left-out`.
 
 For each shape of a folder of scans (motion.py), the muscles that it uses lose all that was ever
-fitted: strengths, widths and bulges fall back to the values that sim/rig.py gives a muscle of which
-nothing is said, and the shares of the shape to 1 for prime movers and 0.3 for helpers. Then NUMBERS
-of those muscles are fitted to the other shapes that use them, with a pull towards where they
-started, and the shape that was left out is posed and scored.
+fitted: strengths, widths and bulges fall back to the median of the muscles of their kind that the
+shape does not use, and the shares of the shape to 1 for prime movers and 0.3 for helpers. Then
+NUMBERS of those muscles are fitted to the other shapes that use them, with a pull towards where
+they started, and the shape that was left out is posed and scored.
 
 What remains of it is anatomy, which the rig's file has in millimetres: where a muscle begins and
 ends, where the ring of a sphincter lies and to which point it draws, which lip it moves; and which
 muscles make the shape. Both were written with the scans at hand, the places within 7 mm of anatomy.
-A shape whose muscles no other one uses is posed with plain muscles. Jaw and lids have no numbers of
-this kind, and their shapes are not asked.
+A shape whose muscles no other one uses is posed with typical muscles. Jaw and lids have no numbers
+of this kind, and their shapes are not asked.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ NUMBERS = {  # what is fitted, and how far it goes for the pull of a start to co
 }  # fmt: skip
 PULL = 0.1  # of the start against a whole scan
 PRIME = 0.5  # share from which a muscle is a prime mover
-HELPER = 0.3  # plain share of the others
+HELPER = 0.3  # typical share of the others
 SETTLE = 30  # frames of 1/60 s until a pose is still enough
 TRIES = 2  # steps of Gauss and Newton
 
@@ -88,13 +88,20 @@ def measure(directory: str | Path) -> list[Row]:
     return [face.without(name) for name in tqdm(face.shapes, desc="left out", leave=False)]
 
 
-def plain(muscle: Muscle) -> Muscle:
-    """A muscle of which only its place and its nature are known."""
-    known = {each.name: getattr(muscle, each.name) for each in fields(muscle) if each.name in KEPT}
+def typical(muscle: Muscle, others: Sequence[Muscle]) -> Muscle:
+    """A muscle of which only place and nature are known: in all else it is as the others are.
+
+    others: of its kind, one at least; each number becomes their median.
+    """
+    typical_of: dict[str, Any] = {}
+    for rule in fields(muscle):
+        if rule.name not in KEPT and rule.metadata["rule"] in ("number", "vector"):
+            median = np.median([getattr(each, rule.name) for each in others], axis=0)
+            typical_of[rule.name] = tuple(median.tolist()) if median.ndim else float(median)
     if isinstance(muscle, LinearMuscle):
-        known["fibres"] = tuple(Fibre(each.origin, each.insertion) for each in muscle.fibres)
-    bare: Muscle = type(muscle)(**known)
-    return bare
+        typical_of["fibres"] = tuple(Fibre(each.origin, each.insertion) for each in muscle.fibres)
+    found: Muscle = replace(muscle, **typical_of)
+    return found
 
 
 class _Face:
@@ -119,12 +126,17 @@ class _Face:
         numbered = all(isinstance(m, LinearMuscle | RingMuscle) for m in found.values())
         return found if numbered and len(found) == len(names) else {}
 
+    def _typical(self, muscle: Muscle, used: Mapping[str, Muscle]) -> Muscle:
+        """What the muscles that are not used tell of one that is."""
+        unused = [each for each in self._muscles.values() if each.name not in used]
+        return typical(muscle, [each for each in unused if type(each) is type(muscle)])
+
     def without(self, name: str) -> Row:
         """Score a shape with the rig as it is, and with a rig that was fitted to the others."""
         shape, rig = self.shapes[name], self._trial.rig
         used = self._used(shape)
         others = [n for n, s in self.shapes.items() if n != name and used.keys() & self._used(s)]
-        bare = {each: plain(muscle) for each, muscle in used.items()}
+        bare = {each: self._typical(muscle, used) for each, muscle in used.items()}
         numbers = [each for muscle in bare.values() for each in _numbers(muscle)]
         start = np.array([each.of(bare[each.muscle]) for each in numbers])
         scale = np.array([each.scale for each in numbers])
@@ -194,7 +206,7 @@ def report(rows: Sequence[Row]) -> str:
     columns = "shape:<20|fitted:7.3f|left out:8.3f|others:6d"
     lines = [
         "Cosine of simulated to scanned displacement: with the rig as it is, and with a rig whose",
-        "muscles of this shape start plain and are fitted to the other shapes that use them.",
+        "muscles of this shape start like the others and are fitted to the shapes that share them.",
         "",
         *table(columns, [(r.shape, r.fitted, r.left_out, r.others) for r in rows]),
         *table("mean:<20|fitted:7.3f|left out:8.3f", [("mean", *means)])[1:],

@@ -17,7 +17,8 @@ FloatArray = npt.NDArray[np.float64]
 
 FIELD_OF_VIEW = 25.0  # [degrees] a portrait lens: about 80 mm on 35 mm film, so noses stay small
 MARGIN = 0.06  # of the frame, left free on each side when framing; mouths open and brows rise
-_STEEPEST = 89.0  # [degrees] beyond it "up" would tip over
+_STEEPEST = 89.0  # [degrees] to which one rises by steps; beyond 90 "up" would tip over
+_AWAY = 100.0  # scene radii from the target to an orthographic eye: rays part by half a degree
 
 # Name -> yaw and pitch [degrees]: yaw walks toward the subject's left, pitch rises above.
 VIEWS: dict[str, tuple[float, float]] = {
@@ -25,6 +26,8 @@ VIEWS: dict[str, tuple[float, float]] = {
     "three-quarter": (35.0, 4.0),
     "three-quarter-right": (-35.0, 4.0),
     "profile": (90.0, 0.0),
+    "profile-right": (-90.0, 0.0),
+    "top": (0.0, 90.0),
     "below": (0.0, -38.0),
 }
 
@@ -40,6 +43,7 @@ class OrbitCamera:
     narrowest_aspect: a frame narrower than this (width / height) shows no less of the scene's
         width, but more of its height; framing sets it.
     scene_centre, scene_radius: a sphere that holds what is framed; sets the clipping planes.
+    is_orthographic: all is as large as perspective shows the target; the eye stands far back.
     """
 
     target: FloatArray
@@ -50,6 +54,7 @@ class OrbitCamera:
     scene_radius: float
     field_of_view: float = FIELD_OF_VIEW
     narrowest_aspect: float = 0.0
+    is_orthographic: bool = False
 
     @classmethod
     def framing(
@@ -120,21 +125,34 @@ class OrbitCamera:
     @property
     def eye(self) -> FloatArray:
         """Where the camera stands, shape (3,), float64."""
-        return self.target + self.distance * self.axes()[2]
+        return self.target + self._eye_distance * self.axes()[2]
+
+    @property
+    def _eye_distance(self) -> float:
+        return _AWAY * self.scene_radius if self.is_orthographic else self.distance
 
     def view_matrix(self) -> Matrix44:
         """World -> camera (x right, y up, looking along -z)."""
-        return Matrix44.look_at(self.eye, self.target, (0.0, 1.0, 0.0), dtype=np.float64)
+        axes, matrix = np.stack(self.axes()), np.eye(4)
+        matrix[:3, :3], matrix[3, :3] = axes.T, -axes @ self.eye
+        return Matrix44(matrix)
 
     def projection_matrix(self, aspect: float) -> Matrix44:
         """Camera -> clip space, for a frame of that width / height."""
         near, far = self._depth_range()
-        degrees = 2.0 * math.degrees(math.atan(self._half_height(aspect)))
+        half = self._half_height(aspect)
+        if self.is_orthographic:
+            up = self.distance * half
+            right = aspect * up
+            return Matrix44.orthogonal_projection(
+                -right, right, -up, up, near, far, dtype=np.float64
+            )
+        degrees = 2.0 * math.degrees(math.atan(half))
         return Matrix44.perspective_projection(degrees, aspect, near, far, dtype=np.float64)
 
     def focal(self, aspect: float, height: int) -> float:
-        """Pixels that a length of 1 covers at distance 1, in a frame of `height` pixels."""
-        return 0.5 * height / self._half_height(aspect)
+        """Pixels that a length of 1 covers at distance 1 from the eye, in `height` pixels."""
+        return 0.5 * height * (self._eye_distance / self.distance) / self._half_height(aspect)
 
     def _half_height(self, aspect: float) -> float:
         """Half the frame's height at distance 1."""
@@ -154,6 +172,7 @@ class OrbitCamera:
         """Centre `points`, shape (n, 3), in the frame and step as close as the margin allows."""
         usable = (1.0 - 2.0 * margin) * math.tan(math.radians(0.5 * self.field_of_view))
         axes = np.stack(self.axes())
+        axes[2] *= not self.is_orthographic  # else what is nearer is larger
         for _ in range(8):  # each round centres better; perspective makes one round inexact
             x, y, z = axes @ (points - self.target).T
             self.distance = float((z + np.abs(y) / usable).max()) or self.scene_radius

@@ -6,6 +6,7 @@ laid under it again without being drawn again.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import moderngl
 
@@ -64,6 +65,17 @@ class Compositor:
             self._triangle.render(moderngl.TRIANGLES, vertices=3)
             gl.enable(moderngl.DEPTH_TEST)
         gl.scissor = None
+
+    def lay(self, x: int, y: int, image: Any) -> None:
+        """Lay a label on what is bound; see `WindowSurface.labels`."""
+        gl, (height, width, _) = self._gl, image.shape
+        gl.texture((width, height), 4, image[::-1].tobytes()).use(_UNIT)
+        gl.viewport = x, y, width, height
+        gl.enable_only(moderngl.BLEND)
+        gl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        self._triangle.render(moderngl.TRIANGLES, vertices=3)
+        gl.enable_only(moderngl.DEPTH_TEST)
+        gl.viewport = 0, 0, *self.size
 
     def copy_to(self, target: moderngl.Framebuffer, around: Rectangle = (0, 0, 0, 0)) -> None:
         """Copy everything, but for an area, to a framebuffer of the same size."""

@@ -51,8 +51,9 @@ def set_part(program: moderngl.Program, part: Part, light: Light) -> None:
 
 def set_hair(program: moderngl.Program, thickness: float, view: CameraView) -> None:
     """How thin hairs are, half of it, and how thin they may be drawn at distance 1."""
+    _, _, width, height = view.viewport
     program["half_hair"] = thickness
-    program["least_half"] = HAIR_PIXELS / (view.projection[1, 1] * view.viewport[3])
+    program["least_half"] = 0.5 * HAIR_PIXELS / view.camera.focal(width / height, height)
 
 
 def set_light(program: moderngl.Program, light: Light) -> None:

@@ -27,6 +27,8 @@ class WindowSurface(Surface):
     handle: the GLFW window, for input and GUI libraries. detail: settable, for the next frames.
     area: the part in which the scene is seen, where panels hide the rest; None: all. Settable.
     rules: plain rectangles over the scene, such as a line between two halves. Settable.
+    labels: pictures over both, such as captions: x and y of the lower left corner [pixels]; RGBA,
+        premultiplied, top row first, shape (h, w, 4), uint8. Settable.
     """
 
     def __init__(self, glfw: ModuleType, handle: Any, gl: moderngl.Context, samples: int) -> None:
@@ -37,6 +39,7 @@ class WindowSurface(Surface):
         self.detail = Detail(self.samples)
         self.area: Rectangle | None = None
         self.rules: Sequence[tuple[Rectangle, Colour]] = ()
+        self.labels: Sequence[tuple[int, int, Image]] = ()
         self._compositor = Compositor(gl, size)
         self._is_resolved = False  # in this frame: panels may have been drawn
         self._is_laid = False  # what `_compositor` has of the scene is what is seen
@@ -86,7 +89,7 @@ class WindowSurface(Surface):
         """End the scene: panels lie on top. Again: forget the panels, keep the scene."""
         self.make_current()
         self._compositor.compose(self.target, self.area)
-        self._draw_rules(self._compositor.frame)
+        self._draw_marks(self._compositor.frame)
         self._is_resolved = self._is_laid = True
 
     def fill(self, area: Rectangle, colour: Colour) -> None:
@@ -103,23 +106,25 @@ class WindowSurface(Surface):
             self._compositor.copy_to(self.gl.screen)
         else:
             self._compositor.compose(self.target, self.area, self.gl.screen)
-            self._draw_rules(self.gl.screen)
+            self._draw_marks(self.gl.screen)
             if self.area is not None:
                 self._compositor.copy_to(self.gl.screen, around=self.area)
             self._is_laid = False
         self._glfw.swap_buffers(self.handle)
         self._is_resolved = False
 
-    def _draw_rules(self, target: moderngl.Framebuffer) -> None:
+    def _draw_marks(self, target: moderngl.Framebuffer) -> None:
         for rectangle, colour in self.rules:
             target.clear(*colour, viewport=rectangle)
+        for label in self.labels:
+            self._compositor.lay(*label)
 
     def read(self) -> Image:
         """Return the frame as it is seen, with the panels; see `Surface.read`."""
         self.make_current()
         if not self._is_laid:
             self._compositor.compose(self.target, self.area)
-            self._draw_rules(self._compositor.frame)
+            self._draw_marks(self._compositor.frame)
         return image_of(self._compositor.read(), self.size)
 
     def _bind(self) -> None:

@@ -4,7 +4,7 @@
 
 A layer is a table of rows; a row is a control of its own, named by its key. Each entry of a row is
 a share: the row at 1 adds so much to the control that the entry names, which must stand in a layer
-below. Four keys of a row are no entries. `action` says in words what it does. `pair = true` makes
+below. Five keys of a row are no entries. `action` says in words what it does. `pair = true` makes
 three controls of one row, for both sides, `..._left` and `..._right`; `pair = "Left Right"` makes
 two, `...Left` and `...Right`, the way ARKit spells them:
 
@@ -14,6 +14,13 @@ two, `...Left` and `...Right`, the way ARKit spells them:
     corrugator_supercilii = 1.0     # a name without side is both sides; AU4_left takes the left
     procerus = 0.9                  # one in the middle: AU4_left takes half, so that left + right
                                     # is AU4
+
+`mirror` names a second control, which is the row with left and right exchanged:
+
+    [wink]
+    action = "left eye shut"
+    mirror = "wink_right"
+    AU46_left = 1.0
 
 `share_of` names a control above it in the same table, or in a layer below: the row's value says how
 much of that one's it makes good, and counts as value / the other's value, at most 1:
@@ -145,6 +152,7 @@ class _Reader:
         entries = dict(table)
         action, pair = entries.pop("action", ""), entries.pop("pair", False)
         whole, floors = entries.pop("share_of", None), entries.pop("at_least", {})
+        mirror = entries.pop("mirror", None)
         if not isinstance(action, str):
             raise ValueError(f"{where}: 'action' was {quoted(action)}, must be a text")
         if not isinstance(pair, bool | str) or pair not in (False, *ENDINGS):
@@ -155,6 +163,9 @@ class _Reader:
         if not isinstance(floors, Mapping):
             allowed = "a table of control = share"
             raise ValueError(f"{where}: 'at_least' was {quoted(floors)}, must be {allowed}")
+        if mirror is not None and (pair or mirror == name or not isinstance(mirror, str)):
+            allowed = "another name, in a row that is no pair"
+            raise ValueError(f"{where}: 'mirror' was {quoted(mirror)}, must be {allowed}")
         if pair:
             self._check_pair(where, name, (*entries, *floors))
         ends = zip(ENDINGS[pair], SIDES, strict=True) if pair else [("", "")]
@@ -162,6 +173,8 @@ class _Reader:
         if pair is True:
             shares, least = zip(*made.values(), strict=True)
             made = {name: (np.sum(shares, axis=0), np.max(least, axis=0)), **made}
+        if mirror is not None:
+            made[mirror] = self._sums(where, _exchanged(entries), _exchanged(floors), "", below)
         for each, (share, floor) in made.items():
             if each in self.shares:
                 raise ValueError(
@@ -228,3 +241,13 @@ class _Reader:
                 f"{where}, '{control}': is a share of '{self.share_of[control]}', which only a "
                 "value that is set can be; name what it moves instead"
             )
+
+
+def _exchanged(entries: Mapping[str, Any]) -> dict[str, Any]:
+    """The entries of a row with left and right exchanged."""
+    other = {**dict(zip(SIDES, SIDES[::-1], strict=True)), "": ""}
+    result = {}
+    for control, value in entries.items():
+        side = next((side for side in SIDES if control.endswith(side)), "")
+        result[control.removesuffix(side) + other[side]] = value
+    return result

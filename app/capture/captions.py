@@ -5,16 +5,21 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import PIL.Image
 from PIL import ImageDraw, ImageFont
 
+from risorius import render
+
 from ..files import Image
 from ..pipeline import Viewport
 
 INK = (245, 245, 245)
+FAINT = (200, 203, 208)
 SHADE = (24, 26, 30)
+PLATE = 185  # of 255: how far a plate hides what is behind it
 LEAST_CAPTION = 28  # [pixels] below a cell of a contact sheet: text of 15 pixels stays readable
 LANCZOS = PIL.Image.Resampling.LANCZOS
 
@@ -25,22 +30,108 @@ def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
     return ImageFont.load_default(size=size)
 
 
-def captioned(image: Image, texts: Sequence[str], viewports: Sequence[Viewport]) -> Image:
-    """Write one line at the lower left of each viewport and draw a line between viewports.
+class ColourBar(NamedTuple):
+    """What colours stand for, from the least to the most: `ticks` are numbers, evenly far apart.
+
+    ramp: sRGB 0..1, and how much of it covers the skin. is_smooth: colours run into each other.
+    """
+
+    title: str
+    ramp: tuple[tuple[render.Colour, float], ...]
+    ticks: tuple[str, ...]
+    is_smooth: bool = True
+
+
+PALETTE = tuple((colour, 1.0) for colour in render.SPLIT_PALETTE)
+SPLITS_BAR = ColourBar("Splits of a triangle's edges", PALETTE, tuple("123456"), is_smooth=False)
+
+
+# A picture on a picture: x, y of its lower left corner [pixels]; RGBA, premultiplied.
+Label = tuple[int, int, Image]
+
+
+@functools.lru_cache(maxsize=64)
+def plate(text: str, size: float) -> Image:
+    """A line of text, and a smaller one below it, on a dark plate; see `Label`."""
+    lines = [*zip(text.split("\n"), (font(size), font(0.82 * size)), (INK, FAINT), strict=False)]
+    width = max(face.getlength(line) for line, face, _ in lines)
+    page, draw = _page(width + 1.3 * size, (1.25 * len(lines) + 0.55) * size, size)
+    for index, (line, face, ink) in enumerate(lines):
+        y = (0.95 + 1.22 * index) * size
+        draw.text((0.65 * size, y), line, font=face, fill=ink, anchor="lm")
+    return np.asarray(page.convert("RGBa"))
+
+
+@functools.lru_cache(maxsize=8)
+def colour_bar(bar: ColourBar, albedo: render.Colour, size: float) -> Image:
+    """An upright bar over skin of some colour, its numbers and its title, on a plate."""
+    small, count, pad = font(0.82 * size), len(bar.ramp), round(0.65 * size)
+    tall, wide, numbers = round(13.0 * size), round(0.8 * size), round(3.1 * size)
+    ends = numbers + max(map(small.getlength, bar.ticks)) + pad
+    page, draw = _page(ends, tall + 2 * pad, size)
+    colours = np.array([np.add(albedo, np.subtract(c, albedo) * cover) for c, cover in bar.ramp])
+    rows = np.linspace(1.0, 0.0, tall)
+    places = rows * (count - 1) if bar.is_smooth else np.floor(rows * (count - 1e-6))
+    shades = np.stack([np.interp(places, np.arange(count), each) for each in colours.T], axis=1)
+    column = np.rint(255.0 * shades).astype(np.uint8)[:, None].repeat(wide, axis=1)
+    page.paste(PIL.Image.fromarray(column), (round(1.85 * size), pad))
+    inner = 0.4 * size if bar.is_smooth else 0.5 * tall / count
+    for y, tick in zip(np.linspace(tall - inner, inner, len(bar.ticks)), bar.ticks, strict=True):
+        draw.text((numbers, pad + y), tick, font=small, fill=INK, anchor="lm")
+    title, middle = PIL.Image.new("RGBA", (tall, wide + pad)), (0.5 * tall, 0.65 * size)
+    ImageDraw.Draw(title).text(middle, bar.title, font=small, fill=FAINT, anchor="mm")
+    page.alpha_composite(title.rotate(90, expand=True), (round(0.45 * size), pad))
+    return np.asarray(page.convert("RGBa"))
+
+
+def _page(width: float, height: float, size: float) -> tuple[PIL.Image.Image, ImageDraw.ImageDraw]:
+    """A dark plate with round corners, and what draws on it."""
+    page = PIL.Image.new("RGBA", (math.ceil(width), math.ceil(height)), (*SHADE, 0))
+    draw, corners = ImageDraw.Draw(page), (0, 0, page.width - 1, page.height - 1)
+    draw.rounded_rectangle(corners, 0.35 * size, fill=(*SHADE, PLATE))
+    return page, draw
+
+
+def labels(
+    texts: Sequence[str],
+    viewports: Sequence[Viewport],
+    bar: ColourBar | None,
+    style: render.Style,
+    least: float = 11.0,
+) -> list[Label]:
+    """Captions at the foot of viewports, and a colour bar at the upper right.
+
+    A caption stands at the left, the second of two at the right, away from line and face; without
+    room it is left out. least: size of letters [pixels], which are larger in a high picture.
+    """
+    size = max(least, viewports[0][3] / 36.0)
+    pad, made = round(0.7 * size), list[Label]()
+    for index, (text, (left, bottom, width, _)) in enumerate(zip(texts, viewports, strict=False)):
+        image = plate(text, size)
+        room = width - image.shape[1] - 2 * pad
+        aside = room if (index, len(texts)) == (1, 2) else 0
+        made += [(left + pad + aside, bottom + pad, image)] if room >= 0 else []
+    if bar is not None:
+        left, bottom, width, height = viewports[-1]
+        image = colour_bar(bar, style.albedo, min(0.78 * size, height / 26.0))
+        x, y = width - image.shape[1] - pad, height - image.shape[0] - pad
+        made += [(left + x, bottom + y, image)] if min(x, y) >= 0 else []
+    return made
+
+
+def captioned(image: Image, shown: Sequence[Label], viewports: Sequence[Viewport]) -> Image:
+    """Lay labels on a copy of a picture, and draw a line between viewports.
 
     image: with 3 channels, or 4 and premultiplied.
     """
-    page = PIL.Image.fromarray(image)
-    draw = ImageDraw.Draw(page)
-    height = image.shape[0]
-    size = max(11.0, height / 36.0)
-    for text, (left, bottom, _, _) in zip(texts, viewports, strict=True):
-        place = (left + size, height - bottom - 2.1 * size)
-        draw.text((place[0] + 1, place[1] + 1), text, font=font(size), fill=SHADE)
-        draw.text(place, text, font=font(size), fill=INK)
-        if left:
-            draw.line([(left, 0), (left, height)], fill=INK, width=1)
-    return np.asarray(page)
+    page = image.copy()
+    for left in [each[0] for each in viewports if each[0]]:
+        page[:, left] = (*INK, 255)[: page.shape[2]]
+    for x, y, label in shown:
+        under = page[len(page) - y - len(label) : len(page) - y, x : x + label.shape[1]]
+        kept = under * (255 - label[..., 3:].astype(np.uint16))
+        under[:] = label[..., : page.shape[2]] + (kept + 127) // 255
+    return page
 
 
 def contact_sheet(

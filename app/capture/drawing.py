@@ -18,7 +18,7 @@ from ..passes.passes import Passes
 from ..pipeline import Pipeline, side_by_side
 from ..scenes import Scene
 from ..script import Script
-from .captions import captioned
+from .captions import SPLITS_BAR, captioned, labels
 from .transparency import straight
 
 
@@ -89,9 +89,10 @@ class Capture:
         self.surface.end()
         image = self.surface.read_scene(4 if self.options.is_transparent else 3)
         if self.options.beside and self.options.captions:
-            meshes = self.pipeline.meshes
-            texts = [f"{drawn.label} · {drawn.triangle_count} triangles" for drawn in meshes]
-            image = captioned(image, texts, self.viewports)
+            texts, style = [drawn.caption for drawn in self.pipeline.meshes], self.options.style
+            bar = SPLITS_BAR if style.colour_by is render.ColourBy.SPLITS else None
+            shown = labels(texts, self.viewports, bar, style)
+            image = captioned(image, shown, self.viewports)
         return straight(image) if self.options.is_transparent else image
 
     def draw_frame(self) -> Frame:

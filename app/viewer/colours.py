@@ -15,7 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, render
+from risorius.render.style import AMOUNT_RAMP, SIGNED_RAMP
 
+from ..capture.captions import SPLITS_BAR, ColourBar
 from ..pipeline import DrawnMesh, splits_of_source
 from ..scenes import Scene
 
@@ -31,7 +33,7 @@ class Colours:
     """A way to colour triangles: how the renderer takes the values, and what they mean."""
 
     kind: render.ColourBy
-    legend: str
+    bar: ColourBar | None = None
     of_source: Callable[[Scene, refine.Refiner], Amounts] | None = None
 
     def values(self, scene: Scene, drawn: DrawnMesh) -> Amounts | None:
@@ -93,15 +95,19 @@ def _dots(normals: FloatArray, edges: npt.NDArray[np.int32]) -> FloatArray:
     return dots
 
 
+DROPS = ("0", f"{MOST_DROP / 2.0:g}", f"{MOST_DROP:g}")
+STRAINS = (f"-{100 * MOST_STRAIN:g} %", "0", f"+{100 * MOST_STRAIN:g} %")
 COLOURS = {
-    "none": Colours(render.ColourBy.NONE, ""),
-    "splits": Colours(render.ColourBy.SPLITS, "green: one split, to indigo: six"),
+    "none": Colours(render.ColourBy.NONE),
+    "splits": Colours(render.ColourBy.SPLITS, SPLITS_BAR),
     "curvature drop": Colours(
-        render.ColourBy.AMOUNT, f"dark: the dot product fell by {MOST_DROP:g}", curvature_drops
+        render.ColourBy.AMOUNT,
+        ColourBar("Curvature: drop of n · n at rest", AMOUNT_RAMP, DROPS),
+        curvature_drops,
     ),
     "tension": Colours(
         render.ColourBy.SIGNED,
-        f"red: {MOST_STRAIN:.0%} stretched, blue: as much compressed",
+        ColourBar("Tension: change of length", SIGNED_RAMP, STRAINS),
         tensions,
     ),
 }

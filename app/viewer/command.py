@@ -35,7 +35,7 @@ class Command:
     @property
     def displayed_key(self) -> str:
         """The key as people know it."""
-        return self.key.replace("Equal", "=").replace("Minus", "-")
+        return self.key.replace("Equal", "=").replace("Minus", "-").replace("Keypad", "Num ")
 
     @property
     def keys(self) -> tuple[str, ...]:

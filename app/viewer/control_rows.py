@@ -6,32 +6,43 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from ..errors import counted
-from ..mirror import TURNED, parted, twin_of
-
-# Sides of a motion, not of the face: both at once stand still.
-OPPOSITE = ("AU30", "lips_sideways", "jaw", "mouth")
+from ..mirror import OPPOSITE, parted, twin_of
+from ..vocabulary import is_found, readable, title_of
 
 
 @dataclass(frozen=True)
 class Row:
-    """One line: its label, and the controls that it has sliders for, the subject's right first."""
+    """One line: what its controls are called alike, and those that it has bars for.
+
+    names: of both sides at once before each side, the subject's right before the left. sides: what
+    can be linked, () for nothing; with is_linked the left one's bar moves both. whole: what stands
+    for both sides.
+    """
 
     label: str
     names: tuple[str, ...]
+    sides: tuple[str, ...] = ()
+    whole: str = ""
+    is_linked: bool = False
 
+    @classmethod
+    def of_sides(
+        cls,
+        label: str,
+        sides: tuple[str, str],
+        whole: str,
+        values: Mapping[str, float],
+        linked: bool,
+    ) -> Row:
+        """A row for both sides: one bar where they are linked and agree."""
+        is_linked = linked and values[sides[0]] == values[sides[1]]
+        apart = sides if not is_linked else sides[1:] if values[sides[1]] or not whole else ()
+        first = (whole,) if whole and (values[whole] or not apart) else ()
+        return cls(label, (*first, *apart), sides, whole, is_linked)
 
-def readable(name: str) -> str:
-    """A control's name in words."""
-    return name.replace("_", " ")
-
-
-def mirrored(values: Mapping[str, float]) -> dict[str, float]:
-    """What is left becomes right; the middle turns round."""
-    result = dict(values)
-    for name, value in values.items():
-        if twin_of(name) in values:
-            result[twin_of(name)] = -value if name in TURNED else value
-    return result
+    def words(self, action: str) -> str:
+        """What it reads: a code, a plain name, or both."""
+        return "  ".join(filter(None, title_of(self.label, action)))
 
 
 def change_of(before: Mapping[str, float], after: Mapping[str, float]) -> str:
@@ -43,55 +54,53 @@ def change_of(before: Mapping[str, float], after: Mapping[str, float]) -> str:
     return f"Set {labels.pop()} to {after[names[0]]:.2f}"
 
 
-def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) -> list[Row]:
+def rows_of(
+    names: Sequence[str],
+    values: Mapping[str, float],
+    *,
+    linked: bool,
+    apart: Collection[str] = (),
+) -> list[Row]:
     """The rows of a group.
 
-    linked: both sides share a slider as long as they agree. A control for both sides at once
-    (AU12 beside AU12_left and AU12_right) stands for them, unless one of them is in use.
+    linked: both sides share a bar as long as they agree, but for the rows called `apart`. A control
+    for both sides at once (AU12 beside AU12_left and AU12_right) stands for them, unless one of
+    them is in use.
     """
     known = set(names)
     rows = []
     for name in names:
         base, side = parted(name)
+        twin = twin_of(name)
         if not side:
             sides = (f"{name}_right", f"{name}_left")
-            if not known.issuperset(sides):
-                rows.append(Row(readable(name), (name,)))
-                continue
-            whole = [name] if linked or values[name] else []
-            is_apart = not linked or any(values[one] for one in sides)
-            rows.append(Row(readable(name), (*whole, *(sides if is_apart else ()))))
-        elif base in OPPOSITE or twin_of(name) not in known:
-            rows.append(Row(readable(name), (name,)))
+            if parted(twin)[0] == name != twin:  # of one side by itself, as a wink
+                rows.append(Row(name, (twin, name)))
+            elif not known.issuperset(sides):
+                rows.append(Row(name, (name,)))
+            else:
+                joined = linked and name not in apart
+                rows.append(Row.of_sides(name, sides, name, values, joined))
+        elif base in OPPOSITE or twin not in known:
+            rows.append(Row(name, (name,)))
         elif base not in known and side in ("_left", "Left"):
-            rows.append(Row(readable(base), (twin_of(name), name)))
+            whole = base if values.get(base) else ""  # of no group; by a pad or a script
+            joined = linked and base not in apart
+            rows.append(Row.of_sides(base, (twin, name), whole, values, joined))
     return rows
 
 
 def search_rows(
     rows: Iterable[Row], query: str, *, group: str, actions: Mapping[str, str]
 ) -> list[Row]:
-    """The rows in which all words of the query occur: in names, group, or what a control does."""
-    wanted = query.lower().split()
-    return [
-        row
-        for row in rows
-        if all(
-            word
-            in f"{row.label} {' '.join(row.names)} {group} {actions.get(row.names[0], '')}".lower()
-            for word in wanted
-        )
-    ]
+    """The rows in which all words of the query occur.
+
+    In names, group, what a control does, or among other words for it.
+    """
+    return [row for row in rows if is_found(query, _text_of(row, group, actions), row.names)]
 
 
-def highest_first(
-    groups: Mapping[str, tuple[str, ...]], muscles: Collection[str], expressions: Collection[str]
-) -> dict[str, tuple[str, ...]]:
-    """Expressions, then the other layers above the muscles, then muscles, jaw and gaze."""
-
-    def rank(title: str) -> int:
-        """From the top, 0 first."""
-        first = groups[title][0]
-        return 0 if first in expressions else 1 if first not in muscles else 2
-
-    return {title: groups[title] for title in sorted(groups, key=rank)}
+def _text_of(row: Row, group: str, actions: Mapping[str, str]) -> str:
+    action = actions.get(row.names[-1], "")
+    names = " ".join((row.label, *row.names, *row.sides))
+    return f"{names} {readable(names)} {row.words(action)} {group} {action}"

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import chain
 
 import numpy as np
 
+from risorius.sim.layers import BOTH_SIDES
+
 from ..mirror import twin_of
 from ..scenes import Scene, clamped
-from .control_rows import highest_first
+from ..vocabulary import filters
 
 RANDOM_SHARE = 0.25  # of the muscles that a random pose moves
 RANDOM_STRENGTH = 0.8  # most of their range
@@ -18,7 +21,8 @@ class Controls:
     """Every control of every layer (muscles, jaw, gaze, action units, expressions, visemes).
 
     limits: the lowest and highest value of each. muscles: the lowest ones, to which all others add
-    up; all where a scene does not tell. groups: title -> controls, the highest layer first.
+    up; all where a scene does not tell. groups: title -> controls, the highest layer first; those
+    of both sides of a muscle are found beside its sides.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -26,7 +30,12 @@ class Controls:
         self.limits = scene.limits
         simulation = getattr(scene, "simulation", None)
         self.muscles = frozenset(simulation.controls if simulation is not None else self.limits)
-        self.groups = highest_first(scene.groups, self.muscles, scene.expressions)
+        order = [*chain(*filters().values()), *scene.groups]
+        self.groups = {
+            title: scene.groups[title]
+            for title in dict.fromkeys(order)
+            if title in scene.groups and title != BOTH_SIDES
+        }
 
     def pose(self, values: Mapping[str, float]) -> dict[str, float]:
         """A value for each control, within its limits; 0 where none is given."""

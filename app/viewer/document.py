@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ..script import Script
 from .script_file import ScriptFile
@@ -16,7 +16,12 @@ class Document:
     values: Mapping[str, float] | None  # set by hand, what is not 0; None: as the script has it
     script: Script
     file: ScriptFile  # in which the script is kept
+    display: object = None  # how the scene is drawn: never changed, compared by what it says
     time: float = field(default=0.0, compare=False)  # [s] at which the pose was made
+
+    def differs_in_view(self, other: Document) -> bool:
+        """Whether it is drawn in another way than the other, and else the same."""
+        return self != other and replace(self, display=other.display) == other
 
     def new_keys(self, before: Document) -> int:
         """How many keys of tracks it has that the state before does not share with it."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from risorius import assets
@@ -89,7 +90,8 @@ class FileDrop:
         """
         self._files, self._scripts, self._show_scene = files, scripts, show_scene
         self._mark = mark
-        self._announced: DroppedFiles | None = None
+        self._announced: Callable[[], Message] | None = None
+        self.has_other_head = False  # than the built-in one
 
     @property
     def has_announced(self) -> bool:
@@ -101,13 +103,19 @@ class FileDrop:
         dropped = DroppedFiles.of([Path(path) for path in paths])
         if not dropped.has_head:
             return self._open(dropped)
-        self._announced = dropped
+        self._announced = partial(self._open, dropped)
         return f"{FITTING if dropped.landmarks else READING} ..."
 
     def do_announced(self) -> Message:
         """Fit the head that was announced; all that was done stays."""
-        dropped, self._announced = self._announced, None
-        return None if dropped is None else self._open(dropped)
+        task, self._announced = self._announced, None
+        return None if task is None else task()
+
+    def show_person(self, who: int | str | None) -> Message:
+        """Announce a person by number or name, in place of the head; None: the built-in head."""
+        self._announced = lambda: self._show_scene(build_scene("face", head_for(None, None, who)))
+        self.has_other_head = who is not None
+        return f"making {'the built-in head' if who is None else f'person {who}'} ..."
 
     def _open(self, dropped: DroppedFiles) -> Message:
         """Show the head first, then what shall be played on it."""
@@ -121,6 +129,7 @@ class FileDrop:
                 assert dropped.mesh is not None
                 return self._mark(dropped.mesh, dropped.landmarks)
             self._show_scene(scene)
+            self.has_other_head = True
             assert dropped.mesh is not None
             line = f"{dropped.mesh.name}: opened{remark}"
             remark = f" with {dropped.mesh.name}{remark}"

@@ -23,6 +23,8 @@ from risorius import render
 import glfw  # isort: skip - after imgui_bundle, see above
 
 FONT = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.ttf"
+ICONS = FONT.parents[1] / "Font_Awesome_6_Free-Solid-900.otf"
+BACK = "\uf2ea"  # of the icons: an arrow that turns to the left
 FONT_SIZE = 15.0  # [window units at scale 1]
 LEFT, RIGHT, MIDDLE = 0, 1, 2  # buttons of the mouse
 # Of a window that is a note over the picture: as large as its words, and it takes no keys.
@@ -43,6 +45,7 @@ class Theme:
     field: tuple[float, float, float]
     raised: tuple[float, float, float]
     accent: tuple[float, float, float]
+    text: tuple[float, float, float]
     muted: tuple[float, float, float]
     error: tuple[float, float, float]
 
@@ -55,6 +58,7 @@ THEMES = {
         field=(0.865, 0.87, 0.88),
         raised=(0.82, 0.825, 0.84),
         accent=(0.72, 0.33, 0.22),
+        text=(0.12, 0.12, 0.14),
         muted=(0.40, 0.41, 0.44),
         error=(0.70, 0.10, 0.10),
     ),
@@ -65,6 +69,7 @@ THEMES = {
         field=(0.19, 0.195, 0.215),
         raised=(0.25, 0.26, 0.29),
         accent=(0.93, 0.58, 0.43),
+        text=(0.92, 0.92, 0.94),
         muted=(0.62, 0.64, 0.68),
         error=(1.0, 0.50, 0.45),
     ),
@@ -84,6 +89,9 @@ class Gui:
         io.set_ini_filename("")  # settings.py remembers what is worth it
         if FONT.exists():
             io.fonts.add_font_from_file_ttf(str(FONT), FONT_SIZE)
+            merged = imgui.ImFontConfig()
+            merged.merge_mode = True
+            io.fonts.add_font_from_file_ttf(str(ICONS), 0.8 * FONT_SIZE, merged)
         address = ctypes.cast(window, ctypes.c_void_p).value
         if address is None:
             raise RuntimeError("the window is closed already")
@@ -199,7 +207,7 @@ def fixed_panel(
 
 def em(count: float = 1.0) -> float:
     """So many letters' heights [window units]: the measure of all widths."""
-    return float(count * imgui.get_font_size())
+    return count * int(FONT_SIZE * imgui.get_style().font_scale_main + 0.5)  # as imgui in a frame
 
 
 def colour(rgb: tuple[float, float, float], opacity: float = 1.0) -> Any:
@@ -221,6 +229,7 @@ def _set_colours(style: Any, theme: Theme) -> None:
     style.item_spacing = imgui.ImVec2(7.0, 4.0)
     which = imgui.Col_
     for indices, value in (
+        ((which.text,), theme.text),
         ((which.window_bg, which.menu_bar_bg, which.title_bg, which.title_bg_active), theme.panel),
         ((which.popup_bg, which.tab), theme.panel),
         ((which.frame_bg, which.header, which.tab_hovered), theme.field),

@@ -5,12 +5,13 @@ Menus, the keyboard and the overview of keys are all made from these tables.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 from ..looks import FIRST_LOOK, PAPERS_LOOK
 from ..script.easing import EASINGS
+from ..vocabulary import readable
 from .command import Command
-from .control_rows import readable
 from .export import Exporter
 from .file_drop import FileDrop
 from .key_selection import KeySelection
@@ -26,6 +27,10 @@ from .time_axis import TimeAxis
 from .view import View
 
 Menu = tuple[Command, ...]
+VIEW_KEYS = {
+    **{"Front": "Keypad1", "Three-quarter": "Keypad2", "Three-quarter right": "Ctrl+Keypad2"},
+    **{"Profile": "Keypad3", "Profile right": "Ctrl+Keypad3", "Top": "Keypad7"},
+}
 
 
 def file_menu(
@@ -37,11 +42,13 @@ def file_menu(
 ) -> Menu:
     """Files that come and go, and the end."""
     command = partial(Command, "File")
+    other = partial(command, can_run=lambda: file_drop.has_other_head)
     return (
         command("New script", "Ctrl+N", scripts.new),
         command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
         command("Open head ...", "Ctrl+H", file_drop.ask_head),
         command("Mark a head ...", "Ctrl+Shift+H", file_drop.ask_mesh),
+        other("Built-in head", "", partial(file_drop.show_person, None)),
         command("Open sound ...", "Ctrl+U", scripts.ask_sound),
         command("Remove sound", "", scripts.remove_sound, can_run=lambda: scripts.has_sound),
         command("Save script", "Ctrl+S", scripts.save),
@@ -73,10 +80,12 @@ def edit_menu(session: Session) -> Menu:
     redo = partial(command, reads=partial(named, "Redo", 1))
     return (
         undo("Undo", "Ctrl+Z", session.undo, can_run=lambda: session.can_undo),
-        redo("Redo", "Ctrl+Shift+Z", session.redo, can_run=lambda: session.can_redo),
+        redo("Redo", "Ctrl+Shift+Z", session.redo, can_run=lambda: session.history.can_redo),
         command("History", "", lambda: None, choices=states),
         command("Neutral", "N", session.neutral),
         command("Mirror", "M", session.mirror),
+        command("Left to right", "Shift+M", partial(session.mirror, "left")),
+        command("Right to left", "Ctrl+M", partial(session.mirror, "right")),
         command("Randomise", "X", session.randomise),
     )
 
@@ -156,12 +165,17 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         return "F11 leaves the full screen" if placement.is_full else None
 
     muscles = partial(command, is_on=lambda: "muscles" in settings.display.overlays)
+    views = (  # Alt: where there is no number pad
+        command(name, key, partial(view.look_from, name), other_key=key.replace("Keypad", "Alt+"))
+        for name, key in VIEW_KEYS.items()
+    )
     full = partial(command, is_on=lambda: placement.is_full, other_key="Alt+Enter")
     return (
         switch("Refine", "R", "is_refined"),
         command("Paper's look", "P", toggle_look, lambda: settings.display.look == PAPERS_LOOK),
         switch("Compare: wipe", "D", "compare", "wipe", "off"),
         switch("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
+        switch("Compare: A or B alone", "B", "compare", "B alone", "A alone"),
         switch("Wireframe", "W", "wireframe"),
         switch("Colour by splits", "C", "colours", "splits", "none"),
         command("Next shading", "S", lambda: settings.display.next_shading()),
@@ -169,6 +183,8 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
         command("Idle life", "A", partial(flip, settings, "is_alive"), lambda: settings.is_alive),
         command("Frame the face", "F", view.fit_scene),
+        *views,
+        replace(switch("Orthographic", "Keypad5", "is_orthographic"), other_key="Alt+5"),
         command("Hide panels", "Tab", panels.toggle_hidden, lambda: panels.are_hidden),
         full("Full screen", "F11", toggle_full),
         command("Dark theme", "F2", settings.toggle_theme, lambda: settings.theme == "dark"),

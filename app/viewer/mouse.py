@@ -189,7 +189,7 @@ class Mouse(CameraMouse):
     def _is_at_divider(self, x: float) -> bool:
         display = self._view.display
         left, _, width, _ = self._view.area
-        return display.compare != "off" and abs(x - left - display.divider * width) < 0.4 * em()
+        return display.compare == "wipe" and abs(x - left - display.divider * width) < 0.4 * em()
 
     def _ray(self, io: Any) -> Ray:
         """Through the mouse, in the viewport that it is in."""

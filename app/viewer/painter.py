@@ -71,7 +71,7 @@ class Painter:
     def _draw(self, detail: render.Detail, state: object) -> None:
         self._messages.attempt(lambda: self._stage.bind(self._view.display))
         if self._exporter.film is None:
-            self._stage.surface.detail = detail
+            self._stage.surface.detail, self._stage.surface.labels = detail, ()
             self._stage.draw(self._view)
         else:
             detail = FULL

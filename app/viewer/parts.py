@@ -10,7 +10,7 @@ from risorius import render
 from risorius.assets.fitting import FittedHead
 
 from ..errors import UserError
-from ..scenes import Scene, build_scene
+from ..scenes import BUILT_IN, Scene, build_scene
 from ..script import Script
 from . import menus
 from .command import Command
@@ -122,6 +122,7 @@ class Parts:
         self.live = LiveCommands(session, self.panel_state, wake_up)
         self.room: Room | None = None  # a mesh whose landmarks are being marked
         self.file_drop = FileDrop(self.files, self.scripts, self.show_scene, self.mark)
+        self.file_drop.has_other_head = session.scene.called not in ("", BUILT_IN)
         self.commands: tuple[Command, ...] = (
             *menus.file_menu(
                 self.scripts, self.file_drop, self.motion_export, self.exporter, self.ask_to_close
@@ -150,7 +151,9 @@ class Parts:
         )
         self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
         self.face_panel = FacePanel(gui, session, settings, view)
-        mechanism = MechanismPanel(gui, settings, self.stage, view, self.times)
+        mechanism = MechanismPanel(
+            gui, settings, self.stage, view, self.times, messages, self.file_drop
+        )
         record = next(each for each in commands if each.label == "Record")
         live = LivePanel(gui, settings, self.live, messages, record)
         tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}

@@ -1,23 +1,24 @@
 """What a user does with a face: controls, a script in time, a recording, undo, unsaved work.
 
-Knows the scene and nothing of windows. Every control is one entry of `values`; the scene adds them
-up.
+Knows the scene, which adds up all of `values`, and nothing of windows.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import UserError, counted
-from ..mirror import twin_of
+from ..mirror import copied, mirrored, twin_of
 from ..motion import SETTLING
 from ..scenes import Scene
 from ..script import Pose, Script, is_pose, pose_script, rounded, save_script
+from ..vocabulary import readable
 from . import keyframes
-from .control_rows import change_of, mirrored, readable
+from .control_rows import change_of
 from .controls import Controls
 from .document import Document
 from .history import History
@@ -48,20 +49,17 @@ class Session:
         self.is_looping = False
         self.speed = 1.0
         self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
-        # The controls are where the script has them; a neutral face need not follow it yet.
-        self.is_following = any(self.values.values())
+        self.is_following = any(self.values.values())  # the script; a neutral face need not yet
         self.is_keying = False  # what is changed by hand becomes a key at once
         self._is_touched = False  # by hand, since something was noted
         self._recorder: Recorder | None = None
         self._held: dict[str, float] = {}  # by hand while a recording plays the script
         self.live = Lead()  # a live face, which leaves no trace in what can be undone
+        self.display: object = None  # how the scene is drawn, see `show`
         self.history = History(self._document(), lambda before, after: after.new_keys(before))
 
     def move_to(self, scene: Scene) -> None:
-        """Go on with another scene that has the same controls; UserError if it has not.
-
-        Script, pose, what can be undone and what is unsaved: all of it stays.
-        """
+        """Go on with another scene, all else as it is; UserError if it has other controls."""
         if scene.name != self.scene.name or not scene.limits.keys() >= self.controls.limits.keys():
             raise UserError(f"this window shows a {self.scene.name}, which has other controls")
         self.script.check(scene.limits)
@@ -71,14 +69,11 @@ class Session:
     # Controls by hand
 
     def set(self, name: str, value: float, *, linked: bool = False) -> None:
-        """Set a control within its limits, and with `linked` its twin; a script that plays stops.
-
-        While recording, the script goes on and this control is held.
-        """
+        """Set a control within its limits, and if `linked` its twin; a script that plays stops."""
         for each in {name, twin_of(name)} if linked else {name}:
             low, high = self.controls.limits[each]
             self.values[each] = min(max(rounded(value), low), high)
-            if self.is_recording:
+            if self.is_recording:  # the script goes on, and this is held
                 self._held[each] = self.values[each]
         if not self.is_recording:
             self.is_playing = self.is_following = False
@@ -97,9 +92,10 @@ class Session:
         """All controls to zero; the skin swings back by itself."""
         self._set_pose(self.controls.pose({}), "Neutral", is_unsaved=False)
 
-    def mirror(self) -> None:
-        """What is left becomes right."""
-        self._set_pose(mirrored(self.values), "Mirror")
+    def mirror(self, source: str = "") -> None:
+        """What is left becomes right and the reverse, or one side ("left", "right") the other's."""
+        pose = copied(self.values, source) if source else mirrored(self.values)
+        self._set_pose(pose, f"Mirror {source}".rstrip())
 
     def randomise(self, generator: np.random.Generator | None = None) -> None:
         """A few muscles of each group by chance, both sides alike; layers stay at zero."""
@@ -131,7 +127,17 @@ class Session:
 
     def _document(self) -> Document:
         by_hand = {name: value for name, value in self.values.items() if value}
-        return Document(None if self.is_following else by_hand, self.script, self.file, self.time)
+        values = None if self.is_following else by_hand
+        return Document(values, self.script, self.file, self.display, self.time)
+
+    def show(self, display: object) -> None:
+        """Draw the scene in another way: what nobody changes any more, and equals its like."""
+        state = replace(self.history.present, display=display)  # the script may move the rest
+        if self.display is None:
+            self.history.amend(state)
+        else:
+            self.history.note(state, "Change the view")
+        self.display = display
 
     def note(self, label: str = "") -> None:
         """A change is complete (a slider let go, a button pressed): it can be undone.
@@ -153,14 +159,12 @@ class Session:
         """Whether there is something to undo."""
         return self.history.can_undo or self._document() != self.history.present
 
-    @property
-    def can_redo(self) -> bool:
-        """Whether there is something to redo."""
-        return self.history.can_redo
-
     def undo(self) -> None:
-        """Back to before the last change, or to it, if something has changed since."""
-        self.go_to(self.history.place - (self._document() == self.history.present))
+        """Back to before the last change, or to it, if the face has changed since."""
+        present, place = self.history.present, self.history.place
+        is_view = self.history.go(place - 1).differs_in_view(present)
+        self.history.go(place)
+        self.go_to(place - (is_view or self._document() == present))
 
     def redo(self) -> None:
         """Forward again."""
@@ -169,7 +173,10 @@ class Session:
     def go_to(self, place: int) -> None:
         """To the state of this number in the history."""
         self._refuse_while_recording()
-        document = self.history.go(place)
+        present, document = self.history.present, self.history.go(place)
+        self.display = document.display
+        if document.differs_in_view(present):
+            return
         self.is_playing = self._is_touched = False
         self.script, self.file = document.script, document.file
         if document.values is None:
@@ -216,8 +223,7 @@ class Session:
         """Back to the script; what was set by hand and is no key can be undone, as a line says."""
         if self.is_following or self.is_recording:
             return None
-        if self._is_touched:
-            self.note()
+        self.note()
         names = self.differing
         self._go_to(self.time)
         if not names:
@@ -295,10 +301,9 @@ class Session:
         return self._recorder is not None
 
     def toggle_recording(self) -> Message:
-        """Record the controls into the script from the time shown on, or end that.
+        """Record what is moved into the script, which plays from the time shown, or end that.
 
-        The script plays meanwhile, and what is moved takes the place of what it has there; nothing
-        is recorded while it is paused, or goes through a part again.
+        Nothing is recorded while it is paused, or goes through a part again.
         """
         if self._recorder is None:
             held = {name: self.values[name] for name in self.differing}

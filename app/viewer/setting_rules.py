@@ -19,12 +19,18 @@ SIDES = 200, 16384  # [screen units] of the window, least and most
 MOST_TOLD = 6  # of values that are of no use; a line has room for no more
 FURTHEST = 1e6  # of any number that says where a camera is
 ZOOMS = 0.6, 3.0  # least and most of the size of words
-COMPARISONS = ("off", "wipe", "side by side")
+COMPARISONS = ("off", "wipe", "side by side", "A alone", "B alone")
+CHOSEN = "as chosen above"  # what a side of a comparison shows, where it is no other look
 SKINS = {  # whether it is textured, and its colour
     "textured": (True, render.SKIN),
     "plain": (False, render.SKIN),
     "clay": (False, render.CLAY),
 }
+OF_RENDER = ("light", "dark", "white", "black")
+BACKGROUNDS = {"theme": None, **{name: getattr(render, name.upper()) for name in OF_RENDER}}
+# Individual typology angles [degrees], see assets/identities/complexion.py; None: the person's own.
+TONES = {"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0}
+TONES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
 TABS = ("Face", "Mechanism", "Live")
 
 
@@ -149,9 +155,9 @@ def refiner(value: Any) -> str | None:
     return one_of(refine.available())(value)  # type: ignore[no-any-return]
 
 
-def look_or_refiner(value: Any) -> str:
-    """The name of either."""
-    return one_of((*LOOKS, *refine.available()))(value)  # type: ignore[no-any-return]
+def side(value: Any) -> str:
+    """What a side of a comparison shows: what is chosen, a look, or a refiner."""
+    return one_of((CHOSEN, *LOOKS, *refine.available()))(value)  # type: ignore[no-any-return]
 
 
 def table_of_refiner(name: str) -> Rule | None:

@@ -44,8 +44,9 @@ class Display:
     options: dict[str, dict[str, Any]] = field(default_factory=dict)
     is_refined: Annotated[bool, rules.flag] = True
     compare: Annotated[str, rules.one_of(rules.COMPARISONS)] = "off"
-    beside: Annotated[str, rules.look_or_refiner] = STATIC  # what it is compared with
-    divider: Annotated[float, rules.number(0.0, 1.0)] = 0.5  # of the picture's width
+    a: Annotated[str, rules.side] = STATIC  # what is compared, at the left and at the right
+    b: Annotated[str, rules.side] = rules.CHOSEN
+    divider: Annotated[float, rules.number(0.0, 1.0)] = 0.5  # of a wipe, of the picture's width
     shading: Annotated[str, rules.one_of([each.value for each in render.Shading])] = "pixel"
     wireframe: Annotated[bool, rules.flag] = False
     colours: Annotated[str, rules.one_of(COLOURS)] = "none"
@@ -54,6 +55,9 @@ class Display:
     # How deep skin wrinkles where it is compressed.
     wrinkles: Annotated[float, rules.number(0.0, 1.0)] = 1.0
     light: Annotated[str, rules.one_of(render.LIGHTS)] = "studio"
+    background: Annotated[str, rules.one_of(rules.BACKGROUNDS)] = "theme"
+    tone: Annotated[str, rules.one_of(rules.TONES)] = "own"  # of textured skin
+    is_orthographic: Annotated[bool, rules.flag] = False  # the camera
     overlays: Annotated[list[str], rules.several_of(OVERLAYS)] = field(default_factory=list)
 
     def choose_look(self, name: str) -> None:
@@ -77,6 +81,16 @@ class Display:
         """How this scene is refined."""
         options = self.options.get(self.refiner_on(scene), {})
         return Refinement(self.look, self.refiner, dict(options))
+
+    def side_on(self, scene: Scene, side: str) -> Refinement:
+        """How this scene is refined on a side of a comparison, "a" or "b"."""
+        name = getattr(self, side)
+        return self.refinement_on(scene) if name == rules.CHOSEN else named(name, self.look)
+
+    @property
+    def share(self) -> float:
+        """Of the picture's width, what is at the left of the line in a comparison."""
+        return self.divider if self.compare == "wipe" else 0.5
 
     def switch(self, name: str, value: object = True, other: object = False) -> None:
         """Give a field this value, or the other if it has it already."""
@@ -224,9 +238,10 @@ def remove_refused_options(display: Display, scene: Scene) -> str:
     if display.refiner is not None and not suits(Refinement(look, display.refiner)):
         refused.append(display.refiner)
         display.refiner = None
-    if not suits(named(display.beside, look)):
-        refused.append(display.beside)
-        display.beside = STATIC
+    for side in ("a", "b"):
+        if not suits(display.side_on(scene, side)):
+            refused.append(getattr(display, side))
+            setattr(display, side, getattr(Display(), side))
     line = f"of no use and as at first: refiner {', '.join(refused)}"
     return in_one_line(line) if refused else ""
 

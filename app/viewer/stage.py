@@ -5,15 +5,14 @@ Uses the paper's Figure 1 part by part (refine, upload, draw) and keeps the time
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from risorius import render
 
-from ..capture.captions import captioned
+from ..capture.captions import Label, captioned, labels
 from ..files import Image
-from ..looks import STATIC, Refinement, named
+from ..looks import STATIC, Refinement
 from ..pipeline import DrawnMesh, Viewport, texture_of
 from ..refining import open_choices, options_of
 from ..scenes import Scene
@@ -22,7 +21,7 @@ from .colours import COLOURS, Amounts
 from .frame_times import FrameTimes
 from .level_of_detail import FULL
 from .overlays import OVERLAYS, Lines, pointed_lines
-from .setting_rules import SKINS
+from .setting_rules import SKINS, TONES
 from .settings import Display
 from .view import View
 
@@ -51,17 +50,18 @@ class Stage:
         self.scene = scene
         self.renderer = render.Renderer(self.surface)
         self._texture = texture_of(scene, self.renderer)
+        self._tone: float | None = None
         self._wrinkling = wrinkling_of(scene, self.renderer)
         self.static = DrawnMesh.of(scene, self.renderer, Refinement(refiner=STATIC))
-        self.refined = self.beside = self.static  # what is seen, and what it is compared with
+        self.refined = self.a = self.b = self.static  # what is chosen, what else is compared
         self.refiner_options: dict[str, Any] = {}  # of `refined`, with their defaults
         self.open_choices: dict[str, dict[str, Any]] = {}  # and what those may be that are open
-        self._asked: dict[str, Refinement] = {}  # what each of the two was bound for
+        self._asked: dict[str, Refinement] = {}  # what each of the three was bound for
         self.bind(display)
 
     def set_scene(self, scene: Scene, display: Display) -> None:
         """Take another scene in place of this one."""
-        meshes = self.static, self.refined, self.beside
+        meshes = self.static, self.refined, self.a, self.b
         for stream in {id(each): each.stream for each in meshes}.values():
             stream.release()
         if self._texture is not None:
@@ -73,14 +73,21 @@ class Stage:
 
     def bind(self, display: Display) -> None:
         """Bind the refiners that `display` asks for; UserError if one refuses its options."""
-        if self._is_rebound("refined", display.refinement_on(self.scene)):
+        tone = TONES[display.tone]
+        if tone != self._tone and self._texture is not None:
+            self._texture.release()
+            self._texture, self._tone = texture_of(self.scene, self.renderer, tone), tone
+        chosen = display.refinement_on(self.scene)
+        if self._is_rebound("refined", chosen):
             self.refiner_options = options_of(display.refiner_on(self.scene))
             self.open_choices = open_choices(display.refiner_on(self.scene))
-        other = STATIC if display.compare == "off" else display.beside
-        self._is_rebound("beside", named(other, display.look))
+        for side in ("a", "b"):
+            asked = display.side_on(self.scene, side)
+            is_there = display.compare == "off" or asked == chosen
+            self._is_rebound(side, Refinement(refiner=STATIC) if is_there else asked)
 
     def _is_rebound(self, place: str, asked: Refinement) -> bool:
-        """Bind `refined` or `beside` if something else is asked for than before; whether it was."""
+        """Bind `refined`, `a` or `b` if something else is asked for than before; whether it was."""
         if asked == self._asked.get(place):
             return False
         self._asked[place] = asked  # refused options are refused once, not in every frame
@@ -96,20 +103,23 @@ class Stage:
     def shots(self, display: Display, viewport: Viewport) -> list[Shot]:
         """What is drawn where."""
         left, bottom, width, height = viewport
-        refined = Shot(self.refined, viewport, viewport)
         if display.compare == "off" or width < 2:  # less than a pixel for each
-            return [refined if display.is_refined else Shot(self.static, viewport, viewport)]
-        beside = Shot(self.beside, viewport, viewport)
-        share = min(max(display.divider, LEAST_SHARE), 1.0 - LEAST_SHARE)
+            drawn = self.refined if display.is_refined else self.static
+            return [Shot(drawn, viewport, viewport)]
+        chosen, both = display.refinement_on(self.scene), (viewport, viewport)
+        a, b = (
+            Shot(self.refined if display.side_on(self.scene, side) == chosen else own, *both)
+            for side, own in (("a", self.a), ("b", self.b))
+        )
+        if display.compare.endswith("alone"):
+            return [a if display.compare == "A alone" else b]
+        share = min(max(display.share, LEAST_SHARE), 1.0 - LEAST_SHARE)
         middle = min(max(round(share * width), 1), width - 1)
         first = (left, bottom, middle, height)
         second = (left + middle, bottom, width - middle, height)
         if display.compare == "wipe":
-            return [beside._replace(clip=first), refined._replace(clip=second)]
-        return [
-            beside._replace(viewport=first, clip=first),
-            refined._replace(viewport=second, clip=second),
-        ]
+            return [a._replace(clip=first), b._replace(clip=second)]
+        return [Shot(a.drawn, first, first), Shot(b.drawn, second, second)]
 
     def draw(self, view: View) -> None:
         """Draw the scene as it is now; the surface's `detail` says how finely."""
@@ -144,6 +154,14 @@ class Stage:
                     )
             self.surface.target.flush()
             self.surface.gl.finish()
+        self.surface.labels = self._labels(view, shots, style)
+
+    def _labels(self, view: View, shots: Sequence[Shot], style: render.Style) -> list[Label]:
+        """What each side of a comparison is, and what colours stand for."""
+        letters = "AB" if len(shots) == 2 else view.display.compare.removeprefix("off")
+        texts = [f"{a}   {shot.drawn.caption}" for a, shot in zip(letters, shots, strict=False)]
+        places, bar = [shot.clip for shot in shots], COLOURS[view.display.colours].bar
+        return labels(texts, places, bar, style, least=view.letter)
 
     def _draw_shot(
         self, shot: Shot, camera: render.OrbitCamera, style: render.Style, values: Amounts | None
@@ -173,18 +191,15 @@ class Stage:
         return [*lines, pointed_lines(self.scene, view.pointed)] if view.pointed else lines
 
     def draw_image(self, view: View) -> Image:
-        """The picture without panels, in full detail, with captions where two meshes are seen."""
+        """The picture without panels, in full detail, with captions and a colour bar."""
         self.surface.detail = FULL
         self.draw(view)
         left, bottom, width, height = view.viewport
         top = self.surface.size[1] - bottom - height
         frame = self.surface.read_scene()[top : top + height, left : left + width]
+        shown = [(x - left, y - bottom, image) for x, y, image in self.surface.labels]
         shots = self.shots(view.display, view.viewport)
-        if len(shots) == 1:
-            return np.ascontiguousarray(frame)
-        texts = [f"{shot.drawn.label} · {shot.drawn.triangle_count} triangles" for shot in shots]
-        places = [(shot.clip[0] - left, shot.clip[1] - bottom, *shot.clip[2:]) for shot in shots]
-        return captioned(frame, texts, places)
+        return captioned(frame, shown, [(s.clip[0] - left, *s.clip[1:]) for s in shots])
 
 
 def style_of(display: Display, background: render.Background) -> render.Style:

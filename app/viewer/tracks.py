@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..script import EASING_NAMES, Channel, Pose, Script
-from .control_rows import readable
+from ..vocabulary import readable
 from .keyframes import POSES, places_of
 from .places import Places
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import asdict
 
 import numpy as np
@@ -13,6 +14,7 @@ from ..cameras import whole_scene
 from ..pipeline import Viewport
 from .gui import THEMES, em
 from .session import Session
+from .setting_rules import BACKGROUNDS
 from .settings import Display, Settings
 
 WHITE = (1.0, 1.0, 1.0)
@@ -33,18 +35,33 @@ class View:
         self._session, self._settings, self._surface = session, settings, surface
         self.area = (0.0, 0.0, 1.0, 1.0)
         self.pointed = ()
+        self._noted: object = None  # the display as the session had it last
         self.fit_scene()
         place = settings.cameras.get(session.scene.name)
         if place is not None:  # as it stood when this scene's window was closed
             yaw, pitch, distance, *target = place
             radius = self.camera.scene_radius
-            self.camera.orbit(yaw - self.camera.yaw, pitch - self.camera.pitch)
+            self.camera.yaw, self.camera.pitch = yaw, min(max(pitch, -90.0), 90.0)
             self.camera.target = np.array(target)
             self.camera.distance = min(max(distance, radius), 20.0 * radius)
 
     def fit_scene(self) -> None:
         """The camera as at first: all of the scene."""
         self.camera = whole_scene(self._session.scene, self._session.script.camera)
+
+    def look_from(self, label: str) -> None:
+        """Turn the camera to one of `render.VIEWS`, about what it looks at."""
+        self.camera.yaw, self.camera.pitch = render.VIEWS[label.lower().replace(" ", "-")]
+
+    def follow_history(self, *, is_held: bool) -> None:
+        """Show what undo brought back, or let a change be undone that the user is done with."""
+        session, settings = self._session, self._settings
+        if isinstance(session.display, Display) and session.display is not self._noted:
+            settings.display = deepcopy(session.display)
+        elif not is_held and session.display != settings.display:
+            session.show(deepcopy(settings.display))
+        self._noted = session.display
+        self.camera.is_orthographic = settings.display.is_orthographic
 
     @property
     def display(self) -> Display:
@@ -54,7 +71,7 @@ class View:
     @property
     def background(self) -> render.Background:
         """What is behind it."""
-        return THEMES[self._settings.theme].background
+        return BACKGROUNDS[self.display.background] or THEMES[self._settings.theme].background
 
     @property
     def viewport(self) -> Viewport:
@@ -76,6 +93,11 @@ class View:
         return max(x, 0), max(y, 0), max(round(wide * across), 1), max(round(high * along), 1)
 
     @property
+    def letter(self) -> float:
+        """How large words are in the window [pixels]: captions are no smaller."""
+        return self.pixels((0.0, 0.0, em(), 1.0))[2]
+
+    @property
     def camera_place(self) -> list[float]:
         """Yaw, pitch, distance and target of the camera, to be remembered."""
         camera = self.camera
@@ -90,11 +112,12 @@ class View:
 
     def divider(self) -> list[tuple[Viewport, render.Colour]]:
         """The line between the two halves of a comparison, and what to drag it by."""
-        if self.display.compare == "off":
+        if self.display.compare not in ("wipe", "side by side"):
             return []
         left, bottom, width, height = self.viewport
         unit = max(round(em(0.13) * width / max(self.area[2], 1.0)), 2)
-        x, y = left + round(self.display.divider * width), bottom + height // 2
+        x, y = left + round(self.display.share * width), bottom + height // 2
         line = (x - unit // 2, bottom, unit, height)
         grip = (x - unit // 2 - unit, y - 10 * unit, 3 * unit, 20 * unit)
-        return [(line, WHITE), (grip, THEMES[self._settings.theme].accent)]
+        rules = [(line, WHITE), (grip, THEMES[self._settings.theme].accent)]
+        return rules if self.display.compare == "wipe" else rules[:1]

@@ -112,6 +112,8 @@ class Viewer(Parts):
 
     def _move_face(self, elapsed: float) -> bool:
         """Let time pass for the face, and draw it; whether the picture has changed."""
+        is_held = self.mouse.is_dragging or imgui.is_any_item_active()
+        self.view.follow_history(is_held=is_held)
         is_filming = self.exporter.film is not None
         seconds = 1.0 / FRAMES_PER_SECOND if is_filming else elapsed
         self.messages.attempt(self.soundtrack.refresh)

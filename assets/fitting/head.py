@@ -121,9 +121,9 @@ def fit(
     points = mesh.vertices[landmarks] if points is None else points
     skin = skin_of(mesh.vertices, mesh.faces, landmarks)
     check_manifold(mesh.faces)
-    similarity = _placed(points, known)
     if are_numbers:
         check_counting(mesh.vertices, landmarks, known.vertices[known.landmarks])
+    similarity = _placed(points, known)
     skin = _sound(replace(skin, vertices=similarity.points(skin.vertices)))
     target = similarity.points(points)
     notes, whole = mesh.notes, skin

@@ -15,8 +15,8 @@ from .form import FOLD, distance, from_axis, from_front, head_distance
 # Height [mm] of points in the mid-plane, from the top down.
 MIDLINE_ABOVE_MOUTH = {
     "vertex": 148.0,  # capsule height: the crown
-    "trichion": 74.0,
-    "metopion": 48.0,
+    "trichion": 64.0,
+    "metopion": 47.0,
     "glabella": 21.0,
     "nasion": 6.4,
     "rhinion": -9.0,

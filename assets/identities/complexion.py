@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import TypeVar
 
 import numpy as np
@@ -213,12 +213,13 @@ def in_own_colours(
     Tones are as likely as each other. angle, irises: instead of the number's own.
     """
     random = np.random.default_rng([seed, 18])
-    own = random.uniform(DARKEST, LIGHTEST)
-    angle = own if angle is None else angle
+    drawn_angle = random.uniform(DARKEST, LIGHTEST)
+    angle = drawn_angle if angle is None else angle
     blood = float(np.clip(random.normal(1.0, 0.1), 0.75, 1.25))
     drawn = drawn_irises(random, angle)
     features = features_of(person.identity, angle, random)
-    return coloured(person, angle=angle, blood=blood, irises=irises or drawn, features=features)
+    own = coloured(person, angle=angle, blood=blood, irises=irises or drawn, features=features)
+    return replace(own, in_tone=partial(recoloured, blood=blood, features=features))
 
 
 def own_angle() -> float:

@@ -51,11 +51,13 @@ NAMED: Mapping[str, _Known] = MappingProxyType(
 def person_called(who: int | str) -> Person:
     """The person of a number (0 and more) or of a name in `NAMED`, in own colours."""
     if isinstance(who, int):
-        return in_own_colours(make_person(sample_identity(who)), who)
+        made = in_own_colours(make_person(sample_identity(who)), who)
+        return replace(made, called=str(who))
     known = NAMED[who]
     drawn = sample_identity(known.seed, sex=known.sex, age=known.age)
     identity = replace(
         drawn, scores={**drawn.scores, **known.scores}, shapes={**drawn.shapes, **known.shapes}
     )
     made = make_person(identity)
-    return in_own_colours(made, known.seed, angle=known.angle, irises=known.irises)
+    made = in_own_colours(made, known.seed, angle=known.angle, irises=known.irises)
+    return replace(made, called=who)

@@ -9,8 +9,8 @@ on them.
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
@@ -43,6 +43,8 @@ class Person(FittedHead):
         where left and right differ, too.
     openness: how open the skin is to light from all around, that of the built-in head.
     identity: what it was made from.
+    called: its number or name, "" for none.
+    in_tone: makes the texture in another tone, from the angle of `recoloured` [deg].
     """
 
     mandible_weight: FloatArray
@@ -51,6 +53,8 @@ class Person(FittedHead):
     mirror: IndexArray
     openness: Image
     identity: Identity
+    called: str = field(default="", kw_only=True)
+    in_tone: Callable[[float], Image] | None = field(default=None, kw_only=True)
 
     @property
     def measures(self) -> dict[str, float]:

@@ -1,4 +1,4 @@
-// A scene over the whole target, smoothly enlarged.
+// A picture over the whole viewport: a scene, smoothly enlarged, or a label on it.
 
 #if defined(VERTEX_STAGE)
 
@@ -16,7 +16,7 @@ uniform sampler2D scene;
 out vec4 pixel_colour;
 
 void main() {
-    pixel_colour = vec4(texture(scene, place).rgb, 1.0);
+    pixel_colour = texture(scene, place);
 }
 
 #endif

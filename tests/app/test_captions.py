@@ -4,30 +4,67 @@ from __future__ import annotations
 
 import numpy as np
 
-from risorius.app.capture.captions import LEAST_CAPTION, captioned, contact_sheet
+from risorius import render
+from risorius.app.capture.captions import (
+    LEAST_CAPTION,
+    PLATE,
+    SPLITS_BAR,
+    captioned,
+    colour_bar,
+    contact_sheet,
+    labels,
+)
 from risorius.app.pipeline import side_by_side
 
+STYLE = render.Style()
 GREY = np.full((200, 400, 3), 128, np.uint8)
 
 
 def test_a_caption_for_each_half_and_a_line_between() -> None:
-    """Text at the lower left of both, the line from top to bottom, the image left as it was."""
+    """Text in both outer corners, the line from top to bottom, the image left as it was."""
     halves = side_by_side((400, 200), 2)
-    with_captions = captioned(GREY, ["static", "kahler"], halves)
+    made = labels(["static", "kahler"], halves, None, STYLE)
+    with_captions = captioned(GREY, made, halves)
     is_drawn = (with_captions != 128).any(axis=2)
     assert is_drawn[:, 200].all()
     text = is_drawn.copy()
     text[:, 200] = False
     assert not text[:150].any()
-    assert text[150:, :100].any() and text[150:, 201:300].any()
-    assert not text[:, 100:200].any() and not text[:, 300:].any()
+    assert text[150:, :100].any() and text[150:, 300:].any()
+    assert not text[:, 100:300].any()
     assert (GREY == 128).all()
+
+
+def test_a_caption_without_room_is_left_out() -> None:
+    """It would lie over the other side, and over the face."""
+    made = labels(["static", "kahler"], [(0, 0, 30, 200), (30, 0, 370, 200)], None, STYLE)
+    assert [x > 300 for x, _, _ in made] == [True]
 
 
 def test_a_single_picture_has_no_line() -> None:
     """Nothing is divided where there is one viewport."""
-    with_captions = captioned(GREY, ["x"], side_by_side((400, 200), 1))
+    whole = side_by_side((400, 200), 1)
+    with_captions = captioned(GREY, labels(["x"], whole, None, STYLE), whole)
     assert (with_captions[:150] == 128).all()
+
+
+def test_labels_lie_on_transparent_pictures() -> None:
+    """Where nothing is, a plate is as opaque as it is; colours stay multiplied by alpha."""
+    whole = side_by_side((400, 200), 1)
+    empty = np.zeros((200, 400, 4), np.uint8)
+    page = captioned(empty, labels(["static\n2030 triangles"], whole, None, STYLE), whole)
+    assert page[0, 0, 3] == 0 and page[-15, 12, 3] == PLATE and page[..., 3].max() > PLATE
+    assert (page[..., :3] <= page[..., 3:]).all()
+
+
+def test_a_colour_bar_has_all_colours_of_the_skin() -> None:
+    """From the least below to the most above, as the renderer has them; there is a plate round."""
+    bar = colour_bar(SPLITS_BAR, render.SKIN, 14.0)
+    rows = [tuple(map(int, np.rint(255.0 * np.array(each)))) for each in render.SPLIT_PALETTE]
+    column = np.argmax((bar[..., :3] == rows[0]).all(axis=2).any(axis=0))
+    assert column > 0
+    found = list(dict.fromkeys(tuple(map(int, pixel[:3])) for pixel in bar[:, column]))
+    assert [each for each in found if each in rows] == rows[::-1]
 
 
 def test_a_sheet_has_a_cell_for_each_pose() -> None:

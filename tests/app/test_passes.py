@@ -19,9 +19,11 @@ from risorius.app.passes.passes import IMAGES, Passes
 from risorius.app.scenes import ClothScene, FaceScene
 from risorius.assets import Segment
 from risorius.assets.fitting.head import fit
+from risorius.assets.identities import person_called
 from tests.heads import stranger
 
 SIZE = (400, 400)
+EYES = (Segment.LEFT_EYE, Segment.RIGHT_EYE)
 EXPRESSIONS: dict[str, dict[str, float]] = {
     "rest": {},
     "smile": {"AU6": 0.6, "AU12": 0.9},
@@ -286,3 +288,17 @@ def test_other_scenes_have_what_makes_sense() -> None:
         assert found["tension"].max() > 0.01 and found["triangle"].max() < len(scene.faces)
         with pytest.raises(ValueError, match="the scene cloth has no segmentation"):
             passes.draw(studio.camera)
+
+
+@pytest.mark.parametrize("yaw", [-30.0, 0.0, 30.0])
+def test_an_unusual_person_shuts_the_eyes(yaw: float) -> None:
+    """No pixel from below shows an eyeball behind shut lids; open, hundreds do."""
+    options = CaptureOptions(size=(600, 600), camera="front")
+    with Capture(FaceScene(person_called(1039)), options) as opened:
+        seen = {}
+        for pose, controls in {"open": {}, "shut": {"blink": 1.0}}.items():
+            posed(opened, controls)
+            seen_from(opened, yaw, -40.0)
+            drawn = Passes(opened.pipeline).draw(opened.camera, ["segmentation"])
+            seen[pose] = np.isin(drawn["segmentation"], EYES).sum()
+        assert seen["shut"] == 0 and seen["open"] > 100

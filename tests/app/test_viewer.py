@@ -275,17 +275,17 @@ def test_thresholds_are_offered_where_they_count(viewer: Viewer) -> None:
 
 
 def test_two_looks_are_compared(viewer: Viewer) -> None:
-    """On the left is what the list says: a look, a refiner, or the mesh as it is again."""
+    """On the left is what list A says: a look, a refiner, or the mesh as it is again."""
     viewer.session.toggle_alone("disgust")
     click(viewer, "tab Mechanism")
     assert until(viewer, lambda: viewer.is_idle)
     smooth = viewer.stage.refined.triangle_count
-    assert "with" not in viewer.gui.places
+    assert "A" not in viewer.gui.places
     xdotool(viewer, "key", "d")
     labels, counts = [], []
     for name in ("paper", "loop", "static"):
-        click(viewer, "with")
-        click(viewer, f"with: {name}")
+        click(viewer, "A")
+        click(viewer, f"A: {name}")
         left, right = viewer.stage.shots(viewer.settings.display, viewer.view.viewport)
         assert right.drawn is viewer.stage.refined and right.drawn.triangle_count == smooth
         labels.append(left.drawn.label)

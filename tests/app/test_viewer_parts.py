@@ -10,6 +10,7 @@ import pytest
 from viewer import STOPS
 
 from risorius.app.errors import UserError
+from risorius.app.mirror import mirrored
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script import (
@@ -24,7 +25,7 @@ from risorius.app.script import (
     script_text,
 )
 from risorius.app.viewer import keyframes, picking
-from risorius.app.viewer.control_rows import mirrored, rows_of, search_rows
+from risorius.app.viewer.control_rows import rows_of, search_rows
 from risorius.app.viewer.document import Document
 from risorius.app.viewer.history import MOST_GROWTH, History
 from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
@@ -174,7 +175,7 @@ def test_undo_and_redo(session: Session) -> None:
     session.redo()
     assert session.values["jaw_open"] == 0.6
     session.neutral()
-    assert not session.can_redo
+    assert not session.history.can_redo
 
 
 def test_undo_brings_back_a_pose_that_a_script_moved_away(session: Session) -> None:
@@ -262,7 +263,7 @@ def test_rows_of_arkit_shapes() -> None:
     """Sides share a row, found by any of its names; directions do not: both at once do nothing."""
     names = ["mouthSmileLeft", "mouthSmileRight", "jawLeft", "jawRight", "jawOpen"]
     rows = rows_of(names, dict.fromkeys(names, 0.0), linked=True)
-    assert [row.names for row in rows] == [
+    assert [row.sides or row.names for row in rows] == [
         ("mouthSmileRight", "mouthSmileLeft"), ("jawLeft",), ("jawRight",), ("jawOpen",),
     ]  # fmt: skip
     (found,) = search_rows(rows, "mouthsmileleft", group="", actions={})
@@ -274,10 +275,12 @@ def test_rows_join_sides() -> None:
     names = ["AU12", "AU12_left", "AU12_right", "lid_left", "lid_right", "procerus"]
     values = dict.fromkeys(names, 0.0)
     linked = {row.label: row.names for row in rows_of(names, values, linked=True)}
-    assert linked["AU12"] == ("AU12",) and linked["lid"] == ("lid_right", "lid_left")
+    assert linked["AU12"] == ("AU12",) and linked["lid"] == ("lid_left",)
     apart = {row.label: row.names for row in rows_of(names, values, linked=False)}
     assert apart["AU12"] == ("AU12_right", "AU12_left") and apart["procerus"] == ("procerus",)
     values["AU12_left"] = 0.5
+    assert rows_of(names, values, linked=True)[0].names == ("AU12_right", "AU12_left")
+    values["AU12"] = 0.5
     assert len(rows_of(names, values, linked=True)[0].names) == 3
     rows = rows_of(names, values, linked=True)
     assert [
@@ -313,9 +316,11 @@ def test_detail_falls_once_and_does_not_flicker() -> None:
     assert chosen.detail == LEVELS[-1]
 
 
-def test_the_point_under_the_mouse(scene: FaceScene) -> None:
+@pytest.mark.parametrize("is_orthographic", [False, True])
+def test_the_point_under_the_mouse(scene: FaceScene, is_orthographic: bool) -> None:
     """The ray through the tip of the nose meets it; one through a corner meets nothing."""
     camera = render.OrbitCamera.framing(scene.rest_positions)
+    camera.is_orthographic = is_orthographic
     viewport = (30, 20, 400, 500)
     tip = scene.rest_positions[scene.rest_positions[:, 2].argmax()]
     clip = np.append(tip, 1.0) @ np.asarray(

@@ -39,7 +39,7 @@ def test_settings_come_back(tmp_path: Path) -> None:
     """What is written is read again."""
     path = tmp_path / "deep" / "viewer.json"
     settings = Settings(size=(900, 700), theme="dark", cameras={"face": [1.0, 2, 900, 0, 0, 0.5]})
-    settings.display.look, settings.display.beside = "paper", "smooth"
+    settings.display.look, settings.display.a = "paper", "smooth"
     settings.display.refiner, settings.display.overlays = "loop", ["muscles"]
     settings.display.options = {"kahler": {"threshold_once": 0.1, "blend": True, "scheme": "cubic"}}
     save_settings(path, settings)
@@ -75,12 +75,15 @@ def test_settings_come_back(tmp_path: Path) -> None:
         ("cameras.face", [[[]]] * 6),
         ("display", 3),
         ("display.look", "pretty"),
+        ("display.background", "pink"),
+        ("display.tone", 3),
+        ("display.is_orthographic", "yes"),
         ("display.look", ["paper"]),
         ("display.refiner", "none"),
         ("display.refiner", {"a": 1}),
         ("display.compare", "both"),
-        ("display.beside", "both"),
-        ("display.beside", None),
+        ("display.a", "both"),
+        ("display.a", None),
         ("display.divider", 7),
         ("display.shading", ""),
         ("display.colours", 1),
@@ -202,7 +205,7 @@ def test_refiners_that_cannot_be_bound_give_way(monkeypatch: pytest.MonkeyPatch)
         raise ValueError("this mesh is too large")
 
     monkeypatch.setattr(refiners, "_factories", {**refiners._factories, "far": broken})
-    display = Display(look="paper", refiner="far", beside="far")
+    display = Display(look="paper", refiner="far", a="far")
     told = remove_refused_options(display, PlaneScene())
     assert told == "of no use and as at first: refiner far, far"
     assert display == Display(look="paper")

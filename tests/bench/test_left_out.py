@@ -9,29 +9,35 @@ import numpy as np
 import pytest
 
 from risorius import assets, sim
-from risorius.bench.left_out import KEPT, measure, plain
+from risorius.bench.left_out import KEPT, measure, typical
 from risorius.sim.rig import LinearMuscle, Muscle, RingMuscle
 from tests.sim.poses import settled_displacement
 
 MUSCLES = sim.read_rig(assets.load("head").rig).muscles
+FITTED = [muscle for muscle in MUSCLES if isinstance(muscle, LinearMuscle | RingMuscle)]
 
 
-@pytest.mark.parametrize("muscle", MUSCLES, ids=lambda muscle: muscle.name)
-def test_a_plain_muscle_has_nothing_fitted(muscle: Muscle) -> None:
-    """It keeps its place and its nature, and shares all else with any other of its kind."""
-    bare = plain(muscle)
-    defaults = {each.name: each.default for each in fields(muscle)}
-    for each in fields(muscle):
-        value = getattr(bare, each.name)
-        if each.name == "fibres":
+@pytest.mark.parametrize("muscle", FITTED, ids=lambda muscle: muscle.name)
+def test_a_typical_muscle_has_nothing_fitted(muscle: Muscle) -> None:
+    """It keeps its place and its nature, and has all else of the others of its kind."""
+    others = [each for each in FITTED if type(each) is type(muscle) and each is not muscle]
+    bare = typical(muscle, others)
+    for rule in fields(muscle):
+        value = getattr(bare, rule.name)
+        if rule.name == "fibres":
             assert isinstance(muscle, LinearMuscle)
             for now, was in zip(value, muscle.fibres, strict=True):
                 assert (now.origin, now.insertion) == (was.origin, was.insertion)
                 assert (now.gain, now.weight, now.convergence, now.lift) == (1.0, 1.0, 0.0, 0.0)
-        elif each.name in KEPT:
-            assert value == getattr(muscle, each.name)
+        elif rule.name in KEPT:
+            assert value == getattr(muscle, rule.name)
         else:
-            assert value == defaults[each.name]
+            lower, upper = (
+                np.quantile([getattr(each, rule.name) for each in others], share, axis=0)
+                for share in (0.4, 0.6)
+            )
+            assert (lower <= value).all()
+            assert (value <= upper).all()
 
 
 def test_muscles_are_exchanged_as_if_built_with_them() -> None:

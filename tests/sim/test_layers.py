@@ -186,6 +186,9 @@ def test_groups_end_with_the_layers() -> None:
         ({"X": {"pair": "Left"}}, r"row 'X': 'pair' was 'Left', must be true, false or \"Left R"),
         ({"X": {"pair": ["Left"]}}, r"row 'X': 'pair' was \['Left'\], must be true, false or"),
         ({"XLeft": {"pair": "Left Right"}}, r"row 'XLeft': a pair adds the .*; leave 'Left' away"),
+        ({"X": {"mirror": 1}}, r"row 'X': 'mirror' was 1, must be another name, in a row that"),
+        ({"X": {"mirror": "Y", "pair": True}}, r"row 'X': 'mirror' was 'Y', must be another name"),
+        ({"X": {"mirror": "middle"}}, r"row 'X': there is a control called 'middle' already"),
         ({"X": {"at_least": 0.2}}, r"row 'X': 'at_least' was 0.2, must be a table of control"),
         ({"X": {"at_least": {"slide": -1}}}, r"row 'X', 'at_least', 'slide': was -1, .* 0 to 2"),
         ({"X": {"at_least": {"slid": 1.0}}}, r"row 'X': no layer below .* 'slid'; did you mean"),
@@ -262,6 +265,26 @@ def test_sides_of_arkit_shapes_ask_for_the_same(simulation: sim.Simulation) -> N
             twin = stem + other.get(mark + side, mark + side)
             mirrored[twin] = -value if name in turned else value
         assert sums(f"{base}Right") == pytest.approx(mirrored), base
+
+
+def test_expressions_have_sides(simulation: sim.Simulation) -> None:
+    """Both sides together ask for the whole; a one-sided face has its image on the other side."""
+
+    def sums(*names: str) -> dict[str, float]:
+        simulation.pose(dict.fromkeys(names, 0.5))
+        return {name: value for name, value in simulation.sums.items() if value}
+
+    for name in ("joy", "sadness", "surprise", "anger", "disgust", "fear", "blink"):
+        assert sums(f"{name}_left", f"{name}_right") == pytest.approx(sums(name)), name
+        pulls = {key for key, value in sums(f"{name}_left").items() if value > 0.26}
+        assert pulls and not any(key.endswith("_right") for key in pulls), name
+    for name in ("wink", "contempt"):
+        other = {"_left": "_right", "_right": "_left"}
+        mirrored = {}
+        for key, value in sums(name).items():
+            stem, mark, side = key.rpartition("_")
+            mirrored[stem + other.get(mark + side, mark + side)] = value
+        assert sums(f"{name}_right") == pytest.approx(mirrored), name
 
 
 def test_the_jaw_of_a_funnel_counts_once(simulation: sim.Simulation) -> None:

@@ -1,4 +1,4 @@
-"""The controls of the face: a group for each that the scene has, a slider for each control."""
+"""The controls of the face: pads, a group for each layer and region, a row for each control."""
 
 from __future__ import annotations
 
@@ -6,41 +6,56 @@ from collections.abc import Callable, Sequence
 
 from imgui_bundle import imgui
 
-from ..control_rows import Row, readable, rows_of, search_rows
-from ..gui import Gui, colour
+from ...vocabulary import filters
+from ..control_rows import Row, search_rows
+from ..gui import Gui, colour, em
 from ..session import Session
 from ..settings import Settings
 from ..view import View
-from .sliders import Sliders
-from .widgets import button, button_width, heading, hint, shortened, stay_in_line
+from .pads import Pads
+from .rows import ControlRows
+from .widgets import button, button_width, heading, hint, muted, stay_in_line
 
-LABEL_SHARE = 0.46  # of a row
 FLASH = 90  # frames for which a selected slider is marked
+LEAST_ROOM = 20.0  # [em] below buttons and search
+IN_USE = "In use"  # a filter of all groups
 
 
 class FacePanel:
-    """Buttons, search and groups of sliders."""
+    """Buttons, search, filters and groups of rows."""
 
     def __init__(self, gui: Gui, session: Session, settings: Settings, view: View) -> None:
-        self._gui, self._session, self._settings, self._view = gui, session, settings, view
-        self._sliders = Sliders(gui)
+        self._gui, self._session, self._settings = gui, session, settings
+        self.rows = ControlRows(gui, session, settings, view)
+        self._pads = Pads(gui, session)
         self.search = ""
+        self.filter = ""  # the groups that are shown alone, by what their button reads
+        self._in_use: set[str] = set()  # labels of rows
         self._selected: str | None = None  # to be scrolled to
         self._flash = 0
-        self._current = session.current  # of the picture that is drawn
 
     def select(self, name: str) -> None:
         """Open the group of a control, scroll to it and mark it."""
-        self.search = ""
+        self.search = self.filter = ""
         self._selected, self._flash = name, FLASH
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
-        self._current = self._session.current
         self._draw_buttons()
+        has_room = imgui.get_content_region_avail().y > em(LEAST_ROOM)
+        if has_room:
+            self._draw_filters()
         imgui.begin_child("controls", (0.0, 0.0))
-        for title, names in self._session.controls.groups.items():
-            self._draw_group(title, names)
+        if not has_room:  # they scroll
+            self._draw_filters()
+        groups = self._session.controls.groups
+        shown = filters().get(self.filter, tuple(groups))
+        if not self.search and self.filter != IN_USE and {"Jaw", "Gaze"} & {*shown}:
+            self._pads.draw()
+        counts = [self._draw_group(title, groups[title]) for title in groups if title in shown]
+        if not any(counts):
+            is_rest = self.filter == IN_USE and not self.search
+            muted(self._gui, "Nothing is in use." if is_rest else "Nothing is called so.")
         imgui.end_child()
         self._flash = max(self._flash - 1, 0)
 
@@ -48,7 +63,7 @@ class FacePanel:
         gui, session, settings = self._gui, self._session, self._settings
         buttons: tuple[tuple[str, str, Callable[[], None]], ...] = (
             ("Neutral", "relax all (N)", session.neutral),
-            ("Mirror", "exchange left and right (M)", session.mirror),
+            ("Mirror", "exchange left and right (M); Edit has copies of one side", session.mirror),
             ("Random", "a face by chance (X)", session.randomise),
         )
         for label, meaning, run in buttons:
@@ -66,78 +81,55 @@ class FacePanel:
         )
         gui.remember("search")
 
-    def _draw_group(self, title: str, names: Sequence[str]) -> None:
-        scene, folds = self._session.scene, self._settings.folds
-        rows = rows_of(names, self._current, linked=self._settings.is_linked)
+    def _draw_filters(self) -> None:
+        """A button for each kind of control, which shows that kind alone; a second click all."""
+        groups = self._session.controls.groups
+        kinds = [title for title, titles in filters().items() if groups.keys() & {*titles}]
+        for title in [IN_USE, *kinds] if kinds else ():
+            if title != IN_USE:
+                stay_in_line(button_width(title))
+            is_on = self.filter == title
+            highlight = colour(self._gui.theme.accent, 0.5) if is_on else None
+            if button(self._gui, title, name=f"only {title}", highlight=highlight):
+                self.filter = "" if is_on else title
+
+    def _draw_group(self, title: str, names: Sequence[str]) -> int:
+        """Draw a group under its heading; how many rows it has that are asked for."""
+        session, folds, current = self._session, self._settings.folds, self._session.current
+        rows = self.rows.of(tuple(names))
+        active = sum(any(current[name] for name in row.names) for row in rows)
+        if self.filter == IN_USE:
+            rows = [row for row in rows if self._is_in_use(row)]
         if self.search:
-            rows = search_rows(rows, self.search, group=title, actions=scene.actions)
-            if not rows:
-                return
+            rows = search_rows(rows, self.search, group=title, actions=session.scene.actions)
         elif self._selected in names:
             folds[title] = True
-        active = sum(1 for name in names if self._current[name])
+        if not rows:
+            return 0
         label = f"{title}  ({active})" if active else title
-        if heading(self._gui, self._settings, title, label, must_open=bool(self.search)):
-            if names and all(name in scene.expressions for name in names):
-                self._draw_expression_buttons(names)
+        if heading(
+            self._gui, self._settings, title, label, must_open=bool(self.search or self.filter)
+        ):
             for row in rows:
                 self._draw_row(row)
+        return len(rows)
 
-    def _draw_expression_buttons(self, names: Sequence[str]) -> None:
-        """A button for each: the whole expression at once."""
-        for number, name in enumerate(names, start=1):
-            label = f"{number} {readable(name)}" if number <= 9 else readable(name)
-            if number > 1:
-                stay_in_line(button_width(label))
-            is_on = self._session.is_alone(name)
-            highlight = colour(self._gui.theme.accent, 0.5) if is_on else None
-            if button(self._gui, f"{label}##button", name=f"show {name}", highlight=highlight):
-                self._session.toggle_alone(name)
+    def _is_in_use(self, row: Row) -> bool:
+        """Whether it is not 0, or was when the drag began that takes it there."""
+        if any(self._session.current[name] for name in row.names):
+            self._in_use.add(row.label)
+        elif not imgui.is_any_item_active():
+            self._in_use.discard(row.label)
+        return row.label in self._in_use
 
     def _draw_row(self, row: Row) -> None:
-        session, theme = self._session, self._gui.theme
-        values = [self._current[name] for name in row.names]
-        is_linked = self._settings.is_linked and len(row.names) == 2 and len(set(values)) == 1
-        names = row.names[1:] if is_linked else row.names
-        # A muscle whose halves act together may have but one slider for both.
+        # A muscle whose halves act together may have but one bar for both.
         whole = (self._selected or "").removesuffix("_left").removesuffix("_right")
-        is_selected = self._selected in row.names or whole in row.names
+        is_selected = bool({self._selected, whole} & {*row.names, *row.sides})
         if is_selected:
             imgui.set_scroll_here_y(0.4)
-        is_marked = any(values) or (self._flash and is_selected)
-        imgui.align_text_to_frame_padding()
-        spacing = imgui.get_style().item_spacing.x
-        label_width = LABEL_SHARE * imgui.get_content_region_avail().x
-        ink = colour(theme.accent if is_marked else theme.muted)
-        imgui.text_colored(ink, shortened(self._title(row), label_width - spacing))
-        is_pointed = imgui.is_item_hovered()
-        hint(self._explanation(row))
-        imgui.same_line(label_width)
-        room = imgui.get_content_region_avail().x - (len(names) - 1) * spacing
-        for index, name in enumerate(names):
-            if index:
-                imgui.same_line()
-            slid = self._sliders.draw(
-                name, self._current[name], session.controls.limits[name], width=room / len(names)
-            )
-            is_pointed = is_pointed or slid.is_hovered
-            if slid.is_changed:
-                session.set(name, slid.value, linked=is_linked)
-            if slid.is_done:
-                session.note()
-        if is_pointed:
-            self._view.pointed = tuple(sorted(set().union(*map(session.scene.moved_by, row.names))))
+        shown = self._session.scene.expressions[:9]
+        number = shown.index(row.label) + 1 if row.label in shown else 0
+        self.rows.draw(row, number=number, is_marked=is_selected and self._flash > 0)
         if is_selected and not self._flash:
             self._selected = None
-
-    def _title(self, row: Row) -> str:
-        """The name, and where that is a code (an action unit's) what it does."""
-        scene, name = self._session.scene, row.names[0]
-        is_code = name not in self._session.controls.muscles and name not in scene.expressions
-        return f"{row.label} {scene.actions.get(name, '')}".rstrip() if is_code else row.label
-
-    def _explanation(self, row: Row) -> str:
-        """The name in full, what it does where the scene says it, and whose slider is whose."""
-        action = self._session.scene.actions.get(row.names[0], "")
-        sides = "right | left" if len(row.names) > 1 else ""
-        return "\n".join(line for line in (row.label, action, sides) if line)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
 from functools import partial
 from typing import Any
 
@@ -10,28 +11,33 @@ import numpy as np
 from imgui_bundle import imgui
 
 from risorius import refine, render
+from risorius.assets.identities import NAMED
 
-from ...looks import LOOKS, STATIC, named, words_of_looks
+from ...looks import FIRST_LOOK, LOOKS, STATIC, named, words_of_looks
 from ...refining import DETAIL, can_detail
+from ...scenes import BUILT_IN
 from ..colours import COLOURS
+from ..file_drop import FileDrop
 from ..frame_times import PHASES, FrameTimes
-from ..gui import Gui, em
+from ..gui import BACK, Gui, colour, em
+from ..messages import Messages
 from ..overlays import overlays_of
-from ..setting_rules import COMPARISONS, SKINS
+from ..setting_rules import BACKGROUNDS, CHOSEN, COMPARISONS, SKINS, TONES
 from ..settings import Display, Settings
 from ..stage import Stage
 from ..view import View
 from .sliders import Sliders
-from .widgets import heading, hint, muted
+from .widgets import button, heading, hint, muted
 
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
     "Refine": "draw the refined mesh, or the simulated one as it is (R)",
     "Look": "smooth: what looks best; paper: the paper's own rule (P). A look sets the refiner and "
-    "all that it is told; choose it again to undo changes",
+    "all that it is told",
     "Refiner": "any that is registered",
-    "Compare": "two meshes under one camera: wipe (D), side by side (Shift+D)",
-    "with": "what is seen on the left: the simulated mesh, a look, or a refiner",
+    "Compare": "two meshes under one camera: wipe (D), side by side (Shift+D), or A and B in turn, "
+    "in all of the picture (B)",
+    "A": "what is at the left, B at the right: the simulated mesh (static), a look, a refiner ...",
     "threshold once": "an edge splits once where the normals at its ends have turned apart by more "
     "than this since rest (drop of their dot product)",
     "threshold twice": "the same for splitting twice",
@@ -51,11 +57,16 @@ HINTS = {
     "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
     "Wireframe": "the edges of all triangles that are drawn (W)",
     "Occlusion": "less light from all around in folds of the textured skin",
+    "Skin tone": "by its typology angle; own: as this person has it",
+    "Person": "another head, on which script and pose go on (--person takes any number)",
     "Muscles": "their fibres, redder the more they contract (U)",
     "Springs": "the skin's: stretched red, compressed blue",
     "Skull": "the bone under the skin; the mandible moves with the jaw",
     "Landmarks": "the 68 points that the muscles are placed by",
 }
+# Rows of fields of the display, by their labels.
+FIELDS = {"Refine": "is_refined", "Skin tone": "tone"}
+FIELDS |= {each.name.capitalize(): each.name for each in fields(Display)}
 THRESHOLDS = "threshold_once", "threshold_twice"  # of this criterion alone:
 PAPERS_CRITERION = "normal"
 LABEL_SHARE = 0.45  # of a row
@@ -66,9 +77,17 @@ class MechanismPanel:
     """Everything about how the mesh becomes a picture."""
 
     def __init__(
-        self, gui: Gui, settings: Settings, stage: Stage, view: View, times: FrameTimes
+        self,
+        gui: Gui,
+        settings: Settings,
+        stage: Stage,
+        view: View,
+        times: FrameTimes,
+        messages: Messages,
+        file_drop: FileDrop,
     ) -> None:
         self._gui, self._settings = gui, settings
+        self._messages, self._file_drop = messages, file_drop
         self._stage, self._view, self._times = stage, view, times
         self._sliders = Sliders(gui)
 
@@ -79,31 +98,56 @@ class MechanismPanel:
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
         imgui.begin_child("mechanism", (0.0, 0.0))
+        self._resets = self._find_resets()
+        imgui.begin_disabled(self._display == Display())
+        if button(self._gui, "Reset all", meaning="all of this as at first, but for the person"):
+            self._settings.display = Display()
+        imgui.end_disabled()
         times_label = f"Milliseconds, {self._times.frames_per_second:.0f} frames a second"
         for title, label, draw in (
             ("Refinement", "", self._draw_refinement),
             ("Style", "", self._draw_style),
             ("Overlays", "", self._draw_overlays),
+            ("Light and person", "", self._draw_light_and_person),
             ("Milliseconds", times_label, self._draw_times),
         ):
             if heading(self._gui, self._settings, title, label):
                 draw()
+        display = self._display
+        display.options = {name: told for name, told in display.options.items() if told}
         imgui.end_child()
+
+    def _find_resets(self) -> Mapping[str, Callable[[], object]]:
+        """What sets each row back that is not as at first, by its label."""
+        display, first, scene = self._display, Display(), self._stage.scene
+        told, toggle = display.options.get(display.refiner_on(scene), {}), display.toggle_overlay
+        resets = {name.replace("_", " "): partial(told.pop, name) for name in told}
+        resets |= {each.capitalize(): partial(toggle, each) for each in display.overlays}
+        for label, name in FIELDS.items():
+            if getattr(display, name) != getattr(first, name):
+                resets[label] = partial(setattr, display, name, getattr(first, name))
+        if display.look_as_changed(scene) != FIRST_LOOK:
+            resets["Look"] = partial(display.choose_look, FIRST_LOOK)
+        if scene.called not in ("", BUILT_IN):
+            resets["Person"] = partial(self._show_person, BUILT_IN)
+        return resets
 
     def _draw_refinement(self) -> None:
         display, stage = self._display, self._stage
-        self._check("Refine", display.is_refined, partial(display.switch, "is_refined"))
+        self._switch("Refine")
         look = display.look_as_changed(stage.scene)
         self._choose("Look", look, tuple(LOOKS), display.choose_look)
         names = [name for name in refine.available() if name != STATIC]
         put = partial(display.choose_refiner, stage.scene)
         self._choose("Refiner", display.refiner_on(stage.scene), names, put)
-        self._choose("Compare", display.compare, COMPARISONS, partial(setattr, display, "compare"))
-        if display.compare != "off":
-            self._draw_beside((STATIC, *LOOKS, *names))
         for name, default in stage.refiner_options.items():
             if name not in THRESHOLDS or self._has_thresholds():
                 self._draw_option(name, default)
+        self._pick("Compare", COMPARISONS)
+        if display.compare != "off":
+            labels = {name: named(name, display.look).label for name in (STATIC, *LOOKS, *names)}
+            self._pick("A", (STATIC, *LOOKS, *names, CHOSEN), labels)
+            self._pick("B", (STATIC, *LOOKS, *names, CHOSEN), labels)
         base = len(stage.scene.faces)
         for shot in stage.shots(display, self._view.viewport):
             count = shot.drawn.triangle_count
@@ -113,15 +157,6 @@ class MechanismPanel:
         splits = stage.refined.refiner.splits
         once, more = int((splits == 1).sum()), int((splits > 1).sum())
         muted(self._gui, f"{len(splits)} edges: {once} split once, {more} more often")
-
-    def _draw_beside(self, names: Sequence[str]) -> None:
-        """A list of what can be compared with, as captions call it."""
-        display = self._display
-        labels = {named(name, display.look).label: name for name in names}
-        present = named(display.beside, display.look).label
-        self._choose(
-            "with", present, list(labels), lambda label: setattr(display, "beside", labels[label])
-        )
 
     def _has_thresholds(self) -> bool:
         """Whether the criterion is, or has in it, the one that the thresholds are of."""
@@ -138,7 +173,8 @@ class MechanismPanel:
         if isinstance(default, bool):
             self._check(label, bool(value), partial(put, not value))
         elif isinstance(default, int):
-            is_changed, chosen = imgui.input_int(label, int(value))
+            self._begin_row(label)
+            is_changed, chosen = imgui.input_int(f"##{label}", int(value))
             self._gui.remember(label)
             if is_changed:
                 put(chosen)
@@ -160,19 +196,29 @@ class MechanismPanel:
 
     def _draw_style(self) -> None:
         display = self._display
-        shadings = [shading.value for shading in render.Shading]
-        self._choose("Shading", display.shading, shadings, partial(setattr, display, "shading"))
-        put = partial(setattr, display, "colours")
-        self._choose("Colours", display.colours, tuple(COLOURS), put)
-        if COLOURS[display.colours].legend:
-            muted(self._gui, COLOURS[display.colours].legend)
-        self._choose("Skin", display.skin, tuple(SKINS), partial(setattr, display, "skin"))
+        self._pick("Shading", [shading.value for shading in render.Shading])
+        self._pick("Colours", tuple(COLOURS))
+        self._pick("Skin", tuple(SKINS))
         if self._stage.scene.wrinkles is not None:
             depth = self._slide("Wrinkles", "wrinkles", display.wrinkles, (0.0, 1.0), 1.0)
             display.wrinkles = display.wrinkles if depth is None else depth
-        self._check("Wireframe", display.wireframe, partial(display.switch, "wireframe"))
+        self._switch("Wireframe")
         imgui.same_line(_label_width())
-        self._check("Occlusion", display.occlusion, partial(display.switch, "occlusion"))
+        self._switch("Occlusion")
+
+    def _draw_light_and_person(self) -> None:
+        scene = self._stage.scene
+        self._pick("Light", tuple(render.LIGHTS))
+        self._pick("Background", tuple(BACKGROUNDS))
+        if scene.in_tone is not None:
+            self._pick("Skin tone", tuple(TONES))
+        if scene.called:
+            names = (BUILT_IN, *NAMED, *map(str, range(20)))
+            self._choose("Person", scene.called, names, self._show_person)
+
+    def _show_person(self, called: str) -> None:
+        who = None if called == BUILT_IN else int(called) if called.isdecimal() else called
+        self._messages.attempt(partial(self._file_drop.show_person, who))
 
     def _draw_overlays(self) -> None:
         display = self._display
@@ -207,12 +253,33 @@ class MechanismPanel:
         imgui.align_text_to_frame_padding()
         imgui.text(label)
         hint(HINTS.get(label, ""))
+        self._draw_reset(label, _label_width() - em(1.5))
         imgui.same_line(_label_width())
+
+    def _draw_reset(self, label: str, place: float = 0.0) -> None:
+        """The mark of a row that is not as at first; a click sets it back."""
+        if label not in self._resets:
+            return
+        imgui.same_line(place)
+        imgui.push_style_color(imgui.Col_.text, colour(self._gui.theme.accent))
+        imgui.push_style_color(imgui.Col_.button, colour(self._gui.theme.panel, 0.0))
+        is_clicked = imgui.small_button(f"{BACK}##{label}")
+        imgui.pop_style_color(2)
+        self._gui.remember(f"reset {label}")
+        hint("not as at first; sets it back")
+        if is_clicked:
+            self._resets[label]()
+
+    def _switch(self, label: str) -> None:
+        """A checkbox for a field of the display."""
+        name = FIELDS[label]
+        self._check(label, getattr(self._display, name), partial(self._display.switch, name))
 
     def _check(self, label: str, is_on: bool, switch: Callable[[], None]) -> None:
         is_clicked, _ = imgui.checkbox(label, is_on)
         self._gui.remember(label)
         hint(HINTS.get(label, ""))
+        self._draw_reset(label)
         if is_clicked:
             switch()
 
@@ -230,6 +297,13 @@ class MechanismPanel:
         self._begin_row(label)
         slid = self._sliders.draw(name, value, limits, width=-1.0, neutral=neutral, digits=digits)
         return slid.value if slid.is_changed else None
+
+    def _pick(self, label: str, choices: Sequence[str], words: Mapping[str, str] = {}) -> None:
+        """A row with a list for a field of the display; `words` say more than the values."""
+        name, values = FIELDS[label], {words.get(each, each): each for each in choices}
+        present = getattr(self._display, name)
+        put = partial(setattr, self._display, name)
+        self._choose(label, words.get(present, present), list(values), lambda w: put(values[w]))
 
     def _choose(
         self, label: str, present: str, choices: Sequence[str], put: Callable[[str], None]

@@ -12,7 +12,7 @@ from ..settings import Settings
 # Headings that are open as long as nobody has folded them.
 FIRST_OPEN = frozenset(
     {"Expressions", "Wave", "Cloth", "Ball", "Refinement", "Style", "Overlays", "Milliseconds"}
-    | {"Strength", "What comes"}
+    | {"Strength", "What comes", "Light and person"}
 )
 
 

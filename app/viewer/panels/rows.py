@@ -1,0 +1,124 @@
+"""A control, or one of each side, as one line: its name, and a bar for each that it has."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from ...mirror import parted
+from ...vocabulary import readable, title_of
+from ..control_rows import Row, rows_of
+from ..gui import Gui, colour, em
+from ..session import Session
+from ..settings import Settings
+from ..view import View
+from .sliders import Sliders
+from .widgets import hint
+
+LABEL_SHARE, MOST_LABEL = 0.5, 15.0  # of a row, and [em]
+NARROW = 15.0  # [em] of room below which bars stand under their names
+SIDES = "R L"  # what the switch of a row reads whose sides can be moved apart
+
+
+class ControlRows:
+    """Draws rows of controls, and carries out what is done to them."""
+
+    def __init__(self, gui: Gui, session: Session, settings: Settings, view: View) -> None:
+        self._gui, self._session, self._settings, self._view = gui, session, settings, view
+        self._sliders = Sliders(gui)
+        self._apart: set[str] = set()  # labels of rows whose sides were taken apart
+        self._rows: dict[tuple[str, ...], list[Row]] = {}
+
+    def of(self, names: tuple[str, ...]) -> list[Row]:
+        """The rows of these controls as they are now, or as they were when a drag began."""
+        if names not in self._rows or not imgui.is_any_item_active():
+            current, linked = self._session.current, self._settings.is_linked
+            self._rows[names] = rows_of(names, current, linked=linked, apart=self._apart)
+        return self._rows[names]
+
+    def draw(self, row: Row, *, number: int = 0, is_marked: bool = False) -> None:
+        """Draw one row; of an expression the name is a button, too.
+
+        number: of the key that shows it, 0 for none. is_marked: it was asked for.
+        """
+        session, names, spacing = self._session, row.names, imgui.get_style().item_spacing
+        current = session.current
+        left, room = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
+        is_narrow = room < em(NARROW)
+        label_room = room if is_narrow else min(LABEL_SHARE * room, em(MOST_LABEL))
+        is_lit = is_marked or any(current[name] for name in names)
+        is_pointed = self._draw_label(row, label_room, number, is_lit=is_lit)
+        if is_narrow:  # nearer to its own name than to the next
+            imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - spacing.y)
+        else:
+            imgui.same_line(left + label_room)
+        width = (imgui.get_content_region_avail().x + spacing.x) / len(names) - spacing.x
+        for index, name in enumerate(names):
+            if index:
+                imgui.same_line()
+            limits, side = session.controls.limits[name], parted(name)[1].strip("_")[:1].upper()
+            mark = (side or ("both" if len(names) > 2 else "L")) if len(names) > 1 else ""
+            slid = self._sliders.draw(name, current[name], limits, width=width, mark=mark)
+            is_pointed = is_pointed or slid.is_hovered
+            if slid.is_changed:
+                session.set(name, slid.value, linked=row.is_linked and name in row.sides)
+            if slid.is_done:
+                session.note()
+        if is_pointed:
+            meant = (*names, *(row.sides if row.is_linked else ()))
+            self._view.pointed = tuple(sorted(set().union(*map(session.scene.moved_by, meant))))
+
+    def _draw_label(self, row: Row, room: float, number: int, *, is_lit: bool) -> bool:
+        """Code, name and the switch of its sides; whether the mouse is on it."""
+        theme, session, padding = self._gui.theme, self._session, imgui.get_style().frame_padding
+        has_switch = bool(row.sides) and self._settings.is_linked
+        room -= imgui.calc_text_size(SIDES).x + em(0.6) if has_switch else em(0.3)
+        action = session.scene.actions.get(row.names[-1], "")
+        code, name = title_of(row.label, action)
+        is_whole_face = row.label in session.scene.expressions
+        code, widest = (str(number or ""), "0 ") if is_whole_face else (code, code and "AU00  ")
+        indent = imgui.calc_text_size(widest).x if name else 0.0
+        place, wrapped = imgui.get_cursor_screen_pos(), room - indent - padding.x
+        height = imgui.calc_text_size(name or code, wrap_width=wrapped).y + 2.0 * padding.y
+        if not is_whole_face:
+            imgui.dummy((room, height))
+        elif imgui.selectable(
+            f"##show {row.label}", session.is_alone(row.label), 0, (room, height)
+        )[0]:
+            session.toggle_alone(row.label)
+        self._gui.remember(f"show {row.label}")
+        is_pointed = imgui.is_item_hovered()
+        hint("\n".join(filter(None, (readable(row.label), action))))
+        shade = theme.accent if is_lit else theme.text
+        for text, along in ((code, 0.0), (name, indent)):
+            where = imgui.ImVec2(place.x + padding.x + along, place.y + padding.y)
+            ink = imgui.get_color_u32(colour(theme.muted if text == code and name else shade))
+            imgui.get_window_draw_list().add_text(
+                imgui.get_font(), imgui.get_font_size(), where, ink, text, wrap_width=wrapped
+            )
+        if has_switch:
+            imgui.same_line(0.0, 0.0)
+            self._draw_switch(row)
+        return is_pointed
+
+    def _draw_switch(self, row: Row) -> None:
+        """From one bar for both sides to one for each, while the face stays as it is, and back."""
+        session, current = self._session, self._session.current
+        is_apart = not row.is_linked
+        ink = colour(self._gui.theme.accent if is_apart else self._gui.theme.muted)
+        imgui.push_style_color(imgui.Col_.text, ink)
+        imgui.push_style_color(imgui.Col_.button, colour(self._gui.theme.panel, 0.0))
+        is_clicked = imgui.button(f"{SIDES}##{row.label}")
+        imgui.pop_style_color(2)
+        self._gui.remember(f"sides {row.label}")
+        hint("one bar for both sides" if is_apart else "a bar for each side: right, left")
+        if is_clicked:
+            share = current[row.whole] if row.whole else 0.0
+            values = {name: current[name] + share for name in row.sides}
+            rest = 0.0
+            if is_apart:
+                most = max(values.values(), key=abs)
+                values, rest = dict.fromkeys(row.sides, 0.0 if row.whole else most), most
+            for name, value in {**values, **({row.whole: rest} if row.whole else {})}.items():
+                session.set(name, value)
+            (self._apart.discard if is_apart else self._apart.add)(row.label)
+            session.note()

@@ -1,0 +1,94 @@
+"""Plain words for controls: what each is called, and by which other words it is found.
+
+The words themselves are in assets, `words.toml`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+from risorius.assets.loading import read_words
+
+from .mirror import parted
+
+VISEME = "viseme_"
+
+
+class Pad(NamedTuple):
+    """A field in which two controls are moved at once.
+
+    across: above 0 to the subject's left, which is right in the picture; along: what it is at the
+    `top` and at the `bottom`.
+    """
+
+    title: str
+    meaning: str
+    across: str
+    along: str
+    top: float
+    bottom: float
+
+
+def readable(name: str) -> str:
+    """A control's name in words."""
+    return name.replace("_", " ")
+
+
+@cache
+def _table(kind: str) -> Mapping[str, Any]:
+    found: Mapping[str, Any] = read_words().get(kind, {})
+    return found
+
+
+@cache
+def _synonyms() -> tuple[tuple[str, frozenset[str]], ...]:
+    return tuple(
+        (word, frozenset(found))
+        for words, found in _table("synonyms").items()
+        for word in words.split()
+    )
+
+
+def filters() -> Mapping[str, tuple[str, ...]]:
+    """Groups of controls that are shown together, by what a button calls them."""
+    return {title: tuple(groups) for title, groups in _table("filters").items()}
+
+
+@cache
+def pads() -> tuple[Pad, ...]:
+    """All fields, from left to right."""
+    return tuple(Pad(title, **row) for title, row in _table("pads").items())
+
+
+def title_of(name: str, action: str = "") -> tuple[str, str]:
+    """The code that a control is known by, "" for none, and its plain name, "" for a code alone.
+
+    name: without its side, where both sides are called alike. action: what it does, in words.
+    """
+    stem = parted(name)[0]
+    plain = str(_table("names").get(name) or _table("names").get(stem) or "")
+    first = action.partition(":")[0]
+    if name.startswith("AU"):
+        return stem, plain or first[:1].upper() + first[1:]
+    if plain:
+        return "", plain
+    if name.startswith(VISEME):
+        return name.removeprefix(VISEME), first
+    if name != name.lower():  # as ARKit spells it
+        return name, ""
+    return "", readable(name).capitalize()
+
+
+def is_found(words: str, text: str, names: Collection[str]) -> bool:
+    """Whether each of the words is in the text, or begins another word for one of the names.
+
+    names: of controls, with their sides.
+    """
+    stems = {*names, *(parted(name)[0] for name in names)}
+    return all(
+        word in text.lower()
+        or any(other.startswith(word) and found & stems for other, found in _synonyms())
+        for word in words.lower().split()
+    )
