@@ -34,6 +34,7 @@ def sound_form(rate: int = RATE, *, is_mono: bool = False) -> tuple[str, ...]:
     return "-af", f"aresample=async=1:first_pts=0,{form}"
 
 
-def sound_input(file: Path, seconds: float) -> tuple[str, ...]:
+def sound_input(file: Path, seconds: float, begin: float = 0.0) -> tuple[str, ...]:
     """Options for an input of so much sound: of a file, and of nothing that this may point to."""
-    return "-protocol_whitelist", "file", "-t", f"{seconds:.6f}", "-i", f"file:{file}"
+    skipped = ("-ss", f"{begin:.6f}") if begin else ()
+    return "-protocol_whitelist", "file", *skipped, "-t", f"{seconds:.6f}", "-i", f"file:{file}"

@@ -36,6 +36,11 @@ def readable(name: str) -> str:
     return name.replace("_", " ")
 
 
+def called(name: str, *twin: str) -> str:
+    """A control in words, or with its twin both sides of it."""
+    return f"{readable(parted(name)[0])}, both sides" if twin else readable(name)
+
+
 @cache
 def _table(kind: str) -> Mapping[str, Any]:
     found: Mapping[str, Any] = read_words().get(kind, {})

@@ -111,7 +111,12 @@ def _window_rows(path: Path, size: tuple[int, int]) -> Iterator[Row]:
             session.seek(moments.uniform(0.0, session.script.duration))
             viewer._draw_gui(is_visible=True)
 
-        for what, call in (("a frame while scrubbing", scrub), ("the panels of a frame", panels)):
+        for what, call, shows_curves in (
+            ("a frame while scrubbing", scrub, False),
+            ("the panels of a frame", panels, False),
+            ("the same with curves", panels, True),
+        ):
+            viewer.settings.shows_curves = shows_curves
             taken: dict[bool, list[float]] = {False: [], True: []}
             for turn in range(2 * ROUNDS):
                 is_take = turn % 2 == 1
@@ -119,6 +124,8 @@ def _window_rows(path: Path, size: tuple[int, int]) -> Iterator[Row]:
                 call()
                 taken[is_take].append(milliseconds(call, FRAMES))
             yield Row(what, float(np.median(taken[True])), float(np.median(taken[False])))
+
+        viewer.settings.shows_curves = False
 
         def select() -> None:
             """A fifth of the take, as in a box."""

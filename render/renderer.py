@@ -302,13 +302,14 @@ class Renderer:
         viewport: Viewport | None = None,
         clip: Viewport | None = None,
         width: float = 1.6,
+        opacity: float = 1.0,
         hidden_opacity: float = 0.45,
     ) -> None:
         """Draw polylines over the scene; where something hides them they shine through.
 
         polylines: points of each line, shape (n, 3).
         colour: sRGB of all lines, or one row per line, shape (len(polylines), 3).
-        width: [pixels at scale 1]; hidden_opacity: 0 (hidden) to 1 (as if nothing were in front).
+        width: [pixels at scale 1]; opacity, hidden_opacity: 0 to 1, in front and behind something.
         """
         view = self._camera_view(camera, viewport, clip)
         program = self._program("lines.glsl")
@@ -326,10 +327,10 @@ class Renderer:
         content = [(self._gl.buffer(rows), "3f 3f", "in_position", "in_colour")]
         lines = self._gl.vertex_array(program, content, self._gl.buffer(segments))
         with self._blending():
-            for depth_func, opacity in ((">", hidden_opacity), ("<=", 1.0)):
-                if opacity > 0.0:
+            for depth_func, share in ((">", hidden_opacity), ("<=", opacity)):
+                if share > 0.0:
                     self._gl.depth_func = depth_func
-                    program["opacity"] = opacity
+                    program["opacity"] = share
                     lines.render(moderngl.LINES)
 
     @contextlib.contextmanager

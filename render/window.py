@@ -119,6 +119,24 @@ class WindowSurface(Surface):
         for label in self.labels:
             self._compositor.lay(*label)
 
+    @property
+    def frame_size(self) -> tuple[int, int]:
+        """Width and height that a frame which begins now will have [pixels]."""
+        return _framebuffer_size(self._glfw, self.handle)
+
+    def show(self, image: Image) -> None:
+        """Show a picture in place of a frame, (H, W, 3), uint8, of the frame's size."""
+        self.make_current()
+        size = image.shape[1], image.shape[0]
+        texture = self.gl.texture(size, 3, image[::-1].tobytes(), alignment=1)
+        frame = self.gl.framebuffer([texture])
+        self.gl.screen.use()
+        self.gl.viewport, self.gl.scissor = (0, 0, *size), None
+        self.gl.copy_framebuffer(self.gl.screen, frame)
+        self._glfw.swap_buffers(self.handle)
+        frame.release()
+        texture.release()
+
     def read(self) -> Image:
         """Return the frame as it is seen, with the panels; see `Surface.read`."""
         self.make_current()

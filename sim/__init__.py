@@ -15,11 +15,13 @@ from . import checked
 from .anatomy import build_anatomy
 from .cloth import Cloth
 from .face import Simulation, SimulationUnstable
+from .pulling import Pull
 from .rig import Rig
 from .rig_reader import read_rig
 from .trial import Trial
 
-__all__ = ["Cloth", "Rig", "Simulation", "SimulationUnstable", "Trial", "create", "read_rig"]
+__all__ = ["Cloth", "Pull", "Rig", "Simulation", "SimulationUnstable", "Trial"]
+__all__ += ["create", "read_rig"]
 
 
 def create(head: Any, *, gravity: bool = False, inertia: bool = False) -> Simulation:

@@ -131,6 +131,15 @@ class Controls:
         """Let activations follow their values for `dt` [s]: exact critically damped motion."""
         follow(self.wanted, self.activation, self._speed, self._rate, dt)
 
+    def arrive(self) -> None:
+        """Let activations be where their values are, at once."""
+        self.activation[:], self._speed[:] = self.wanted, 0.0
+
+    def copy_from(self, other: Controls) -> None:
+        """Take on values and activations of controls of the same face."""
+        self._values[:], self.wanted[:] = other._values, other.wanted
+        self.activation[:], self._speed[:] = other.activation, other._speed
+
     def reset(self) -> None:
         """All values and activations to zero at once."""
         for array in (self._values, self.wanted, self.activation, self._speed):

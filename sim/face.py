@@ -147,6 +147,11 @@ class Simulation:
         return self._anatomy.turns[:, 0]
 
     @property
+    def areas(self) -> Array:
+        """Skin that belongs to each vertex at rest [mm2 of the standard face], shape (V,)."""
+        return self._anatomy.surface.areas
+
+    @property
     def faces(self) -> npt.NDArray[np.int32]:
         """Triangles, shape (F, 3); they never change."""
         return self._anatomy.surface.faces
@@ -173,6 +178,24 @@ class Simulation:
         self.end_drag()
         self._place_targets()
         self._weight.forget()
+
+    def twin(self) -> Simulation:
+        """Another simulation of this face as it is now, of which no finger has hold."""
+        twin = Simulation(self._anatomy, gravity=self._weight.gravity)
+        twin.copy_from(self)
+        return twin
+
+    def copy_from(self, other: Simulation) -> None:
+        """Take on controls, positions and velocities of a twin."""
+        self._controls.copy_from(other._controls)
+        self._state.x[:], self._state.v[:] = other._state.x, other._state.v
+        self._positions[:] = other._positions
+
+    def jump(self, values: Mapping[str, float]) -> None:
+        """Set several controls, and let all muscles and bones obey at once; the skin follows."""
+        self._controls.set_all(values)
+        self._controls.arrive()
+        self._state.v[:] = 0.0
 
     def kick(self, velocities: npt.ArrayLike) -> None:
         """Add velocities [head units / s], shape (V, 3): a blow.

@@ -29,7 +29,7 @@ class Weight:
 
     def __init__(self, areas: Array, heaviness: float, *, gravity: bool, inertia: bool) -> None:
         self._mass = heaviness * AREAL_MASS * areas
-        self._gravity, self._inertia = gravity, inertia
+        self.gravity, self._inertia = gravity, inertia
         self.forget()
 
     def forget(self) -> None:
@@ -48,6 +48,6 @@ class Weight:
             spin = motion.rotation.T @ (turning - self._turning) / dt
             push = motion.rotation.T @ (moving - self._moving) / dt
             force -= self._mass[:, None] * (x @ spin.T + push)
-        if self._gravity and motion is not REST:
+        if self.gravity and motion is not REST:
             force += self._mass[:, None] * (motion.rotation.T @ GRAVITY - GRAVITY)
         self._motion, self._turning, self._moving = motion, turning, moving

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Protocol
 
 from risorius import render
 from risorius.assets.fitting import FittedHead
@@ -22,6 +24,16 @@ from .captions import SPLITS_BAR, captioned, labels
 from .transparency import straight
 
 
+class Painter(Protocol):
+    """Draws a scene onto an offscreen surface in a way of its own, as a window shows it."""
+
+    def refine(self, camera: render.OrbitCamera) -> None:
+        """Refine a frame that nobody draws."""
+
+    def draw_image(self, camera: render.OrbitCamera) -> Image:
+        """Draw it as it is now, (H, W, 3), or (H, W, 4) and premultiplied."""
+
+
 @dataclass(frozen=True)
 class CaptureOptions:
     """How a script is filmed."""
@@ -31,7 +43,11 @@ class CaptureOptions:
     refinement: Refinement = Refinement()  # noqa: RUF009 - frozen
     beside: tuple[Refinement, ...] = ()  # what it is compared with, on its left
     captions: bool = True  # names and triangle counts under a comparison
-    camera: str | None = None  # a named view, or yaw,pitch[,zoom] in degrees
+    camera: str | render.OrbitCamera | None = None  # a view, or yaw,pitch[,zoom] in degrees
+    is_turntable: bool = False  # the camera goes round once, by the last frame
+    span: tuple[float, float] | None = None  # [s] of the script that is seen; None: all of it
+    # What draws it instead of these refinements and this style.
+    painted: Callable[[Scene, render.OffscreenSurface], Painter] | None = None
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in one
@@ -73,7 +89,11 @@ class Capture:
         self.pipeline.bind(refinements)
         self._passes = Passes(self.pipeline) if options.passes else None
         self.viewports = side_by_side(self.surface.size, len(refinements))
-        self.camera = camera_for(scene, options.camera)
+        self._painter = None if options.painted is None else options.painted(scene, self.surface)
+        view = options.camera
+        self.camera = (
+            view.copy() if isinstance(view, render.OrbitCamera) else camera_for(scene, view)
+        )
 
     def __enter__(self) -> Capture:
         return self
@@ -84,6 +104,9 @@ class Capture:
 
     def draw_image(self) -> Image:
         """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""
+        if self._painter is not None:
+            image = self._painter.draw_image(self.camera)
+            return straight(image) if self.options.is_transparent else image
         self.surface.begin()
         self.pipeline.draw(self.camera, self.options.style, self.viewports)
         self.surface.end()
@@ -94,6 +117,13 @@ class Capture:
             shown = labels(texts, self.viewports, bar, style)
             image = captioned(image, shown, self.viewports)
         return straight(image) if self.options.is_transparent else image
+
+    def refine(self) -> None:
+        """Refine a frame that nobody draws: a refiner may remember it in the next one."""
+        if self._painter is None:
+            self.pipeline.refine(self.camera, self.viewports)
+        else:
+            self._painter.refine(self.camera)
 
     def draw_frame(self) -> Frame:
         """Draw the scene as it is now, and say what is known of the picture."""
@@ -106,15 +136,24 @@ class Capture:
     def play(
         self, script: Script, *, until: float | None = None, progress: bool = True
     ) -> Iterator[float]:
-        """Play a script and yield the time [s] of each frame, the scene moved to it."""
-        options = self.options
+        """Play a script and yield the time [s] of each frame, the scene moved to it.
+
+        Frames before the options' span are played, too: what is seen then depends on them.
+        """
+        options, yaw = self.options, self.camera.yaw
         viewer = self.camera.eye if options.is_alive else None
-        return play(
+        begin, end = options.span or (0.0, script.duration if until is None else until)
+        frames = max(round((end - begin) * options.frames_per_second), 1)
+        for time in play(
             self.scene,
             script,
             options.frames_per_second,
-            until=until,
+            until=end,
             viewer=viewer,
             step=self.pipeline.step,
             progress=progress,
-        )
+        ):
+            if options.is_turntable:
+                share = (time - begin) * options.frames_per_second / (frames + 1)
+                self.camera.yaw = math.remainder(yaw + 360.0 * share, 360.0)
+            yield time

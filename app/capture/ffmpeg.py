@@ -34,14 +34,15 @@ DYING = 1.0  # [s] for the end of a killed process
 
 @dataclass(frozen=True)
 class Soundtrack:
-    """What is heard in a film: a sound file from its start on, for so many seconds at most."""
+    """What is heard in a film: a sound file from `begin` [s] on, for so many seconds at most."""
 
     file: Path
     seconds: float
+    begin: float = 0.0
 
     def options(self, coding: str) -> list[str]:
         """Of ffmpeg, which has the frames as its first input."""
-        source = sound_input(self.file, self.seconds)
+        source = sound_input(self.file, self.seconds, self.begin)
         return [*source, "-map", "0:v", "-map", "1:a:0", *coding.split(), *sound_form()]
 
 

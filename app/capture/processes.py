@@ -61,7 +61,7 @@ def drawing(
 ) -> Iterator[Iterator[tuple[float, Callable[[], Frame]]]]:
     """Let `count` processes play a script; yield each frame's time [s] and what hands it over.
 
-    Each frame has to be taken. What goes wrong in a process is raised where its frame is taken.
+    Each frame of the span has to be taken. What goes wrong in a process is raised there.
     """
     drawers: list[Child] = []
 
@@ -154,10 +154,11 @@ def serve() -> None:
 
 def _draw(share: Share, hand_over: Callable[[object], None]) -> None:
     options = share.options
+    first = 0 if options.span is None else round(options.span[0] * options.frames_per_second)
     with Capture(scene_of(share.script, options.head), options) as capture:
         playing = capture.play(share.script, until=share.until, progress=False)
         for index, _ in enumerate(playing):
-            if index % share.every == share.first:
+            if index >= first and index % share.every == share.first:
                 hand_over(capture.draw_frame())
             else:
-                capture.pipeline.refine(capture.camera, capture.viewports)
+                capture.refine()

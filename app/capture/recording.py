@@ -43,17 +43,23 @@ def capture(
     rate = options.frames_per_second
     still_at = round(time * rate) / rate if still else -1.0
     until = still_at if still and not sheet else max(script.duration, still_at)
+    begin, until = options.span or (0.0, until)
+    begin -= 0.5 / rate  # a frame is of the span where it is nearest to its begin
     named: list[tuple[str, Image]] = []
     most = 0
     with contextlib.ExitStack() as stack:
         film = None
         if output is not None and not still:
-            film = stack.enter_context(_sink_for(output, options, overwrite, soundtrack_of(script)))
-        count = 1 if film is None else processes.worthwhile(options, round(until * rate) + 1)
+            film = stack.enter_context(
+                _sink_for(output, options, overwrite, soundtrack_of(script, options.span))
+            )
+        count = (
+            1 if film is None else processes.worthwhile(options, round((until - begin) * rate) + 1)
+        )
         playing = _played(script, options, until, progress, count)
         for now, draw in stack.enter_context(contextlib.closing(playing)):
             is_wanted = bool(wanted) and wanted[0].time <= now + 0.5 / rate
-            if film is None and not is_wanted and now != still_at:
+            if now < begin or (film is None and not is_wanted and now != still_at):
                 continue
             frame = draw()
             most = max(most, frame.triangle_count)
@@ -95,6 +101,14 @@ def _check(
     """Raise UserError, before any work is done, where one of the outputs cannot be."""
     if time is not None and not _is_image(output):
         raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
+    if options.span is not None:
+        begin, end = options.span
+        if sheet is not None or _is_image(output):
+            raise UserError("--range is for a film or a folder of frames")
+        if not 0.0 <= begin < end <= script.duration:
+            raise UserError(
+                f"--range {begin:g} {end:g}: take two times from 0 to {script.duration:g} s"
+            )
     if output is None and sheet is None:
         raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")
     if sheet and not script.key_poses:
@@ -123,9 +137,10 @@ def _check_passes(script: Script, output: Path | None, options: CaptureOptions) 
             check_file(path)
 
 
-def soundtrack_of(script: Script) -> Soundtrack | None:
-    """What is heard in a film of a script: its sound, as far as the script goes."""
-    return None if script.sound is None else Soundtrack(script.sound, script.duration)
+def soundtrack_of(script: Script, span: tuple[float, float] | None = None) -> Soundtrack | None:
+    """What is heard in a film of a script, or of a span of it [s]: its sound, as far as it goes."""
+    begin, end = span or (0.0, script.duration)
+    return None if script.sound is None else Soundtrack(script.sound, end - begin, begin)
 
 
 def _sink_for(

@@ -6,7 +6,9 @@ What needs OpenGL or compiled code is imported inside the commands, so that --he
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -39,6 +41,8 @@ from .options import (
 from .parameters import Size
 
 if TYPE_CHECKING:
+    from risorius.assets.fitting import FittedHead
+
     from ..live import Listening
     from ..script import Script
 
@@ -76,18 +80,14 @@ def capture(
     from ..capture.formats import HEARD
     from ..files import check_apart
     from ..passes.files import beside
-    from ..performances import script_for
     from ..refining import parse_comparison
-    from ..sound import with_sound
 
     written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
     check_apart(written, (script, sound, drawing.head, drawing.landmarks, playback.mapping))
     if sound is not None and (output is None or output.suffix.lower() not in HEARD):
         allowed = ", ".join(HEARD)
         raise UserError(f"--sound {sound}: only a film is heard; give -o a name in {allowed}")
-    tell = None if filming.quiet else told
-    performance = script_for(script, scene, settings, playback=playback, tell=tell)
-    performance = with_sound(performance, sound)
+    performance = _played(script, scene, sound, playback, settings, quiet=filming.quiet)
     refinement = drawing.refinement()
     options = CaptureOptions(
         size=filming.size,
@@ -96,6 +96,8 @@ def capture(
         beside=parse_comparison(filming.compare, refinement),
         captions=filming.captions,
         camera=filming.camera or performance.camera,
+        is_turntable=filming.turntable,
+        span=filming.span,
         style=replace(drawing.style(), background=filming.background),
         samples=filming.samples,
         head=drawing.fitted_head(),
@@ -142,17 +144,14 @@ def view(
     somebody's, which a phone or `risorius send` sends; --mapping, --gain and --mirror are that
     face's then.
     """
-    from ..performances import script_for
-    from ..sound import with_sound
-
     listening = live.listening(playback)
     if listening is not None:
         playback = replace(playback, mapping=None, gains=(), mirror=False)  # the live face has them
-    tell = None if quiet else told
-    performance = script_for(script, scene, playback=playback, tell=tell)
     is_bare = drawing.head is not None and drawing.landmarks is None and drawing.person is None
     mesh = drawing.head if is_bare else None
-    open_window(with_sound(performance, sound), size, drawing, listening=listening, mesh=mesh)
+    played = partial(_played, script, scene, sound, playback, quiet=quiet)
+    is_sheet = scene not in (None, "face")
+    open_window(played, size, drawing, listening=listening, mesh=mesh, is_sheet=is_sheet)
 
 
 @click.command()
@@ -202,12 +201,8 @@ def replay(
     drawing: Drawing,
 ) -> None:
     """Play SCRIPT, or a recording of a face, in the window."""
-    from ..performances import script_for
-    from ..sound import with_sound
-
-    tell = None if quiet else told
-    performance = with_sound(script_for(script, None, playback=playback, tell=tell), sound)
-    open_window(performance, size, drawing, playing=True, once=once)
+    played = partial(_played, script, None, sound, playback, quiet=quiet)
+    open_window(played, size, drawing, playing=True, once=once)
 
 
 @click.command()
@@ -237,8 +232,26 @@ def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> N
         click.echo(f"{in_one_line(output)}: {what}")
 
 
+def _played(
+    script: Path | None,
+    scene: str | None,
+    sound: Path | None,
+    playback: Playback,
+    settings: tuple[str, ...] = (),
+    *,
+    quiet: bool,
+) -> Script:
+    """What is played, with its sound; what there is to say of it is said, unless `quiet`."""
+    from ..performances import script_for
+    from ..sound import with_sound
+
+    tell = None if quiet else told
+    performance = script_for(script, scene, settings, playback=playback, tell=tell)
+    return with_sound(performance, sound)
+
+
 def open_window(
-    script: Script,
+    played: Callable[[], Script],
     size: tuple[int, int] | None,
     drawing: Drawing,
     *,
@@ -246,26 +259,45 @@ def open_window(
     once: bool = False,
     listening: Listening | None = None,
     mesh: Path | None = None,
+    is_sheet: bool = False,
 ) -> None:
-    """Open the viewer on a script's scene; or on a mesh whose landmarks are to be marked."""
-    head = drawing.fitted_head() if mesh is None else None
-    from ..viewer import Viewer
-    from ..viewer.live_commands import check_scene
-    from ..viewer.settings import display_of, settings_path
+    """Open the viewer on a script's scene; or on a mesh whose landmarks are to be marked.
 
-    if listening is not None:
-        check_scene(script.scene)
-    display = None  # as it was last
-    if drawing.is_told:
-        display = display_of(drawing.refinement(), script.scene, **drawing.style_options)
-    with Viewer(script, size, display, head=head, settings_path=settings_path()) as viewer:
+    played: reads the script, in a thread, while the window shows a picture already.
+    """
+    from ..viewer.opening import Opening, settings_path
+
+    def load() -> tuple[Script, FittedHead | None]:
+        """All that takes long, and can be wrong."""
+        script = played()
         if listening is not None:
-            line = viewer.live.start(listening)
-            if line and not viewer.messages.text:  # unless there is something wrong to be told
-                viewer.messages.say(line)
-        if mesh is not None:
-            viewer.mark(mesh)
-        viewer.run(playing=playing, once=once)
+            from ..viewer.live_commands import check_scene
+
+            check_scene(script.scene)
+        head = drawing.fitted_head() if mesh is None else None
+        import risorius.app.viewer.window  # noqa: F401
+
+        return script, head
+
+    path = settings_path()
+    is_own = is_sheet or drawing.head is not None or drawing.person is not None
+    with Opening(size, path, is_own=is_own) as opening:
+        script, head = opening.during(load)
+        from ..viewer import Viewer
+        from ..viewer.settings import display_of
+
+        display = None  # as it was last
+        if drawing.is_told:
+            display = display_of(drawing.refinement(), script.scene, **drawing.style_options)
+        viewer = Viewer(script, size, display, head=head, settings_path=path, opening=opening)
+        with viewer:
+            if listening is not None:
+                line = viewer.live.start(listening)
+                if line and not viewer.messages.text:  # unless there is something wrong to be told
+                    viewer.messages.say(line)
+            if mesh is not None:
+                viewer.mark(mesh)
+            viewer.run(playing=playing, once=once)
 
 
 @click.command()

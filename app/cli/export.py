@@ -7,8 +7,9 @@ from pathlib import Path
 
 import click
 
-from ..errors import counted, in_one_line
-from ..export.formats import RIGS, Request, check_request, format_for, names, write
+from ..errors import in_one_line
+from ..export.formats import RIGS, Request, check_request, format_for, names
+from ..export.formats import export as write
 from ..playback import Playback
 from .options import PATH, SCENE_NAMES, Subject, packed, told, with_playback, with_subject
 from .parameters import FiniteRange
@@ -83,9 +84,7 @@ def export(
     A recording of a face is a SCRIPT, too. Without SCRIPT the scene's own one is played, or a pose
     is held for a second: --set joy.
     """
-    from ..export.clip import record
     from ..files import check_apart
-    from ..motion import scene_of
     from ..performances import script_for
 
     chosen = format_for(output, exporting.name)
@@ -100,9 +99,10 @@ def export(
     check_request(output, chosen, request)
     tell = None if exporting.quiet else told
     performance = script_for(script, scene, settings, playback=playback, tell=tell)
-    played = scene_of(performance, subject.fitted_head())
-    clip = record(performance, played, exporting.fps, progress=not exporting.quiet)
-    remark = write(clip, output, chosen, request)
-    click.echo(f"{in_one_line(output)}: {chosen.title}, {counted(clip.frame_count, 'frame')}")
+    head = subject.fitted_head()
+    line, remark = write(
+        performance, output, chosen, request, head=head, frames_per_second=exporting.fps
+    )
+    click.echo(in_one_line(line))
     if remark is not None:
         click.echo(f"{in_one_line(output)}: {remark}", err=True)

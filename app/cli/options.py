@@ -249,6 +249,8 @@ class Filming:
     compare: str | None
     captions: bool
     camera: str | None
+    turntable: bool
+    span: tuple[float, float] | None
     background: render.Background | None
     passes: str | None
     alive: bool
@@ -273,6 +275,15 @@ with_filming = packed(
     ),
     click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
     click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
+    click.option("--turntable", is_flag=True, help="The camera goes round once."),
+    click.option(
+        "--range",
+        "span",
+        type=FiniteRange(0, 86_400),
+        nargs=2,
+        metavar="FROM TO",
+        help="The part of the script that is seen [s].",
+    ),
     click.option(
         "--background",
         type=BackgroundName(),

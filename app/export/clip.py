@@ -121,9 +121,10 @@ def record(
     scene: Scene | None = None,
     frames_per_second: float = 30.0,
     *,
+    span: tuple[float, float] | None = None,
     progress: bool = True,
 ) -> Clip:
-    """Play a script on its scene (built unless given) and keep all frames.
+    """Play a script on its scene (built unless given) and keep all frames, or those of `span` [s].
 
     Raises UserError where the scene has not what the script asks for.
     """
@@ -132,9 +133,11 @@ def record(
     bones: list[Mapping[str, Floats]] = []
     shapes: dict[str, list[Singles]] = {part.name: [] for part in scene.parts}
     simulation = scene.simulation if isinstance(scene, FaceScene) else None
-    controls: list[Floats] = []
-    activations: list[Floats] = []
-    for _ in play(scene, script, frames_per_second, progress=progress):
+    controls, activations = list[Floats](), list[Floats]()
+    begin, end = span or (0.0, script.duration)
+    for now in play(scene, script, frames_per_second, until=end, progress=progress):
+        if now < begin - 0.5 / frames_per_second:
+            continue
         positions.append(scene.positions.astype(np.float32))
         bones.append({name: np.array(each) for name, each in scene.bone_transforms().items()})
         for part in scene.parts:
@@ -169,9 +172,9 @@ def record(
         (skin, *parts),
         matrices,
         dict(zip(scene.values, np.stack(controls, axis=1), strict=True)),
-        dict(zip(simulation.sums, np.stack(activations, axis=1), strict=True))
-        if simulation
-        else {},
+        dict(
+            zip(simulation.sums if simulation else (), np.stack(activations, axis=1), strict=True)
+        ),
     )
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from tqdm import tqdm
 
-from ..errors import UserError
+from ..errors import UserError, counted
 from ..files import (
     cannot_be_written,
     check_file,
@@ -23,7 +23,10 @@ from ..files import (
 from ..stopping import cleaned_up_if_stopped
 
 if TYPE_CHECKING:
+    from risorius.assets.fitting import FittedHead
+
     from ..looks import Refinement
+    from ..script import Script
     from .clip import Clip
 
 
@@ -171,6 +174,26 @@ def write(clip: Clip, output: Path, chosen: Format, request: Request) -> str | N
     )
     with cannot_be_written(output), whole as part:
         return writer(clip, part, request)
+
+
+def export(
+    script: Script,
+    output: Path,
+    chosen: Format,
+    request: Request,
+    *,
+    head: FittedHead | None = None,
+    frames_per_second: float = 30.0,
+    span: tuple[float, float] | None = None,
+) -> tuple[str, str | None]:
+    """Play a script, or a span of it [s], and write it; a line on that, and a remark, if any."""
+    from ..motion import scene_of
+    from .clip import record
+
+    progress = request.progress
+    clip = record(script, scene_of(script, head), frames_per_second, span=span, progress=progress)
+    remark = write(clip, output, chosen, request)
+    return f"{output}: {chosen.title}, {counted(clip.frame_count, 'frame')}", remark
 
 
 def needed(module: str, package: str) -> Any:

@@ -7,7 +7,7 @@ import difflib
 import functools
 from array import array
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -137,21 +137,58 @@ class Channel:
         start = values[previous]
         return start + (values[following] - start) * _CURVES[easings[following]](share)
 
+    @functools.cached_property
+    def ends(self) -> tuple[float, float]:
+        """The lowest and the highest value of all."""
+        return float(self.values.min()), float(self.values.max())
+
+    def raised(
+        self, chosen: npt.NDArray[np.bool_], amount: float, low: float, high: float
+    ) -> Channel:
+        """The channel with the chosen keys higher, as far as the limits let them; shape (K,)."""
+        higher = within(self.values, amount, low, high)
+        return Channel(self.times, np.where(chosen, higher, self.values), self.easings)
+
+    def values_at(self, times: Floats) -> Floats:
+        """The same at each of many times [s]; both of shape (N,)."""
+        after = np.searchsorted(self.times, times, "right")
+        before = np.maximum(after - 1, 0)
+        following = np.minimum(after, len(self) - 1)
+        seconds = np.where(before < following, self.times[following] - self.times[before], 1.0)
+        shares = np.where(before < following, (times - self.times[before]) / seconds, 0.0)
+        for easing in set(self.easings[following].tolist()):
+            is_eased = self.easings[following] == easing
+            shares[is_eased] = _CURVES[easing](shares[is_eased])
+        start = self.values[before]
+        values: Floats = start + (self.values[following] - start) * shares
+        return values
+
+    def outline(self, start: float, end: float, count: int) -> tuple[Floats, Floats]:
+        """Times [s] and values of points that draw the curve between two times.
+
+        As true as `count` columns can show it: with every key and every jump where these are
+        fewer than the columns, else with what is lowest and highest in each. Each of shape (N,),
+        no more than about four points to a column.
+        """
+        keys = self.times[np.searchsorted(self.times, start) :]
+        keys = keys[: np.searchsorted(keys, end, "right")]
+        if len(keys) <= count:  # "hold" jumps at a key: it needs a point just before as well
+            steps = np.linspace(start, end, count + 1)
+            times = np.unique(np.concatenate([steps, keys, np.nextafter(keys, -np.inf)]))
+            return times, self.values_at(times)
+        lowest, highest = self.extremes(np.linspace(start, end, count + 1))
+        is_falling = np.gradient(lowest + highest) < 0.0
+        first, second = np.where(is_falling, (highest, lowest), (lowest, highest))
+        halves = np.linspace(start, end, 4 * count + 1)[1::2]  # the middles of halves of columns
+        return halves, np.stack([first, second], axis=1).ravel()
+
     def extremes(self, edges: Floats) -> tuple[Floats, Floats]:
         """The lowest and the highest value between each two of the times `edges` [s], which rise.
 
         edges: shape (N,). Each of both: shape (N - 1,).
         """
+        values = self.values_at(edges)
         after = np.searchsorted(self.times, edges, "right")
-        before = np.maximum(after - 1, 0)
-        following = np.minimum(after, len(self) - 1)
-        seconds = np.where(before < following, self.times[following] - self.times[before], 1.0)
-        shares = np.where(before < following, (edges - self.times[before]) / seconds, 0.0)
-        for easing in set(self.easings[following].tolist()):
-            is_eased = self.easings[following] == easing
-            shares[is_eased] = _CURVES[easing](shares[is_eased])
-        start = self.values[before]
-        values = start + (self.values[following] - start) * shares
         # Easings never turn back, so that all other extremes are at keys.
         everything = np.insert(self.values[after[0] : after[-1]], after - after[0], values)
         begins = after - after[0] + np.arange(len(edges))
@@ -168,6 +205,14 @@ class Pose:
     values: Mapping[str, float] = field(default_factory=dict)
     easing: str = "smooth"
     name: str | None = None  # one that has a name gets a picture on a contact sheet
+
+    def raised(self, names: Iterable[str], amount: float, limits: Limits) -> Pose:
+        """The pose with some values higher, as far as their limits let them."""
+        higher = {
+            name: float(within(self.values.get(name, 0.0), amount, *limits[name])) for name in names
+        }
+        new = {name: value for name, value in higher.items() if value or name in self.values}
+        return replace(self, values={**self.values, **new})
 
 
 @dataclass(frozen=True)
@@ -205,6 +250,11 @@ class Script:
                 start = previous.values.get(name, 0.0)
                 values[name] = start + (following.values.get(name, 0.0) - start) * share
         return values
+
+    def posed_channel(self, name: str) -> Channel:
+        """How the poses alone move a control, which is as a track of these keys would."""
+        keys = (Key(each.time, each.values.get(name, 0.0), each.easing) for each in self.poses)
+        return Channel.of(keys)
 
     @property
     def key_poses(self) -> tuple[Pose, ...]:
@@ -257,6 +307,13 @@ def _between(times: Sequence[float], time: float) -> tuple[int, int, float]:
         return outermost, outermost, 0.0
     previous, following = times[after - 1], times[after]
     return after - 1, after, (time - previous) / (following - previous)
+
+
+def within(values: npt.ArrayLike, amount: float, low: float, high: float) -> Floats:
+    """Values higher by an amount, within limits; what is beyond these already may stay there."""
+    now = np.asarray(values, np.float64)
+    higher = np.clip(now + amount, np.minimum(now, low), np.maximum(now, high))
+    return np.round(higher, DECIMALS)
 
 
 def rounded(number: float) -> float:

@@ -1,5 +1,6 @@
 """The window: a face that answers to sliders, keys, the mouse and a script.
 
+opening.py    the window as it opens, before anything else is there
 parts.py      joins everything     (start reading here)
 window.py     one turn of the loop, and when it rests
 session.py    what the user does: controls, script, recording, undo, unsaved work; knows no window
@@ -13,7 +14,21 @@ painter.py, physics.py, panel_cache.py     what keeps it smooth: each does no mo
 recovery.py, unsaved.py    unsaved work outlives a crash
 """
 
+from typing import TYPE_CHECKING, Any
+
 from . import gui  # first, before anything opens a window: see there
-from .window import Viewer
+
+if TYPE_CHECKING:
+    from .window import Viewer
+
+
+def __getattr__(name: str) -> Any:
+    """`Viewer`, imported when it is asked for: the window opens before (opening.py)."""
+    if name != "Viewer":
+        raise AttributeError(name)
+    from .window import Viewer
+
+    return Viewer
+
 
 __all__ = ["Viewer", "gui"]

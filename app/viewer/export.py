@@ -1,93 +1,206 @@
-"""Pictures and films of what is displayed, written as `risorius capture` writes them."""
+"""Pictures of what is displayed, and exports: what `risorius capture` and `export` write.
+
+An export goes on in a process of its own, with script and view as they were; the window stays free.
+"""
 
 from __future__ import annotations
 
-import contextlib
 import time
+from collections.abc import Callable
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
+from typing import Any
 
-from ..capture import outputs
-from ..capture.outputs import FrameSink
+from risorius import render
+from risorius.assets.fitting import FittedHead
+
+from ..capture import CaptureOptions, capture
 from ..errors import UserError
-from ..files import Image, save_png
-from .messages import Message, Messages
-from .stage import Stage
+from ..export.formats import Request, check_request, export, format_for
+from ..files import Image, check_file, save_png
+from ..pipeline import Viewport
+from ..scenes import FaceScene, Scene
+from ..script import Script, pose_script
+from ..workers import telling
+from .export_kinds import FRAMES, KINDS, SHEET, Kind
+from .frame_times import FrameTimes
+from .gui import wake_up
+from .messages import Message
+from .session import Session
+from .settings import Display, ExportChoices, Settings
+from .stage import Stage, style_of
 from .view import View
 
-FRAMES_PER_SECOND = 30.0
+
+def free_name(folder: Path, stem: str, suffix: str) -> Path:
+    """A name in a folder that no file has yet."""
+    names = (f"{stem}{extra}{suffix}" for extra in ("", *(f"-{n}" for n in range(2, 1000))))
+    return next((folder / each for each in names if not (folder / each).exists()), folder / stem)
 
 
-def free_name(folder: Path, suffix: str) -> Path:
-    """A name by date and time that no file has yet."""
-    stem = time.strftime("risorius-%Y%m%d-%H%M%S")
-    names = (f"{stem}{extra}{suffix}" for extra in ("", *(f"-{n}" for n in range(2, 100))))
-    return next((folder / name for name in names if not (folder / name).exists()), folder / stem)
+@dataclass
+class StagePainter:
+    """Draws as the window does, in a process that makes a film; stands for a `View` there."""
+
+    display: Display
+    background: render.Background | None
+    viewport: Viewport
+    has_captions: bool
+    camera: Any = None
+    pointed: tuple[str, ...] = ()
+    letter: float = 11.0  # [pixels] of captions, at least, as those of `capture`
+    stage: Any = None
+
+    def on(self, scene: Scene, surface: Any) -> StagePainter:
+        """Draw this scene onto that surface."""
+        self.stage = Stage(surface, scene, self.display, FrameTimes())
+        return self
+
+    def refine(self, camera: render.OrbitCamera) -> None:
+        """Refine a frame that nobody draws."""
+        for shot in self.stage.shots(self.display, self.viewport):
+            shot.drawn.refine(self.stage.scene.positions, camera, shot.viewport)
+
+    def draw_image(self, camera: render.OrbitCamera) -> Image:
+        """The picture; premultiplied, where it is transparent."""
+        self.camera = camera
+        image: Image = self.stage.draw_image(self, has_captions=self.has_captions)
+        return image
 
 
-class Film:
-    """A film that grows by a frame at a time; the file is there once it is closed."""
+@dataclass
+class Job:
+    """An export that is being made."""
 
-    def __init__(self, target: Path) -> None:
-        self.target = target
-        self.frame_count = 0
-        self._size: tuple[int, int] | None = None
-        self._files = contextlib.ExitStack()
-        self._sink: FrameSink | None = None
-
-    @property
-    def seconds(self) -> float:
-        """How long it is so far."""
-        return self.frame_count / FRAMES_PER_SECOND
-
-    def add(self, frame: Image) -> None:
-        """Add a frame; UserError where the size has changed."""
-        size = frame.shape[1], frame.shape[0]
-        if self._sink is None:
-            self._size = size
-            opened = outputs.film(self.target, size, FRAMES_PER_SECOND)
-            self._sink = self._files.enter_context(opened)
-        if self._size != size:
-            raise UserError("the film ends here, because the picture has another size now")
-        self._sink(frame)
-        self.frame_count += 1
-
-    def close(self) -> None:
-        """Finish the file."""
-        self._files.close()
-        self._sink = None
+    target: Path
+    task: telling.Task
+    began: float  # [s]
+    told: float = 0.0  # how much of it was done when the user was told
 
 
 class Exporter:
-    """Screenshots and films of a stage, into the present folder."""
+    """Screenshots of a stage; films and files of a session, one at a time."""
 
-    def __init__(self, stage: Stage, view: View) -> None:
-        self._stage, self._view = stage, view
-        self.film: Film | None = None  # that is being made
+    def __init__(self, session: Session, settings: Settings, stage: Stage, view: View) -> None:
+        self._session, self._settings, self._stage, self._view = session, settings, stage, view
+        self.job: Job | None = None
+        self.is_asking = False  # the dialog is open
+        self.name = ""
+        self.span = (0.0, 0.0)  # [s] that is exported of a script in part
+
+    @property
+    def choices(self) -> ExportChoices:
+        """What is exported, and how."""
+        return self._settings.export
+
+    @property
+    def kind(self) -> Kind:
+        """The kind of file."""
+        return KINDS[self.choices.kind]
+
+    @property
+    def target(self) -> Path:
+        """The file, or folder of frames."""
+        name, suffix = self.name, self.kind.suffix
+        folder = Path(self.choices.folder or ".").expanduser()
+        return folder / f"{name.removesuffix(suffix)}{suffix}"
 
     def screenshot(self) -> Message:
         """Write the picture without panels, in full detail."""
-        target = free_name(Path.cwd(), ".png")
+        target = free_name(Path.cwd(), time.strftime("risorius-%Y%m%d-%H%M%S"), ".png")
         save_png(target, self._stage.draw_image(self._view))
         return f"{target.name}: written to {target.parent}"
 
-    def toggle_film(self) -> Message:
-        """Begin a film of what is displayed, or finish it."""
-        if self.film is None:
-            self.film = Film(free_name(Path.cwd(), ".mp4"))
-            return None
-        film, self.film = self.film, None
-        film.close()
-        if not film.frame_count:
-            return None
-        return f"{film.target.name}: {film.seconds:.1f} s in {film.target.parent}"
+    def ask(self) -> None:
+        """Open the dialog, with what was used last."""
+        script = self._session.script
+        if not (script.posed_names or script.tracks):
+            self.choices.source = "pose"
+        self.choices.folder = self.choices.folder or str(Path.cwd())
+        self.span, self.name = (0.0, script.duration), Path(self._session.name).stem
+        self.propose()
+        self.is_asking = True
 
-    def add_to_film(self, messages: Messages) -> None:
-        """Draw the next frame of the film, which ends where that cannot be written."""
-        film, frame = self.film, self._stage.draw_image(self._view)
-        if film is not None:
-            messages.attempt(lambda: film.add(frame), otherwise=self.toggle_film)
+    def propose(self) -> None:
+        """Take a name that no file has."""
+        suffix = self.kind.suffix
+        self.name = free_name(self.target.parent, self.name, suffix).name.removesuffix(suffix)
 
-    def close(self) -> None:
-        """Finish a film that is being made."""
-        if self.film is not None:
-            self.film.close()
+    def played(self) -> tuple[Script, tuple[float, float]]:
+        """The script, or the face as it is, and from when to when that is exported [s]."""
+        session, choices = self._session, self.choices
+        if choices.source == "pose" and choices.kind != SHEET:
+            pose = pose_script(session.current, title="pose", scene=session.script.scene)
+            return replace(pose, duration=choices.seconds), (0.0, choices.seconds)
+        is_part = choices.source == "part" and choices.kind != SHEET
+        return session.script, self.span if is_part else (0.0, session.script.duration)
+
+    def _options(self, head: FittedHead | None, span: tuple[float, float]) -> CaptureOptions:
+        """How `capture` is told to draw what the window shows."""
+        choices, view, is_sheet = self.choices, self._view, self.choices.kind == SHEET
+        is_clear = choices.is_transparent and self.kind.can_be_transparent
+        background, display = None if is_clear else view.background, deepcopy(view.display)
+        area = (0, 0, *choices.size)
+        return CaptureOptions(
+            choices.size,
+            choices.rate,
+            camera=view.camera.copy(),
+            is_turntable=choices.is_turntable and not is_sheet,
+            span=None if is_sheet else span,
+            painted=StagePainter(display, background, area, choices.has_captions).on,
+            style=style_of(display, background),
+            head=head,
+            is_alive=self._settings.is_alive,
+        )
+
+    def start(self) -> None:
+        """Check what can be checked, and begin; UserError where it cannot be."""
+        if not self.name:
+            raise UserError("give the file a name")
+        choices, target, (script, span) = self.choices, self.target, self.played()
+        scene = self._session.scene
+        head = scene.head if isinstance(scene, FaceScene) else None
+        head = head if isinstance(head, FittedHead) else None
+        work: Callable[[], object]
+        if self.kind.is_drawn:
+            check_file(target / "frame.png" if choices.kind == FRAMES else target)
+            draw = partial(capture, script, self._options(head, span), overwrite=True)
+            name = "sheet" if choices.kind == SHEET else "output"
+            work = partial(draw, progress=False, **{name: target})
+        else:
+            chosen = format_for(target, choices.kind)
+            request = Request(overwrite=target.exists(), progress=False)
+            check_request(target, chosen, request)
+            rate = choices.rate
+            write = partial(export, head=head, frames_per_second=rate, span=span)
+            work = partial(write, script, target, chosen, request)
+        task = telling.Task(work, round(span[1] * choices.rate) + 1, wake_up)
+        self.job, self.is_asking = Job(target, task, time.monotonic()), False
+
+    @property
+    def has_news(self) -> bool:
+        """Whether there is more to be told of it than a moment ago."""
+        job = self.job
+        if job is None or (job.told == job.task.share and job.task.outcome is None):
+            return False
+        job.told = job.task.share
+        return True
+
+    def poll(self) -> Message:
+        """Look whether it is done, and say so; UserError where it failed."""
+        job = self.job
+        outcome = None if job is None else job.task.outcome
+        if job is None or outcome is None:
+            return None
+        self.cancel()
+        if outcome.error is not None:
+            raise UserError(outcome.error)
+        return f"{job.target.name}: written to {job.target.parent}"
+
+    def cancel(self) -> None:
+        """End it; what is half written goes."""
+        job, self.job = self.job, None
+        if job is not None:
+            job.task.stop()

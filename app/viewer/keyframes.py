@@ -112,6 +112,24 @@ def eased(script: Script, places: Places, easing: str) -> Script:
     return _with(script, changed)
 
 
+def raised(
+    script: Script, places: Places, amount: float, limits: Limits, posed: Iterable[str]
+) -> Script:
+    """The script with these keys higher, within limits; of poses, in the controls `posed`."""
+    poses, tracks = script.poses, dict(script.tracks)
+    for name, times in places.times.items():
+        if name == POSES:
+            at = set(times.tolist())
+            poses = tuple(p.raised(posed, amount, limits) if p.time in at else p for p in poses)
+        else:
+            low, high = limits[name]
+            if name in script.posed_names:  # to which a track may add anything
+                low, high = low - high, high - low
+            track = tracks[name]
+            tracks[name] = track.raised(among(track.times, times), amount, low, high)
+    return replace(script, poses=poses, tracks=tracks)
+
+
 def lasting(script: Script, seconds: float) -> Script:
     """The script with another duration, which leaves out no named pose."""
     ends = [pose.time for pose in script.key_poses]

@@ -17,7 +17,6 @@ from .file_drop import FileDrop
 from .key_selection import KeySelection
 from .live_commands import LiveCommands
 from .messages import Message, Task
-from .motion_export import MotionExport
 from .panel_state import PanelState
 from .placement import Placement
 from .script_commands import ScriptCommands
@@ -36,13 +35,13 @@ VIEW_KEYS = {
 def file_menu(
     scripts: ScriptCommands,
     file_drop: FileDrop,
-    motion_export: MotionExport,
     exporter: Exporter,
     close: Task,
 ) -> Menu:
     """Files that come and go, and the end."""
     command = partial(Command, "File")
     other = partial(command, can_run=lambda: file_drop.has_other_head)
+    export = partial(command, can_run=lambda: exporter.job is None)
     return (
         command("New script", "Ctrl+N", scripts.new),
         command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
@@ -54,9 +53,8 @@ def file_menu(
         command("Save script", "Ctrl+S", scripts.save),
         command("Save script as ...", "Ctrl+Shift+S", scripts.save_as),
         command("Save pose ...", "Ctrl+P", scripts.save_pose),
-        command("Export motion ...", "Ctrl+E", motion_export.ask),
         command("Screenshot", "F12", exporter.screenshot),
-        command("Film", "F10", exporter.toggle_film, lambda: exporter.film is not None),
+        export("Export ...", "Ctrl+E", exporter.ask, other_key="F10"),
         command("Quit", "Ctrl+Q", close),
     )
 
@@ -142,7 +140,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
 
 def view_menu(settings: Settings, view: View, placement: Placement, panels: PanelState) -> Menu:
     """How the scene is drawn, and what is around it."""
-    command = partial(Command, "View")
+    command, flip = partial(Command, "View"), settings.toggle
 
     def switch(label: str, key: str, field: str, on: object = True, off: object = False) -> Command:
         """A field of the settings of display that has this value or the other."""
@@ -181,7 +179,11 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         command("Next shading", "S", lambda: settings.display.next_shading()),
         switch("Texture", "T", "skin", "textured", "plain"),
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
-        command("Idle life", "A", partial(flip, settings, "is_alive"), lambda: settings.is_alive),
+        command("Idle life", "A", partial(flip, "is_alive"), lambda: settings.is_alive),
+        command("Curves", "G", partial(flip, "shows_curves"), lambda: settings.shows_curves),
+        command(
+            "Frame numbers", "", partial(flip, "counts_frames"), lambda: settings.counts_frames
+        ),
         command("Frame the face", "F", view.fit_scene),
         *views,
         replace(switch("Orthographic", "Keypad5", "is_orthographic"), other_key="Alt+5"),
@@ -218,8 +220,11 @@ def live_menu(live: LiveCommands) -> Menu:
     )
 
 
-def help_menu(panels: PanelState) -> Menu:
-    """The overview of keys."""
+def help_menu(panels: PanelState, begin_steps: Task) -> Menu:
+    """The overview of keys, and how to begin."""
     is_open = partial(getattr, panels, "is_help_open")
     toggle = partial(flip, panels, "is_help_open")
-    return (Command("Help", "Keys and mouse", "F1", toggle, is_open),)
+    return (
+        Command("Help", "First steps", "", begin_steps),
+        Command("Help", "Keys and mouse", "F1", toggle, is_open),
+    )

@@ -1,7 +1,7 @@
 """The mouse in the picture: drag the skin, click a muscle, turn the camera, drag the divider.
 
 Left on the skin drags it, left beside it orbits, right orbits anywhere, middle or Shift pans, the
-wheel zooms. Dragged skin hangs on springs between the vertices under the mouse and where it drags.
+wheel zooms. What a finger does to the skin is in skin_drag.py.
 """
 
 from __future__ import annotations
@@ -9,57 +9,23 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
 from imgui_bundle import imgui
 
 from risorius import render
 
 from .gui import LEFT, MIDDLE, RIGHT, em
-from .picking import Ray, muscle_at, skin_under
+from .messages import Messages
+from .picking import Ray, skin_under
+from .skin_drag import SkinDrag
 from .stage import Stage
 from .view import View
 
+Grab = Callable[..., SkinDrag]
+Select = Callable[[str], None]
+
 DEGREES_PER_EM = 5.5
 ZOOM_PER_NOTCH = 1.1
-FINGER = 16.0  # [mm] the finger's radius
-FARTHEST = 45.0  # [mm] that a finger drags, lest the skin turns inside out
 CLICK = 4.0  # [window units] a press that moves less is a click, not a drag
-
-FloatArray = npt.NDArray[np.float64]
-
-
-class SkinDrag:
-    """A finger that holds on to the skin."""
-
-    def __init__(self, scene: Any, point: FloatArray) -> None:
-        self._scene = scene
-        self.point = point
-        distance = np.linalg.norm(scene.positions - point, axis=1)
-        self._vertices = np.flatnonzero(distance < FINGER)
-        if not len(self._vertices):
-            self._vertices = distance.argmin(keepdims=True)
-        self._from = scene.positions[self._vertices].copy()
-        near = distance[self._vertices] / FINGER
-        self._firmness = (
-            np.maximum((1.0 - near**2) ** 2, 0.02) if near.max() < 1.0 else near * 0 + 1
-        )
-        self.offset = np.zeros(3)
-
-    def to(self, point: FloatArray) -> None:
-        """Drag to a point, or toward it if that is too far."""
-        offset = point - self.point
-        length = float(np.linalg.norm(offset))
-        self.offset = offset * (FARTHEST * np.tanh(length / FARTHEST) / max(length, 1e-9))
-        self._scene.simulation.drag(self._vertices, self._from + self.offset, self._firmness)
-
-    def muscle(self) -> str | None:
-        """The one under the finger, if any."""
-        return muscle_at(self.point, self._scene.simulation.fibres())
-
-    def end_drag(self) -> None:
-        """The skin swings back."""
-        self._scene.simulation.end_drag()
 
 
 class CameraMouse:
@@ -138,10 +104,13 @@ class CameraMouse:
 class Mouse(CameraMouse):
     """The mouse on a face: it drags the skin, and the line between two halves."""
 
-    def __init__(self, view: View, stage: Stage, select_muscle: Callable[[str], None]) -> None:
-        """select_muscle: called with the name of one that was clicked."""
+    def __init__(
+        self, view: View, stage: Stage, messages: Messages, grab: Grab, select_muscle: Select
+    ) -> None:
+        """grab: makes a finger. select_muscle: called with the name of one that was clicked."""
         super().__init__(view, stage.surface)
-        self._stage, self._select_muscle = stage, select_muscle
+        self._stage, self._messages = stage, messages
+        self._grab, self._select_muscle = grab, select_muscle
 
     def forget(self) -> None:
         super().forget()
@@ -151,6 +120,12 @@ class Mouse(CameraMouse):
     def is_dragging_skin(self) -> bool:
         """Whether the skin is being dragged."""
         return self.skin_drag is not None and bool(self.skin_drag.offset.any())
+
+    @property
+    def gestures(self) -> tuple[bool, bool]:
+        """Whether the skin, and whether the line between two halves, is being dragged."""
+        is_line = self._doing == "divider" and self._has_moved(imgui.get_io())
+        return self.is_dragging_skin, is_line
 
     def _hover(self, io: Any) -> None:
         if self._is_at_divider(io.mouse_pos.x):
@@ -162,10 +137,11 @@ class Mouse(CameraMouse):
         scene = self._stage.scene
         if not hasattr(scene, "simulation"):
             return "orbit"
-        point = skin_under(self._ray(io), scene.positions, scene.faces)
+        ray = self._ray(io)
+        point = skin_under(ray, scene.positions, scene.faces)
         if point is None:
             return "orbit"
-        self.skin_drag = SkinDrag(scene, point)
+        self.skin_drag = self._grab(point, ray.direction, poses=not io.key_ctrl)
         return "skin"
 
     def _drag(self, io: Any) -> None:
@@ -179,7 +155,7 @@ class Mouse(CameraMouse):
 
     def _release(self, io: Any) -> None:
         if self.skin_drag is not None:
-            self.skin_drag.end_drag()
+            self._messages.attempt(self.skin_drag.let_go)
             if not self.is_dragging_skin and not self._has_moved(io):
                 name = self.skin_drag.muscle()
                 if name is not None:

@@ -18,6 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 # sRGB
 RELAXED, CONTRACTED = np.array([0.80, 0.55, 0.50]), np.array([0.78, 0.05, 0.08])
 POINTED_AT = np.array([1.0, 0.66, 0.10])
+FAINT = 0.3  # opacity of what is pointed at
 BONE = np.array([0.93, 0.89, 0.74])
 MANDIBLE = np.array([0.80, 0.87, 0.93])
 SLACK, STRETCHED, SQUEEZED = (
@@ -37,6 +38,7 @@ class Lines(NamedTuple):
     colours: FloatArray
     width: float = 1.6
     hidden_opacity: float = 0.45
+    opacity: float = 1.0
 
 
 def muscle_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.OrbitCamera) -> Lines:
@@ -101,10 +103,10 @@ def overlays_of(scene: Scene) -> tuple[str, ...]:
 
 
 def pointed_lines(scene: Any, names: Collection[str]) -> Lines:
-    """The fibres of some muscles, for whoever points at their sliders."""
+    """The fibres of some muscles, faint, for whoever points at their sliders."""
     fibres = scene.simulation.fibres() if hasattr(scene, "simulation") else {}
     lines = [line for name in names for line in fibres.get(name, ())]
-    return Lines(lines, np.tile(POINTED_AT, (len(lines), 1)), width=3.0, hidden_opacity=1.0)
+    return Lines(lines, np.tile(POINTED_AT, (len(lines), 1)), 2.0, FAINT, FAINT)
 
 
 def _rows(colours: Sequence[FloatArray]) -> FloatArray:

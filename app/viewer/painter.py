@@ -6,7 +6,6 @@ from typing import Protocol
 
 from risorius import render
 
-from .export import Exporter
 from .level_of_detail import FULL, LevelOfDetail
 from .messages import Messages
 from .physics import CALM
@@ -29,9 +28,8 @@ class Picture(Protocol):
 class Painter:
     """Keeps the picture of the scene up to date, as finely as the machine can."""
 
-    def __init__(self, stage: Picture, view: View, exporter: Exporter, messages: Messages) -> None:
-        self._stage, self._view, self._exporter = stage, view, exporter
-        self._messages = messages
+    def __init__(self, stage: Picture, view: View, messages: Messages) -> None:
+        self._stage, self._view, self._messages = stage, view, messages
         self.level_of_detail = LevelOfDetail(is_software=stage.surface.is_software)
         self._calm_for = 0.0  # [s] that the picture has not changed
         self.forget()
@@ -60,7 +58,7 @@ class Painter:
         if has_changed and self._calm_for > CALM:
             self.level_of_detail.begin_motion()
         self._calm_for = 0.0 if has_changed else self._calm_for + elapsed
-        if has_changed or self._exporter.film is not None:
+        if has_changed:
             level = self.level_of_detail
             is_unhurried = is_alive and state == painted
             self._draw(level.unhurried if is_unhurried else level.detail, state)
@@ -70,10 +68,6 @@ class Painter:
 
     def _draw(self, detail: render.Detail, state: object) -> None:
         self._messages.attempt(lambda: self._stage.bind(self._view.display))
-        if self._exporter.film is None:
-            self._stage.surface.detail, self._stage.surface.labels = detail, ()
-            self._stage.draw(self._view)
-        else:
-            detail = FULL
-            self._exporter.add_to_film(self._messages)
+        self._stage.surface.detail, self._stage.surface.labels = detail, ()
+        self._stage.draw(self._view)
         self._painted = state, detail

@@ -6,10 +6,11 @@ import contextlib
 from functools import partial
 from pathlib import Path
 
-from risorius import render
+from risorius import refine
 from risorius.assets.fitting import FittedHead
 
 from ..errors import UserError
+from ..refining import refiner_for
 from ..scenes import BUILT_IN, Scene, build_scene
 from ..script import Script
 from . import menus
@@ -24,22 +25,25 @@ from .key_selection import KeySelection
 from .live_commands import LiveCommands
 from .marking import Marking, Room
 from .messages import Message, Messages
-from .motion_export import MotionExport
 from .mouse import Mouse
+from .opening import Opening
 from .painter import Painter
 from .panel_cache import PanelCache
 from .panel_state import PanelState
 from .panels.chooser import FileChooser
 from .panels.dope_sheet import DopeSheet
+from .panels.export_dialog import ExportDialog
 from .panels.face import FacePanel
+from .panels.first_steps import FirstSteps
 from .panels.layout import Layout
 from .panels.live import LivePanel
 from .panels.mechanism import MechanismPanel
 from .panels.menu_bar import MenuBar
+from .panels.muscle_note import MuscleNote
 from .panels.timeline import Timeline
 from .panels.waveform import Waveform
 from .physics import Physics
-from .placement import Placement, first_size
+from .placement import Placement
 from .question import Question
 from .recovery import Recovery
 from .script_commands import ScriptCommands
@@ -52,6 +56,7 @@ from .settings import (
     rename_unusable,
     save_settings,
 )
+from .skin_drag import SkinDrag
 from .soundtrack import Soundtrack
 from .stage import Stage
 from .time_axis import TimeAxis
@@ -69,10 +74,12 @@ class Parts:
         *,
         head: FittedHead | None = None,
         settings_path: Path | None = None,
+        opening: Opening | None = None,
     ) -> None:
         """Open the window.
 
         head: a user's own, None for the built-in one. size, display: None takes what is remembered.
+        opening: the window, where it is open already.
         settings_path: where that is kept, and beside it what is not saved; None for nowhere.
         Raises UserError for a script that names what the scene has not.
         """
@@ -80,7 +87,10 @@ class Parts:
         self.settings, complaint = Settings(), ""
         if settings_path is not None:
             self.settings, complaint = load_settings(settings_path)
-        scene = build_scene(script.scene, head)
+        is_own = script.scene != "face" or head is not None
+        opening = opening or Opening(size, settings_path, is_own=is_own)
+        shown = display or self.settings.display
+        scene = opening.during(partial(_ready_scene, script, head, shown))
         self.session = Session(scene, script)
         self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
         self.recovery.find(self.session)
@@ -95,9 +105,8 @@ class Parts:
         self.settings.display.remove_missing_overlays(scene)
         self.times = FrameTimes()
         with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
-            title = f"Risorius: {self.session.name}"
-            self.surface = render.open_window(size or first_size(self.settings.size), title)
-            stack.callback(self.surface.close)
+            stack.push(opening)
+            self.surface = opening.surface
             self.gui = Gui(self.surface.handle)
             stack.callback(self.gui.close)
             self.stage = Stage(self.surface, scene, self.settings.display, self.times)
@@ -117,27 +126,24 @@ class Parts:
         self.panel_state, self.time_axis = PanelState(wanted_tab=settings.tab), TimeAxis()
         self.selection = KeySelection(session, self.panel_state)
         self.scripts = ScriptCommands(session, self.files, self.question)
-        self.exporter = Exporter(self.stage, self.view)
-        self.motion_export = MotionExport(session, self.files)
+        self.exporter = Exporter(session, settings, self.stage, self.view)
         self.live = LiveCommands(session, self.panel_state, wake_up)
         self.room: Room | None = None  # a mesh whose landmarks are being marked
         self.file_drop = FileDrop(self.files, self.scripts, self.show_scene, self.mark)
         self.file_drop.has_other_head = session.scene.called not in ("", BUILT_IN)
         self.commands: tuple[Command, ...] = (
-            *menus.file_menu(
-                self.scripts, self.file_drop, self.motion_export, self.exporter, self.ask_to_close
-            ),
+            *menus.file_menu(self.scripts, self.file_drop, self.exporter, self.ask_to_close),
             *menus.edit_menu(session),
             *menus.time_menu(session, self.scripts, self.time_axis),
             *menus.keys_menu(session, self.selection),
             *menus.view_menu(settings, self.view, self.placement, self.panel_state),
             *menus.expression_menu(session),
             *menus.live_menu(self.live),
-            *menus.help_menu(self.panel_state),
+            *menus.help_menu(self.panel_state, lambda: self.first_steps.begin()),
         )
         self.life = IdleLife(session, settings, self.view)
         self.physics = Physics(session, self.times)
-        self.painter = Painter(self.stage, self.view, self.exporter, self.messages)
+        self.painter = Painter(self.stage, self.view, self.messages)
         self.panel_cache = PanelCache()
 
     def _join_panels(self) -> None:
@@ -149,7 +155,7 @@ class Parts:
         dope_sheet = DopeSheet(
             gui, session, settings, messages, self.selection, axis, bar, waveform
         )
-        self.timeline = Timeline(gui, session, messages, commands, self.exporter, dope_sheet)
+        self.timeline = Timeline(gui, session, messages, commands, dope_sheet)
         self.face_panel = FacePanel(gui, session, settings, view)
         mechanism = MechanismPanel(
             gui, settings, self.stage, view, self.times, messages, self.file_drop
@@ -159,14 +165,22 @@ class Parts:
         tabs = {"Face": self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
         self.layout = Layout(gui, settings, self.panel_state, bar, tabs, self.timeline)
         self.chooser = FileChooser(gui, self.files)
-        self.mouse = Mouse(self.view, self.stage, self.select_muscle)
+        self.export_dialog = ExportDialog(gui, self.exporter, self.files, view)
+        self.muscle_note = MuscleNote(gui, session, settings, view)
+        grab = partial(SkinDrag, session, settings)
+        self.mouse = Mouse(view, self.stage, messages, grab, self.select_muscle)
+        self.first_steps = FirstSteps(gui, view, lambda: (*self.mouse.gestures, session.is_playing))
+        if self._settings_path is not None and session.scene.name == "face":
+            if not settings.knows_first_steps:
+                self.first_steps.begin()
+            settings.knows_first_steps = True
 
     def close(self) -> None:
         """Remember the settings, and let go of everything."""
         with contextlib.suppress(UserError):  # a disk that is full must not keep the window open
             self.remember()
         self.live.stop()
-        self.exporter.close()
+        self.exporter.cancel()
         self.leave_marking()
         self.soundtrack.close()
         self.recovery.close()
@@ -201,8 +215,6 @@ class Parts:
 
         UserError where that cannot be.
         """
-        if self.exporter.film is not None:
-            raise UserError("end the film first (F10)")
         marking = Marking(mesh, self.files)
         line = None if landmarks is None else marking.open(landmarks)
         self.leave_marking()
@@ -219,13 +231,17 @@ class Parts:
             self.painter.forget()
 
     def select_muscle(self, name: str) -> None:
-        """Show a muscle's slider."""
+        """Show a muscle's slider, in the panel and beside the mouse."""
         self.panel_state.wanted_tab = "Face"
         self.face_panel.select(name)
-        self.messages.say(name.replace("_", " "))
+        self.muscle_note.name = name
 
     def ask_to_close(self) -> str | None:
         """Close the window, unless work would be lost: then ask first."""
+        if self.exporter.job is not None:
+            name = self.exporter.job.target.name
+            self.messages.say(f"{name} is being written: wait, or cancel it first", error=True)
+            return None
         if self.is_leaving:
             return self._close()
         ask = partial(self.question.before, "Close", self._close)
@@ -234,3 +250,15 @@ class Parts:
     def _close(self) -> str | None:
         self.is_leaving = self.surface.should_close = True
         return None
+
+
+def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> Scene:
+    """The scene, at rest; what its first frames run was run once, and is compiled."""
+    scene = build_scene(script.scene, head)
+    script.check(scene.limits)
+    scene.step(1.0 / 60.0)
+    scene.reset()
+    with contextlib.suppress(UserError, TypeError):  # a stage tells what it refuses
+        refiner = refiner_for(scene, display.refinement_on(scene))
+        refiner.refine(scene.positions, view=refine.View(scene.focus + 400.0))
+    return scene

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Collection
 from typing import Any, get_type_hints
 
-from risorius import refine, render
+from risorius import render
 
 from ..looks import LOOKS, STATIC
 
@@ -16,6 +16,7 @@ Rule = Callable[[Any], Any]  # gives back a value that is of use; ValueError for
 
 LONGEST_NUMBER = 15  # [digits] of a whole number; Python refuses to read very long ones
 SIDES = 200, 16384  # [screen units] of the window, least and most
+SIDES_EXPORTED = 16, 8192  # [pixels] of what is exported
 MOST_TOLD = 6  # of values that are of no use; a line has room for no more
 FURTHEST = 1e6  # of any number that says where a camera is
 ZOOMS = 0.6, 3.0  # least and most of the size of words
@@ -130,6 +131,19 @@ def size(value: Any) -> tuple[int, int] | None:
     return width, height
 
 
+def sides(value: Any) -> tuple[int, int]:
+    """Width and height of what is exported [pixels]."""
+    width, height = map(number(*SIDES_EXPORTED), _list(value))
+    return int(width), int(height)
+
+
+def folder(value: Any) -> str:
+    """The name of one; "" for the present one."""
+    if not isinstance(value, str) or "\0" in value:
+        raise ValueError
+    return value
+
+
 def camera(value: Any) -> list[float]:
     """Yaw, pitch, distance, and the point it looks at."""
     place = [number(-FURTHEST, FURTHEST)(each) for each in _list(value)]
@@ -146,20 +160,27 @@ def option(value: Any) -> Any:
     return value if isinstance(value, int) else finite
 
 
+def refiners() -> Collection[str]:
+    """Names of refiners; they are imported when somebody asks for them."""
+    from risorius import refine
+
+    return refine.available()
+
+
 def refiner(value: Any) -> str | None:
     """The name of one, which is not the one that does nothing; None for that of the look."""
     if value is None:
         return None
     if value == STATIC:
         raise ValueError
-    return one_of(refine.available())(value)  # type: ignore[no-any-return]
+    return one_of(refiners())(value)  # type: ignore[no-any-return]
 
 
 def side(value: Any) -> str:
     """What a side of a comparison shows: what is chosen, a look, or a refiner."""
-    return one_of((CHOSEN, *LOOKS, *refine.available()))(value)  # type: ignore[no-any-return]
+    return one_of((CHOSEN, *LOOKS, *refiners()))(value)  # type: ignore[no-any-return]
 
 
 def table_of_refiner(name: str) -> Rule | None:
     """The options of a refiner, where there is one of this name."""
-    return anything if name in refine.available() else None
+    return anything if name in refiners() else None

@@ -9,9 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import reprlib
-import sys
 import time
 from dataclasses import asdict, dataclass, field
 from functools import partial
@@ -27,10 +25,10 @@ from ..refining import refiner_for
 from ..scenes import Scene
 from . import setting_rules as rules
 from .colours import COLOURS
+from .export_kinds import KINDS, SOURCES
 from .gui import THEMES
 from .overlays import OVERLAYS, overlays_of
 
-FILE_NAME = "viewer.json"
 LONGEST_FILE = 2**20  # [bytes]; those that we write have two thousand
 
 
@@ -112,6 +110,21 @@ class Display:
 
 
 @dataclass
+class ExportChoices:
+    """What was exported last, and how."""
+
+    kind: Annotated[str, rules.one_of(KINDS)] = "mp4"
+    source: Annotated[str, rules.one_of(SOURCES)] = "script"
+    seconds: Annotated[float, rules.number(0.1, 600.0)] = 4.0  # of a face as it is
+    size: Annotated[tuple[int, int], rules.sides] = (1280, 720)
+    rate: Annotated[float, rules.number(1.0, 240.0)] = 30.0  # [frames/s]
+    is_transparent: Annotated[bool, rules.flag] = False
+    has_captions: Annotated[bool, rules.flag] = True
+    is_turntable: Annotated[bool, rules.flag] = False
+    folder: Annotated[str, rules.folder] = ""  # "" for the present one
+
+
+@dataclass
 class Settings:
     """Everything that is remembered."""
 
@@ -123,13 +136,22 @@ class Settings:
     tab: Annotated[str, rules.one_of(rules.TABS)] = "Face"
     # [letters' heights]; layout.py has the limits of a screen.
     panel_width: Annotated[float, rules.number(0.0, 1000.0)] = 22.5
+    shows_curves: Annotated[bool, rules.flag] = False  # of keys, instead of rows
+    counts_frames: Annotated[bool, rules.flag] = False  # instead of seconds
+    timeline_height: Annotated[float, rules.number(0.0, 1000.0)] = 0.0  # [letters']; 0: as needed
     folds: dict[str, bool] = field(default_factory=dict)  # which headings are open, by title
     cameras: dict[str, list[float]] = field(default_factory=dict)  # by scene
     display: Display = field(default_factory=Display)
+    knows_first_steps: Annotated[bool, rules.flag] = False
+    export: ExportChoices = field(default_factory=ExportChoices)
 
     def toggle_theme(self) -> None:
         """Light or dark."""
         self.theme = "light" if self.theme == "dark" else "dark"
+
+    def toggle(self, name: str) -> None:
+        """Switch a field on or off."""
+        setattr(self, name, not getattr(self, name))
 
     def enlarge(self, factor: float) -> None:
         """Make words and sliders larger or smaller."""
@@ -162,18 +184,6 @@ def display_of(
     return display
 
 
-def settings_path() -> Path:
-    """Where this system keeps a user's settings."""
-    home = Path.home()
-    if sys.platform == "win32":
-        folder = Path(os.environ.get("APPDATA", home / "AppData" / "Roaming"))
-    elif sys.platform == "darwin":
-        folder = home / "Library" / "Application Support"
-    else:
-        folder = Path(os.environ.get("XDG_CONFIG_HOME") or home / ".config")
-    return folder / "risorius" / FILE_NAME
-
-
 def load_settings(path: Path) -> tuple[Settings, str]:
     """What is remembered, and a line that names what is in the file and of no use, "" for nothing.
 
@@ -199,6 +209,8 @@ def load_settings(path: Path) -> tuple[Settings, str]:
         name: refused.table(f"display.options.{name}.", found, lambda _: rules.option)
         for name, found in options.items()
     }
+    export = refused.table("export.", accepted.pop("export", {}), rules.rules_of(ExportChoices).get)
+    accepted["export"] = ExportChoices(**export)
     folds, cameras = accepted.pop("folds", {}), accepted.pop("cameras", {})
     accepted["folds"] = refused.table("folds.", folds, lambda _: rules.flag)
     accepted["cameras"] = refused.table("cameras.", cameras, lambda _: rules.camera)

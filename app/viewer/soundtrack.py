@@ -55,17 +55,14 @@ class Soundtrack:
         """Whether there is something to be heard just now."""
         return self._player is not None and self._player.is_heard
 
-    def elapsed(self, seconds: float, *, is_silent: bool = False) -> float:
-        """How much time shall pass for the picture [s], where `seconds` went by.
-
-        is_silent: time passes as a film needs it, not as the sound does.
-        """
+    def elapsed(self, seconds: float) -> float:
+        """How much time shall pass for the picture [s], where `seconds` went by."""
         session, player = self._session, self._player
         if player is None or self.sound is None:
             return seconds
         was_playing, self._was_playing = self._was_playing, session.is_playing
         before, self._time = self._time, session.time
-        if is_silent or session.time >= self.sound.duration:
+        if session.time >= self.sound.duration:
             player.stop()
         elif session.is_playing:
             return self._in_step(player, seconds, session.time - before)

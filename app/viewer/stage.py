@@ -121,8 +121,8 @@ class Stage:
             return [a._replace(clip=first), b._replace(clip=second)]
         return [Shot(a.drawn, first, first), Shot(b.drawn, second, second)]
 
-    def draw(self, view: View) -> None:
-        """Draw the scene as it is now; the surface's `detail` says how finely."""
+    def draw(self, view: View, *, is_photo: bool = False) -> None:
+        """Draw the scene as finely as the surface's `detail` says; a photo without the mouse's."""
         camera, display, viewport, times = view.camera, view.display, view.viewport, self._times
         shots = self.shots(display, viewport)
         style = style_of(display, view.background)
@@ -137,7 +137,7 @@ class Stage:
                 shot.drawn.upload(amounts, style.wrinkles)
         with times.timed("draw"):
             self.surface.begin()
-            overlays = self._overlays(view)
+            overlays = self._overlays(view, () if is_photo else view.pointed)
             self.renderer.draw_background(style, viewport)
             for shot in shots:
                 values = COLOURS[display.colours].values(self.scene, shot.drawn)
@@ -150,6 +150,7 @@ class Stage:
                         viewport=shot.viewport,
                         clip=shot.clip,
                         width=lines.width,
+                        opacity=lines.opacity,
                         hidden_opacity=lines.hidden_opacity,
                     )
             self.surface.target.flush()
@@ -185,24 +186,26 @@ class Stage:
         if not self.surface.samples:
             self.renderer.draw_outline(shot.drawn.stream, camera, style, texture=texture, **where)
 
-    def _overlays(self, view: View) -> list[Lines]:
+    def _overlays(self, view: View, pointed: tuple[str, ...]) -> list[Lines]:
         edges = self.static.refiner.edges
         lines = [OVERLAYS[name](self.scene, edges, view.camera) for name in view.display.overlays]
-        return [*lines, pointed_lines(self.scene, view.pointed)] if view.pointed else lines
+        return [*lines, pointed_lines(self.scene, pointed)] if pointed else lines
 
-    def draw_image(self, view: View) -> Image:
+    def draw_image(self, view: View, *, has_captions: bool = True) -> Image:
         """The picture without panels, in full detail, with captions and a colour bar."""
         self.surface.detail = FULL
-        self.draw(view)
+        self.draw(view, is_photo=True)
         left, bottom, width, height = view.viewport
         top = self.surface.size[1] - bottom - height
-        frame = self.surface.read_scene()[top : top + height, left : left + width]
-        shown = [(x - left, y - bottom, image) for x, y, image in self.surface.labels]
+        channels = 3 if view.background else 4  # premultiplied
+        frame = self.surface.read_scene(channels)[top : top + height, left : left + width]
+        labels = self.surface.labels if has_captions else ()
+        shown = [(x - left, y - bottom, image) for x, y, image in labels]
         shots = self.shots(view.display, view.viewport)
         return captioned(frame, shown, [(s.clip[0] - left, *s.clip[1:]) for s in shots])
 
 
-def style_of(display: Display, background: render.Background) -> render.Style:
+def style_of(display: Display, background: render.Background | None) -> render.Style:
     """The renderer's style for what the user wants to see."""
     is_textured, albedo = SKINS[display.skin]
     return render.Style(

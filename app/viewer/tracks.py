@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -19,42 +20,52 @@ MOST_LINES = 7  # of a key's values that are told
 
 @dataclass(frozen=True)
 class Track:
-    """One row: the keys of the poses, of a track, or of all tracks together."""
+    """One row: the keys of the poses, of tracks together, or those that move one control."""
 
+    name: str  # no other row has it
     label: str
     places: Places
-    channel: Channel | None = None  # that it shows alone
+    channel: Channel = field(default_factory=partial(Channel, (), ()))  # of one control
+    control: str = ""  # which that is
+    track: str = ""  # that its keys are in
+    parents: tuple[str, ...] = ()  # the names of the rows that it is folded into
     names: tuple[tuple[float, str], ...] = ()  # of poses, by time [s]
     held: tuple[tuple[float, float], ...] = ()  # from, to [s]: two poses in a row are the same
     is_whole: bool = False  # poses, which are keys of all controls
     is_sum: bool = False  # of the rows below it, which may be folded
+    number: int = 0  # among all rows
 
     @property
     def height(self) -> float:
         """Of the row, in ordinary ones: above the keys of poses is room for names."""
         return 1.75 if self.is_whole else 1.0
 
-    @property
-    def end(self) -> float:
-        """The time of its last key [s]."""
-        return max((float(times[-1]) for times in self.places.times.values()), default=0.0)
 
-
-def visible_tracks(script: Script, *, is_open: bool) -> tuple[Track, ...]:
-    """The poses, then the tracks: one row for all of them, and if it is open one for each."""
-    tracks, times = [], places_of(script).times
+def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Track, ...]:
+    """The poses and each control that they name, then the tracks by the groups of controls."""
+    rows, times = list[Track](), places_of(script).times
     if script.poses or not script.tracks:
         names = tuple((pose.time, pose.name) for pose in script.poses if pose.name)
         poses = Places({POSES: times.pop(POSES, np.empty(0))})
-        tracks.append(Track("Poses", poses, names=names, held=_held(script.poses), is_whole=True))
+        whole = Track("Poses", "Poses", poses, names=names, held=_held(script.poses), is_whole=True)
+        rows.append(replace(whole, is_sum=bool(script.posed_names)))
+        for name in script.posed_names:
+            channel = script.posed_channel(name)
+            row = Track(f"pose {name}", readable(name), poses, channel, name, POSES, ("Poses",))
+            rows.append(row)
     if script.tracks:
-        tracks.append(Track(TRACKS, Places(times), is_sum=True))
-    if is_open:
-        tracks += [
-            Track(readable(name), Places({name: times[name]}), channel)
-            for name, channel in script.tracks.items()
-        ]
-    return tuple(tracks)
+        rows.append(Track(TRACKS, TRACKS, Places(times), is_sum=True))
+    for title, controls in groups.items():
+        inside = {name: times[name] for name in controls if name in script.tracks}
+        parents: tuple[str, ...] = (TRACKS,)
+        if 0 < len(inside) < len(script.tracks):
+            group = Track(f"{TRACKS}: {title}", title, Places(inside), parents=parents, is_sum=True)
+            rows.append(group)
+            parents = TRACKS, group.name
+        for name in inside:
+            alone, channel = Places({name: times[name]}), script.tracks[name]
+            rows.append(Track(f"track {name}", readable(name), alone, channel, name, name, parents))
+    return tuple(replace(row, number=number) for number, row in enumerate(rows))
 
 
 def _held(poses: Sequence[Pose]) -> tuple[tuple[float, float], ...]:

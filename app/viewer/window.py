@@ -17,7 +17,6 @@ from imgui_bundle import imgui
 
 from ..stopping import cleaned_up_if_stopped
 from .command import run_pressed
-from .export import FRAMES_PER_SECOND
 from .file_drop import LANDMARKS
 from .gui import on_drop, poll_events, wait_for_event
 from .live_commands import PACING
@@ -86,8 +85,9 @@ class Viewer(Parts):
         if self.gui.has_events:
             self._awake = FRAMES_AFTER_EVENT
             self.life.note_input()
-        slow = (self.file_drop, self.motion_export)
-        announced = [each.do_announced for each in slow if each.has_announced]
+        if self.exporter.has_news:
+            self._awake = max(self._awake, 1)
+        announced = [self.file_drop.do_announced] if self.file_drop.has_announced else []
         now = time.perf_counter()
         elapsed, self._last = now - self._last, now
         self.times.note_frame(elapsed)
@@ -106,18 +106,14 @@ class Viewer(Parts):
             self._last = time.perf_counter()
         if is_moving and not self.is_left_alone:
             self.shown_painter.level_of_detail.note(time.perf_counter() - now)
-        if self.exporter.film is not None:  # on a fast machine a film is made in real time
-            time.sleep(max(1.0 / FRAMES_PER_SECOND - (time.perf_counter() - now), 0.0))
         self._awake = max(self._awake - 1, 0)
 
     def _move_face(self, elapsed: float) -> bool:
         """Let time pass for the face, and draw it; whether the picture has changed."""
         is_held = self.mouse.is_dragging or imgui.is_any_item_active()
         self.view.follow_history(is_held=is_held)
-        is_filming = self.exporter.film is not None
-        seconds = 1.0 / FRAMES_PER_SECOND if is_filming else elapsed
         self.messages.attempt(self.soundtrack.refresh)
-        seconds = self.soundtrack.elapsed(seconds, is_silent=is_filming)
+        seconds = self.soundtrack.elapsed(elapsed)
         is_skin_dragged = self.mouse.is_dragging_skin
         self.messages.attempt(partial(self.live.advance, elapsed))
         if self.live.has_changed:
@@ -150,7 +146,6 @@ class Viewer(Parts):
             and not self.session.is_recording
             and not self.live.is_busy
             and not self.soundtrack.is_heard
-            and self.exporter.film is None
         )
 
     @property
@@ -162,7 +157,6 @@ class Viewer(Parts):
             and self._awake == 0
             and not self.messages.is_fading
             and not self.files.is_waiting
-            and self.exporter.film is None
         )
 
     def pause(self) -> None:
@@ -182,7 +176,7 @@ class Viewer(Parts):
     def _wait(self) -> None:
         """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
         is_watching = self.files.is_waiting or imgui.get_io().want_text_input  # a cursor blinks
-        patience = WATCHFUL_WAIT if is_watching else IDLE_WAIT
+        patience = WATCHFUL_WAIT if is_watching or self.exporter.job is not None else IDLE_WAIT
         due_in = min(self.recovery.due_in(), self.live.due_in())
         patience = min(patience, max(due_in, 0.0))
         self.soundtrack.rest()
@@ -224,20 +218,25 @@ class Viewer(Parts):
             gui.set_theme(self.settings.theme, self.settings.zoom)
             if room is None:
                 self.layout.draw(view)
+                self.first_steps.draw()
+                self.muscle_note.draw()
             else:
                 room.panel.draw(room.view)
             messages.age(imgui.get_io().delta_time)
             draw_message(gui, messages, view)
+            if imgui.is_any_mouse_down():
+                view.pointed = ()
             for draw in (
                 partial(draw_recovery, gui, self.recovery, self.session, self.question, view),
                 self.files.poll,
                 self.chooser.draw,
+                self.export_dialog.draw,
                 partial(draw_question, gui, self.question, self.session, self.scripts),
             ):
                 messages.attempt(draw)
             if state.is_help_open:
                 state.is_help_open = draw_help(gui, commands, is_marking=room is not None)
-            if not (self.files.is_waiting or self.question.is_open):
+            if not (self.files.is_waiting or self.question.is_open or self.exporter.is_asking):
                 run_pressed(commands, messages)
                 (self if room is None else room).mouse.follow()
 

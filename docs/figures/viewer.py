@@ -19,8 +19,8 @@ from risorius.app.files import Image
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.keyframes import places_of
-from risorius.app.viewer.mouse import SkinDrag
 from risorius.app.viewer.settings import Display
+from risorius.app.viewer.skin_drag import SkinDrag
 from risorius.assets.fitting.guess import FIRST
 from risorius.bench import figures
 
@@ -91,7 +91,8 @@ def finger(viewer: Viewer) -> None:
     """The skin, dragged by the mouse."""
     scene = viewer.session.scene
     corner = scene.positions[scene.head.landmarks[48]]  # type: ignore[attr-defined]
-    viewer.mouse.skin_drag = SkinDrag(scene, corner.copy())
+    sight = np.array([0.0, 0.0, -1.0])
+    viewer.mouse.skin_drag = SkinDrag(viewer.session, viewer.settings, corner.copy(), sight, True)
     viewer.mouse.skin_drag.to(corner + np.array([-20.0, 11.0, 8.0]))
     for _ in range(20):
         viewer.frame()

@@ -30,6 +30,7 @@ from risorius.app.cli import main
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.app.script import parse_script
 
 Image = npt.NDArray[np.uint8]
 WIDTH, HEIGHT, COUNT, RATE = 97, 63, 12, 25.0
@@ -331,3 +332,20 @@ def test_memory_stays_flat() -> None:
             if index in (100, 499):
                 sizes.append(resident())
     assert sizes[1] - sizes[0] < 8e6  # half of the pictures that were read back: 2.3 MB
+
+
+def test_a_range_is_a_part_of_the_film_whoever_draws(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The frames of a part are those of the whole film, from one process and from several."""
+    text = "duration = 0.5\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.5\njoy = 1.0\n"
+    script = parse_script(text, source="smile.toml")
+    whole = CaptureOptions((96, 72), 10.0)
+    part = replace(whole, span=(0.2, 0.5))
+    capture(script, whole, output=tmp_path / "whole", progress=False)
+    capture(script, part, output=tmp_path / "alone", progress=False)
+    monkeypatch.setattr(processes, "worthwhile", lambda *_: 2)
+    capture(script, part, output=tmp_path / "two", progress=False)
+    films = [sorted((tmp_path / name).iterdir()) for name in ("whole", "alone", "two")]
+    read = [[np.asarray(PIL.Image.open(file)) for file in film] for film in films]
+    assert np.array_equal(read[0][2:], read[1]) and np.array_equal(read[1], read[2])

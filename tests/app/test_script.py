@@ -121,6 +121,17 @@ def test_extremes_between_times(channel: Channel, first: float, steps: list[floa
         assert abs(low - min(values)) <= slack and abs(high - max(values)) <= slack
 
 
+@given(channel=channels(), start=st.floats(0.0, LARGEST), span=st.floats(1e-3, 1e4))
+def test_a_drawn_curve_is_what_is_played(channel: Channel, start: float, span: float) -> None:
+    """Few keys: each point of the outline has the value that is played, and no key is left out."""
+    times, values = channel.outline(start, start + span, 40)
+    keys = [time for time in channel.times.tolist() if start <= time <= start + span]
+    if len(keys) <= 40:
+        assert values.tolist() == pytest.approx([channel.value(time) for time in times.tolist()])
+        assert set(keys) <= set(times.tolist()) and np.all(np.diff(times) > 0.0)
+    assert len(times) <= 4 * 41 and start <= times[1] and times[-1] <= start + span
+
+
 def test_nobody_can_change_the_keys_of_a_channel() -> None:
     """The undo history and the file share them; even the arrays that it was made from are apart."""
     times = np.array([0.0, 1.0])

@@ -164,13 +164,11 @@ def test_a_file_opened_while_recording(viewer: Viewer, tmp_path: Path) -> None:
 
 
 def test_what_cannot_be_written_is_told(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
-    """F12 and F10 in a folder that takes no files show an error, and the window goes on."""
+    """F12 in a folder that takes no files shows an error, and the window goes on."""
     monkeypatch.chdir("/proc")
-    for key in ("F12", "F10"):
-        viewer.messages.text = ""
-        xdotool(viewer, "key", key)
-        assert until(viewer, lambda: "cannot be written" in viewer.messages.text, 3.0), key
-        assert viewer.exporter.film is None
+    viewer.messages.text = ""
+    xdotool(viewer, "key", "F12")
+    assert until(viewer, lambda: "cannot be written" in viewer.messages.text, 3.0)
 
 
 def title_of(viewer: Viewer) -> str:

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
@@ -17,7 +19,7 @@ from risorius.app.viewer.keyframes import FRAME, POSES
 from risorius.app.viewer.places import KeyPlace, Places
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.time_axis import LEAST_SPAN, TimeAxis
-from risorius.app.viewer.tracks import described, visible_tracks
+from risorius.app.viewer.tracks import all_tracks, described
 
 HELLO = Path("docs/hello.toml")
 JOY = KeyPlace(POSES, 1.0)
@@ -249,16 +251,67 @@ def test_what_a_file_would_lose_is_noticed(session: Session) -> None:
 
 
 def test_rows_of_the_timeline(hello: Script) -> None:
-    """Poses with their names, all tracks in one row, and one row for each if it is open."""
-    poses, tracks = visible_tracks(hello, is_open=False)
+    """Poses with their names and a row for each control, all tracks in one row and each in one."""
+    poses, jaw, joy, tracks, blink = all_tracks(hello, {"Lids": ["blink", "wink"]})
     assert [place.time for place in poses.places] == [0.0, 1.0, 3.0, 4.0]
     assert poses.names == ((1.0, "joy"),) and tracks.is_sum
-    assert [track.label for track in visible_tracks(hello, is_open=True)][2:] == ["blink"]
-    assert visible_tracks(hello, is_open=True)[2].channel == hello.tracks["blink"]
+    assert (jaw.control, joy.control) == ("jaw_open", "joy")
+    assert joy.channel.values.tolist() == [0.0, 1.0, 0.6, 0.0] and joy.parents == ("Poses",)
+    assert blink.channel == hello.tracks["blink"] and blink.parents == ("Tracks",)
     assert poses.places.near(1.2, 0.3) == {JOY} and not poses.places.near(2.0, 0.3)
     assert described(hello, Places.of(JOY)) == "joy, 1.00 s, ease-out\njoy 1.00\njaw open 0.10"
     assert described(hello, Places.of(KeyPlace("blink", 2.12))) == "2.12 s, ease-in\nblink 1.00"
     assert described(hello, Places.of(KeyPlace(POSES, 0.0))) == "0.00 s\nneutral"
+
+
+def test_rows_stand_in_groups(hello: Script) -> None:
+    """Each group that has tracks is a row that they are folded into."""
+    blink = hello.tracks["blink"]
+    tracks = {"AU12_left": blink, "joy": blink, "AU4": blink}
+    groups = {"Expressions": ["joy", "anger"], "Visemes": ["aa"], "Units": ["AU4", "AU12_left"]}
+    rows = all_tracks(replace(hello, poses=(), tracks=tracks), groups)
+    assert [row.label for row in rows] == [
+        "Tracks",
+        "Expressions",
+        "joy",
+        "Units",
+        "AU4",
+        "AU12 left",
+    ]
+    assert [len(row.parents) for row in rows] == [0, 1, 2, 1, 2, 2]
+    assert len({row.name for row in rows}) == len(rows) and len(rows[3].places) == 8
+
+
+@given(amount=st.floats(-3.0, 3.0), choice=st.lists(st.booleans(), min_size=8, max_size=8))
+def test_raised_keys_stay_within_limits(amount: float, choice: list[bool]) -> None:
+    """Chosen keys go by the amount as far as they may, others and all times stay, and back."""
+    hello = load_script(HELLO)
+    limits = {"joy": (0.0, 1.0), "jaw_open": (0.0, 1.0), "blink": (0.0, 1.0)}
+    everything = sorted(keyframes.places_of(hello))
+    places = Places.of(*(place for place, is_in in zip(everything, choice, strict=True) if is_in))
+    script = keyframes.raised(hello, places, amount, limits, {"joy"})
+    script.check(limits)
+    assert keyframes.places_of(script) == keyframes.places_of(hello)
+    for name, before, after in (
+        ("blink", hello.tracks["blink"], script.tracks["blink"]),
+        (POSES, hello.posed_channel("joy"), script.posed_channel("joy")),
+    ):
+        for old, new in zip(before.keys, after.keys, strict=True):
+            wanted = min(max(old.value + amount, 0.0), 1.0)
+            is_in = KeyPlace(name, old.time) in places
+            assert new.value == pytest.approx(wanted if is_in else old.value, abs=1e-6)
+            assert new.easing == old.easing
+    assert [pose.values.get("jaw_open") for pose in script.poses] == [None, 0.1, None, None]
+    assert keyframes.raised(hello, places, 0.0, limits, {"joy"}) == hello
+
+
+def test_what_is_added_to_poses_may_be_negative(hello: Script) -> None:
+    """A track beside poses takes from them; one that stands alone keeps to its control's limits."""
+    limits = {"joy": (0.0, 1.0), "blink": (0.0, 1.0), "jaw_open": (0.0, 1.0)}
+    beside = replace(hello, tracks={"joy": hello.tracks["blink"], "blink": hello.tracks["blink"]})
+    script = keyframes.raised(beside, keyframes.places_of(beside), -2.0, limits, ())
+    assert script.tracks["joy"].values.tolist() == [-1.0] * 4 and script.poses == hello.poses
+    assert script.tracks["blink"].values.tolist() == [0.0] * 4
 
 
 @pytest.mark.parametrize("end", [0.1, 4.0, 61.0, 5000.0, 86_400.0])

@@ -161,13 +161,13 @@ def test_a_name_leaves_the_strip_where_it_is(viewer: Viewer) -> None:
     viewer.session.begin_script()
     draw_frames(viewer)
     first = KeyPlace(POSES, 0.0)
-    before = viewer.timeline.height(), viewer.timeline.dope_sheet.where(first)
+    before = viewer.timeline.height(), at(viewer, first)
     viewer.selection.rename()
     assert until(viewer, lambda: "pose name" in viewer.gui.places)
     write(viewer, "rest")
     xdotool(viewer, "key", "Return")
     assert viewer.session.script.key_poses
-    assert (viewer.timeline.height(), viewer.timeline.dope_sheet.where(first)) == before
+    assert (viewer.timeline.height(), at(viewer, first)) == before
 
 
 def test_the_history_is_a_menu(viewer: Viewer) -> None:

@@ -52,9 +52,16 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
     return path
 
 
+def where(viewer: Viewer, place: KeyPlace) -> tuple[float, float]:
+    """Where a key is, in the first row that has it [window units]."""
+    row = next(row for row in viewer.timeline.dope_sheet.rows if place in row.places)
+    _, top, _, bottom = viewer.gui.places[f"row {row.name}"]
+    return viewer.time_axis.x(place.time), 0.5 * (top + bottom)
+
+
 def at(viewer: Viewer, place: KeyPlace) -> tuple[int, int]:
-    """Where a key is, on the screen."""
-    return on_screen(viewer, *viewer.timeline.dope_sheet.where(place))
+    """The same, on the screen."""
+    return on_screen(viewer, *where(viewer, place))
 
 
 def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -> None:
@@ -263,15 +270,14 @@ def test_a_key_under_the_mouse_tells_what_it_is(viewer: Viewer) -> None:
 
 def test_tracks_unfold_into_rows(viewer: Viewer) -> None:
     """A click on the arrow gives each track a row; its keys are then selected alone."""
-    sheet = viewer.timeline.dope_sheet
     left = viewer.gui.places["keys"][0]
     rows = viewer.timeline.height()
-    _, y = sheet.where(KeyPlace("blink", 2.0))
+    _, y = where(viewer, KeyPlace("blink", 2.0))
     xdotool(viewer, "mousemove", *on_screen(viewer, left + 8, y))
     xdotool(viewer, "click", 1)
     assert viewer.timeline.height() > rows and viewer.settings.folds["Tracks"]
     draw_frames(viewer)
-    x, y = sheet.where(KeyPlace("blink", 2.4))
+    x, y = where(viewer, KeyPlace("blink", 2.4))
     press(viewer, on_screen(viewer, x, y + imgui.get_font_size() * 1.35))
     assert viewer.selection.places == {KeyPlace("blink", 2.4)}
 
@@ -304,7 +310,7 @@ def take(viewer: Viewer, own: Path, tmp_path: Path) -> Script:
 
 def test_a_dense_script_is_scrubbed_and_edited(viewer: Viewer, take: Script) -> None:
     """A click in the ruler shows that moment, a box is one edit, and one undo takes it back."""
-    sheet, axis = viewer.timeline.dope_sheet, viewer.time_axis
+    axis = viewer.time_axis
     _, ruler = middle(viewer, "time")
     place = on_screen(viewer, axis.x(300.0), 0.0)[0], ruler
     press(viewer, place)
@@ -312,9 +318,9 @@ def test_a_dense_script_is_scrubbed_and_edited(viewer: Viewer, take: Script) -> 
     for name, value in take.at(viewer.session.time).items():
         assert viewer.session.values[name] == pytest.approx(value)
     first, second = list(take.tracks)[:2]
-    row = sheet.where(KeyPlace(second, float(take.tracks[second].times[0])))[1]
-    # The first row that has it is that of all tracks; two further down is the second track's.
-    row += 2.0 * ROW * imgui.get_font_size()
+    row = where(viewer, KeyPlace(second, float(take.tracks[second].times[0])))[1]
+    # The first row that has it is that of all tracks, then come its group and the first track.
+    row += 3.0 * ROW * imgui.get_font_size()
     low = on_screen(viewer, axis.x(100.0), row)
     drag(viewer, low, (round(axis.x(200.0) - axis.x(100.0)), 2))
     xdotool(viewer, "mouseup", 1)
@@ -339,7 +345,7 @@ def test_what_is_selected_of_a_dense_track_is_dragged(viewer: Viewer, take: Scri
     draw_frames(viewer)
     chosen = places_of(take).between(100.0, 200.0) & Places({name: take.tracks[name].times})
     viewer.selection.places = chosen
-    row = viewer.timeline.dope_sheet.where(KeyPlace(name, 0.0))[1] + ROW * imgui.get_font_size()
+    row = where(viewer, KeyPlace(name, 0.0))[1] + 2.0 * ROW * imgui.get_font_size()
     drag(viewer, on_screen(viewer, axis.x(150.0), row), (40, 0))
     xdotool(viewer, "mouseup", 1)
     moved = viewer.selection.places

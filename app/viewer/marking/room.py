@@ -8,7 +8,6 @@ from typing import Protocol
 from risorius import render
 
 from ..command import Command
-from ..export import Exporter
 from ..file_drop import FileDrop
 from ..gui import Gui
 from ..messages import Message, Messages, Task
@@ -34,7 +33,6 @@ class Window(Protocol):
     session: Session
     messages: Messages
     question: Question
-    exporter: Exporter
     file_drop: FileDrop
     commands: tuple[Command, ...]
 
@@ -50,7 +48,7 @@ class Room:
         surface, messages = window.surface, window.messages
         self.view = MarkingView(marking, window.settings, surface)
         self.picture = MarkingPicture(marking, surface)
-        self.painter = Painter(self.picture, self.view, window.exporter, messages)
+        self.painter = Painter(self.picture, self.view, messages)
         self.mouse = MarkingMouse(self.view, surface, marking, messages)
         self.commands = self._commands()
         by_label = {command.label: command for command in self.commands}

@@ -1,4 +1,4 @@
-"""The keys in time: a ruler to scrub in, below it a row of keys for the poses and the tracks.
+"""The keys in time: a ruler to scrub in, below it rows of keys, or their values as curves.
 
 As in every dope sheet: a click selects a key and goes there, a drag moves what is selected, Shift
 adds, a drag over nothing draws a box, the wheel zooms. Where keys are too dense to be told apart,
@@ -12,6 +12,7 @@ import itertools
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from imgui_bundle import imgui
 
 from ...errors import counted
@@ -20,23 +21,28 @@ from .. import keyframes
 from ..gui import LEFT, MIDDLE, RIGHT, Gui, em
 from ..key_selection import KeySelection
 from ..messages import Message, Messages, Task
-from ..places import NOWHERE, KeyPlace, Places
+from ..places import NOWHERE, Places
 from ..session import Session
 from ..settings import Settings
 from ..time_axis import TimeAxis
-from ..tracks import TRACKS, Track, described, visible_tracks
+from ..tracks import Track, all_tracks, described
 from . import key_marks
+from .graph import Graph
 from .menu_bar import MenuBar
 from .waveform import Waveform
 from .widgets import shortened
 
 ROW, RULER = 1.35, 1.45  # [em] of a row's and the ruler's height
-GUTTER, GUTTER_SHARE = 6.0, 0.2  # [em] for the rows' names, and of the width at most
+GUTTER, GUTTER_SHARE = 9.5, 0.2  # [em] for the rows' names, and of the width at most
 MOST_ROWS = 6  # that are seen at once; the rest is scrolled to
 REACH = 0.5  # [em] beside a key that still mean it
 CLICK = 4.0  # [window units] a press that moves less is a click, not a drag
 ZOOM_PER_NOTCH = 0.8
 SCROLL_PER_NOTCH = 0.12  # of the visible time
+GRAPH = 14.0  # [em] of its height, as long as nobody changes that
+MOST_CURVES = 24  # that are displayed at once, unless somebody wants more
+VALUES = 2.2  # [em] for the labels of values
+SNAP = 0.4  # [em] beside a key of another track that draws a dragged one there
 
 
 @dataclass
@@ -48,11 +54,6 @@ class Drag:
     script: Script  # as it was then
     selected: Places  # then
     has_moved: bool = False
-
-    @property
-    def button(self) -> int:
-        """Of the mouse, which is held down."""
-        return MIDDLE if self.doing == "pan" else LEFT
 
 
 class DopeSheet:
@@ -69,56 +70,58 @@ class DopeSheet:
         menus: MenuBar,
         waveform: Waveform,
     ) -> None:
-        self._gui, self._session, self._settings = gui, session, settings
+        self._gui, self._session, self.settings = gui, session, settings
         self._messages, self._menus = messages, menus
-        self._selection, self._axis, self._waveform = selection, axis, waveform
+        self.selection, self.axis, self._waveform = selection, axis, waveform
+        self.graph = Graph(gui, selection, axis)
         self._drag: Drag | None = None
         self._grabbed = NOWHERE  # the keys at one time that the mouse was pressed on
-        self._tracks: tuple[Track, ...] = ()
-        self._known: tuple[Script | None, bool] = None, False  # of which the tracks are
-        self._are_dense: dict[str, bool] = {}  # by label: keys cannot be told apart
+        self._all: tuple[Track, ...] = ()
+        self.rows: tuple[Track, ...] = ()  # of these the ones that are not folded away
+        self._known: Script | None = None  # of which the tracks are
+        self._are_dense: dict[str, bool] = {}  # by name: keys cannot be told apart
         self._tops = [0.0]  # of each row, and of what would come below the last [window units]
         self._gutter = 0.0  # the width of their names [window units]
         self._name_line = PoseNameLine(gui, session, messages, selection)
         self._wants_menu = False
 
-    @property
-    def _is_open(self) -> bool:
-        """Whether each track has a row of its own."""
-        return self._settings.folds.get(TRACKS, False)
+    def _is_open(self, name: str) -> bool:
+        """Whether what is folded into this row is displayed; at first, of many groups one."""
+        is_few = len(self._session.script.tracks) <= MOST_CURVES or name == self._all[1].name
+        return self.settings.folds.get(name, is_few if ":" in name else self.settings.shows_curves)
 
     def height(self, room: float) -> float:
         """Of ruler and rows [window units], no more than there is room for."""
         self._refresh()
-        wanted = sum(track.height for track in self._tracks[:MOST_ROWS]) * em(ROW)
+        rows = em(ROW) * sum(track.height for track in self.rows[:MOST_ROWS])
+        wanted = em(GRAPH) if self.settings.shows_curves else rows
         above = em(RULER) + self._waveform.height
         return above + max(min(wanted, room - above), em(ROW))
 
-    def where(self, place: KeyPlace) -> tuple[float, float]:
-        """Where a key is drawn, in the first row that has it [window units]."""
-        row = next(row for row, track in enumerate(self._tracks) if place in track.places)
-        return self._axis.x(place.time), self._tops[row + 1] - 0.5 * em(ROW)
-
     def _refresh(self) -> None:
-        """Bring rows and selection up to date with the script."""
-        script, is_open = self._session.script, self._is_open
-        if self._known[0] is not script or self._known[1] != is_open:
-            self._known = script, is_open
-            self._tracks = visible_tracks(script, is_open=is_open)
-            self._selection.places &= keyframes.places_of(script)
+        """Bring rows and selection up to date with script and settings."""
+        script = self._session.script
+        self.axis.counts_frames = self.settings.counts_frames
+        if self._known is not script:
+            self._known = script
+            self._all = all_tracks(script, self._session.controls.groups)
+            self.selection.places &= keyframes.places_of(script)
+        self.rows = tuple(track for track in self._all if all(map(self._is_open, track.parents)))
+        self.graph.take(self.rows)
 
     def draw(self) -> None:
         """Draw everything, inside the timeline's window."""
         self._refresh()
-        session, axis, io = self._session, self._axis, imgui.get_io()
+        session, axis, io = self._session, self.axis, imgui.get_io()
         place, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
         self._gutter = min(em(GUTTER), GUTTER_SHARE * room.x)
-        inset = em(0.7)
-        axis.place(place.x + self._gutter + inset, room.x - self._gutter - 2.0 * inset - em(0.6))
+        inset, values = em(0.7), em(VALUES) if self.settings.shows_curves else 0.0
+        left = self._gutter + inset + values
+        axis.place(place.x + left, room.x - left - inset - em(0.6))
         duration = session.script.duration
         if self._drag is None:
-            ends = (track.end for track in self._tracks)
-            axis.fit(max(duration, session.time, self._waveform.duration, *ends))
+            lasts = (times[-1] for row in self.rows for times in row.places.times.values())
+            axis.fit(float(max([duration, session.time, self._waveform.duration, *lasts])))
             if session.is_playing:
                 axis.follow(session.time)
         imgui.set_cursor_screen_pos((place.x + self._gutter, place.y))
@@ -132,6 +135,8 @@ class DopeSheet:
         self._waveform.draw(session.time, duration, (place.x, edges[1]))
         imgui.set_cursor_screen_pos((place.x, edges[1] + self._waveform.height))
         self._draw_rows(io)
+        if self.settings.shows_curves:
+            self._draw_graph(io, place.x)
         if self._drag is not None:
             self._follow(io, self._drag)
         if self._wants_menu:
@@ -141,82 +146,106 @@ class DopeSheet:
             self._menus.draw_menu("Keys")
             imgui.end_popup()
         self._name_line.draw()
-        if any(map(imgui.is_mouse_clicked, (LEFT, MIDDLE, RIGHT))):
-            flags = imgui.HoveredFlags_.child_windows
-            flags |= imgui.HoveredFlags_.allow_when_blocked_by_active_item
-            self._selection.is_touched = imgui.is_window_hovered(flags)
-        elif io.want_text_input and not imgui.is_any_mouse_down():
-            self._selection.is_touched = False
 
     def _draw_rows(self, io: Any) -> None:
+        """The rows, or of curves their names alone."""
         flags = imgui.WindowFlags_.no_scroll_with_mouse | imgui.WindowFlags_.no_background
         least = max(imgui.get_content_region_avail().y, em(ROW))
-        imgui.begin_child("keys", (0.0, least), 0, flags)
+        has_keys = not self.settings.shows_curves
+        imgui.begin_child("keys", (0.0 if has_keys else self._gutter, least), 0, flags)
         place, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
-        heights = [track.height * em(ROW) for track in self._tracks]
+        heights = [em(ROW) * (track.height if has_keys else 1.0) for track in self.rows]
         self._tops = list(itertools.accumulate(heights, initial=place.y))
-        size = (room.x, self._tops[-1] - place.y)
-        imgui.invisible_button("##keys", size)
+        imgui.invisible_button("##keys", (room.x, self._tops[-1] - place.y))
         self._gui.remember("keys")
         is_hovered = imgui.is_item_hovered()
-        theme, session = self._gui.theme, self._session
-        painter = key_marks.TrackPainter(
-            theme, self._axis, self._selection.places, session.script.duration
-        )
-        for track, (top, bottom) in zip(self._tracks, itertools.pairwise(self._tops), strict=True):
-            corners = (place.x, top), (place.x + room.x, bottom)
-            if imgui.is_rect_visible(*corners):
-                self._are_dense[track.label] = painter.draw(track, top, em(ROW))
-                arrow = em(0.9) if track.is_sum else 0.0
-                label = shortened(track.label, self._gutter - arrow - em(0.3))
-                corner = place.x, bottom - em(ROW)
-                key_marks.draw_label(theme, label, corner, em(ROW), arrow, is_open=self._is_open)
-        key_marks.draw_playhead(theme, self._axis, session.time, (place.y, self._tops[-1]))
-        if session.differing:
-            key_marks.draw_unkeyed(theme, self._axis, session.time, self._tops[1] - 0.5 * em(ROW))
-        if self._drag is not None and self._drag.doing == "box" and self._drag.has_moved:
-            key_marks.draw_box(theme, self._drag.began, (io.mouse_pos.x, io.mouse_pos.y))
+        theme, duration = self._gui.theme, self._session.script.duration
+        painter = key_marks.TrackPainter(theme, self.axis, self.selection.places, duration)
+        for track, (top, bottom) in zip(self.rows, itertools.pairwise(self._tops), strict=True):
+            if imgui.is_rect_visible((place.x, top), (place.x + room.x, bottom)):
+                if has_keys:
+                    self._are_dense[track.name] = painter.draw(track, top, em(ROW))
+                self._draw_name(track, (place.x, bottom - em(ROW)), room.x)
+        if has_keys:
+            self._draw_over(io, (place.y, self._tops[-1]))
+        if has_keys and self._session.differing:
+            middle = self._tops[1] - 0.5 * em(ROW)
+            key_marks.draw_unkeyed(theme, self.axis, self._session.time, middle)
         if is_hovered and self._drag is None:
             self._hover(io, place.x)
         imgui.end_child()
 
+    def _draw_name(self, track: Track, corner: key_marks.Point, room: float) -> None:
+        arrow, indent = em(0.9) if track.is_sum else 0.0, em(0.5) * len(track.parents)
+        x, y = corner[0] + indent, corner[1] + 0.5 * (em(ROW) - em())
+        self._gui.places[f"row {track.name}"] = x, y, x + em(4.0), y + em()
+        room = min(room, self._gutter) - indent - arrow - em(0.3)
+        label = shortened(track.label, room, keeps_end=not track.is_sum)  # which tells the side
+        is_curve, muted = self.settings.shows_curves and track.control, self._gui.theme.muted
+        ink = self.graph.colour(track) if is_curve else key_marks.ink_of(muted)
+        key_marks.draw_label(label, (x, y), ink, arrow, is_open=self._is_open(track.name))
+
+    def _draw_over(self, io: Any, edges: tuple[float, float]) -> None:
+        key_marks.draw_playhead(self._gui.theme, self.axis, self._session.time, edges)
+        if self._drag is not None and self._drag.doing == "box" and self._drag.has_moved:
+            corner = io.mouse_pos.x, io.mouse_pos.y
+            key_marks.draw_box(self._gui.theme, self._drag.began, corner)
+
+    def _draw_graph(self, io: Any, left: float) -> None:
+        imgui.same_line(0.0, 0.0)
+        top, room = imgui.get_cursor_screen_pos().y, imgui.get_content_region_avail()
+        edges = top, top + max(room.y, em(ROW))
+        imgui.invisible_button("##graph", (max(room.x, 1.0), edges[1] - top))
+        if imgui.is_item_hovered() and self._drag is None:
+            self._hover(io, left)
+        self.graph.draw(edges, self._session.script.duration, is_held=self._drag is not None)
+        self._draw_over(io, edges)
+
     # The mouse
 
     def _hover(self, io: Any, left: float) -> None:
-        """The mouse is over the rows and holds nothing yet."""
-        selection, axis, (x, y) = self._selection, self._axis, io.mouse_pos
-        track = self._track_at(y)
+        """The mouse is over rows or curves and holds nothing yet."""
+        selection, axis, (x, y) = self.selection, self.axis, io.mouse_pos
+        row, hit, under = self._row_at(y), None, NOWHERE
+        track = self.rows[row] if 0 <= row < len(self.rows) else None
         if x < left + self._gutter:
-            if track is not None and track.is_sum and imgui.is_mouse_clicked(LEFT):
-                self._settings.folds[TRACKS] = not self._is_open
+            if track is not None:
+                imgui.set_tooltip(track.label)
+                if imgui.is_mouse_clicked(LEFT) and track.is_sum:
+                    self.settings.folds[track.name] = not self._is_open(track.name)
+                elif imgui.is_mouse_clicked(LEFT):
+                    selection.places = track.places
             imgui.set_scroll_y(imgui.get_scroll_y() - em(ROW) * io.mouse_wheel)
             return
-        under = track.places.near(axis.time(x), axis.seconds(em(REACH))) if track else NOWHERE
-        if under and not imgui.is_mouse_down(LEFT):
-            imgui.set_tooltip(described(self._session.script, under))
+        if self.settings.shows_curves:
+            hit = self.graph.at(x, y)
+            under = hit.key if hit else NOWHERE
+        elif track is not None:
+            under = track.places.near(axis.time(x), axis.seconds(em(REACH)))
+        line = f"{hit.curve.label} {hit.value:.2f}" if hit else ""
+        if (under or line) and not imgui.is_mouse_down(LEFT):
+            imgui.set_tooltip(described(self._session.script, under) if under else line)
         if imgui.is_mouse_clicked(LEFT):
-            self._press(io, under, is_dense=track is not None and self._are_dense[track.label])
+            self.graph.held = hit
+            is_dense = hit is None and track is not None and self._are_dense.get(track.name, False)
+            self._press(io, under, is_dense=is_dense)
         elif imgui.is_mouse_clicked(RIGHT):
             if under and not under <= selection.places:
                 selection.places = under
             self._wants_menu = True
         self._turn_wheel(io)
 
-    def _track_at(self, y: float) -> Track | None:
-        row = self._row_at(y)
-        return self._tracks[row] if 0 <= row < len(self._tracks) else None
-
     def _row_at(self, y: float) -> int:
         return bisect.bisect_right(self._tops, y) - 1
 
     def _begin(self, doing: str, io: Any, selected: Places | None = None) -> None:
         """Hold on to something; selected: from now on, where that is not what is selected."""
-        began = (io.mouse_pos.x, io.mouse_pos.y)
-        places = self._selection.places if selected is None else selected
+        places = self.selection.places if selected is None else selected
+        began = io.mouse_pos.x, io.mouse_pos.y
         self._drag = Drag(doing, began, self._session.script, places)
 
     def _press(self, io: Any, under: Places, *, is_dense: bool) -> None:
-        selection = self._selection
+        selection = self.selection
         if under and imgui.is_mouse_double_clicked(LEFT) and selection.can_rename:
             selection.rename()
         elif not under or (is_dense and not under <= selection.places):
@@ -233,7 +262,7 @@ class DopeSheet:
             self._grabbed = under
 
     def _press_in_ruler(self, io: Any) -> None:
-        end = self._axis.x(self._session.script.duration)
+        end = self.axis.x(self._session.script.duration)
         is_at_end = end < io.mouse_pos.x < end + em(key_marks.FLAG)
         if is_at_end:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
@@ -248,14 +277,13 @@ class DopeSheet:
             self._begin("pan", io)
         sideways = io.mouse_wheel_h or (io.mouse_wheel if io.key_shift else 0.0)
         if sideways:
-            self._axis.scroll(-SCROLL_PER_NOTCH * self._axis.span * sideways)
+            self.axis.scroll(-SCROLL_PER_NOTCH * self.axis.span * sideways)
         elif io.mouse_wheel:
-            self._axis.zoom(ZOOM_PER_NOTCH**io.mouse_wheel, io.mouse_pos.x)
+            self.axis.zoom(ZOOM_PER_NOTCH**io.mouse_wheel, io.mouse_pos.x)
 
     def _follow(self, io: Any, drag: Drag) -> None:
         """Carry out what the mouse does until it lets go; Escape takes back what it did."""
-        x, y = io.mouse_pos
-        axis, session = self._axis, self._session
+        (x, y), axis, session = io.mouse_pos, self.axis, self._session
         distance = abs(x - drag.began[0]) + abs(y - drag.began[1])
         drag.has_moved = drag.has_moved or distance > CLICK
         act: dict[str, Task] = {
@@ -272,8 +300,8 @@ class DopeSheet:
         if imgui.is_key_pressed(imgui.Key.escape) and drag.doing in ("keys", "end"):
             self._drag = None
             self._messages.attempt(lambda: session.edit(drag.script, is_done=False))
-            self._selection.places = drag.selected
-        elif not imgui.is_mouse_down(drag.button):
+            self.selection.places = drag.selected
+        elif not imgui.is_mouse_down(MIDDLE if drag.doing == "pan" else LEFT):
             self._drag = None
             self._messages.attempt(lambda: self._release(io, drag))
 
@@ -282,23 +310,41 @@ class DopeSheet:
         return time if io.key_ctrl else keyframes.on_frame(time)
 
     def _move_keys(self, io: Any, drag: Drag) -> None:
+        right, down = io.mouse_pos.x - drag.began[0], io.mouse_pos.y - drag.began[1]
+        if not io.key_ctrl:  # either way begins with a step
+            right, down = (0.0 if abs(way) < CLICK else way for way in (right, down))
         time = self._grabbed.first
-        target = time + self._axis.seconds(io.mouse_pos.x - drag.began[0])
-        target = min(max(target, 0.0), self._axis.end)  # further right it would not be seen
-        offset = self._snapped(target, io) - time
+        target = time + self.axis.seconds(right)
+        target = min(max(target, 0.0), self.axis.end)  # further right it would not be seen
+        magnets = keyframes.places_of(drag.script).times | {"now": np.array([self._session.time])}
+        for name in drag.selected.times:  # where a key would be replaced
+            del magnets[name]
+        near = Places(magnets).near(target, self.axis.seconds(em(SNAP)))
+        snapped = near.first if near and not io.key_ctrl else self._snapped(target, io)
+        offset = snapped - time if right else 0.0
         script, places = keyframes.moved(drag.script, drag.selected, offset)
+        line, held = self.axis.told(time + offset), self.graph.held
+        if held is not None:
+            amount = down / self.graph.slope
+            if amount and not io.key_ctrl:
+                amount = round(held.value + amount, 2) - held.value
+            limits, posed = self._session.controls.limits, {held.curve.control}
+            script = keyframes.raised(script, places, amount, limits, posed)
+            line += f", {held.curve.label} {held.value + amount:.2f}"
         self._session.edit(script, is_done=False)
-        self._selection.places = places
-        imgui.set_tooltip(f"{time + offset:.2f} s")
+        self.selection.places = places
+        imgui.set_tooltip(line)
 
     def _select_box(self, io: Any, drag: Drag) -> None:
-        times = sorted(self._axis.time(x) for x in (drag.began[0], io.mouse_pos.x))
-        rows = sorted(self._row_at(y) for y in (drag.began[1], io.mouse_pos.y))
-        inside = self._tracks[max(rows[0], 0) : max(rows[1] + 1, 0)]
-        places = drag.selected
-        for track in inside:
-            places |= track.places.between(*times)
-        self._selection.places = places
+        corner, inside = (io.mouse_pos.x, io.mouse_pos.y), NOWHERE
+        if self.settings.shows_curves:
+            inside = self.graph.inside(drag.began, corner)
+        else:
+            times = sorted(self.axis.time(x) for x in (drag.began[0], corner[0]))
+            rows = sorted(self._row_at(y) for y in (drag.began[1], corner[1]))
+            for track in self.rows[max(rows[0], 0) : max(rows[1] + 1, 0)]:
+                inside |= track.places.between(*times)
+        self.selection.places = drag.selected | inside
 
     def _release(self, io: Any, drag: Drag) -> Message:
         """The mouse has let go; what there is to say about it."""
@@ -308,9 +354,9 @@ class DopeSheet:
             line = f"{counted(lost, 'key')} replaced; Ctrl+Z brings back" if lost > 0 else None
         elif drag.doing in ("keys", "box") and not drag.has_moved:
             if drag.doing == "box":
-                self._selection.places = drag.selected | self._grabbed
+                self.selection.places = drag.selected | self._grabbed
             if self._grabbed and not io.key_shift:
-                self._selection.places = self._grabbed
+                self.selection.places = self._grabbed
                 session.is_playing = False
                 line = session.seek(self._grabbed.first)
         if drag.doing in ("keys", "end") and drag.has_moved:
@@ -326,12 +372,12 @@ class PoseNameLine:
         self, gui: Gui, session: Session, messages: Messages, selection: KeySelection
     ) -> None:
         self._gui, self._session, self._messages = gui, session, messages
-        self._selection = selection
+        self.selection = selection
         self._time, self._name = 0.0, ""  # [s] of the pose, and what is written so far
 
     def draw(self) -> None:
         """Draw it, if it is open or wanted."""
-        pose, self._selection.pose_to_name = self._selection.pose_to_name, None
+        pose, self.selection.pose_to_name = self.selection.pose_to_name, None
         if pose is not None:
             self._time, self._name = pose.time, pose.name or ""
             imgui.open_popup("pose name")

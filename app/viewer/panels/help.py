@@ -11,7 +11,7 @@ from ..gui import Gui, colour, em
 from .widgets import muted
 
 MOUSE = (
-    ("left on the skin", "pull; click: its muscle"),
+    ("left on the skin", "pose; Ctrl: pull; click: muscle"),
     ("left beside, or right", "orbit"),
     ("middle, or Shift", "pan"),
     ("wheel", "zoom"),

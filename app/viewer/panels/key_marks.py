@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from imgui_bundle import imgui
 
-from ...script import Channel, Floats
+from ...script import Floats
 from ..gui import Theme, colour, em
+from ..keyframes import FRAME
 from ..places import Places
 from ..time_axis import TimeAxis
 from ..tracks import Track
@@ -24,12 +25,8 @@ MOST_COVERED = 0.5  # of a row by keys that are drawn one by one
 Point = tuple[float, float]
 
 
-def _ink(rgb: tuple[float, float, float], opacity: float = 1.0) -> int:
+def ink_of(rgb: tuple[float, float, float], opacity: float = 1.0) -> int:
     return int(imgui.get_color_u32(colour(rgb, opacity)))
-
-
-def _text_ink() -> int:
-    return int(imgui.get_color_u32(imgui.Col_.text))
 
 
 def draw_ruler(
@@ -40,13 +37,14 @@ def draw_ruler(
     time, duration: [s]. edges: the upper and the lower one [window units].
     """
     lines, (top, bottom) = imgui.get_window_draw_list(), edges
-    ink = _ink(theme.muted)
+    ink = ink_of(theme.muted)
     for tick in axis.ticks(em(LABEL_ROOM)):
         x = round(axis.x(tick.time)) + 0.5
         height = em(0.45) if tick.has_label else em(0.22)
         lines.add_line((x, bottom - height), (x, bottom), ink)
         if tick.has_label:
-            lines.add_text((x + em(0.2), top), ink, label_of(tick.time))
+            label = f"{tick.time / FRAME:.0f}" if axis.counts_frames else label_of(tick.time)
+            lines.add_text((x + em(0.2), top), ink, label)
     end = axis.x(duration)
     if end <= axis.x(axis.end):
         tip = end + em(FLAG), bottom - 0.5 * em(FLAG)
@@ -55,7 +53,7 @@ def draw_ruler(
     if axis.start <= time <= axis.end:
         x, half = axis.x(time), em(0.4)
         tip = x, top + 1.3 * half
-        lines.add_triangle_filled((x - half, top), (x + half, top), tip, _ink(theme.accent))
+        lines.add_triangle_filled((x - half, top), (x + half, top), tip, ink_of(theme.accent))
 
 
 def label_of(time: float) -> str:
@@ -71,32 +69,27 @@ def draw_playhead(theme: Theme, axis: TimeAxis, time: float, edges: tuple[float,
     """The line at the time shown [s], from one edge to the other [window units]."""
     if axis.start <= time <= axis.end:
         x = round(axis.x(time)) + 0.5
-        width = max(em(0.09), 1.0)
-        lines = imgui.get_window_draw_list()
-        lines.add_line((x, edges[0]), (x, edges[1]), _ink(theme.accent), width)
+        ink, width = ink_of(theme.accent), max(em(0.09), 1.0)
+        imgui.get_window_draw_list().add_line((x, edges[0]), (x, edges[1]), ink, width)
 
 
 def draw_unkeyed(theme: Theme, axis: TimeAxis, time: float, y: float) -> None:
     """A hollow key at a time [s], where one would be set for what differs from the script."""
     lines, size, x = imgui.get_window_draw_list(), em(1.2 * KEY), axis.x(time)
     corners = (x - size, y), (x, y - size), (x + size, y), (x, y + size)
-    lines.add_quad_filled(*corners, _ink(theme.panel))
-    lines.add_quad(*corners, _ink(theme.accent), em(0.12))
+    lines.add_quad_filled(*corners, ink_of(theme.panel))
+    lines.add_quad(*corners, ink_of(theme.accent), em(0.12))
 
 
 def draw_label(
-    theme: Theme, text: str, corner: Point, height: float, arrow: float, *, is_open: bool
+    text: str, corner: Point, ink: int, arrow: float = 0.0, *, is_open: bool = False
 ) -> None:
     """The name of a row from its upper left corner on, with an arrow where it folds."""
-    lines, ink, (left, top) = imgui.get_window_draw_list(), _ink(theme.muted), corner
+    lines, (left, top) = imgui.get_window_draw_list(), corner
     if arrow:
-        x, y, size = left + 0.4 * arrow, top + 0.5 * height, 0.28 * arrow
-        back, tip = 0.6 * size, size
-        if is_open:
-            lines.add_triangle_filled((x - tip, y - back), (x + tip, y - back), (x, y + tip), ink)
-        else:
-            lines.add_triangle_filled((x - back, y - tip), (x + tip, y), (x - back, y + tip), ink)
-    lines.add_text((left + arrow, top + 0.5 * (height - imgui.get_font_size())), ink, text)
+        direction = imgui.Dir.down if is_open else imgui.Dir.right
+        imgui.internal.render_arrow(lines, (left, top + em(0.15)), ink, direction, 0.7)
+    lines.add_text((left + arrow, top), ink, text)
 
 
 class TrackPainter:
@@ -110,7 +103,6 @@ class TrackPainter:
         margin = axis.seconds(em(0.5))
         count = max(round((self._high - self._low) / CLOSEST), 2)
         self._edges = np.linspace(axis.start - margin, axis.end + margin, count + 1)  # of columns
-        self._halves = axis.x(np.linspace(self._edges[0], self._edges[-1], 4 * count + 1)[1::2])
         self._script_end = min(max(axis.x(duration), self._low), self._high)
 
     def draw(self, track: Track, top: float, unit: float) -> bool:
@@ -122,27 +114,20 @@ class TrackPainter:
         bottom, low, high = top + track.height * unit, self._low, self._high
         middle = bottom - 0.5 * unit
         first, last = (low, top + 1.0), (high, bottom - 1.0)
-        lines.add_rect_filled(first, last, _ink(theme.field, 0.45), em(0.2))
-        lines.add_rect_filled(first, (self._script_end, last[1]), _ink(theme.field), em(0.2))
+        lines.add_rect_filled(first, last, ink_of(theme.field, 0.45), em(0.2))
+        lines.add_rect_filled(first, (self._script_end, last[1]), ink_of(theme.field), em(0.2))
         for begin, finish in track.held:
             if finish > axis.start and begin < axis.end:
                 ends = (max(axis.x(begin), low), middle), (min(axis.x(finish), high), middle)
-                lines.add_line(*ends, _ink(theme.muted, 0.45), em(0.22))
-        if track.channel is not None:
-            self._draw_curve(track.channel, bottom - 0.15 * unit, bottom - 0.85 * unit)
+                lines.add_line(*ends, ink_of(theme.muted, 0.45), em(0.22))
+        if len(track.channel):
+            edges, (least, most) = self._edges, track.channel.ends
+            times, values = track.channel.outline(edges[0], edges[-1], len(edges))
+            least, most = min(least, 0.0), max(most, 1.0)
+            heights = bottom - unit * (0.15 + 0.7 * (values - least) / (most - least))
+            draw_line(axis.x(times), heights, ink_of(theme.muted))
         self._draw_names(track, top)
         return self._draw_keys(track, middle, unit)
-
-    def _draw_curve(self, channel: Channel, low: float, high: float) -> None:
-        """The values of a track over time, between two heights [window units]."""
-        lowest, highest = channel.extremes(self._edges)
-        least, most = min(channel.values.min(), 0.0), max(channel.values.max(), 1.0)
-        is_falling = np.gradient(lowest + highest) < 0.0
-        first, second = np.where(is_falling, (highest, lowest), (lowest, highest))
-        values = np.stack([first, second], axis=1).ravel()  # a point for each half of a column
-        heights = low + (high - low) * (values - least) / (most - least)
-        line: Any = np.stack([self._halves, heights], axis=1).tolist()
-        self._lines.add_polyline(line, _ink(self._theme.muted), 1.0, 0)
 
     def _draw_keys(self, track: Track, middle: float, unit: float) -> bool:
         """The visible keys, selected ones on top: one by one, or if they are dense as bars.
@@ -150,7 +135,7 @@ class TrackPainter:
         In rows with a curve, which tells more, bars show what is selected only.
         """
         size = em(KEY if track.is_whole else 0.8 * KEY)
-        ink = _text_ink() if track.is_whole else _ink(self._theme.muted)
+        ink = imgui.get_color_u32(imgui.Col_.text) if track.is_whole else ink_of(self._theme.muted)
         names = track.places.times
         marks, chosen = (
             self._axis.x(places.latest_in(self._edges, names))
@@ -158,23 +143,18 @@ class TrackPainter:
         )
         is_dense = len(marks) * 2.0 * size > MOST_COVERED * (self._high - self._low)
         if not is_dense:
-            self._draw_diamonds(marks, middle, size, ink)
-            self._draw_diamonds(chosen, middle, 1.2 * size, _ink(self._theme.accent))
-        elif track.channel is None:
+            accent = ink_of(self._theme.accent)
+            for xs, reach, fill in ((marks, size, ink), (chosen, 1.2 * size, accent)):
+                for x in xs.tolist():
+                    self._lines.add_ngon_filled((x, middle), reach, fill, 4)
+        elif not len(track.channel):
             self._draw_bars(marks, size, (middle - 0.5 * size, middle + 0.5 * size), ink)
             bar = middle - 0.6 * size, middle + 0.6 * size
-            self._draw_bars(chosen, size, bar, _ink(self._theme.accent))
+            self._draw_bars(chosen, size, bar, ink_of(self._theme.accent))
         else:
             row = middle - 0.5 * unit + 1.0, middle + 0.5 * unit - 1.0
-            self._draw_bars(chosen, size, row, _ink(self._theme.accent, 0.35))
+            self._draw_bars(chosen, size, row, ink_of(self._theme.accent, 0.35))
         return is_dense
-
-    def _draw_diamonds(self, marks: Floats, middle: float, reach: float, fill: int) -> None:
-        """A diamond for each mark."""
-        for x in marks.tolist():
-            left, right = (x - reach, middle), (x + reach, middle)
-            top, bottom = (x, middle - reach), (x, middle + reach)
-            self._lines.add_quad_filled(left, top, right, bottom, fill)
 
     def _draw_bars(self, marks: Floats, reach: float, edges: Point, fill: int) -> None:
         """A bar for all marks of which each is near the next, between an upper and a lower edge."""
@@ -188,7 +168,7 @@ class TrackPainter:
 
     def _draw_names(self, track: Track, top: float) -> None:
         """The names of poses above them, as much of each as there is room for before the next."""
-        axis, ink = self._axis, _ink(self._theme.muted)
+        axis, ink = self._axis, ink_of(self._theme.muted)
         ends = [axis.x(time) - em(0.6) for time, _ in track.names[1:]] + [self._high]
         for (time, name), end in zip(track.names, ends, strict=False):
             if axis.start <= time <= axis.end:
@@ -198,10 +178,14 @@ class TrackPainter:
                     self._lines.add_text((x, top), ink, shortened(name, room))
 
 
+def draw_line(xs: Floats, ys: Floats, ink: int, width: float = 1.0) -> None:
+    """A line through points."""
+    points: Any = np.stack([xs, ys], axis=1).tolist()
+    imgui.get_window_draw_list().add_polyline(points, ink, width, 0)
+
+
 def draw_box(theme: Theme, first: Point, last: Point) -> None:
     """What a drag over nothing encloses."""
-    lines, accent = imgui.get_window_draw_list(), theme.accent
-    low = (min(first[0], last[0]), min(first[1], last[1]))
-    high = (max(first[0], last[0]), max(first[1], last[1]))
-    lines.add_rect_filled(low, high, _ink(accent, 0.15))
-    lines.add_rect(low, high, _ink(accent, 0.8))
+    lines = imgui.get_window_draw_list()
+    lines.add_rect_filled(first, last, ink_of(theme.accent, 0.15))
+    lines.add_rect(first, last, ink_of(theme.accent, 0.8))

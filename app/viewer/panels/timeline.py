@@ -8,20 +8,22 @@ from imgui_bundle import imgui
 
 from ...errors import counted
 from ..command import Command
-from ..export import Exporter
-from ..gui import Gui, colour, em
+from ..gui import LEFT, MIDDLE, RIGHT, Gui, colour, em
 from ..messages import Messages
 from ..session import SPEEDS, Session
 from .dope_sheet import DopeSheet
 from .widgets import button, hint, shortened, stay_in_line
 
 BUTTON_WIDTH, SPEED_WIDTH = 4.0, 4.6  # [em]
-MOST_HEIGHT = 0.4  # of the window
+MOST_HEIGHT, MOST_DRAGGED = 0.4, 0.7  # of the window
+LEAST = 7.0  # [em] of its height
+EDGE = 6.0  # [window units] that can be dragged
 # By the label of the command: what the button reads while that is on, and a hint.
 BUTTONS = {
     "Play": ("Pause", "play the script, or pause it (Space)"),
     "Record": ("Stop", "take every movement of every control, until it is stopped (Ctrl+R)"),
     "Loop": ("Loop", "begin again at the end (L)"),
+    "Curves": ("Curves", "keys in rows, or their values as curves (G)"),
     "Set key": ("Set key", "the face as it is becomes a key at the time shown (K)"),
     "Let go": ("Let go", "what was changed by hand goes back to where the script has it"),
     "Auto-key": ("Auto-key", "what is changed by hand becomes a key at once"),
@@ -37,24 +39,37 @@ class Timeline:
         session: Session,
         messages: Messages,
         commands: Iterable[Command],
-        exporter: Exporter,
         dope_sheet: DopeSheet,
     ) -> None:
         """commands: those of the buttons must be among them."""
         self._gui, self._session, self._messages = gui, session, messages
         self._commands = {command.label: command for command in commands}
-        self._exporter, self.dope_sheet = exporter, dope_sheet
+        self.dope_sheet = dope_sheet
         self._rows = 1  # of buttons, which go on in a second one where the window is narrow
 
     def height(self) -> float:
         """Of the timeline [window units]; where words are too large for the window, it scrolls."""
-        most = MOST_HEIGHT * imgui.get_io().display_size.y
+        display = imgui.get_io().display_size.y
+        most, dragged = MOST_HEIGHT * display, em(self.dope_sheet.settings.timeline_height)
         buttons = self._rows * imgui.get_frame_height_with_spacing()
         buttons += 2.0 * imgui.get_style().window_padding.y
-        return float(min(buttons + self.dope_sheet.height(most - buttons), most))
+        wanted = min(buttons + self.dope_sheet.height(most - buttons), most)
+        return float(min(dragged or wanted, MOST_DRAGGED * display))
+
+    def _draw_edge(self) -> None:
+        """The upper one, which can be dragged."""
+        (left, top), (width, height) = imgui.get_window_pos(), imgui.get_window_size()
+        self._gui.places["timeline's edge"] = left, top, left + width, top + EDGE
+        edge, name = imgui.internal.ImRect(left, top, left + width, top + 2.0), imgui.get_id("edge")
+        is_dragged, _, wanted = imgui.internal.splitter_behavior(
+            edge, name, imgui.internal.Axis.y, top, height, 0.0, em(LEAST), EDGE
+        )
+        if is_dragged:
+            self.dope_sheet.settings.timeline_height = wanted / em()
 
     def draw(self) -> None:
         """Draw everything, inside its window."""
+        self._draw_edge()
         top = imgui.get_cursor_pos_y()
         for label in ("Play", "Record", "Loop"):
             self._draw_button(label)
@@ -63,9 +78,16 @@ class Timeline:
         self._draw_button("Set key", is_wanted=bool(differing))
         self._draw_button("Let go")
         self._draw_button("Auto-key")
+        self._draw_button("Curves")
         self._draw_status(len(differing))
         self._rows = round((imgui.get_cursor_pos_y() - top) / imgui.get_frame_height_with_spacing())
         self.dope_sheet.draw()
+        if any(map(imgui.is_mouse_clicked, (LEFT, MIDDLE, RIGHT))):
+            flags = imgui.HoveredFlags_.child_windows
+            flags |= imgui.HoveredFlags_.allow_when_blocked_by_active_item
+            self.dope_sheet.selection.is_touched = imgui.is_window_hovered(flags)
+        elif imgui.get_io().want_text_input and not imgui.is_any_mouse_down():
+            self.dope_sheet.selection.is_touched = False
 
     def _draw_button(self, label: str, *, is_wanted: bool = False) -> None:
         command, (label_on, meaning) = self._commands[label], BUTTONS[label]
@@ -94,7 +116,7 @@ class Timeline:
 
     def _draw_status(self, differing: int) -> None:
         """The time, and what is being made now, else how many controls differ, or the script."""
-        session, theme, film = self._session, self._gui.theme, self._exporter.film
+        session, theme = self._session, self._gui.theme
         status, ink = session.name, theme.muted
         if session.script_is_unsaved:
             status += " *"
@@ -102,12 +124,14 @@ class Timeline:
             status, ink = f"{counted(differing, 'control')} not keyed", theme.accent
         if session.is_recording:
             status, ink = f"recording {session.recorded_seconds:.1f} s", theme.error
-        if film is not None:
-            status, ink = f"filming {film.seconds:.1f} s", theme.error
         imgui.same_line()
-        time = f"{session.time:.2f} s of {session.script.duration:.2f}"
+        told = self.dope_sheet.axis.told
+        time = f"{told(session.time)} of {told(session.script.duration).removeprefix('frame ')}"
         imgui.text(shortened(time, imgui.get_content_region_avail().x))
-        hint("the time shown, and the script's length; drag its end in the ruler")
+        self._gui.remember("time shown")
+        if imgui.is_item_clicked():
+            self.dope_sheet.settings.toggle("counts_frames")
+        hint("the time shown, and the script's length, whose end is in the ruler; a click: frames")
         imgui.same_line(0.0, em(1.2))
         imgui.text_colored(colour(ink), shortened(status, imgui.get_content_region_avail().x))
         where = session.file.path or "not kept in a file yet"

@@ -5,10 +5,11 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from ...sound.peaks import Peaks
-from ..gui import Gui, colour, em
+from ..gui import Gui, em
 from ..soundtrack import Soundtrack
 from ..time_axis import TimeAxis
 from . import key_marks
+from .key_marks import ink_of as _ink
 
 HEIGHT = 2.6  # [em]
 LEAST = 0.5  # [window units] from the middle: silence is a thin line
@@ -46,7 +47,7 @@ class Waveform:
         lines.add_rect_filled(
             (first - em(0.5), top + 1.0), (last + em(0.5), bottom), _ink(theme.field), em(0.2)
         )
-        key_marks.draw_label(theme, "Sound", (left, top), self.height, 0.0, is_open=False)
+        key_marks.draw_label("Sound", (left, top + 0.5 * (self.height - em())), _ink(theme.muted))
         low, high = peaks.between(axis.time(first), axis.time(last), max(last - first, 1))
         middle, reach = 0.5 * (top + bottom), 0.5 * (bottom - top) - em(0.2)
         inside, outside = _ink(theme.muted), _ink(theme.muted, 0.35)
@@ -62,7 +63,3 @@ class Waveform:
         if self._known[0] is not sound:
             self._known = sound, Peaks(sound) if sound is not None else None
         return self._known[1]
-
-
-def _ink(rgb: tuple[float, float, float], opacity: float = 1.0) -> int:
-    return int(imgui.get_color_u32(colour(rgb, opacity)))

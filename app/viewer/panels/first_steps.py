@@ -1,0 +1,91 @@
+"""Three steps that show what this is about, beside the face, until they are done or skipped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from itertools import pairwise
+
+from imgui_bundle import imgui
+
+from ..gui import NOTE_FLAGS, Gui, colour, em
+from ..view import View
+from .widgets import muted
+
+STEPS = (
+    ("Pull the cheek", "with the left mouse button"),
+    ("Press D and drag the line", "right of it, the mesh is refined"),
+    ("Press Space", "and the face plays its script"),
+)
+WIDTH, MARGIN, RADIUS = 15.0, 0.8, 0.62  # [em]
+FACE = 0.27  # half of its width, of the picture's height
+FAREWELL = 4.0  # [s] that it stays when all is done
+
+
+class FirstSteps:
+    """Draws the steps, and ticks off what the user does."""
+
+    def __init__(self, gui: Gui, view: View, doing: Callable[[], Iterable[bool]]) -> None:
+        """doing: whether the user does now what each of the steps asks for."""
+        self._gui, self._view, self._doing = gui, view, doing
+        self.done: list[bool] = []  # of each step; empty: nothing is shown
+        self._seconds_left = FAREWELL
+
+    def begin(self) -> None:
+        """Show them, none of them done."""
+        self.done, self._seconds_left = [False] * len(STEPS), FAREWELL
+
+    def draw(self) -> None:
+        """Draw them beside the face; where there is no room, below it."""
+        if not self.done:
+            return
+        left, top, width, height = self._view.area
+        self.done = [was or now for was, now in zip(self.done, self._doing(), strict=True)]
+        is_below = 0.5 * width - FACE * height < em(WIDTH + 2.0 * MARGIN)
+        y = top + height - em(MARGIN) if is_below else top + em(MARGIN)
+        imgui.set_next_window_pos((left + width - em(MARGIN), y), 0, (1.0, float(is_below)))
+        imgui.set_next_window_size((em(WIDTH), 0.0))
+        imgui.set_next_window_bg_alpha(0.88)
+        imgui.push_style_var(imgui.StyleVar_.window_rounding, em(0.5))
+        imgui.push_style_var(imgui.StyleVar_.window_padding, (em(0.8), em(0.7)))
+        imgui.begin("##steps", None, NOTE_FLAGS)
+        muted(self._gui, "First steps")
+        imgui.same_line(em(WIDTH - 3.0))
+        is_skipped = imgui.small_button("Close" if all(self.done) else "Skip")
+        self._gui.remember("first steps: Skip")
+        for number, (what, how) in enumerate(STEPS):
+            imgui.dummy((0.0, em(0.15)))
+            self._draw_mark(number)
+            imgui.begin_group()
+            imgui.text_unformatted(what)
+            muted(self._gui, how)
+            imgui.end_group()
+        if all(self.done):
+            imgui.dummy((0.0, em(0.15)))
+            muted(self._gui, "F1 shows every key.")
+            self._seconds_left -= imgui.get_io().delta_time
+        imgui.end()
+        imgui.pop_style_var(2)
+        if is_skipped or self._seconds_left <= 0.0:
+            self.done = []
+
+    def _draw_mark(self, number: int) -> None:
+        """A ring with the step's number; once that is done, a disc with a tick."""
+        corner, ink, radius = (
+            imgui.get_cursor_screen_pos(),
+            imgui.get_window_draw_list(),
+            em(RADIUS),
+        )
+        x, y = corner.x + radius, corner.y + em(1.05)
+        accent = imgui.get_color_u32(colour(self._gui.theme.accent))
+        if self.done[number]:
+            ink.add_circle_filled((x, y), radius, accent)
+            paper = imgui.get_color_u32(colour(self._gui.theme.panel))
+            tick = [(x + em(a), y + em(b)) for a, b in ((-0.27, 0.02), (-0.07, 0.22), (0.28, -0.2))]
+            for start, end in pairwise(tick):
+                ink.add_line(start, end, paper, em(0.13))
+        else:
+            ink.add_circle((x, y), radius, accent, 0, em(0.09))
+            size = imgui.calc_text_size(f"{number + 1}")
+            ink.add_text((x - 0.5 * size.x, y - 0.5 * size.y), accent, f"{number + 1}")
+        imgui.dummy((2.0 * radius + em(0.3), 0.0))
+        imgui.same_line()

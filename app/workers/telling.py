@@ -1,0 +1,62 @@
+"""One task in a process of its own, which tells meanwhile how far it is."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from ..motion import tally
+from .crew import Crew, Outcome
+
+PAUSE = 0.2  # [s] between two numbers
+
+
+class Task:
+    """Something that plays frames, done by another process; the one that waits stays free."""
+
+    def __init__(self, work: Callable[[], object], frame_count: int, wake: Callable[[], None]):
+        """Begin; wake: called when it has ended, from a thread."""
+        self._frame_count, self._crew = frame_count, Crew(1)
+        self._log = Path(tempfile.mkstemp(prefix="risorius-", suffix=".log")[1])
+        thread = ThreadPoolExecutor(1)
+        self._end = thread.submit(self._crew.do, told, 0, work, retries=0, log=self._log)
+        self._end.add_done_callback(lambda _: wake())
+        thread.shutdown(wait=False)
+
+    @property
+    def share(self) -> float:
+        """How much of it is done, 0..1."""
+        words = self._log.read_text(errors="replace").split()
+        frames = next((int(word) for word in reversed(words) if word.isdecimal()), 0)
+        return min(frames / self._frame_count, 1.0)
+
+    @property
+    def outcome(self) -> Outcome | None:
+        """What became of it; None while it goes on."""
+        return self._end.result() if self._end.done() else None
+
+    def stop(self) -> None:
+        """End it, wherever it is; it removes what it has half written."""
+        self._crew.stop()
+        self._log.unlink(missing_ok=True)
+
+
+def told(work: Callable[[], object]) -> None:
+    """In that process: do it, and print again and again how many frames were played."""
+    before, is_done = tally.frames, threading.Event()
+    if hasattr(os, "nice"):
+        os.nice(5)  # whoever waits goes first
+
+    def tell() -> None:
+        while not is_done.wait(PAUSE):
+            print(tally.frames - before, flush=True)
+
+    threading.Thread(target=tell, daemon=True).start()
+    try:
+        work()
+    finally:
+        is_done.set()

@@ -1,0 +1,265 @@
+"""Pull to pose: which muscles hold the skin where a finger draws it to, an inverse problem.
+
+The skin under the finger shall lie at its targets when the finger has gone, with few controls at
+work and the rest of the face left alone. Over the controls u, within their limits, minimise
+
+    sum_i s_i |A (t_i - p_i)|^2 + REST sum_j a_j |p_j - p_j(0)|^2 + PRICE d^2 sum_c |u_c - u_c(0)|
+
+i runs over the vertices under the finger, with shares s that add up to 1 and targets t, drawn by d
+on average; j over all others, with areas a against that under the finger. A counts less what lies
+along the line of sight, of which a mouse says nothing.
+
+Solved by Gauss and Newton. p is a twin of the face, at rest; its slopes are measured on a second
+twin, by moving one control a little and letting the skin come to rest. A twin's muscles have no
+lag, so that takes six steps of 0.3 ms, and it knows what the tangent of the springs does not: lips
+that stick and part, lids on their eyeballs, muscles that stiffen the skin. Such slopes are off by
+2 %; those of the implicit function theorem were by 5 to 60 %, and no faster (60 ms to factorise).
+
+Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. The price makes it
+the lasso of Tibshirani 1996, solved along one control after the other (Friedman et al. 2007).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .face import Simulation
+from .landmarks import Array
+
+STEP = 1.0 / 60.0  # [s] of a twin
+STEPS_TO_REST = 6  # of a twin after a small change; less than a twentieth of it is left
+MOST = 16  # controls that are looked at: those that move the finger's skin most
+PROBE = 0.25  # of a control's range, to measure its slope
+ALONG = 0.05  # what a distance along the line of sight counts
+REST = 0.1  # what the rest of the face counts, against as large an area under the finger
+PRICE = 0.08  # of a control at its limit, against skin that does not come along at all
+FINAL = 0.05  # of both when it is known which controls: these come as near as they can
+RIDGE = 1e-4  # of the same: two controls that do the same share it
+SWEEPS, STILL = 60, 1e-4  # through all controls at most, and a change that is none
+ROUNDS, NEAR = 6, 0.01  # of Gauss and Newton at most, and a change that is none
+LEAST = 0.04  # of a control's range: what changes by less is left alone
+WORTH = 0.01  # of the squared distances: what mends less beside others is left alone
+ALIKE = 0.2  # of that: whose worth differs by less stay or go together, as both sides of a muscle
+MEAGRE = 0.25  # of the squared distances: who mends less does not pull that way at all
+Names = tuple[str, ...]
+
+
+class Pull:
+    """A finger on the skin, and the controls that do what it does."""
+
+    targets: Array  # where the finger draws each of its vertices [head units], shape (n, 3)
+
+    def __init__(
+        self,
+        face: Simulation,
+        vertices: npt.ArrayLike,
+        firmness: npt.ArrayLike,
+        candidates: Sequence[Names],
+        sight: npt.ArrayLike = (0.0, 0.0, 1.0),
+    ) -> None:
+        """Begin at a face as it is, which stays as it is.
+
+        vertices, firmness: of the finger, shapes (n,), as for `Simulation.drag`. candidates:
+        controls that may be used, in one tuple those that go together, as both sides of a muscle
+        do. sight: direction in which the finger is seen, shape (3,).
+        """
+        self._base, self._probe = face.twin(), face.twin()
+        self._vertices = np.asarray(vertices, np.int64)
+        share = np.asarray(firmness, np.float64)
+        self._share = share / share.sum()
+        axis = np.asarray(sight, np.float64) / np.linalg.norm(sight)
+        self._seen = np.eye(3) - (1.0 - ALONG) * np.outer(axis, axis)
+        _rest(self._base, {})
+        self._home, self._from = self._base.twin(), self._base.positions.copy()
+        self.targets = self._from[self._vertices]
+        self._area = face.areas / face.areas[self._vertices].sum()
+        self._area[self._vertices] = 0.0
+        self._given, self.candidates = candidates, list[Names]()
+        self._value = self._start = np.zeros(0)
+
+    def _look(self) -> bool:
+        """Before the first answer, find the controls that matter, and slopes; whether any does."""
+        if self._given:
+            self.candidates, self._given = self._near(self._given), ()
+            firsts, values = [names[0] for names in self.candidates], self._home.values
+            limits = [self._home.limits[first] for first in firsts]
+            self._low, self._high = np.array(limits, np.float64).reshape(-1, 2).T
+            self._value = self._start = np.array([values[first] for first in firsts], np.float64)
+            self._slope = np.zeros((len(firsts), *self._from.shape))
+            self._measure(np.arange(len(firsts)))
+            self._first, self._turn = self._slope.copy(), 0
+        return bool(self.candidates)
+
+    @property
+    def changes(self) -> dict[Names, float]:
+        """The new values of controls that are not where they were, greatest change first."""
+        moved = np.abs(self._value - self._start) * self.mends
+        order = sorted(np.flatnonzero(moved > NEAR), key=lambda n: -round(float(moved[n]), 3))
+        return {self.candidates[n]: float(self._value[n]) for n in order}
+
+    @property
+    def mends(self) -> bool:
+        """Whether what was found comes nearer by more than a trace."""
+        return self._off(self._base.positions) < (1.0 - MEAGRE) * self._off(self._from)
+
+    @property
+    def short(self) -> float:
+        """How far the skin stays from its targets, as seen, on average [head units]."""
+        return float(np.sqrt(self._off(self._base.positions if self.mends else self._from)))
+
+    def follow(self, count: int = 4) -> None:
+        """A step of Gauss and Newton from where it is, after `count` slopes were measured anew."""
+        if not self._look():
+            return
+        every = len(self._value)
+        self._measure([(self._turn + n) % every for n in range(min(count, every))])
+        self._turn += count
+        self._improve(np.ones(every, np.bool_), 1.0)
+
+    def solve(self) -> None:
+        """The answer for these targets, whatever the finger did on its way."""
+        if not self._look():
+            return
+        self._base.copy_from(self._home)
+        self._slope[:], self._value = self._first, self._start.copy()
+        self._improve_all(np.ones(len(self._start), np.bool_), 1.0)
+        needed = self._needed()
+        self._go(np.where(needed, self._value, self._start))
+        self._improve_all(needed, FINAL)
+
+    def _near(self, candidates: Sequence[Names]) -> list[Names]:
+        """The candidates that move the finger's skin most within a step."""
+        moved = []
+        for names in candidates:
+            self._probe.copy_from(self._base)
+            self._probe.jump(self._towards(names, 1.0))
+            self._probe.step(STEP)
+            moved.append(self._square((self._probe.positions - self._from)[self._vertices]))
+        least = 0.99 * sorted([0.0, *moved])[-MOST:][0]  # of two that are alike none stays away
+        return [c for c, far in zip(candidates, moved, strict=True) if far > least]
+
+    def _square(self, by: Array) -> float:
+        """Mean square of distances (n, 3) under the finger, as seen."""
+        return float(self._share @ ((by @ self._seen) ** 2).sum(axis=1))
+
+    def _off(self, positions: Array) -> float:
+        """Mean square of how far vertices (V, 3) under the finger are from their targets."""
+        return self._square(self.targets - positions[self._vertices])
+
+    def _towards(self, names: Names, share: float) -> dict[str, float]:
+        """Controls moved by a share of their range, the other way where there is no room."""
+        low, high = self._base.limits[names[0]]
+        value = self._base.values[names[0]]
+        step = share * (high - low)
+        moved = value + step if value + step <= high else max(value - step, low)
+        return dict.fromkeys(names, moved)
+
+    def _measure(self, which: npt.ArrayLike) -> None:
+        """The slopes of the skin in some controls, by number, here."""
+        for n in np.asarray(which, np.int64):
+            moved = self._towards(self.candidates[n], PROBE)
+            self._probe.copy_from(self._base)
+            _rest(self._probe, moved)
+            by = next(iter(moved.values())) - self._value[n]
+            self._slope[n] = (self._probe.positions - self._base.positions) / by
+
+    def _go(self, value: Array) -> None:
+        self._value = value.copy()
+        values = zip(value.tolist(), self.candidates, strict=True)
+        _rest(self._base, {name: each for each, names in values for name in names})
+
+    def _improve_all(self, usable: npt.NDArray[np.bool_], thrift: float) -> None:
+        """Until nothing changes much."""
+        for _ in range(ROUNDS):
+            before = self._value
+            self._improve(usable, thrift)
+            if np.abs(self._value - before).max(initial=0.0) < NEAR:
+                break
+            self._measure(np.flatnonzero(self._value != self._start))
+
+    def _improve(self, usable: npt.NDArray[np.bool_], thrift: float) -> None:
+        """One step of Gauss and Newton over usable controls (C,); thrift: of REST and PRICE."""
+        self._go(self._value + self._system(thrift).least(usable))
+
+    def _needed(self) -> npt.NDArray[np.bool_]:
+        """The controls that changed, without those whom the others can do without, (C,)."""
+        needed = np.abs(self._value - self._start) > LEAST * (self._high - self._low)
+        system = self._system(FINAL)
+        worth = WORTH * self._off(self._from)
+        while needed.any():
+            best = system.cost(needed)
+            loss = np.full(len(needed), np.inf)
+            for c in np.flatnonzero(needed):
+                loss[c] = system.cost(needed & (np.arange(len(needed)) != c)) - best
+            spared = loss <= loss.min() + ALIKE * worth
+            if system.cost(needed & ~spared) - best > worth * spared.sum():
+                break
+            needed &= ~spared
+        return needed
+
+    def _system(self, thrift: float) -> _Lasso:
+        """The problem as it looks from here."""
+        now, count = self._base.positions, len(self._value)
+        root = np.sqrt(self._share)[:, None]
+        under = ((self._slope[:, self._vertices] @ self._seen) * root).reshape(count, -1)
+        off = (((self.targets - now[self._vertices]) @ self._seen) * root).ravel()
+        slope = self._slope.reshape(count, -1)
+        others = slope * np.repeat(thrift * REST * self._area, 3)
+        drawn = max(self._off(self._from), 1e-12)
+        changed = self._value - self._start
+        return _Lasso(
+            under @ under.T + others @ slope.T + RIDGE * drawn * np.eye(count),
+            under @ off + others @ (self._from - now).ravel() - RIDGE * drawn * changed,
+            0.5 * thrift * PRICE * drawn / np.maximum(self._high, -self._low),
+            changed, self._low - self._start, self._high - self._start,
+        )  # fmt: skip
+
+
+def _rest(twin: Simulation, values: dict[str, float]) -> None:
+    twin.jump(values)
+    for _ in range(STEPS_TO_REST):
+        twin.step(STEP)
+
+
+class _Lasso(NamedTuple):
+    """Find x with low <= changed + x <= high and least x G x - 2 r x + 2 price |changed + x|."""
+
+    gram: Array  # (C, C)
+    right: Array  # (C,)
+    price: Array  # (C,)
+    changed: Array  # (C,) so far
+    low: Array  # (C,)
+    high: Array  # (C,)
+
+    def least(self, usable: npt.NDArray[np.bool_]) -> Array:
+        """One control after the other goes to its minimum, until none moves any more, (C,).
+
+        usable: the others go back to where they were, shape (C,).
+        """
+        total, downhill = self.changed.copy(), self.right.copy()
+        downhill += self.gram[:, ~usable] @ total[~usable]
+        total[~usable] = 0.0
+        for _ in range(SWEEPS):
+            farthest = 0.0
+            for c in np.flatnonzero(usable):
+                slope = self.gram[c, c]
+                to = total[c] + downhill[c] / slope
+                to = np.sign(to) * max(abs(to) - self.price[c] / slope, 0.0)
+                by = min(max(to, self.low[c]), self.high[c]) - total[c]
+                if by:
+                    total[c] += by
+                    downhill -= by * self.gram[c]
+                    farthest = max(farthest, abs(by))
+            if farthest < STILL:
+                break
+        return total - self.changed
+
+    def cost(self, usable: npt.NDArray[np.bool_]) -> float:
+        """What is least with these controls alone, but for a constant."""
+        x = self.least(usable)
+        spent = self.price @ np.abs(self.changed + x)
+        return float(x @ self.gram @ x - 2.0 * self.right @ x + 2.0 * spent)

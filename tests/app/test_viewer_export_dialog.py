@@ -1,0 +1,181 @@
+"""File > Export, driven with mouse and keys: films, motion, progress, cancel, what goes wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from risorius.app.cameras import camera_for
+from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture import capture as film_of
+from risorius.app.looks import Refinement
+from risorius.app.motion import scene_of
+from risorius.app.script import parse_script
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.settings import ExportChoices, Settings, load_settings, save_settings
+from risorius.render import LIGHT, LIGHTS, Style
+
+from .driving import NEEDS_A_SCREEN, click, draw_frames, until, write, xdotool
+
+pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
+
+SCRIPT = "duration = 0.5\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.5\nname = 'j'\njoy = 1.0\n"
+SMALL = (160, 120)
+LONG = 120.0  # [s] for an export, whose process starts anew
+
+
+@pytest.fixture(autouse=True)
+def _at_first(viewer: Viewer, tmp_path: Path, calm: None) -> Iterator[None]:
+    """A script of half a second, small pictures, few of them, into the test's folder."""
+    viewer.session.open(parse_script(SCRIPT, source="smile.toml"))
+    viewer.settings.export = ExportChoices("frames", size=SMALL, rate=12.0, folder=str(tmp_path))
+    yield
+    viewer.exporter.cancel()
+    viewer.exporter.is_asking = False
+    draw_frames(viewer)
+
+
+def finish(viewer: Viewer, *key: str) -> None:
+    """Open the dialog, take what is there, and wait until it is written."""
+    xdotool(viewer, "key", *(key or ("F10",)))
+    assert until(viewer, lambda: "export: begin" in viewer.gui.places)
+    click(viewer, "export: begin")
+    assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
+    assert until(viewer, lambda: viewer.exporter.job is None, LONG)
+
+
+def pictures(folder: Path) -> np.ndarray:
+    """All pictures of a folder, in order, (N, H, W, 3 or 4)."""
+    files = sorted(folder.glob("*.png"))
+    return np.stack([np.asarray(Image.open(file)) for file in files]).astype(int)
+
+
+def test_a_film_is_what_capture_writes(viewer: Viewer, tmp_path: Path) -> None:
+    """Frames of the dialog are those that `capture` writes, told the same; the face stays."""
+    scene = viewer.session.scene
+    viewer.view.camera = camera_for(scene, "three-quarter")
+    viewer.settings.display.light, viewer.settings.display.look = "side", "paper"
+    before = scene.positions.copy()
+    finish(viewer)
+    assert not viewer.messages.is_error and np.array_equal(scene.positions, before)
+    style = Style(light=LIGHTS["side"], background=LIGHT)
+    options = CaptureOptions(SMALL, 12.0, Refinement("paper"), camera="three-quarter", style=style)
+    film_of(viewer.session.script, options, output=tmp_path / "told", progress=False)
+    ours, told = pictures(tmp_path / viewer.exporter.name), pictures(tmp_path / "told")
+    assert ours.shape == told.shape == (7, 120, 160, 3)
+    assert np.abs(ours - told).max() <= 2
+
+
+def test_a_film_shows_what_the_window_shows(viewer: Viewer, tmp_path: Path) -> None:
+    """A wipe, colours and overlays that only the window has are in the film, too."""
+    display = viewer.settings.display
+    display.compare, display.colours, display.overlays = "wipe", "tension", ["landmarks"]
+    viewer.settings.export.source, viewer.settings.export.seconds = "pose", 0.1
+    viewer.session.set("jaw_open", 0.4)
+    draw_frames(viewer)
+    assert until(viewer, lambda: viewer.physics.is_at_rest)
+    viewer.settings.export.size = viewer.view.viewport[2:]
+    seen = viewer.stage.draw_image(viewer.view).astype(int)
+    finish(viewer)
+    filmed = pictures(tmp_path / viewer.exporter.name)[-1]
+    assert np.abs(filmed - seen).mean() < 0.5
+
+
+def test_a_part_turns_on_nothing(viewer: Viewer, tmp_path: Path) -> None:
+    """A part of the script, without background, while the camera goes round once."""
+    xdotool(viewer, "key", "ctrl+e")
+    click(viewer, "export: What")
+    click(viewer, "export: A part of it")
+    assert until(viewer, lambda: "export: From, to" in viewer.gui.places)
+    click(viewer, "export: Transparent background")
+    click(viewer, "export: Turntable: the camera goes round once")
+    viewer.exporter.span = 0.25, 0.5
+    click(viewer, "export: begin")
+    assert until(viewer, lambda: viewer.exporter.job is not None)
+    assert until(viewer, lambda: viewer.exporter.job is None, LONG)
+    frames = pictures(next(each for each in tmp_path.iterdir() if each.is_dir()))
+    assert frames.shape == (4, 120, 160, 4) and frames[..., 3].min() == 0
+    scene = scene_of(viewer.session.script)
+    options = CaptureOptions(
+        SMALL, 12.0, camera=viewer.view.camera, span=(0.25, 0.5), is_turntable=True,
+        style=Style(background=None),
+    )  # fmt: skip
+    with Capture(scene, options) as capture:
+        yaws = [capture.camera.yaw for _ in capture.play(viewer.session.script, progress=False)]
+    assert np.allclose(np.diff(np.unwrap(yaws[-4:], period=360.0)), 90.0)
+
+
+def test_motion_is_exported_by_the_same_dialog(viewer: Viewer, tmp_path: Path) -> None:
+    """What `risorius export` writes, under the name that was typed."""
+    xdotool(viewer, "key", "ctrl+e")
+    click(viewer, "export: Write")
+    click(viewer, "export: Motion: numpy arrays (.npz)")
+    click(viewer, "export: Name")
+    xdotool(viewer, "key", "ctrl+a")
+    xdotool(viewer, "key", "BackSpace", "Return")
+    assert viewer.exporter.is_asking and "a name" in viewer.messages.text
+    viewer.messages.text = ""
+    click(viewer, "export: Name")
+    write(viewer, "moved.npz")
+    click(viewer, "export: begin")
+    assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
+    assert until(viewer, lambda: viewer.exporter.job is None, LONG)
+    assert "moved.npz" in viewer.messages.text and not viewer.messages.is_error
+    with np.load(tmp_path / "moved.npz") as arrays:
+        assert len(arrays["positions"]) == 7
+
+
+def test_the_window_lives_and_cancel_leaves_nothing(viewer: Viewer, tmp_path: Path) -> None:
+    """While a film is made the face answers; cancelled, no file is left, nor a part of one."""
+    viewer.settings.export.kind, viewer.settings.export.source = "mp4", "pose"
+    viewer.settings.export.seconds = 600.0
+    xdotool(viewer, "key", "F10")
+    click(viewer, "export: begin")
+    job = viewer.exporter.job
+    assert job is not None
+    assert until(viewer, lambda: job.task.share > 0.0, LONG)
+    xdotool(viewer, "key", "1")
+    assert viewer.session.is_alone("joy")
+    xdotool(viewer, "key", "ctrl+q")
+    assert "mp4 is being written" in viewer.messages.text and not viewer.surface.should_close
+    click(viewer, "export: stop")
+    assert viewer.exporter.job is None and not viewer.surface.should_close
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("kind", ["mp4", "frames", "npz"])
+def test_a_bad_folder_is_one_line(viewer: Viewer, kind: str) -> None:
+    """It is told at once, and the dialog stays with all that was chosen."""
+    viewer.settings.export.kind, viewer.settings.export.folder = kind, "/proc/none"
+    xdotool(viewer, "key", "F10")
+    click(viewer, "export: begin")
+    assert until(viewer, lambda: "cannot be written" in viewer.messages.text, 5.0)
+    assert viewer.messages.is_error and "\n" not in viewer.messages.text
+    assert viewer.exporter.is_asking and viewer.exporter.job is None
+    xdotool(viewer, "key", "Escape")
+    assert not viewer.exporter.is_asking
+
+
+def test_what_fails_over_there_is_one_line(viewer: Viewer, tmp_path: Path) -> None:
+    """What fails in the other process is told here, and nothing is left."""
+    viewer.settings.export.kind = "sheet"
+    viewer.session.open(parse_script(SCRIPT.replace("name = 'j'\n", ""), source="no.toml"))
+    finish(viewer)
+    assert viewer.messages.is_error and "no pose has a name" in viewer.messages.text
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_was_chosen_is_remembered(tmp_path: Path) -> None:
+    """The dialog comes up as it was left, also in another run; what is of no use gives way."""
+    path = tmp_path / "viewer.json"
+    settings = Settings(export=ExportChoices("webm", "pose", 2.0, (320, 200), 24.0, True))
+    save_settings(path, settings)
+    assert load_settings(path) == (settings, "")
+    path.write_text(path.read_text().replace('"webm"', '"avi"'))
+    found, told = load_settings(path)
+    assert found.export.kind == "mp4" and "export.kind = 'avi'" in told
+    assert found.export.size == (320, 200)

@@ -1,0 +1,248 @@
+"""The graph editor in the real window: curves whose keys are dragged in time and in value."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from imgui_bundle import imgui
+
+from risorius.app.script import Channel, Script, load_script
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.keyframes import FRAME, POSES, on_frame
+from risorius.app.viewer.panel_cache import REFRESH
+from risorius.app.viewer.places import NOWHERE, KeyPlace
+from risorius.app.viewer.settings import load_settings, save_settings
+
+from .driving import (
+    NEEDS_A_SCREEN,
+    SIZE,
+    click,
+    drag,
+    draw_frames,
+    middle,
+    on_screen,
+    until,
+    xdotool,
+)
+
+pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "curves")]
+
+SCRIPT = Path("docs/hello.toml").absolute()
+
+
+@pytest.fixture
+def curves(viewer: Viewer, calm: None) -> None:
+    """A script of poses and a blink, seen as curves."""
+    viewer.session.open(load_script(SCRIPT))
+    viewer.selection.places = NOWHERE
+    viewer.settings.shows_curves, viewer.settings.counts_frames = True, False
+    viewer.settings.timeline_height = 0.0
+    viewer.time_axis.show_whole()
+    # While the face moves, panels are drawn anew a few times a second only.
+    end = time.monotonic() + 2.0 * REFRESH
+    assert until(viewer, lambda: time.monotonic() > end)
+
+
+def place_of(viewer: Viewer, when: float, value: float) -> tuple[float, float]:
+    """Where a time and a value are in the graph [window units]."""
+    return viewer.time_axis.x(when), float(viewer.timeline.dope_sheet.graph.y(value))
+
+
+def at(viewer: Viewer, when: float, value: float) -> tuple[int, int]:
+    """The same, on the screen."""
+    return on_screen(viewer, *place_of(viewer, when, value))
+
+
+def move(viewer: Viewer, x: float, y: float) -> None:
+    """Move the mouse on, in two steps, and let go."""
+    xdotool(viewer, "mousemove_relative", "--", round(x), round(y))
+    xdotool(viewer, "mouseup", 1)
+
+
+def values(viewer: Viewer, control: str) -> list[float]:
+    """What each pose has of a control."""
+    return [pose.values.get(control, 0.0) for pose in viewer.session.script.poses]
+
+
+def test_a_key_is_dragged_in_value(viewer: Viewer) -> None:
+    """The pose's value of that curve alone goes along, the face follows, one undo takes it back."""
+    before = viewer.session.script
+    viewer.session.seek(1.0)
+    drag(viewer, at(viewer, 1.0, 1.0), (0, 10))
+    move(viewer, 0, 20)
+    assert [pose.time for pose in viewer.session.script.poses] == [0.0, 1.0, 3.0, 4.0]
+    joy = values(viewer, "joy")[1]
+    assert joy == round(joy, 2) < 0.95 and viewer.session.values["joy"] == joy
+    assert values(viewer, "jaw_open") == [0.0, 0.1, 0.0, 0.0]
+    assert viewer.session.script.tracks is not before.tracks
+    assert viewer.session.script.tracks == before.tracks
+    assert viewer.selection.places == {KeyPlace(POSES, 1.0)}
+    xdotool(viewer, "key", "ctrl+z")
+    assert viewer.session.script == before
+
+
+def test_a_key_is_dragged_in_time_and_value(viewer: Viewer) -> None:
+    """Both at once, to frames and within limits; Escape puts it back."""
+    before = viewer.session.script
+    drag(viewer, at(viewer, 1.0, 1.0), (-10, 10))
+    xdotool(viewer, "mousemove_relative", "--", -10, 10)
+    pose = viewer.session.script.poses[1]
+    assert pose.time == on_frame(pose.time) < 0.9 and 0.3 < pose.values["joy"] < 0.95
+    xdotool(viewer, "mousemove_relative", "--", 0, -300)
+    assert viewer.session.script.poses[1].values["joy"] == 1.0
+    xdotool(viewer, "key", "Escape")
+    xdotool(viewer, "mouseup", 1)
+    assert viewer.session.script == before
+
+
+def test_a_box_selects_by_value(viewer: Viewer) -> None:
+    """Only keys inside move, all by as much; poses keep the values of other curves."""
+    left, top = at(viewer, 0.9, 1.0)
+    right, bottom = at(viewer, 2.3, 0.7)
+    drag(viewer, (left, top - 6), (10, 10))
+    move(viewer, right - left - 10, bottom - top - 4)
+    chosen = viewer.selection.places
+    assert chosen == {KeyPlace(POSES, 1.0), KeyPlace("blink", 2.12), KeyPlace("blink", 2.22)}
+    drag(viewer, at(viewer, 2.22, 1.0), (0, 20))
+    move(viewer, 0, 20)
+    keys = viewer.session.script.tracks["blink"].values.tolist()
+    assert keys[0] == keys[3] == 0.0 and keys[1] == keys[2] < 0.9
+    assert values(viewer, "joy")[1] == 1.0 and viewer.selection.places == chosen
+
+
+def test_keys_snap_and_ctrl_lets_go(viewer: Viewer) -> None:
+    """A dragged key stops at the time of another track's key, with Ctrl anywhere."""
+    blink = viewer.session.script.tracks["blink"].times[0]
+    width = viewer.time_axis.x(float(blink)) - viewer.time_axis.x(1.0)
+    drag(viewer, at(viewer, 1.0, 1.0), (round(width) - 30, 0))
+    xdotool(viewer, "mousemove_relative", "--", 33, 0)
+    assert viewer.session.script.poses[1].time == 2.0
+    assert values(viewer, "joy")[1] == 1.0
+    xdotool(viewer, "keydown", "ctrl")
+    xdotool(viewer, "mousemove_relative", "--", 1, 7)
+    pose = viewer.session.script.poses[1]
+    xdotool(viewer, "keyup", "ctrl")
+    xdotool(viewer, "mouseup", 1)
+    assert pose.time != on_frame(pose.time) and pose.values["joy"] != 1.0
+
+
+def test_easings_are_chosen_and_seen(viewer: Viewer) -> None:
+    """A right click on a key chooses how it is approached, and the curve is what is played."""
+    xdotool(viewer, "mousemove", *at(viewer, 3.0, 0.6))
+    xdotool(viewer, "click", 3)
+    click(viewer, "menu Keys: Approach: hold")
+    script = viewer.session.script
+    assert script.poses[2].easing == "hold"
+    times, drawn = script.posed_channel("joy").outline(0.0, 4.0, 200)
+    played = [script.posed(when)["joy"] for when in times.tolist()]
+    assert drawn == pytest.approx(played)
+    assert max(np.abs(np.diff(drawn))) == pytest.approx(0.4)  # it jumps
+    xdotool(viewer, "mousemove", *at(viewer, 2.9, 1.0))  # on the curve that now stays
+    graph = viewer.timeline.dope_sheet.graph
+    hit = graph.at(*place_of(viewer, 2.9, 1.0))
+    assert hit is not None and hit.curve.name == "pose joy" and not hit.key
+
+
+def test_a_name_selects_its_curve(viewer: Viewer) -> None:
+    """A click on a name selects all keys of that curve, which comes to the front."""
+    graph = viewer.timeline.dope_sheet.graph
+    click(viewer, "row track blink")
+    assert {place.track for place in viewer.selection.places} == {"blink"}
+    assert len(viewer.selection.places) == 4 and graph.curves[-1].name == "track blink"
+    click(viewer, "row pose joy")
+    assert {place.track for place in viewer.selection.places} == {POSES}
+    assert graph.curves[0].name == "track blink"
+    click(viewer, "row Tracks")  # which folds them away
+    assert {curve.name for curve in graph.curves} == {"pose joy", "pose jaw_open"}
+
+
+def test_the_wheel_zooms(viewer: Viewer) -> None:
+    """About the mouse; Shift+F shows all."""
+    place, axis = at(viewer, 2.0, 0.8), viewer.time_axis
+    xdotool(viewer, "mousemove", *place)
+    xdotool(viewer, "click", "--repeat", 2, 4)
+    assert axis.span < 3.5
+    assert at(viewer, 2.0, 0.8) == pytest.approx(place, abs=2)
+    xdotool(viewer, "key", "shift+f")
+    assert axis.is_whole
+
+
+def test_the_timeline_is_dragged_taller(viewer: Viewer, tmp_path: Path) -> None:
+    """Its upper edge goes where it is dragged, and is remembered."""
+    height = viewer.timeline.height()
+    drag(viewer, middle(viewer, "timeline's edge"), (0, -40))
+    move(viewer, 0, -40)
+    assert viewer.timeline.height() == pytest.approx(height + 80.0, abs=6.0)
+    save_settings(tmp_path / "viewer.json", viewer.settings)
+    kept, complaint = load_settings(tmp_path / "viewer.json")
+    assert not complaint and kept.timeline_height == viewer.settings.timeline_height > 0.0
+    drag(viewer, middle(viewer, "timeline's edge"), (0, 200))
+    move(viewer, 0, 200)
+    assert 0.0 < viewer.settings.timeline_height < 8.0
+
+
+def test_frames_are_counted(viewer: Viewer) -> None:
+    """A click on the time turns seconds into frames, and back."""
+    viewer.session.seek(2.0)
+    draw_frames(viewer)
+    click(viewer, "time shown")
+    axis = viewer.time_axis
+    assert viewer.settings.counts_frames and axis.told(2.0) == "frame 60"
+    labelled = [tick.time / FRAME for tick in axis.ticks(60.0) if tick.has_label]
+    assert len(labelled) > 3 and labelled == pytest.approx(np.round(labelled))
+    click(viewer, "time shown")
+    assert axis.told(2.0) == "2.00 s"
+
+
+def test_keys_and_curves_are_switched(viewer: Viewer) -> None:
+    """The button goes to rows of keys and back, with the same keys selected."""
+    xdotool(viewer, "mousemove", *at(viewer, 1.0, 1.0))
+    xdotool(viewer, "click", 1)
+    assert viewer.selection.places == {KeyPlace(POSES, 1.0)} and viewer.session.time == 1.0
+    click(viewer, "curves")
+    assert not viewer.settings.shows_curves
+    assert viewer.selection.places == {KeyPlace(POSES, 1.0)}
+    xdotool(viewer, "key", "g")
+    assert viewer.settings.shows_curves
+
+
+def test_groups_fold(viewer: Viewer) -> None:
+    """Tracks stand under the groups of their controls, which a click folds."""
+    keys = Channel([0.0, 1.0], [0.0, 1.0])
+    tracks = dict.fromkeys(("joy", "AU12_left", "AU4_right", "viseme_aa"), keys)
+    viewer.session.open(Script("groups", 2.0, "groups", tracks=tracks))
+    sheet = viewer.timeline.dope_sheet
+    draw_frames(viewer)
+    inside = {track.label: track.parents[-1:] for track in sheet.rows}
+    assert inside["AU4 right"] == inside["AU12 left"] == ("Tracks: Action units",)
+    assert inside["viseme aa"] == ("Tracks: Visemes",) and inside["Visemes"] == ("Tracks",)
+    left, top, _, bottom = viewer.gui.places["row Tracks: Action units"]
+    xdotool(viewer, "mousemove", *on_screen(viewer, left + 4.0, 0.5 * (top + bottom)))
+    xdotool(viewer, "click", 1)
+    assert "AU4 right" not in [track.label for track in sheet.rows]
+    assert viewer.settings.folds["Tracks: Action units"] is False
+
+
+def test_a_dense_take_is_drawn_with_little(viewer: Viewer) -> None:
+    """Half a million keys: a few points for each column, one group at first, boxes still select."""
+    names = [name for name, (low, _) in viewer.session.controls.limits.items() if low == 0.0][:60]
+    times, chance = np.arange(9000) / 15.0, np.random.default_rng(5)
+    tracks = {name: Channel(times, chance.uniform(0.0, 0.4, 9000)) for name in names}
+    viewer.session.open(Script("take", 600.0, "take", tracks=tracks))
+    draw_frames(viewer)
+    graph = viewer.timeline.dope_sheet.graph
+    assert 0 < len(graph.curves) < 24
+    viewer.selection.select_all()
+    viewer.wait_for_frame()
+    viewer._draw_gui(is_visible=True)
+    assert imgui.get_draw_data().total_vtx_count < 110 * SIZE[0]
+    viewer.selection.places = NOWHERE
+    first, last = at(viewer, 100.0, 0.45), at(viewer, 200.0, -0.02)
+    drag(viewer, first, (10, 10))
+    move(viewer, last[0] - first[0] - 10, last[1] - first[1] - 10)
+    assert set(viewer.selection.places.times) == {curve.control for curve in graph.curves}
+    found = len(viewer.selection.places) / len(graph.curves)
+    assert found == pytest.approx(1500, abs=60)

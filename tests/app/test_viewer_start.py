@@ -1,0 +1,139 @@
+"""The first seconds: a picture at once, a window that answers while it loads, three first steps."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from Xlib import X, display
+from Xlib.error import XError
+from Xlib.protocol.event import ClientMessage
+
+from risorius.app.performances import script_for
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.gui import THEMES
+from risorius.app.viewer.opening import COMPILING, LOADING, picture
+from risorius.app.viewer.settings import Settings, load_settings, save_settings
+
+from .driving import NEEDS_A_SCREEN, SIZE, click, drag, draw_frames, nose, on_screen, until, xdotool
+
+pytestmark = NEEDS_A_SCREEN
+
+
+def first_pictures(process: subprocess.Popen[bytes]) -> Iterator[np.ndarray]:
+    """What the window of a process that starts shows, again and again, (H, W, 3)."""
+    screen = display.Display()
+    while process.poll() is None:
+        for window in screen.screen().root.query_tree().children:
+            try:
+                name = str(window.get_wm_name())
+                if not name.startswith("Risorius"):
+                    continue
+                size = window.get_geometry()
+                read = window.get_image(0, 0, size.width, size.height, X.ZPixmap, 0xFFFFFFFF)
+            except XError:  # it is not there yet, or not any more
+                continue
+            pixels = np.frombuffer(read.data, np.uint8).reshape(size.height, size.width, 4)
+            yield pixels[..., 2::-1].astype(int)
+        time.sleep(0.02)
+
+
+def close_window() -> None:
+    """Ask the window to close, as a desktop does."""
+    screen = display.Display()
+    protocols, delete = map(screen.get_atom, ("WM_PROTOCOLS", "WM_DELETE_WINDOW"))
+    for window in screen.screen().root.query_tree().children:
+        if str(window.get_wm_name()).startswith("Risorius"):
+            data = (32, [delete, X.CurrentTime, 0, 0, 0])
+            window.send_event(ClientMessage(window=window, client_type=protocols, data=data))
+    screen.sync()
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[Callable[[], subprocess.Popen[bytes]]]:
+    """Start `risorius view` as on a machine where nothing is compiled yet."""
+    begun = []
+    folders = {"XDG_CONFIG_HOME": tmp_path / "config", "NUMBA_CACHE_DIR": tmp_path / "compiled"}
+    environment = {**os.environ, **{name: str(path) for name, path in folders.items()}}
+
+    def view() -> subprocess.Popen[bytes]:
+        """Start it."""
+        command = [sys.executable, "-m", "risorius", "view", "--size", "640x400"]
+        begun.append(subprocess.Popen(command, env=environment, stderr=subprocess.PIPE))
+        return begun[-1]
+
+    yield view
+    for process in begun:
+        process.kill()
+        process.wait()
+
+
+def test_a_face_is_seen_before_anything_is_compiled(
+    start: Callable[[], subprocess.Popen[bytes]], tmp_path: Path
+) -> None:
+    """The first start shows a picture of the face, says what goes on, and closes when asked."""
+    process = start()
+    wanted = [
+        picture((640, 400), 15.0, THEMES["light"], text, is_own=False).astype(int)
+        for text in (LOADING, COMPILING)
+    ]
+    is_like = [False, False]
+    for shown in first_pictures(process):
+        for index, image in enumerate(wanted):
+            is_like[index] |= bool(np.abs(shown - image).max() <= 8)
+        if not is_like[0]:
+            assert not list((tmp_path / "compiled").rglob("*.code"))
+        if all(is_like):
+            break
+    assert all(is_like)
+    close_window()
+    assert process.wait(10.0) == 0
+
+
+def test_the_steps_come_once(tmp_path: Path) -> None:
+    """Who has seen them does not see them again."""
+    path = tmp_path / "viewer.json"
+    save_settings(path, Settings(knows_first_steps=True, size=SIZE))
+    with Viewer(script_for(None, "face"), SIZE, settings_path=path) as viewer:
+        assert viewer.first_steps.done == []
+    assert load_settings(path)[0].knows_first_steps
+
+
+@pytest.fixture(scope="module")
+def viewer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Viewer]:
+    """A window that was never open before."""
+    path = tmp_path_factory.mktemp("settings") / "viewer.json"
+    with Viewer(script_for(None, "face"), SIZE, settings_path=path) as opened:
+        opened.settings.is_alive = False
+        draw_frames(opened)
+        yield opened
+
+
+def test_the_steps_tick_themselves_off(viewer: Viewer) -> None:
+    """Pulling the skin, dragging the line and playing end the guide; Help brings it back."""
+    steps = viewer.first_steps
+    assert steps.done == [False, False, False]
+    drag(viewer, nose(viewer), (30, 0))
+    assert until(viewer, lambda: steps.done == [True, False, False])
+    xdotool(viewer, "mouseup", 1, "key", "d")
+    left, top, width, height = viewer.view.area
+    xdotool(viewer, "mousemove", *on_screen(viewer, left + 0.5 * width, top + 0.1 * height))
+    xdotool(viewer, "mousedown", 1)
+    assert not steps.done[1]
+    xdotool(viewer, "mousemove_relative", "--", -40, 0)
+    assert until(viewer, lambda: steps.done == [True, True, False])
+    xdotool(viewer, "mouseup", 1, "key", "space")
+    assert until(viewer, lambda: all(steps.done))
+    xdotool(viewer, "key", "space")
+    assert until(viewer, lambda: not steps.done, 20.0)
+    click(viewer, "menu Help")
+    click(viewer, "menu Help: First steps")
+    assert steps.done == [False, False, False]
+    click(viewer, "first steps: Skip")
+    assert steps.done == []

@@ -1,0 +1,172 @@
+"""Pull to pose: the muscles that hold the skin where it was drawn to are found."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from risorius import sim
+from risorius.assets.model import Head
+from tests.sim.poses import FRAME
+
+Array = npt.NDArray[np.float64]
+FINGER = 16.0  # mm
+RIGHT_CORNER, LEFT_CORNER, LEFT_BROW, NOSE, CHIN = 48, 54, 24, 30, 8
+LEFT_LID = 44
+
+
+def candidates(face: sim.Simulation) -> list[tuple[str, ...]]:
+    """All muscles of one side, and the jaw."""
+    names = face.controls
+    return [
+        (name,)
+        for name in names
+        if f"{name}_left" not in names
+        and not name.startswith(("gaze_", "head_", "tongue_", "lips_closed"))
+    ]
+
+
+def pull_at(
+    face: sim.Simulation, vertex: int, offset: npt.ArrayLike, **options: object
+) -> tuple[sim.Pull, float]:
+    """Solve for skin around a vertex that is drawn by an offset [mm]; how far the middle was."""
+    distance = np.linalg.norm(face.positions - face.positions[vertex], axis=1)
+    finger = np.flatnonzero(distance < FINGER)
+    firmness = (1.0 - (distance[finger] / FINGER) ** 2) ** 2
+    pull = sim.Pull(face, finger, firmness, candidates(face), **options)  # type: ignore[arg-type]
+    pull.targets = pull.targets + np.asarray(offset)
+    before = pull.short
+    pull.solve()
+    return pull, before
+
+
+def values_of(pull: sim.Pull) -> dict[str, float]:
+    """What was solved, by single controls."""
+    return {name: value for names, value in pull.changes.items() for name in names}
+
+
+def settled(face: sim.Simulation, values: dict[str, float]) -> Array:
+    """Where the skin lies at last under these controls."""
+    face.set_all(values)
+    for _ in range(60):
+        face.step(FRAME)
+    return face.positions.copy()
+
+
+def test_a_corner_pulled_up_and_back_smiles(simulation: sim.Simulation, head: Head) -> None:
+    """What joy does to the corner of the mouth is done by zygomaticus major, and it stays there."""
+    corner = head.landmarks[LEFT_CORNER]
+    drawn = settled(simulation, {"joy": 1.0})[corner] - simulation.rest_positions[corner]
+    simulation.reset()
+    pull, before = pull_at(simulation, corner, drawn)
+    found = values_of(pull)
+    assert next(iter(found)) == "zygomaticus_major_left"
+    assert len(found) <= 4
+    assert before > 5.0
+    assert pull.short < 2.5
+    off = settled(simulation, found)[corner] - simulation.rest_positions[corner] - drawn
+    assert np.linalg.norm(off[:2]) < 2.5
+
+
+@pytest.mark.parametrize(
+    ("landmark", "offset", "wanted"),
+    [
+        (LEFT_BROW, (0.0, 5.0, 0.0), {"frontalis_lateral_left", "frontalis_medial_left"}),
+        (CHIN, (0.0, -15.0, 0.0), {"jaw_open"}),
+        (CHIN, (8.0, 0.0, 0.0), {"jaw_sideways"}),
+        (LEFT_CORNER, (0.0, -6.0, 0.0), {"depressor_anguli_oris_left"}),
+        (LEFT_LID, (0.0, -5.0, 0.0), {"orbicularis_oculi_palpebral_upper_left"}),
+    ],
+)
+def test_skin_is_held_by_what_moves_it_in_life(
+    simulation: sim.Simulation,
+    head: Head,
+    landmark: int,
+    offset: tuple[float, ...],
+    wanted: set[str],
+) -> None:
+    """Brow up, chin down or aside, corner down, lid shut: few muscles, and the right ones."""
+    pull, before = pull_at(simulation, head.landmarks[landmark], offset)
+    found = values_of(pull)
+    assert wanted <= found.keys()
+    assert len(found) <= 3
+    assert pull.short < 0.8 * before
+
+
+def test_what_no_muscle_can_do_is_not_done(simulation: sim.Simulation, head: Head) -> None:
+    """The tip of the nose, drawn forward, is left where it was, and so is the crown."""
+    pull, before = pull_at(
+        simulation, head.landmarks[NOSE], (0.0, 0.0, 10.0), sight=(1.0, 0.0, 0.0)
+    )
+    assert not pull.changes
+    assert pull.short == pytest.approx(before)
+    crown = int(simulation.rest_positions[:, 1].argmax())
+    for candidates_there in (candidates(simulation), []):
+        pull = sim.Pull(simulation, [crown], [1.0], candidates_there)
+        pull.targets = pull.targets + 5.0
+        pull.follow()
+        pull.solve()
+        assert not pull.changes
+
+
+def test_mirrored_pulls_are_mirrored(simulation: sim.Simulation, head: Head) -> None:
+    """The other corner, drawn the other way, is held by the muscles of the other side."""
+    left, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (7.0, 8.0, 0.0))
+    right, _ = pull_at(simulation, head.landmarks[RIGHT_CORNER], (-7.0, 8.0, 0.0))
+    mirrored = {name.replace("left", "right"): value for name, value in values_of(left).items()}
+    assert values_of(right) == pytest.approx(mirrored, abs=0.01)
+    assert right.short == pytest.approx(left.short, abs=0.02)
+
+
+def test_the_answer_does_not_depend_on_the_way(simulation: sim.Simulation, head: Head) -> None:
+    """A finger that came by a detour, in many frames, ends with the very same muscles."""
+    straight, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (7.0, 8.0, 0.0))
+    winding, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (0.0, 0.0, 0.0))
+    at_rest = winding.targets
+    for offset in ((0.0, -6.0, 0.0), (3.0, 0.0, 0.0), (7.0, 8.0, 0.0)):
+        winding.targets = at_rest + np.array(offset)
+        winding.follow()
+    winding.solve()
+    assert winding.changes == straight.changes
+
+
+def test_a_pose_stays_and_is_only_added_to(simulation: sim.Simulation, head: Head) -> None:
+    """A brow drawn up leaves a smile alone; a corner drawn back down takes it away."""
+    settled(simulation, {"zygomaticus_major_left": 0.8})
+    brow, _ = pull_at(simulation, head.landmarks[LEFT_BROW], (0.0, 5.0, 0.0))
+    assert "zygomaticus_major_left" not in values_of(brow)
+    corner = head.landmarks[LEFT_CORNER]
+    back = simulation.rest_positions[corner] - simulation.positions[corner]
+    undone, before = pull_at(simulation, corner, back)
+    assert values_of(undone)["zygomaticus_major_left"] < 0.4
+    assert undone.short < 0.3 * before
+
+
+def test_few_muscles_are_found_again(
+    simulation: sim.Simulation, head: Head, generator: np.random.Generator
+) -> None:
+    """Skin moved by one to three muscles by chance is held nearly there, by as few."""
+    muscles = [c[0] for c in candidates(simulation) if c[0].endswith("_left")]
+    muscles = [name for name in muscles if not name.startswith(("levator_palp", "lips"))]
+    front = simulation.rest_positions[:, 2] > simulation.rest_positions[:, 2].max() - 75.0
+    shares = []
+    while len(shares) < 8:
+        chosen = generator.choice(muscles, int(generator.integers(1, 4)), replace=False)
+        simulation.reset()
+        moved = settled(simulation, {n: float(generator.uniform(0.3, 1.0)) for n in chosen})
+        moved -= simulation.rest_positions
+        vertex = int((np.linalg.norm(moved, axis=1) * front).argmax())
+        if np.linalg.norm(moved[vertex]) < 1.5:
+            continue
+        simulation.reset()
+        distance = np.linalg.norm(simulation.positions - simulation.positions[vertex], axis=1)
+        finger = np.flatnonzero(distance < FINGER)
+        pull = sim.Pull(simulation, finger, np.ones(len(finger)), candidates(simulation))
+        pull.targets = pull.targets + moved[finger]
+        before = pull.short
+        pull.solve()
+        assert len(pull.changes) <= 4
+        shares.append(pull.short / before)
+    assert max(shares) < 0.4
+    assert np.mean(shares) < 0.15
