@@ -17,7 +17,7 @@ _KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
          if imgui.Key.tab <= key < imgui.Key.gamepad_start
          and not imgui.get_key_name(key).endswith(_RESERVED)}  # fmt: skip
 # Ctrl keys that a line of text takes for itself while one writes.
-_WRITING = ("Ctrl+A", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
+_WRITING = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
 _WALKING = ("Space", "Enter", "Left", "Right", "Up", "Down", "Home", "End", "PageUp", "PageDown")
 
 
@@ -34,6 +34,8 @@ class Command:
     other_key: str = ""
     submenu: Callable[[], Iterable[Command]] | None = None  # in place of doing something
     usual_key: str = ""  # where another one is set
+    reads: Callable[[], str] | None = None  # its label now, where that changes
+    by_key: Task | None = None  # what its key does, where that is not the same
 
     @property
     def displayed_keys(self) -> str:
@@ -67,7 +69,7 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
             is_for_text = is_writing and ("Ctrl" not in key or key in _WRITING)
             is_taken = is_for_text or (gui.owns_keys and key in _WALKING)
             if not is_taken and imgui.is_key_chord_pressed(chord(key)) and command.can_run():
-                messages.attempt(command.run)
+                messages.attempt(command.by_key or command.run)
 
 
 def chord(key: str) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from ..errors import counted
 from ..mirror import OPPOSITE, parted, twin_of
 from ..vocabulary import is_found, readable, title_of
 
@@ -42,6 +43,15 @@ class Row:
     def words(self, action: str) -> str:
         """What it reads: a code, a plain name, or both."""
         return "  ".join(filter(None, title_of(self.label, action)))
+
+
+def change_of(before: Mapping[str, float], after: Mapping[str, float]) -> str:
+    """What was set by hand, in words; what is not in `before` was 0."""
+    names = sorted(name for name, value in after.items() if value != before.get(name, 0.0))
+    labels = {readable(name if len(names) == 1 else parted(name)[0]) for name in names}
+    if len(labels) != 1:
+        return f"Set {counted(len(names), 'control')}"
+    return f"Set {labels.pop()} to {after[names[0]]:.2f}"
 
 
 def rows_of(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from ..script import Script
 from .script_file import ScriptFile
@@ -17,6 +17,7 @@ class Document:
     script: Script
     file: ScriptFile  # in which the script is kept
     display: object = None  # how the scene is drawn: never changed, compared by what it says
+    time: float = field(default=0.0, compare=False)  # [s] at which the pose was made
 
     def differs_in_view(self, other: Document) -> bool:
         """Whether it is drawn in another way than the other, and else the same."""

@@ -1,4 +1,4 @@
-"""Undo and redo: a row of states that never change, and a place in it."""
+"""Undo and redo: a row of states that never change, each with what was done, and a place in it."""
 
 from __future__ import annotations
 
@@ -17,47 +17,47 @@ class History(Generic[State]):
     def __init__(self, present: State, growth: Callable[[State, State], int]) -> None:
         """growth: how many keys the second of two states has that the first does not share."""
         self._states = [present]
-        self._place = 0
+        self.labels = ["Beginning"]  # what was done to come to each state
+        self.place = 0  # of the present among them
         self._growth = growth
 
     @property
     def can_undo(self) -> bool:
         """Whether there is something before the present."""
-        return self._place > 0
+        return self.place > 0
 
     @property
     def can_redo(self) -> bool:
         """Whether something was undone."""
-        return self._place < len(self._states) - 1
+        return self.place < len(self._states) - 1
 
     @property
     def present(self) -> State:
         """The state noted last, or come back to."""
-        return self._states[self._place]
+        return self._states[self.place]
 
-    def note(self, state: State) -> None:
-        """Something was done; what was undone before is forgotten. Equal states count once."""
+    def note(self, state: State, label: str = "") -> None:
+        """Something was done; what was undone before is forgotten. Equal states count once.
+
+        label: what was done, as "Mirror".
+        """
         if state == self.present:
             return
-        self._states = [*self._states[: self._place + 1], state]
+        self._states = [*self._states[: self.place + 1], state]
+        self.labels = [*self.labels[: self.place + 1], label]
         while len(self._states) > MOST or (len(self._states) > 2 and self._are_too_large):
-            del self._states[0]
-        self._place = len(self._states) - 1
+            del self._states[0], self.labels[0]
+        self.place = len(self._states) - 1
 
     def amend(self, state: State) -> None:
         """The present is this now, which nobody would call a step."""
-        self._states[self._place] = state
+        self._states[self.place] = state
 
     @property
     def _are_too_large(self) -> bool:
         return sum(itertools.starmap(self._growth, itertools.pairwise(self._states))) > MOST_GROWTH
 
-    def undo(self) -> State:
-        """Step back, as far as there is something."""
-        self._place = max(self._place - 1, 0)
-        return self.present
-
-    def redo(self) -> State:
-        """Step forward, as far as there is something."""
-        self._place = min(self._place + 1, len(self._states) - 1)
+    def go(self, place: int) -> State:
+        """To the state of this number, or as near as there is one."""
+        self.place = min(max(place, 0), len(self._states) - 1)
         return self.present

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..errors import counted
-from ..script import Pose
+from ..script import Pose, Script
 from . import keyframes
 from .keyframes import POSES
 from .messages import Message
@@ -20,6 +20,8 @@ class KeySelection:
     def __init__(self, session: Session, panels: PanelState) -> None:
         self._session, self._panels = session, panels
         self.places = NOWHERE
+        self.is_touched = False  # the timeline was clicked last, so that its keys are meant
+        self.copied: tuple[Script, Places] | None = None  # which can be pasted
         self.pose_to_name: Pose | None = None  # for which the timeline is to ask a name
 
     @property
@@ -32,9 +34,9 @@ class KeySelection:
         """Whether there are keys that something could be done with."""
         return bool(self.places) and self.can_edit
 
-    def set_key(self) -> Message:
-        """The face as it is becomes a key at the time shown."""
-        time = self._session.set_key()
+    def set_key(self, *, is_whole: bool = False) -> Message:
+        """The face as it is becomes a key at the time shown; is_whole: of every track."""
+        time = self._session.set_key(is_whole=is_whole)
         script = self._session.script
         there = keyframes.places_of(script).near(time, keyframes.SAME)
         self.places = Places({POSES: there.times[POSES]}) if POSES in there.times else there
@@ -42,32 +44,50 @@ class KeySelection:
 
     def delete(self) -> Message:
         """Take the selected keys away."""
-        places = self.places
-        self._session.edit(keyframes.without(self._session.script, places))
-        return f"{counted(len(places), 'key')} deleted; Ctrl+Z brings back"
+        what = counted(len(self.places), "key")
+        self._session.edit(keyframes.without(self._session.script, self.places), f"Delete {what}")
+        return f"{what} deleted; Ctrl+Z brings back"
+
+    def delete_if_meant(self) -> Message:
+        """Take them away if nothing but the timeline was touched since they were selected."""
+        return self.delete() if self.is_touched else "click into the timeline to delete its keys"
 
     def duplicate(self) -> Message:
         """Copies of the selected keys at the time shown, or a little later if they are there."""
-        script = self._session.script
-        first = self.places.first
-        offset = keyframes.key_time(script, self._session.time) - first
+        offset = keyframes.key_time(self._session.script, self._session.time) - self.places.first
         if abs(offset) < 0.5 * keyframes.FRAME:
             offset = COPY_OFFSET * keyframes.FRAME
-        script, copies = keyframes.copied(script, self.places, offset)
-        self._session.edit(script)
-        self.places = copies
-        return f"{counted(len(copies), 'key')} copied to {first + offset:.2f} s"
+        return self._copy_from(self._session.script, self.places, offset)
+
+    def copy(self) -> Message:
+        """Keep the selected keys, to be pasted elsewhere."""
+        self.copied = self._session.script, self.places
+        return f"{counted(len(self.places), 'key')} copied; Ctrl+V pastes at the time shown"
+
+    def paste(self) -> Message:
+        """The keys that were copied, from the time shown on; also those of another script."""
+        assert self.copied is not None
+        time = keyframes.key_time(self._session.script, self._session.time)
+        return self._copy_from(*self.copied, time - self.copied[1].first)
+
+    def _copy_from(self, source: Script, places: Places, offset: float) -> Message:
+        script, copies = keyframes.copied(self._session.script, places, offset, source)
+        what = counted(len(places), "key")
+        self._session.edit(script, f"Copy {what}")
+        self.places, self.is_touched = copies, True
+        return f"{what} copied to {places.first + offset:.2f} s"
 
     def nudge(self, frames: int) -> None:
         """Move the selected keys by so many frames."""
         first = self.places.first
         offset = keyframes.on_frame(first + frames * keyframes.FRAME) - first
         script, places = keyframes.moved(self._session.script, self.places, offset)
-        self._session.edit(script)
+        self._session.edit(script, f"Move {counted(len(places), 'key')}")
         self.places = places
 
     def select_all(self) -> None:
         """All keys of the script."""
+        self.is_touched = True
         self.places = keyframes.places_of(self._session.script)
 
     def _nameable(self) -> Pose | None:
@@ -91,7 +111,8 @@ class KeySelection:
 
     def ease(self, easing: str) -> None:
         """How the selected keys are approached."""
-        self._session.edit(keyframes.eased(self._session.script, self.places, easing))
+        eased = keyframes.eased(self._session.script, self.places, easing)
+        self._session.edit(eased, f"Approach: {easing}")
 
     def is_eased(self, easing: str) -> bool:
         """Whether all selected keys are approached so."""

@@ -25,6 +25,8 @@ SAME = 1e-6  # of a value or a time [s]: no difference
 
 # The keys of a track, an entry each in arrays: times [s], then values and easings, or the poses.
 Columns = tuple[npt.NDArray[Any], ...]
+Values = Mapping[str, float]
+Placed = tuple[Script, Places]  # a script, and where some of its keys are now
 
 
 def places_of(script: Script) -> Places:
@@ -62,14 +64,14 @@ def pose_at(script: Script, time: float) -> Pose | None:
 # Changes
 
 
-def moved(script: Script, places: Places, seconds: float) -> tuple[Script, Places]:
+def moved(script: Script, places: Places, seconds: float) -> Placed:
     """The script with keys later by `seconds` (none before 0), and where they are then."""
-    return _placed(script, places, seconds, are_copies=False)
+    return _placed(script, places, seconds)
 
 
-def copied(script: Script, places: Places, seconds: float) -> tuple[Script, Places]:
-    """The script with copies of keys later by `seconds` (none before 0), and where these are."""
-    return _placed(script, places, seconds, are_copies=True)
+def copied(script: Script, places: Places, seconds: float, source: Script | None = None) -> Placed:
+    """The script with copies of keys (its own or a source's), `seconds` later, and their places."""
+    return _placed(script, places, seconds, source or script)
 
 
 def without(script: Script, places: Places) -> Script:
@@ -134,26 +136,35 @@ def lasting(script: Script, seconds: float) -> Script:
     return replace(script, duration=min(max(on_frame(seconds), FRAME, *ends), LARGEST))
 
 
-def keyed(script: Script, time: float, values: Mapping[str, float], limits: Limits) -> Script:
+def differing(script: Script, time: float, values: Values, limits: Limits) -> list[str]:
+    """The controls whose values are not what the script makes of them at `time` [s]."""
+    told = clamped(limits, script.at(time))
+    return [name for name, value in values.items() if abs(value - told.get(name, 0.0)) > SAME]
+
+
+def keyed(
+    script: Script, time: float, values: Values, limits: Limits, *, is_whole: bool = False
+) -> Script:
     """The script with a key that shows these values at `time` [s].
 
     The key is a pose, which holds what the tracks do not add; where a pose cannot (a track closes
     the eye, and it shall be open) the track gets a key, too. In a script of tracks alone, as
     recordings are, those get keys that differ; all of them where nothing does.
+    is_whole: every track gets a key, too, whether it differs or not.
     """
     time = rounded(time)
     plain = script.posed(time)
     added = {name: track.value(time) for name, track in script.tracks.items()}
-    before = clamped(limits, script.at(time))
-    changed = [name for name in values if abs(values[name] - before.get(name, 0.0)) > SAME]
+    changed = differing(script, time, values, limits)
     if script.tracks and not script.poses:
-        return _with_track_keys(
-            _reaching(script, time), time, {name: values[name] for name in changed or script.tracks}
-        )
+        names = {*changed, *script.tracks} if is_whole or not changed else changed
+        keys = {name: values[name] for name in sorted(names)}
+        return _with_track_keys(_reaching(script, time), time, keys)
     wanted = plain | {name: values[name] - added.get(name, 0.0) for name in changed}
     posed = {name: rounded(value) for name, value in clamped(limits, wanted).items()}
     rest = {name: values[name] - posed[name] for name in changed if name in script.tracks}
-    differing = {name: value for name, value in rest.items() if abs(value - added[name]) > SAME}
+    keys = {name: value for name, value in rest.items() if abs(value - added[name]) > SAME}
+    keys = added | keys if is_whole else keys
     present = pose_at(script, time)
     pose = Pose(
         present.time if present else time,
@@ -162,10 +173,10 @@ def keyed(script: Script, time: float, values: Mapping[str, float], limits: Limi
         present.name if present else None,
     )
     with_pose = _with(script, {POSES: _joined(_pose_columns(script.poses), _pose_columns([pose]))})
-    return _reaching(_with_track_keys(with_pose, time, differing), time)
+    return _reaching(_with_track_keys(with_pose, time, keys), time)
 
 
-def _with_track_keys(script: Script, time: float, values: Mapping[str, float]) -> Script:
+def _with_track_keys(script: Script, time: float, values: Values) -> Script:
     """The script with a key in each of these tracks, which are made where they are not there."""
     changed = {}
     for name, value in values.items():
@@ -206,17 +217,16 @@ def _pose_columns(poses: Sequence[Pose]) -> Columns:
     return np.array([pose.time for pose in poses]), column
 
 
-def _placed(
-    script: Script, places: Places, seconds: float, *, are_copies: bool
-) -> tuple[Script, Places]:
-    """The script with the keys at these places later by `seconds`, and where they are then."""
+def _placed(script: Script, places: Places, seconds: float, source: Script | None = None) -> Placed:
+    """The script with keys (copies of a source's) later by `seconds`, and where they are then."""
     shift = max(seconds, -places.first) if places else 0.0
-    changed, arrived = {}, {}
-    for name, columns in _columns(script, places).items():
+    changed, arrived, before = {}, {}, _columns(script, places)
+    for name, columns in _columns(source or script, places).items():
         is_chosen = among(columns[0], places.times[name])
         times, *rest = _picked(columns, is_chosen)
         arrived[name] = np.round(times + shift, DECIMALS)
-        there = columns if are_copies else _picked(columns, ~is_chosen)
+        nothing = _picked(columns, np.arange(0))
+        there = before.get(name, nothing) if source else _picked(columns, ~is_chosen)
         changed[name] = _joined(there, (arrived[name], *rest))
     ends = [float(times[-1]) for times in arrived.values() if len(times)]
     return _reaching(_with(script, changed), *ends), Places(arrived)

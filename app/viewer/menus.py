@@ -63,9 +63,29 @@ def file_menu(
 def edit_menu(session: Session) -> Menu:
     """Undo, and whole faces."""
     command = partial(Command, "Edit")
+
+    def states() -> Menu:
+        """What was done, the latest first, and the way there."""
+        now, rows = session.history.place, list(enumerate(session.history.labels))[::-1]
+        return tuple(
+            command(f"{label}##{i}", "", partial(session.go_to, i), partial(now.__eq__, i))
+            for i, label in rows
+        )
+
+    def named(verb: str, further: int) -> str:
+        """The command, with what it takes back or does again."""
+        place = session.history.place + further
+        label = "".join(session.history.labels[max(place, 1) : place + 1])
+        return f"{verb} {label[:1].lower()}{label[1:]}".rstrip()
+
+    undo = partial(command, reads=partial(named, "Undo", 0))
+    redo = partial(command, reads=partial(named, "Redo", 1))
     return (
-        command("Undo", "Ctrl+Z", session.undo, can_run=lambda: session.can_undo),
-        command("Redo", "Ctrl+Y", session.redo, None, lambda: session.can_redo, "Ctrl+Shift+Z"),
+        undo("Undo", "Ctrl+Z", session.undo, can_run=lambda: session.can_undo),
+        redo(
+            "Redo", "Ctrl+Y", session.redo, None, lambda: session.history.can_redo, "Ctrl+Shift+Z"
+        ),
+        command("History", "", lambda: None, submenu=states),
         command("Neutral", "N", session.neutral),
         command("Mirror", "M", session.mirror),
         command("Left to right", "Shift+M", partial(session.mirror, "left")),
@@ -80,7 +100,7 @@ def time_menu(session: Session, scripts: ScriptCommands, axis: TimeAxis) -> Menu
     return (
         command("Play", "Space", session.toggle_playing, lambda: session.is_playing),
         command("Record", "Ctrl+R", scripts.toggle_recording, lambda: session.is_recording),
-        command("Loop", "L", session.toggle_looping, lambda: session.is_looping),
+        command("Loop", "L", partial(flip, session, "is_looping"), lambda: session.is_looping),
         command("To the start", "Home", partial(session.seek, 0.0)),
         command("To the key before", "Left", partial(session.seek_key, -1)),
         command("To the next key", "Right", partial(session.seek_key, 1)),
@@ -88,16 +108,27 @@ def time_menu(session: Session, scripts: ScriptCommands, axis: TimeAxis) -> Menu
     )
 
 
-def keys_menu(selection: KeySelection) -> Menu:
+def flip(part: object, field: str) -> None:
+    """Switch a field on or off."""
+    setattr(part, field, not getattr(part, field))
+
+
+def keys_menu(session: Session, selection: KeySelection) -> Menu:
     """What is done with the keys that are selected in the timeline."""
     command = partial(Command, "Keys")
+    edit = partial(command, can_run=lambda: selection.can_edit)
     change = partial(command, can_run=lambda: selection.can_change)
     name = partial(command, can_run=lambda: selection.can_rename)
     return (
-        command("Set key", "K", selection.set_key, can_run=lambda: selection.can_edit),
-        name("Name of the pose ...", "Shift+K", selection.rename),
+        edit("Set key", "K", selection.set_key),
+        edit("Set key of all", "Shift+K", partial(selection.set_key, is_whole=True)),
+        command("Let go", "", session.let_go, can_run=lambda: bool(session.differing)),
+        command("Auto-key", "", partial(flip, session, "is_keying"), lambda: session.is_keying),
+        name("Name of the pose ...", "Ctrl+K", selection.rename),
+        change("Copy", "Ctrl+C", selection.copy),
+        command("Paste", "Ctrl+V", selection.paste, can_run=lambda: bool(selection.copied)),
         change("Duplicate", "Ctrl+D", selection.duplicate),
-        change("Delete", "Delete", selection.delete, other_key="Backspace"),
+        change("Delete", "Delete", selection.delete, by_key=selection.delete_if_meant),
         change("A frame earlier", "Shift+Left", partial(selection.nudge, -1)),
         change("A frame later", "Shift+Right", partial(selection.nudge, 1)),
         command("Select all keys", "Ctrl+A", selection.select_all),
@@ -199,7 +230,8 @@ def live_menu(live: LiveCommands) -> Menu:
 def help_menu(panels: PanelState, begin_steps: Task) -> Menu:
     """The overview of keys, and how to begin."""
     is_open = partial(getattr, panels, "is_help_open")
+    toggle = partial(flip, panels, "is_help_open")
     return (
         Command("Help", "First steps", "", begin_steps),
-        Command("Help", "Keys and mouse", "F1", panels.toggle_help, is_open),
+        Command("Help", "Keys and mouse", "F1", toggle, is_open),
     )

@@ -17,7 +17,3 @@ class PanelState:
         """Hide all but the picture, or show it again."""
         self.are_hidden = not self.are_hidden
         return "menus are at the upper edge" if self.are_hidden else None
-
-    def toggle_help(self) -> None:
-        """Show the overview of keys or hide it."""
-        self.is_help_open = not self.is_help_open

@@ -137,7 +137,7 @@ class Parts:
             *menus.file_menu(self.scripts, self.file_drop, self.exporter, self.ask_to_close),
             *menus.edit_menu(session),
             *menus.time_menu(session, self.scripts, self.time_axis),
-            *menus.keys_menu(self.selection),
+            *menus.keys_menu(session, self.selection),
             *menus.view_menu(settings, self.view, self.placement, self.panel_state),
             *menus.expression_menu(session),
             *menus.live_menu(self.live),

@@ -1,4 +1,8 @@
-"""Movements of controls over time, as the tracks of a script."""
+"""Movements of controls over time, put into the script that played meanwhile.
+
+A control is taken from the moment on in which it leaves the script, until the recording ends. What
+was not moved, and all keys before and after, stay as they are.
+"""
 
 from __future__ import annotations
 
@@ -6,57 +10,97 @@ from array import array
 from collections.abc import Mapping
 from dataclasses import replace
 
-from ..script import Channel, Script, rounded, thinned
+import numpy as np
+
+from ..script import EASING_NAMES, Channel, Key, Limits, Script, rounded, thinned
+from .keyframes import FRAME, differing
+
+RELEASE = 0.1  # [s] at the recording's end in which a control goes back to where the script has it
+SAMPLES = 64  # of an eased way between two keys that is cut: straight lines are off by 0.0002
 
 
 class Recorder:
-    """Takes the value of every control at every step; `script` is what was played."""
+    """Takes the value of every control at every step, from a time of a script on."""
 
-    def __init__(self, played: Script) -> None:
-        """played: the script that the recording takes the place of."""
-        self._empty = replace(
-            played, title="Recording", source="Recording", poses=(), tracks={}, preface=""
-        )
-        self.time = 0.0
-        # Of each control that has moved: times [s] and values from the last key of its track on.
-        self._samples: dict[str, tuple[array[float], array[float]]] = {}
-        self._tracks: dict[str, Channel] = {}
+    def __init__(self, played: Script, start: float, limits: Limits) -> None:
+        """played: what the controls do where nobody moves them. start: [s]."""
+        self._played, self._limits = played, limits
+        self.start = self.time = rounded(start)
+        # Of each control that has moved: times [s] and what its track has, from the last key on.
+        self.samples: dict[str, tuple[array[float], array[float]]] = {}
+        self._taken: dict[str, Channel] = {}
         thinned([0.0, 1.0], [0.0, 1.0])  # if this must be compiled, then before anything moves
 
-    def add(self, seconds: float, values: Mapping[str, float]) -> None:
-        """`seconds` went by since the last call, and the controls are now at `values`.
-
-        Nothing is taken where no time went by.
-        """
-        if seconds <= 0.0:
+    def add(self, time: float, values: Mapping[str, float]) -> None:
+        """The controls are at `values` at a time [s], unless that is recorded already."""
+        if time <= self.time:
             return
-        before, self.time = self.time, self.time + seconds
-        for name, value in values.items():
-            if name not in self._samples:
-                if value == 0.0:
-                    continue
-                first = 0.0 if before else value
-                self._samples[name] = array("d", [0.0]), array("d", [first])
-            times, its_values = self._samples[name]
-            if value != its_values[-1]:
+        before, self.time = self.time, time
+        posed, at_first = self._played.posed(time), self._played.posed(before)
+        for name in differing(self._played, time, values, self._limits):
+            if name not in self.samples:
+                first = self._told(name, before) if before else values[name] - at_first.get(name, 0)
+                self.samples[name] = array("d", [before]), array("d", [first])
+        for name, (times, track) in self.samples.items():
+            value = values[name] - posed.get(name, 0.0)  # a track adds to the poses
+            if value != track[-1]:
                 if times[-1] < before:
                     times.append(before)
-                    its_values.append(its_values[-1])
-                times.append(self.time)
-                its_values.append(value)
+                    track.append(track[-1])
+                times.append(time)
+                track.append(value)
 
     def script(self) -> Script | None:
-        """What was recorded so far, or None where nothing was.
+        """The script with what was recorded so far, or None where nothing was.
 
         Only what is new since the last call is thinned, so that a long recording does not stutter.
         """
-        for name, (times, values) in self._samples.items():
-            if name not in self._tracks:
-                self._tracks[name] = thinned(times, values)
+        for name, (times, values) in self.samples.items():
+            if name not in self._taken:
+                self._taken[name] = thinned(times, values)
             elif len(times) > 1:
-                self._tracks[name] = self._tracks[name].continued(thinned(times, values))
+                self._taken[name] = self._taken[name].continued(thinned(times, values))
             del times[:-1], values[:-1]
-        if self.time <= 0.0 or not self._tracks:
+        if not self._taken:
             return None
-        tracks = dict(sorted(self._tracks.items()))
-        return replace(self._empty, duration=rounded(self.time), tracks=tracks)
+        tracks = {name: self._joined(name, taken) for name, taken in sorted(self._taken.items())}
+        end = max(self._played.duration, rounded(self.time))
+        return replace(self._played, duration=end, tracks={**self._played.tracks, **tracks})
+
+    def _told(self, name: str, time: float) -> float:
+        """What the script's own track of a control has, 0 where it has none."""
+        track = self._played.tracks.get(name)
+        return track.value(time) if track is not None else 0.0
+
+    def _joined(self, name: str, taken: Channel) -> Channel:
+        """The script's track with what was taken of it, from which it goes back at its end."""
+        old = self._played.tracks.get(name, Channel([], []))
+        start, end = rounded(taken.times[0]), rounded(self.time)
+        is_last = end >= self._played.duration - FRAME
+        if is_last and not len(old):
+            return taken  # with the lines of text that it has made
+        head = [key for key in old.keys if key.time < start]
+        tail = [key for key in old.keys if key.time > end]
+        keys = list(taken.keys)
+        if tail or not is_last:
+            free = rounded(max(end - RELEASE, 0.5 * (start + end)))
+            keys = [key for key in keys if key.time < free]
+            keys.append(Key(free, taken.value(free), "linear"))
+            keys.append(Key(end, self._told(name, end), "linear"))
+        if start:
+            keys[:1] = _along(old, head[-1].time if head else start, start)
+        if tail and len(tail) < len(old):
+            tail[:1] = _along(old, end, tail[0].time)
+        return Channel.of([*head, *keys, *tail])
+
+
+def _along(track: Channel, first: float, last: float) -> list[Key]:
+    """Keys that follow a track after one time, up to another [s], with no key of its between."""
+    following = np.searchsorted(track.times, last)
+    easing = EASING_NAMES[track.easings[following]] if following < len(track) else "linear"
+    end = Key(last, track.value(last) if len(track) else 0.0, easing)
+    if easing in ("linear", "hold") or {first, last} <= set(track.times.tolist()):
+        return [end]  # a part of such a way is eased as all of it
+    times = np.linspace(first, last, SAMPLES + 1)
+    along = thinned(times, [track.value(time) for time in times.tolist()])
+    return [*along.keys[1:-1], replace(end, easing="linear")]

@@ -143,7 +143,7 @@ class ScriptCommands:
 
     def set_sound(self, path: Path) -> Message:
         """Put a sound file beside the script; UserError where nothing is heard in it."""
-        self._session.edit(with_sound(self._session.script, path))
+        self._session.edit(with_sound(self._session.script, path), f"Sound {path.name}")
         return f"{path.name}: opened; Space plays it with the script"
 
     @property
@@ -153,12 +153,12 @@ class ScriptCommands:
 
     def remove_sound(self) -> None:
         """The script without its sound."""
-        self._session.edit(replace(self._session.script, sound=None))
+        self._session.edit(replace(self._session.script, sound=None), "Remove sound")
 
     def toggle_recording(self) -> Message:
-        """Record the sliders, or make the recording the script."""
-        self._session.toggle_recording()
-        return None if self._session.is_recording else "recorded; Space plays it, Ctrl+S saves it"
+        """Record the sliders into the script, or end that."""
+        line = self._session.toggle_recording()
+        return line if self._session.is_recording else f"{line}; Ctrl+S saves it"
 
     def save_recording(self, then: Task) -> Message:
         """End the recording, and save it."""

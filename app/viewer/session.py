@@ -1,7 +1,6 @@
 """What a user does with a face: controls, a script in time, a recording, undo, unsaved work.
 
-Knows the scene and nothing of windows. Every control is one entry of `values`; the scene adds them
-up.
+Knows the scene, which adds up all of `values`, and nothing of windows.
 """
 
 from __future__ import annotations
@@ -12,16 +11,19 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import UserError
+from ..errors import UserError, counted
 from ..mirror import copied, mirrored, twin_of
 from ..motion import SETTLING
 from ..scenes import Scene
 from ..script import Pose, Script, is_pose, pose_script, rounded, save_script
+from ..vocabulary import readable
 from . import keyframes
+from .control_rows import change_of
 from .controls import Controls
 from .document import Document
 from .history import History
 from .lead import Lead
+from .messages import Message
 from .recorder import Recorder
 from .script_file import ScriptFile
 from .unsaved import Work
@@ -39,7 +41,7 @@ class Session:
     def __init__(self, scene: Scene, script: Script) -> None:
         script.check(scene.limits)
         self.scene, self.controls = scene, Controls(scene)
-        self.values = self.controls.pose({})
+        self.values = self.controls.pose(script.at(0.0))
         self.script = script
         self.file = ScriptFile.of(script)
         self.time = 0.0
@@ -47,18 +49,17 @@ class Session:
         self.is_looping = False
         self.speed = 1.0
         self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
-        self.is_following = False  # the controls are where the script has them
+        self.is_following = any(self.values.values())  # the script; a neutral face need not yet
+        self.is_keying = False  # what is changed by hand becomes a key at once
+        self._is_touched = False  # by hand, since something was noted
         self._recorder: Recorder | None = None
         self._held: dict[str, float] = {}  # by hand while a recording plays the script
         self.live = Lead()  # a live face, which leaves no trace in what can be undone
         self.display: object = None  # how the scene is drawn, see `show`
-        self._history = History(self._document(), lambda before, after: after.new_keys(before))
+        self.history = History(self._document(), lambda before, after: after.new_keys(before))
 
     def move_to(self, scene: Scene) -> None:
-        """Go on with another scene that has the same controls; UserError if it has not.
-
-        Script, pose, what can be undone and what is unsaved: all of it stays.
-        """
+        """Go on with another scene, all else as it is; UserError if it has other controls."""
         if scene.name != self.scene.name or not scene.limits.keys() >= self.controls.limits.keys():
             raise UserError(f"this window shows a {self.scene.name}, which has other controls")
         self.script.check(scene.limits)
@@ -68,23 +69,20 @@ class Session:
     # Controls by hand
 
     def set(self, name: str, value: float, *, linked: bool = False) -> None:
-        """Set a control within its limits, and with `linked` its twin; a script that plays stops.
-
-        While recording, the script goes on and this control is held.
-        """
+        """Set a control within its limits, and if `linked` its twin; a script that plays stops."""
         for each in {name, twin_of(name)} if linked else {name}:
             low, high = self.controls.limits[each]
             self.values[each] = min(max(rounded(value), low), high)
-            if self.is_playing and self.is_recording:
+            if self.is_recording:  # the script goes on, and this is held
                 self._held[each] = self.values[each]
         if not self.is_recording:
-            self.is_playing = False
-        self.pose_is_unsaved, self.is_following = True, False
+            self.is_playing = self.is_following = False
+            self.pose_is_unsaved = self._is_touched = True
 
     def toggle_alone(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""
         pose = self.controls.pose({}) if self.is_alone(name) else self.controls.alone(name)
-        self._set_pose(pose, is_unsaved=False)
+        self._set_pose(pose, f"Show {readable(name)}", is_unsaved=False)
 
     def is_alone(self, name: str) -> bool:
         """Whether this control alone is not 0, and at its most."""
@@ -92,93 +90,113 @@ class Session:
 
     def neutral(self) -> None:
         """All controls to zero; the skin swings back by itself."""
-        self._set_pose(self.controls.pose({}), is_unsaved=False)
+        self._set_pose(self.controls.pose({}), "Neutral", is_unsaved=False)
 
     def mirror(self, source: str = "") -> None:
         """What is left becomes right and the reverse, or one side ("left", "right") the other's."""
-        self._set_pose(copied(self.values, source) if source else mirrored(self.values))
+        pose = copied(self.values, source) if source else mirrored(self.values)
+        self._set_pose(pose, f"Mirror {source}".rstrip())
 
     def randomise(self, generator: np.random.Generator | None = None) -> None:
         """A few muscles of each group by chance, both sides alike; layers stay at zero."""
-        self._set_pose(self.controls.random(generator or np.random.default_rng()))
+        self._set_pose(self.controls.random(generator or np.random.default_rng()), "Randomise")
 
-    def _set_pose(self, pose: Mapping[str, float], *, is_unsaved: bool = True) -> None:
-        self.is_playing = False
-        self.values = dict(pose)
-        self.pose_is_unsaved, self.is_following = is_unsaved, False
-        self.note()
+    def _set_pose(self, pose: dict[str, float], label: str, *, is_unsaved: bool = True) -> None:
+        if self.is_recording:
+            self._held |= {name: each for name, each in pose.items() if each != self.values[name]}
+        else:
+            self.is_playing = self.is_following = False
+            self.pose_is_unsaved, self._is_touched = is_unsaved, True
+        self.values = pose
+        self.note(label)
 
     @property
     def current(self) -> dict[str, float]:
         """Where each control is now: by hand or script, and over it what a live face leads."""
         return self.live.over(self.values, self.controls.limits)
 
+    @property
+    def differing(self) -> frozenset[str]:
+        """The controls that hands moved away from the script; it takes a look into every track."""
+        if self.is_following or self.is_recording:
+            return frozenset()
+        limits = self.controls.limits
+        return frozenset(keyframes.differing(self.script, self.time, self.values, limits))
+
     # Undo
 
     def _document(self) -> Document:
         by_hand = {name: value for name, value in self.values.items() if value}
         values = None if self.is_following else by_hand
-        return Document(values, self.script, self.file, self.display)
+        return Document(values, self.script, self.file, self.display, self.time)
 
     def show(self, display: object) -> None:
         """Draw the scene in another way: what nobody changes any more, and equals its like."""
-        state = replace(self._history.present, display=display)  # the script may move the rest
-        keep = self._history.amend if self.display is None else self._history.note
+        state = replace(self.history.present, display=display)  # the script may move the rest
+        if self.display is None:
+            self.history.amend(state)
+        else:
+            self.history.note(state, "Change the view")
         self.display = display
-        keep(state)
 
-    def note(self) -> None:
-        """A change is complete (a slider let go, a button pressed): it can be undone."""
-        self._history.note(self._document())
+    def note(self, label: str = "") -> None:
+        """A change is complete (a slider let go, a button pressed): it can be undone.
+
+        label: what was done, as "Mirror"; "" for controls that were set, which are told.
+        """
+        if self.is_recording:
+            return  # that is one change, when it ends
+        if not label:
+            before = self.history.present.values
+            label = change_of(self.script.at(self.time) if before is None else before, self.values)
+        is_touched, self._is_touched = self._is_touched, False
+        if is_touched and self.is_keying and self.differing:
+            label = f"{label}, key at {self._key(self.values):.2f} s"
+        self.history.note(self._document(), label)
 
     @property
     def can_undo(self) -> bool:
         """Whether there is something to undo."""
-        return self._history.can_undo or self._document() != self._history.present
-
-    @property
-    def can_redo(self) -> bool:
-        """Whether there is something to redo."""
-        return self._history.can_redo
+        return self.history.can_undo or self._document() != self.history.present
 
     def undo(self) -> None:
-        """Back to before the last change, or to it, if the script has moved the controls since."""
-        present, before = self._history.present, self._history.undo()
-        if self._document() != present and not before.differs_in_view(present):
-            before = present if before is present else self._history.redo()
-        self._restore(before, present)
+        """Back to before the last change, or to it, if the face has changed since."""
+        present, place = self.history.present, self.history.place
+        is_view = self.history.go(place - 1).differs_in_view(present)
+        self.history.go(place)
+        self.go_to(place - (is_view or self._document() == present))
 
     def redo(self) -> None:
         """Forward again."""
-        present = self._history.present
-        self._restore(self._history.redo(), present)
+        self.go_to(self.history.place + 1)
 
-    def _restore(self, document: Document, present: Document) -> None:
+    def go_to(self, place: int) -> None:
+        """To the state of this number in the history."""
+        self._refuse_while_recording()
+        present, document = self.history.present, self.history.go(place)
         self.display = document.display
         if document.differs_in_view(present):
             return
-        self.is_playing = False
+        self.is_playing = self._is_touched = False
         self.script, self.file = document.script, document.file
-        self.time = min(self.time, self.script.duration)
         if document.values is None:
-            self._follow_script()
-        else:
+            self._go_to(self.time)
+        else:  # a pose is seen where it was made
+            self.time = min(document.time, self.script.duration)
             self.values, self.is_following = self.controls.pose(document.values), False
         self.pose_is_unsaved = bool(document.values)
 
     # Time
 
-    def toggle_playing(self) -> None:
+    def toggle_playing(self) -> Message:
         """Play or pause; at the end of the script, play it again."""
         self.is_playing = not self.is_playing
-        if self.is_playing and self.time >= self.script.duration:
+        line = self.let_go() if self.is_playing else None
+        if self.is_playing and self.time >= self.script.duration and not self.is_recording:
             self.time = 0.0
         if self.is_playing and self.time == 0.0:
             self.start_over()
-
-    def toggle_looping(self) -> None:
-        """Play the script again and again, or once."""
-        self.is_looping = not self.is_looping
+        return line
 
     def start_over(self) -> None:
         """The first pose, as if it had been held for a while: each replay begins alike."""
@@ -189,41 +207,70 @@ class Session:
         if any(self.current.values()):
             self.scene.step(SETTLING)  # as in a film
 
-    def seek(self, time: float) -> None:
-        """Go to a time of the script and take its pose."""
+    def seek(self, time: float) -> Message:
+        """Go to a time of the script and take its pose; a line says what is let go for that."""
+        self._refuse_while_recording()
+        line = self.let_go()
+        self._go_to(time)
+        return line
+
+    def _go_to(self, time: float) -> None:
         self.time = min(max(time, 0.0), self.script.duration)
         self._follow_script()
         self.pose_is_unsaved = False
 
-    def seek_key(self, direction: int) -> None:
+    def let_go(self) -> Message:
+        """Back to the script; what was set by hand and is no key can be undone, as a line says."""
+        if self.is_following or self.is_recording:
+            return None
+        self.note()
+        names = self.differing
+        self._go_to(self.time)
+        if not names:
+            self.history.amend(self._document())
+            return None
+        what = readable(min(names)) if len(names) == 1 else counted(len(names), "control")
+        self.note(f"Let go of {what}")
+        return f"{what} not keyed, so let go; Ctrl+Z brings the pose back"
+
+    def seek_key(self, direction: int) -> Message:
         """Pause at the next time at which the script has a key, or with -1 at the one before."""
+        line = self.seek(keyframes.time_beyond(self.script, self.time, direction))
         self.is_playing = False
-        self.seek(keyframes.time_beyond(self.script, self.time, direction))
+        return line
 
     # Keys
 
-    def edit(self, script: Script, *, is_done: bool = True) -> None:
+    def edit(self, script: Script, label: str = "Edit", *, is_done: bool = True) -> None:
         """Take the script as it was changed; a face that follows it follows the change.
 
-        is_done: the change is complete and can be undone; False while something is dragged.
+        label: what was done. is_done: False while something is dragged, which is no step yet.
         """
-        if self.is_recording:
-            raise UserError("stop the recording first: it takes the place of the script")
+        self._refuse_while_recording()
         self.script = script
         self.time = min(self.time, script.duration)
         if self.is_following:
             self._follow_script()
         if is_done:
-            self.note()
+            self.note(label)
 
-    def set_key(self) -> float:
-        """The face as it is becomes a key of the script; its time [s]."""
+    def _refuse_while_recording(self) -> None:
+        if self.is_recording:
+            raise UserError("stop the recording first (Ctrl+R): it goes into the script as it is")
+
+    def set_key(self, *, is_whole: bool = False) -> float:
+        """The face as it is becomes a key, is_whole: of all tracks, whatever differs; its time."""
+        self._refuse_while_recording()
+        time = self._key(self.current, is_whole=is_whole)
+        self.note(f"Key at {time:.2f} s")
+        return time
+
+    def _key(self, values: Mapping[str, float], *, is_whole: bool = False) -> float:
         time = keyframes.key_time(self.script, self.time)
+        limits = self.controls.limits
+        self.script = keyframes.keyed(self.script, time, values, limits, is_whole=is_whole)
         self.is_playing = False
-        keyed = keyframes.keyed(self.script, time, self.current, self.controls.limits)
-        self.edit(keyed, is_done=False)
-        self.seek(time)
-        self.note()
+        self._go_to(time)
         return time
 
     def advance(self, seconds: float, beneath: Mapping[str, float] | None = None) -> None:
@@ -233,15 +280,14 @@ class Session:
         """
         if self.is_playing:
             self.time += self.speed * seconds
-            if self.time >= self.script.duration:
+            goes_on = self.is_recording and not self.is_looping  # and makes the script longer
+            if self.time >= self.script.duration and not goes_on:
                 self.time = 0.0 if self.is_looping else self.script.duration
                 self.is_playing = self.is_looping
             self._follow_script()
         current = self.current
         if self._recorder is not None:
-            # Beside a sound a recording has the script's time, to stay in step with what is heard.
-            passed = seconds if self.script.sound is None else self.time - self._recorder.time
-            self._recorder.add(passed, current)
+            self._recorder.add(self.time, current)
         self.scene.pose({**current, **(beneath or {})})
         self.scene.step(seconds)
 
@@ -254,23 +300,28 @@ class Session:
         """Whether movements are being recorded."""
         return self._recorder is not None
 
-    def toggle_recording(self) -> None:
-        """Record the controls from now on, or make what was recorded the script.
+    def toggle_recording(self) -> Message:
+        """Record what is moved into the script, which plays from the time shown, or end that.
 
-        A script with a sound plays meanwhile; while it is paused, or goes through a part again,
-        nothing is recorded.
+        Nothing is recorded while it is paused, or goes through a part again.
         """
         if self._recorder is None:
-            self._recorder, self._held = Recorder(self.script), {}
-            if self.script.sound is not None and not self.is_playing:
+            held = {name: self.values[name] for name in self.differing}
+            start = self.time % self.script.duration if self.is_looping else self.time
+            self._recorder = Recorder(self.script, start, self.controls.limits)
+            self._held, self.time, self.pose_is_unsaved = held, self._recorder.start, False
+            if not self.is_playing:
                 self.toggle_playing()
-            return
-        recording = self._recorder.script()
-        self._recorder, self._held = None, {}
-        self.is_playing = False
+            return f"recording from {self.time:.2f} s: what you move replaces the script there"
+        recorder, self._recorder, self._held, self.is_playing = self._recorder, None, {}, False
+        recording = recorder.script()
         if recording is None:
             raise UserError("nothing was recorded: no control moved")
-        self._replace_script(recording, ScriptFile(None, None), recording.duration)
+        self.script = recording
+        self._go_to(rounded(self.time))  # which is the end, where the recording is the last
+        what = counted(len(recorder.samples), "control")
+        self.note(f"Record {what}")
+        return f"{what} recorded from {recorder.start:.2f} to {recorder.time:.2f} s"
 
     @property
     def recording_so_far(self) -> Script | None:
@@ -280,46 +331,37 @@ class Session:
     @property
     def recorded_seconds(self) -> float:
         """How long the recording is so far."""
-        return self._recorder.time if self._recorder is not None else 0.0
+        return self._recorder.time - self._recorder.start if self._recorder is not None else 0.0
 
     # Files
 
     def open(self, script: Script) -> None:
         """A pose to show, which a recording takes in, or a script to play, which ends it."""
-        self.is_playing = False
+        label = f"Open {Path(script.source).name}"
         if is_pose(script):
-            self._set_pose(self.controls.pose(script.at(0.0)), is_unsaved=False)
+            self._set_pose(self.controls.pose(script.at(0.0)), label, is_unsaved=False)
         else:
-            self._replace_script(script, ScriptFile.of(script), 0.0)
+            self._replace_script(script, ScriptFile.of(script), label)
 
     def begin_script(self) -> None:
         """An empty script: the neutral face, to which keys can be added."""
-        script = Script(
-            "",
-            NEW_SECONDS,
-            "a new script",
-            scene=self.script.scene,
-            camera=self.script.camera,
-            poses=(Pose(0.0),),
-        )
-        self._replace_script(script, ScriptFile(None, script), 0.0)
+        scene, camera = self.script.scene, self.script.camera
+        script = Script("", NEW_SECONDS, "a new script", scene, camera, poses=(Pose(0.0),))
+        self._replace_script(script, ScriptFile(None, script), "New script")
 
-    def _replace_script(self, script: Script, file: ScriptFile, time: float) -> None:
+    def _replace_script(self, script: Script, file: ScriptFile, label: str) -> None:
         """Another script in place of this one."""
-        self._recorder, self._held = None, {}
-        self.script, self.file = script, file
-        self.seek(time)
-        self.note()
+        self._recorder, self._held, self._is_touched = None, {}, False
+        self.script, self.file, self.is_playing = script, file, False
+        self._go_to(0.0)
+        self.note(label)
 
     def recover(self, work: Work, when: float) -> None:
         """Go on with unsaved work of another session, as it was at a time [s since 1970]."""
-        self.is_playing = False
-        if work.script is not None:
-            self._replace_script(work.script, ScriptFile.recovered(work.path, when), 0.0)
-        if work.recording is not None:
-            self._replace_script(work.recording, ScriptFile(None, None), work.recording.duration)
+        for script in filter(None, (work.script, work.recording)):
+            self._replace_script(script, ScriptFile.recovered(work.path, when), "Recover")
         if work.pose is not None:
-            self._set_pose(self.controls.pose(work.pose.at(0.0)))
+            self._set_pose(self.controls.pose(work.pose.at(0.0)), "Recover the pose")
 
     def save_script(self, path: Path) -> None:
         """Write the script to a file; UserError where it cannot be written."""

@@ -84,7 +84,7 @@ class Soundtrack:
         if player.is_stuck:
             return seconds
         late = (player.position - session.time) / session.speed - seconds
-        if late > APART:
+        if late > APART and session.time < session.script.duration:  # a recording goes beyond
             session.time = min(session.time + late * session.speed, session.script.duration)
             self._time = session.time
             return seconds

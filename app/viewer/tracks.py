@@ -37,8 +37,8 @@ class Track:
 
     @property
     def height(self) -> float:
-        """Of the row, in ordinary ones: names stand above the keys."""
-        return 1.75 if self.names else 1.0
+        """Of the row, in ordinary ones: above the keys of poses is room for names."""
+        return 1.75 if self.is_whole else 1.0
 
 
 def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Track, ...]:

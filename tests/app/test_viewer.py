@@ -315,6 +315,8 @@ def test_wrinkles_have_a_slider(viewer: Viewer) -> None:
 
 def test_recording_survives_a_file(viewer: Viewer, tmp_path: Path) -> None:
     """Record a slider, save through the window, open again, replay: the same face."""
+    viewer.session.begin_script()
+    viewer.session.edit(replace(viewer.session.script, duration=0.5))
     xdotool(viewer, "key", "ctrl+r")
     assert viewer.session.is_recording
     viewer.session.set("jaw_open", 0.6)

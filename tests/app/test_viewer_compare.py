@@ -175,7 +175,7 @@ def test_what_is_seen_can_be_undone_like_a_pose(viewer: Viewer) -> None:
 
 def test_undoing_a_look_leaves_a_script_playing(viewer: Viewer) -> None:
     """Nothing but the picture changes."""
-    viewer.session.toggle_looping()
+    viewer.session.is_looping = True
     xdotool(viewer, "key", "w")
     xdotool(viewer, "key", "space")
     xdotool(viewer, "key", "c")

@@ -164,7 +164,7 @@ def test_delete_and_duplicate(viewer: Viewer) -> None:
     assert viewer.selection.places == {KeyPlace(POSES, 2.0)}
     xdotool(viewer, "key", "Delete")
     assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0] and "1 key deleted" in viewer.messages.text
-    xdotool(viewer, "key", "ctrl+a", "BackSpace")
+    xdotool(viewer, "key", "ctrl+a", "Delete")
     assert viewer.messages.is_error and "at least one key" in viewer.messages.text
     xdotool(viewer, "key", "ctrl+z")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
@@ -199,7 +199,7 @@ def test_a_pose_is_named(viewer: Viewer) -> None:
     write(viewer, "half a smile")
     xdotool(viewer, "key", "Return")
     assert [pose.name for pose in viewer.session.script.key_poses] == ["joy", "half a smile"]
-    xdotool(viewer, "key", "shift+k")
+    xdotool(viewer, "key", "ctrl+k")
     assert until(viewer, lambda: "pose name" in viewer.gui.places, 3.0)
     write(viewer, "other")
     xdotool(viewer, "key", "Escape")

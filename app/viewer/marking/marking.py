@@ -144,11 +144,11 @@ class Marking:
 
     def undo(self) -> None:
         """Back to before the last change."""
-        self._show(self.history.undo())
+        self._show(self.history.go(self.history.place - 1))
 
     def redo(self) -> None:
         """Forward again."""
-        self._show(self.history.redo())
+        self._show(self.history.go(self.history.place + 1))
 
     # Files
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import bisect
 import itertools
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,7 +20,7 @@ from ...script import Script
 from .. import keyframes
 from ..gui import LEFT, MIDDLE, RIGHT, Gui, em, ink_of
 from ..key_selection import KeySelection
-from ..messages import Message, Messages
+from ..messages import Message, Messages, Task
 from ..places import NOWHERE, Places
 from ..session import Session
 from ..settings import Settings
@@ -73,7 +72,7 @@ class DopeSheet:
     ) -> None:
         self._gui, self._session, self.settings = gui, session, settings
         self._messages, self._menus = messages, menus
-        self._selection, self.axis, self._waveform = selection, axis, waveform
+        self.selection, self.axis, self._waveform = selection, axis, waveform
         self.graph = Graph(gui, selection, axis)
         self._drag: Drag | None = None
         self._grabbed = NOWHERE  # the keys at one time that the mouse was pressed on
@@ -106,7 +105,7 @@ class DopeSheet:
         if self._known is not script:
             self._known = script
             self._all = all_tracks(script, self._session.controls.groups)
-            self._selection.places &= keyframes.places_of(script)
+            self.selection.places &= keyframes.places_of(script)
         self.rows = tuple(track for track in self._all if all(map(self._is_open, track.parents)))
         self.graph.take(self.rows)
 
@@ -122,7 +121,7 @@ class DopeSheet:
         duration = session.script.duration
         if self._drag is None:
             lasts = (times[-1] for row in self.rows for times in row.places.times.values())
-            axis.fit(float(max([duration, self._waveform.duration, *lasts])))
+            axis.fit(float(max([duration, session.time, self._waveform.duration, *lasts])))
             if session.is_playing:
                 axis.follow(session.time)
         imgui.set_cursor_screen_pos((place.x + self._gutter, place.y))
@@ -161,7 +160,7 @@ class DopeSheet:
         self._gui.remember("keys")
         is_hovered = imgui.is_item_hovered()
         theme, duration = self._gui.theme, self._session.script.duration
-        painter = key_marks.TrackPainter(theme, self.axis, self._selection.places, duration)
+        painter = key_marks.TrackPainter(theme, self.axis, self.selection.places, duration)
         for track, (top, bottom) in zip(self.rows, itertools.pairwise(self._tops), strict=True):
             if imgui.is_rect_visible((place.x, top), (place.x + room.x, bottom)):
                 if has_keys:
@@ -169,6 +168,9 @@ class DopeSheet:
                 self._draw_name(track, (place.x, bottom - em(ROW)), room.x)
         if has_keys:
             self._draw_over(io, (place.y, self._tops[-1]))
+        if has_keys and self._session.differing:
+            middle = self._tops[1] - 0.5 * em(ROW)
+            key_marks.draw_unkeyed(theme, self.axis, self._session.time, middle)
         if is_hovered and self._drag is None:
             self._hover(io, place.x)
         imgui.end_child()
@@ -203,7 +205,7 @@ class DopeSheet:
 
     def _hover(self, io: Any, left: float) -> None:
         """The mouse is over rows or curves and holds nothing yet."""
-        selection, axis, (x, y) = self._selection, self.axis, io.mouse_pos
+        selection, axis, (x, y) = self.selection, self.axis, io.mouse_pos
         row, hit, under = self._row_at(y), None, NOWHERE
         track = self.rows[row] if 0 <= row < len(self.rows) else None
         if x < left + self._gutter:
@@ -238,12 +240,12 @@ class DopeSheet:
 
     def _begin(self, doing: str, io: Any, selected: Places | None = None) -> None:
         """Hold on to something; selected: from now on, where that is not what is selected."""
-        places = self._selection.places if selected is None else selected
+        places = self.selection.places if selected is None else selected
         began = io.mouse_pos.x, io.mouse_pos.y
         self._drag = Drag(doing, began, self._session.script, places)
 
     def _press(self, io: Any, under: Places, *, is_dense: bool) -> None:
-        selection = self._selection
+        selection = self.selection
         if under and imgui.is_mouse_double_clicked(LEFT) and selection.can_rename:
             selection.rename()
         elif not under or (is_dense and not under <= selection.places):
@@ -284,7 +286,7 @@ class DopeSheet:
         (x, y), axis, session = io.mouse_pos, self.axis, self._session
         distance = abs(x - drag.began[0]) + abs(y - drag.began[1])
         drag.has_moved = drag.has_moved or distance > CLICK
-        act: dict[str, Callable[[], None]] = {
+        act: dict[str, Task] = {
             "keys": lambda: self._move_keys(io, drag),
             "box": lambda: self._select_box(io, drag),
             "scrub": lambda: session.seek(self._snapped(axis.time(x), io)),
@@ -297,8 +299,8 @@ class DopeSheet:
             self._messages.attempt(act[drag.doing])
         if imgui.is_key_pressed(imgui.Key.escape) and drag.doing in ("keys", "end"):
             self._drag = None
-            self._messages.attempt(lambda: session.edit(drag.script))
-            self._selection.places = drag.selected
+            self._messages.attempt(lambda: session.edit(drag.script, is_done=False))
+            self.selection.places = drag.selected
         elif not imgui.is_mouse_down(MIDDLE if drag.doing == "pan" else LEFT):
             self._drag = None
             self._messages.attempt(lambda: self._release(io, drag))
@@ -330,7 +332,7 @@ class DopeSheet:
             script = keyframes.raised(script, places, amount, limits, posed)
             line += f", {held.curve.label} {held.value + amount:.2f}"
         self._session.edit(script, is_done=False)
-        self._selection.places = places
+        self.selection.places = places
         imgui.set_tooltip(line)
 
     def _select_box(self, io: Any, drag: Drag) -> None:
@@ -342,7 +344,7 @@ class DopeSheet:
             rows = sorted(self._row_at(y) for y in (drag.began[1], corner[1]))
             for track in self.rows[max(rows[0], 0) : max(rows[1] + 1, 0)]:
                 inside |= track.places.between(*times)
-        self._selection.places = drag.selected | inside
+        self.selection.places = drag.selected | inside
 
     def _release(self, io: Any, drag: Drag) -> Message:
         """The mouse has let go; what there is to say about it."""
@@ -352,13 +354,14 @@ class DopeSheet:
             line = f"{counted(lost, 'key')} replaced; Ctrl+Z brings back" if lost > 0 else None
         elif drag.doing in ("keys", "box") and not drag.has_moved:
             if drag.doing == "box":
-                self._selection.places = drag.selected | self._grabbed
+                self.selection.places = drag.selected | self._grabbed
             if self._grabbed and not io.key_shift:
-                self._selection.places = self._grabbed
+                self.selection.places = self._grabbed
                 session.is_playing = False
-                session.seek(self._grabbed.first)
-        if drag.doing != "pan":
-            session.note()
+                line = session.seek(self._grabbed.first)
+        if drag.doing in ("keys", "end") and drag.has_moved:
+            keys = counted(len(drag.selected), "key")
+            session.note(f"Move {keys if drag.doing == 'keys' else 'the end'}")
         return line
 
 
@@ -369,12 +372,12 @@ class PoseNameLine:
         self, gui: Gui, session: Session, messages: Messages, selection: KeySelection
     ) -> None:
         self._gui, self._session, self._messages = gui, session, messages
-        self._selection = selection
+        self.selection = selection
         self._time, self._name = 0.0, ""  # [s] of the pose, and what is written so far
 
     def draw(self) -> None:
         """Draw it, if it is open or wanted."""
-        pose, self._selection.pose_to_name = self._selection.pose_to_name, None
+        pose, self.selection.pose_to_name = self.selection.pose_to_name, None
         if pose is not None:
             self._time, self._name = pose.time, pose.name or ""
             imgui.open_popup("pose name")
@@ -391,7 +394,7 @@ class PoseNameLine:
         self._gui.remember("pose name")
         if is_entered:
             script = keyframes.renamed(self._session.script, self._time, self._name)
-            self._messages.attempt(lambda: self._session.edit(script))
+            self._messages.attempt(lambda: self._session.edit(script, "Name a pose"))
         if is_entered or imgui.is_key_pressed(imgui.Key.escape):
             imgui.close_current_popup()
         imgui.end_popup()

@@ -69,6 +69,14 @@ def draw_playhead(theme: Theme, axis: TimeAxis, time: float, edges: tuple[float,
         imgui.get_window_draw_list().add_line((x, edges[0]), (x, edges[1]), ink, width)
 
 
+def draw_unkeyed(theme: Theme, axis: TimeAxis, time: float, y: float) -> None:
+    """A hollow key at a time [s], where one would be set for what differs from the script."""
+    lines, size, x = imgui.get_window_draw_list(), em(1.2 * KEY), axis.x(time)
+    corners = (x - size, y), (x, y - size), (x + size, y), (x, y + size)
+    lines.add_quad_filled(*corners, ink_of(theme.panel))
+    lines.add_quad(*corners, ink_of(theme.accent), em(0.12))
+
+
 def draw_label(
     text: str, corner: Point, ink: int, arrow: float = 0.0, *, is_open: bool = False
 ) -> None:

@@ -51,9 +51,9 @@ class MenuBar:
                 self._gui.remember(f"menu {title}: {command.label}")
                 continue
             is_on = command.is_on is not None and command.is_on()
-            is_clicked, _ = imgui.menu_item(
-                command.label, command.displayed_keys, is_on, command.can_run()
-            )
-            self._gui.remember(f"menu {title}: {command.label}")
+            name = f"menu {title}: {command.label}"
+            label = f"{command.reads()}###{name}" if command.reads else command.label
+            is_clicked, _ = imgui.menu_item(label, command.displayed_keys, is_on, command.can_run())
+            self._gui.remember(name)
             if is_clicked:
                 self._messages.attempt(command.run)

@@ -6,8 +6,9 @@ from collections.abc import Iterable
 
 from imgui_bundle import imgui
 
+from ...errors import counted
 from ..command import Command
-from ..gui import Gui, colour, em
+from ..gui import LEFT, MIDDLE, RIGHT, Gui, colour, em
 from ..messages import Messages
 from ..session import SPEEDS, Session
 from .dope_sheet import DopeSheet
@@ -24,6 +25,8 @@ BUTTONS = {
     "Loop": ("Loop", "begin again at the end (L)"),
     "Curves": ("Curves", "keys in rows, or their values as curves (G)"),
     "Set key": ("Set key", "the face as it is becomes a key at the time shown (K)"),
+    "Let go": ("Let go", "what was changed by hand goes back to where the script has it"),
+    "Auto-key": ("Auto-key", "what is changed by hand becomes a key at once"),
 }
 
 
@@ -71,22 +74,33 @@ class Timeline:
         for label in ("Play", "Record", "Loop"):
             self._draw_button(label)
         self._draw_speed()
-        self._draw_button("Set key")
+        differing = self._session.differing
+        self._draw_button("Set key", is_wanted=bool(differing))
+        self._draw_button("Let go")
+        self._draw_button("Auto-key")
         self._draw_button("Curves")
-        self._draw_status()
+        self._draw_status(len(differing))
         self._rows = round((imgui.get_cursor_pos_y() - top) / imgui.get_frame_height_with_spacing())
         self.dope_sheet.draw()
+        if any(map(imgui.is_mouse_clicked, (LEFT, MIDDLE, RIGHT))):
+            flags = imgui.HoveredFlags_.child_windows
+            flags |= imgui.HoveredFlags_.allow_when_blocked_by_active_item
+            self.dope_sheet.selection.is_touched = imgui.is_window_hovered(flags)
+        elif imgui.get_io().want_text_input and not imgui.is_any_mouse_down():
+            self.dope_sheet.selection.is_touched = False
 
-    def _draw_button(self, label: str) -> None:
+    def _draw_button(self, label: str, *, is_wanted: bool = False) -> None:
         command, (label_on, meaning) = self._commands[label], BUTTONS[label]
         is_on = command.is_on is not None and command.is_on()
         name, width, highlight = label.lower(), em(BUTTON_WIDTH), None
         if label != "Play":
             stay_in_line(width)
-            highlight = colour(self._gui.theme.accent, 0.6) if is_on else None
+            highlight = colour(self._gui.theme.accent, 0.6) if is_on or is_wanted else None
         text = label_on if is_on else label
+        imgui.begin_disabled(not command.can_run())
         if button(self._gui, text, name=name, width=width, meaning=meaning, highlight=highlight):
             self._messages.attempt(command.run)
+        imgui.end_disabled()
 
     def _draw_speed(self) -> None:
         stay_in_line(em(SPEED_WIDTH))
@@ -97,12 +111,14 @@ class Timeline:
             self._session.speed = speeds[chosen]
         hint("speed of the script")
 
-    def _draw_status(self) -> None:
-        """The time, and what is being made now, else the script's name."""
+    def _draw_status(self, differing: int) -> None:
+        """The time, and what is being made now, else how many controls differ, or the script."""
         session, theme = self._session, self._gui.theme
         status, ink = session.name, theme.muted
         if session.script_is_unsaved:
             status += " *"
+        if differing:
+            status, ink = f"{counted(differing, 'control')} not keyed", theme.accent
         if session.is_recording:
             status, ink = f"recording {session.recorded_seconds:.1f} s", theme.error
         imgui.same_line()
