@@ -59,7 +59,7 @@ def test_a_pose_that_was_scrubbed_away_is_told_and_comes_back(viewer: Viewer) ->
         viewer.messages.text = ""
         away()
         assert viewer.session.values["jaw_open"] < value
-        assert "jaw open not keyed" in viewer.messages.text and "Ctrl+Z" in viewer.messages.text
+        assert "Jaw open not keyed" in viewer.messages.text and "Ctrl+Z" in viewer.messages.text
         xdotool(viewer, "key", "ctrl+z")
         assert viewer.session.values["jaw_open"] == value and viewer.session.time == time
 
