@@ -48,9 +48,9 @@ class StagePainter:
     background: render.Background | None
     viewport: Viewport
     has_captions: bool
+    letter: float  # [pixels] of captions, at least
     camera: Any = None
     pointed: tuple[str, ...] = ()
-    letter: float = 11.0  # [pixels] of captions, at least, as those of `capture`
     stage: Any = None
 
     def on(self, scene: Scene, surface: Any) -> StagePainter:
@@ -143,13 +143,14 @@ class Exporter:
         is_clear = choices.is_transparent and self.kind.can_be_transparent
         background, display = None if is_clear else view.background, deepcopy(view.display)
         area = (0, 0, *choices.size)
+        letter = view.letter * choices.size[1] / view.viewport[3]
         return CaptureOptions(
             choices.size,
             choices.rate,
             camera=view.camera.copy(),
             is_turntable=choices.is_turntable and not is_sheet,
             span=None if is_sheet else span,
-            painted=StagePainter(display, background, area, choices.has_captions).on,
+            painted=StagePainter(display, background, area, choices.has_captions, letter).on,
             style=style_of(display, background),
             head=head,
             is_alive=self._settings.is_alive,
