@@ -198,7 +198,7 @@ def test_saving_goes_to_the_known_file(viewer: Viewer, tmp_path: Path) -> None:
     write(viewer, "other")
     xdotool(viewer, "key", "Return")
     assert title_of(viewer) == "Risorius: other.toml"
-    xdotool(viewer, "key", "Delete")
+    viewer.messages.attempt(viewer.selection.delete)
     xdotool(viewer, "key", "ctrl+s")
     assert len(load_script(tmp_path / "other.toml").poses) == 2
     assert len(load_script(script).poses) == 3

@@ -218,7 +218,7 @@ def test_groups_fold(viewer: Viewer) -> None:
     draw_frames(viewer)
     inside = {track.label: track.parents[-1:] for track in sheet.rows}
     assert inside["AU4 right"] == inside["AU12 left"] == ("Tracks: Action units",)
-    assert inside["viseme aa"] == ("Tracks: Visemes",) and inside["Visemes"] == ("Tracks",)
+    assert inside["Viseme aa"] == ("Tracks: Visemes",) and inside["Visemes"] == ("Tracks",)
     left, top, _, bottom = viewer.gui.places["row Tracks: Action units"]
     xdotool(viewer, "mousemove", *on_screen(viewer, left + 4.0, 0.5 * (top + bottom)))
     xdotool(viewer, "click", 1)

@@ -121,9 +121,9 @@ class Timeline:
             status, ink = f"{counted(differing, 'control')} not keyed", theme.accent
         if session.is_recording:
             status, ink = f"recording {session.recorded_seconds:.1f} s", theme.error
-        imgui.same_line()
         told = self.dope_sheet.axis.told
         time = f"{told(session.time)} of {told(session.script.duration).removeprefix('frame ')}"
+        stay_in_line(imgui.calc_text_size(time).x)
         imgui.text(shortened(time, imgui.get_content_region_avail().x))
         self._gui.remember("time shown")
         if imgui.is_item_clicked():
