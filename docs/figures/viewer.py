@@ -105,7 +105,7 @@ def anatomy(viewer: Viewer) -> None:
     """Skull, muscles and landmarks."""
     viewer.session.set("jaw_open", 0.5)
     viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
-    viewer.settings.folds["Refinement"] = False
+    viewer.settings.folds |= dict.fromkeys(("Refinement", "Milliseconds"), False)
     viewer.settings.display = Display(overlays=["skull", "muscles"], dissect="left")
     viewer.view.camera = camera_for(viewer.session.scene, "three-quarter")
 
@@ -150,7 +150,7 @@ def curves(viewer: Viewer) -> None:
 def light(viewer: Viewer) -> None:
     """Another person, in the light of a window."""
     viewer.panel_state.wanted_tab = "Mechanism"
-    viewer.settings.folds |= dict.fromkeys(("Refinement", "Overlays"), False)
+    viewer.settings.folds |= dict.fromkeys(("Refinement", "Overlays", "Milliseconds"), False)
     viewer.file_drop.show_person("ada")
     wait_until_settled(viewer)
     viewer.settings.display = Display(light="window")
@@ -250,7 +250,9 @@ def draw_image(stop: Callable[[Viewer], None]) -> Image:
 def main(arguments: Sequence[str]) -> None:
     """Draw the pictures into the folder given."""
     given = figures.parse(arguments, __doc__)
-    every = {name: partial(draw_image, stop) for name, stop in STOPS.items()}
+    every: dict[str, figures.Figure] = {
+        name: partial(draw_image, stop) for name, stop in STOPS.items()
+    }
     every["anatomy"] = plate
     figures.draw(given.folder, figures.chosen(every, given.only))
 
