@@ -1,6 +1,7 @@
 """Draw the pictures of docs/viewer.md: `xvfb-run -a python docs/figures/viewer.py [FOLDER]`.
 
-Each is a window as a user would see it, brought there by the same commands that menus use.
+Each is a window as a user would see it, brought there by the same commands that menus use; `plate`
+alone is a picture of `risorius capture`.
 """
 
 from __future__ import annotations
@@ -13,10 +14,13 @@ from pathlib import Path
 import numpy as np
 from imgui_bundle import imgui
 
-from risorius import assets
+from risorius import assets, render
+from risorius.app.anatomy import Dissection
 from risorius.app.cameras import camera_for
+from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.files import Image
 from risorius.app.performances import script_for
+from risorius.app.scenes import FaceScene
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.keyframes import places_of
 from risorius.app.viewer.settings import Display
@@ -25,6 +29,9 @@ from risorius.assets.fitting.guess import FIRST
 from risorius.bench import figures
 
 SIZE = (1160, 700)
+PLATE, PLATE_CAMERA = (900, 1080), "-28,3,0.98"
+SETTLED = 1.5  # [s]
+PULLED = np.array([-9.0, 8.0, 0.0])  # [mm] how far the corner of the mouth is drawn
 MOST_FRAMES = 400
 
 
@@ -49,16 +56,23 @@ def face(viewer: Viewer) -> None:
 def controls(viewer: Viewer) -> None:
     """Search, sides apart, and one muscle at work among all of them."""
     viewer.settings.is_linked = False
-    viewer.face_panel.search = "lip"
+    viewer.face_panel.search = "upper lip"
     viewer.session.set("levator_labii_superioris_left", 0.9)
     viewer.settings.display.overlays = ["muscles"]
+
+
+def steps(viewer: Viewer) -> None:
+    """The window at the very first start; the first of the steps is done."""
+    viewer.first_steps.begin()
+    viewer.session.set("zygomaticus_major_left", 0.9)
+    viewer.first_steps.done[0] = True
 
 
 def wipe(viewer: Viewer) -> None:
     """Static and refined, half a face each, divided by a line; the dark theme."""
     viewer.session.toggle_alone("disgust")
     viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
-    viewer.settings.folds["Overlays"] = False  # or the plots below it would be cut off
+    show_refinement(viewer)
     viewer.settings.display = Display(compare="wipe", wireframe=True, colours="splits", skin="clay")
     viewer.view.camera = camera_for(viewer.session.scene, "front")
     viewer.view.camera.zoom(1.08)
@@ -68,14 +82,22 @@ def side_by_side(viewer: Viewer) -> None:
     """Two viewports under one camera, coloured by how far the normals turned apart."""
     viewer.session.toggle_alone("joy")
     viewer.panel_state.wanted_tab = "Mechanism"
-    viewer.settings.folds["Overlays"] = False  # or the plots below it would be cut off
-    viewer.settings.display = Display(compare="side by side", colours="curvature drop", skin="clay")
+    show_refinement(viewer)
+    viewer.settings.display = Display(
+        compare="side by side", a="paper", colours="curvature drop", skin="clay"
+    )
+
+
+def show_refinement(viewer: Viewer) -> None:
+    """Of the panel Mechanism show what says how the mesh is refined, and its colours."""
+    viewer.settings.folds |= dict.fromkeys(("Overlays", "Light and person", "Milliseconds"), False)
 
 
 def tension(viewer: Viewer) -> None:
     """What is stretched and what is compressed, with the springs."""
     viewer.session.toggle_alone("yawn")
     viewer.panel_state.wanted_tab = "Mechanism"
+    viewer.settings.folds |= {"Refinement": False, "Light and person": False}
     viewer.settings.display = Display(colours="tension", overlays=["springs"], skin="clay")
 
 
@@ -83,20 +105,26 @@ def anatomy(viewer: Viewer) -> None:
     """Skull, muscles and landmarks."""
     viewer.session.set("jaw_open", 0.5)
     viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
+    viewer.settings.folds |= dict.fromkeys(("Refinement", "Milliseconds"), False)
     viewer.settings.display = Display(overlays=["skull", "muscles"], dissect="left")
     viewer.view.camera = camera_for(viewer.session.scene, "three-quarter")
 
 
 def finger(viewer: Viewer) -> None:
-    """The skin, dragged by the mouse."""
+    """The skin, dragged by the mouse and let go: muscles hold it, and a line says which."""
     scene = viewer.session.scene
-    corner = scene.positions[scene.head.landmarks[48]]  # type: ignore[attr-defined]
+    corner = scene.positions[scene.head.landmarks[48]].copy()  # type: ignore[attr-defined]
     sight = np.array([0.0, 0.0, -1.0])
-    viewer.mouse.skin_drag = SkinDrag(viewer.session, viewer.settings, corner.copy(), sight, True)
-    viewer.mouse.skin_drag.to(corner + np.array([-20.0, 11.0, 8.0]))
+    drag = SkinDrag(viewer.session, viewer.settings, corner, sight, True)
+    viewer.mouse.skin_drag = drag
     for _ in range(20):
+        drag.to(corner + PULLED)
         viewer.frame()
-    viewer.painter.level_of_detail.level = 0
+    viewer.messages.attempt(drag.let_go)
+    viewer.mouse.forget()
+    told = viewer.messages.text
+    wait_until_settled(viewer)
+    viewer.messages.say(told)
     viewer.frame()
 
 
@@ -108,6 +136,34 @@ def timeline(viewer: Viewer) -> None:
     viewer.frame()
     axis.zoom(0.6, axis.x(0.0))
     viewer.selection.places = places_of(viewer.session.script).between(1.5, 3.0)
+
+
+def curves(viewer: Viewer) -> None:
+    """Values of controls over time; a key is selected."""
+    viewer.settings.shows_curves = True
+    viewer.session.seek(3.7)
+    viewer.frame()
+    viewer.time_axis.zoom(0.5, viewer.time_axis.x(0.0))
+    viewer.selection.places = places_of(viewer.session.script).between(3.5, 4.0)
+
+
+def light(viewer: Viewer) -> None:
+    """Another person, in the light of a window."""
+    viewer.panel_state.wanted_tab = "Mechanism"
+    viewer.settings.folds |= dict.fromkeys(("Refinement", "Overlays", "Milliseconds"), False)
+    viewer.file_drop.show_person("ada")
+    wait_until_settled(viewer)
+    viewer.settings.display = Display(light="window")
+    viewer.session.set("joy", 0.6)
+    viewer.view.camera.orbit(-16.0, 2.0)
+
+
+def export(viewer: Viewer) -> None:
+    """What can be exported, and how."""
+    viewer.session.toggle_alone("joy")
+    viewer.exporter.choices.folder = "~/films"
+    viewer.exporter.choices.is_turntable = True
+    viewer.exporter.ask()
 
 
 def keys(viewer: Viewer) -> None:
@@ -146,8 +202,21 @@ def landmarks(viewer: Viewer) -> None:
     viewer.frame()
 
 
+def plate() -> Image:
+    """Muscles and skull of one side in a smile, to be framed."""
+    scene = FaceScene()
+    style = render.Style(background=render.DARK)
+    dissection = Dissection(("muscles", "skull"), 0.12, "right")
+    options = CaptureOptions(PLATE, camera=PLATE_CAMERA, style=style, dissection=dissection)
+    with Capture(scene, options) as capture:
+        scene.pose({"joy": 0.85})
+        scene.step(SETTLED)
+        return figures.without_noise(capture.draw_image())
+
+
 STOPS: dict[str, Callable[[Viewer], None]] = {
     "viewer": face,
+    "viewer_steps": steps,
     "viewer_controls": controls,
     "viewer_wipe": wipe,
     "viewer_side_by_side": side_by_side,
@@ -155,6 +224,9 @@ STOPS: dict[str, Callable[[Viewer], None]] = {
     "viewer_anatomy": anatomy,
     "viewer_pull": finger,
     "viewer_timeline": timeline,
+    "viewer_curves": curves,
+    "viewer_light": light,
+    "viewer_export": export,
     "viewer_keys": keys,
     "viewer_unsaved": unsaved,
     "viewer_large": large,
@@ -170,7 +242,7 @@ def draw_image(stop: Callable[[Viewer], None]) -> Image:
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
         wait_until_settled(viewer)
         stop(viewer)
-        if viewer.mouse.skin_drag is None:
+        if not viewer.messages.text:
             wait_until_settled(viewer)
         return figures.without_noise(viewer.surface.read())
 
@@ -178,7 +250,10 @@ def draw_image(stop: Callable[[Viewer], None]) -> Image:
 def main(arguments: Sequence[str]) -> None:
     """Draw the pictures into the folder given."""
     given = figures.parse(arguments, __doc__)
-    every = {name: partial(draw_image, stop) for name, stop in STOPS.items()}
+    every: dict[str, figures.Figure] = {
+        name: partial(draw_image, stop) for name, stop in STOPS.items()
+    }
+    every["anatomy"] = plate
     figures.draw(given.folder, figures.chosen(every, given.only))
 
 

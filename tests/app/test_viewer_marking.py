@@ -251,7 +251,9 @@ class TestInTheWindow:
         assert marking.marks.places[44] != before.places[44]
         xdotool(viewer, "key", "ctrl+z")
         assert marking.marks.places[44] == before.places[44] and number in marking.marks.by_hand
-        xdotool(viewer, "key", "ctrl+z")
+        xdotool(viewer, "key", "ctrl+y")
+        assert marking.marks.places[44] != before.places[44]
+        xdotool(viewer, "key", "ctrl+z", "ctrl+z")
         assert marking.marks == before
         xdotool(viewer, "key", "Right")
         assert marking.current == ORDER[ORDER.index(number) + 1]

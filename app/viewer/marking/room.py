@@ -99,7 +99,7 @@ class Room:
             complete("File", "Use this head", "Ctrl+Enter", self.use),
             file("Leave", "Ctrl+W", self.leave),
             edit("Undo", "Ctrl+Z", marking.undo, can_run=lambda: history.can_undo),
-            edit("Redo", "Ctrl+Shift+Z", marking.redo, can_run=lambda: history.can_redo),
+            edit("Redo", "Ctrl+Y", marking.redo, None, lambda: history.can_redo, "Ctrl+Shift+Z"),
             landmarks("Next point", "Right", partial(self._step, 1)),
             landmarks("Point before", "Left", partial(self._step, -1)),
             landmarks("Mirror this group", "M", marking.mirror),
