@@ -224,11 +224,11 @@ class Viewer(Parts):
             draw_message(gui, messages, view)
             if imgui.is_any_mouse_down():
                 view.pointed = ()
+            dialogs = self.chooser.draw, self.export_dialog.draw
             for draw in (
                 partial(draw_recovery, gui, self.recovery, self.session, self.question, view),
                 self.files.poll,
-                self.chooser.draw,
-                self.export_dialog.draw,
+                *(() if self.question.is_open else dialogs),  # which wait for the answer
                 partial(draw_question, gui, self.question, self.session, self.scripts),
             ):
                 messages.attempt(draw)

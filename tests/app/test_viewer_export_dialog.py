@@ -160,6 +160,42 @@ def test_a_bad_folder_is_one_line(viewer: Viewer, kind: str) -> None:
     assert not viewer.exporter.is_asking
 
 
+@pytest.mark.parametrize(("folder", "name"), [("~nobody", "j"), (".", "x" * 300)])
+def test_a_path_that_cannot_be_is_no_trap(viewer: Viewer, folder: str, name: str) -> None:
+    """While it is typed the dialog goes on, Escape closes it, and it comes up again."""
+    for _ in range(2):
+        viewer.settings.export.folder = folder
+        xdotool(viewer, "key", "F10")
+        viewer.exporter.name = name
+        draw_frames(viewer)
+        assert "export: Cancel" in viewer.gui.places and not viewer.messages.text
+        xdotool(viewer, "key", "Escape")
+        assert not viewer.exporter.is_asking
+
+
+def test_the_dialog_waits_while_something_is_asked(viewer: Viewer) -> None:
+    """The window's cross asks about unsaved work; "Back" goes back to the dialog."""
+    viewer.session.set("jaw_open", 0.5)
+    xdotool(viewer, "key", "F10")
+    viewer.ask_to_close()
+    draw_frames(viewer)
+    assert "question: Back" in viewer.gui.places and "export: Cancel" not in viewer.gui.places
+    click(viewer, "question: Back")
+    draw_frames(viewer)
+    assert not viewer.question.is_open and "export: Cancel" in viewer.gui.places
+
+
+def test_enter_opens_the_list_that_tab_came_to(viewer: Viewer) -> None:
+    """It begins the export only where no other widget is meant."""
+    xdotool(viewer, "key", "F10")
+    xdotool(viewer, "key", "Tab")
+    xdotool(viewer, "key", "Return")
+    assert until(viewer, lambda: "export: Film (.mov)" in viewer.gui.places, 5.0)
+    assert viewer.exporter.job is None
+    xdotool(viewer, "key", "Escape")
+    assert viewer.exporter.is_asking
+
+
 def test_what_fails_over_there_is_one_line(viewer: Viewer, tmp_path: Path) -> None:
     """What fails in the other process is told here, and nothing is left."""
     viewer.settings.export.kind = "sheet"
