@@ -73,7 +73,7 @@ class SkinDrag:
 
     def let_go(self) -> Message:
         """The skin stays where muscles hold it, and else swings back; what was solved."""
-        self._simulation.end_drag()
+        self.drop()
         pull = self._pull
         if pull is None:
             return None
@@ -84,6 +84,10 @@ class SkinDrag:
             return "No muscle draws the skin this way: it swings back"
         told = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
         return f"{', '.join(told).capitalize()}; {pull.short:.1f} mm short"
+
+    def drop(self) -> None:
+        """Hold on to the skin no longer."""
+        self._simulation.end_drag()
 
     def _obey(self, pull: sim.Pull) -> None:
         """Set what was solved, and put back what was set before and is needed no more."""
