@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from risorius.app import stopping
 from risorius.app.cameras import camera_for
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture import capture as film_of
@@ -145,6 +147,29 @@ def test_the_window_lives_and_cancel_leaves_nothing(viewer: Viewer, tmp_path: Pa
     click(viewer, "export: stop")
     assert viewer.exporter.job is None and not viewer.surface.should_close
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_signal_ends_the_export_too(
+    viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What stops the window stops the other process; nothing stays, here or among its logs."""
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "logs"))
+    monkeypatch.setattr(tempfile, "tempdir", None)
+    (tmp_path / "logs").mkdir()
+    viewer.settings.export.source, viewer.settings.export.seconds = "pose", 100.0
+    xdotool(viewer, "key", "F10")
+    click(viewer, "export: begin")
+    assert list((tmp_path / "logs").iterdir())
+
+    def stop() -> None:
+        """As a signal does, but for the end of this process."""
+        for clean_up in reversed(stopping._cleanups):
+            clean_up()
+        viewer.session.is_playing = False
+
+    monkeypatch.setattr(viewer, "frame", stop)
+    viewer.run(playing=True, once=True)
+    assert [path.name for path in tmp_path.rglob("*")] == ["logs"]
 
 
 @pytest.mark.parametrize("kind", ["mp4", "frames", "npz"])
