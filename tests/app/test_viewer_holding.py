@@ -34,7 +34,7 @@ def test_a_pull_that_is_recorded_leaves_other_muscles_to_the_script(session: Ses
     finger = SkinDrag(session, Settings(), brow, AHEAD, poses=True)
     before = session.script
     for up in np.linspace(1.0, 6.0, 6):
-        finger.to(brow + [0.0, up, 0.0])
+        finger.to(brow + up * np.eye(3)[1])
         session.advance(STEP)
     finger.let_go()
     for _ in range(60):
