@@ -82,7 +82,7 @@ class Session:
     def toggle_alone(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""
         pose = self.controls.pose({}) if self.is_alone(name) else self.controls.alone(name)
-        self._set_pose(pose, f"Show {readable(name)}", is_unsaved=False)
+        self._set_pose(pose, f"Show {name.replace('_', ' ')}", is_unsaved=False)
 
     def is_alone(self, name: str) -> bool:
         """Whether this control alone is not 0, and at its most."""
