@@ -48,10 +48,10 @@ class Row:
 def change_of(before: Mapping[str, float], after: Mapping[str, float]) -> str:
     """What was set by hand, in words; what is not in `before` was 0."""
     names = sorted(name for name, value in after.items() if value != before.get(name, 0.0))
-    labels = {readable(name if len(names) == 1 else parted(name)[0]) for name in names}
+    labels = {name if len(names) == 1 else parted(name)[0] for name in names}
     if len(labels) != 1:
         return f"Set {counted(len(names), 'control')}"
-    return f"Set {labels.pop()} to {after[names[0]]:.2f}"
+    return f"Set {labels.pop().replace('_', ' ')} to {after[names[0]]:.2f}"
 
 
 def rows_of(

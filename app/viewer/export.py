@@ -5,6 +5,7 @@ An export goes on in a process of its own, with script and view as they were; th
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable
 from copy import deepcopy
@@ -37,7 +38,14 @@ from .view import View
 def free_name(folder: Path, stem: str, suffix: str) -> Path:
     """A name in a folder that no file has yet."""
     names = (f"{stem}{extra}{suffix}" for extra in ("", *(f"-{n}" for n in range(2, 1000))))
-    return next((folder / each for each in names if not (folder / each).exists()), folder / stem)
+    return next((folder / each for each in names if not is_there(folder / each)), folder / stem)
+
+
+def is_there(path: Path) -> bool:
+    """Whether something would be replaced; what cannot be written is told when that is tried."""
+    with contextlib.suppress(OSError):  # its name is too long, or nobody may look
+        return path.exists()
+    return False
 
 
 @dataclass
@@ -104,7 +112,9 @@ class Exporter:
     def target(self) -> Path:
         """The file, or folder of frames."""
         name, suffix = self.name, self.kind.suffix
-        folder = Path(self.choices.folder or ".").expanduser()
+        folder = Path(self.choices.folder or ".")
+        with contextlib.suppress(RuntimeError):  # "~" and the beginning of a name, as it is typed
+            folder = folder.expanduser()
         return folder / f"{name.removesuffix(suffix)}{suffix}"
 
     def screenshot(self) -> Message:

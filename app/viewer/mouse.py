@@ -104,6 +104,8 @@ class CameraMouse:
 class Mouse(CameraMouse):
     """The mouse on a face: it drags the skin, and the line between two halves."""
 
+    skin_drag: SkinDrag | None = None
+
     def __init__(
         self, view: View, stage: Stage, messages: Messages, grab: Grab, select_muscle: Select
     ) -> None:
@@ -114,7 +116,9 @@ class Mouse(CameraMouse):
 
     def forget(self) -> None:
         super().forget()
-        self.skin_drag: SkinDrag | None = None
+        if self.skin_drag is not None:  # or the skin would hang there
+            self.skin_drag.drop()
+        self.skin_drag = None
 
     @property
     def is_dragging_skin(self) -> bool:

@@ -223,6 +223,7 @@ class Parts:
         marking = Marking(mesh, self.files)
         line = None if landmarks is None else marking.open(landmarks)
         self.leave_marking()
+        self.mouse.forget()
         self.session.is_playing = False
         self.room = Room(marking, self)
         return line

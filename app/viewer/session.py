@@ -82,7 +82,7 @@ class Session:
     def toggle_alone(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""
         pose = self.controls.pose({}) if self.is_alone(name) else self.controls.alone(name)
-        self._set_pose(pose, f"Show {readable(name)}", is_unsaved=False)
+        self._set_pose(pose, f"Show {name.replace('_', ' ')}", is_unsaved=False)
 
     def is_alone(self, name: str) -> bool:
         """Whether this control alone is not 0, and at its most."""
@@ -126,8 +126,7 @@ class Session:
     # Undo
 
     def _document(self) -> Document:
-        by_hand = {name: value for name, value in self.values.items() if value}
-        values = None if self.is_following else by_hand
+        values = None if self.is_following else {n: v for n, v in self.values.items() if v}
         return Document(values, self.script, self.file, self.display, self.time)
 
     def show(self, display: object) -> None:
@@ -313,9 +312,11 @@ class Session:
             if not self.is_playing:
                 self.toggle_playing()
             return f"recording from {self.time:.2f} s: what you move replaces the script there"
-        recorder, self._recorder, self._held, self.is_playing = self._recorder, None, {}, False
-        recording = recorder.script()
+        recorder, self._recorder, held, self._held = self._recorder, None, self._held, {}
+        recording, self.is_playing = recorder.script(), False
         if recording is None:
+            self.is_following, self.pose_is_unsaved = not held, bool(held)  # a pose by hand again
+            self.note()
             raise UserError("nothing was recorded: no control moved")
         self.script = recording
         self._go_to(rounded(self.time))  # which is the end, where the recording is the last

@@ -48,7 +48,7 @@ class SkinDrag:
         self.offset = np.zeros(3)
         poses = poses and not session.live.is_on  # which leads where it wants
         self._candidates = _candidates(session, linked=settings.is_linked) if poses else []
-        self._own = {name: session.values[name] for names in self._candidates for name in names}
+        self._own: dict[str, float] = {}  # what solved controls had before
         self._pull: sim.Pull | None = None  # from the first motion on: a click need not wait
 
     def to(self, point: Array) -> None:
@@ -73,7 +73,7 @@ class SkinDrag:
 
     def let_go(self) -> Message:
         """The skin stays where muscles hold it, and else swings back; what was solved."""
-        self._simulation.end_drag()
+        self.drop()
         pull = self._pull
         if pull is None:
             return None
@@ -85,11 +85,17 @@ class SkinDrag:
         told = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
         return f"{', '.join(told).capitalize()}; {pull.short:.1f} mm short"
 
+    def drop(self) -> None:
+        """Hold on to the skin no longer."""
+        self._simulation.end_drag()
+
     def _obey(self, pull: sim.Pull) -> None:
         """Set what was solved, and put back what was set before and is needed no more."""
         solved = {name: value for names, value in pull.changes.items() for name in names}
+        present = self._session.values  # others may move meanwhile, by a script that is recorded
+        self._own = {name: present[name] for name in solved} | self._own
         for name, value in {**self._own, **solved}.items():
-            if value != self._session.values[name]:
+            if value != present[name]:
                 self._session.set(name, value)
 
 

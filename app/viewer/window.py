@@ -53,7 +53,8 @@ class Viewer(Parts):
         if playing:
             self.session.toggle_playing()
         self._last = time.perf_counter()
-        with self.recovery.guarding(self.session), cleaned_up_if_stopped(self.remember):
+        stopping = cleaned_up_if_stopped(self.exporter.cancel)  # when the work is safe
+        with stopping, self.recovery.guarding(self.session), cleaned_up_if_stopped(self.remember):
             while True:
                 if self.placement.is_minimised:  # time stands still, and nothing is drawn
                     self._wait()
@@ -224,11 +225,11 @@ class Viewer(Parts):
             draw_message(gui, messages, view)
             if imgui.is_any_mouse_down():
                 view.pointed = ()
+            dialogs = self.chooser.draw, self.export_dialog.draw
             for draw in (
                 partial(draw_recovery, gui, self.recovery, self.session, self.question, view),
                 self.files.poll,
-                self.chooser.draw,
-                self.export_dialog.draw,
+                *(() if self.question.is_open else dialogs),  # which wait for the answer
                 partial(draw_question, gui, self.question, self.session, self.scripts),
             ):
                 messages.attempt(draw)

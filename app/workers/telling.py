@@ -21,7 +21,9 @@ class Task:
     def __init__(self, work: Callable[[], object], frame_count: int, wake: Callable[[], None]):
         """Begin; wake: called when it has ended, from a thread."""
         self._frame_count, self._crew = frame_count, Crew(1)
-        self._log = Path(tempfile.mkstemp(prefix="risorius-", suffix=".log")[1])
+        handle, log = tempfile.mkstemp(prefix="risorius-", suffix=".log")
+        os.close(handle)
+        self._log = Path(log)
         thread = ThreadPoolExecutor(1)
         self._end = thread.submit(self._crew.do, told, 0, work, retries=0, log=self._log)
         self._end.add_done_callback(lambda _: wake())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from risorius.app import stopping
 from risorius.app.cameras import camera_for
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture import capture as film_of
@@ -147,6 +149,29 @@ def test_the_window_lives_and_cancel_leaves_nothing(viewer: Viewer, tmp_path: Pa
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_signal_ends_the_export_too(
+    viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What stops the window stops the other process; nothing stays, here or among its logs."""
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "logs"))
+    monkeypatch.setattr(tempfile, "tempdir", None)
+    (tmp_path / "logs").mkdir()
+    viewer.settings.export.source, viewer.settings.export.seconds = "pose", 100.0
+    xdotool(viewer, "key", "F10")
+    click(viewer, "export: begin")
+    assert list((tmp_path / "logs").iterdir())
+
+    def stop() -> None:
+        """As a signal does, but for the end of this process."""
+        for clean_up in reversed(stopping._cleanups):
+            clean_up()
+        viewer.session.is_playing = False
+
+    monkeypatch.setattr(viewer, "frame", stop)
+    viewer.run(playing=True, once=True)
+    assert [path.name for path in tmp_path.rglob("*")] == ["logs"]
+
+
 @pytest.mark.parametrize("kind", ["mp4", "frames", "npz"])
 def test_a_bad_folder_is_one_line(viewer: Viewer, kind: str) -> None:
     """It is told at once, and the dialog stays with all that was chosen."""
@@ -158,6 +183,42 @@ def test_a_bad_folder_is_one_line(viewer: Viewer, kind: str) -> None:
     assert viewer.exporter.is_asking and viewer.exporter.job is None
     xdotool(viewer, "key", "Escape")
     assert not viewer.exporter.is_asking
+
+
+@pytest.mark.parametrize(("folder", "name"), [("~nobody", "j"), (".", "x" * 300)])
+def test_a_path_that_cannot_be_is_no_trap(viewer: Viewer, folder: str, name: str) -> None:
+    """While it is typed the dialog goes on, Escape closes it, and it comes up again."""
+    for _ in range(2):
+        viewer.settings.export.folder = folder
+        xdotool(viewer, "key", "F10")
+        viewer.exporter.name = name
+        draw_frames(viewer)
+        assert "export: Cancel" in viewer.gui.places and not viewer.messages.text
+        xdotool(viewer, "key", "Escape")
+        assert not viewer.exporter.is_asking
+
+
+def test_the_dialog_waits_while_something_is_asked(viewer: Viewer) -> None:
+    """The window's cross asks about unsaved work; "Back" goes back to the dialog."""
+    viewer.session.set("jaw_open", 0.5)
+    xdotool(viewer, "key", "F10")
+    viewer.ask_to_close()
+    draw_frames(viewer)
+    assert "question: Back" in viewer.gui.places and "export: Cancel" not in viewer.gui.places
+    click(viewer, "question: Back")
+    draw_frames(viewer)
+    assert not viewer.question.is_open and "export: Cancel" in viewer.gui.places
+
+
+def test_enter_opens_the_list_that_tab_came_to(viewer: Viewer) -> None:
+    """It begins the export only where no other widget is meant."""
+    xdotool(viewer, "key", "F10")
+    xdotool(viewer, "key", "Tab")
+    xdotool(viewer, "key", "Return")
+    assert until(viewer, lambda: "export: Film (.mov)" in viewer.gui.places, 5.0)
+    assert viewer.exporter.job is None
+    xdotool(viewer, "key", "Escape")
+    assert viewer.exporter.is_asking
 
 
 def test_what_fails_over_there_is_one_line(viewer: Viewer, tmp_path: Path) -> None:

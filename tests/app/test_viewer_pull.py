@@ -15,11 +15,13 @@ from tests.app.driving import (
     drag,
     middle,
     moved,
+    nose,
     on_screen,
     show_controls,
     until,
     xdotool,
 )
+from tests.heads import stranger
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 MAJOR = "zygomaticus_major"
@@ -149,3 +151,15 @@ def test_a_click_shows_the_slider_beside_the_mouse(viewer: Viewer) -> None:
     assert until(viewer, lambda: "note" in viewer.gui.places)
     xdotool(viewer, "mousemove", *on_screen(viewer, 880, 150), "click", 1)
     assert until(viewer, lambda: "note" not in viewer.gui.places)
+
+
+def test_skin_is_let_go_where_marking_begins(viewer: Viewer, tmp_path: Path) -> None:
+    """A finger that is on the skin as the face goes away does not hold it for ever."""
+    mesh = stranger().write(tmp_path)[0]
+    drag(viewer, nose(viewer), (30, 0))
+    assert until(viewer, lambda: moved(viewer) > 4.0)
+    viewer.mark(mesh)
+    xdotool(viewer, "mouseup", 1)
+    viewer.leave_marking()
+    viewer.session.neutral()
+    assert until(viewer, lambda: moved(viewer) < 0.3)

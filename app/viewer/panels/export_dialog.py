@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from imgui_bundle import imgui
 
-from ..export import Exporter
+from ..export import Exporter, is_there
 from ..export_kinds import KINDS, SHEET, SOURCES
 from ..files import Files
 from ..gui import NOTE_FLAGS, Gui, colour, em
@@ -143,22 +143,25 @@ class ExportDialog:
         """What will be written, or why not; and the buttons."""
         exporter, (_, (begin, end)) = self._exporter, self._exporter.played()
         text = f"{end - begin:.2f} s, {round((end - begin) * choices.rate) + 1} frames"
-        is_there, theme = exporter.target.exists(), self._gui.theme
-        text = f"{exporter.target.name} is there already" if is_there else text
+        is_replaced, theme = is_there(exporter.target), self._gui.theme
+        text = f"{exporter.target.name} is there already" if is_replaced else text
         imgui.separator()
         imgui.align_text_to_frame_padding()
         left = imgui.get_content_region_avail().x - em(2.0 * BUTTON)
-        ink = colour(theme.error if is_there else theme.muted)
+        ink = colour(theme.error if is_replaced else theme.muted)
         imgui.text_colored(ink, shortened(text, left - em()))
         imgui.same_line(left)
-        label = "Replace" if is_there else "Export"
+        label = "Replace" if is_replaced else "Export"
         is_begun = button(self._gui, label, name="export: begin", width=em(BUTTON))
         imgui.same_line()
         is_over = button(self._gui, "Cancel", name="export: Cancel", width=em(BUTTON))
         was_focused, self._was_focused = self._was_focused, imgui.is_window_focused()
+        # Enter is for the widget that Tab has come to, unless that is a line of text.
+        io, is_enter = imgui.get_io(), imgui.is_key_pressed(imgui.Key.enter)
+        is_enter = is_enter and (io.want_text_input or not io.nav_visible)
         if is_over or (was_focused and imgui.is_key_pressed(imgui.Key.escape)):
             exporter.is_asking = False
-        elif is_begun or (was_focused and imgui.is_key_pressed(imgui.Key.enter)):
+        elif is_begun or (was_focused and is_enter):
             exporter.start()
 
     def _take(self, path: Path) -> Message:
