@@ -79,6 +79,13 @@ class Session:
             self.is_playing = self.is_following = False
             self.pose_is_unsaved = self._is_touched = True
 
+    def blend(self, first: Mapping[str, float], last: Mapping[str, float], share: float) -> None:
+        """Be this share of the way from a pose to another, both with a value for each control."""
+        for name in first:
+            value = first[name] + share * (last[name] - first[name])
+            if value != self.values[name]:
+                self.set(name, value)
+
     def toggle_alone(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""
         pose = self.controls.pose({}) if self.is_alone(name) else self.controls.alone(name)
