@@ -35,9 +35,6 @@ NEW_SECONDS = 4.0  # that a script begun from nothing lasts
 class Session:
     """The controls of a scene and the script that may move them."""
 
-    is_playing: bool
-    is_looping: bool
-
     def __init__(self, scene: Scene, script: Script) -> None:
         script.check(scene.limits)
         self.scene, self.controls = scene, Controls(scene)

@@ -25,7 +25,7 @@ from ..gui import BACK, Gui, colour, em
 from ..messages import Messages
 from ..overlays import overlays_of
 from ..setting_rules import BACKGROUNDS, CHOSEN, COMPARISONS, SKINS, TONES
-from ..settings import Display, Settings
+from ..settings import Display, Settings, switch
 from ..stage import Stage
 from ..view import View
 from .sliders import Sliders
@@ -284,7 +284,7 @@ class MechanismPanel:
     def _switch(self, label: str) -> None:
         """A checkbox for a field of the display."""
         name = FIELDS[label]
-        self._check(label, getattr(self._display, name), partial(self._display.switch, name))
+        self._check(label, getattr(self._display, name), partial(switch, self._display, name))
 
     def _check(self, label: str, is_on: bool, switch: Callable[[], None]) -> None:
         is_clicked, _ = imgui.checkbox(readable(label), is_on)

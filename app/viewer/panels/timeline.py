@@ -11,6 +11,7 @@ from ..command import Command
 from ..gui import LEFT, MIDDLE, RIGHT, Gui, colour, em
 from ..messages import Messages
 from ..session import SPEEDS, Session
+from ..settings import switch
 from .dope_sheet import DopeSheet
 from .widgets import button, choose, hint, shortened, stay_in_line
 
@@ -127,7 +128,7 @@ class Timeline:
         imgui.text(shortened(time, imgui.get_content_region_avail().x))
         self._gui.remember("time shown")
         if imgui.is_item_clicked():
-            self.dope_sheet.settings.toggle("counts_frames")
+            switch(self.dope_sheet.settings, "counts_frames")
         hint("the time shown, and the script's length, whose end is in the ruler; a click: frames")
         imgui.same_line(0.0, em(1.2))
         imgui.text_colored(colour(ink), shortened(status, imgui.get_content_region_avail().x))
