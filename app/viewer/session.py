@@ -15,16 +15,15 @@ from ..errors import UserError, counted
 from ..mirror import copied, mirrored, twin_of
 from ..motion import SETTLING
 from ..scenes import Scene
-from ..script import Pose, Script, is_pose, pose_script, rounded, save_script
+from ..script import Pose, Script, is_pose, keyframes, pose_script, rounded, save_script
+from ..script.recorder import Recorder
 from ..vocabulary import readable
-from . import keyframes
 from .control_rows import change_of
 from .controls import Controls
 from .document import Document
 from .history import History
 from .lead import Lead
 from .messages import Message
-from .recorder import Recorder
 from .script_file import ScriptFile
 from .unsaved import Work
 
