@@ -61,7 +61,8 @@ def button(
 def choose(gui: Gui, label: str, present: str, choices: Iterable[str]) -> str | None:
     """Draw a list to choose from, as wide as was asked for; what was chosen in it now."""
     chosen = None
-    is_open = imgui.begin_combo(f"##{label}", readable(present))
+    flags = imgui.ComboFlags_.height_largest
+    is_open = imgui.begin_combo(f"##{label}", readable(present), flags)
     gui.remember(label)
     if is_open:
         for choice in choices:
