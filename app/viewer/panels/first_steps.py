@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from imgui_bundle import imgui
 
-from ..gui import NOTE_FLAGS, Gui, colour, em
+from ..gui import NOTE_FLAGS, Gui, em, ink_of
 from ..view import View
 from .widgets import muted
 
@@ -76,10 +76,10 @@ class FirstSteps:
             em(RADIUS),
         )
         x, y = corner.x + radius, corner.y + em(1.05)
-        accent = imgui.get_color_u32(colour(self._gui.theme.accent))
+        accent = ink_of(self._gui.theme.accent)
         if self.done[number]:
             ink.add_circle_filled((x, y), radius, accent)
-            paper = imgui.get_color_u32(colour(self._gui.theme.panel))
+            paper = ink_of(self._gui.theme.panel)
             tick = [(x + em(a), y + em(b)) for a, b in ((-0.27, 0.02), (-0.07, 0.22), (0.28, -0.2))]
             for start, end in pairwise(tick):
                 ink.add_line(start, end, paper, em(0.13))

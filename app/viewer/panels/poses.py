@@ -13,7 +13,7 @@ from risorius import render
 
 from ...mirror import mirrored
 from ...poses import Poses, Values
-from ..gui import LEFT, Gui, colour, em, wake_up
+from ..gui import LEFT, Gui, em, ink_of, wake_up
 from ..messages import Messages
 from ..session import Session
 from .widgets import button, hint
@@ -97,14 +97,14 @@ class PoseGrid:
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         foot = high.y - em(LINE)
         back = theme.raised if imgui.is_item_hovered() else theme.field
-        paper.add_rect_filled(low, high, imgui.get_color_u32(colour(back)))
+        paper.add_rect_filled(low, high, ink_of(back))
         full = (low.x + share * (high.x - low.x), high.y)
-        paper.add_rect_filled((low.x, foot), full, imgui.get_color_u32(colour(theme.accent, 0.6)))
+        paper.add_rect_filled((low.x, foot), full, ink_of(theme.accent, 0.6))
         texture = self._pictures.get(title, ({}, None))[1]
         if texture is not None:
             paper.add_image(imgui.ImTextureRef(texture.glo), low, (high.x, foot))
         paper.push_clip_rect(low, high, True)
-        paper.add_text((low.x + em(0.25), foot), imgui.get_color_u32(colour(theme.text)), words)
+        paper.add_text((low.x + em(0.25), foot), ink_of(theme.text), words)
         paper.pop_clip_rect()
 
     def close(self) -> None:
