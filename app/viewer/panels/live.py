@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 
 from imgui_bundle import imgui
 
 from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, LiveFace, State
-from ...mirror import parted
 from ...recordings.calibration import ANGLES, BLINK_GAIN, HIGHEST_GAIN
 from ..command import Command
+from ..control_rows import rows_of
 from ..gui import Gui, colour, em
 from ..live_commands import LiveCommands
 from ..messages import Messages
@@ -158,11 +158,12 @@ class LivePanel:
         shown = shown_of(face)
         if not shown:
             muted(self._gui, "nothing yet")
-        for label, names in rows_of(shown):
+        for row in rows_of(tuple(shown), shown, linked=False):
+            names = row.names
             shares = [_share(name, shown[name]) for name in names]
             is_seen = max(shares) >= LEAST_SEEN
             ink = self._gui.theme.accent if is_seen else self._gui.theme.muted
-            imgui.text_colored(colour(ink), label)
+            imgui.text_colored(colour(ink), row.label)
             hint("right | left" if len(names) > 1 else "")
             left = self._rows.second
             imgui.same_line(left)
@@ -179,14 +180,6 @@ def shown_of(face: LiveFace) -> dict[str, float]:
     """The channels that have come and where they are, calibrated; 0 while none comes."""
     calibrated = face.calibration.apply(face.channels)
     return calibrated if face.state is State.RECEIVING else dict.fromkeys(calibrated, 0.0)
-
-
-def rows_of(channels: Iterable[str]) -> list[tuple[str, tuple[str, ...]]]:
-    """Label and channels of each row: both sides of a channel together, the right one first."""
-    rows: dict[str, list[str]] = {}
-    for name in channels:
-        rows.setdefault(parted(name)[0], []).append(name)
-    return [(stem, tuple(sorted(names, reverse=True))) for stem, names in rows.items()]
 
 
 def _share(channel: str, value: float) -> float:
