@@ -148,14 +148,7 @@ class Stage:
                 self._draw_shot(shot, view, style, values)
                 for lines in overlays:
                     self.renderer.draw_lines(
-                        lines.polylines,
-                        lines.colours,
-                        camera,
-                        viewport=shot.viewport,
-                        clip=shot.clip,
-                        width=lines.width,
-                        opacity=lines.opacity,
-                        hidden_opacity=lines.hidden_opacity,
+                        camera=camera, viewport=shot.viewport, clip=shot.clip, **lines._asdict()
                     )
             self.surface.target.flush()
             self.surface.gl.finish()
