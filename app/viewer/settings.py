@@ -169,20 +169,18 @@ def display_of(
     scene: str,
     dissection: Dissection = Dissection(),  # noqa: B008 - frozen
     *,
-    shading: str,
-    wireframe: bool,
     splits: bool,
-    skin: str,
-    wrinkles: float,
-    light: str,
+    **style: Any,
 ) -> Display:
-    """How the scene of this name is shown as the command line asks for."""
+    """How the scene of this name is shown as the command line asks for; style: further fields."""
     display = Display(
-        shading=shading, wireframe=wireframe, skin=skin, wrinkles=wrinkles, light=light
+        look=refinement.look,
+        colours="splits" if splits else "none",
+        overlays=list(dissection.solids),
+        skin_opacity=dissection.opacity,
+        dissect=dissection.side,
+        **style,
     )
-    display.overlays, display.dissect = list(dissection.solids), dissection.side
-    display.skin_opacity = dissection.opacity
-    display.look, display.colours = refinement.look, "splits" if splits else "none"
     if refinement.refiner == STATIC:
         display.is_refined = False
     else:
