@@ -27,7 +27,6 @@ from .messages import Message
 from .script_file import ScriptFile
 from .unsaved import Work
 
-SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0)
 NEW_SECONDS = 4.0  # that a script begun from nothing lasts
 
 
@@ -129,8 +128,7 @@ class Session:
     # Undo
 
     def _document(self) -> Document:
-        by_hand = {name: value for name, value in self.values.items() if value}
-        values = None if self.is_following else by_hand
+        values = None if self.is_following else {n: v for n, v in self.values.items() if v}
         return Document(values, self.script, self.file, self.display, self.time)
 
     def show(self, display: object) -> None:
